@@ -1,0 +1,145 @@
+#include "local_delaunay.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "ahm/detail/parallel.hpp"
+#include "vec3.hpp"
+
+namespace ahm::pointcloud {
+namespace {
+
+constexpr Offset chunk = 4096;
+
+/// Oriented normals further apart than 120 degrees belong to different sheets.
+constexpr double sheet_cosine = -0.5;
+
+/// A neighbour almost straight above the point has no direction in its plane.
+constexpr double least_projection = 1e-6;
+
+struct Inverted {
+  double x, y;
+  Index vertex;  ///< -1: the centre of inversion itself
+};
+
+double turn(const Inverted& a, const Inverted& b, const Inverted& c) {
+  return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+}
+
+/// Convex hull, counter-clockwise, corners only (Andrew's monotone chain).
+void convex_hull(std::vector<Inverted>& points, std::vector<Inverted>& hull) {
+  std::sort(points.begin(), points.end(), [](const Inverted& a, const Inverted& b) {
+    return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.vertex < b.vertex;
+  });
+  hull.clear();
+  auto extend = [&](const Inverted& p, std::size_t floor) {
+    while (hull.size() >= floor + 2 && turn(hull[hull.size() - 2], hull.back(), p) <= 0) hull.pop_back();
+    hull.push_back(p);
+  };
+  for (const Inverted& p : points) extend(p, 0);
+  const std::size_t upper = hull.size() - 1;
+  for (std::size_t k = points.size() - 1; k-- > 0;) extend(points[k], upper);
+  hull.pop_back();
+}
+
+/// The Delaunay triangles at one point. Under inversion about the point, circles through it become lines: a circle through the
+/// point and two neighbours is empty exactly when the line through their images has all other images, and the origin, on one
+/// side. So the triangles are the edges of the convex hull of the images and the origin that do not touch the origin.
+class StarTriangulator {
+ public:
+  StarTriangulator(const CleanPoints& cloud, const Neighborhoods& neighborhoods, const TangentPlanes& planes, bool oriented,
+                   double max_edge_ratio)
+      : cloud_(cloud), neighborhoods_(neighborhoods), planes_(planes), oriented_(oriented), max_ratio_(max_edge_ratio) {}
+
+  Offset too_long = 0, other_sheet = 0;
+
+  void triangulate(Index i, std::vector<Triangle>& out) {
+    images_.clear();
+    const PlaneAxes axes(planes_.normals[i]);
+    const double unit = 1.0 / neighborhoods_.radius[i];
+    for (Index j : neighborhoods_.of(i)) {
+      if (!planes_.has_plane(j)) continue;
+      const Vec3 offset = unit * (cloud_.points[j] - cloud_.points[i]);
+      const double length = norm(offset);
+      if (!accept(i, j, length)) continue;
+      const double x = dot(axes.x, offset), y = dot(axes.y, offset), squared = x * x + y * y;
+      if (squared > least_projection * least_projection * length * length) images_.push_back({x / squared, y / squared, j});
+    }
+    if (images_.size() < 2) return;
+    images_.push_back({0, 0, -1});
+    convex_hull(images_, hull_);
+    for (std::size_t a = 0; a < hull_.size() && hull_.size() > 2; ++a) {
+      const Index j = hull_[a].vertex, l = hull_[(a + 1) % hull_.size()].vertex;
+      if (j < 0 || l < 0) continue;
+      Triangle t{i, j, l};
+      std::sort(t.begin(), t.end());
+      out.push_back(t);
+    }
+  }
+
+ private:
+  bool accept(Index i, Index j, double length) {
+    if (length * neighborhoods_.radius[i] > max_ratio_ * neighborhoods_.radius[j]) return ++too_long, false;
+    if (oriented_ && dot(planes_.normals[i], planes_.normals[j]) < sheet_cosine) return ++other_sheet, false;
+    return true;
+  }
+
+  const CleanPoints& cloud_;
+  const Neighborhoods& neighborhoods_;
+  const TangentPlanes& planes_;
+  bool oriented_;
+  double max_ratio_;
+  std::vector<Inverted> images_, hull_;
+};
+
+/// Sorts and removes repetitions, first by counting the smallest corner.
+std::vector<Triangle> unique_triangles(const std::vector<std::vector<Triangle>>& parts, Index n, unsigned threads) {
+  std::vector<Offset> begin(static_cast<std::size_t>(n) + 1, 0);
+  for (const auto& part : parts)
+    for (const Triangle& t : part) ++begin[t[0] + 1];
+  for (Index i = 0; i < n; ++i) begin[i + 1] += begin[i];
+  std::vector<std::array<Index, 2>> rest(static_cast<std::size_t>(begin[n]));
+  std::vector<Offset> fill(begin.begin(), begin.end() - 1);
+  for (const auto& part : parts)
+    for (const Triangle& t : part) rest[fill[t[0]]++] = {t[1], t[2]};
+  detail::parallel_chunks(n, chunk, threads, [&](Offset first, Offset last) {
+    for (Offset i = first; i < last; ++i) {
+      const auto bucket = rest.begin() + begin[i];
+      std::sort(bucket, rest.begin() + begin[i + 1]);
+      fill[i] = std::unique(bucket, rest.begin() + begin[i + 1]) - rest.begin();
+    }
+  });
+  std::vector<Triangle> triangles;
+  triangles.reserve(rest.size() / 2);
+  for (Index i = 0; i < n; ++i)
+    for (Offset t = begin[i]; t < fill[i]; ++t) triangles.push_back({i, rest[t][0], rest[t][1]});
+  return triangles;
+}
+
+}  // namespace
+
+std::vector<Triangle> local_delaunay(const CleanPoints& cloud, const Neighborhoods& neighborhoods, const TangentPlanes& planes,
+                                     bool oriented, const CloudOptions& options, CloudReport& report) {
+  const auto n = static_cast<Offset>(cloud.points.size());
+  std::vector<std::vector<Triangle>> parts(static_cast<std::size_t>((n + chunk - 1) / chunk));
+  std::atomic<Offset> too_long{0}, other_sheet{0};
+  detail::parallel_chunks(n, chunk, options.threads, [&](Offset begin, Offset end) {
+    StarTriangulator star(cloud, neighborhoods, planes, oriented, options.max_edge_ratio);
+    auto& part = parts[static_cast<std::size_t>(begin / chunk)];
+    part.reserve(static_cast<std::size_t>(end - begin) * 6);
+    for (Offset i = begin; i < end; ++i)
+      if (planes.has_plane(static_cast<Index>(i))) star.triangulate(static_cast<Index>(i), part);
+    too_long += star.too_long;
+    other_sheet += star.other_sheet;
+    if (options.progress.stop.stop_requested()) throw Cancelled("cancelled during the local triangulation");
+  });
+  report.rejected_long = too_long;
+  report.rejected_normals = other_sheet;
+  std::vector<Triangle> triangles = unique_triangles(parts, static_cast<Index>(n), options.threads);
+  report.triangles = static_cast<Offset>(triangles.size());
+  options.progress.step("triangulate", 1.0);
+  return triangles;
+}
+
+}  // namespace ahm::pointcloud

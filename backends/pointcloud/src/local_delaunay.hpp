@@ -1,0 +1,20 @@
+/// \file
+/// The union of every point's Delaunay triangles in its own tangent plane.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "tangent_planes.hpp"
+
+namespace ahm::pointcloud {
+
+using Triangle = std::array<Index, 3>;
+
+/// Triangulates the neighbours of each point, projected to its tangent plane, and keeps the triangles at the point itself. A
+/// triangle found from several of its corners is listed once, corners ascending, triangles in lexicographic order.
+/// @param oriented  reject neighbours whose normals point the other way
+std::vector<Triangle> local_delaunay(const CleanPoints& cloud, const Neighborhoods& neighborhoods, const TangentPlanes& planes,
+                                     bool oriented, const CloudOptions& options, CloudReport& report);
+
+}  // namespace ahm::pointcloud

@@ -1,0 +1,127 @@
+#include "orientation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "vec3.hpp"
+
+namespace ahm::pointcloud {
+namespace {
+
+/// Union-find over vertices that also keeps the relative sign of each vertex to its root.
+class SignedForest {
+ public:
+  explicit SignedForest(Index n) : parent_(static_cast<std::size_t>(n)), sign_(static_cast<std::size_t>(n), 1) {
+    std::iota(parent_.begin(), parent_.end(), 0);
+  }
+
+  struct Root {
+    Index vertex;
+    signed char sign;
+  };
+
+  Root find(Index v) {
+    Index root = v;
+    signed char sign = 1;
+    while (parent_[root] != root) {
+      sign = static_cast<signed char>(sign * sign_[root]);
+      root = parent_[root];
+    }
+    const Root result{root, sign};
+    while (parent_[v] != root && v != root) {  // path compression keeps the signs relative to the root
+      const Index up = parent_[v];
+      const auto rest = static_cast<signed char>(sign * sign_[v]);
+      parent_[v] = root;
+      sign_[v] = sign;
+      sign = rest;
+      v = up;
+    }
+    return result;
+  }
+
+  void join(Index a, Index b, signed char relative) {
+    Root p = find(a), q = find(b);
+    if (p.vertex == q.vertex) return;
+    if (p.vertex > q.vertex) std::swap(p, q);
+    parent_[q.vertex] = p.vertex;
+    sign_[q.vertex] = static_cast<signed char>(p.sign * q.sign * relative);
+  }
+
+ private:
+  std::vector<Index> parent_;
+  std::vector<signed char> sign_;
+};
+
+/// Edge numbers, flattest first.
+std::vector<std::uint32_t> flattest_first(const WeightedEdges& edges, const TangentPlanes& planes) {
+  std::vector<float> bend(edges.tails.size());
+  for (std::size_t e = 0; e < bend.size(); ++e)
+    bend[e] = static_cast<float>(1.0 - std::abs(dot(planes.normals[edges.tails[e]], planes.normals[edges.heads[e]])));
+  std::vector<std::uint32_t> order(bend.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::sort(order.begin(), order.end(),
+            [&](std::uint32_t a, std::uint32_t b) { return bend[a] != bend[b] ? bend[a] < bend[b] : a < b; });
+  return order;
+}
+
+/// What the points of a component say about its overall sign, in the order of precedence.
+struct Evidence {
+  Vec3 centroid{0, 0, 0};
+  Index points = 0;
+  double given = 0;    ///< points that keep their given sign minus points that lose it
+  double outward = 0;  ///< sum of (p - centroid) . n
+  double spread = 0;   ///< sum of |p - centroid|
+  Vec3 normal_sum{0, 0, 0};
+
+  double sign(bool signs_given) const {
+    if (signs_given && given != 0) return given;
+    if (std::abs(outward) > 1e-3 * spread) return outward;
+    const auto& n = normal_sum;
+    return *std::max_element(n.begin(), n.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
+  }
+};
+
+}  // namespace
+
+bool signs_agree(const TangentPlanes& planes, const Neighborhoods& neighborhoods) {
+  Offset parallel = 0, opposed = 0;
+  const auto n = static_cast<Index>(planes.normals.size());
+  for (Index i = 0; i < n; ++i)
+    for (Index j : neighborhoods.of(i)) {
+      const double cosine = dot(planes.normals[i], planes.normals[j]);
+      parallel += std::abs(cosine) > 0.5;
+      opposed += cosine < -0.5;
+    }
+  return 4 * opposed <= parallel;
+}
+
+void orient_normals(const CleanPoints& cloud, const WeightedEdges& edges, bool signs_given, TangentPlanes& planes) {
+  const auto n = static_cast<Index>(cloud.points.size());
+  SignedForest forest(n);
+  for (std::uint32_t e : flattest_first(edges, planes)) {
+    const Index a = edges.tails[e], b = edges.heads[e];
+    forest.join(a, b, dot(planes.normals[a], planes.normals[b]) < 0 ? -1 : 1);
+  }
+  std::vector<Evidence> evidence(static_cast<std::size_t>(n));
+  for (Index i = 0; i < n; ++i) {
+    Evidence& e = evidence[forest.find(i).vertex];
+    ++e.points;
+    for (int axis = 0; axis < 3; ++axis) e.centroid[axis] += cloud.points[i][axis];
+  }
+  for (Index i = 0; i < n; ++i) {
+    const auto [root, sign] = forest.find(i);
+    Evidence& e = evidence[root];
+    Vec3& normal = planes.normals[i];
+    normal = static_cast<double>(sign) * normal;
+    const Vec3 offset = cloud.points[i] - (1.0 / e.points) * e.centroid;
+    e.given += sign;
+    e.outward += dot(offset, normal);
+    e.spread += norm(offset);
+    for (int axis = 0; axis < 3; ++axis) e.normal_sum[axis] += normal[axis];
+  }
+  for (Index i = 0; i < n; ++i)
+    if (evidence[forest.find(i).vertex].sign(signs_given) < 0) planes.normals[i] = -1.0 * planes.normals[i];
+}
+
+}  // namespace ahm::pointcloud

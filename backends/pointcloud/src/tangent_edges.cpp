@@ -1,0 +1,118 @@
+#include "tangent_edges.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "ahm/detail/parallel.hpp"
+#include "vec3.hpp"
+
+namespace ahm::pointcloud {
+namespace {
+
+/// The tangent plane of one point: axes x, y and normal.
+struct Plane {
+  explicit Plane(const Vec3& unit_normal) : axes(unit_normal), normal(unit_normal) {}
+  PlaneAxes axes;
+  Vec3 normal;
+};
+
+using Matrix2 = std::array<double, 4>;
+
+/// Components in frame `from` -> components in frame `to` under the smallest rotation that takes the plane of `from` to that of
+/// `to`. With n the normal of `from` and m = +-(normal of `to`) it is v -> v - (m.v)/(1 + n.m) (n + m) on vectors v of the first
+/// plane; the sign that makes n.m >= 0 is taken when `reflect` asks for it, which makes the matrix a reflection.
+Matrix2 smallest_rotation(const Plane& from, const Plane& to, bool reflect) {
+  const Vec3 m = reflect ? -1.0 * to.normal : to.normal;
+  const double scale = 1.0 / (1.0 + std::max(dot(from.normal, m), -1.0 + 1e-12));
+  Matrix2 R;
+  const Vec3* rows[] = {&to.axes.x, &to.axes.y};
+  const Vec3* columns[] = {&from.axes.x, &from.axes.y};
+  for (int a = 0; a < 2; ++a)
+    for (int b = 0; b < 2; ++b)
+      R[2 * a + b] = dot(*rows[a], *columns[b]) - scale * dot(m, *columns[b]) * dot(from.normal, *rows[a]);
+  // Orthogonal to the last bit: first column normalized, second its perpendicular.
+  const double r = std::hypot(R[0], R[2]), c = R[0] / r, s = R[2] / r;
+  return reflect ? Matrix2{c, s, s, -c} : Matrix2{c, -s, s, c};
+}
+
+/// Ratio of the edge's length to its chord's.
+double length_factor(const Plane& from, const Plane& to, bool reflect, EdgeLength edge_length) {
+  if (edge_length != EdgeLength::arc) return 1.0;
+  const double cosine = (reflect ? -1.0 : 1.0) * dot(from.normal, to.normal);
+  const double half_angle = 0.5 * std::acos(std::clamp(cosine, -1.0, 1.0));
+  return half_angle > 1e-4 ? half_angle / std::sin(half_angle) : 1.0;
+}
+
+/// Where `offset` lies in the plane.
+std::array<double, 2> edge_log(const Plane& plane, const Vec3& offset, double factor, EdgeLength edge_length) {
+  const double x = dot(plane.axes.x, offset), y = dot(plane.axes.y, offset);
+  const double projected = std::hypot(x, y);
+  if (edge_length == EdgeLength::projected || !(projected > 0)) return {x, y};
+  const double scale = factor * norm(offset) / projected;
+  return {scale * x, scale * y};
+}
+
+/// Row starts of the symmetric graph of the given undirected edges.
+std::vector<Offset> row_starts(const WeightedEdges& edges, const std::vector<Index>& vertex_of_clean, Index vertices) {
+  std::vector<Offset> begin(static_cast<std::size_t>(vertices) + 1, 0);
+  for (std::size_t e = 0; e < edges.tails.size(); ++e) {
+    ++begin[vertex_of_clean[edges.tails[e]] + 1];
+    ++begin[vertex_of_clean[edges.heads[e]] + 1];
+  }
+  for (Index i = 0; i < vertices; ++i) begin[i + 1] += begin[i];
+  return begin;
+}
+
+}  // namespace
+
+CsrGraphData tangent_edges(const CleanPoints& cloud, const TangentPlanes& planes, const WeightedEdges& edges,
+                           const std::vector<Index>& vertex_of_clean, Index vertices, bool trusted, EdgeLength edge_length,
+                           unsigned threads, CloudReport& report) {
+  const auto count = static_cast<Offset>(edges.tails.size());
+  auto is_reflection = [&](std::size_t e) {
+    return !trusted && dot(planes.normals[edges.tails[e]], planes.normals[edges.heads[e]]) < 0;
+  };
+  report.reflections = 0;
+  for (std::size_t e = 0; e < edges.tails.size(); ++e) report.reflections += is_reflection(e);
+
+  CsrGraphData g;
+  g.kind = report.reflections > 0 ? TransportKind::block : TransportKind::rotation2;
+  const std::size_t width = g.kind == TransportKind::block ? 4 : 2;
+  g.row_begin = row_starts(edges, vertex_of_clean, vertices);
+  g.neighbors.resize(2 * edges.tails.size());
+  g.weights.resize(g.neighbors.size());
+  g.logs.resize(2 * g.neighbors.size());
+  g.transports.resize(width * g.neighbors.size());
+  // Edges come in lexicographic order, so every row fills up with ascending neighbours once the smaller ones went first.
+  std::vector<Offset> fill(g.row_begin.begin(), g.row_begin.end() - 1), position_in_head(edges.tails.size()),
+      position_in_tail(edges.tails.size());
+  for (std::size_t e = 0; e < edges.tails.size(); ++e) position_in_head[e] = fill[vertex_of_clean[edges.heads[e]]]++;
+  for (std::size_t e = 0; e < edges.tails.size(); ++e) position_in_tail[e] = fill[vertex_of_clean[edges.tails[e]]]++;
+
+  detail::parallel_chunks(count, 1 << 15, threads, [&](Offset begin, Offset end) {
+    for (Offset e = begin; e < end; ++e) {
+      const Index a = edges.tails[e], b = edges.heads[e];
+      const Plane plane_a(planes.normals[a]), plane_b(planes.normals[b]);
+      const bool reflect = g.kind == TransportKind::block && is_reflection(static_cast<std::size_t>(e));
+      const Vec3 offset = cloud.points[b] - cloud.points[a];
+      const double factor = length_factor(plane_a, plane_b, reflect, edge_length);
+      const Matrix2 R_ab = smallest_rotation(plane_a, plane_b, reflect);
+      const Matrix2 R_ba{R_ab[0], R_ab[2], R_ab[1], R_ab[3]};
+      auto store = [&](Offset at, Index neighbor, const std::array<double, 2>& log, const Matrix2& R) {
+        g.neighbors[at] = vertex_of_clean[neighbor];
+        g.weights[at] = edges.weights[e];
+        std::copy_n(log.begin(), 2, g.logs.begin() + 2 * at);
+        double* transport = g.transports.data() + static_cast<std::size_t>(at) * width;
+        transport[0] = R[0];
+        transport[1] = width == 2 ? R[2] : R[1];
+        if (width == 4) transport[2] = R[2], transport[3] = R[3];
+      };
+      store(position_in_tail[e], b, edge_log(plane_a, offset, factor, edge_length), R_ba);
+      store(position_in_head[e], a, edge_log(plane_b, -1.0 * offset, factor, edge_length), R_ab);
+    }
+  });
+  return g;
+}
+
+}  // namespace ahm::pointcloud

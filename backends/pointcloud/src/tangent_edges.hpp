@@ -1,0 +1,20 @@
+/// \file
+/// Edge logarithms and transports between the tangent planes of a cloud.
+#pragma once
+
+#include <vector>
+
+#include "ahm/csr_graph.hpp"
+#include "tangent_planes.hpp"
+#include "tufted_cover.hpp"
+
+namespace ahm::pointcloud {
+
+/// Fills the graph from oriented normals and weighted edges: vertices are the points that a triangle touches.
+/// Where `trusted` is false, an edge between opposed normals is a reflection; else it is a rotation by more than 90 degrees.
+/// @param vertex_of_clean  number of each clean point among the vertices, -1: none
+CsrGraphData tangent_edges(const CleanPoints& cloud, const TangentPlanes& planes, const WeightedEdges& edges,
+                           const std::vector<Index>& vertex_of_clean, Index vertices, bool trusted, EdgeLength edge_length,
+                           unsigned threads, CloudReport& report);
+
+}  // namespace ahm::pointcloud

@@ -1,0 +1,242 @@
+#include "tufted_cover.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "vec3.hpp"
+
+namespace ahm::pointcloud {
+namespace {
+
+using Half = std::int64_t;  ///< half-edge 3 f + s: side s of cover face f
+
+Half next(Half h) { return h % 3 == 2 ? h - 2 : h + 1; }
+Half previous(Half h) { return h % 3 == 0 ? h + 2 : h - 1; }
+
+/// The cotangent of the angle opposite side a of a triangle with side lengths a, b, c.
+double opposite_cotangent(double a, double b, double c) {
+  // Kahan's stable form of 16 area^2, sides sorted.
+  double x = a, y = b, z = c;
+  if (x < y) std::swap(x, y);
+  if (y < z) std::swap(y, z);
+  if (x < y) std::swap(x, y);
+  const double product = (x + (y + z)) * (z - (x - y)) * (z + (x - y)) * (x + (y - z));
+  return (b * b + c * c - a * a) / std::sqrt(std::max(product, 1e-300));
+}
+
+double triangle_area(double a, double b, double c) {
+  double x = a, y = b, z = c;
+  if (x < y) std::swap(x, y);
+  if (y < z) std::swap(y, z);
+  if (x < y) std::swap(x, y);
+  return 0.25 * std::sqrt(std::max(0.0, (x + (y + z)) * (z - (x - y)) * (z + (x - y)) * (x + (y - z))));
+}
+
+/// A closed manifold of 2 |triangles| faces in flat half-edge arrays. Triangle t has the copies 2t, corners (a, b, c), and
+/// 2t + 1, corners (a, c, b).
+class TuftedCover {
+ public:
+  TuftedCover(const CleanPoints& cloud, const TangentPlanes& planes, const std::vector<Triangle>& triangles)
+      : n_(static_cast<Index>(cloud.points.size())) {
+    const std::size_t halves = triangles.size() * 6;
+    tail_.resize(halves);
+    twin_.resize(halves);
+    length_.resize(halves);
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+      const auto [a, b, c] = triangles[t];
+      std::copy_n(std::array{a, b, c, a, c, b}.begin(), 6, tail_.begin() + 6 * static_cast<std::ptrdiff_t>(t));
+    }
+    for (std::size_t h = 0; h < halves; ++h)
+      length_[h] = norm(cloud.points[tail_[next(static_cast<Half>(h))]] - cloud.points[tail_[h]]);
+    glue(cloud, planes, triangles);
+  }
+
+  /// Adds the least length to every edge that keeps each face away from degeneracy (SC20 Sec. 4.5).
+  double mollify() {
+    const double mean = std::accumulate(length_.begin(), length_.end(), 0.0) / static_cast<double>(length_.size());
+    const double margin = 1e-5 * mean;
+    double epsilon = 0;
+    for (std::size_t f = 0; f < length_.size(); f += 6) {  // both copies have the same lengths
+      const double sum = length_[f] + length_[f + 1] + length_[f + 2];
+      for (int s = 0; s < 3; ++s) epsilon = std::max(epsilon, margin - (sum - 2.0 * length_[f + s]));
+    }
+    for (double& l : length_) l += epsilon;
+    return epsilon;
+  }
+
+  /// Flips edges until all are Delaunay (BS07). Returns the number of flips.
+  Offset flip_to_delaunay() {
+    std::vector<Half> stack;
+    for (Half h = 0; h < static_cast<Half>(tail_.size()); ++h)
+      if (h < twin_[h] && !is_delaunay(h)) stack.push_back(h);
+    Offset flips = 0;
+    // Delaunay flipping ends by itself; the cap only guards against rounding on degenerate input.
+    const Offset cap = 64 * static_cast<Offset>(tail_.size()) + 1024;
+    while (!stack.empty() && flips < cap) {
+      const Half h = stack.back();
+      stack.pop_back();
+      if (is_delaunay(h)) continue;
+      flip(h);
+      ++flips;
+      for (Half side : {next(h), previous(h), next(twin_[h]), previous(twin_[h])}) stack.push_back(side);
+    }
+    return flips;
+  }
+
+  WeightedEdges weighted_edges() const;
+
+ private:
+  double cotangent(Half h) const { return opposite_cotangent(length_[h], length_[next(h)], length_[previous(h)]); }
+
+  bool is_delaunay(Half h) const {
+    const Half t = twin_[h];
+    // Two sides of one face: folded onto itself, it cannot be flipped and is Delaunay.
+    return h / 3 == t / 3 || cotangent(h) + cotangent(t) >= -1e-10;
+  }
+
+  void flip(Half h);
+  void glue(const CleanPoints& cloud, const TangentPlanes& planes, const std::vector<Triangle>& triangles);
+
+  Index n_;
+  std::vector<Index> tail_;
+  std::vector<Half> twin_;
+  std::vector<double> length_;
+};
+
+/// Replaces the faces (i, j, k) and (j, i, m) on both sides of edge (i, j) by (m, k, i) and (k, m, j).
+void TuftedCover::flip(Half h) {
+  const Half t = twin_[h];
+  const Half jk = next(h), ki = previous(h), im = next(t), mj = previous(t);
+  const Index k = tail_[ki], m = tail_[mj];
+  const double l = length_[h], l_jk = length_[jk], l_ki = length_[ki], l_im = length_[im], l_mj = length_[mj];
+  // Unfold both faces: i at the origin, j on the x axis, k above, m below.
+  const double k_x = (l * l + l_ki * l_ki - l_jk * l_jk) / (2 * l), k_y = 2 * triangle_area(l, l_jk, l_ki) / l;
+  const double m_x = (l * l + l_im * l_im - l_mj * l_mj) / (2 * l), m_y = 2 * triangle_area(l, l_im, l_mj) / l;
+  const double diagonal = std::hypot(k_x - m_x, k_y + m_y);
+  const Index i = tail_[h], j = tail_[t];
+  const Half twin_jk = twin_[jk], twin_ki = twin_[ki], twin_im = twin_[im], twin_mj = twin_[mj];
+
+  auto set = [this](Half half, Index tail, double length) {
+    tail_[half] = tail;
+    length_[half] = length;
+  };
+  // Face of h becomes (m, k, i), face of t becomes (k, m, j).
+  set(h, m, diagonal);
+  set(jk, k, l_ki);
+  set(ki, i, l_im);
+  set(t, k, diagonal);
+  set(im, m, l_mj);
+  set(mj, j, l_jk);
+  // The outer sides moved to other half-edges; a side may be glued to another outer side of the same pair of faces.
+  const Half old_side[4] = {ki, im, mj, jk}, new_side[4] = {jk, ki, im, mj};
+  const Half outer[4] = {twin_ki, twin_im, twin_mj, twin_jk};
+  for (int s = 0; s < 4; ++s) {
+    Half partner = outer[s];
+    for (int q = 0; q < 4; ++q)
+      if (outer[s] == old_side[q]) partner = new_side[q];
+    twin_[new_side[s]] = partner;
+    twin_[partner] = new_side[s];
+  }
+}
+
+/// Around every edge the faces are put in a cyclic order, and the front of each is glued to the back of the next. Sides left and
+/// right of the edge alternate, since local triangulations overlap and consecutive faces should continue each other.
+void TuftedCover::glue(const CleanPoints& cloud, const TangentPlanes& planes, const std::vector<Triangle>& triangles) {
+  struct Side {
+    Index head;
+    bool left;
+    Half forward, backward;
+  };
+  // Bucket the sides by their smaller end.
+  std::vector<Offset> begin(static_cast<std::size_t>(n_) + 1, 0);
+  for (const Triangle& t : triangles) {
+    begin[t[0] + 1] += 2;
+    ++begin[t[1] + 1];
+  }
+  for (Index i = 0; i < n_; ++i) begin[i + 1] += begin[i];
+  std::vector<Side> sides(triangles.size() * 3);
+  std::vector<Offset> fill(begin.begin(), begin.end() - 1);
+  for (std::size_t f = 0; f < triangles.size(); ++f) {
+    const auto [a, b, c] = triangles[f];
+    const Half front = static_cast<Half>(6 * f), back = front + 3;
+    auto add = [&](Index from, Index to, Index apex, Half forward, Half backward) {
+      const Vec3 &p = cloud.points[from], edge = cloud.points[to] - p, across = cloud.points[apex] - p;
+      const bool left = dot(cross(edge, across), planes.normals[from]) > 0;
+      sides[fill[from]++] = {to, left, forward, backward};
+    };
+    add(a, b, c, front, back + 2);
+    add(b, c, a, front + 1, back + 1);
+    add(a, c, b, back, front + 2);
+  }
+  std::vector<Side> ring, right;
+  for (Index i = 0; i < n_; ++i) {
+    const auto first = sides.begin() + begin[i], last = sides.begin() + begin[i + 1];
+    std::stable_sort(first, last, [](const Side& p, const Side& q) { return p.head < q.head; });
+    for (auto group = first; group != last;) {
+      const auto end = std::find_if(group, last, [&](const Side& s) { return s.head != group->head; });
+      const auto middle = std::stable_partition(group, end, [](const Side& s) { return s.left; });
+      ring.clear();
+      for (auto l = group, r = middle; l != middle || r != end;) {
+        if (l != middle) ring.push_back(*l++);
+        if (r != end) ring.push_back(*r++);
+      }
+      for (std::size_t s = 0; s < ring.size(); ++s) {
+        const Half forward = ring[s].forward, backward = ring[(s + 1) % ring.size()].backward;
+        twin_[forward] = backward;
+        twin_[backward] = forward;
+      }
+      group = end;
+    }
+  }
+}
+
+WeightedEdges TuftedCover::weighted_edges() const {
+  WeightedEdges result;
+  result.masses.assign(static_cast<std::size_t>(n_), 0.0);
+  std::vector<Offset> begin(static_cast<std::size_t>(n_) + 1, 0);
+  for (std::size_t h = 0; h < tail_.size(); ++h) ++begin[std::min(tail_[h], tail_[next(static_cast<Half>(h))]) + 1];
+  for (Index i = 0; i < n_; ++i) begin[i + 1] += begin[i];
+  struct Entry {
+    Index head;
+    double weight;
+  };
+  std::vector<Entry> entries(tail_.size());
+  std::vector<Offset> fill(begin.begin(), begin.end() - 1);
+  for (Half h = 0; h < static_cast<Half>(tail_.size()); ++h) {
+    const auto [low, high] = std::minmax(tail_[h], tail_[next(h)]);
+    // Half the cotangent, and half of that for each of the two layers.
+    entries[fill[low]++] = {high, low == high ? 0.0 : 0.25 * cotangent(h)};
+    if (h % 3 == 0) {
+      const double third = triangle_area(length_[h], length_[h + 1], length_[h + 2]) / 6.0;
+      for (int s = 0; s < 3; ++s) result.masses[tail_[h + s]] += third;
+    }
+  }
+  for (Index i = 0; i < n_; ++i) {
+    const auto first = entries.begin() + begin[i], last = entries.begin() + begin[i + 1];
+    std::stable_sort(first, last, [](const Entry& a, const Entry& b) { return a.head < b.head; });
+    for (auto entry = first; entry != last;) {
+      const Index head = entry->head;
+      double weight = 0;
+      for (; entry != last && entry->head == head; ++entry) weight += entry->weight;
+      // Diagonals of cocircular quadrilaterals weigh nothing but rounding; they are no edges.
+      if (head == i || weight <= 1e-10) continue;
+      result.tails.push_back(i);
+      result.heads.push_back(head);
+      result.weights.push_back(weight);
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+WeightedEdges tufted_laplacian(const CleanPoints& cloud, const TangentPlanes& planes, const std::vector<Triangle>& triangles,
+                               CloudReport& report) {
+  TuftedCover cover(cloud, planes, triangles);
+  report.mollification = cover.mollify();
+  report.flips = cover.flip_to_delaunay();
+  return cover.weighted_edges();
+}
+
+}  // namespace ahm::pointcloud

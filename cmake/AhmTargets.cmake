@@ -1,0 +1,18 @@
+# ahm_library(<component> SOURCES <file...> [HEADERS_FROM <dir>]): the static or shared library ahm_<component>, alias ahm::<component>.
+function(ahm_library component)
+  cmake_parse_arguments(ARG "" "" "SOURCES" ${ARGN})
+  set(target ahm_${component})
+  add_library(${target} ${ARG_SOURCES})
+  add_library(ahm::${component} ALIAS ${target})
+  target_compile_features(${target} PUBLIC cxx_std_20)
+  target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU,Clang>:-Wall -Wextra -Wpedantic>)
+  target_include_directories(${target} PUBLIC
+    $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${component} POSITION_INDEPENDENT_CODE ON)
+  if(AHM_INSTALL)
+    install(TARGETS ${target} EXPORT ahm-${component}-targets
+      ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+    install(DIRECTORY include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+    set_property(GLOBAL APPEND PROPERTY AHM_COMPONENTS ${component})
+  endif()
+endfunction()

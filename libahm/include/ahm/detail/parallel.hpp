@@ -1,0 +1,53 @@
+/// \file
+/// Loops over threads, for the library and its backends. Not part of the public interface.
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "ahm/types.hpp"
+
+namespace ahm::detail {
+
+/// The number of threads asked for; 0 means one per core.
+inline unsigned thread_count(unsigned requested) {
+  return requested > 0 ? requested : std::max(1u, std::thread::hardware_concurrency());
+}
+
+/// Calls body(begin, end) on consecutive chunks of [0, n), each at most `chunk` long. Chunks do not depend on the number of
+/// threads. The first exception stops the loop and is rethrown.
+template <class Body>
+void parallel_chunks(Offset n, Offset chunk, unsigned threads, const Body& body) {
+  const Offset chunks = (n + chunk - 1) / chunk;
+  std::atomic<Offset> next{0};
+  std::exception_ptr error;
+  std::mutex error_mutex;
+  auto work = [&] {
+    for (Offset c; (c = next.fetch_add(1)) < chunks;) try {
+        body(c * chunk, std::min(n, (c + 1) * chunk));
+      } catch (...) {
+        std::scoped_lock lock(error_mutex);
+        if (!error) error = std::current_exception();
+        next = chunks;
+      }
+  };
+  const auto workers = std::min<Offset>(thread_count(threads), chunks);
+  {
+    std::vector<std::jthread> pool;
+    for (Offset t = 1; t < workers; ++t) pool.emplace_back(work);
+    work();
+  }
+  if (error) std::rethrow_exception(error);
+}
+
+/// Runs two tasks at once when `concurrently`, else one after the other; the first exception is rethrown when both ended.
+template <class First, class Second>
+void run_both(bool concurrently, const First& first, const Second& second) {
+  parallel_chunks(2, 1, concurrently ? 2 : 1, [&](Offset begin, Offset) { begin == 0 ? first() : second(); });
+}
+
+}  // namespace ahm::detail

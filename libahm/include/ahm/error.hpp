@@ -1,0 +1,65 @@
+/// \file
+/// The exceptions libahm throws. Every message names the argument, the element and its index, the value, and what to do.
+///
+/// \code
+/// try {
+///   auto map = solver.solve(ahm::Source::at_vertex(42));
+/// } catch (const ahm::InvalidArgument& e) {
+///   std::cerr << e.what() << '\n';
+/// }
+/// \endcode
+#pragma once
+
+#include <stdexcept>
+
+namespace ahm {
+
+/// Base of all exceptions thrown by libahm.
+class Error : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// A graph breaks one of its laws (see `validate`).
+class InvalidGraph : public Error {
+ public:
+  using Error::Error;
+};
+
+/// Geometry (mesh, cloud, grid) that no graph can be built from.
+class InvalidGeometry : public Error {
+ public:
+  using Error::Error;
+};
+
+/// An argument outside its documented range.
+class InvalidArgument : public Error {
+ public:
+  using Error::Error;
+};
+
+/// An operator is not positive definite, or its factorization failed its own check.
+class NotPositiveDefinite : public Error {
+ public:
+  using Error::Error;
+};
+
+/// Memory or an index range does not suffice for the request.
+class ResourceExhausted : public Error {
+ public:
+  using Error::Error;
+};
+
+/// A file cannot be read or written.
+class IoError : public Error {
+ public:
+  using Error::Error;
+};
+
+/// The caller's stop token asked to stop.
+class Cancelled : public Error {
+ public:
+  using Error::Error;
+};
+
+}  // namespace ahm

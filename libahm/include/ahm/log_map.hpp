@@ -1,0 +1,73 @@
+/// \file
+/// The result of a solve: coordinates and a status for every vertex.
+///
+/// \code
+/// ahm::LogMap map = solver.solve(ahm::Source::at_vertex(0));
+/// if (map.status(i) == ahm::Status::ok) std::cout << map.coordinates(i)[0] << ' ' << map.distance(i);
+/// \endcode
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "ahm/source.hpp"
+#include "ahm/types.hpp"
+
+namespace ahm {
+
+/// Alg. 1 or Alg. 2 of Soliman & Sharp 2025.
+enum class Variant { adaptive, localized };
+
+/// How the linear systems were solved.
+enum class Strategy { global };
+
+/// Why a vertex has coordinates, or has none.
+enum class Status : std::uint8_t {
+  ok,
+  component,  ///< in a component of the graph without a source
+  radius,     ///< farther from the source than the requested radius
+  unreached,  ///< so far (about 1350 edges at t_coef = 1) that the heat has left the range of double precision
+  removed,    ///< an input point that is no vertex of the graph (set by backends, never by the solver)
+};
+
+/// The word used in files: "ok", "component", "radius", "unreached", "removed".
+std::string_view to_string(Status status) noexcept;
+std::string_view to_string(Variant variant) noexcept;
+std::string_view to_string(Strategy strategy) noexcept;
+
+/// A logarithmic map: for every vertex i its coordinates phi_i in the source's frame, NaN exactly where the status is not `ok`.
+class LogMap {
+ public:
+  LogMap(int dimension, Variant variant, Strategy strategy, Source source, std::vector<double> coordinates,
+         std::vector<Status> status);
+
+  Index size() const noexcept { return static_cast<Index>(status_.size()); }
+  int dimension() const noexcept { return dimension_; }
+  Variant variant() const noexcept { return variant_; }
+  Strategy strategy() const noexcept { return strategy_; }
+  /// The source whose frame the coordinates refer to.
+  const Source& source() const noexcept { return source_; }
+
+  /// n x d, row major, outside units (graph units times `length_unit`).
+  std::span<const double> coordinates() const noexcept { return coordinates_; }
+  /// phi_i, d numbers.
+  std::span<const double> coordinates(Index vertex) const;
+  std::span<const Status> status() const noexcept { return status_; }
+  Status status(Index vertex) const { return status_[static_cast<std::size_t>(vertex)]; }
+  /// |phi_i|: the geodesic distance from the source, NaN where not ok.
+  double distance(Index vertex) const;
+  /// Number of vertices with this status.
+  Index count(Status status) const noexcept;
+
+ private:
+  int dimension_;
+  Variant variant_;
+  Strategy strategy_;
+  Source source_;
+  std::vector<double> coordinates_;
+  std::vector<Status> status_;
+};
+
+}  // namespace ahm

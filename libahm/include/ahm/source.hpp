@@ -1,0 +1,59 @@
+/// \file
+/// Where a log map starts: a weighted set of vertices with offsets, so that a vertex, a point inside a face and a
+/// curve are one and the same thing to the solver.
+///
+/// \code
+/// auto vertex = ahm::Source::at_vertex(7);                       // u axis = first axis of frame 7
+/// auto turned = ahm::Source::at_vertex(7, std::array{0.0, 1.0}); // u axis = second axis of frame 7
+/// ahm::Source between(2);                                        // half way between vertices 3 and 4, one apart on a line
+/// between.add(3, 0.5, std::array{-0.5, 0.0}, axes_in_frame_3);
+/// between.add(4, 0.5, std::array{+0.5, 0.0}, axes_in_frame_4);
+/// \endcode
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "ahm/types.hpp"
+
+namespace ahm {
+
+/// A source p with its frame: for each sample k a weight b_k, the position z_k of vertex k relative to p in the source's
+/// frame, and the source's axes U_k carried to the frame of vertex k.
+class Source {
+ public:
+  /// An empty source in dimension d >= 1; fill it with `add`.
+  explicit Source(int dimension);
+
+  /// The vertex itself; the source's axes are those of the vertex's frame, in any dimension.
+  static Source at_vertex(Index vertex);
+  /// d = 2: the vertex itself; the u axis points along `direction` (2 numbers, frame of the vertex, any length > 0), v is u
+  /// turned by +90 degrees.
+  /// @throws InvalidArgument when the direction is zero or not finite
+  static Source at_vertex(Index vertex, std::span<const double> direction);
+
+  /// Adds a sample.
+  /// @param weight  b_k >= 0, finite: barycentric or quadrature weight
+  /// @param offset  z_k, d numbers in outside units: where the vertex lies in the source's frame
+  /// @param axes    U_k, d x d orthogonal, row major: column a is source axis a in the frame of `vertex`
+  /// @throws InvalidArgument
+  Source& add(Index vertex, double weight, std::span<const double> offset, std::span<const double> axes);
+
+  /// 0 for `at_vertex(vertex)`, which fits every dimension.
+  int dimension() const noexcept { return dimension_; }
+  std::span<const Index> vertices() const noexcept { return vertices_; }
+  std::span<const double> weights() const noexcept { return weights_; }
+  /// z_k; empty for `at_vertex`: all zero.
+  std::span<const double> offsets() const noexcept { return offsets_; }
+  /// U_k; empty for `at_vertex(vertex)`: identity.
+  std::span<const double> axes() const noexcept { return axes_; }
+
+ private:
+  int dimension_ = 0;
+  std::vector<Index> vertices_;
+  std::vector<double> weights_;
+  std::vector<double> offsets_;
+  std::vector<double> axes_;
+};
+
+}  // namespace ahm

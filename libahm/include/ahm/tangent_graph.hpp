@@ -1,0 +1,76 @@
+/// \file
+/// The one interface between geometry and the solver: a graph whose vertices carry tangent spaces R^d.
+///
+/// \code
+/// void print(const ahm::TangentGraph& graph, ahm::Index i) {
+///   ahm::Star star = graph.star(i);
+///   for (std::size_t e = 0; e < star.neighbors.size(); ++e)
+///     std::cout << star.neighbors[e] << " lies at " << star.log(e)[0] << ", " << star.log(e)[1] << '\n';
+/// }
+/// \endcode
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "ahm/types.hpp"
+
+namespace ahm {
+
+/// How the transports of a graph are stored.
+enum class TransportKind {
+  rotation2,  ///< d = 2, rotations only: (cos, sin), the complex number R_ji
+  block,      ///< any d, rotations and reflections: d x d orthogonal matrix, row major
+};
+
+/// The out-edges of one vertex i. A neighbour may appear more than once (parallel edges).
+struct Star {
+  int dimension;                      ///< d
+  std::span<const Index> neighbors;   ///< j, one per edge
+  std::span<const double> weights;    ///< w_ij = w_ji
+  std::span<const double> logs;       ///< e_ij in frame i, degree x d: where j lies, seen from i
+  std::span<const double> transports; ///< R_ji: components in frame j -> components in frame i; degree x 2 or degree x d*d
+
+  std::size_t degree() const { return neighbors.size(); }
+  /// e_ij of edge number `edge`, d numbers.
+  std::span<const double> log(std::size_t edge) const { return logs.subspan(edge * dimension, dimension); }
+};
+
+/// Tangent axes at a vertex in ambient 3-space, for input and display. The solver never asks for them.
+struct Frame {
+  Vec3 origin;  ///< the vertex
+  Vec3 x;       ///< first tangent axis, unit length
+  Vec3 y;       ///< second tangent axis, unit length
+  Vec3 normal;  ///< x cross y
+};
+
+/// An immutable graph on n vertices whose tangent spaces are R^d (METHOD: docs/graph_contract.md).
+///
+/// Lengths (edge logs, square root of masses in d = 2, mean edge length) are in units of `length_unit()`.
+/// `validate` lists the laws and checks them.
+class TangentGraph {
+ public:
+  virtual ~TangentGraph() = default;
+
+  /// Number of vertices n.
+  virtual Index size() const noexcept = 0;
+  /// Dimension d >= 1 of the tangent spaces.
+  virtual int dimension() const noexcept = 0;
+  virtual TransportKind transport_kind() const noexcept = 0;
+  /// Mean edge length h > 0; the diffusion time is tau = t_coef h^2.
+  virtual double mean_edge_length() const noexcept = 0;
+  /// Lumped mass (dual area or volume) m_i > 0.
+  virtual double mass(Index vertex) const = 0;
+  /// The out-edges of `vertex`; valid until the next call on the same thread at the least.
+  virtual Star star(Index vertex) const = 0;
+  /// Number of directed edges, to size arrays.
+  virtual Offset edge_count() const noexcept = 0;
+
+  /// What a length of 1 in this graph means outside. Backends store geometry divided by a power of two, so that models
+  /// at any scale from 1e-300 to 1e300 are solved alike; results are multiplied by it again.
+  virtual double length_unit() const noexcept { return 1.0; }
+  /// Tangent axes in ambient space, in outside units, where the backend knows them.
+  virtual std::optional<Frame> frame(Index) const { return std::nullopt; }
+};
+
+}  // namespace ahm

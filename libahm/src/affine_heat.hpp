@@ -1,0 +1,63 @@
+/// \file
+/// The affine heat method for a block of sources: METHOD steps between sources and coordinates, once for every caller.
+///
+/// The paper's 3n x 3n systems are block triangular in the homogeneous coordinate lambda; eliminating it leaves solves with
+/// the two fixed operators A and B (docs/method.md):
+///
+///     lambda = A^-1 b                                   b: source weights
+///     U~     = B^-1 (b U_p),  U_i = U~_i / |U~_i|
+///     rho_i  = -tau sum_j w_ij e_ij lambda_j            in frame i
+///     adaptive:   x = A^-1 (rho / U + b z),   phi = x / lambda
+///     localized:  Y = B^-1 (rho + b U z),     phi = (Y / lambda) / U
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "ahm/heat_operators.hpp"
+#include "ahm/source.hpp"
+#include "ahm/tangent_graph.hpp"
+#include "frame_field.hpp"
+
+namespace ahm {
+
+/// @throws InvalidArgument when the source does not fit the graph
+void check_source(const Source& source, const TangentGraph& graph);
+
+class AffineHeat {
+ public:
+  /// Sources must have been checked.
+  AffineHeat(const TangentGraph& graph, const HeatOperators& operators, std::span<const Source> sources);
+
+  /// Solves for lambda and the frames, on two threads when asked.
+  void diffuse(bool concurrently);
+
+  /// x of every source: columns of n numbers, d per source.
+  std::vector<double> adaptive() const;
+  /// Y of every source: columns of n vectors of d numbers.
+  std::vector<double> localized() const;
+
+  /// Whether heat reached the vertex: lambda and U~ are large enough to divide by.
+  bool reached(std::size_t source, Index vertex) const {
+    return lambda(source)[static_cast<std::size_t>(vertex)] >= least_heat && frames_[source].valid(vertex);
+  }
+  std::span<const double> lambda(std::size_t source) const { return std::span(lambda_).subspan(source * n_, n_); }
+  const FrameField& frames(std::size_t source) const { return frames_[source]; }
+  /// For each vertex, whether its component holds a source sample.
+  std::vector<bool> connected(std::size_t source) const;
+
+ private:
+  std::vector<double> translations() const;
+  template <class Visit>
+  void for_each_sample(std::size_t source, const Visit& visit) const;
+  double sample_scale(const Source& source) const;
+
+  const TangentGraph& graph_;
+  const HeatOperators& operators_;
+  std::span<const Source> sources_;
+  std::size_t n_, d_;
+  std::vector<double> lambda_;       ///< n per source
+  std::vector<FrameField> frames_;   ///< one per source
+};
+
+}  // namespace ahm

@@ -1,0 +1,137 @@
+#include "ahm/heat_operators.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <new>
+#include <optional>
+#include <string>
+
+#include "ahm/detail/parallel.hpp"
+#include "ahm/detail/text.hpp"
+#include "ahm/error.hpp"
+#include "ahm/validate.hpp"
+#include "assemble.hpp"
+#include "blas_control.hpp"
+#include "cholesky.hpp"
+#include "components.hpp"
+
+namespace ahm {
+namespace {
+
+class Stopwatch {
+ public:
+  double seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+/// The power of two that brings the mean mass to order one. A power of two, so that scaled models give the same bits.
+double scaling_for(const TangentGraph& graph) {
+  double mean = 0;
+  for (Index i = 0; i < graph.size(); ++i) mean += graph.mass(i) / graph.size();
+  return std::ldexp(1.0, -std::ilogb(mean));
+}
+
+double checked_tau(const TangentGraph& graph, double t_coef) {
+  const double tau = t_coef * graph.mean_edge_length() * graph.mean_edge_length();
+  if (!(t_coef > 0) || !std::isfinite(t_coef) || !(tau > 0) || !std::isfinite(tau))
+    throw InvalidArgument("t_coef is " + detail::number(t_coef) + "; it must be finite and > 0 (default 1)");
+  return tau;
+}
+
+}  // namespace
+
+struct HeatOperators::Impl {
+  Index n;
+  int d;
+  TransportKind kind;
+  double tau, scaling;
+  Components components;
+  FactorStatistics statistics;
+  std::optional<CholeskyFactor> A, B;
+
+  void factorize(const TangentGraph& graph, const OperatorOptions& options) {
+    Stopwatch assembling;
+    AssembledOperators matrices = assemble(graph, tau, scaling);
+    statistics.assemble_seconds = assembling.seconds();
+    options.progress.step("analyze", 0.0);
+
+    Stopwatch analyzing;
+    const SymbolicCholesky scalar(matrices.A, options.ordering, options.supernodal);
+    std::optional<SymbolicCholesky> blocks;
+    if (kind == TransportKind::block) blocks.emplace(matrices.B, scalar, d);
+    statistics.analyze_seconds = analyzing.seconds();
+    options.progress.step("factor", 0.0);
+
+    Stopwatch factoring;
+    // Each factorization gets a thread of its own, with its own OpenMP settings.
+    auto in_thread = [](auto&& work) {
+      std::exception_ptr error;
+      std::jthread([&] {
+        try {
+          disable_openmp_regions_on_this_thread();
+          work();
+        } catch (...) {
+          error = std::current_exception();
+        }
+      }).join();
+      if (error) std::rethrow_exception(error);
+    };
+    detail::run_both(
+        true, [&] { in_thread([&] { B.emplace(matrices.B, blocks ? *blocks : scalar, "B = M + tau L^nabla"); }); },
+        [&] { in_thread([&] { A.emplace(matrices.A, scalar, "A = M + tau L"); }); });
+    statistics.factor_seconds = factoring.seconds();
+    statistics.nonzeros_A = A->nonzeros();
+    statistics.nonzeros_B = B->nonzeros();
+    statistics.bytes = A->bytes() + B->bytes();
+    options.progress.step("factor", 1.0);
+  }
+};
+
+HeatOperators::HeatOperators(const TangentGraph& graph, const OperatorOptions& options) try
+    : impl_(std::make_unique<Impl>()) {
+  if (options.check_graph) {
+    options.progress.step("check", 0.0);
+    validate(graph);
+  }
+  impl_->n = graph.size();
+  impl_->d = graph.dimension();
+  impl_->kind = graph.transport_kind();
+  impl_->tau = checked_tau(graph, options.t_coef);
+  impl_->scaling = scaling_for(graph);
+  options.progress.step("assemble", 0.0);
+  impl_->components = connected_components(graph);
+  impl_->factorize(graph, options);
+} catch (const std::bad_alloc&) {
+  throw ResourceExhausted("out of memory while factoring a graph of " + std::to_string(graph.size()) + " vertices");
+}
+
+HeatOperators::~HeatOperators() = default;
+HeatOperators::HeatOperators(HeatOperators&&) noexcept = default;
+HeatOperators& HeatOperators::operator=(HeatOperators&&) noexcept = default;
+
+Index HeatOperators::size() const noexcept { return impl_->n; }
+int HeatOperators::dimension() const noexcept { return impl_->d; }
+TransportKind HeatOperators::transport_kind() const noexcept { return impl_->kind; }
+double HeatOperators::tau() const noexcept { return impl_->tau; }
+double HeatOperators::scaling() const noexcept { return impl_->scaling; }
+const FactorStatistics& HeatOperators::statistics() const noexcept { return impl_->statistics; }
+std::span<const Index> HeatOperators::components() const noexcept { return impl_->components.of_vertex; }
+Index HeatOperators::component_count() const noexcept { return impl_->components.count; }
+
+void HeatOperators::solve_scalar(std::span<double> X, Index columns) const {
+  if (columns < 0 || static_cast<Offset>(X.size()) != static_cast<Offset>(impl_->n) * columns)
+    throw InvalidArgument("solve_scalar: 'X' has " + std::to_string(X.size()) + " numbers, expected n x columns");
+  if (columns > 0) impl_->A->solve(X, columns);
+}
+
+void HeatOperators::solve_vector(std::span<double> X, Index columns) const {
+  if (columns < 0 || static_cast<Offset>(X.size()) != static_cast<Offset>(impl_->n) * impl_->d * columns)
+    throw InvalidArgument("solve_vector: 'X' has " + std::to_string(X.size()) + " numbers, expected n x d x columns");
+  if (columns > 0) impl_->B->solve(X, columns);
+}
+
+}  // namespace ahm

@@ -1,0 +1,145 @@
+#include "ahm/vector_heat.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "ahm/error.hpp"
+#include "affine_heat.hpp"
+#include "small_math.hpp"
+
+namespace ahm {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+/// A source of unit weights at the given vertices, for its checks, components and scale.
+Source plain_source(const LogMapSolver& solver, std::span<const Index> vertices) {
+  const auto d = static_cast<std::size_t>(solver.graph().dimension());
+  Source source(static_cast<int>(d));
+  std::vector<double> zero(d, 0.0), identity(d * d, 0.0);
+  for (std::size_t a = 0; a < d; ++a) identity[a * (d + 1)] = 1.0;
+  for (Index vertex : vertices) source.add(vertex, 1.0, zero, identity);
+  check_source(source, solver.graph());
+  return source;
+}
+
+/// Status of every vertex, and NaN where it is not ok.
+void finish(VertexField& field, const AffineHeat& heat, std::span<const double> lambda) {
+  const auto width = static_cast<std::size_t>(field.width);
+  const std::size_t n = lambda.size();
+  const std::vector<bool> connected = heat.connected(0);
+  field.status.assign(n, Status::ok);
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::span value = std::span(field.values).subspan(i * width, width);
+    if (!connected[i])
+      field.status[i] = Status::component;
+    else if (!(lambda[i] >= least_heat) || !all_finite(value))
+      field.status[i] = Status::unreached;
+    if (field.status[i] != Status::ok) std::fill(value.begin(), value.end(), nan);
+  }
+}
+
+void check_values(std::span<const double> values, std::size_t expected, const char* name) {
+  if (values.size() != expected || !all_finite(values))
+    throw InvalidArgument(std::string("'") + name + "' must be " + std::to_string(expected) + " finite numbers, not " +
+                          std::to_string(values.size()) + " (or one is not finite)");
+}
+
+/// A^-1 of two columns at once: sum_k b_k delta_k with b the given values, and with b = 1.
+std::pair<std::vector<double>, std::vector<double>> diffuse_scalars(const HeatOperators& operators,
+                                                                    std::span<const Index> vertices,
+                                                                    std::span<const double> values) {
+  const auto n = static_cast<std::size_t>(operators.size());
+  double largest = 0;
+  for (double v : values) largest = std::max(largest, std::abs(v));
+  const double unit = largest > 0 ? std::ldexp(1.0, -std::ilogb(largest)) : 1.0;
+  std::vector<double> columns(2 * n, 0.0);
+  for (std::size_t k = 0; k < vertices.size(); ++k) {
+    columns[static_cast<std::size_t>(vertices[k])] += heat_scale * (values[k] * unit);
+    columns[n + static_cast<std::size_t>(vertices[k])] += heat_scale;
+  }
+  operators.solve_scalar(columns, 2);
+  std::vector<double> ones(columns.begin() + static_cast<std::ptrdiff_t>(n), columns.end());
+  columns.resize(n);
+  for (std::size_t i = 0; i < n; ++i) columns[i] = columns[i] / ones[i] / unit;
+  return {std::move(columns), std::move(ones)};
+}
+
+}  // namespace
+
+VertexField extend_scalar(const LogMapSolver& solver, std::span<const Index> vertices, std::span<const double> values) {
+  check_values(values, vertices.size(), "values");
+  const Source source = plain_source(solver, vertices);
+  const AffineHeat heat(solver.graph(), solver.operators(), {&source, 1});
+  auto [quotient, heat_of_ones] = diffuse_scalars(solver.operators(), vertices, values);
+  VertexField field{1, std::move(quotient), {}};
+  finish(field, heat, heat_of_ones);
+  return field;
+}
+
+VertexField transport_vectors(const LogMapSolver& solver, std::span<const Index> vertices, std::span<const double> vectors) {
+  const auto n = static_cast<std::size_t>(solver.graph().size()), d = static_cast<std::size_t>(solver.graph().dimension());
+  check_values(vectors, vertices.size() * d, "vectors");
+  const Source source = plain_source(solver, vertices);
+  const AffineHeat heat(solver.graph(), solver.operators(), {&source, 1});
+
+  // Lengths by A (SSC19 Alg. 1, steps II and III) ...
+  std::vector<double> lengths;
+  for (std::size_t k = 0; k < vertices.size(); ++k) lengths.push_back(length(vectors.subspan(k * d, d)));
+  const auto [extended, heat_of_ones] = diffuse_scalars(solver.operators(), vertices, lengths);
+
+  // ... directions by B (step I).
+  const double longest = lengths.empty() ? 0.0 : *std::max_element(lengths.begin(), lengths.end());
+  VertexField field{static_cast<int>(d), std::vector<double>(n * d, 0.0), {}};
+  for (std::size_t k = 0; k < vertices.size() && longest > 0; ++k)
+    for (std::size_t a = 0; a < d; ++a)
+      field.values[static_cast<std::size_t>(vertices[k]) * d + a] += heat_scale * (vectors[k * d + a] / longest);
+  solver.operators().solve_vector(field.values, 1);
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::span vector = std::span(field.values).subspan(i * d, d);
+    const double norm = length(vector);
+    for (double& component : vector) component = norm > 0 ? component / norm * extended[i] : 0.0;
+  }
+  finish(field, heat, heat_of_ones);
+  return field;
+}
+
+VertexField parallel_transport(const LogMapSolver& solver, const Source& source) {
+  check_source(source, solver.graph());
+  const auto n = solver.graph().size();
+  const auto width = static_cast<std::size_t>(solver.graph().dimension()) * solver.graph().dimension();
+  AffineHeat heat(solver.graph(), solver.operators(), {&source, 1});
+  heat.diffuse(true);
+  VertexField field{static_cast<int>(width), std::vector<double>(static_cast<std::size_t>(n) * width), {}};
+  for (Index i = 0; i < n; ++i) {
+    double* axes = field.values.data() + static_cast<std::size_t>(i) * width;
+    heat.frames(0).axes(i, axes);
+    if (!heat.reached(0, i)) std::fill_n(axes, width, nan);
+  }
+  finish(field, heat, heat.lambda(0));
+  return field;
+}
+
+VertexField radial_field(const LogMapSolver& solver, const Source& source) {
+  check_source(source, solver.graph());
+  const auto d = static_cast<std::size_t>(solver.graph().dimension());
+  AffineHeat heat(solver.graph(), solver.operators(), {&source, 1});
+  heat.diffuse(true);
+  VertexField field{static_cast<int>(d), heat.localized(), {}};
+  const auto lambda = heat.lambda(0);
+  for (std::size_t i = 0; i < lambda.size(); ++i)
+    for (std::size_t a = 0; a < d; ++a)
+      field.values[i * d + a] = field.values[i * d + a] / lambda[i] * solver.graph().length_unit();
+  finish(field, heat, lambda);
+  return field;
+}
+
+VertexField distance(const LogMap& map) {
+  VertexField field{1, std::vector<double>(static_cast<std::size_t>(map.size())),
+                    {map.status().begin(), map.status().end()}};
+  for (Index i = 0; i < map.size(); ++i) field.values[static_cast<std::size_t>(i)] = map.distance(i);
+  return field;
+}
+
+}  // namespace ahm
