@@ -34,27 +34,22 @@ AffineHeat::AffineHeat(const TangentGraph& graph, const HeatOperators& operators
       d_(static_cast<std::size_t>(graph.dimension())),
       frames_(sources.size(), FrameField(graph.size(), graph.dimension(), graph.transport_kind())) {}
 
-/// The common factor of a source's weights: their largest becomes `heat_scale`, less where a tiny mass would make lambda
-/// overflow. It cancels in every quotient by lambda.
-double AffineHeat::sample_scale(const Source& source) const {
-  double largest = 0, mass = 1;
-  for (std::size_t k = 0; k < source.vertices().size(); ++k) {
-    largest = std::max(largest, source.weights()[k]);
-    mass = std::min(mass, operators_.scaling() * graph_.mass(source.vertices()[k]));
-  }
-  return std::ldexp(heat_scale, std::max(-900, std::ilogb(mass))) / largest;
-}
-
-/// Calls visit(vertex, b_k scaled, z_k or empty, U_k or empty) for the samples with b_k > 0.
+/// Calls visit(vertex, b_k scaled, z_k or empty, U_k or empty) for the samples with b_k > 0. The largest b_k becomes
+/// `heat_scale`, less where a tiny mass would make lambda overflow; the factor cancels in every quotient by lambda.
 template <class Visit>
 void AffineHeat::for_each_sample(std::size_t source, const Visit& visit) const {
   const Source& s = sources_[source];
-  const double scale = sample_scale(s);
+  double largest = 0, mass = 1;
+  for (std::size_t k = 0; k < s.vertices().size(); ++k) {
+    largest = std::max(largest, s.weights()[k]);
+    mass = std::min(mass, operators_.scaling() * graph_.mass(s.vertices()[k]));
+  }
+  const double scale = std::ldexp(heat_scale, std::max(-900, std::ilogb(mass)));
   for (std::size_t k = 0; k < s.vertices().size(); ++k) {
     if (!(s.weights()[k] > 0)) continue;
     const auto z = s.offsets().empty() ? s.offsets() : s.offsets().subspan(k * d_, d_);
     const auto U = s.axes().empty() ? s.axes() : s.axes().subspan(k * d_ * d_, d_ * d_);
-    visit(s.vertices()[k], s.weights()[k] * scale, z, U);
+    visit(s.vertices()[k], s.weights()[k] / largest * scale, z, U);
   }
 }
 
@@ -81,11 +76,16 @@ void AffineHeat::diffuse(bool concurrently) {
   detail::run_both(concurrently, scalar, vector);
 }
 
+double AffineHeat::length_unit() const {
+  return std::ldexp(graph_.length_unit(), std::ilogb(graph_.mean_edge_length()));
+}
+
 /// rho_i = -tau sum_j w_ij e_ij lambda_j, columns of n vectors of d numbers. The translation from j to i is -e_ij: it adds the
 /// displacement j -> i, so that the plane comes out exact.
 std::vector<double> AffineHeat::translations() const {
   std::vector<double> rho(sources_.size() * n_ * d_, 0.0);
   const double factor = -operators_.tau() * operators_.scaling();
+  const double to_units = graph_.length_unit() / length_unit();
   for (std::size_t i = 0; i < n_; ++i) {
     const Star star = graph_.star(static_cast<Index>(i));
     for (std::size_t s = 0; s < sources_.size(); ++s) {
@@ -93,7 +93,7 @@ std::vector<double> AffineHeat::translations() const {
       double* out = rho.data() + (s * n_ + i) * d_;
       for (std::size_t e = 0; e < star.degree(); ++e) {
         const double amount = factor * star.weights[e] * lambda[star.neighbors[e]];
-        for (std::size_t a = 0; a < d_; ++a) out[a] += amount * star.logs[e * d_ + a];
+        for (std::size_t a = 0; a < d_; ++a) out[a] += amount * (to_units * star.logs[e * d_ + a]);
       }
     }
   }
@@ -112,7 +112,7 @@ std::vector<double> AffineHeat::adaptive() const {
     }
     for_each_sample(s, [&](Index k, double b, auto z, auto) {
       for (std::size_t a = 0; a < z.size(); ++a)
-        columns[a * n_ + static_cast<std::size_t>(k)] += b * z[a] / graph_.length_unit();
+        columns[a * n_ + static_cast<std::size_t>(k)] += b * z[a] / length_unit();
     });
   }
   operators_.solve_scalar(x, static_cast<Index>(sources_.size() * d_));
@@ -126,7 +126,7 @@ std::vector<double> AffineHeat::localized() const {
       double* out = Y.data() + (s * n_ + static_cast<std::size_t>(k)) * d_;
       for (std::size_t c = 0; c < d_; ++c)
         for (std::size_t a = 0; a < z.size(); ++a)
-          out[c] += b * U[c * d_ + a] * z[a] / graph_.length_unit();
+          out[c] += b * U[c * d_ + a] * z[a] / length_unit();
     });
   operators_.solve_vector(Y, static_cast<Index>(sources_.size()));
   return Y;

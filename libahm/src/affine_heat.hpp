@@ -32,10 +32,13 @@ class AffineHeat {
   /// Solves for lambda and the frames, on two threads when asked.
   void diffuse(bool concurrently);
 
-  /// x of every source: columns of n numbers, d per source.
+  /// x of every source: columns of n numbers, d per source. Multiply by `length_unit()`.
   std::vector<double> adaptive() const;
-  /// Y of every source: columns of n vectors of d numbers.
+  /// Y of every source: columns of n vectors of d numbers. Multiply by `length_unit()`.
   std::vector<double> localized() const;
+  /// The outside length of 1 in x and Y: a power of two near the mean edge length, times the graph's own unit. It keeps x and Y
+  /// in the range of lambda, which is used up to both ends.
+  double length_unit() const;
 
   /// Whether heat reached the vertex: lambda and U~ are large enough to divide by.
   bool reached(std::size_t source, Index vertex) const {
@@ -50,7 +53,6 @@ class AffineHeat {
   std::vector<double> translations() const;
   template <class Visit>
   void for_each_sample(std::size_t source, const Visit& visit) const;
-  double sample_scale(const Source& source) const;
 
   const TangentGraph& graph_;
   const HeatOperators& operators_;

@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace ahm {
 namespace {
@@ -74,8 +75,9 @@ void FrameField::normalize(std::span<const double> solution) {
         frame[complex_ ? c : c * d_ + a] = entry;
         largest = std::max(largest, std::abs(entry));
       }
-    if (!(largest >= least_heat)) {
-      valid_[i] = false;
+    // Too faint to be reported, but still the best frame for what lies behind it.
+    valid_[i] = largest >= least_heat;
+    if (!(largest >= std::numeric_limits<double>::min())) {
       complex_ ? void((frame[0] = 1, frame[1] = 0)) : set_identity(frame, d_);
       continue;
     }

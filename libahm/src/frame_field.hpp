@@ -25,7 +25,7 @@ class FrameField {
   void add_to_rhs(std::span<double> rhs, Index vertex, std::span<const double> axes, double scale) const;
 
   /// Takes the solution of B for these right-hand sides: U_i = U~_i / |U~_i|, the orthogonal polar factor in block graphs. A
-  /// vertex whose U~_i has no length gets the identity and is not `valid`.
+  /// vertex whose U~_i has no length gets the identity.
   void normalize(std::span<const double> solution);
 
   /// Whether U~_i was large enough to be meaningful.
@@ -46,8 +46,8 @@ class FrameField {
 };
 
 /// Smallest solution of a heat equation, right-hand side at `heat_scale`, that counts as heat. Denormal numbers, which lose
-/// digits, begin well below.
-inline constexpr double least_heat = 0x1p-1000;
+/// digits, begin at 2^-1022; they would spoil the vertices up to some 40 powers of two above them.
+inline constexpr double least_heat = 0x1p-970;
 
 /// Right-hand sides are scaled up by this much, which doubles the distance at which solutions underflow.
 inline constexpr double heat_scale = 0x1p960;

@@ -40,9 +40,9 @@ LogMap make_map(const AffineHeat& heat, std::size_t s, const TangentGraph& graph
     const auto vertex = static_cast<Index>(i);
     const std::span phi = std::span(coordinates).subspan(i * d, d);
     if (options.variant == Variant::adaptive) {
-      for (std::size_t a = 0; a < d; ++a) phi[a] = solution[a * n + i] / lambda[i] * graph.length_unit();
+      for (std::size_t a = 0; a < d; ++a) phi[a] = solution[a * n + i] / lambda[i] * heat.length_unit();
     } else {
-      for (std::size_t a = 0; a < d; ++a) field[a] = solution[i * d + a] / lambda[i] * graph.length_unit();
+      for (std::size_t a = 0; a < d; ++a) field[a] = solution[i * d + a] / lambda[i] * heat.length_unit();
       heat.frames(s).to_source(vertex, field.data(), phi.data());
     }
     if (!connected[i])

@@ -130,7 +130,7 @@ VertexField radial_field(const LogMapSolver& solver, const Source& source) {
   const auto lambda = heat.lambda(0);
   for (std::size_t i = 0; i < lambda.size(); ++i)
     for (std::size_t a = 0; a < d; ++a)
-      field.values[i * d + a] = field.values[i * d + a] / lambda[i] * solver.graph().length_unit();
+      field.values[i * d + a] = field.values[i * d + a] / lambda[i] * heat.length_unit();
   finish(field, heat, lambda);
   return field;
 }

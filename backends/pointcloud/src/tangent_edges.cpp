@@ -36,20 +36,12 @@ Matrix2 smallest_rotation(const Plane& from, const Plane& to, bool reflect) {
   return reflect ? Matrix2{c, s, s, -c} : Matrix2{c, -s, s, c};
 }
 
-/// Ratio of the edge's length to its chord's.
-double length_factor(const Plane& from, const Plane& to, bool reflect, EdgeLength edge_length) {
-  if (edge_length != EdgeLength::arc) return 1.0;
-  const double cosine = (reflect ? -1.0 : 1.0) * dot(from.normal, to.normal);
-  const double half_angle = 0.5 * std::acos(std::clamp(cosine, -1.0, 1.0));
-  return half_angle > 1e-4 ? half_angle / std::sin(half_angle) : 1.0;
-}
-
 /// Where `offset` lies in the plane.
-std::array<double, 2> edge_log(const Plane& plane, const Vec3& offset, double factor, EdgeLength edge_length) {
+std::array<double, 2> edge_log(const Plane& plane, const Vec3& offset, EdgeLength edge_length) {
   const double x = dot(plane.axes.x, offset), y = dot(plane.axes.y, offset);
   const double projected = std::hypot(x, y);
   if (edge_length == EdgeLength::projected || !(projected > 0)) return {x, y};
-  const double scale = factor * norm(offset) / projected;
+  const double scale = norm(offset) / projected;
   return {scale * x, scale * y};
 }
 
@@ -96,7 +88,6 @@ CsrGraphData tangent_edges(const CleanPoints& cloud, const TangentPlanes& planes
       const Plane plane_a(planes.normals[a]), plane_b(planes.normals[b]);
       const bool reflect = g.kind == TransportKind::block && is_reflection(static_cast<std::size_t>(e));
       const Vec3 offset = cloud.points[b] - cloud.points[a];
-      const double factor = length_factor(plane_a, plane_b, reflect, edge_length);
       const Matrix2 R_ab = smallest_rotation(plane_a, plane_b, reflect);
       const Matrix2 R_ba{R_ab[0], R_ab[2], R_ab[1], R_ab[3]};
       auto store = [&](Offset at, Index neighbor, const std::array<double, 2>& log, const Matrix2& R) {
@@ -108,8 +99,8 @@ CsrGraphData tangent_edges(const CleanPoints& cloud, const TangentPlanes& planes
         transport[1] = width == 2 ? R[2] : R[1];
         if (width == 4) transport[2] = R[2], transport[3] = R[3];
       };
-      store(position_in_tail[e], b, edge_log(plane_a, offset, factor, edge_length), R_ba);
-      store(position_in_head[e], a, edge_log(plane_b, -1.0 * offset, factor, edge_length), R_ab);
+      store(position_in_tail[e], b, edge_log(plane_a, offset, edge_length), R_ba);
+      store(position_in_head[e], a, edge_log(plane_b, -1.0 * offset, edge_length), R_ab);
     }
   });
   return g;

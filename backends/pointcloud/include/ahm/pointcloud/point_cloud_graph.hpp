@@ -27,18 +27,17 @@ enum class NormalSigns {
   unoriented,  ///< only the tangent planes are used; orientation is propagated over a spanning tree
 };
 
-/// How long the logarithm of an edge is; its direction is always that of the neighbour projected to the tangent plane.
+/// How long the logarithm of an edge is; its direction is that of the neighbour projected to the tangent plane.
 enum class EdgeLength {
-  arc,        ///< length of the circular arc that leaves both tangent planes at their angle: most accurate on smooth clouds
-  chord,      ///< the distance in space
-  projected,  ///< the length of the projection
+  projected,  ///< the length of the projection: as accurate as the chord on clean clouds, and blind to noise across the surface
+  chord,      ///< the distance in space: noise of 30 % of the spacing makes every distance 12 % too long
 };
 
 struct CloudOptions {
   Index k = 30;                        ///< neighbours per point, the point itself not counted; clamped to n - 1 and reported
   NeighborSearchFactory search = nanoflann_search;
   NormalSigns normal_signs = NormalSigns::automatic;
-  EdgeLength edge_length = EdgeLength::chord;
+  EdgeLength edge_length = EdgeLength::projected;
   /// Two points are joined only if their distance is at most this multiple of the distance to the k-th neighbour of either.
   double max_edge_ratio = 3.0;
   bool drop_non_finite = false;        ///< NaN and infinite points: drop (status `removed`) instead of throwing

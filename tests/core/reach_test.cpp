@@ -1,0 +1,118 @@
+// Statuses: never a wrong number, NaN exactly where the status is not ok.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "ahm/error.hpp"
+#include "ahm/log_map_solver.hpp"
+#include "support/planar_graphs.hpp"
+
+namespace ahm::test {
+namespace {
+
+void expect_nan_exactly_where_not_ok(const LogMap& map) {
+  for (Index i = 0; i < map.size(); ++i)
+    for (double x : map.coordinates(i)) ASSERT_EQ(std::isnan(x), map.status(i) != Status::ok) << "vertex " << i;
+}
+
+TEST(Reach, IsExactAsFarAsHeatCanBeToldFromNothingAndSaysWhereItEnds) {
+  const FlatGraph flat = strip(3000);
+  const CsrGraph graph(flat.data);
+  const LogMapSolver solver(graph);
+  for (Variant variant : {Variant::adaptive, Variant::localized}) {
+    const LogMap map = solver.solve(Source::at_vertex(1), {.variant = variant});
+    expect_nan_exactly_where_not_ok(map);
+    Index farthest = 0;
+    for (Index i = 0; i < flat.size(); ++i) {
+      if (map.status(i) != Status::ok) {
+        EXPECT_EQ(map.status(i), Status::unreached);
+        continue;
+      }
+      farthest = std::max(farthest, i / 3);
+      const auto exact = flat.exact(1, i);
+      ASSERT_NEAR(map.coordinates(i)[0], exact[0], 1e-11 * flat.diameter());
+      ASSERT_NEAR(map.coordinates(i)[1], exact[1], 1e-11 * flat.diameter());
+    }
+    // Heat falls by the factor (3 - sqrt 5)/2 = 2^-1.39 per edge of this strip: 1930 powers of two reach 1389 edges.
+    EXPECT_GT(farthest, 1370);
+    EXPECT_LT(farthest, 1400);
+  }
+}
+
+TEST(Reach, GrowsWithTheDiffusionTime) {
+  const FlatGraph flat = strip(3000);
+  const CsrGraph graph(flat.data);
+  const LogMap map = LogMapSolver(graph, {.t_coef = 16.0}).solve(Source::at_vertex(1));
+  EXPECT_EQ(map.count(Status::ok), flat.size());
+}
+
+TEST(Reach, MasksOtherComponentsAndLeavesTheSourcesAlone) {
+  const FlatGraph flat = planar_triangulation(10);
+  const CsrGraph one(flat.data), two(doubled(flat.data));
+  const LogMapSolver alone(one), solver(two);
+  EXPECT_EQ(solver.operators().component_count(), 2);
+  for (Variant variant : {Variant::adaptive, Variant::localized}) {
+    const LogMap expected = alone.solve(Source::at_vertex(7), {.variant = variant});
+    const LogMap map = solver.solve(Source::at_vertex(7 + flat.size()), {.variant = variant});
+    expect_nan_exactly_where_not_ok(map);
+    EXPECT_EQ(map.count(Status::component), flat.size());
+    for (Index i = 0; i < flat.size(); ++i) {
+      ASSERT_EQ(map.status(i), Status::component);
+      ASSERT_EQ(map.status(i + flat.size()), Status::ok);
+      for (int a = 0; a < 2; ++a) ASSERT_NEAR(map.coordinates(i + flat.size())[a], expected.coordinates(i)[a], 1e-11);
+    }
+  }
+}
+
+TEST(Reach, TakesEdgesWithoutWeightForNoConnection) {
+  FlatGraph flat = line_graph(6);
+  CsrGraphData& g = flat.data;
+  for (Index i : {2, 3})
+    for (Offset e = g.row_begin[i]; e < g.row_begin[i + 1]; ++e)
+      if (g.neighbors[e] == 5 - i) g.weights[e] = 0.0;
+  const CsrGraph graph(g);
+  const LogMap map = LogMapSolver(graph).solve(Source::at_vertex(0));
+  EXPECT_EQ(map.status(2), Status::ok);
+  EXPECT_EQ(map.status(3), Status::component);
+}
+
+TEST(Reach, MasksBeyondTheRadiusAndChangesNothingWithin) {
+  const FlatGraph flat = planar_triangulation(16);
+  const CsrGraph graph(flat.data);
+  const LogMapSolver solver(graph);
+  const LogMap whole = solver.solve(Source::at_vertex(100)), local = solver.solve(Source::at_vertex(100), {.radius = 0.3});
+  expect_nan_exactly_where_not_ok(local);
+  for (Index i = 0; i < flat.size(); ++i) {
+    ASSERT_EQ(local.status(i), whole.distance(i) <= 0.3 ? Status::ok : Status::radius);
+    if (local.status(i) == Status::ok) ASSERT_EQ(local.coordinates(i)[0], whole.coordinates(i)[0]);
+  }
+  EXPECT_GT(local.count(Status::radius), 0);
+  EXPECT_GT(local.count(Status::ok), 0);
+}
+
+TEST(Reach, SolvesASingleVertex) {
+  CsrGraphData g;
+  g.row_begin = {0, 0};
+  g.masses = {2.0};
+  const CsrGraph graph(g);
+  const LogMap map = LogMapSolver(graph).solve(Source::at_vertex(0));
+  EXPECT_EQ(map.status(0), Status::ok);
+  EXPECT_EQ(map.distance(0), 0.0);
+}
+
+TEST(Reach, SurvivesMassesOverTwentyOrdersOfMagnitude) {
+  FlatGraph flat = planar_triangulation(12);
+  for (std::size_t i = 0; i < flat.data.masses.size(); ++i) flat.data.masses[i] *= std::pow(10.0, -20.0 * (i % 5) / 4.0);
+  const CsrGraph graph(flat.data);
+  const LogMapSolver solver(graph);
+  for (Index p : {3, 4, 70}) {
+    const LogMap map = solver.solve(Source::at_vertex(p));
+    for (Index i = 0; i < flat.size(); ++i) {
+      ASSERT_EQ(map.status(i), Status::ok);
+      ASSERT_NEAR(map.coordinates(i)[0], flat.exact(p, i)[0], 1e-11 * flat.diameter());
+    }
+  }
+}
+
+}  // namespace
+}  // namespace ahm::test

@@ -1,0 +1,109 @@
+#include "support/surface_graphs.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <set>
+
+namespace ahm::test {
+
+CsrGraphData sphere_graph(Index n, unsigned seed) {
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  std::vector<Eigen::Vector3d> points, axis_x, axis_y;
+  for (Index i = 0; i < n; ++i) {
+    const double z = 1.0 - (2.0 * i + 1.0) / n, r = std::sqrt(1.0 - z * z), turn = i * std::numbers::pi * (3.0 - std::sqrt(5.0));
+    const Eigen::Vector3d p(r * std::cos(turn), r * std::sin(turn), z);
+    const Eigen::Vector3d side = p.unitOrthogonal();
+    const double angle = 2.0 * std::numbers::pi * uniform(random);
+    points.push_back(p);
+    axis_x.push_back(std::cos(angle) * side + std::sin(angle) * p.cross(side));
+    axis_y.push_back(p.cross(axis_x.back()));
+  }
+  std::set<std::pair<Index, Index>> edges;
+  for (Index i = 0; i < n; ++i) {
+    std::vector<Index> order(static_cast<std::size_t>(n));
+    for (Index j = 0; j < n; ++j) order[j] = j;
+    std::partial_sort(order.begin(), order.begin() + 7, order.end(), [&](Index a, Index b) {
+      return (points[a] - points[i]).squaredNorm() < (points[b] - points[i]).squaredNorm();
+    });
+    for (int k = 1; k < 7; ++k) edges.insert(std::minmax(i, order[k]));
+  }
+  std::vector<std::vector<std::pair<Index, double>>> rows(static_cast<std::size_t>(n));
+  for (const auto& [a, b] : edges) {
+    const double w = 0.2 + uniform(random);
+    rows[a].push_back({b, w});
+    rows[b].push_back({a, w});
+  }
+  CsrGraphData g;
+  g.row_begin = {0};
+  for (Index i = 0; i < n; ++i) {
+    for (const auto& [j, w] : rows[i]) {
+      const Eigen::Vector3d offset = points[j] - points[i];
+      g.neighbors.push_back(j);
+      g.weights.push_back(w);
+      g.logs.push_back(axis_x[i].dot(offset));
+      g.logs.push_back(axis_y[i].dot(offset));
+      const Eigen::Matrix3d R = Eigen::Quaterniond::FromTwoVectors(points[j], points[i]).toRotationMatrix();
+      const Eigen::Vector3d carried = R * axis_x[j];
+      const double c = axis_x[i].dot(carried), s = axis_y[i].dot(carried), r = std::hypot(c, s);
+      g.transports.push_back(c / r);
+      g.transports.push_back(s / r);
+    }
+    g.row_begin.push_back(static_cast<Offset>(g.neighbors.size()));
+    g.masses.push_back(4.0 * std::numbers::pi / n * (0.5 + uniform(random)));
+  }
+  return g;
+}
+
+CsrGraphData as_blocks(const CsrGraphData& g) {
+  CsrGraphData blocks = g;
+  blocks.kind = TransportKind::block;
+  blocks.transports.clear();
+  for (std::size_t e = 0; e < g.neighbors.size(); ++e) {
+    const double c = g.transports[2 * e], s = g.transports[2 * e + 1];
+    for (double entry : {c, -s, s, c}) blocks.transports.push_back(entry);
+  }
+  return blocks;
+}
+
+CsrGraphData relabelled(const CsrGraphData& g, const std::vector<Index>& order) {
+  CsrGraphData result = g;
+  std::vector<Index> inverse(order.size());
+  for (std::size_t i = 0; i < order.size(); ++i) inverse[order[i]] = static_cast<Index>(i);
+  Offset at = 0;
+  for (std::size_t v = 0; v < order.size(); ++v) {
+    const Index i = inverse[v];
+    result.masses[v] = g.masses[i];
+    result.row_begin[v] = at;
+    for (Offset e = g.row_begin[i]; e < g.row_begin[i + 1]; ++e, ++at) {
+      result.neighbors[at] = order[g.neighbors[e]];
+      result.weights[at] = g.weights[e];
+      for (int a = 0; a < 2; ++a) {
+        result.logs[2 * at + a] = g.logs[2 * e + a];
+        result.transports[2 * at + a] = g.transports[2 * e + a];
+      }
+    }
+  }
+  return result;
+}
+
+CsrGraphData mirrored(const CsrGraphData& g) {
+  CsrGraphData result = g;
+  for (std::size_t e = 0; e < g.neighbors.size(); ++e) {
+    result.logs[2 * e + 1] *= -1;
+    result.transports[2 * e + 1] *= -1;
+  }
+  return result;
+}
+
+CsrGraphData scaled(const CsrGraphData& g, double factor) {
+  CsrGraphData result = g;
+  for (double& x : result.logs) x *= factor;
+  for (double& m : result.masses) m *= factor * factor;
+  return result;
+}
+
+}  // namespace ahm::test

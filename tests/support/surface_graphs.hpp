@@ -1,0 +1,25 @@
+/// \file
+/// Curved graphs for tests that compare two ways of solving the same problem.
+#pragma once
+
+#include "ahm/csr_graph.hpp"
+
+namespace ahm::test {
+
+/// About `n` points of the unit sphere, each joined to its nearest ones, random weights, frames turned at random. The log map
+/// on it has no closed form; both sides of a comparison see the same graph.
+CsrGraphData sphere_graph(Index n, unsigned seed = 1);
+
+/// The same graph with every 2 x 2 rotation written out as a block.
+CsrGraphData as_blocks(const CsrGraphData& rotations);
+
+/// The same graph with its vertices renumbered: vertex i becomes order[i].
+CsrGraphData relabelled(const CsrGraphData& graph, const std::vector<Index>& order);
+
+/// The same graph seen from the other side: every frame mirrored in its x axis.
+CsrGraphData mirrored(const CsrGraphData& graph);
+
+/// The same graph with lengths multiplied by `factor` (masses by its square).
+CsrGraphData scaled(const CsrGraphData& graph, double factor);
+
+}  // namespace ahm::test
