@@ -2,8 +2,9 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <atomic>
 #include <cmath>
+#include <iterator>
+#include <utility>
 
 #include "ahm/detail/parallel.hpp"
 #include "vec3.hpp"
@@ -13,39 +14,89 @@ namespace {
 
 constexpr Offset chunk = 4096;  // points per task
 
-/// Neighbours on a line have a second principal variance below this share of the first.
+/// Neighbours are narrow, and more of them are wanted, when their second principal variance is below this share of the first ...
+constexpr double narrow_ratio = 1e-3;
+/// ... and on a line, without a plane, below this share.
 constexpr double collinear_ratio = 1e-10;
 
-/// Direction of least variance of the points `indices` and point i; zero when they lie on a line.
-Vec3 principal_normal(std::span<const Vec3> points, Index i, std::span<const Index> indices) {
+struct PlaneFit {
+  Vec3 normal{0, 0, 0};  ///< direction of least variance
+  double ratio = 0;      ///< second principal variance / first
+};
+
+PlaneFit fit_plane(std::span<const Vec3> points, Index i, std::span<const Index> neighbors) {
   const Vec3 origin = points[i];
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
   Eigen::Matrix3d second = Eigen::Matrix3d::Zero();
-  for (Index j : indices) {
+  for (Index j : neighbors) {
     const Vec3 offset = points[j] - origin;
     const Eigen::Map<const Eigen::Vector3d> v(offset.data());
     mean += v;
     second.noalias() += v * v.transpose();
   }
-  const double count = static_cast<double>(indices.size()) + 1.0;
+  const double count = static_cast<double>(neighbors.size()) + 1.0;  // with the point itself
   mean /= count;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(second / count - mean * mean.transpose());
   const auto& variance = eigen.eigenvalues();
-  if (!(variance[1] > collinear_ratio * variance[2])) return {0, 0, 0};
+  const double ratio = variance[2] > 0 ? variance[1] / variance[2] : 0.0;
+  if (!(ratio > collinear_ratio)) return {};
   const Eigen::Vector3d n = eigen.eigenvectors().col(0);
-  return normalized({n[0], n[1], n[2]});
+  return {normalized({n[0], n[1], n[2]}), ratio};
 }
 
-/// Looks for a plane among more and more neighbours.
-Vec3 wider_normal(std::span<const Vec3> points, Index i, const NeighborSearch& search, Index k) {
-  for (Index wider : {2 * k, 4 * k}) {
-    std::vector<Index> indices(static_cast<std::size_t>(wider) + 1);
-    std::vector<double> squared(indices.size());
-    const Index found = search.nearest(points[i], indices, squared);
-    const Vec3 normal = principal_normal(points, i, std::span(indices).first(static_cast<std::size_t>(found)));
-    if (normal != Vec3{0, 0, 0}) return normal;
+/// Buffers of one thread's queries.
+struct QueryBuffers {
+  std::vector<Index> indices;
+  std::vector<double> squared;
+};
+
+/// Neighbours of point i, nearest first, without i; valid until the buffers' next use.
+std::span<const Index> neighbors_of(std::span<const Vec3> points, Index i, const NeighborSearch& search, Index k,
+                                    QueryBuffers& buffers) {
+  buffers.indices.resize(static_cast<std::size_t>(k) + 1);
+  buffers.squared.resize(buffers.indices.size());
+  buffers.indices.resize(static_cast<std::size_t>(search.nearest(points[i], buffers.indices, buffers.squared)));
+  // The point is its own nearest neighbour; a search in lower precision may rank it elsewhere or miss it.
+  const auto self = std::find(buffers.indices.begin(), buffers.indices.end(), i);
+  buffers.indices.erase(self == buffers.indices.end() ? self - 1 : self);
+  return buffers.indices;
+}
+
+struct WiderNeighborhood {
+  Index point;
+  std::vector<Index> neighbors;
+};
+
+/// Fits a plane to more and more neighbours until they are no longer narrow; the widest fit wins if they stay so.
+PlaneFit fit_wider(std::span<const Vec3> points, const NeighborSearch& search, Index k, WiderNeighborhood& wider) {
+  PlaneFit fit;
+  QueryBuffers buffers;
+  for (Index factor : {2, 4}) {
+    const auto neighbors = neighbors_of(points, wider.point, search, factor * k, buffers);
+    wider.neighbors.assign(neighbors.begin(), neighbors.end());
+    fit = fit_plane(points, wider.point, wider.neighbors);
+    if (fit.ratio > narrow_ratio) break;
   }
-  return {0, 0, 0};
+  return fit;
+}
+
+/// Puts the wider neighbourhoods, ascending by point, in place of the ordinary ones.
+void replace(Neighborhoods& neighborhoods, const std::vector<WiderNeighborhood>& wider, std::span<const Vec3> points) {
+  if (wider.empty()) return;
+  Neighborhoods result{neighborhoods.k, {0}, {}, std::move(neighborhoods.radius)};
+  result.begin.reserve(neighborhoods.begin.size());
+  result.indices.reserve(neighborhoods.indices.size());
+  auto next = wider.begin();
+  for (Index i = 0; i + 1 < static_cast<Index>(neighborhoods.begin.size()); ++i) {
+    std::span<const Index> neighbors = neighborhoods.of(i);
+    if (next != wider.end() && next->point == i) {
+      neighbors = next++->neighbors;
+      result.radius[i] = norm(points[neighbors.back()] - points[i]);
+    }
+    result.indices.insert(result.indices.end(), neighbors.begin(), neighbors.end());
+    result.begin.push_back(static_cast<Offset>(result.indices.size()));
+  }
+  neighborhoods = std::move(result);
 }
 
 /// Unit vector of a given normal, zero when it has no direction.
@@ -61,24 +112,18 @@ Neighborhoods find_neighborhoods(const CleanPoints& cloud, const NeighborSearch&
   const auto n = static_cast<Offset>(cloud.points.size());
   Neighborhoods result;
   result.k = static_cast<Index>(std::min<Offset>(options.k, n - 1));
-  const auto k = static_cast<std::size_t>(result.k);
-  result.indices.resize(static_cast<std::size_t>(n) * k);
+  const Offset k = result.k;
+  result.begin.resize(static_cast<std::size_t>(n) + 1);
+  for (Offset i = 0; i <= n; ++i) result.begin[i] = i * k;
+  result.indices.resize(static_cast<std::size_t>(n * k));
   result.radius.resize(static_cast<std::size_t>(n));
-  std::atomic<Offset> done{0};
   detail::parallel_chunks(n, chunk, options.threads, [&](Offset begin, Offset end) {
-    std::vector<Index> indices(k + 1);
-    std::vector<double> squared(k + 1);
+    QueryBuffers buffers;
     for (Offset i = begin; i < end; ++i) {
-      search.nearest(cloud.points[i], indices, squared);
-      // The point is its own nearest neighbour; a search in lower precision may rank it elsewhere or miss it.
-      auto self = std::find(indices.begin(), indices.end(), static_cast<Index>(i));
-      if (self == indices.end()) --self;
-      indices.erase(self);
-      std::copy(indices.begin(), indices.end(), result.indices.begin() + i * static_cast<Offset>(k));
-      result.radius[i] = norm(cloud.points[indices.back()] - cloud.points[i]);
-      indices.resize(k + 1);
+      const auto neighbors = neighbors_of(cloud.points, static_cast<Index>(i), search, result.k, buffers);
+      std::copy(neighbors.begin(), neighbors.end(), result.indices.begin() + i * k);
+      result.radius[i] = norm(cloud.points[neighbors.back()] - cloud.points[i]);
     }
-    done += end - begin;
     if (options.progress.stop.stop_requested()) throw Cancelled("cancelled during the neighbour search");
   });
   options.progress.step("neighbours", 1.0);
@@ -86,26 +131,39 @@ Neighborhoods find_neighborhoods(const CleanPoints& cloud, const NeighborSearch&
 }
 
 TangentPlanes find_tangent_planes(const CleanPoints& cloud, std::span<const Vec3> given, const NeighborSearch& search,
-                                  const Neighborhoods& neighborhoods, const CloudOptions& options) {
+                                  Neighborhoods& neighborhoods, const CloudOptions& options) {
   const auto n = static_cast<Offset>(cloud.points.size());
   TangentPlanes planes;
   planes.normals.assign(static_cast<std::size_t>(n), Vec3{0, 0, 0});
-  std::atomic<Index> estimated{0};
+  std::vector<char> is_estimated(static_cast<std::size_t>(n), 0);
+  std::vector<std::vector<WiderNeighborhood>> wider(static_cast<std::size_t>((n + chunk - 1) / chunk));
   detail::parallel_chunks(n, chunk, options.threads, [&](Offset begin, Offset end) {
-    Index count = 0;
     for (Offset i = begin; i < end; ++i) {
       const auto point = static_cast<Index>(i);
-      Vec3& normal = planes.normals[i];
-      if (!given.empty()) normal = direction(given[cloud.input[i]]);
-      if (normal != Vec3{0, 0, 0}) continue;
-      ++count;
-      normal = principal_normal(cloud.points, point, neighborhoods.of(point));
-      if (normal == Vec3{0, 0, 0}) normal = wider_normal(cloud.points, point, search, neighborhoods.k);
+      PlaneFit fit = fit_plane(cloud.points, point, neighborhoods.of(point));
+      if (!(fit.ratio > narrow_ratio) && n > neighborhoods.k + 1) {
+        WiderNeighborhood candidate{point, {}};
+        fit = fit_wider(cloud.points, search, neighborhoods.k, candidate);
+        wider[static_cast<std::size_t>(begin / chunk)].push_back(std::move(candidate));
+      }
+      if (!given.empty()) planes.normals[i] = direction(given[cloud.input[i]]);
+      is_estimated[i] = planes.normals[i] == Vec3{0, 0, 0};
+      if (is_estimated[i]) planes.normals[i] = fit.normal;
     }
-    estimated += count;
     if (options.progress.stop.stop_requested()) throw Cancelled("cancelled during normal estimation");
   });
-  planes.estimated = estimated;
+  std::vector<WiderNeighborhood> all;
+  for (auto& part : wider) std::move(part.begin(), part.end(), std::back_inserter(all));
+  replace(neighborhoods, all, cloud.points);
+
+  for (Index i = 0; i < static_cast<Index>(n); ++i) {
+    if (!is_estimated[i]) continue;
+    ++planes.estimated;
+    double agreement = 0;
+    for (Index j : neighborhoods.of(i))
+      if (!is_estimated[j]) agreement += dot(planes.normals[i], planes.normals[j]);
+    if (agreement < 0) planes.normals[i] = -1.0 * planes.normals[i];
+  }
   options.progress.step("normals", 1.0);
   return planes;
 }

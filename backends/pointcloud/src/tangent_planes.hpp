@@ -11,10 +11,13 @@
 namespace ahm::pointcloud {
 
 struct Neighborhoods {
-  Index k = 0;
-  std::vector<Index> indices;        ///< n x k, nearest first, the point itself left out
-  std::vector<double> radius;        ///< distance to the k-th neighbour
-  std::span<const Index> of(Index i) const { return std::span(indices).subspan(static_cast<std::size_t>(i) * k, k); }
+  Index k = 0;                 ///< neighbours per point, but for points that needed more
+  std::vector<Offset> begin;   ///< n + 1
+  std::vector<Index> indices;  ///< of each point: nearest first, the point itself left out
+  std::vector<double> radius;  ///< distance to the last of them
+  std::span<const Index> of(Index i) const {
+    return std::span(indices).subspan(static_cast<std::size_t>(begin[i]), static_cast<std::size_t>(begin[i + 1] - begin[i]));
+  }
 };
 
 struct TangentPlanes {
@@ -25,9 +28,10 @@ struct TangentPlanes {
 
 Neighborhoods find_neighborhoods(const CleanPoints& cloud, const NeighborSearch& search, const CloudOptions& options);
 
-/// Normals as given (zero and non-finite ones are estimated) or by principal component analysis of the neighbours. Points whose
-/// neighbours lie on a line are tried again with two and four times as many.
+/// Normals as given (zero and non-finite ones are estimated, and turned to the side of their neighbours) or by principal component
+/// analysis of the neighbours. Points whose neighbours lie almost on a line, as on one line of a scanner, get two or four times as
+/// many neighbours.
 TangentPlanes find_tangent_planes(const CleanPoints& cloud, std::span<const Vec3> given, const NeighborSearch& search,
-                                  const Neighborhoods& neighborhoods, const CloudOptions& options);
+                                  Neighborhoods& neighborhoods, const CloudOptions& options);
 
 }  // namespace ahm::pointcloud

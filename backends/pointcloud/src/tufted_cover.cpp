@@ -175,7 +175,8 @@ void TuftedCover::glue(const CleanPoints& cloud, const TangentPlanes& planes, co
     std::stable_sort(first, last, [](const Side& p, const Side& q) { return p.head < q.head; });
     for (auto group = first; group != last;) {
       const auto end = std::find_if(group, last, [&](const Side& s) { return s.head != group->head; });
-      const auto middle = std::stable_partition(group, end, [](const Side& s) { return s.left; });
+      // Relative to the first side, so that the signs of the normals do not matter.
+      const auto middle = std::stable_partition(group, end, [left = group->left](const Side& s) { return s.left == left; });
       ring.clear();
       for (auto l = group, r = middle; l != middle || r != end;) {
         if (l != middle) ring.push_back(*l++);
