@@ -1,0 +1,54 @@
+/// \file
+/// Output files that are whole or not there.
+///
+/// \code
+/// ahm::io::AtomicFile file("result.csv");
+/// file.write("index,x,y,z\n");
+/// file.commit();                            // only now does result.csv exist, or change
+/// \endcode
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "ahm/error.hpp"
+
+namespace ahm::io {
+
+/// Writes to a temporary name in the target's directory and renames on `commit`; without a commit nothing is left
+/// behind.
+///
+/// A target that is a pipe or a device (/dev/stdout) is written to directly. A symbolic link is followed, and the file
+/// it leads to is replaced, with its permissions kept.
+class AtomicFile {
+ public:
+  /// @throws IoError with the system's reason when the file cannot be created
+  explicit AtomicFile(const std::filesystem::path& path);
+  ~AtomicFile();
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+
+  /// Appends bytes. @throws IoError when the disk is full, the pipe is closed, or the system reports another fault
+  void write(std::string_view bytes);
+  /// Writes what is left, waits until it is on the disk, and gives the file its name. @throws IoError as `write`
+  void commit();
+
+ private:
+  void flush();
+  void discard() noexcept;
+  [[noreturn]] void fail(int error);
+
+  std::filesystem::path path_;       // as the caller named it, for messages
+  std::filesystem::path target_;     // without symbolic links
+  std::filesystem::path temporary_;  // empty when written directly
+  std::string buffer_;
+  int descriptor_ = -1;
+  int slot_ = -1;  // in the registry of unfinished files
+};
+
+/// Deletes the temporary files of all uncommitted `AtomicFile`s of the process. Async-signal-safe: for a handler of
+/// SIGINT or SIGTERM that ends the process afterwards.
+void remove_unfinished_files() noexcept;
+
+}  // namespace ahm::io

@@ -1,0 +1,38 @@
+/// \file
+/// What a file holds: points, perhaps normals and colours, perhaps polygons.
+///
+/// \code
+/// ahm::io::Geometry g = ahm::io::read("bunny.ply");
+/// for (std::size_t f = 0; f < g.face_count(); ++f) use(g.face(f));   // vertex numbers of polygon f
+/// \endcode
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "ahm/types.hpp"
+
+namespace ahm::io {
+
+/// Points and polygons as they stand in a file: same order, same precision, nothing merged, dropped or checked for
+/// shape.
+struct Geometry {
+  std::vector<Vec3> points;                         ///< n; NaN and infinity are passed through as stored
+  std::vector<Vec3> normals;                        ///< empty or n, not normalised
+  std::vector<std::array<std::uint8_t, 3>> colors;  ///< empty or n; red, green, blue
+  std::vector<Offset> face_begin;     ///< empty (cloud) or faces + 1; face f = [face_begin[f], face_begin[f + 1])
+  std::vector<Index> face_vertices;   ///< vertex numbers, each in [0, n)
+  std::string format;                 ///< for messages, e.g. "PLY binary little endian"
+  std::vector<std::string> warnings;  ///< what was ignored, in words
+
+  std::size_t face_count() const noexcept { return face_begin.empty() ? 0 : face_begin.size() - 1; }
+  /// The vertex numbers of polygon `face` < face_count().
+  std::span<const Index> face(std::size_t face) const noexcept {
+    return {face_vertices.data() + face_begin[face], static_cast<std::size_t>(face_begin[face + 1] - face_begin[face])};
+  }
+};
+
+}  // namespace ahm::io

@@ -1,0 +1,35 @@
+/// \file
+/// A file's bytes, and the messages of every reader.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace ahm::io {
+
+/// A whole file in memory: readers see one unchanging state of it, and know its size before they believe a count.
+struct Input {
+  std::filesystem::path path;
+  std::string bytes;
+};
+
+/// Reads a regular file. @throws IoError with the system's reason; empty and compressed files are refused here
+Input load(const std::filesystem::path& path);
+
+/// Throws IoError "cannot read 'path': what".
+[[noreturn]] void fail(const Input& in, const std::string& what);
+/// Throws IoError "cannot read 'path', line 12: what".
+[[noreturn]] void fail_at_line(const Input& in, std::int64_t line, const std::string& what);
+/// Throws IoError "cannot read 'path', byte 345: what".
+[[noreturn]] void fail_at_byte(const Input& in, std::size_t byte, const std::string& what);
+
+/// The text in quotes, shortened and with unprintable bytes shown as '?', fit for a message.
+std::string in_quotes(std::string_view text);
+/// The path in quotes, fit for a message.
+std::string quoted_path(const std::filesystem::path& path);
+/// The extension in lower case with its dot, e.g. ".ply".
+std::string lower_extension(const std::filesystem::path& path);
+
+}  // namespace ahm::io

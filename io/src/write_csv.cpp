@@ -1,0 +1,37 @@
+#include <charconv>
+#include <cmath>
+#include <string>
+
+#include "writers.hpp"
+
+namespace ahm::io {
+namespace {
+
+/// Shortest text that reads back to the same double, in every locale.
+void append(std::string& row, double value) {
+  char text[32];
+  row += ',';
+  if (std::isnan(value)) {
+    row += "nan";  // never "-nan", which some readers refuse
+  } else {
+    row.append(text, std::to_chars(text, text + sizeof text, value).ptr);
+  }
+}
+
+}  // namespace
+
+void write_csv(AtomicFile& file, const Table& table) {
+  file.write("index,x,y,z,u,v,distance,angle,status\n");
+  std::string row;
+  for (std::size_t i = 0; i < table.points.size(); ++i) {
+    row = std::to_string(i);
+    for (double coordinate : table.points[i]) append(row, coordinate);
+    for (double value : values_of(table, i)) append(row, value);
+    row += ',';
+    row += to_string(table.status[i]);
+    row += '\n';
+    file.write(row);
+  }
+}
+
+}  // namespace ahm::io

@@ -1,0 +1,72 @@
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <string>
+
+#include "writers.hpp"
+
+namespace ahm::io {
+namespace {
+
+/// Appends the bytes of a value, lowest first.
+template <class T>
+void append(std::string& bytes, T value) {
+  auto raw = std::bit_cast<std::array<char, sizeof(T)>>(value);
+  if constexpr (std::endian::native == std::endian::big) std::ranges::reverse(raw);
+  bytes.append(raw.data(), raw.size());
+}
+
+std::string header_of(const Table& table, std::size_t faces, bool many_corners) {
+  std::string header = "ply\nformat binary_little_endian 1.0\ncomment logarithmic map by libahm\n";
+  for (Status status : {Status::ok, Status::component, Status::radius, Status::unreached, Status::removed}) {
+    header +=
+        "comment status " + std::to_string(static_cast<int>(status)) + " " + std::string(to_string(status)) + "\n";
+  }
+  header += "element vertex " + std::to_string(table.points.size()) + "\n";
+  for (const char* name : {"x", "y", "z"}) header += std::string("property double ") + name + "\n";
+  if (!table.normals.empty()) header += "property double nx\nproperty double ny\nproperty double nz\n";
+  for (const char* name : {"u", "v", "distance", "angle"}) header += std::string("property double ") + name + "\n";
+  header += "property uchar status\n";
+  if (faces > 0) {
+    header += "element face " + std::to_string(faces) + "\n";
+    header += std::string("property list ") + (many_corners ? "int" : "uchar") + " int vertex_indices\n";
+  }
+  return header + "end_header\n";
+}
+
+}  // namespace
+
+void write_ply(AtomicFile& file, const Table& table) {
+  const std::size_t faces = table.face_begin.empty() ? 0 : table.face_begin.size() - 1;
+  bool many_corners = false;
+  for (std::size_t f = 0; f < faces; ++f)
+    many_corners = many_corners || table.face_begin[f + 1] - table.face_begin[f] > 255;
+  file.write(header_of(table, faces, many_corners));
+
+  std::string row;
+  for (std::size_t i = 0; i < table.points.size(); ++i) {
+    row.clear();
+    for (double coordinate : table.points[i]) append(row, coordinate);
+    if (!table.normals.empty()) {
+      for (double coordinate : table.normals[i]) append(row, coordinate);
+    }
+    for (double value : values_of(table, i)) append(row, value);
+    append(row, static_cast<std::uint8_t>(table.status[i]));
+    file.write(row);
+  }
+  for (std::size_t f = 0; f < faces; ++f) {
+    row.clear();
+    const auto corners = static_cast<std::int32_t>(table.face_begin[f + 1] - table.face_begin[f]);
+    if (many_corners) {
+      append(row, corners);
+    } else {
+      append(row, static_cast<std::uint8_t>(corners));
+    }
+    for (Offset k = table.face_begin[f]; k < table.face_begin[f + 1]; ++k) {
+      append(row, table.face_vertices[static_cast<std::size_t>(k)]);
+    }
+    file.write(row);
+  }
+}
+
+}  // namespace ahm::io

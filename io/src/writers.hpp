@@ -1,0 +1,24 @@
+/// \file
+/// One writer per format; `write` chooses among them.
+#pragma once
+
+#include <array>
+
+#include "ahm/io/atomic_file.hpp"
+#include "ahm/io/write.hpp"
+
+namespace ahm::io {
+
+void write_csv(AtomicFile& file, const Table& table);
+void write_ply(AtomicFile& file, const Table& table);
+void write_pcd(AtomicFile& file, const Table& table);
+/// Whether the library was built with PCL.
+bool has_pcd() noexcept;
+
+/// Whether the path leads to what cannot be replaced by a renamed file: a pipe, a device, or the process's own output.
+bool is_stream(const std::filesystem::path& path);
+
+/// u, v, distance and angle of a vertex, NaN where its status is not ok.
+std::array<double, 4> values_of(const Table& table, std::size_t vertex);
+
+}  // namespace ahm::io

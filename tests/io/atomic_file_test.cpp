@@ -1,0 +1,143 @@
+#include "ahm/io/atomic_file.hpp"
+
+#include <fcntl.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+
+#include <csignal>
+
+#include "files.hpp"
+
+namespace ahm::io::test {
+namespace {
+
+using AtomicFileTest = Files;
+
+TEST_F(AtomicFileTest, AppearsOnlyOnCommit) {
+  AtomicFile file(path("a.txt"));
+  file.write("hello");
+  EXPECT_FALSE(std::filesystem::exists(path("a.txt")));
+  file.commit();
+  EXPECT_EQ(contents(path("a.txt")), "hello");
+  EXPECT_EQ(files_left(), 1u);
+}
+
+TEST_F(AtomicFileTest, LeavesNothingWithoutCommit) {
+  make("a.txt", "old");
+  {
+    AtomicFile file(path("a.txt"));
+    file.write(std::string(3 << 20, 'x'));
+  }
+  EXPECT_EQ(contents(path("a.txt")), "old");
+  EXPECT_EQ(files_left(), 1u);
+}
+
+TEST_F(AtomicFileTest, KeepsThePermissionsAndFollowsLinks) {
+  make("real.txt", "old");
+  std::filesystem::permissions(path("real.txt"),
+                               std::filesystem::perms::owner_read | std::filesystem::perms::owner_write);
+  std::filesystem::create_symlink("real.txt", path("link.txt"));
+  AtomicFile file(path("link.txt"));
+  file.write("new");
+  file.commit();
+  EXPECT_TRUE(std::filesystem::is_symlink(path("link.txt")));
+  EXPECT_EQ(contents(path("real.txt")), "new");
+  EXPECT_EQ(std::filesystem::status(path("real.txt")).permissions(),
+            std::filesystem::perms::owner_read | std::filesystem::perms::owner_write);
+}
+
+TEST_F(AtomicFileTest, RefusesDirectoriesAndMissingDirectories) {
+  EXPECT_THROW(AtomicFile{directory_}, IoError);
+  EXPECT_THROW(AtomicFile{path("absent/a.txt")}, IoError);
+  EXPECT_EQ(files_left(), 0u);
+}
+
+TEST_F(AtomicFileTest, ReportsAFullDisk) {
+  try {
+    AtomicFile file("/dev/full");
+    file.write("x");
+    file.commit();
+    FAIL() << "/dev/full took it";
+  } catch (const IoError& error) {
+    EXPECT_NE(std::string(error.what()).find("No space left"), std::string::npos) << error.what();
+  }
+}
+
+TEST_F(AtomicFileTest, LeavesNothingWhenTheFileMayNotGrow) {
+  const pid_t child = ::fork();
+  if (child == 0) {
+    const rlimit limit{1 << 16, 1 << 16};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+    std::signal(SIGXFSZ, SIG_IGN);
+    try {
+      AtomicFile file(path("big.txt"));
+      file.write(std::string(4 << 20, 'x'));
+      file.commit();
+      ::_exit(1);
+    } catch (const IoError&) {
+      ::_exit(files_left() == 0 ? 0 : 2);
+    }
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
+}
+
+TEST_F(AtomicFileTest, ReportsAClosedPipeInsteadOfDying) {
+  ASSERT_EQ(::mkfifo(path("pipe").c_str(), 0600), 0);
+  const int reader = ::open(path("pipe").c_str(), O_RDONLY | O_NONBLOCK);
+  ASSERT_GE(reader, 0);
+  AtomicFile file(path("pipe"));
+  ::close(reader);
+  file.write("x");
+  EXPECT_THROW(file.commit(), IoError);
+}
+
+TEST_F(AtomicFileTest, WritesToAPipeThatIsRead) {
+  ASSERT_EQ(::mkfifo(path("pipe").c_str(), 0600), 0);
+  const int reader = ::open(path("pipe").c_str(), O_RDONLY | O_NONBLOCK);
+  ASSERT_GE(reader, 0);
+  AtomicFile file(path("pipe"));
+  file.write("through");
+  file.commit();
+  char text[16] = {};
+  EXPECT_EQ(::read(reader, text, sizeof text), 7);
+  EXPECT_STREQ(text, "through");
+  ::close(reader);
+}
+
+TEST_F(AtomicFileTest, IsRemovedByASignalHandler) {
+  const pid_t child = ::fork();
+  if (child == 0) {
+    std::signal(SIGTERM, [](int) {
+      remove_unfinished_files();
+      ::_exit(0);
+    });
+    AtomicFile file(path("a.txt"));
+    file.write(std::string(3 << 20, 'x'));
+    ::raise(SIGTERM);
+    ::_exit(1);
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
+  EXPECT_EQ(files_left(), 0u);
+}
+
+TEST_F(AtomicFileTest, ForgetsCommittedFiles) {
+  AtomicFile file(path("a.txt"));
+  file.commit();
+  remove_unfinished_files();
+  EXPECT_TRUE(std::filesystem::exists(path("a.txt")));
+}
+
+TEST_F(AtomicFileTest, WorksWithMoreFilesThanTheRegistryHolds) {
+  std::vector<std::unique_ptr<AtomicFile>> files;
+  for (int k = 0; k < 40; ++k) files.push_back(std::make_unique<AtomicFile>(path(std::to_string(k))));
+  for (auto& file : files) file->commit();
+  EXPECT_EQ(files_left(), 40u);
+}
+
+}  // namespace
+}  // namespace ahm::io::test

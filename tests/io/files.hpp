@@ -1,0 +1,81 @@
+/// \file
+/// Files that tests make: a directory of their own, and helpers to build and refuse contents.
+#pragma once
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "ahm/io/read.hpp"
+
+namespace ahm::io::test {
+
+/// A directory that lives as long as the test.
+class Files : public ::testing::Test {
+ protected:
+  Files() {
+    std::string name = (std::filesystem::temp_directory_path() / "ahm_io_XXXXXX").string();
+    if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary directory");
+    directory_ = name;
+  }
+  ~Files() override {
+    std::error_code ignored;
+    std::filesystem::remove_all(directory_, ignored);
+  }
+
+  std::filesystem::path path(const std::string& name) const { return directory_ / name; }
+
+  std::filesystem::path make(const std::string& name, std::string_view bytes) const {
+    std::ofstream(path(name), std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    return path(name);
+  }
+
+  Geometry read_bytes(const std::string& name, std::string_view bytes) const { return read(make(name, bytes)); }
+
+  /// Expects that these bytes are refused with a message that names the file and holds all `parts`.
+  void expect_refused(const std::string& name, std::string_view bytes, const std::vector<std::string>& parts) const {
+    expect_refused(make(name, bytes), parts);
+  }
+
+  static void expect_refused(const std::filesystem::path& path, const std::vector<std::string>& parts) {
+    try {
+      read(path);
+      ADD_FAILURE() << path << " was read";
+    } catch (const IoError& error) {
+      const std::string message = error.what();
+      EXPECT_NE(message.find(path.string()), std::string::npos) << message;
+      for (const std::string& part : parts)
+        EXPECT_NE(message.find(part), std::string::npos) << part << " not in: " << message;
+    }
+  }
+
+  static std::string contents(const std::filesystem::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+
+  std::size_t files_left() const {
+    return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(directory_), {}));
+  }
+
+  std::filesystem::path directory_;
+};
+
+/// The bytes of a value in the given order.
+template <class T>
+std::string bytes_of(T value, std::endian order = std::endian::little) {
+  auto raw = std::bit_cast<std::array<char, sizeof(T)>>(value);
+  if (order != std::endian::native) std::reverse(raw.begin(), raw.end());
+  return {raw.data(), raw.size()};
+}
+
+}  // namespace ahm::io::test

@@ -1,0 +1,231 @@
+#include <cmath>
+#include <cstring>
+#include <locale>
+
+#include "ahm/io/write.hpp"
+#include "files.hpp"
+#include "table.hpp"
+
+namespace ahm::io::test {
+namespace {
+
+using ReadPcd = Files;
+
+std::string header(const std::string& fields, const std::string& size, const std::string& type,
+                   const std::string& count, int points, const std::string& data) {
+  const std::string n = std::to_string(points);
+  return "# .PCD v0.7\nVERSION 0.7\nFIELDS " + fields + "\nSIZE " + size + "\nTYPE " + type + "\nCOUNT " + count +
+         "\nWIDTH " + n + "\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " + n + "\nDATA " + data + "\n";
+}
+
+std::string doubles(int points, const std::string& data) {
+  return header("x y z", "8 8 8", "F F F", "1 1 1", points, data);
+}
+
+/// LZF that only copies: runs of at most 32 literal bytes.
+std::string stored_lzf(const std::string& bytes) {
+  std::string result;
+  for (std::size_t k = 0; k < bytes.size(); k += 32) {
+    const std::string run = bytes.substr(k, 32);
+    result += static_cast<char>(run.size() - 1) + run;
+  }
+  return result;
+}
+
+std::string compressed(const std::string& planes) {
+  const std::string packed = stored_lzf(planes);
+  return bytes_of(static_cast<std::uint32_t>(packed.size())) + bytes_of(static_cast<std::uint32_t>(planes.size())) +
+         packed;
+}
+
+TEST_F(ReadPcd, ReadsTextWithNanPaddingAndSeveralValuesPerField) {
+  const Geometry g = read_bytes("a.pcd", header("y _ x hist z", "4 1 4 4 4", "F U F F F", "1 2 1 3 1", 2, "ascii") +
+                                             "2 9 9 1 7 7 7 3.5\r\nnan 9 9 -1 7 7 7 -inf\n");
+  ASSERT_EQ(g.points.size(), 2u);
+  EXPECT_EQ(g.points[0], (Vec3{1, 2, 3.5}));
+  EXPECT_TRUE(std::isnan(g.points[1][1]));
+  EXPECT_TRUE(std::isinf(g.points[1][2]));
+  EXPECT_EQ(g.format, "PCD text");
+}
+
+TEST_F(ReadPcd, ReadsBinaryWithPaddingDoublesNormalsAndColours) {
+  const std::uint32_t rgb = 0x000a141e;
+  std::string body;
+  for (int i = 0; i < 2; ++i) {
+    body += "pad" + bytes_of(431234.567891 + i) + bytes_of(5412345.678912) + bytes_of(7.0) + bytes_of(rgb);
+    for (float c : {0.0f, 0.0f, 1.0f}) body += bytes_of(c);
+  }
+  const Geometry g = read_bytes("b.pcd", header("_ x y z rgb normal_x normal_y normal_z", "1 8 8 8 4 4 4 4",
+                                                "U F F F F F F F", "3 1 1 1 1 1 1 1", 2, "binary") +
+                                             body);
+  EXPECT_EQ(g.points[1], (Vec3{431235.567891, 5412345.678912, 7}));
+  EXPECT_EQ(g.normals[1], (Vec3{0, 0, 1}));
+  EXPECT_EQ(g.colors[0], (std::array<std::uint8_t, 3>{10, 20, 30}));
+}
+
+TEST_F(ReadPcd, ReadsCompressedFieldByField) {
+  std::string planes;
+  for (float x : {1.0f, 4.0f}) planes += bytes_of(x);
+  planes += "hist";
+  for (float y : {2.0f, 5.0f}) planes += bytes_of(y);
+  for (float z : {3.0f, 6.0f}) planes += bytes_of(z);
+  const std::string body = compressed(planes);
+  const Geometry g =
+      read_bytes("c.pcd", header("x hist y z", "4 1 4 4", "F U F F", "1 2 1 1", 2, "binary_compressed") + body);
+  ASSERT_EQ(g.points.size(), 2u);
+  EXPECT_EQ(g.points[0], (Vec3{1, 2, 3}));
+  EXPECT_EQ(g.points[1], (Vec3{4, 5, 6}));
+}
+
+TEST_F(ReadPcd, RefusesCompressedPadding) {
+  const std::string body = compressed(std::string(28, '\0'));
+  expect_refused("p.pcd", header("x _ y z", "4 1 4 4", "F U F F", "1 2 1 1", 2, "binary_compressed") + body,
+                 {"padding"});
+}
+
+TEST_F(ReadPcd, ReadsAnEmptyCloud) { EXPECT_TRUE(read_bytes("e.pcd", doubles(0, "ascii")).points.empty()); }
+
+TEST_F(ReadPcd, ReadsWholeNumberFieldsAndOrganisedClouds) {
+  const Geometry g = read_bytes("i.pcd",
+                                "FIELDS x y z\nSIZE 2 4 1\nTYPE I I U\nWIDTH 2\nHEIGHT 2\nPOINTS 4\nDATA ascii\n"
+                                "-3 70000 200\n1 1 1\n2 2 2\n3 3 3\n");
+  EXPECT_EQ(g.points[0], (Vec3{-3, 70000, 200}));
+  EXPECT_EQ(g.points.size(), 4u);
+}
+
+TEST_F(ReadPcd, RefusesCountsBeyondTheFile) {
+  for (const char* data : {"ascii", "binary", "binary_compressed"}) {
+    const std::string body = bytes_of<std::uint32_t>(10) + bytes_of<std::uint32_t>(0xfffffff0) + std::string(20, '\x1');
+    EXPECT_THROW(read_bytes("n.pcd", doubles(2147483647, data) + body), IoError) << data;
+    EXPECT_THROW(read_bytes("n.pcd", doubles(100, data) + body), IoError) << data;
+  }
+  expect_refused("n.pcd", doubles(2, "binary") + std::string(47, '\0'), {"48", "47"});
+}
+
+TEST_F(ReadPcd, RefusesWidthTimesHeightThatIsNotPoints) {
+  const std::string head = "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\n";
+  expect_refused("w.pcd", head + "WIDTH 2\nHEIGHT 2\nPOINTS 3\nDATA ascii\n1 1 1\n2 2 2\n3 3 3\n",
+                 {"WIDTH 2", "POINTS 3"});
+  expect_refused("w.pcd", head + "WIDTH 4294967296\nHEIGHT 4294967297\nPOINTS 0\nDATA binary\n", {"WIDTH 4294967296"});
+  expect_refused("w.pcd", head + "WIDTH 9223372036854775807\nHEIGHT 9223372036854775807\nDATA binary\n", {"WIDTH"});
+  expect_refused("w.pcd", head + "WIDTH 65536\nHEIGHT 65536\nPOINTS 4294967296\nDATA binary\n", {"4294967296"});
+}
+
+TEST_F(ReadPcd, RefusesEveryTruncation) {
+  std::string body;
+  for (int k = 0; k < 6; ++k) body += bytes_of(double(k));
+  for (const std::string& whole : {doubles(2, "binary") + body, doubles(2, "binary_compressed") + compressed(body)}) {
+    for (std::size_t size = 1; size < whole.size(); ++size) {
+      EXPECT_THROW(read_bytes("cut.pcd", whole.substr(0, size)), IoError) << size;
+    }
+  }
+  const std::string text = doubles(2, "ascii") + "0 0 0\n1 1 ";
+  expect_refused("cut.pcd", text, {"line 13", "2 numbers"});
+  expect_refused("cut.pcd", doubles(3, "ascii") + "0 0 0\n1 1 1", {"2 of 3"});
+  expect_refused("cut.pcd", doubles(1, "ascii") + "0 0 0\n1 1 1\n", {"line 13"});
+}
+
+TEST_F(ReadPcd, RefusesCompressedSizesThatLie) {
+  std::string body;
+  for (int k = 0; k < 6; ++k) body += bytes_of(double(k));
+  const std::string packed = stored_lzf(body);
+  const auto with = [&](std::uint32_t small, std::uint32_t large) {
+    return doubles(2, "binary_compressed") + bytes_of(small) + bytes_of(large) + packed;
+  };
+  const auto size = static_cast<std::uint32_t>(packed.size());
+  EXPECT_EQ(read_bytes("l.pcd", with(size, 48)).points[1][2], 5.0);
+  expect_refused("l.pcd", with(size + 1, 48), {"compressed size"});
+  expect_refused("l.pcd", with(0xffffffff, 48), {"4294967295"});
+  expect_refused("l.pcd", with(size, 47), {"47"});
+  expect_refused("l.pcd", with(size, 0xffffffff), {"4294967295"});
+  expect_refused("l.pcd", with(size - 3, 48), {});
+  expect_refused("l.pcd", with(0, 48), {});
+}
+
+TEST_F(ReadPcd, RefusesMissingOrDuplicateCoordinates) {
+  expect_refused("x.pcd", header("x y", "4 4", "F F", "1 1", 1, "ascii") + "1 2\n", {"'z'"});
+  expect_refused("x.pcd", header("x y z x", "4 4 4 4", "F F F F", "1 1 1 1", 1, "ascii") + "1 2 3 4\n",
+                 {"'x'", "twice"});
+  expect_refused("x.pcd", header("x y z", "4 4 4", "F F F", "1 2 1", 1, "ascii") + "1 2 3 4\n", {"'y'"});
+}
+
+TEST_F(ReadPcd, RefusesWhatIsNoNumber) {
+  for (const char* word : {"1,5", "1e400", "1.#IND", "abc"}) {
+    expect_refused("w.pcd", doubles(1, "ascii") + "0 0 " + word + "\n", {"line 12", word});
+  }
+}
+
+TEST_F(ReadPcd, RefusesHeadersItCannotTrust) {
+  expect_refused("h.pcd", "FIELDS x y z\n", {"DATA"});
+  expect_refused("h.pcd", header("x y z", "4 4", "F F F", "1 1 1", 1, "ascii") + "1 2 3\n", {"SIZE"});
+  expect_refused("h.pcd", header("x y z", "4 4 3", "F F F", "1 1 1", 1, "ascii") + "1 2 3\n", {"SIZE 3"});
+  expect_refused("h.pcd", header("x y z", "4 4 4", "F F Q", "1 1 1", 1, "ascii") + "1 2 3\n", {"TYPE Q"});
+  expect_refused("h.pcd", header("x y z w", "4 4 4 4", "F F F F", "1 1 1 -1", 1, "ascii") + "1 2 3\n", {"-1"});
+  expect_refused("h.pcd", header("x y z w", "4 4 4 8", "F F F F", "1 1 1 4294967296", 1, "binary") + "1 2 3\n",
+                 {"4294967296"});
+  expect_refused("h.pcd", header("x y z", "4 4 4", "F F F", "1 1 1", 1, "morse") + "1 2 3\n", {"morse"});
+  expect_refused("h.pcd", "", {"empty"});
+}
+
+TEST_F(ReadPcd, ReadsTheSameInALocaleWithCommas) {
+  struct Comma : std::numpunct<char> {
+    char do_decimal_point() const override { return ','; }
+    char do_thousands_sep() const override { return '.'; }
+    std::string do_grouping() const override { return "\3"; }
+  };
+  const std::locale before = std::locale::global(std::locale(std::locale::classic(), new Comma));
+  const Geometry g = read_bytes("l.pcd", doubles(1, "ascii") + "1.5 -2.25 1234567.5\n");
+  write(path("out.pcd"), Result().table());
+  std::locale::global(before);
+  EXPECT_EQ(g.points[0], (Vec3{1.5, -2.25, 1234567.5}));
+  EXPECT_EQ(read(path("out.pcd")).points.size(), 4u);
+}
+
+using WritePcd = Files;
+
+TEST_F(WritePcd, ReadsBackExactlyWithDoublesWhereFloatsWouldLose) {
+  const Result result;
+  write(path("a.pcd"), result.table());
+  const Geometry g = read(path("a.pcd"));
+  EXPECT_EQ(g.points, result.points);
+  EXPECT_EQ(g.normals[3], result.normals[3]);
+  EXPECT_TRUE(std::isnan(g.normals[2][1]));
+  EXPECT_EQ(g.format, "PCD binary");
+}
+
+TEST_F(WritePcd, StoresFloatsWhereTheyLoseNothing) {
+  Result result;
+  result.points[0] = {0.5, 1, 2};
+  result.points[1] = {Result::nan, Result::nan, Result::nan};
+  write(path("f.pcd"), result.table());
+  const std::string text = contents(path("f.pcd"));
+  EXPECT_NE(text.find("SIZE 4 4 4 4 4 4 8 8 8 8 1"), std::string::npos) << text.substr(0, 300);
+  EXPECT_EQ(read(path("f.pcd")).points[0], result.points[0]);
+}
+
+TEST_F(WritePcd, HoldsTheResult) {
+  const Result result;
+  write(path("a.pcd"), result.table());
+  const std::string text = contents(path("a.pcd"));
+  EXPECT_NE(text.find("FIELDS x y z normal_x normal_y normal_z u v distance angle status\n"), std::string::npos)
+      << text.substr(0, 300);
+  const std::size_t body = text.find("DATA binary\n") + 12;
+  const std::size_t row = 3 * 8 + 3 * 4 + 4 * 8 + 1;
+  ASSERT_EQ(text.size(), body + 4 * row);
+  for (std::size_t i = 0; i < 4; ++i) {
+    std::array<double, 4> values{};
+    std::memcpy(values.data(), text.data() + body + i * row + 36, sizeof values);
+    EXPECT_EQ(text[body + i * row + row - 1], static_cast<char>(result.status[i]));
+    EXPECT_EQ(std::isnan(values[0]), result.status[i] != Status::ok);
+    if (result.status[i] != Status::ok) continue;
+    EXPECT_EQ(values[1], result.v[i]);
+  }
+}
+
+TEST_F(WritePcd, ReportsAFullDisk) {
+  std::filesystem::create_symlink("/dev/full", path("a.pcd"));
+  EXPECT_THROW(write(path("a.pcd"), Result().table()), IoError);
+}
+
+}  // namespace
+}  // namespace ahm::io::test

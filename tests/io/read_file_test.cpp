@@ -1,0 +1,85 @@
+#include <sys/stat.h>
+
+#include <clocale>
+#include <locale>
+
+#include "files.hpp"
+
+namespace ahm::io::test {
+namespace {
+
+using ReadFile = Files;
+
+TEST_F(ReadFile, NamesTheSystemsReason) {
+  expect_refused(path("absent.ply"), {"No such file"});
+  std::filesystem::create_directory(path("dir.ply"));
+  expect_refused(path("dir.ply"), {"Is a directory"});
+  make("locked.ply", "ply\n");
+  std::filesystem::permissions(path("locked.ply"), std::filesystem::perms::none);
+  if (::geteuid() != 0) expect_refused(path("locked.ply"), {"Permission denied"});
+}
+
+TEST_F(ReadFile, RefusesEmptyFilesOfEveryType) {
+  for (const char* name : {"e.ply", "e.off", "e.obj", "e.xyz", "e.txt", "e.csv"}) expect_refused(name, "", {"empty"});
+}
+
+TEST_F(ReadFile, ListsTheKnownTypes) {
+  expect_refused("a.stl", "solid", {"'.stl'", ".ply", ".off", ".obj", ".pcd", ".xyz"});
+  expect_refused("a", "1 2 3\n", {".ply"});
+}
+
+TEST_F(ReadFile, ChoosesByExtensionInAnyCase) { EXPECT_EQ(read_bytes("A.XYZ", "1 2 3\n").points.size(), 1u); }
+
+TEST_F(ReadFile, TellsHowToUnpackCompressedFiles) {
+  expect_refused("a.ply.gz", "\x1f\x8b", {"unpack"});
+  expect_refused("a.ply", "\x1f\x8b\x08", {"gunzip"});
+}
+
+TEST_F(ReadFile, DoesNotWaitForPipesNorReadDevices) {
+  ASSERT_EQ(::mkfifo(path("pipe.ply").c_str(), 0600), 0);
+  expect_refused(path("pipe.ply"), {"regular"});
+  std::filesystem::create_symlink("/dev/zero", path("zero.xyz"));
+  expect_refused(path("zero.xyz"), {"regular"});
+}
+
+/// Everything that reads text, under the given state of the process.
+class ReadsInEveryLocale : public Files {
+ protected:
+  void expect_right_numbers() const {
+    const Vec3 p{1.5, -2.25, 1234567.5};
+    EXPECT_EQ(read_bytes("l.xyz", "1.5 -2.25 1234567.5\n").points[0], p);
+    EXPECT_EQ(read_bytes("l.csv", "x,y,z\n1.5,-2.25,1234567.5\n").points[0], p);
+    EXPECT_EQ(read_bytes("l.off", "OFF\n1 0 0\n1.5 -2.25 1234567.5\n").points[0], p);
+    EXPECT_EQ(read_bytes("l.obj", "v 1.5 -2.25 1234567.5\n").points[0], p);
+    EXPECT_EQ(read_bytes("l.ply",
+                         "ply\nformat ascii 1.0\nelement vertex 1\nproperty double x\nproperty double y\n"
+                         "property double z\nend_header\n1.5 -2.25 1234567.5\n")
+                  .points[0],
+              p);
+    expect_refused("l.xyz", "1,5 2 3\n", {"1,5"});
+  }
+};
+
+TEST_F(ReadsInEveryLocale, OfTheCLibrary) {
+  const char* name = nullptr;
+  for (const char* candidate : {"de_DE.UTF-8", "de_DE.utf8", "fr_FR.UTF-8", "de_DE"}) {
+    if (name == nullptr) name = std::setlocale(LC_ALL, candidate);
+  }
+  if (name == nullptr) GTEST_SKIP() << "no locale with a decimal comma is installed";
+  expect_right_numbers();
+  std::setlocale(LC_ALL, "C");
+}
+
+TEST_F(ReadsInEveryLocale, OfCpp) {
+  struct Comma : std::numpunct<char> {
+    char do_decimal_point() const override { return ','; }
+    char do_thousands_sep() const override { return '.'; }
+    std::string do_grouping() const override { return "\3"; }
+  };
+  const std::locale before = std::locale::global(std::locale(std::locale::classic(), new Comma));
+  expect_right_numbers();
+  std::locale::global(before);
+}
+
+}  // namespace
+}  // namespace ahm::io::test
