@@ -1,0 +1,93 @@
+#include <gtest/gtest.h>
+
+#include <regex>
+
+#include "patch.hpp"
+
+namespace ahm::view::test {
+namespace {
+
+class Html : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!can_write_html()) GTEST_SKIP() << "built without three.js";
+  }
+
+  std::string page(const Scene& scene) const {
+    write_html(folder / "page.html", scene);
+    return read(folder / "page.html");
+  }
+
+  Folder folder;
+};
+
+/// Text of the element with this id.
+std::string data(const std::string& page, const std::string& id) {
+  const std::size_t tag = page.find("id=\"" + id + "\">"), begin = page.find('>', tag) + 1;
+  return page.substr(begin, page.find("</script>", begin) - begin);
+}
+
+/// Number of bytes; 0 if the text is not base64.
+std::size_t decoded_size(const std::string& text) {
+  const std::size_t end = text.find_last_not_of('=') + 1, padding = text.size() - end;
+  const bool is_base64 =
+      text.size() % 4 == 0 && padding <= 2 &&
+      text.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/") >= end;
+  return is_base64 ? text.size() / 4 * 3 - padding : 0;
+}
+
+TEST_F(Html, NeedsNothingFromElsewhere) {
+  const Patch patch(10, true);
+  const std::string text = page(patch.scene());
+  EXPECT_FALSE(std::regex_search(text, std::regex(R"((src|href)\s*=\s*["']?\s*(https?:)?//)")));
+  EXPECT_EQ(text.find("@import"), std::string::npos);
+  EXPECT_EQ(folder.files(), 1U);
+}
+
+TEST_F(Html, EscapesTheTitle) {
+  const Patch patch(10, true);
+  const std::string plain = page(patch.scene());
+  Scene scene = patch.scene();
+  scene.title = "a</script></title><b> & \"q\" @META@";
+  const std::string text = page(scene);
+  EXPECT_NE(text.find("a&lt;/script&gt;&lt;/title&gt;&lt;b&gt; &amp; &quot;q&quot; @META@"), std::string::npos);
+  EXPECT_EQ(text.find("a</script>"), std::string::npos);
+  EXPECT_EQ(data(text, "meta"), data(plain, "meta"));
+}
+
+TEST_F(Html, HoldsEveryPointOfACloud) {
+  const Patch patch(10, false);
+  const std::string text = page(patch.scene());
+  EXPECT_EQ(decoded_size(data(text, "positions")), 121U * 12);
+  EXPECT_EQ(decoded_size(data(text, "coordinates")), 121U * 8);
+  EXPECT_EQ(decoded_size(data(text, "discs")), 121U * 4);
+  EXPECT_EQ(data(text, "triangles"), "");
+}
+
+TEST_F(Html, HoldsEveryFaceOfAMesh) {
+  const Patch patch(10, true);
+  const std::string text = page(patch.scene());
+  EXPECT_EQ(decoded_size(data(text, "positions")), 121U * 12);
+  EXPECT_EQ(decoded_size(data(text, "triangles")), 100U * 2 * 3 * 4);
+}
+
+TEST_F(Html, IsTheSameEveryTime) {
+  const Patch patch(40, false);
+  EXPECT_EQ(page(patch.scene()), page(patch.scene()));
+}
+
+TEST_F(Html, LeavesNoPlaceholder) {
+  const Patch patch(4, true);
+  const std::string text = page(patch.scene());
+  EXPECT_FALSE(std::regex_search(text.substr(0, 4000), std::regex("@[A-Z_]+@")));
+  EXPECT_EQ(text.find("@VIEWER@"), std::string::npos);
+}
+
+TEST_F(Html, WritesScenesWithoutAMap) {
+  Patch patch(10, true);
+  patch.forget_map();
+  EXPECT_NE(page(patch.scene()).find("\"is_mapped\":false"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace ahm::view::test

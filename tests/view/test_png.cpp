@@ -1,0 +1,182 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <set>
+
+#include "ahm/error.hpp"
+#include "patch.hpp"
+
+#if __has_include(<stb_image.h>)
+#define STB_IMAGE_IMPLEMENTATION
+#define STBI_ONLY_PNG
+#include <stb_image.h>
+#endif
+
+namespace ahm::view::test {
+namespace {
+
+class Png : public testing::Test {
+ protected:
+  void SetUp() override {
+#ifndef STB_IMAGE_IMPLEMENTATION
+    GTEST_SKIP() << "stb_image.h was not found";
+#endif
+    if (!can_write_png()) GTEST_SKIP() << "built without OSMesa";
+    options.width = 400;
+    options.height = 300;
+    options.view_direction = {{0, 0, 1}};
+  }
+
+  PictureOptions options;
+  Folder folder;
+};
+
+#ifdef STB_IMAGE_IMPLEMENTATION
+using Rgb = std::array<int, 3>;
+
+struct Pixels {
+  int width = 0, height = 0;
+  std::vector<Rgb> at;
+
+  explicit Pixels(const std::filesystem::path& path) {
+    int channels = 0;
+    unsigned char* data = stbi_load(path.c_str(), &width, &height, &channels, 3);
+    for (int k = 0; data != nullptr && k < width * height; ++k)
+      at.push_back({data[3 * k], data[3 * k + 1], data[3 * k + 2]});
+    stbi_image_free(data);
+  }
+  const Rgb& operator()(int x, int y) const { return at[static_cast<std::size_t>(y * width + x)]; }
+  template <class Predicate>
+  int count(const Predicate& predicate) const {
+    return static_cast<int>(std::count_if(at.begin(), at.end(), predicate));
+  }
+};
+
+bool is_white(const Rgb& c) { return c == Rgb{255, 255, 255}; }
+bool is_source_red(const Rgb& c) { return c[0] > 200 && c[1] < 50 && c[2] < 60; }
+bool is_coloured(const Rgb& c) { return std::max({c[0], c[1], c[2]}) - std::min({c[0], c[1], c[2]}) > 30; }
+
+Pixels picture(const Folder& folder, const Scene& scene, const PictureOptions& options) {
+  write_png(folder / "picture.png", scene, options);
+  return Pixels(folder / "picture.png");
+}
+
+TEST_F(Png, HasTheSizeAskedForAndAWhiteBackground) {
+  for (const bool is_mesh : {true, false}) {
+    const Patch patch(40, is_mesh);
+    const Pixels pixels = picture(folder, patch.scene(), options);
+    ASSERT_EQ(pixels.width, 400);
+    ASSERT_EQ(pixels.height, 300);
+    for (const int x : {0, 399})
+      for (const int y : {0, 299}) EXPECT_TRUE(is_white(pixels(x, y)));
+    EXPECT_EQ(folder.files(), 1U);
+  }
+}
+
+TEST_F(Png, IsPaintedInManyColours) {
+  for (const bool is_mesh : {true, false}) {
+    const Patch patch(40, is_mesh);
+    const Pixels pixels = picture(folder, patch.scene(), options);
+    EXPECT_GT(std::set<Rgb>(pixels.at.begin(), pixels.at.end()).size(), 300U);
+    EXPECT_GT(pixels.count(is_coloured), 400 * 300 / 4);
+  }
+}
+
+TEST_F(Png, MarksTheSourceInRedWhereItIs) {
+  // Seen from straight above, the patch fills the height up to the margin: u = 0.5 lies a quarter of that to the right.
+  for (const double shift : {0.0, 0.5}) {
+    const Patch patch(40, true);
+    Scene scene = patch.scene();
+    scene.source = {shift, 0, 0};
+    const Pixels pixels = picture(folder, scene, options);
+    const double expected = 200 + shift * 0.5 * 300 / 1.08;
+    for (int y = 148; y <= 151; ++y) EXPECT_TRUE(is_source_red(pixels(static_cast<int>(expected), y)));
+  }
+}
+
+TEST_F(Png, RingsHaveTheGivenWidth) {
+  // Along a ray inside one sector, light and dark alternate: 0.2 and 0.6 are in light rings, 0.3 and 0.5 in their
+  // borders.
+  const Patch patch(40, true);
+  options.ring_width = 0.2;
+  options.sectors = 2;
+  const Pixels pixels = picture(folder, patch.scene(), options);
+  const auto brightness = [&](double r) {
+    const int offset = static_cast<int>(std::lround(r * 0.5 * 300 / 1.08 * std::sqrt(0.5)));
+    const Rgb& c = pixels(200 - offset, 150 - offset);
+    return c[0] + c[1] + c[2];
+  };
+  for (const double r : {0.3, 0.7}) {
+    EXPECT_LT(brightness(r) + 60, brightness(r + 0.2));
+    EXPECT_LT(brightness(r + 0.4) + 60, brightness(r + 0.2));
+  }
+}
+
+TEST_F(Png, IsTheSameEveryTime) {
+  for (const bool is_mesh : {true, false}) {
+    const Patch patch(40, is_mesh);
+    write_png(folder / "a.png", patch.scene(), options);
+    write_png(folder / "b.png", patch.scene(), options);
+    EXPECT_EQ(read(folder / "a.png"), read(folder / "b.png"));
+  }
+}
+
+TEST_F(Png, DoesNotDependOnHowFarFromTheOriginTheSceneLies) {
+  for (const bool is_mesh : {true, false}) {
+    const Patch near(64, is_mesh), far(64, is_mesh, {1048576, -2097152, 524288});  // exact in double: same patch, moved
+    const Pixels a = picture(folder, near.scene(), options), b = picture(folder, far.scene(), options);
+    int different = 0;
+    for (std::size_t k = 0; k < a.at.size(); ++k)
+      for (std::size_t c = 0; c < 3; ++c) different += std::abs(a.at[k][c] - b.at[k][c]) > 8 ? 1 : 0;
+    EXPECT_LT(different, 400 * 300 / 1000);
+  }
+}
+
+TEST_F(Png, PointsWithoutCoordinatesAreGrey) {
+  for (const bool is_mesh : {true, false}) {
+    Patch patch(40, is_mesh);
+    patch.forget_map();
+    const Pixels pixels = picture(folder, patch.scene(), options);
+    EXPECT_GT(pixels.count([](const Rgb& c) { return !is_white(c) && !is_coloured(c); }), 400 * 300 / 4);
+    EXPECT_LT(pixels.count(is_coloured), 400 * 300 / 100);  // the source mark
+  }
+}
+
+TEST_F(Png, FloatersDoNotShrinkThePicture) {
+  Patch patch(40, false);
+  for (const double x : {1e3, -1e3, 1e6}) {
+    patch.points.push_back({x, x, x});
+    patch.normals.push_back({0, 0, 1});
+    patch.u.push_back(x);
+    patch.v.push_back(x);
+  }
+  EXPECT_GT(picture(folder, patch.scene(), options).count(is_coloured), 400 * 300 / 4);
+}
+
+TEST_F(Png, ShowsSmallAndOddScenes) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const std::vector<std::vector<Vec3>> clouds = {
+      {{0, 0, 0}}, {{5, 5, 5}, {5, 5, 5}}, {{0, 0, 0}, {1, 0, 0}}, {{0, 0, 0}, {nan, 0, 0}, {0, 1, 0}}};
+  for (const auto& points : clouds) {
+    const std::vector<double> zero(points.size(), 0.0);
+    Scene scene;
+    scene.points = points;
+    scene.u = zero;
+    scene.v = zero;
+    scene.source = points.front();
+    options.view_direction.reset();
+    EXPECT_GT(picture(folder, scene, options).count([](const Rgb& c) { return !is_white(c); }), 50);
+  }
+}
+
+TEST_F(Png, AFailedWriteLeavesNothing) {
+  const Patch patch(4, true);
+  EXPECT_THROW(write_png(folder / "missing/picture.png", patch.scene(), options), IoError);
+  EXPECT_EQ(folder.files(), 0U);
+}
+#endif
+
+}  // namespace
+}  // namespace ahm::view::test

@@ -1,0 +1,50 @@
+// Where the scene is seen from: the part to show, the direction, the distance.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "ahm/view/picture.hpp"
+
+namespace ahm::view {
+
+/// Eigen's view of a position; the scene outlives it.
+inline Eigen::Map<const Eigen::Vector3d> as_vector(const Vec3& x) {
+  return Eigen::Map<const Eigen::Vector3d>(x.data());
+}
+
+/// The picture's own coordinates, x -> (x - centre) / scale, and a perspective camera in them.
+/// Centre and scale are taken off in double precision: a scan in UTM coordinates must not tremble in float.
+struct Camera {
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  double scale = 1;
+
+  Eigen::Vector3d target = Eigen::Vector3d::Zero();
+  Eigen::Vector3d right, up, back;  ///< orthonormal; back points from the target to the eye
+  double distance = 1;              ///< from the eye to the target
+  double near_plane = 0.01, far_plane = 100;
+
+  static constexpr double field_of_view = 0.5;  ///< vertical, in radians: long enough a lens to keep proportions
+
+  Eigen::Vector3d eye() const { return target + distance * back; }
+  Eigen::Vector3d to_scene(const Vec3& x) const { return (as_vector(x) - centre) / scale; }
+  /// Camera coordinates: x to the right, y up, z towards the viewer, origin at the eye.
+  Eigen::Vector3d to_view(const Eigen::Vector3d& x) const;
+  /// Pixel position (y down) and size in pixels of one unit at that depth.
+  Eigen::Vector3d to_pixels(const Eigen::Vector3d& x, int width, int height) const;
+};
+
+/// The points a picture shows: finite, and corners of a face if there are faces.
+/// @throws InvalidGeometry if there is none.
+std::vector<Index> shown_points(const Scene& scene);
+
+/// Whether the point has a coordinate.
+bool has_coordinate(const Scene& scene, Index point);
+
+/// Frames the mapped part, or everything if nothing is mapped.
+Camera choose_camera(const Scene& scene, const std::vector<Index>& shown, const PictureOptions& options);
+
+/// The option, or the round number that gives about 12 rings on the part of the map in the picture.
+double choose_ring_width(const Scene& scene, const std::vector<Index>& shown, const PictureOptions& options);
+
+}  // namespace ahm::view

@@ -1,0 +1,72 @@
+#include "check.hpp"
+
+#include <cmath>
+#include <string>
+
+#include "ahm/error.hpp"
+
+namespace ahm::view {
+namespace {
+
+bool is_finite(const Vec3& x) { return std::isfinite(x[0]) && std::isfinite(x[1]) && std::isfinite(x[2]); }
+
+void require(bool condition, const std::string& message) {
+  if (!condition) throw InvalidArgument(message);
+}
+
+void check_direction(const std::optional<Vec3>& direction, const char* name) {
+  if (!direction) return;
+  const Vec3& d = *direction;
+  require(is_finite(d) && std::hypot(d[0], d[1], d[2]) > 0,
+          std::string(name) + ": must be finite and not zero; leave it empty for a default");
+}
+
+void check_faces(const Scene& scene) {
+  if (scene.face_begin.empty()) {
+    require(scene.face_vertices.empty(), "scene.face_vertices: given without scene.face_begin");
+    return;
+  }
+  const auto corners = static_cast<Offset>(scene.face_vertices.size());
+  require(
+      scene.face_begin.front() == 0 && scene.face_begin.back() == corners,
+      "scene.face_begin: must start with 0 and end with the size of scene.face_vertices, " + std::to_string(corners));
+  for (std::size_t f = 1; f < scene.face_begin.size(); ++f)
+    require(scene.face_begin[f - 1] <= scene.face_begin[f],
+            "scene.face_begin[" + std::to_string(f) + "]: smaller than the entry before it");
+  for (std::size_t k = 0; k < scene.face_vertices.size(); ++k) {
+    const Index vertex = scene.face_vertices[k];
+    require(vertex >= 0 && static_cast<std::size_t>(vertex) < scene.points.size(),
+            "scene.face_vertices[" + std::to_string(k) + "] = " + std::to_string(vertex) + ": there are " +
+                std::to_string(scene.points.size()) + " points");
+  }
+}
+
+void check_size(std::size_t size, std::size_t points, const char* name) {
+  require(size == points, std::string(name) + ": " + std::to_string(size) + " entries for " + std::to_string(points) +
+                              " points; give one per point");
+}
+
+}  // namespace
+
+void check(const Scene& scene, const PictureOptions& options) {
+  check_size(scene.u.size(), scene.points.size(), "scene.u");
+  check_size(scene.v.size(), scene.points.size(), "scene.v");
+  if (!scene.normals.empty()) check_size(scene.normals.size(), scene.points.size(), "scene.normals");
+  check_faces(scene);
+  require(is_finite(scene.source), "scene.source: must be finite");
+  if (scene.source_axes)
+    for (const Vec3& axis : *scene.source_axes) require(is_finite(axis), "scene.source_axes: must be finite");
+
+  for (const auto& [size, name] : {std::pair{options.width, "width"}, std::pair{options.height, "height"}})
+    require(size >= 16 && size <= 8192,
+            std::string("options.") + name + " = " + std::to_string(size) + ": must be between 16 and 8192 pixels");
+  require(options.sectors > 0 && options.sectors % 2 == 0 && options.sectors <= 720,
+          "options.sectors = " + std::to_string(options.sectors) + ": must be even, and between 2 and 720");
+  if (options.ring_width)
+    require(std::isfinite(*options.ring_width) && *options.ring_width > 0,
+            "options.ring_width = " + std::to_string(*options.ring_width) + ": must be finite and positive");
+  check_direction(options.view_direction, "options.view_direction");
+  check_direction(options.up, "options.up");
+}
+
+}  // namespace ahm::view

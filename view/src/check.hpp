@@ -1,0 +1,11 @@
+// Checks of what the caller passed, shared by all kinds of pictures.
+#pragma once
+
+#include "ahm/view/picture.hpp"
+
+namespace ahm::view {
+
+/// @throws InvalidArgument naming the first bad field.
+void check(const Scene& scene, const PictureOptions& options);
+
+}  // namespace ahm::view

@@ -1,0 +1,80 @@
+#include "direction.hpp"
+
+#include <Eigen/Geometry>
+#include <array>
+#include <limits>
+
+namespace ahm::view {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr std::size_t sample_size = 50'000;
+
+/// Normal at the source: from its axes, else of the nearest point, else none (zero).
+Vector3d source_normal(const Scene& scene, const std::vector<Index>& shown) {
+  if (scene.source_axes) return as_vector((*scene.source_axes)[2]).normalized();
+  if (scene.normals.empty()) return Vector3d::Zero();
+  Vector3d normal = Vector3d::Zero();
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const Index i : shown) {
+    const auto k = static_cast<std::size_t>(i);
+    const double distance = (as_vector(scene.points[k]) - as_vector(scene.source)).squaredNorm();
+    if (distance >= nearest || !as_vector(scene.normals[k]).allFinite()) continue;
+    nearest = distance;
+    normal = as_vector(scene.normals[k]).normalized();
+  }
+  return normal;
+}
+
+/// Number of sampled points in a tube from the source towards the camera, beyond the source's own surroundings.
+std::size_t blockers(const Scene& scene, const std::vector<Index>& shown, const Camera& camera,
+                     const Vector3d& direction) {
+  constexpr double start = 0.08, radius = 0.05;
+  const Vector3d source = camera.to_scene(scene.source);
+  const std::size_t stride = shown.size() / sample_size + 1;
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < shown.size(); k += stride) {
+    const Vector3d d = camera.to_scene(scene.points[static_cast<std::size_t>(shown[k])]) - source;
+    const double along = d.dot(direction);
+    if (along > start && (d - along * direction).squaredNorm() < radius * radius) ++count;
+  }
+  return count;
+}
+
+}  // namespace
+
+Vector3d choose_direction(const Scene& scene, const std::vector<Index>& shown, const Camera& camera,
+                          const Vector3d& up_axis, const Vector3d& extent) {
+  const Vector3d up = up_axis.normalized();
+  Vector3d side = extent.x() < extent.z() ? Vector3d(1, 0, 0) : Vector3d(0, 0, 1);  // across the longer horizontal side
+  if (std::abs(up.z()) > 0.9) side = extent.x() < extent.y() ? Vector3d(1, 0, 0) : Vector3d(0, -1, 0);
+  const Vector3d normal = source_normal(scene, shown);
+  if (!(normal.norm() > 0)) return (side + 0.4 * up.cross(side) + 0.6 * up).normalized();
+
+  const bool is_level = std::abs(normal.dot(up)) > 0.9;  // ground seen straight down shows no relief: lean back more
+  const Vector3d lean = is_level ? side : up, turn = is_level ? up.cross(side) : normal.cross(up).normalized();
+  const double amount = is_level ? 0.9 : 0.3;
+  // Best first; the normal's sign is tried as given, then reversed, since scans come with either.
+  constexpr std::array<std::array<double, 2>, 7> tilts{
+      {{1, 0.35}, {1, -0.35}, {0.5, 0.15}, {0.5, -0.15}, {2, 0}, {0, 0}, {-0.5, 0}}};
+  std::vector<Vector3d> candidates;
+  for (const double sign : {1.0, -1.0}) {
+    const Vector3d level = sign * (normal - normal.dot(up) * up);
+    const Vector3d usual =
+        (level.normalized() + 0.4 * up + 0.3 * turn).normalized();  // things are seen from above as a rule
+    if (usual.dot(sign * normal) > 0.5) candidates.push_back(usual);
+    for (const auto& [a, b] : tilts) candidates.push_back((sign * normal + a * amount * lean + b * turn).normalized());
+  }
+  Vector3d best = normal;
+  std::size_t fewest = std::numeric_limits<std::size_t>::max();
+  for (const Vector3d& direction : candidates) {
+    const std::size_t count = blockers(scene, shown, camera, direction);
+    if (count >= fewest) continue;
+    fewest = count;
+    best = direction;
+  }
+  return best;
+}
+
+}  // namespace ahm::view

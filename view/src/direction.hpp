@@ -1,0 +1,12 @@
+// The default view direction: towards the source, from a side where nothing stands before it.
+#pragma once
+
+#include "camera.hpp"
+
+namespace ahm::view {
+
+/// From the picture's centre towards the camera. `extent`: sides of the scene's box, outside units.
+Eigen::Vector3d choose_direction(const Scene& scene, const std::vector<Index>& shown, const Camera& camera,
+                                 const Eigen::Vector3d& up, const Eigen::Vector3d& extent);
+
+}  // namespace ahm::view

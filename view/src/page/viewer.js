@@ -1,0 +1,222 @@
+"use strict";
+(function () {
+  const element = (id) => document.getElementById(id);
+  const meta = JSON.parse(element("meta").textContent);
+
+  function bytes(id) {
+    const text = atob(element(id).textContent);
+    const out = new Uint8Array(text.length);
+    for (let i = 0; i < text.length; ++i) out[i] = text.charCodeAt(i);
+    element(id).textContent = "";  // the text is not needed twice
+    return out.buffer;
+  }
+
+  // Shared by both shaders below; coordinates are in ring widths, those beyond 1e29 stand for "none".
+  const common = element("palette").textContent + `
+    uniform float sectors, ring_scale;
+    vec3 paint(vec2 uv, vec2 dx, vec2 dy) {
+      if (!(abs(uv.x) < 1e29)) return unknown_colour();
+      return map_colour(uv * ring_scale, dx * ring_scale, dy * ring_scale, sectors);
+    }
+    vec4 finish(vec3 colour, vec3 n, vec3 p) {
+      if (dot(n, p) > 0.0) n = -n;
+      return vec4(to_srgb(clamp(lit(colour, n, vec3(0.0, 0.0, 1.0)), 0.0, 1.0)), 1.0);
+    }`;
+  const uniforms = {
+    sectors: { value: meta.sectors }, ring_scale: { value: 1 }, largest_radius: { value: meta.largest_radius },
+    pixels_per_unit: { value: 1 }
+  };
+
+  function surface_material() {
+    return new THREE.ShaderMaterial({
+      uniforms: uniforms, side: THREE.DoubleSide, extensions: { derivatives: true },
+      vertexShader: `
+        attribute vec4 disc;
+        attribute vec2 map;
+        varying vec3 view_position, view_normal;
+        varying vec2 uv_map;
+        void main() {
+          vec4 p = modelViewMatrix * vec4(position, 1.0);
+          view_position = p.xyz;
+          view_normal = normalMatrix * (2.0 * disc.xyz - 1.0);
+          uv_map = map;
+          gl_Position = projectionMatrix * p;
+        }`,
+      fragmentShader: common + `
+        varying vec3 view_position, view_normal;
+        varying vec2 uv_map;
+        void main() {
+          gl_FragColor = finish(paint(uv_map, dFdx(uv_map), dFdy(uv_map)), normalize(view_normal), view_position);
+        }`
+    });
+  }
+
+  // A disc per point, tilted by its normal; where discs overlap, the nearest centre wins.
+  function splat_material() {
+    return new THREE.ShaderMaterial({
+      uniforms: uniforms, extensions: { fragDepth: true },
+      vertexShader: `
+        attribute vec4 disc;
+        attribute vec2 map;
+        uniform float largest_radius, pixels_per_unit;
+        varying vec3 centre, disc_normal;
+        varying vec2 uv_map;
+        varying float disc_radius;
+        void main() {
+          vec4 p = modelViewMatrix * vec4(position, 1.0);
+          float size = max(2.0 * disc.w * largest_radius * pixels_per_unit / max(-p.z, 1e-6), 2.0);
+          vec3 n = normalMatrix * (2.0 * disc.xyz - 1.0);
+          n = dot(n, n) > 0.1 ? normalize(n) : vec3(0.0, 0.0, 1.0);
+          centre = p.xyz;
+          disc_normal = dot(n, p.xyz) > 0.0 ? -n : n;
+          disc_radius = 0.5 * size * max(-p.z, 1e-6) / pixels_per_unit;
+          uv_map = map;
+          gl_PointSize = size;
+          gl_Position = projectionMatrix * p;
+        }`,
+      fragmentShader: common + `
+        uniform mat4 projectionMatrix;
+        varying vec3 centre, disc_normal;
+        varying vec2 uv_map;
+        varying float disc_radius;
+        void main() {
+          vec2 offset = (2.0 * gl_PointCoord - 1.0) * vec2(1.0, -1.0) * disc_radius;
+          float rise = -dot(disc_normal.xy, offset) / max(disc_normal.z, 0.25);
+          float t = (dot(offset, offset) + rise * rise) / (disc_radius * disc_radius);
+          if (t > 1.0) discard;
+          float z = centre.z + rise - 0.5 * sqrt(t) * disc_radius;
+          #if defined(GL_EXT_frag_depth) || __VERSION__ >= 300
+            gl_FragDepthEXT = 0.5 - 0.5 * (projectionMatrix[2][2] * z + projectionMatrix[3][2]) / z;
+          #endif
+          gl_FragColor = finish(paint(uv_map, vec2(0.0), vec2(0.0)), disc_normal, centre);
+        }`
+    });
+  }
+
+  function make_object() {
+    const geometry = new THREE.BufferGeometry();
+    geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(bytes("positions")), 3));
+    geometry.setAttribute("map", new THREE.BufferAttribute(new Float32Array(bytes("coordinates")), 2));
+    geometry.setAttribute("disc", new THREE.BufferAttribute(new Uint8Array(bytes("discs")), 4, true));
+    if (meta.is_mesh) geometry.setIndex(new THREE.BufferAttribute(new Uint32Array(bytes("triangles")), 1));
+    const object = meta.is_mesh ? new THREE.Mesh(geometry, surface_material()) : new THREE.Points(geometry, splat_material());
+    object.frustumCulled = false;
+    return object;
+  }
+
+  // A red ball at the source and an arrow along each axis, of constant size on the screen.
+  function make_source() {
+    const group = new THREE.Group();
+    const red = new THREE.MeshBasicMaterial({ color: 0xe1141e }), ink = new THREE.MeshBasicMaterial({ color: 0x19191e });
+    group.add(new THREE.Mesh(new THREE.SphereBufferGeometry(0.9, 32, 24), red));
+    for (const axis of meta.axes) {
+      const arrow = new THREE.Group();
+      const shaft = new THREE.Mesh(new THREE.CylinderBufferGeometry(0.17, 0.17, 6, 16), ink);
+      const head = new THREE.Mesh(new THREE.CylinderBufferGeometry(0, 0.6, 1.6, 24), ink);
+      shaft.position.y = 3;
+      head.position.y = 6.6;
+      arrow.add(shaft, head);
+      arrow.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), new THREE.Vector3().fromArray(axis));
+      group.add(arrow);
+    }
+    return group;
+  }
+
+  // The checkerboard by itself, drawn in the lower left corner.
+  function make_legend() {
+    const scene = new THREE.Scene();
+    const legend_uniforms = { sectors: uniforms.sectors, ring_scale: { value: 1 }, pixel: { value: 0.05 } };
+    scene.add(new THREE.Mesh(new THREE.PlaneBufferGeometry(2, 2), new THREE.ShaderMaterial({
+      uniforms: legend_uniforms, transparent: true,
+      vertexShader: "varying vec2 at; void main() { at = position.xy; gl_Position = vec4(position.xy, 0.0, 1.0); }",
+      fragmentShader: common + `
+        varying vec2 at;
+        uniform float pixel;
+        void main() {
+          float cover = clamp((0.98 - length(at)) / pixel + 0.5, 0.0, 1.0);
+          vec3 c = map_colour(at * 4.0, vec2(4.0 * pixel, 0.0), vec2(0.0, 4.0 * pixel), sectors);
+          if (length(at) < 0.06) c = vec3(0.75, 0.007, 0.013);
+          gl_FragColor = vec4(to_srgb(c), cover);
+        }`
+    })));
+    return { scene: scene, camera: new THREE.OrthographicCamera(-1, 1, 1, -1, 0, 1), uniforms: legend_uniforms };
+  }
+
+  function start() {
+    const renderer = new THREE.WebGLRenderer({ antialias: true });
+    renderer.setPixelRatio(window.devicePixelRatio);
+    renderer.setClearColor(0xffffff);
+    renderer.autoClear = false;
+    document.body.insertBefore(renderer.domElement, document.body.firstChild);
+
+    const scene = new THREE.Scene(), source = make_source(), legend = make_legend();
+    scene.add(make_object(), source);
+    const camera = new THREE.PerspectiveCamera(meta.field_of_view, 1, 0.01, 1000);
+    camera.up.fromArray(meta.up);
+    const controls = new THREE.OrbitControls(camera, renderer.domElement);
+    const source_position = new THREE.Vector3().fromArray(meta.source);
+    let pending = false;
+
+    function draw() {
+      pending = false;
+      const width = window.innerWidth, height = window.innerHeight;
+      const distance = camera.position.distanceTo(controls.target);
+      camera.near = 0.02 * distance;
+      camera.far = Math.max(meta.far, 4 * distance);
+      camera.updateProjectionMatrix();
+      uniforms.pixels_per_unit.value =
+          0.5 * height * renderer.getPixelRatio() / Math.tan(0.5 * meta.field_of_view * Math.PI / 180);
+      const to_eye = camera.position.clone().sub(source_position);
+      const scale = 0.0085 * to_eye.length() * 2 * Math.tan(0.5 * meta.field_of_view * Math.PI / 180);
+      source.scale.setScalar(scale);
+      // A little nearer than it is, or a bulging surface would swallow the arrows.
+      source.position.copy(source_position).addScaledVector(to_eye.normalize(), 2 * scale);
+      renderer.setViewport(0, 0, width, height);
+      renderer.clear();
+      renderer.render(scene, camera);
+      if (!meta.is_mapped) return;
+      renderer.clearDepth();
+      renderer.setViewport(20, 20, 140, 140);
+      legend.uniforms.pixel.value = 2 / (140 * renderer.getPixelRatio());
+      renderer.render(legend.scene, legend.camera);
+    }
+    function redraw() {
+      if (!pending) { pending = true; requestAnimationFrame(draw); }
+    }
+    function reset() {
+      controls.target.fromArray(meta.target);
+      const away = new THREE.Vector3().fromArray(meta.eye).sub(controls.target);
+      // The stored distance fits the stored shape of picture; a narrower window must step back.
+      away.multiplyScalar(Math.max(1, meta.aspect * window.innerHeight / window.innerWidth));
+      camera.position.copy(controls.target).add(away);
+      controls.update();
+      redraw();
+    }
+    function resize() {
+      renderer.setSize(window.innerWidth, window.innerHeight, false);
+      camera.aspect = window.innerWidth / window.innerHeight;
+      redraw();
+    }
+    function set_ring() {
+      const factor = Math.pow(2, Number(element("ring").value));
+      uniforms.ring_scale.value = 1 / factor;
+      element("ring_text").textContent = Number((meta.ring_width * factor).toPrecision(4));
+      redraw();
+    }
+    controls.addEventListener("change", redraw);
+    window.addEventListener("resize", resize);
+    window.addEventListener("keydown", (event) => { if (event.key === "r" || event.key === "R") reset(); });
+    element("reset").addEventListener("click", reset);
+    element("ring").addEventListener("input", set_ring);
+    if (!meta.is_mapped) for (const id of ["axis_u", "axis_v"]) element(id).style.display = "none";
+    resize();
+    set_ring();
+    reset();
+  }
+
+  try {
+    start();
+  } catch (error) {
+    element("message").textContent = "This page needs WebGL: " + error.message;
+  }
+})();

@@ -1,0 +1,191 @@
+#include <Eigen/Geometry>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "drawable.hpp"
+
+namespace ahm::view {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using Triangle = std::array<Index, 3>;
+
+constexpr double crease_cosine = 0.7;  // faces that meet at more than 45 degrees keep a sharp edge
+
+Vector3d area_vector(const std::vector<Vector3d>& points, const Triangle& t) {
+  const auto& [a, b, c] = t;
+  const auto at = [&](Index i) -> const Vector3d& { return points[static_cast<std::size_t>(i)]; };
+  return (at(b) - at(a)).cross(at(c) - at(a)) / 2;
+}
+
+/// A fan from the corner whose triangles all look the way the polygon does, so that most non-convex polygons come out
+/// whole.
+void triangulate(const std::vector<Vector3d>& points, std::span<const Index> polygon,
+                 std::vector<Triangle>& triangles) {
+  const std::size_t n = polygon.size();
+  const auto fan = [&](std::size_t apex, std::size_t k) {
+    return Triangle{polygon[apex], polygon[(apex + k) % n], polygon[(apex + k + 1) % n]};
+  };
+  std::size_t best = 0;
+  if (n > 3) {
+    Vector3d whole = Vector3d::Zero();
+    for (std::size_t k = 1; k + 1 < n; ++k) whole += area_vector(points, fan(0, k));
+    double best_area = -std::numeric_limits<double>::infinity();
+    for (std::size_t apex = 0; apex < n; ++apex) {
+      double smallest = std::numeric_limits<double>::infinity();
+      for (std::size_t k = 1; k + 1 < n; ++k)
+        smallest = std::min(smallest, area_vector(points, fan(apex, k)).dot(whole));
+      if (!(smallest > best_area)) continue;
+      best_area = smallest;
+      best = apex;
+    }
+  }
+  for (std::size_t k = 1; k + 1 < n; ++k) triangles.push_back(fan(best, k));
+}
+
+/// Collects vertices; a vertex asked for again with the same normal is shared.
+class SurfaceBuilder {
+ public:
+  SurfaceBuilder(const Scene& scene, const Camera& camera, double ring_width) : ring_width_(ring_width) {
+    const std::size_t n = scene.points.size();
+    points_.reserve(n), uv_.resize(n, Vector2d::Zero()), known_.resize(n, 0);
+    for (std::size_t i = 0; i < n; ++i) {
+      points_.push_back(camera.to_scene(scene.points[i]));
+      if (!has_coordinate(scene, static_cast<Index>(i))) continue;
+      uv_[i] = Vector2d(scene.u[i], scene.v[i]) / ring_width;
+      known_[i] = 1;
+    }
+    for (std::size_t f = 0; f + 1 < scene.face_begin.size(); ++f) {
+      const auto begin = static_cast<std::size_t>(scene.face_begin[f]),
+                 end = static_cast<std::size_t>(scene.face_begin[f + 1]);
+      const std::span<const Index> polygon = scene.face_vertices.subspan(begin, end - begin);
+      bool usable = polygon.size() >= 3;
+      for (const Index i : polygon) usable = usable && points_[static_cast<std::size_t>(i)].allFinite();
+      if (usable) triangulate(points_, polygon, triangles_);
+    }
+    // One ring width in scene units: how far the map may move per unit of length where it is an isometry.
+    rings_per_length_ = camera.scale / ring_width_;
+  }
+
+  Drawable build() {
+    find_corners();
+    shared_.resize(points_.size());
+    for (std::size_t t = 0; t < triangles_.size(); ++t) {
+      std::array<std::uint32_t, 3> vertex;
+      for (std::size_t k = 0; k < 3; ++k) vertex[k] = shared_vertex(triangles_[t][k], corner_normal(t, k));
+      if (is_torn(triangles_[t]))
+        add_torn(vertex);
+      else
+        out_.triangles.insert(out_.triangles.end(), vertex.begin(), vertex.end());
+    }
+    return std::move(out_);
+  }
+
+ private:
+  void find_corners() {
+    areas_.reserve(triangles_.size());
+    corner_begin_.assign(points_.size() + 1, 0);
+    for (const Triangle& t : triangles_) {
+      areas_.push_back(area_vector(points_, t));
+      for (const Index i : t) ++corner_begin_[static_cast<std::size_t>(i) + 1];
+    }
+    for (std::size_t i = 0; i < points_.size(); ++i) corner_begin_[i + 1] += corner_begin_[i];
+    triangle_of_corner_.resize(3 * triangles_.size());
+    std::vector<std::size_t> next(corner_begin_.begin(), corner_begin_.end() - 1);
+    for (std::size_t t = 0; t < triangles_.size(); ++t)
+      for (const Index i : triangles_[t]) triangle_of_corner_[next[static_cast<std::size_t>(i)]++] = t;
+  }
+
+  /// Area-weighted mean of the normals around the corner that are within the crease angle of this triangle's own.
+  Vector3d corner_normal(std::size_t triangle, std::size_t corner) const {
+    const auto vertex = static_cast<std::size_t>(triangles_[triangle][corner]);
+    const Vector3d own = areas_[triangle].normalized();
+    Vector3d sum = Vector3d::Zero();
+    for (std::size_t k = corner_begin_[vertex]; k < corner_begin_[vertex + 1]; ++k) {
+      const Vector3d& area = areas_[triangle_of_corner_[k]];
+      if (!(area.dot(own) < crease_cosine * area.norm())) sum += area;
+    }
+    return sum.norm() > 0 ? sum.normalized() : own;
+  }
+
+  std::uint32_t add(const Vector3d& position, const Vector3d& normal, const Vector2d& uv, float known) {
+    out_.positions.push_back(position.cast<float>());
+    out_.normals.push_back(normal.cast<float>());
+    out_.uv.push_back(uv.cast<float>());
+    out_.known.push_back(known);
+    return static_cast<std::uint32_t>(out_.positions.size() - 1);
+  }
+
+  std::uint32_t shared_vertex(Index point, const Vector3d& normal) {
+    const auto i = static_cast<std::size_t>(point);
+    for (const std::uint32_t candidate : shared_[i])
+      if ((out_.normals[candidate].cast<double>() - normal).norm() < 1e-3) return candidate;
+    shared_[i].push_back(add(points_[i], normal, uv_[i], known_[i]));
+    return shared_[i].back();
+  }
+
+  /// Two corners whose coordinates point in different directions and lie much farther apart than the corners: geodesics
+  /// arrive there from two sides, and between the corners the map jumps. Interpolated, that would be a sheaf of
+  /// stripes.
+  bool is_torn(const Triangle& t) const {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto i = static_cast<std::size_t>(t[k]), j = static_cast<std::size_t>(t[(k + 1) % 3]);
+      if (known_[i] == 0 || known_[j] == 0) return false;
+      const double length = (points_[i] - points_[j]).norm() * rings_per_length_;
+      const bool turns = uv_[i].dot(uv_[j]) < 0.94 * uv_[i].norm() * uv_[j].norm();
+      if (turns && (uv_[i] - uv_[j]).norm() > 3 * length) return true;
+    }
+    return false;
+  }
+
+  /// Each corner keeps its own direction up to the middle; the distance, which does not jump, is interpolated.
+  void add_torn(const std::array<std::uint32_t, 3>& vertex) {
+    const auto mean = [&](std::initializer_list<std::size_t> corners, Vector3d& position, Vector3d& normal) {
+      double distance = 0;
+      position = normal = Vector3d::Zero();
+      for (const std::size_t k : corners) {
+        position += out_.positions[vertex[k]].cast<double>() / static_cast<double>(corners.size());
+        normal += out_.normals[vertex[k]].cast<double>();
+        distance += out_.uv[vertex[k]].cast<double>().norm() / static_cast<double>(corners.size());
+      }
+      normal.normalize();
+      return distance;
+    };
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t next = (k + 1) % 3, previous = (k + 2) % 3;
+      const Vector2d direction = out_.uv[vertex[k]].cast<double>().normalized();
+      const auto part = [&](std::initializer_list<std::size_t> corners) {
+        Vector3d position, normal;
+        const double distance = mean(corners, position, normal);
+        return add(position, normal, distance * direction, 1);
+      };
+      const std::uint32_t a = part({k, next}), centre = part({0, 1, 2}), b = part({k, previous});
+      out_.triangles.insert(out_.triangles.end(), {vertex[k], a, centre, vertex[k], centre, b});
+    }
+  }
+
+  double ring_width_, rings_per_length_ = 1;
+  std::vector<Vector3d> points_;
+  std::vector<Vector2d> uv_;
+  std::vector<float> known_;
+  std::vector<Triangle> triangles_;
+  std::vector<Vector3d> areas_;
+  std::vector<std::size_t> corner_begin_, triangle_of_corner_;
+  std::vector<std::vector<std::uint32_t>> shared_;
+  Drawable out_;
+};
+
+}  // namespace
+
+Drawable make_surface(const Scene& scene, const Camera& camera, double ring_width) {
+  return SurfaceBuilder(scene, camera, ring_width).build();
+}
+
+Drawable make_drawable(const Scene& scene, const std::vector<Index>& shown, const Camera& camera, double ring_width) {
+  return scene.face_vertices.empty() ? make_splats(scene, shown, camera, ring_width)
+                                     : make_surface(scene, camera, ring_width);
+}
+
+}  // namespace ahm::view

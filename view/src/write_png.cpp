@@ -1,0 +1,172 @@
+#include <string>
+#include <vector>
+
+#include "ahm/error.hpp"
+#include "ahm/view/picture.hpp"
+
+#ifdef AHM_VIEW_HAS_PNG
+
+#include <algorithm>
+#include <charconv>
+
+#include "ahm/io/atomic_file.hpp"
+#include "check.hpp"
+#include "render.hpp"
+
+#define STB_IMAGE_WRITE_IMPLEMENTATION
+#define STB_IMAGE_WRITE_STATIC
+#if defined(__GNUC__)
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wunused-function"
+#pragma GCC diagnostic ignored "-Wmissing-field-initializers"
+#endif
+#include <stb_image_write.h>
+#if defined(__GNUC__)
+#pragma GCC diagnostic pop
+#endif
+
+namespace ahm::view {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr Colour white = {255, 255, 255}, ink = {25, 25, 30}, red = {225, 20, 30};
+
+std::string shortest(double value) {
+  std::array<char, 32> text;
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::general, 6).ptr;
+  return {text.data(), end};
+}
+
+struct Arrow {
+  Vector2d from, to;
+  double width;
+
+  void draw(Image& image, double grow, Colour colour) const {
+    const Vector2d d = to - from;
+    const double length = d.norm();
+    if (length < 3 * width) return;  // seen end on
+    const Vector2d along = d / length, across(-along.y(), along.x());
+    const double head = std::min(4.5 * width, 0.6 * length);
+    const Vector2d neck = to - head * along;
+    image.line(from, neck, width + 2 * grow, colour);
+    image.triangle(to, neck + 0.42 * head * across, neck - 0.42 * head * across, grow, colour);
+  }
+};
+
+/// Arrows first in white and wider, then in ink: they stay visible on any colour.
+void draw_arrows(Image& image, const std::vector<Arrow>& arrows, double unit) {
+  for (const Arrow& arrow : arrows) arrow.draw(image, 1.6 * unit, white);
+  for (const Arrow& arrow : arrows) arrow.draw(image, 0, ink);
+}
+
+/// Words likewise.
+void draw_text(Image& image, const Vector2d& at, double height, double unit, std::string_view text) {
+  image.text(at, height, 5 * unit, text, white);
+  image.text(at, height, 2 * unit, text, ink);
+}
+
+void draw_letter(Image& image, const Arrow& arrow, double unit, std::string_view letter) {
+  const Vector2d d = arrow.to - arrow.from;
+  if (d.norm() < 6 * unit) return;
+  const Vector2d at = arrow.to + 11 * unit * d.normalized() + Vector2d(-4 * unit, 4 * unit);
+  draw_text(image, at, 12 * unit, unit, letter);
+}
+
+void draw_source(Image& image, const Scene& scene, const Camera& camera, double unit) {
+  const Vector3d source = camera.to_scene(scene.source);
+  if (camera.to_view(source).z() > -camera.near_plane) return;  // behind the camera
+  const Vector3d centre = camera.to_pixels(source, image.width(), image.height());
+  std::vector<Arrow> arrows;
+  if (scene.source_axes) {
+    const double length = 70 * unit / centre.z();
+    for (std::size_t k = 0; k < 2; ++k) {
+      const Vector3d tip = source + length * as_vector((*scene.source_axes)[k]).normalized();
+      arrows.push_back({centre.head<2>(), camera.to_pixels(tip, image.width(), image.height()).head<2>(), 3 * unit});
+    }
+    draw_arrows(image, arrows, unit);
+    for (std::size_t k = 0; k < 2; ++k) draw_letter(image, arrows[k], unit, k == 0 ? "u" : "v");
+  }
+  image.disc(centre.head<2>(), 10.5 * unit, white);
+  image.disc(centre.head<2>(), 8 * unit, red);
+}
+
+/// The width of one ring below the legend's wheel: |--| 0.05
+void draw_scale(Image& image, const Legend& legend, double ring_width, double unit) {
+  const double ring = legend.radius / legend.rings, y = legend.y + legend.radius + 16 * unit;
+  const double left = legend.x - legend.radius, right = left + ring, tick = 5 * unit;
+  for (const auto& [width, colour] : {std::pair{5 * unit, white}, std::pair{2 * unit, ink}}) {
+    image.line({left, y}, {right, y}, width, colour);
+    for (const double x : {left, right}) image.line({x, y - tick}, {x, y + tick}, width, colour);
+  }
+  draw_text(image, {right + 9 * unit, y + 6.5 * unit}, 13 * unit, unit, shortest(ring_width));
+}
+
+void draw_legend_axes(Image& image, const Legend& legend, double unit) {
+  const Vector2d centre(legend.x, legend.y);
+  const double length = 0.72 * legend.radius;
+  const Arrow u{centre, centre + Vector2d(length, 0), 2 * unit}, v{centre, centre + Vector2d(0, -length), 2 * unit};
+  draw_arrows(image, {u, v}, unit);
+  draw_text(image, u.to + Vector2d(0.28 * legend.radius + 12 * unit, 4 * unit), 12 * unit, unit, "u");
+  draw_text(image, v.to + Vector2d(-4 * unit, -0.28 * legend.radius - 12 * unit), 12 * unit, unit, "v");
+  image.disc(centre, 4 * unit, white);
+  image.disc(centre, 3 * unit, red);
+}
+
+void append(void* context, void* data, int size) {
+  static_cast<std::string*>(context)->append(static_cast<const char*>(data), static_cast<std::size_t>(size));
+}
+
+}  // namespace
+
+bool can_write_png() noexcept { return true; }
+
+void write_png(const std::filesystem::path& path, const Scene& scene, const PictureOptions& options) {
+  check(scene, options);
+  const std::vector<Index> shown = shown_points(scene);
+  const Camera camera = choose_camera(scene, shown, options);
+  const double ring_width = choose_ring_width(scene, shown, options);
+  const bool is_mapped = std::any_of(shown.begin(), shown.end(), [&](Index i) { return has_coordinate(scene, i); });
+
+  const double unit = std::min(options.width, options.height) / 1200.0;  // marks keep their share of the picture
+  Legend legend;
+  if (is_mapped && unit > 0.25) {
+    legend.radius = 68 * unit;
+    legend.x = legend.radius + 36 * unit;
+    legend.y = options.height - legend.radius - 60 * unit;
+    legend.rings = 4;
+  }
+  Image image = render(make_drawable(scene, shown, camera, ring_width), camera, ring_width, options, legend);
+  if (legend.radius > 0) {
+    draw_scale(image, legend, ring_width, unit);
+    draw_legend_axes(image, legend, unit);
+  }
+  draw_source(image, scene, camera, std::max(unit, 0.35));
+
+  std::string png;
+  if (stbi_write_png_to_func(append, &png, image.width(), image.height(), 3, image.data(), 3 * image.width()) == 0)
+    throw IoError("cannot encode " + path.string() + " as PNG");
+  io::AtomicFile file(path);
+  file.write(png);
+  file.commit();
+}
+
+}  // namespace ahm::view
+
+#else
+
+namespace ahm::view {
+
+bool can_write_png() noexcept { return false; }
+
+void write_png(const std::filesystem::path& path, const Scene&, const PictureOptions&) {
+  throw Error(
+      "cannot write " + path.string() +
+      ": this build of libahm has no PNG pictures; install OSMesa and stb (Debian: libosmesa6-dev, libstb-dev) and "
+      "configure again");
+}
+
+}  // namespace ahm::view
+
+#endif
