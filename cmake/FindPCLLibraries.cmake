@@ -4,6 +4,10 @@
 #   find_package(PCLLibraries REQUIRED COMPONENTS common kdtree filters)
 #
 # Each component becomes the target PCLLibraries::<component>; PCLLibraries_VERSION is read from pcl/pcl_config.h.
+# Without COMPONENTS: all that libahm uses.
+if(NOT PCLLibraries_FIND_COMPONENTS)
+  set(PCLLibraries_FIND_COMPONENTS common kdtree search octree filters features io)
+endif()
 set(_pcl_versions 1.15 1.14 1.13 1.12 1.11 1.10)
 list(TRANSFORM _pcl_versions PREPEND pcl- OUTPUT_VARIABLE _pcl_suffixes)
 find_path(PCL_INCLUDE_DIR pcl/pcl_config.h PATH_SUFFIXES ${_pcl_suffixes})

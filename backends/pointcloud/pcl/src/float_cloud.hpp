@@ -1,0 +1,33 @@
+/// \file
+/// Points as PCL wants them: single precision, around the origin, of order one.
+#pragma once
+
+#include <pcl/point_cloud.h>
+#include <pcl/point_types.h>
+
+#include <span>
+#include <string_view>
+
+#include "ahm/types.hpp"
+
+namespace ahm::pcl {
+
+/// A cloud in single precision and the map that made it: p -> (p - center) / unit.
+struct FloatCloud {
+  ::pcl::PointCloud<::pcl::PointXYZ>::Ptr cloud;
+  Vec3 center;  ///< middle of the bounding box
+  double unit;  ///< power of two; brings the largest coordinate to (0.5, 1]
+  Vec3 extent;  ///< of the bounding box, in units of `unit`
+
+  ::pcl::PointXYZ convert(const Vec3& p) const {
+    return {static_cast<float>((p[0] - center[0]) / unit), static_cast<float>((p[1] - center[1]) / unit),
+            static_cast<float>((p[2] - center[2]) / unit)};
+  }
+};
+
+/// Converts a cloud.
+/// @param caller  name of the public function, for messages
+/// @throws InvalidGeometry (a coordinate is not finite, with its index)
+FloatCloud to_float_cloud(std::span<const Vec3> points, std::string_view caller);
+
+}  // namespace ahm::pcl

@@ -1,0 +1,9 @@
+#include <pcl/pcl_config.h>
+
+#include "ahm/pcl/search.hpp"
+
+namespace ahm::pcl {
+
+std::string version() { return PCL_VERSION_PRETTY; }
+
+}  // namespace ahm::pcl

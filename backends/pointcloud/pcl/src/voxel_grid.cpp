@@ -1,0 +1,125 @@
+#include <pcl/filters/voxel_grid.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <string>
+
+#include "ahm/error.hpp"
+#include "ahm/pcl/filters.hpp"
+#include "float_cloud.hpp"
+
+namespace ahm::pcl {
+namespace {
+
+using Grid = ::pcl::VoxelGrid<::pcl::PointXYZ>;
+
+std::string text(double x) {
+  std::ostringstream out;
+  out << x;
+  return out.str();
+}
+
+/// PCL numbers voxels by a 32-bit integer and returns the cloud unchanged when that overflows; it also rounds voxel
+/// coordinates to single precision, so a row of more than 2^23 voxels is not to be trusted either. Both are refused
+/// here, beforehand.
+void require_representable(const FloatCloud& input, double size) {
+  double voxels = 1;
+  double longest = 0;
+  for (double extent : input.extent) {
+    const double along = std::floor(extent * (input.unit / size)) + 2;  // + 2: voxels cut at either end
+    voxels *= along;
+    longest = std::max(longest, along);
+  }
+  const double extent = *std::max_element(input.extent.begin(), input.extent.end()) * input.unit;
+  if (!(voxels <= std::numeric_limits<std::int32_t>::max()) || !(longest <= 8388608.0))
+    throw InvalidArgument("voxel_grid: size " + text(size) + " is too small for a cloud of extent " + text(extent) +
+                          ": " + text(voxels) + " voxels exceed PCL's 2147483647; choose a larger size");
+}
+
+/// The number PCL gives to the voxel of each point. Same arithmetic as pcl::VoxelGrid.
+std::vector<unsigned> voxel_numbers(Grid& grid, const ::pcl::PointCloud<::pcl::PointXYZ>& cloud) {
+  const Eigen::Vector3i low = grid.getMinBoxCoordinates();
+  const Eigen::Vector3i step = grid.getDivisionMultiplier();
+  std::vector<unsigned> numbers;
+  numbers.reserve(cloud.size());
+  for (const auto& p : cloud)
+    numbers.push_back(static_cast<unsigned>((grid.getGridCoordinates(p.x, p.y, p.z) - low).dot(step)));
+  return numbers;
+}
+
+/// For each voxel, in PCL's order, the point nearest to PCL's centroid; ties go to the first.
+std::vector<Index> nearest_to_centroids(const ::pcl::PointCloud<::pcl::PointXYZ>& cloud,
+                                        const ::pcl::PointCloud<::pcl::PointXYZ>& centroids,
+                                        std::span<const Index> voxel_of_point) {
+  std::vector<Index> nearest(centroids.size(), -1);
+  std::vector<float> best(centroids.size(), std::numeric_limits<float>::infinity());
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const auto voxel = static_cast<std::size_t>(voxel_of_point[i]);
+    const float d = (cloud[i].getVector3fMap() - centroids[voxel].getVector3fMap()).squaredNorm();
+    if (d < best[voxel]) {
+      best[voxel] = d;
+      nearest[voxel] = static_cast<Index>(i);
+    }
+  }
+  return nearest;
+}
+
+/// Rank of each number among the distinct ones: PCL writes its centroids in that order.
+std::vector<Index> ranks(const std::vector<unsigned>& numbers, std::size_t expected) {
+  std::vector<unsigned> distinct = numbers;
+  std::sort(distinct.begin(), distinct.end());
+  distinct.erase(std::unique(distinct.begin(), distinct.end()), distinct.end());
+  if (distinct.size() != expected)
+    throw Error("voxel_grid: PCL returned " + std::to_string(expected) + " voxels where " +
+                std::to_string(distinct.size()) + " are occupied");
+  std::vector<Index> result;
+  result.reserve(numbers.size());
+  for (unsigned n : numbers)
+    result.push_back(static_cast<Index>(std::lower_bound(distinct.begin(), distinct.end(), n) - distinct.begin()));
+  return result;
+}
+
+/// Orders the rows as in the input.
+ReducedCloud gather(std::span<const Vec3> points, std::span<const Vec3> normals,
+                    const std::vector<Index>& voxel_of_point, const std::vector<Index>& point_of_voxel) {
+  ReducedCloud result;
+  std::vector<Index> row_of_voxel(point_of_voxel.size(), -1);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto voxel = static_cast<std::size_t>(voxel_of_point[i]);
+    if (point_of_voxel[voxel] != static_cast<Index>(i)) continue;
+    row_of_voxel[voxel] = static_cast<Index>(result.points.size());
+    result.points.push_back(points[i]);
+    if (!normals.empty()) result.normals.push_back(normals[i]);
+    result.point_of_row.push_back(static_cast<Index>(i));
+  }
+  result.row_of_point.reserve(points.size());
+  for (Index voxel : voxel_of_point) result.row_of_point.push_back(row_of_voxel[static_cast<std::size_t>(voxel)]);
+  return result;
+}
+
+}  // namespace
+
+ReducedCloud voxel_grid(std::span<const Vec3> points, std::span<const Vec3> normals, double size) {
+  if (!(size > 0) || !std::isfinite(size))
+    throw InvalidArgument("voxel_grid: size is " + text(size) + ", must be finite and > 0");
+  if (!normals.empty() && normals.size() != points.size())
+    throw InvalidArgument("voxel_grid: normals has " + std::to_string(normals.size()) + " elements for " +
+                          std::to_string(points.size()) + " points");
+  const FloatCloud input = to_float_cloud(points, "voxel_grid");
+  if (points.empty()) return {};
+  require_representable(input, size);
+  // Neither a voxel far larger than the cloud nor a cloud of one place may leave the range of single precision: 8 units
+  // hold any cloud, and 1e-7 was refused above unless the extent is zero.
+  const auto leaf = static_cast<float>(std::clamp(size / input.unit, 1e-7, 8.0));
+  Grid grid;
+  grid.setInputCloud(input.cloud);
+  grid.setLeafSize(leaf, leaf, leaf);
+  ::pcl::PointCloud<::pcl::PointXYZ> centroids;
+  grid.filter(centroids);
+  const std::vector<Index> voxel_of_point = ranks(voxel_numbers(grid, *input.cloud), centroids.size());
+  return gather(points, normals, voxel_of_point, nearest_to_centroids(*input.cloud, centroids, voxel_of_point));
+}
+
+}  // namespace ahm::pcl
