@@ -1,0 +1,41 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "ahm/error.hpp"
+#include "backend.hpp"
+
+namespace ahm::app {
+namespace {
+
+using Build = std::unique_ptr<Model> (*)(const io::Geometry&, const LogmapOptions&, const Progress&);
+
+struct Entry {
+  std::string_view name;
+  Build build;  ///< null: not in this build
+};
+
+constexpr std::array<Entry, 3> backends = {{
+    {"trimesh", nullptr},
+    {"polymesh", nullptr},
+    {"pointcloud", build_pointcloud},
+}};
+
+}  // namespace
+
+std::string choose_backend(const io::Geometry&, const std::string& requested) {
+  return requested == "auto" ? "pointcloud" : requested;
+}
+
+std::unique_ptr<Model> build_model(const std::string& backend, const io::Geometry& input, const LogmapOptions& options,
+                                   const Progress& progress) {
+  const auto* entry = std::find_if(backends.begin(), backends.end(), [&](const Entry& e) { return e.name == backend; });
+  if (entry == backends.end() || entry->build == nullptr)
+    throw InvalidArgument(fmt::format(
+        "--backend {}: this build of ahm has no such backend; --backend pointcloud maps the vertices as a cloud",
+        backend));
+  return entry->build(input, options, progress);
+}
+
+}  // namespace ahm::app

@@ -1,0 +1,193 @@
+#include "command_line.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <stdexcept>
+
+#include "numbers.hpp"
+#include "system_info.hpp"
+
+namespace ahm::app {
+namespace {
+
+constexpr const char* main_footer =
+    "Examples:\n"
+    "  ahm info scan.ply                                    what is in the file, and what to run\n"
+    "  ahm logmap scan.ply --source 0 -o map.csv            coordinates u, v of every point, seen from point 0\n"
+    "  ahm logmap scan.ply --source 0 -o map.ply --view map.png\n"
+    "\n"
+    "A logarithmic map flattens a surface around a source point: each point gets the direction and the length\n"
+    "of the shortest path that leads to it from the source.\n"
+    "\n"
+    "Exit status: 0 success, 1 the work failed, 2 the command line is wrong, 130 or 143 interrupted.";
+
+constexpr const char* logmap_footer =
+    "SPEC is one of\n"
+    "  123              a vertex of INPUT, counted from 0\n"
+    "  1.5,0,-2         the vertex nearest to this position\n"
+    "  face:7:.2,.3,.5  a point in face 7, by barycentric coordinates (meshes)\n"
+    "\n"
+    "INPUT   .ply .pcd .xyz .txt .csv .off .obj\n"
+    "OUTPUT  .csv (index,x,y,z,u,v,distance,angle,status), .ply, .pcd; one row per vertex of INPUT, in its order.\n"
+    "        u, v, distance and angle are nan where status is not ok:\n"
+    "          component  not connected to the source      radius   beyond --radius\n"
+    "          unreached  too far for double precision     removed  dropped or replaced (--voxel, --outliers, nan)\n"
+    "\n"
+    "Examples:\n"
+    "  ahm logmap scan.ply --source 0 -o map.csv\n"
+    "  ahm logmap scan.pcd --source 0.1,0.2,1.4 --drop-nan --voxel 0.01 --outliers -o map.ply --view map.html\n"
+    "  ahm logmap scan.xyz --source 17 -o map.csv --json - | jq .status";
+
+/// Adds an option whose text a parser of ours turns into a value: CLI11's own takes nan, inf and hexadecimal for
+/// numbers.
+template <class Value, class Parse>
+CLI::Option* add_parsed(CLI::App& app, const std::string& name, Value& value, const Parse& parse,
+                        const std::string& type, const std::string& help) {
+  const std::string label = name.substr(name.find("--"));
+  return app
+      .add_option_function<std::string>(
+          name,
+          [&value, parse, label](const std::string& text) {
+            try {
+              value = parse(text);
+            } catch (const std::invalid_argument& e) {
+              throw CLI::ValidationError(label, e.what());
+            }
+          },
+          help)
+      ->type_name(type);
+}
+
+auto integer_parser(std::int64_t low, std::int64_t high = std::numeric_limits<Index>::max()) {
+  return [=](const std::string& text) { return static_cast<Index>(parse_integer(text, low, high)); };
+}
+
+auto choice(std::vector<std::string> allowed) {
+  return [allowed = std::move(allowed)](const std::string& text) {
+    if (std::find(allowed.begin(), allowed.end(), text) == allowed.end())
+      throw std::invalid_argument(fmt::format("'{}' is none of {}", text, fmt::join(allowed, ", ")));
+    return text;
+  };
+}
+
+std::string non_empty(const std::string& text) {
+  if (text.empty()) throw std::invalid_argument("the name is empty");
+  return text;
+}
+
+void add_input(CLI::App& app, std::string& input) {
+  app.add_option("INPUT", input, "File to read: .ply .pcd .xyz .txt .csv .off .obj")->required()->type_name("");
+}
+
+void add_method_options(CLI::App& app, LogmapOptions& o) {
+  const char* group = "Method";
+  add_parsed(
+      app, "--variant", o.variant,
+      [](const std::string& text) {
+        return choice({"adaptive", "localized"})(text) == "adaptive" ? Variant::adaptive : Variant::localized;
+      },
+      "NAME", "adaptive (default) or localized")
+      ->group(group);
+  add_parsed(app, "--backend", o.backend, choice({"auto", "trimesh", "polymesh", "pointcloud"}), "NAME",
+             "auto (default), trimesh, polymesh or pointcloud")
+      ->group(group);
+  add_parsed(app, "--t-coef", o.t_coef, parse_positive, "T",
+             "Diffusion time in squared mean edge lengths, > 0 (default 1); larger is smoother")
+      ->group(group);
+  add_parsed(app, "--radius", o.radius, parse_positive, "R", "Leave out everything farther than this from the source")
+      ->group(group);
+  add_parsed(app, "--u-axis", o.u_axis, parse_direction, "X,Y,Z",
+             "Direction of the u axis, projected to the surface (default: chosen by the backend)")
+      ->group(group);
+  add_parsed(
+      app, "--ordering", o.ordering,
+      [](const std::string& text) {
+        return choice({"amd", "nested-dissection"})(text) == "amd" ? Ordering::amd : Ordering::nested_dissection;
+      },
+      "NAME", "Of the factorization: amd (default) or nested-dissection")
+      ->group(group);
+  add_parsed(app, "--threads", o.threads, integer_parser(0, 4096), "N", "0 (default): one per core")->group(group);
+}
+
+void add_cloud_options(CLI::App& app, LogmapOptions& o) {
+  const char* group = "Point clouds";
+  add_parsed(app, "--voxel", o.voxel, parse_positive, "SIZE", "Keep one point per cube of this edge length first")
+      ->group(group);
+  app.add_flag("--outliers", o.outliers, "Remove statistical outliers first")->group(group);
+  app.add_flag("--drop-nan", o.drop_nan, "Drop points with nan or infinite coordinates instead of refusing them")
+      ->group(group);
+  add_parsed(app, "--k", o.k, integer_parser(3), "N", "Neighbours per point, at least 3 (default 30)")->group(group);
+  add_parsed(app, "--knn", o.knn, choice({"nanoflann", "flann", "pcl"}), "NAME",
+             "Neighbour search: nanoflann (default), flann or pcl")
+      ->group(group);
+  add_parsed(app, "--normals", o.normals, choice({"auto", "oriented", "unoriented", "estimate"}), "HOW",
+             "Normals of INPUT: auto (default) judges their signs, oriented trusts them, unoriented\n"
+             "ignores the signs, estimate ignores the normals")
+      ->group(group);
+}
+
+void add_report_options(CLI::App& app, LogmapOptions& o) {
+  const char* group = "Reports";
+  add_parsed(app, "--json", o.json, non_empty, "FILE|-", "Write a summary for programs; -: to standard output")
+      ->group(group);
+  add_parsed(app, "--view", o.view, non_empty, "FILE", "Draw the map: .png or .html")->group(group);
+  app.add_flag("--verbose", o.verbose, "Print the time of each stage and the peak memory")->group(group);
+}
+
+CLI::App& add_logmap(CLI::App& app, LogmapOptions& o) {
+  CLI::App& logmap = *app.add_subcommand("logmap", "Logarithmic map of a surface from one source");
+  add_input(logmap, o.input);
+  add_parsed(logmap, "-s,--source", o.source, parse_source, "SPEC", "Where the map starts, see below")->required();
+  add_parsed(logmap, "-o,--output", o.output, non_empty, "OUTPUT", "File to write, see below")->required();
+  add_method_options(logmap, o);
+  add_cloud_options(logmap, o);
+  add_report_options(logmap, o);
+  logmap.footer(logmap_footer);
+  return logmap;
+}
+
+CLI::App& add_info(CLI::App& app, InfoOptions& o) {
+  CLI::App& info = *app.add_subcommand("info", "What is in a file, what is wrong with it, what to run on it");
+  add_input(info, o.input);
+  add_parsed(info, "--json", o.json, non_empty, "FILE|-", "Write the same for programs; -: to standard output");
+  add_parsed(info, "--k", o.k, integer_parser(3), "N", "Neighbours per point when looking for components (default 30)");
+  add_parsed(info, "--threads", o.threads, integer_parser(0, 4096), "N", "0 (default): one per core");
+  info.footer("Example:\n  ahm info scan.pcd");
+  return info;
+}
+
+}  // namespace
+
+Command parse_command_line(int argc, const char* const* argv) {
+  CLI::App app("Logarithmic maps on point clouds by the affine heat method", "ahm");
+  app.get_formatter()->column_width(26);
+  app.footer(main_footer);
+  app.require_subcommand(1);
+  bool version = false;
+  app.add_flag("--version", version, "Print the versions of ahm, its libraries and the BLAS in use");
+  LogmapOptions logmap_options;
+  InfoOptions info_options;
+  const CLI::App& logmap = add_logmap(app, logmap_options);
+  add_info(app, info_options);
+  if (argc == 2 && std::string_view(argv[1]) == "--version") return TextRequest{versions_as_text()};
+  const std::string first = argc > 1 ? argv[1] : "";
+  if (!first.starts_with("-") && first != "logmap" && first != "info")
+    throw UsageError{(first.empty() ? "a subcommand is needed" : "'" + first + "' is no subcommand") +
+                     std::string(": write logmap or info\nRun 'ahm --help' for help.")};
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::CallForHelp&) {
+    const auto chosen = app.get_subcommands();
+    return TextRequest{chosen.empty() ? app.help() : chosen.front()->help("ahm")};
+  } catch (const CLI::ParseError& e) {
+    const auto chosen = app.get_subcommands();
+    throw UsageError{fmt::format("{}\nRun 'ahm {}--help' for help.", e.what(),
+                                 chosen.empty() ? "" : chosen.front()->get_name() + " ")};
+  }
+  if (logmap.parsed()) return logmap_options;
+  return info_options;
+}
+
+}  // namespace ahm::app

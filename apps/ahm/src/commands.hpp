@@ -1,0 +1,15 @@
+/// \file
+/// The subcommands.
+#pragma once
+
+#include "options.hpp"
+
+namespace ahm::app {
+
+/// `ahm logmap`. @throws ahm::Error and its kin; the caller reports them
+void run_logmap(const LogmapOptions& options);
+
+/// `ahm info`. @throws as `run_logmap`
+void run_info(const InfoOptions& options);
+
+}  // namespace ahm::app

@@ -1,0 +1,206 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "ahm/error.hpp"
+#include "ahm/io/read.hpp"
+#include "ahm/io/write.hpp"
+#include "ahm/log_map_solver.hpp"
+#include "ahm/view/picture.hpp"
+#include "backend.hpp"
+#include "commands.hpp"
+#include "console.hpp"
+#include "output_paths.hpp"
+#include "progress_display.hpp"
+#include "run_report.hpp"
+#include "stage_times.hpp"
+#include "system_info.hpp"
+
+namespace ahm::app {
+namespace {
+
+/// Stage times, progress and warnings of one run.
+class Journal {
+ public:
+  explicit Journal(bool verbose) : verbose_(verbose) {}
+
+  void start(const std::string& stage) {
+    finish();
+    times_.start(stage);
+    display_.update(stage, 0);
+  }
+
+  void finish() {
+    times_.finish();
+    if (!verbose_ || times_.seconds().size() == reported_) return;
+    display_.clear();
+    const auto& [stage, seconds] = times_.seconds()[reported_++];
+    say(fmt::format("ahm: {:<8}{:8.3f} s   peak memory {}\n", stage, seconds, bytes_as_text(peak_rss_bytes())));
+  }
+
+  void add_warning(const std::string& text) {
+    display_.clear();
+    warn(text);
+    warnings_.push_back(text);
+  }
+
+  void add_warnings(const std::vector<std::string>& texts) {
+    for (const std::string& text : texts) add_warning(text);
+  }
+
+  Progress progress() { return display_.progress(); }
+  void clear_display() { display_.clear(); }
+  const StageTimes& times() const { return times_; }
+  const std::vector<std::string>& warnings() const { return warnings_; }
+
+ private:
+  bool verbose_;
+  StageTimes times_;
+  std::size_t reported_ = 0;
+  std::vector<std::string> warnings_;
+  ProgressDisplay display_;
+};
+
+void check_view(const std::string& path) {
+  if (path.empty()) return;
+  const std::string extension = extension_of(path);
+  const bool html = extension == ".html" || extension == ".htm";
+  if (!html && extension != ".png")
+    throw InvalidArgument(fmt::format("--view {}: the name must end in .png or .html", path));
+  if (html ? !view::can_write_html() : !view::can_write_png())
+    throw InvalidArgument(fmt::format("--view {}: this build of ahm cannot write {} files", path, extension));
+}
+
+double distance(const Vec3& a, const Vec3& b) { return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]); }
+
+/// Something the user should know about where the source ended up.
+void comment_on_source(const LogmapOptions& options, const Model& model, const ResolvedSource& source,
+                       Journal& journal) {
+  const auto* wanted = std::get_if<SourcePosition>(&options.source);
+  if (wanted == nullptr) return;
+  const double away = distance(wanted->position, source.position);
+  const double edge = model.graph().mean_edge_length() * model.graph().length_unit();
+  if (away > 10 * edge)
+    journal.add_warning(
+        fmt::format("the vertex nearest to {} is {:.4g} away, at {:.6g} {:.6g} {:.6g}: {:.0f} mean edge lengths",
+                    to_string(*wanted), away, source.position[0], source.position[1], source.position[2], away / edge));
+}
+
+void comment_on_statuses(const MapRows& rows, const std::string& input, Journal& journal) {
+  const auto count = [&](Status s) { return std::count(rows.status.begin(), rows.status.end(), s); };
+  const auto total = static_cast<double>(rows.status.size());
+  if (const auto apart = count(Status::component); static_cast<double>(apart) > 0.1 * total)
+    journal.add_warning(
+        fmt::format("{:.0f} % of the vertices are not connected to the source; 'ahm info {}' tells about components",
+                    100.0 * static_cast<double>(apart) / total, input));
+  if (const auto unreached = count(Status::unreached); unreached > 0)
+    journal.add_warning(
+        fmt::format("{} vertices are too far from the source for double precision; a larger --t-coef or --voxel "
+                    "reaches farther",
+                    unreached));
+}
+
+void comment_on_blas(Journal& journal) {
+  const LinearAlgebraInfo info = linear_algebra_info();
+  if (!info.blas_optimized)
+    journal.add_warning("CHOLMOD runs on a BLAS that is not optimized (" + info.blas +
+                        "): several times slower; on Debian install libopenblas0-pthread");
+}
+
+void write_view(const LogmapOptions& options, const io::Geometry& input, const ResolvedSource& source,
+                const MapRows& rows, const std::vector<Vec3>& normals) {
+  view::Scene scene;
+  scene.points = input.points;
+  scene.normals = normals;
+  scene.u = rows.u;
+  scene.v = rows.v;
+  scene.source = source.position;
+  if (source.frame) scene.source_axes = {source.frame->x, source.frame->y, source.frame->normal};
+  scene.title = std::filesystem::path(options.input).filename().string();
+  view::write_picture(options.view, scene);
+}
+
+/// The picture first: if it fails, nothing else has been left behind.
+void write_results(const LogmapOptions& options, const io::Geometry& input, const Model& model,
+                   const ResolvedSource& source, const MapRows& rows, Journal& journal) {
+  const std::vector<Vec3> normals = model.normals();
+  if (!options.view.empty()) {
+    journal.start("view");
+    write_view(options, input, source, rows, normals);
+  }
+  journal.start("write");
+  io::Table table;
+  table.points = input.points;
+  table.normals = normals;
+  table.u = rows.u;
+  table.v = rows.v;
+  table.distance = rows.distance;
+  table.angle = rows.angle;
+  table.status = rows.status;
+  table.face_begin = input.face_begin;
+  table.face_vertices = input.face_vertices;
+  io::write(options.output, table);
+  journal.finish();
+  journal.clear_display();
+}
+
+io::Geometry read_input(const LogmapOptions& options, Journal& journal) {
+  journal.start("read");
+  io::Geometry input = io::read(options.input);
+  journal.add_warnings(input.warnings);
+  if (input.points.empty()) throw InvalidGeometry(options.input + ": holds no points");
+  return input;
+}
+
+LogMapSolver factor(const LogmapOptions& options, const Model& model, Journal& journal) {
+  journal.start("factor");
+  OperatorOptions operator_options;
+  operator_options.t_coef = options.t_coef;
+  operator_options.ordering = options.ordering;
+  operator_options.progress = journal.progress();
+  return LogMapSolver(model.graph(), operator_options);
+}
+
+LogMap solve(const LogmapOptions& options, const LogMapSolver& solver, const Source& source, Journal& journal) {
+  journal.start("solve");
+  MapOptions map_options;
+  map_options.variant = options.variant;
+  if (options.radius) map_options.radius = *options.radius;
+  map_options.threads = options.threads;
+  map_options.progress = journal.progress();
+  return solver.solve(source, map_options);
+}
+
+}  // namespace
+
+void run_logmap(const LogmapOptions& options) {
+  check_outputs(options.input, {{"--output", options.output}, {"--json", options.json}, {"--view", options.view}});
+  io::check_writable(options.output);
+  check_view(options.view);
+  Journal journal(options.verbose);
+  comment_on_blas(journal);
+  const io::Geometry input = read_input(options, journal);
+
+  journal.start("graph");
+  const std::string backend = choose_backend(input, options.backend);
+  const std::unique_ptr<Model> model = build_model(backend, input, options, journal.progress());
+  journal.add_warnings(model->warnings());
+  const ResolvedSource source = model->source(options.source, options.u_axis);
+  comment_on_source(options, *model, source, journal);
+
+  const LogMapSolver solver = factor(options, *model, journal);
+  const LogMap map = solve(options, solver, source.source, journal);
+  const MapRows rows = model->rows(map);
+  comment_on_statuses(rows, options.input, journal);
+  write_results(options, input, *model, source, rows, journal);
+
+  const Run run{options, input, backend, *model, solver, source, map, rows, journal.times(), journal.warnings()};
+  write_json(options.json, run_as_json(run));
+  const bool stdout_taken = options.json == "-" || is_stream(options.output);
+  stdout_taken ? say(run_as_text(run)) : print(run_as_text(run));
+}
+
+}  // namespace ahm::app

@@ -1,0 +1,53 @@
+/// \file
+/// The program ahm: reads the command line, runs the command, turns exceptions into messages and exit statuses.
+
+#include <exception>
+#include <new>
+#include <stdexcept>
+#include <string>
+#include <variant>
+
+#include "ahm/error.hpp"
+#include "command_line.hpp"
+#include "commands.hpp"
+#include "console.hpp"
+#include "interrupt.hpp"
+
+namespace {
+
+using namespace ahm::app;
+
+constexpr int failed = 1;
+constexpr int usage = 2;
+constexpr const char* out_of_memory = "out of memory; thin the input (--voxel), lower --k, or use a machine with more";
+
+void run(const Command& command) {
+  if (const auto* logmap = std::get_if<LogmapOptions>(&command)) return run_logmap(*logmap);
+  if (const auto* info = std::get_if<InfoOptions>(&command)) return run_info(*info);
+  print(std::get<TextRequest>(command).text);
+}
+
+int report(const std::string& message, int status) {
+  say("ahm: error: " + message + "\n");
+  return status;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  install_interrupt_handling();
+  run(parse_command_line(argc, argv));
+  return 0;
+} catch (const UsageError& e) {
+  return report(e.message, usage);
+} catch (const BrokenPipe&) {
+  return failed;
+} catch (const std::bad_alloc&) {
+  return report(out_of_memory, failed);
+} catch (const std::length_error&) {  // an array longer than any memory
+  return report(out_of_memory, failed);
+} catch (const std::exception& e) {
+  return report(e.what(), failed);
+} catch (...) {
+  return report("unknown failure", failed);
+}

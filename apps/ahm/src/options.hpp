@@ -1,0 +1,47 @@
+/// \file
+/// The command line as data.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "ahm/heat_operators.hpp"
+#include "ahm/log_map.hpp"
+#include "source_spec.hpp"
+
+namespace ahm::app {
+
+/// `ahm logmap`
+struct LogmapOptions {
+  std::string input;
+  std::string output;
+  SourceSpec source;
+  std::optional<Vec3> u_axis;
+  Variant variant = Variant::adaptive;
+  std::string backend = "auto";  ///< auto, trimesh, polymesh, pointcloud
+  double t_coef = 1.0;
+  std::optional<double> radius;
+  Ordering ordering = Ordering::amd;
+
+  std::optional<double> voxel;
+  bool outliers = false;
+  bool drop_nan = false;
+  Index k = 30;
+  std::string knn = "nanoflann";  ///< nanoflann, flann, pcl
+  std::string normals = "auto";   ///< auto, oriented, unoriented, estimate
+
+  std::string json;  ///< empty: none; "-": standard output
+  std::string view;  ///< empty: none
+  unsigned threads = 0;
+  bool verbose = false;
+};
+
+/// `ahm info`
+struct InfoOptions {
+  std::string input;
+  std::string json;
+  Index k = 30;
+  unsigned threads = 0;
+};
+
+}  // namespace ahm::app

@@ -1,0 +1,206 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "ahm/error.hpp"
+#include "ahm/pointcloud/point_cloud_graph.hpp"
+#include "backend.hpp"
+#include "cloud_preparation.hpp"
+#ifdef AHM_WITH_PCL
+#include "ahm/pcl/search.hpp"
+#endif
+
+namespace ahm::app {
+namespace {
+
+using pointcloud::CloudOptions;
+using pointcloud::CloudReport;
+using pointcloud::NormalSigns;
+using pointcloud::PointCloudGraph;
+
+std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+
+double dot(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+Vec3 cross(const Vec3& a, const Vec3& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+/// The frame whose x axis is `direction` projected to the tangent plane.
+Frame turned(const Frame& frame, const Vec3& direction) {
+  const double a = dot(direction, frame.x), b = dot(direction, frame.y);
+  const double length = std::hypot(a, b);
+  Frame result = frame;
+  for (std::size_t c = 0; c < 3; ++c) result.x[c] = (a * frame.x[c] + b * frame.y[c]) / length;
+  result.y = cross(frame.normal, result.x);
+  return result;
+}
+
+/// The cheap checks: everything about the source that needs no graph.
+std::optional<Index> checked_source_row(const SourceSpec& spec, const io::Geometry& input) {
+  if (const auto* face = std::get_if<SourceFace>(&spec))
+    throw InvalidArgument(fmt::format(
+        "--source {}: a cloud has no faces (backend pointcloud); write a vertex index or x,y,z", to_string(*face)));
+  const auto* vertex = std::get_if<SourceVertex>(&spec);
+  if (vertex == nullptr) return std::nullopt;
+  if (at(vertex->index) >= input.points.size())
+    throw InvalidArgument(fmt::format("--source {}: the input has {} points, numbered from 0 to {}", vertex->index,
+                                      input.points.size(), static_cast<std::int64_t>(input.points.size()) - 1));
+  for (double x : input.points[at(vertex->index)])
+    if (!std::isfinite(x))
+      throw InvalidArgument(fmt::format("--source {}: this point has a coordinate that is {}", vertex->index, x));
+  return vertex->index;
+}
+
+pointcloud::NeighborSearchFactory search_factory(const std::string& name) {
+  if (name == "flann") return pointcloud::flann_search;
+  if (name == "nanoflann") return pointcloud::nanoflann_search;
+#ifdef AHM_WITH_PCL
+  return pcl::kdtree_search;
+#else
+  throw InvalidArgument("--knn pcl: this build of ahm has no PCL; use nanoflann or flann");
+#endif
+}
+
+CloudOptions cloud_options(const LogmapOptions& options, const Progress& progress) {
+  CloudOptions result;
+  result.k = options.k;
+  result.search = search_factory(options.knn);
+  if (options.normals == "oriented") result.normal_signs = NormalSigns::oriented;
+  if (options.normals == "unoriented") result.normal_signs = NormalSigns::unoriented;
+  result.threads = options.threads;
+  result.progress = progress;
+  return result;
+}
+
+class PointcloudModel final : public Model {
+ public:
+  PointcloudModel(const io::Geometry& input, const LogmapOptions& options, const Progress& progress)
+      : PointcloudModel(input, options, progress,
+                        prepare_cloud(input, options, checked_source_row(options.source, input))) {}
+
+  const TangentGraph& graph() const override { return cloud_.graph(); }
+
+  ResolvedSource source(const SourceSpec& spec, const std::optional<Vec3>& u_axis) const override {
+    const Index point = prepared_point(spec);
+    const Index vertex = cloud_.vertex_of_point()[at(point)];
+    const Index row = prepared_.input_row[at(point)];
+    if (vertex < 0)
+      throw InvalidArgument(
+          fmt::format("--source {}: point {} was removed, it has no tangent plane or no neighbours; choose another one",
+                      to_string(spec), row));
+    const Vec3& position = prepared_.points[at(point)];
+    std::optional<Frame> frame = cloud_.graph().frame(vertex);
+    if (!u_axis) return {cloud_.source_at_point(point), row, position, frame};
+    if (frame) frame = turned(*frame, *u_axis);
+    return {turned_source(point, row, *u_axis), row, position, frame};
+  }
+
+  MapRows rows(const LogMap& map) const override {
+    const pointcloud::PointMap on_points = cloud_.on_points(map);
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    const std::vector<double> none(input_points_, nan);
+    MapRows result{none, none, none, none, std::vector<Status>(input_points_, Status::removed)};
+    for (std::size_t p = 0; p < prepared_.input_row.size(); ++p) {
+      const std::size_t row = at(prepared_.input_row[p]);
+      result.u[row] = on_points.u[p];
+      result.v[row] = on_points.v[p];
+      result.distance[row] = on_points.distance[p];
+      result.angle[row] = on_points.angle[p];
+      result.status[row] = on_points.status[p];
+    }
+    return result;
+  }
+
+  std::vector<Vec3> normals() const override {
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    std::vector<Vec3> result(input_points_, Vec3{nan, nan, nan});
+    const std::vector<Vec3> on_points = cloud_.normals_on_points();
+    for (std::size_t p = 0; p < on_points.size(); ++p) result[at(prepared_.input_row[p])] = on_points[p];
+    return result;
+  }
+
+  nlohmann::ordered_json report() const override;
+  std::vector<std::string> warnings() const override;
+
+ private:
+  PointcloudModel(const io::Geometry& input, const LogmapOptions& options, const Progress& progress,
+                  PreparedCloud prepared)
+      : prepared_(std::move(prepared)),
+        input_points_(input.points.size()),
+        input_faces_(input.face_count()),
+        normals_given_(!prepared_.normals.empty()),
+        cloud_(PointCloudGraph::build(prepared_.points, prepared_.normals, cloud_options(options, progress))) {}
+
+  Source turned_source(Index point, Index row, const Vec3& u_axis) const try {
+    return cloud_.source_at_point(point, u_axis);
+  } catch (const InvalidArgument&) {
+    throw InvalidArgument(fmt::format("--u-axis {},{},{}: is perpendicular to the surface at the source, point {}",
+                                      u_axis[0], u_axis[1], u_axis[2], row));
+  }
+
+  /// Index into the prepared cloud.
+  Index prepared_point(const SourceSpec& spec) const {
+    if (const auto* position = std::get_if<SourcePosition>(&spec)) return cloud_.nearest_point(position->position);
+    const auto& rows = prepared_.input_row;
+    return static_cast<Index>(std::lower_bound(rows.begin(), rows.end(), std::get<SourceVertex>(spec).index) -
+                              rows.begin());
+  }
+
+  PreparedCloud prepared_;
+  std::size_t input_points_;
+  std::size_t input_faces_;
+  bool normals_given_;
+  PointCloudGraph cloud_;
+};
+
+nlohmann::ordered_json PointcloudModel::report() const {
+  const CloudReport& r = cloud_.report();
+  nlohmann::ordered_json j;
+  j["points"] = input_points_;
+  j["vertices"] = r.vertices;
+  j["non_finite"] = prepared_.non_finite;
+  j["voxel_replaced"] = prepared_.voxel_replaced;
+  j["outliers"] = prepared_.outliers;
+  j["duplicates"] = r.duplicates;
+  j["degenerate"] = r.degenerate;
+  j["k"] = r.k;
+  j["components"] = r.components;
+  j["triangles"] = r.triangles;
+  j["flips"] = r.flips;
+  j["rejected_long"] = r.rejected_long;
+  j["rejected_normals"] = r.rejected_normals;
+  j["reflections"] = r.reflections;
+  j["normals_given"] = normals_given_;
+  j["oriented"] = r.oriented;
+  j["mollification"] = r.mollification;
+  j["seconds"] = {{"filters", prepared_.seconds},
+                  {"normals", r.seconds_normals},
+                  {"delaunay", r.seconds_delaunay},
+                  {"laplacian", r.seconds_laplacian},
+                  {"graph", r.seconds_graph}};
+  return j;
+}
+
+std::vector<std::string> PointcloudModel::warnings() const {
+  std::vector<std::string> result;
+  if (input_faces_ > 0)
+    result.push_back(fmt::format("the {} faces are ignored: the vertices are mapped as a point cloud", input_faces_));
+  if (prepared_.non_finite > 0)
+    result.push_back(fmt::format("{} points with nan or infinite coordinates were dropped", prepared_.non_finite));
+  const auto& own = cloud_.report().warnings;
+  result.insert(result.end(), own.begin(), own.end());
+  return result;
+}
+
+}  // namespace
+
+std::unique_ptr<Model> build_pointcloud(const io::Geometry& input, const LogmapOptions& options,
+                                        const Progress& progress) {
+  return std::make_unique<PointcloudModel>(input, options, progress);
+}
+
+}  // namespace ahm::app

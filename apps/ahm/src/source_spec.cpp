@@ -1,0 +1,54 @@
+#include "source_spec.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "numbers.hpp"
+
+namespace ahm::app {
+namespace {
+
+SourceFace parse_face(std::string_view text) {
+  const std::string_view rest = text.substr(5);
+  const std::size_t colon = rest.find(':');
+  if (colon == std::string_view::npos)
+    throw std::invalid_argument(fmt::format("'{}' lacks barycentric coordinates: write face:F:b0,b1,b2", text));
+  SourceFace result{static_cast<Index>(parse_integer(rest.substr(0, colon), 0)), parse_triple(rest.substr(colon + 1))};
+  const auto& b = result.barycentric;
+  const double sum = b[0] + b[1] + b[2];
+  if (*std::min_element(b.begin(), b.end()) < 0 || std::abs(sum - 1) > 1e-6)
+    throw std::invalid_argument(fmt::format(
+        "'{}' has barycentric coordinates that are negative or do not add up to 1 (they add up to {})", text, sum));
+  return result;
+}
+
+}  // namespace
+
+SourceSpec parse_source(std::string_view text) {
+  if (text.starts_with("face:")) return parse_face(text);
+  if (text.find(',') != std::string_view::npos) return SourcePosition{parse_triple(text)};
+  try {
+    return SourceVertex{static_cast<Index>(parse_integer(text, 0))};
+  } catch (const std::invalid_argument&) {
+    throw std::invalid_argument(
+        fmt::format("'{}' is no source: write a 0-based vertex index, x,y,z or face:F:b0,b1,b2", text));
+  }
+}
+
+std::string to_string(const SourceSpec& spec) {
+  struct Visitor {
+    std::string operator()(const SourceVertex& s) const { return fmt::format("{}", s.index); }
+    std::string operator()(const SourcePosition& s) const {
+      return fmt::format("{},{},{}", s.position[0], s.position[1], s.position[2]);
+    }
+    std::string operator()(const SourceFace& s) const {
+      return fmt::format("face:{}:{},{},{}", s.face, s.barycentric[0], s.barycentric[1], s.barycentric[2]);
+    }
+  };
+  return std::visit(Visitor{}, spec);
+}
+
+}  // namespace ahm::app

@@ -1,0 +1,90 @@
+// Interrupts, closed pipes, full disks: the program ends soon, with a status, and leaves nothing half done.
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <thread>
+
+#include "program.hpp"
+
+namespace ahm::test {
+namespace {
+
+using Words = std::vector<std::string>;
+
+class Interrupt : public testing::TestWithParam<int> {};
+
+TEST_P(Interrupt, EndsWithinASecondAndLeavesNothing) {
+  Folder folder;
+  const auto input = folder.write("sphere.xyz", xyz(sphere(60000)));
+  int interrupted = 0;
+  for (int milliseconds : {50, 150, 250, 400, 600, 900, 1400, 2000}) {
+    const Running running =
+        start({"logmap", input, "--source", "0", "-o", folder / "map.csv", "--json", folder / "map.json"});
+    std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
+    const auto begin = std::chrono::steady_clock::now();
+    kill(running.pid, GetParam());
+    const auto outcome = finish(running);
+    if (outcome.status == 0) break;  // it was done before
+    EXPECT_EQ(outcome.status, 128 + GetParam()) << outcome.err;
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(1));
+    // Before main starts, a signal ends any process without a word.
+    if (outcome.err.find("interrupted") != std::string::npos) ++interrupted;
+    // Whatever has its name is complete.
+    for (const std::string& file : folder.files()) {
+      EXPECT_TRUE(file == "sphere.xyz" || file == "map.csv" || file == "map.json") << file;
+      if (file == "map.csv") {
+        EXPECT_EQ(read_csv(folder / file).size(), 60000U);
+      }
+      if (file == "map.json") {
+        EXPECT_EQ(read_json(folder / file).at("n"), 60000);
+      }
+      if (file != "sphere.xyz") std::filesystem::remove(folder / file);
+    }
+  }
+  EXPECT_GT(interrupted, 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(BySignal, Interrupt, testing::Values(SIGINT, SIGTERM));
+
+TEST(ClosedPipe, IsNoSuccessAndNoNoise) {
+  Folder folder;
+  const auto input = folder.write("sphere.xyz", xyz(sphere(500)));
+  for (const Words& words : {Words{"logmap", input, "--source", "0", "-o", folder / "map.csv", "--json", "-"},
+                             Words{"info", input}, Words{"--help"}}) {
+    Running running = start(words);
+    close(running.out);
+    running.out = -1;
+    const auto outcome = finish(running);
+    EXPECT_NE(outcome.status, 0);
+    EXPECT_LT(outcome.status, 128);
+    EXPECT_EQ(outcome.err.find("error"), std::string::npos) << outcome.err;
+  }
+}
+
+TEST(FullDisk, LeavesNothing) {
+  Folder folder;
+  const auto input = folder.write("sphere.xyz", xyz(sphere(2000)));
+  rlimit before{};
+  getrlimit(RLIMIT_FSIZE, &before);
+  const rlimit small{20000, before.rlim_max};
+  setrlimit(RLIMIT_FSIZE, &small);
+  const Running running = start({"logmap", input, "--source", "0", "-o", folder / "map.csv"});
+  setrlimit(RLIMIT_FSIZE, &before);
+  const auto outcome = finish(running);
+  EXPECT_EQ(outcome.status, 1) << outcome.err;
+  EXPECT_NE(outcome.err.find("map.csv"), std::string::npos) << outcome.err;
+  EXPECT_EQ(folder.files(), Words{"sphere.xyz"});
+}
+
+TEST(OldOutput, SurvivesAFailure) {
+  Folder folder;
+  const auto output = folder.write("map.csv", "precious\n");
+  EXPECT_EQ(run({"logmap", folder.write("bad.xyz", "0 0 0\n1 zero 0\n"), "--source", "0", "-o", output}).status, 1);
+  EXPECT_EQ(read_text(output), "precious\n");
+}
+
+}  // namespace
+}  // namespace ahm::test

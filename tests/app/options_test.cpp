@@ -1,0 +1,93 @@
+// Options whose effect shows in the result.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "program.hpp"
+
+namespace ahm::test {
+namespace {
+
+using Words = std::vector<std::string>;
+
+nlohmann::json summary(const std::string& input, const Folder& folder, const Words& more) {
+  Words words = {"logmap", input, "--source", "0", "-o", folder / "map.csv", "--json", "-"};
+  words.insert(words.end(), more.begin(), more.end());
+  const auto outcome = run(words);
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  return outcome.status == 0 ? nlohmann::json::parse(outcome.out) : nlohmann::json();
+}
+
+TEST(Options, UAxisTurnsTheFrame) {
+  Folder folder;
+  const auto input = folder.write("sphere.xyz", xyz(sphere(1000), sphere(1000)));
+  const auto frame = summary(input, folder, {"--u-axis", "0,2,5"}).at("source").at("frame");
+  // The source is the north pole with its outward normal: (0, 2, 5) projects to +y, and v completes a right-handed
+  // frame.
+  const std::vector<Vec3> expected = {{0, 1, 0}, {-1, 0, 0}, {0, 0, 1}};
+  const std::vector<std::string> axes = {"u", "v", "normal"};
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t a = 0; a < 3; ++a)
+      EXPECT_NEAR(frame.at(axes[i]).at(a).get<double>(), expected[i][a], 0.1) << axes[i];
+  for (const Row& row : read_csv(folder / "map.csv"))
+    if (row.distance > 0.3 && row.distance < 1.5) {
+      EXPECT_NEAR(std::remainder(row.angle - std::atan2(-row.position[0], row.position[1]), 2 * std::numbers::pi), 0,
+                  0.3);
+    }
+}
+
+TEST(Options, ReachTheLibrary) {
+  Folder folder;
+  const auto input = folder.write("sphere.xyz", xyz(sphere(1000)));
+  EXPECT_EQ(summary(input, folder, {"--variant", "localized"}).at("variant"), "localized");
+  EXPECT_EQ(summary(input, folder, {"--k", "12"}).at("pointcloud").at("k"), 12);
+  EXPECT_EQ(summary(input, folder, {"--t-coef", "4"}).at("t_coef"), 4.0);
+  EXPECT_EQ(summary(input, folder, {"--backend", "pointcloud"}).at("backend"), "pointcloud");
+  EXPECT_EQ(summary(input, folder, {"--ordering", "nested-dissection"}).at("status").at("ok"), 1000);
+}
+
+TEST(Options, NormalsAreUsedAsTold) {
+  Folder folder;
+  const auto input = folder.write("sphere.xyz", xyz(sphere(1000), sphere(1000)));
+  const auto oriented = [&](const std::string& how) {
+    return summary(input, folder, {"--normals", how}).at("pointcloud").at("oriented").get<bool>();
+  };
+  EXPECT_TRUE(oriented("auto"));
+  EXPECT_TRUE(oriented("oriented"));
+  EXPECT_FALSE(oriented("unoriented"));
+  EXPECT_FALSE(oriented("estimate"));
+}
+
+TEST(Options, VerbosePrintsTheStages) {
+  Folder folder;
+  const auto input = folder.write("sphere.xyz", xyz(sphere(500)));
+  const auto outcome = run({"logmap", input, "--source", "0", "-o", folder / "map.csv", "--verbose"});
+  for (const char* word : {"read", "graph", "factor", "solve", "write", "memory"})
+    EXPECT_NE(outcome.err.find(word), std::string::npos) << outcome.err;
+}
+
+TEST(ProgressBar, ShowsOnATerminalAndIsGoneAtTheEnd) {
+  Folder folder;
+  const auto input = folder.write("sphere.xyz", xyz(sphere(120000)));
+  const auto outcome = finish(start({"logmap", input, "--source", "0", "-o", folder / "map.csv"}, true));
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("["), std::string::npos) << "no bar in more than a second";
+  const std::string clear = "\r\x1b[K";
+  ASSERT_GE(outcome.err.size(), clear.size());
+  EXPECT_EQ(outcome.err.substr(outcome.err.size() - clear.size()), clear);
+  EXPECT_EQ(outcome.out.find("\x1b"), std::string::npos);
+}
+
+TEST(Options, StandardOutputCanTakeTheMap) {
+  Folder folder;
+  const auto input = folder.write("sphere.xyz", xyz(sphere(300)));
+  const auto outcome = run({"logmap", input, "--source", "0", "-o", "/dev/stdout"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.out.substr(0, 6), "index,");
+  EXPECT_EQ(std::count(outcome.out.begin(), outcome.out.end(), '\n'), 301);
+}
+
+}  // namespace
+}  // namespace ahm::test
