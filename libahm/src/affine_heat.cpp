@@ -26,12 +26,14 @@ void check_source(const Source& source, const TangentGraph& graph) {
                             " are a reflection; this graph's frames are all oriented alike, so give a rotation");
 }
 
-AffineHeat::AffineHeat(const TangentGraph& graph, const HeatOperators& operators, std::span<const Source> sources)
+AffineHeat::AffineHeat(const TangentGraph& graph, const HeatOperators& operators, std::span<const Source> sources,
+                       unsigned threads)
     : graph_(graph),
       operators_(operators),
       sources_(sources),
       n_(static_cast<std::size_t>(graph.size())),
       d_(static_cast<std::size_t>(graph.dimension())),
+      threads_(threads),
       frames_(sources.size(), FrameField(graph.size(), graph.dimension(), graph.transport_kind())) {}
 
 /// Calls visit(vertex, b_k scaled, z_k or empty, U_k or empty) for the samples with b_k > 0. The largest b_k becomes
@@ -53,7 +55,7 @@ void AffineHeat::for_each_sample(std::size_t source, const Visit& visit) const {
   }
 }
 
-void AffineHeat::diffuse(bool concurrently) {
+void AffineHeat::diffuse() {
   const std::size_t count = sources_.size();
   const auto columns = static_cast<std::size_t>(frames_.empty() ? 1 : frames_[0].columns());
   const std::size_t frame_size = columns * n_ * d_;
@@ -71,9 +73,9 @@ void AffineHeat::diffuse(bool concurrently) {
         frames_[s].add_to_rhs(std::span(U).subspan(s * frame_size, frame_size), k, axes, b);
       });
     operators_.solve_vector(U, static_cast<Index>(count * columns));
-    for (std::size_t s = 0; s < count; ++s) frames_[s].normalize(std::span(U).subspan(s * frame_size, frame_size));
+    for (std::size_t s = 0; s < count; ++s) frames_[s].normalize(std::span(U).subspan(s * frame_size, frame_size), threads_);
   };
-  detail::run_both(concurrently, scalar, vector);
+  detail::run_both(threads_ > 1, scalar, vector);
 }
 
 double AffineHeat::length_unit() const {
@@ -86,7 +88,7 @@ std::vector<double> AffineHeat::translations() const {
   std::vector<double> rho(sources_.size() * n_ * d_, 0.0);
   const double factor = -operators_.tau() * operators_.scaling();
   const double to_units = graph_.length_unit() / length_unit();
-  for (std::size_t i = 0; i < n_; ++i) {
+  detail::for_each_index(n_, threads_, [&](std::size_t i) {
     const Star star = graph_.star(static_cast<Index>(i));
     for (std::size_t s = 0; s < sources_.size(); ++s) {
       const double* lambda = lambda_.data() + s * n_;
@@ -96,20 +98,18 @@ std::vector<double> AffineHeat::translations() const {
         for (std::size_t a = 0; a < d_; ++a) out[a] += amount * (to_units * star.logs[e * d_ + a]);
       }
     }
-  }
+  });
   return rho;
 }
 
 std::vector<double> AffineHeat::adaptive() const {
   const std::vector<double> rho = translations();
   std::vector<double> x(rho.size());
-  std::vector<double> local(d_);
   for (std::size_t s = 0; s < sources_.size(); ++s) {
     double* columns = x.data() + s * n_ * d_;
-    for (std::size_t i = 0; i < n_; ++i) {
-      frames_[s].to_source(static_cast<Index>(i), rho.data() + (s * n_ + i) * d_, local.data());
-      for (std::size_t a = 0; a < d_; ++a) columns[a * n_ + i] = local[a];
-    }
+    detail::for_each_index(n_, threads_, [&](std::size_t i) {
+      frames_[s].to_source(static_cast<Index>(i), rho.data() + (s * n_ + i) * d_, columns + i, n_);
+    });
     for_each_sample(s, [&](Index k, double b, auto z, auto) {
       for (std::size_t a = 0; a < z.size(); ++a)
         columns[a * n_ + static_cast<std::size_t>(k)] += b * z[a] / length_unit();

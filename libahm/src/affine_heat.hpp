@@ -26,11 +26,11 @@ void check_source(const Source& source, const TangentGraph& graph);
 
 class AffineHeat {
  public:
-  /// Sources must have been checked.
-  AffineHeat(const TangentGraph& graph, const HeatOperators& operators, std::span<const Source> sources);
+  /// Sources must have been checked. The numbers do not depend on `threads`.
+  AffineHeat(const TangentGraph& graph, const HeatOperators& operators, std::span<const Source> sources, unsigned threads = 1);
 
-  /// Solves for lambda and the frames, on two threads when asked.
-  void diffuse(bool concurrently);
+  /// Solves for lambda and the frames.
+  void diffuse();
 
   /// x of every source: columns of n numbers, d per source. Multiply by `length_unit()`.
   std::vector<double> adaptive() const;
@@ -58,6 +58,7 @@ class AffineHeat {
   const HeatOperators& operators_;
   std::span<const Source> sources_;
   std::size_t n_, d_;
+  unsigned threads_;
   std::vector<double> lambda_;       ///< n per source
   std::vector<FrameField> frames_;   ///< one per source
 };

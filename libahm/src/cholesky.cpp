@@ -12,6 +12,7 @@
 #include "ahm/detail/text.hpp"
 #include "ahm/error.hpp"
 #include "blas_control.hpp"
+#include "triangular_solve.hpp"
 
 namespace ahm {
 namespace {
@@ -80,6 +81,12 @@ cholmod_dense dense_view(std::span<double> X, Offset rows, Offset columns, bool 
   view.xtype = is_complex ? CHOLMOD_COMPLEX : CHOLMOD_REAL;
   view.dtype = CHOLMOD_DOUBLE;
   return view;
+}
+
+SupernodalFactor supernodal_view(const cholmod_factor& L) {
+  auto array = [](void* data, std::size_t size) { return std::span(static_cast<const std::int64_t*>(data), size); };
+  return {static_cast<Offset>(L.n),      L.xtype == CHOLMOD_COMPLEX,  array(L.Perm, L.n),   array(L.super, L.nsuper + 1),
+          array(L.pi, L.nsuper + 1), array(L.px, L.nsuper + 1), array(L.s, L.ssize), static_cast<const double*>(L.x)};
 }
 
 /// Smallest and largest real diagonal entry of L; NaN where one is not finite.
@@ -222,6 +229,7 @@ CholeskyFactor::~CholeskyFactor() = default;
 CholeskyFactor::CholeskyFactor(CholeskyFactor&&) noexcept = default;
 
 void CholeskyFactor::solve(std::span<double> X, Offset columns) const {
+  if (impl_->L->is_super && columns <= max_narrow_columns) return narrow_solve(supernodal_view(*impl_->L), X, columns);
   OneBlasThread one_thread;
   Common common;
   cholmod_dense B = dense_view(X, impl_->rows, columns, impl_->is_complex);

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "ahm/detail/parallel.hpp"
+
 namespace ahm {
 namespace {
 
@@ -61,12 +63,12 @@ void FrameField::add_to_rhs(std::span<double> rhs, Index vertex, std::span<const
     }
 }
 
-void FrameField::normalize(std::span<const double> solution) {
+void FrameField::normalize(std::span<const double> solution, unsigned threads) {
   const std::size_t width = complex_ ? 2 : static_cast<std::size_t>(d_) * d_;
   const auto n = static_cast<std::size_t>(n_);
   frames_.resize(n * width);
-  valid_.assign(n, true);
-  for (std::size_t i = 0; i < n; ++i) {
+  valid_.assign(n, 1);
+  detail::for_each_index(n, threads, [&](std::size_t i) {
     double* frame = frames_.data() + i * width;
     double largest = 0;
     for (int a = 0; a < columns(); ++a)
@@ -79,7 +81,7 @@ void FrameField::normalize(std::span<const double> solution) {
     valid_[i] = largest >= least_heat;
     if (!(largest >= std::numeric_limits<double>::min())) {
       complex_ ? void((frame[0] = 1, frame[1] = 0)) : set_identity(frame, d_);
-      continue;
+      return;
     }
     for (std::size_t k = 0; k < width; ++k) frame[k] /= largest;
     if (complex_) {
@@ -89,20 +91,21 @@ void FrameField::normalize(std::span<const double> solution) {
     } else {
       polar_factor(frame, d_);
     }
-  }
+  });
 }
 
-void FrameField::to_source(Index vertex, const double* in, double* out) const {
+void FrameField::to_source(Index vertex, const double* in, double* out, std::size_t stride) const {
   if (complex_) {
     const double* u = frames_.data() + static_cast<std::size_t>(vertex) * 2;
     out[0] = in[0] * u[0] + in[1] * u[1];
-    out[1] = in[1] * u[0] - in[0] * u[1];
+    out[stride] = in[1] * u[0] - in[0] * u[1];
     return;
   }
   const double* Q = frames_.data() + static_cast<std::size_t>(vertex) * d_ * d_;
   for (int a = 0; a < d_; ++a) {
-    out[a] = 0;
-    for (int c = 0; c < d_; ++c) out[a] += Q[c * d_ + a] * in[c];
+    double sum = 0;
+    for (int c = 0; c < d_; ++c) sum += Q[c * d_ + a] * in[c];
+    out[a * stride] = sum;
   }
 }
 

@@ -26,13 +26,13 @@ class FrameField {
 
   /// Takes the solution of B for these right-hand sides: U_i = U~_i / |U~_i|, the orthogonal polar factor in block graphs. A
   /// vertex whose U~_i has no length gets the identity.
-  void normalize(std::span<const double> solution);
+  void normalize(std::span<const double> solution, unsigned threads);
 
   /// Whether U~_i was large enough to be meaningful.
-  bool valid(Index vertex) const { return valid_[static_cast<std::size_t>(vertex)]; }
+  bool valid(Index vertex) const { return valid_[static_cast<std::size_t>(vertex)] != 0; }
 
-  /// out = in / U_i: components in frame i -> components in the source's frame (Eq. 12).
-  void to_source(Index vertex, const double* in, double* out) const;
+  /// out = in / U_i: components in frame i -> components in the source's frame (Eq. 12), written `stride` numbers apart.
+  void to_source(Index vertex, const double* in, double* out, std::size_t stride = 1) const;
 
   /// U_i as d x d numbers, row major.
   void axes(Index vertex, double* out) const;
@@ -42,7 +42,7 @@ class FrameField {
   int d_;
   bool complex_;
   std::vector<double> frames_;  ///< n x 2 or n x d x d (row major)
-  std::vector<bool> valid_;
+  std::vector<char> valid_;
 };
 
 /// Smallest solution of a heat equation, right-hand side at `heat_scale`, that counts as heat. Denormal numbers, which lose

@@ -29,22 +29,23 @@ void check_options(const MapOptions& options) {
 
 /// Coordinates and status of one source from its x (adaptive) or Y (localized).
 LogMap make_map(const AffineHeat& heat, std::size_t s, const TangentGraph& graph, const Source& source,
-                std::span<const double> solution, const MapOptions& options) {
+                std::span<const double> solution, const MapOptions& options, unsigned threads) {
   const auto n = static_cast<std::size_t>(graph.size()), d = static_cast<std::size_t>(graph.dimension());
   std::vector<double> coordinates(n * d);
   std::vector<Status> status(n, Status::ok);
-  std::vector<double> field(d);
   const std::vector<bool> connected = heat.connected(s);
   const auto lambda = heat.lambda(s);
-  for (std::size_t i = 0; i < n; ++i) {
+  const double unit = heat.length_unit();
+  // x / lambda, or (Y / lambda) / U: division by lambda commutes with the frame.
+  detail::for_each_index(n, threads, [&](std::size_t i) {
     const auto vertex = static_cast<Index>(i);
     const std::span phi = std::span(coordinates).subspan(i * d, d);
     if (options.variant == Variant::adaptive) {
-      for (std::size_t a = 0; a < d; ++a) phi[a] = solution[a * n + i] / lambda[i] * heat.length_unit();
+      for (std::size_t a = 0; a < d; ++a) phi[a] = solution[a * n + i];
     } else {
-      for (std::size_t a = 0; a < d; ++a) field[a] = solution[i * d + a] / lambda[i] * heat.length_unit();
-      heat.frames(s).to_source(vertex, field.data(), phi.data());
+      heat.frames(s).to_source(vertex, solution.data() + i * d, phi.data());
     }
+    for (double& coordinate : phi) coordinate = coordinate / lambda[i] * unit;
     if (!connected[i])
       status[i] = Status::component;
     else if (!heat.reached(s, vertex) || !all_finite(phi))
@@ -52,21 +53,21 @@ LogMap make_map(const AffineHeat& heat, std::size_t s, const TangentGraph& graph
     else if (length(phi) > options.radius)
       status[i] = Status::radius;
     if (status[i] != Status::ok) std::fill(phi.begin(), phi.end(), NAN);
-  }
+  });
   return LogMap(static_cast<int>(d), options.variant, Strategy::global, source, std::move(coordinates), std::move(status));
 }
 
 /// Solves one block of sources and hands each map to `emit`.
 template <class Emit>
 void solve_block(const TangentGraph& graph, const HeatOperators& operators, std::span<const Source> sources,
-                 const MapOptions& options, bool concurrently, const Emit& emit) {
-  AffineHeat heat(graph, operators, sources);
-  heat.diffuse(concurrently);
+                 const MapOptions& options, unsigned threads, const Emit& emit) {
+  AffineHeat heat(graph, operators, sources, threads);
+  heat.diffuse();
   if (options.progress.stop.stop_requested()) throw Cancelled("cancelled during solve");
   const std::vector<double> solution = options.variant == Variant::adaptive ? heat.adaptive() : heat.localized();
   const std::size_t size = solution.size() / sources.size();
   for (std::size_t s = 0; s < sources.size(); ++s)
-    emit(s, make_map(heat, s, graph, sources[s], std::span(solution).subspan(s * size, size), options));
+    emit(s, make_map(heat, s, graph, sources[s], std::span(solution).subspan(s * size, size), options, threads));
 }
 
 }  // namespace
@@ -83,8 +84,9 @@ std::vector<LogMap> LogMapSolver::solve(std::span<const Source> sources, const M
   for (const Source& source : sources) check_source(source, *graph_);
   const std::size_t block = sources_per_block(graph_->size());
   const auto count = static_cast<Offset>(sources.size());
-  // One block cannot be shared out, so its two independent solves run side by side instead.
-  const bool single = sources.size() <= block && detail::thread_count(options.threads) > 1 && graph_->size() > 5000;
+  // A single block cannot be shared out: its own steps use the threads instead, where that pays.
+  const bool single = sources.size() <= block && graph_->size() > 5000;
+  const unsigned threads_per_block = single ? detail::thread_count(options.threads) : 1;
 
   std::vector<std::optional<LogMap>> maps(sources.size());
   std::mutex report_mutex;
@@ -92,7 +94,7 @@ std::vector<LogMap> LogMapSolver::solve(std::span<const Source> sources, const M
   options.progress.step("solve", 0.0);
   detail::parallel_chunks(count, static_cast<Offset>(block), options.threads, [&](Offset begin, Offset end) {
     const auto part = sources.subspan(static_cast<std::size_t>(begin), static_cast<std::size_t>(end - begin));
-    solve_block(*graph_, operators_, part, options, single,
+    solve_block(*graph_, operators_, part, options, threads_per_block,
                 [&](std::size_t s, LogMap map) { maps[static_cast<std::size_t>(begin) + s] = std::move(map); });
     std::scoped_lock lock(report_mutex);
     done += end - begin;

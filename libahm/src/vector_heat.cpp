@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "ahm/detail/parallel.hpp"
 #include "ahm/error.hpp"
 #include "affine_heat.hpp"
 #include "small_math.hpp"
@@ -109,8 +110,8 @@ VertexField parallel_transport(const LogMapSolver& solver, const Source& source)
   check_source(source, solver.graph());
   const auto n = solver.graph().size();
   const auto width = static_cast<std::size_t>(solver.graph().dimension()) * solver.graph().dimension();
-  AffineHeat heat(solver.graph(), solver.operators(), {&source, 1});
-  heat.diffuse(true);
+  AffineHeat heat(solver.graph(), solver.operators(), {&source, 1}, detail::thread_count(0));
+  heat.diffuse();
   VertexField field{static_cast<int>(width), std::vector<double>(static_cast<std::size_t>(n) * width), {}};
   for (Index i = 0; i < n; ++i) {
     double* axes = field.values.data() + static_cast<std::size_t>(i) * width;
@@ -124,8 +125,8 @@ VertexField parallel_transport(const LogMapSolver& solver, const Source& source)
 VertexField radial_field(const LogMapSolver& solver, const Source& source) {
   check_source(source, solver.graph());
   const auto d = static_cast<std::size_t>(solver.graph().dimension());
-  AffineHeat heat(solver.graph(), solver.operators(), {&source, 1});
-  heat.diffuse(true);
+  AffineHeat heat(solver.graph(), solver.operators(), {&source, 1}, detail::thread_count(0));
+  heat.diffuse();
   VertexField field{static_cast<int>(d), heat.localized(), {}};
   const auto lambda = heat.lambda(0);
   for (std::size_t i = 0; i < lambda.size(); ++i)

@@ -44,6 +44,14 @@ void parallel_chunks(Offset n, Offset chunk, unsigned threads, const Body& body)
   if (error) std::rethrow_exception(error);
 }
 
+/// Calls body(i) for every i of [0, n), in chunks shared out over the threads.
+template <class Body>
+void for_each_index(std::size_t n, unsigned threads, const Body& body) {
+  parallel_chunks(static_cast<Offset>(n), 1 << 14, threads, [&](Offset begin, Offset end) {
+    for (Offset i = begin; i < end; ++i) body(static_cast<std::size_t>(i));
+  });
+}
+
 /// Runs two tasks at once when `concurrently`, else one after the other; the first exception is rethrown when both ended.
 template <class First, class Second>
 void run_both(bool concurrently, const First& first, const Second& second) {

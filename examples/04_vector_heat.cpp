@@ -1,0 +1,26 @@
+// What the same factors give besides log maps: vectors and scalars carried from where they are known to everywhere.
+#include <ahm/pointcloud/point_cloud_graph.hpp>
+#include <ahm/vector_heat.hpp>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+int main() {
+  std::vector<ahm::Vec3> grid;
+  for (int x = 0; x < 50; ++x)
+    for (int y = 0; y < 50; ++y) grid.push_back({0.02 * x, 0.02 * y, 0.0});
+  const auto cloud = ahm::pointcloud::PointCloudGraph::build(grid);
+  const ahm::LogMapSolver solver(cloud.graph());
+
+  const ahm::Index corner = cloud.vertex_of_point()[0], opposite = cloud.vertex_of_point()[2499];
+  const std::array<ahm::Index, 2> known{corner, opposite};
+
+  // One number known at each of two corners: every point takes that of the nearer one.
+  const ahm::VertexField label = ahm::extend_scalar(solver, known, std::array{1.0, 2.0});
+  std::printf("label near the second corner: %.3f\n", label.values[static_cast<std::size_t>(cloud.vertex_of_point()[2448])]);
+
+  // One vector, carried along shortest paths to the opposite corner.
+  const ahm::VertexField field = ahm::transport_vectors(solver, std::span(known).first(1), std::array{0.6, 0.8});
+  const double* there = field.values.data() + 2 * opposite;
+  std::printf("carried to the opposite corner: (%.3f, %.3f), length %.3f\n", there[0], there[1], std::hypot(there[0], there[1]));
+}

@@ -1,0 +1,31 @@
+/// \file
+/// Solves with a supernodal factor for few right-hand sides.
+///
+/// CHOLMOD calls the BLAS four times per supernode. Our factors have one small supernode for every few vertices, so that for one or
+/// two right-hand sides the calls cost more than reading the factor; these loops run at the speed of memory. From
+/// `max_narrow_columns` on the BLAS is faster.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "ahm/types.hpp"
+
+namespace ahm {
+
+inline constexpr Offset max_narrow_columns = 4;
+
+/// P K P^T = L L^H by supernodes: supernode s has the columns [super[s], super[s + 1]), the rows indices[row_begin[s]...], its own
+/// columns first, and the dense column-major values at value_begin[s].
+struct SupernodalFactor {
+  Offset size;
+  bool is_complex;
+  std::span<const std::int64_t> permutation;  ///< row k of the factor is row permutation[k] of the matrix
+  std::span<const std::int64_t> super, row_begin, value_begin, indices;
+  const double* values;  ///< complex: interleaved pairs
+};
+
+/// X <- K^-1 X for 1 to `max_narrow_columns` columns, column major; complex vectors as interleaved pairs.
+void narrow_solve(const SupernodalFactor& L, std::span<double> X, Offset columns);
+
+}  // namespace ahm

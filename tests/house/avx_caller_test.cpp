@@ -1,0 +1,23 @@
+// Compiled with -mavx against the plainly compiled library: Eigen's alignment differs on the two sides of the border.
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+
+#include "ahm/eigen.hpp"
+#include "ahm/pointcloud/point_cloud_graph.hpp"
+
+TEST(AvxCaller, SeesResultsAsEigenMatrices) {
+  std::vector<ahm::Vec3> points;
+  for (int x = 0; x < 30; ++x)
+    for (int y = 0; y < 30; ++y) points.push_back({1.0 * x, 1.0 * y, 0});
+  const auto cloud = ahm::pointcloud::PointCloudGraph::build(points);
+  const ahm::LogMapSolver solver(cloud.graph());
+  const ahm::LogMap map = solver.solve(cloud.source_at_point(0));
+  const Eigen::VectorXd distance = ahm::coordinates(map).rowwise().norm();
+  EXPECT_NEAR(distance.maxCoeff(), 29 * std::sqrt(2.0), 1e-10);
+  const ahm::VertexField field = ahm::distance(map);
+  const Eigen::MatrixXd copy = ahm::values(field);
+  EXPECT_EQ(copy.rows(), 900);
+  EXPECT_NEAR((copy.col(0) - distance).cwiseAbs().maxCoeff(), 0, 1e-12);
+}
