@@ -104,7 +104,8 @@ void apply_outlier_removal(PreparedCloud& cloud, std::optional<Index> source) {
 
 }  // namespace
 
-PreparedCloud prepare_cloud(const io::Geometry& input, const LogmapOptions& options, std::optional<Index> source) {
+PreparedCloud prepare_cloud(const io::Geometry& input, const LogmapOptions& options,
+                            [[maybe_unused]] std::optional<Index> source) {
   const auto begin = std::chrono::steady_clock::now();
 #ifndef AHM_WITH_PCL
   if (options.voxel || options.outliers) throw InvalidArgument("--voxel and --outliers: this build of ahm has no PCL");

@@ -1,0 +1,40 @@
+#!/usr/bin/env bash
+# Installs what libahm needs on Debian 12, builds the program, gets a real scan and draws its logarithmic map.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+demo=build/demo
+
+scripts/install_packages.sh
+echo "Configuring and building the program (build/demo/program) ..."
+cmake -S . -B "$demo/program" -G Ninja -DCMAKE_BUILD_TYPE=Release -DAHM_BUILD_TESTS=OFF >/dev/null
+cmake --build "$demo/program"
+ahm="$demo/program/bin/ahm"
+
+# Debian's libcgal-demo carries real point sets. It is only unpacked here, not installed.
+scan="$demo/kitten.xyz"
+source_point=-0.05,0.30,0.15
+if [ ! -s "$scan" ]; then
+  echo "Getting a scan from Debian's package libcgal-demo (24 MB) ..."
+  unpack="$(mktemp -d)"
+  trap 'rm -rf "$unpack"' EXIT
+  if (cd "$unpack" && chmod 755 . && apt-get download -qq libcgal-demo 2>/dev/null) &&
+     dpkg-deb --fsys-tarfile "$unpack"/libcgal-demo_*.deb | tar -xO ./usr/share/doc/libcgal-dev/data.tar.gz |
+       tar -xzO data/points_3/kitten.xyz > "$unpack/kitten.xyz"; then
+    mv "$unpack/kitten.xyz" "$scan"
+  fi
+fi
+if [ ! -s "$scan" ]; then
+  echo "The package cannot be had; generating a scan with noise, holes and uneven density instead."
+  scan="$demo/generated.xyz"
+  source_point=0,0.3,1
+  "$demo/program/bin/example_05_generate_scan" > "$scan"
+fi
+
+echo
+"$ahm" info "$scan"
+echo
+"$ahm" logmap "$scan" --source="$source_point" -o "$demo/map.ply" --view "$demo/map.png" --verbose
+"$ahm" logmap "$scan" --source="$source_point" -o "$demo/map.csv" --view "$demo/map.html" >/dev/null
+echo
+echo "The map:     $demo/map.ply, $demo/map.csv"
+echo "The picture: $demo/map.png; to turn it around, open $demo/map.html in a browser."

@@ -1,0 +1,11 @@
+#!/usr/bin/env bash
+# Installs what libahm needs on Debian 12, builds it and runs all tests.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+scripts/install_packages.sh
+echo "Configuring and building (build/release) ..."
+cmake --preset release
+cmake --build --preset release
+echo "Testing ..."
+ctest --preset release --parallel "$(nproc)"
