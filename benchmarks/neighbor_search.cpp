@@ -1,7 +1,8 @@
 // All k = 30 nearest neighbours of a random sphere by each search, points in random order: build and queries.
+#include "ahm/pointcloud/neighbor_search.hpp"
+
 #include <benchmark/benchmark.h>
 
-#include "ahm/pointcloud/neighbor_search.hpp"
 #include "clouds.hpp"
 #ifdef AHM_WITH_PCL
 #include "ahm/pcl/search.hpp"
@@ -20,8 +21,14 @@ void all_neighbors(benchmark::State& state, const ahm::pointcloud::NeighborSearc
   state.SetItemsProcessed(state.iterations() * state.range(0));
 }
 
-BENCHMARK_CAPTURE(all_neighbors, nanoflann, ahm::pointcloud::nanoflann_search)->Arg(10000)->Arg(100000)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(all_neighbors, flann, ahm::pointcloud::flann_search)->Arg(10000)->Arg(100000)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(all_neighbors, nanoflann, ahm::pointcloud::nanoflann_search)
+    ->Arg(10000)
+    ->Arg(100000)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(all_neighbors, flann, ahm::pointcloud::flann_search)
+    ->Arg(10000)
+    ->Arg(100000)
+    ->Unit(benchmark::kMillisecond);
 #ifdef AHM_WITH_PCL
 BENCHMARK_CAPTURE(all_neighbors, pcl, ahm::pcl::kdtree_search)->Arg(10000)->Arg(100000)->Unit(benchmark::kMillisecond);
 #endif

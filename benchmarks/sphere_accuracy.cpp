@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <numbers>
+#include <string>
 
 #include "ahm/log_map_solver.hpp"
 #include "ahm/pointcloud/point_cloud_graph.hpp"
@@ -20,8 +21,8 @@ struct Errors {
 };
 
 /// Root mean square of the vector and angle errors over d <= 0.9 pi, largest vector error over the hemisphere.
-Errors errors(const std::vector<Vec3>& points, const ahm::pointcloud::PointCloudGraph& cloud, const ahm::pointcloud::PointMap& map,
-              ahm::Index source) {
+Errors errors(const std::vector<Vec3>& points, const ahm::pointcloud::PointCloudGraph& cloud,
+              const ahm::pointcloud::PointMap& map, ahm::Index source) {
   const ahm::Frame frame = *cloud.graph().frame(cloud.vertex_of_point()[source]);
   Errors result;
   int count = 0;
@@ -45,22 +46,25 @@ int main(int argc, char** argv) {
   std::vector<ahm::Index> sizes;
   for (int a = 1; a < argc; ++a) sizes.push_back(std::atoi(argv[a]));
   if (sizes.empty()) sizes = {10000, 40000, 160000};
-  std::printf("| points | sampling | t_coef | variant | rms | max, hemisphere | angle rms |\n|---|---|---|---|---|---|---|\n");
+  std::printf(
+      "| points | sampling | t_coef | variant | rms | max, hemisphere | angle rms |\n|---|---|---|---|---|---|---|\n");
   for (ahm::Index n : sizes)
-    for (bool even : {true, false}) {
-      const auto points = even ? ahm::bench::even_sphere(n) : ahm::bench::random_sphere(n);
+    for (std::string sampling : {"icosphere", "spiral", "random"}) {
+      const auto points = sampling == "icosphere" ? ahm::bench::icosphere(n)
+                          : sampling == "spiral"  ? ahm::bench::even_sphere(n)
+                                                  : ahm::bench::random_sphere(n);
       const auto cloud = ahm::pointcloud::PointCloudGraph::build(points);
       for (double t_coef : {1.0, 4.0}) {
         const ahm::LogMapSolver solver(cloud.graph(), {.t_coef = t_coef});
         for (ahm::Variant variant : {ahm::Variant::adaptive, ahm::Variant::localized}) {
           Errors mean;
           for (ahm::Index s = 0; s < 8; ++s) {
-            const ahm::Index source = 7 + s * (n / 8);
+            const ahm::Index source = 7 + s * static_cast<ahm::Index>(points.size() / 8);
             const auto map = cloud.on_points(solver.solve(cloud.source_at_point(source), {.variant = variant}));
             const Errors e = errors(points, cloud, map, source);
             mean.rms += e.rms / 8, mean.hemisphere += e.hemisphere / 8, mean.angle += e.angle / 8;
           }
-          std::printf("| %d | %s | %g | %s | %.4f | %.4f | %.4f |\n", n, even ? "even" : "random", t_coef,
+          std::printf("| %zu | %s | %g | %s | %.4f | %.4f | %.4f |\n", points.size(), sampling.c_str(), t_coef,
                       std::string(ahm::to_string(variant)).c_str(), mean.rms, mean.hemisphere, mean.angle);
         }
       }

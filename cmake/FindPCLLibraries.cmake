@@ -36,6 +36,13 @@ find_package_handle_standard_args(PCLLibraries
   VERSION_VAR PCLLibraries_VERSION HANDLE_COMPONENTS
   REASON_FAILURE_MESSAGE "install PCL (Debian: libpcl-dev) or configure with -DAHM_WITH_PCL=OFF")
 
+# Under the address sanitizer Eigen aligns memory by hand; PCL, compiled without it, does not, and each must be able to free
+# what the other allocated. The sanitizer's malloc is aligned well enough for both.
+set(_pcl_definitions "")
+if("${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${CMAKE_BUILD_TYPE}}" MATCHES "-fsanitize=[^ ]*address")
+  set(_pcl_definitions EIGEN_MALLOC_ALREADY_ALIGNED=1)
+endif()
+
 if(PCLLibraries_FOUND)
   foreach(_component IN LISTS PCLLibraries_FIND_COMPONENTS)
     if(NOT TARGET PCLLibraries::${_component})
@@ -45,10 +52,12 @@ if(PCLLibraries_FOUND)
         INTERFACE_INCLUDE_DIRECTORIES
           "${PCL_INCLUDE_DIR};${PCL_EIGEN_INCLUDE_DIR};${PCL_BOOST_INCLUDE_DIR};${PCL_FLANN_INCLUDE_DIR}"
         # FLANN's headers, which PCL's search includes, compress their index files with lz4 inline.
-        INTERFACE_LINK_LIBRARIES "${PCL_LZ4_LIBRARY}")
+        INTERFACE_LINK_LIBRARIES "${PCL_LZ4_LIBRARY}"
+        INTERFACE_COMPILE_DEFINITIONS "${_pcl_definitions}")
     endif()
   endforeach()
 endif()
 unset(_pcl_versions)
 unset(_pcl_suffixes)
 unset(_pcl_line)
+unset(_pcl_definitions)

@@ -28,5 +28,6 @@ int main() {
 
   ahm::Index covered = 0;
   for (const ahm::LogMap& map : maps) covered += map.count(ahm::Status::ok);
-  std::printf("%zu maps of %.0f points each\n", maps.size(), static_cast<double>(covered) / static_cast<double>(maps.size()));
+  std::printf("%zu maps of %.0f points each\n", maps.size(),
+              static_cast<double>(covered) / static_cast<double>(maps.size()));
 }

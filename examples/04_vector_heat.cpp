@@ -17,10 +17,12 @@ int main() {
 
   // One number known at each of two corners: every point takes that of the nearer one.
   const ahm::VertexField label = ahm::extend_scalar(solver, known, std::array{1.0, 2.0});
-  std::printf("label near the second corner: %.3f\n", label.values[static_cast<std::size_t>(cloud.vertex_of_point()[2448])]);
+  std::printf("label near the second corner: %.3f\n",
+              label.values[static_cast<std::size_t>(cloud.vertex_of_point()[2448])]);
 
   // One vector, carried along shortest paths to the opposite corner.
   const ahm::VertexField field = ahm::transport_vectors(solver, std::span(known).first(1), std::array{0.6, 0.8});
   const double* there = field.values.data() + 2 * opposite;
-  std::printf("carried to the opposite corner: (%.3f, %.3f), length %.3f\n", there[0], there[1], std::hypot(there[0], there[1]));
+  std::printf("carried to the opposite corner: (%.3f, %.3f), length %.3f\n", there[0], there[1],
+              std::hypot(there[0], there[1]));
 }

@@ -12,7 +12,7 @@ ahm="$demo/program/bin/ahm"
 
 # Debian's libcgal-demo carries real point sets. It is only unpacked here, not installed.
 scan="$demo/kitten.xyz"
-source_point=-0.05,0.30,0.15
+source_point=0,0.35,0.1
 if [ ! -s "$scan" ]; then
   echo "Getting a scan from Debian's package libcgal-demo (24 MB) ..."
   unpack="$(mktemp -d)"

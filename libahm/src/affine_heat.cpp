@@ -12,10 +12,12 @@ namespace ahm {
 void check_source(const Source& source, const TangentGraph& graph) {
   const int d = graph.dimension();
   if (source.dimension() != 0 && source.dimension() != d)
-    throw InvalidArgument("source has dimension " + std::to_string(source.dimension()) + ", the graph has " + std::to_string(d));
+    throw InvalidArgument("source has dimension " + std::to_string(source.dimension()) + ", the graph has " +
+                          std::to_string(d));
   for (Index vertex : source.vertices())
     if (vertex < 0 || vertex >= graph.size())
-      throw InvalidArgument("source vertex " + std::to_string(vertex) + " is outside [0, " + std::to_string(graph.size()) + ")");
+      throw InvalidArgument("source vertex " + std::to_string(vertex) + " is outside [0, " +
+                            std::to_string(graph.size()) + ")");
   const auto weights = source.weights();
   if (std::none_of(weights.begin(), weights.end(), [](double b) { return b > 0; }))
     throw InvalidArgument("source has no vertex of positive weight");
@@ -73,7 +75,8 @@ void AffineHeat::diffuse() {
         frames_[s].add_to_rhs(std::span(U).subspan(s * frame_size, frame_size), k, axes, b);
       });
     operators_.solve_vector(U, static_cast<Index>(count * columns));
-    for (std::size_t s = 0; s < count; ++s) frames_[s].normalize(std::span(U).subspan(s * frame_size, frame_size), threads_);
+    for (std::size_t s = 0; s < count; ++s)
+      frames_[s].normalize(std::span(U).subspan(s * frame_size, frame_size), threads_);
   };
   detail::run_both(threads_ > 1, scalar, vector);
 }
@@ -82,8 +85,8 @@ double AffineHeat::length_unit() const {
   return std::ldexp(graph_.length_unit(), std::ilogb(graph_.mean_edge_length()));
 }
 
-/// rho_i = -tau sum_j w_ij e_ij lambda_j, columns of n vectors of d numbers. The translation from j to i is -e_ij: it adds the
-/// displacement j -> i, so that the plane comes out exact.
+/// rho_i = -tau sum_j w_ij e_ij lambda_j, columns of n vectors of d numbers. The translation from j to i is -e_ij: it
+/// adds the displacement j -> i, so that the plane comes out exact.
 std::vector<double> AffineHeat::translations() const {
   std::vector<double> rho(sources_.size() * n_ * d_, 0.0);
   const double factor = -operators_.tau() * operators_.scaling();
@@ -125,8 +128,7 @@ std::vector<double> AffineHeat::localized() const {
     for_each_sample(s, [&](Index k, double b, auto z, auto U) {
       double* out = Y.data() + (s * n_ + static_cast<std::size_t>(k)) * d_;
       for (std::size_t c = 0; c < d_; ++c)
-        for (std::size_t a = 0; a < z.size(); ++a)
-          out[c] += b * U[c * d_ + a] * z[a] / length_unit();
+        for (std::size_t a = 0; a < z.size(); ++a) out[c] += b * U[c * d_ + a] * z[a] / length_unit();
     });
   operators_.solve_vector(Y, static_cast<Index>(sources_.size()));
   return Y;

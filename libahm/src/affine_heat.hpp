@@ -1,8 +1,8 @@
 /// \file
 /// The affine heat method for a block of sources: METHOD steps between sources and coordinates, once for every caller.
 ///
-/// The paper's 3n x 3n systems are block triangular in the homogeneous coordinate lambda; eliminating it leaves solves with
-/// the two fixed operators A and B (docs/method.md):
+/// The paper's 3n x 3n systems are block triangular in the homogeneous coordinate lambda; eliminating it leaves solves
+/// with the two fixed operators A and B (docs/method.md):
 ///
 ///     lambda = A^-1 b                                   b: source weights
 ///     U~     = B^-1 (b U_p),  U_i = U~_i / |U~_i|
@@ -27,7 +27,8 @@ void check_source(const Source& source, const TangentGraph& graph);
 class AffineHeat {
  public:
   /// Sources must have been checked. The numbers do not depend on `threads`.
-  AffineHeat(const TangentGraph& graph, const HeatOperators& operators, std::span<const Source> sources, unsigned threads = 1);
+  AffineHeat(const TangentGraph& graph, const HeatOperators& operators, std::span<const Source> sources,
+             unsigned threads = 1);
 
   /// Solves for lambda and the frames.
   void diffuse();
@@ -36,8 +37,8 @@ class AffineHeat {
   std::vector<double> adaptive() const;
   /// Y of every source: columns of n vectors of d numbers. Multiply by `length_unit()`.
   std::vector<double> localized() const;
-  /// The outside length of 1 in x and Y: a power of two near the mean edge length, times the graph's own unit. It keeps x and Y
-  /// in the range of lambda, which is used up to both ends.
+  /// The outside length of 1 in x and Y: a power of two near the mean edge length, times the graph's own unit. It keeps
+  /// x and Y in the range of lambda, which is used up to both ends.
   double length_unit() const;
 
   /// Whether heat reached the vertex: lambda and U~ are large enough to divide by.
@@ -59,8 +60,8 @@ class AffineHeat {
   std::span<const Source> sources_;
   std::size_t n_, d_;
   unsigned threads_;
-  std::vector<double> lambda_;       ///< n per source
-  std::vector<FrameField> frames_;   ///< one per source
+  std::vector<double> lambda_;      ///< n per source
+  std::vector<FrameField> frames_;  ///< one per source
 };
 
 }  // namespace ahm

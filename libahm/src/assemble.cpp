@@ -11,7 +11,10 @@ namespace {
 class ColumnWriter {
  public:
   ColumnWriter(const TangentGraph& graph, double tau, double scaling)
-      : d_(graph.dimension()), complex_(graph.transport_kind() == TransportKind::rotation2), tau_(tau), scaling_(scaling) {
+      : d_(graph.dimension()),
+        complex_(graph.transport_kind() == TransportKind::rotation2),
+        tau_(tau),
+        scaling_(scaling) {
     const auto n = static_cast<std::size_t>(graph.size());
     const auto entries = static_cast<std::size_t>(graph.edge_count()) / 2 + n;
     const std::size_t blocks = complex_ ? 1 : static_cast<std::size_t>(d_) * d_;
@@ -46,8 +49,7 @@ class ColumnWriter {
   void gather(Index i, const Star& star) {
     order_.resize(star.degree());
     std::iota(order_.begin(), order_.end(), 0);
-    std::stable_sort(order_.begin(), order_.end(),
-                     [&](int a, int b) { return star.neighbors[a] < star.neighbors[b]; });
+    std::stable_sort(order_.begin(), order_.end(), [&](int a, int b) { return star.neighbors[a] < star.neighbors[b]; });
     columns_.clear();
     scalar_.clear();
     blocks_.clear();

@@ -22,8 +22,8 @@ class Common {
  public:
   explicit Common(bool supernodal = true) {
     cholmod_l_start(&common_);
-    common_.print = 0;           // the library never prints
-    common_.final_ll = 1;        // LL^T, never LDL^T: a non-positive pivot is an error
+    common_.print = 0;     // the library never prints
+    common_.final_ll = 1;  // LL^T, never LDL^T: a non-positive pivot is an error
     common_.quick_return_if_not_posdef = 1;
     common_.supernodal = supernodal && AHM_SUPERNODAL ? CHOLMOD_SUPERNODAL : CHOLMOD_SIMPLICIAL;
   }
@@ -85,8 +85,8 @@ cholmod_dense dense_view(std::span<double> X, Offset rows, Offset columns, bool 
 
 SupernodalFactor supernodal_view(const cholmod_factor& L) {
   auto array = [](void* data, std::size_t size) { return std::span(static_cast<const std::int64_t*>(data), size); };
-  return {static_cast<Offset>(L.n),      L.xtype == CHOLMOD_COMPLEX,  array(L.Perm, L.n),   array(L.super, L.nsuper + 1),
-          array(L.pi, L.nsuper + 1), array(L.px, L.nsuper + 1), array(L.s, L.ssize), static_cast<const double*>(L.x)};
+  return {static_cast<Offset>(L.n),  L.xtype == CHOLMOD_COMPLEX, array(L.Perm, L.n),  array(L.super, L.nsuper + 1),
+          array(L.pi, L.nsuper + 1), array(L.px, L.nsuper + 1),  array(L.s, L.ssize), static_cast<const double*>(L.x)};
 }
 
 /// Smallest and largest real diagonal entry of L; NaN where one is not finite.
@@ -206,7 +206,8 @@ struct CholeskyFactor::Impl {
     const double scale = largest(matrix.values) * largest(x) + largest(b);
     if (!(largest(residual) <= 1e-10 * scale))
       throw NotPositiveDefinite(std::string("operator ") + name + ": the factorization fails its residual check (" +
-                                detail::number(largest(residual) / scale) + " relative); the graph is too ill-conditioned");
+                                detail::number(largest(residual) / scale) +
+                                " relative); the graph is too ill-conditioned");
   }
 };
 

@@ -11,8 +11,8 @@ namespace {
 
 void expect_length(const char* name, std::size_t actual, std::size_t expected) {
   if (actual != expected)
-    throw InvalidGraph(std::string("CsrGraph: array '") + name + "' has length " + std::to_string(actual) + ", expected " +
-                       std::to_string(expected));
+    throw InvalidGraph(std::string("CsrGraph: array '") + name + "' has length " + std::to_string(actual) +
+                       ", expected " + std::to_string(expected));
 }
 
 void check_rows(const CsrGraphData& g) {

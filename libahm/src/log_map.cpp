@@ -9,11 +9,16 @@ namespace ahm {
 
 std::string_view to_string(Status status) noexcept {
   switch (status) {
-    case Status::ok: return "ok";
-    case Status::component: return "component";
-    case Status::radius: return "radius";
-    case Status::unreached: return "unreached";
-    case Status::removed: return "removed";
+    case Status::ok:
+      return "ok";
+    case Status::component:
+      return "component";
+    case Status::radius:
+      return "radius";
+    case Status::unreached:
+      return "unreached";
+    case Status::removed:
+      return "removed";
   }
   return "unknown";
 }
@@ -22,7 +27,8 @@ std::string_view to_string(Variant variant) noexcept { return variant == Variant
 
 std::string_view to_string(Strategy strategy) noexcept {
   switch (strategy) {
-    case Strategy::global: return "global";
+    case Strategy::global:
+      return "global";
   }
   return "unknown";
 }

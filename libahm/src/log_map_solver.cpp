@@ -7,24 +7,25 @@
 #include <optional>
 #include <string>
 
+#include "affine_heat.hpp"
 #include "ahm/detail/parallel.hpp"
 #include "ahm/detail/text.hpp"
 #include "ahm/error.hpp"
-#include "affine_heat.hpp"
 #include "small_math.hpp"
 
 namespace ahm {
 namespace {
 
-/// Sources per block of right-hand sides: as many as 2^24 vertices' worth of memory allows, at most 16. It must not depend on
-/// the number of threads, since the block size may change the last bits of a solve.
+/// Sources per block of right-hand sides: as many as 2^24 vertices' worth of memory allows, at most 16. It must not
+/// depend on the number of threads, since the block size may change the last bits of a solve.
 std::size_t sources_per_block(Index n) {
   return static_cast<std::size_t>(std::clamp<Offset>((Offset{1} << 24) / std::max<Index>(n, 1), 1, 16));
 }
 
 void check_options(const MapOptions& options) {
   if (!(options.radius > 0))
-    throw InvalidArgument("radius is " + detail::number(options.radius) + "; it must be > 0 (infinity: the whole graph)");
+    throw InvalidArgument("radius is " + detail::number(options.radius) +
+                          "; it must be > 0 (infinity: the whole graph)");
 }
 
 /// Coordinates and status of one source from its x (adaptive) or Y (localized).
@@ -54,7 +55,8 @@ LogMap make_map(const AffineHeat& heat, std::size_t s, const TangentGraph& graph
       status[i] = Status::radius;
     if (status[i] != Status::ok) std::fill(phi.begin(), phi.end(), NAN);
   });
-  return LogMap(static_cast<int>(d), options.variant, Strategy::global, source, std::move(coordinates), std::move(status));
+  return LogMap(static_cast<int>(d), options.variant, Strategy::global, source, std::move(coordinates),
+                std::move(status));
 }
 
 /// Solves one block of sources and hands each map to `emit`.

@@ -54,7 +54,8 @@ Source& Source::add(Index vertex, double weight, std::span<const double> offset,
   if (offset.size() != d || !all_finite(offset))
     throw InvalidArgument(where + "'offset' must be " + std::to_string(d) + " finite numbers");
   if (axes.size() != d * d || !all_finite(axes) || !is_orthogonal(axes, d))
-    throw InvalidArgument(where + "'axes' must be an orthogonal " + std::to_string(d) + " x " + std::to_string(d) + " matrix");
+    throw InvalidArgument(where + "'axes' must be an orthogonal " + std::to_string(d) + " x " + std::to_string(d) +
+                          " matrix");
   vertices_.push_back(vertex);
   weights_.push_back(weight);
   offsets_.insert(offsets_.end(), offset.begin(), offset.end());

@@ -6,7 +6,8 @@
 namespace ahm {
 namespace {
 
-/// The kernels for K columns of real (W = 1) or complex (W = 2) numbers. Vectors are stored row by row: K numbers of row 0, ...
+/// The kernels for K columns of real (W = 1) or complex (W = 2) numbers. Vectors are stored row by row: K numbers of
+/// row 0, ...
 template <int W, int K>
 class NarrowSolve {
   static constexpr int width = W * K;
@@ -14,7 +15,8 @@ class NarrowSolve {
  public:
   explicit NarrowSolve(const SupernodalFactor& L) : L_(L), x_(static_cast<std::size_t>(L.size) * width) {
     Offset longest = 0;
-    for (std::size_t s = 0; s + 1 < L.row_begin.size(); ++s) longest = std::max(longest, L.row_begin[s + 1] - L.row_begin[s]);
+    for (std::size_t s = 0; s + 1 < L.row_begin.size(); ++s)
+      longest = std::max(longest, L.row_begin[s + 1] - L.row_begin[s]);
     below_.resize(static_cast<std::size_t>(longest) * width);
   }
 
@@ -100,6 +102,8 @@ class NarrowSolve {
   void forward(const Supernode& s) {
     double* own = x_.data() + s.first * width;
     const Offset below = s.rows - s.columns;
+    // A point source is zero almost everywhere, and stays so outside its path to the root of the elimination tree.
+    if (std::all_of(own, own + s.columns * width, [](double value) { return value == 0; })) return;
     std::fill_n(below_.begin(), below * width, 0.0);
     for (Offset j = 0; j < s.columns; ++j) {
       const double* L = s.column(j);
@@ -134,10 +138,14 @@ class NarrowSolve {
 template <int W>
 void dispatch(const SupernodalFactor& L, std::span<double> X, Offset columns) {
   switch (columns) {
-    case 1: return NarrowSolve<W, 1>(L).solve(X);
-    case 2: return NarrowSolve<W, 2>(L).solve(X);
-    case 3: return NarrowSolve<W, 3>(L).solve(X);
-    case 4: return NarrowSolve<W, 4>(L).solve(X);
+    case 1:
+      return NarrowSolve<W, 1>(L).solve(X);
+    case 2:
+      return NarrowSolve<W, 2>(L).solve(X);
+    case 3:
+      return NarrowSolve<W, 3>(L).solve(X);
+    case 4:
+      return NarrowSolve<W, 4>(L).solve(X);
   }
 }
 

@@ -1,9 +1,9 @@
 /// \file
 /// Solves with a supernodal factor for few right-hand sides.
 ///
-/// CHOLMOD calls the BLAS four times per supernode. Our factors have one small supernode for every few vertices, so that for one or
-/// two right-hand sides the calls cost more than reading the factor; these loops run at the speed of memory. From
-/// `max_narrow_columns` on the BLAS is faster.
+/// CHOLMOD calls the BLAS four times per supernode. Our factors have one small supernode for every few vertices, so
+/// that for one or two right-hand sides the calls cost more than reading the factor; these loops run at the speed of
+/// memory. From `max_narrow_columns` on the BLAS is faster.
 #pragma once
 
 #include <cstdint>
@@ -15,8 +15,8 @@ namespace ahm {
 
 inline constexpr Offset max_narrow_columns = 4;
 
-/// P K P^T = L L^H by supernodes: supernode s has the columns [super[s], super[s + 1]), the rows indices[row_begin[s]...], its own
-/// columns first, and the dense column-major values at value_begin[s].
+/// P K P^T = L L^H by supernodes: supernode s has the columns [super[s], super[s + 1]), the rows
+/// indices[row_begin[s]...], its own columns first, and the dense column-major values at value_begin[s].
 struct SupernodalFactor {
   Offset size;
   bool is_complex;

@@ -72,7 +72,8 @@ void check_star_shape(const Star& s, Index i, std::size_t transport_width) {
 void check_vertex(const TangentGraph& graph, Index i, const TransportAlgebra& algebra) {
   const double mass = graph.mass(i);
   if (!(mass > 0) || !std::isfinite(mass))
-    throw InvalidGraph("mass of vertex " + std::to_string(i) + " is " + detail::number(mass) + "; it must be finite and > 0");
+    throw InvalidGraph("mass of vertex " + std::to_string(i) + " is " + detail::number(mass) +
+                       "; it must be finite and > 0");
   const Star s = graph.star(i);
   check_star_shape(s, i, algebra.width());
   for (std::size_t e = 0; e < s.degree(); ++e) {
@@ -106,8 +107,9 @@ void check_pair(const OwnedStar& from, Index i, const Star& to, Index j, const T
       used[r] = matched = true;
     }
     if (!matched)
-      throw InvalidGraph(edge_name(i, j) + (weight_seen ? ": the transports of the two directions are not inverse to each other"
-                                                        : ": the reverse edge is missing or has another weight"));
+      throw InvalidGraph(edge_name(i, j) + (weight_seen
+                                                ? ": the transports of the two directions are not inverse to each other"
+                                                : ": the reverse edge is missing or has another weight"));
   }
   const auto backward = static_cast<std::size_t>(std::count(to.neighbors.begin(), to.neighbors.end(), i));
   if (forward != backward)
@@ -124,7 +126,8 @@ void validate(const TangentGraph& graph) {
   if (graph.transport_kind() == TransportKind::rotation2 && d != 2)
     throw InvalidGraph("rotation2 transports need dimension 2, not " + std::to_string(d));
   const double h = graph.mean_edge_length();
-  if (!(h > 0) || !std::isfinite(h)) throw InvalidGraph("mean edge length " + detail::number(h) + " must be finite and > 0");
+  if (!(h > 0) || !std::isfinite(h))
+    throw InvalidGraph("mean edge length " + detail::number(h) + " must be finite and > 0");
 
   const TransportAlgebra algebra{d, graph.transport_kind()};
   for (Index i = 0; i < graph.size(); ++i) check_vertex(graph, i, algebra);

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <string>
 
+#include "affine_heat.hpp"
 #include "ahm/detail/parallel.hpp"
 #include "ahm/error.hpp"
-#include "affine_heat.hpp"
 #include "small_math.hpp"
 
 namespace ahm {
@@ -79,8 +79,10 @@ VertexField extend_scalar(const LogMapSolver& solver, std::span<const Index> ver
   return field;
 }
 
-VertexField transport_vectors(const LogMapSolver& solver, std::span<const Index> vertices, std::span<const double> vectors) {
-  const auto n = static_cast<std::size_t>(solver.graph().size()), d = static_cast<std::size_t>(solver.graph().dimension());
+VertexField transport_vectors(const LogMapSolver& solver, std::span<const Index> vertices,
+                              std::span<const double> vectors) {
+  const auto n = static_cast<std::size_t>(solver.graph().size()),
+             d = static_cast<std::size_t>(solver.graph().dimension());
   check_values(vectors, vertices.size() * d, "vectors");
   const Source source = plain_source(solver, vertices);
   const AffineHeat heat(solver.graph(), solver.operators(), {&source, 1});
@@ -137,8 +139,8 @@ VertexField radial_field(const LogMapSolver& solver, const Source& source) {
 }
 
 VertexField distance(const LogMap& map) {
-  VertexField field{1, std::vector<double>(static_cast<std::size_t>(map.size())),
-                    {map.status().begin(), map.status().end()}};
+  VertexField field{
+      1, std::vector<double>(static_cast<std::size_t>(map.size())), {map.status().begin(), map.status().end()}};
   for (Index i = 0; i < map.size(); ++i) field.values[static_cast<std::size_t>(i)] = map.distance(i);
   return field;
 }

@@ -150,12 +150,12 @@ TEST(CloudFaults, NormalsOfEitherSignGiveTheSameMap) {
   }
 }
 
-TEST(CloudFaults, UselessNormalsAreRefusedOrIgnored) {
+TEST(CloudFaults, MissingNormalsAreEstimated) {
   const auto points = plane(20);
   std::vector<Vec3> normals(points.size(), Vec3{0, 0, 1});
   normals[5] = {0, 0, 0};
-  expect_refused(xyz(points, normals), "--normals estimate");
-  EXPECT_EQ(count(map_cloud(xyz(points, normals), {"--normals", "estimate"}), "ok"), points.size());
+  for (const std::vector<std::string>& how : {std::vector<std::string>{}, {"--normals", "estimate"}})
+    EXPECT_EQ(count(map_cloud(xyz(points, normals), how), "ok"), points.size());
   expect_refused(xyz(points), "--normals oriented", {"--normals", "oriented"});
 }
 
@@ -166,7 +166,7 @@ TEST(CloudFaults, TwoSheetsOfAThinWallStayApart) {
   const auto back = moved(front, {0, 0, 0.012});
   std::vector<Vec3> normals(front.size(), Vec3{0, 0, -1});
   normals.resize(2 * front.size(), Vec3{0, 0, 1});
-  const auto result = map_cloud(xyz(joined(front, back), normals), {"--normals", "oriented"});
+  const auto result = map_cloud(xyz(joined(front, back), normals));
   EXPECT_GT(result.json.at("pointcloud").at("rejected_normals").get<long>(), 0);
   for (std::size_t i = 0; i < front.size(); ++i) {
     EXPECT_EQ(result.rows[i].status, "ok");

@@ -1,4 +1,5 @@
-// The log map of flat space is the identity, to rounding, whatever the graph, its weights, masses and frames (Remark 2, App. B).
+// The log map of flat space is the identity, to rounding, whatever the graph, its weights, masses and frames (Remark 2,
+// App. B).
 #include <gtest/gtest.h>
 
 #include "ahm/log_map_solver.hpp"
@@ -95,8 +96,7 @@ TEST(LogMap, IsExactFromAStraightCurve) {
   for (Variant variant : {Variant::adaptive, Variant::localized}) {
     const LogMap map = solver.solve(curve, {.variant = variant});
     for (Index i = 0; i < flat.size(); ++i)
-      for (int a = 0; a < 2; ++a)
-        ASSERT_NEAR(map.coordinates(i)[a], flat.positions[i * 2 + a], gate * flat.diameter());
+      for (int a = 0; a < 2; ++a) ASSERT_NEAR(map.coordinates(i)[a], flat.positions[i * 2 + a], gate * flat.diameter());
   }
 }
 

@@ -11,7 +11,8 @@ namespace ahm::test {
 namespace {
 
 /// c (m_i x_i + tau sum_j w_ij (x_i - R_ji x_j)), with R = 1 for scalars: the operators as the paper writes them.
-std::vector<double> apply(const CsrGraph& graph, const HeatOperators& heat, const std::vector<double>& x, bool vectors) {
+std::vector<double> apply(const CsrGraph& graph, const HeatOperators& heat, const std::vector<double>& x,
+                          bool vectors) {
   std::vector<double> y(x.size());
   const std::size_t width = vectors ? 2 : 1;
   for (Index i = 0; i < graph.size(); ++i) {
@@ -22,7 +23,8 @@ std::vector<double> apply(const CsrGraph& graph, const HeatOperators& heat, cons
       const double w = heat.tau() * star.weights[e];
       const double* other = x.data() + star.neighbors[e] * static_cast<Index>(width);
       const double c = star.transports[2 * e], s = star.transports[2 * e + 1];
-      const double carried[2] = {vectors ? c * other[0] - s * other[1] : other[0], vectors ? s * other[0] + c * other[1] : 0.0};
+      const double carried[2] = {vectors ? c * other[0] - s * other[1] : other[0],
+                                 vectors ? s * other[0] + c * other[1] : 0.0};
       for (std::size_t a = 0; a < width; ++a) sum[a] += w * (x[i * width + a] - carried[a]);
     }
     for (std::size_t a = 0; a < width; ++a) y[i * width + a] = heat.scaling() * sum[a];

@@ -2,6 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#ifdef __SSE2__
+#include <xmmintrin.h>
+#endif
 
 #include "ahm/error.hpp"
 #include "ahm/log_map_solver.hpp"
@@ -80,7 +83,8 @@ TEST(Reach, MasksBeyondTheRadiusAndChangesNothingWithin) {
   const FlatGraph flat = planar_triangulation(16);
   const CsrGraph graph(flat.data);
   const LogMapSolver solver(graph);
-  const LogMap whole = solver.solve(Source::at_vertex(100)), local = solver.solve(Source::at_vertex(100), {.radius = 0.3});
+  const LogMap whole = solver.solve(Source::at_vertex(100)),
+               local = solver.solve(Source::at_vertex(100), {.radius = 0.3});
   expect_nan_exactly_where_not_ok(local);
   for (Index i = 0; i < flat.size(); ++i) {
     ASSERT_EQ(local.status(i), whole.distance(i) <= 0.3 ? Status::ok : Status::radius);
@@ -89,6 +93,24 @@ TEST(Reach, MasksBeyondTheRadiusAndChangesNothingWithin) {
   EXPECT_GT(local.count(Status::radius), 0);
   EXPECT_GT(local.count(Status::ok), 0);
 }
+
+#ifdef __SSE2__
+TEST(Reach, DoesNotNeedDenormalNumbers) {
+  // A caller compiled with -ffast-math switches them off for the whole process.
+  const FlatGraph flat = strip(3000);
+  const CsrGraph graph(flat.data);
+  const LogMap expected = LogMapSolver(graph).solve(Source::at_vertex(1));
+  const unsigned mode = _mm_getcsr();
+  _mm_setcsr(mode | 0x8040);  // flush to zero, denormals are zero
+  const LogMap map = LogMapSolver(graph).solve(Source::at_vertex(1));
+  _mm_setcsr(mode);
+  for (Index i = 0; i < flat.size(); ++i) {
+    ASSERT_EQ(map.status(i), expected.status(i));
+    if (map.status(i) == Status::ok)
+      ASSERT_NEAR(map.coordinates(i)[0], expected.coordinates(i)[0], 1e-11 * flat.diameter());
+  }
+}
+#endif
 
 TEST(Reach, SolvesASingleVertex) {
   CsrGraphData g;
@@ -102,7 +124,8 @@ TEST(Reach, SolvesASingleVertex) {
 
 TEST(Reach, SurvivesMassesOverTwentyOrdersOfMagnitude) {
   FlatGraph flat = planar_triangulation(12);
-  for (std::size_t i = 0; i < flat.data.masses.size(); ++i) flat.data.masses[i] *= std::pow(10.0, -20.0 * (i % 5) / 4.0);
+  for (std::size_t i = 0; i < flat.data.masses.size(); ++i)
+    flat.data.masses[i] *= std::pow(10.0, -20.0 * (i % 5) / 4.0);
   const CsrGraph graph(flat.data);
   const LogMapSolver solver(graph);
   for (Index p : {3, 4, 70}) {

@@ -96,7 +96,8 @@ TEST_P(Symmetry, IsTheSameForEveryOrderingAndFactorization) {
   const auto map = solve(sphere, 5, GetParam());
   expect_close(solve(sphere, 5, GetParam(), {.ordering = Ordering::nested_dissection}), map, 1e-11);
   expect_close(solve(sphere, 5, GetParam(), {.supernodal = false}), map, 1e-11);
-  expect_close(solve(as_blocks(sphere), 5, GetParam(), {.ordering = Ordering::nested_dissection, .supernodal = false}), map, 1e-11);
+  expect_close(solve(as_blocks(sphere), 5, GetParam(), {.ordering = Ordering::nested_dissection, .supernodal = false}),
+               map, 1e-11);
 }
 
 TEST_P(Symmetry, HasTheSourceAtTheOrigin) {

@@ -33,21 +33,46 @@ TEST(Validate, AcceptsSoundGraphs) {
 
 TEST(Validate, NamesTheBrokenLaw) {
   const CsrGraphData g = sphere_graph(80);
-  expect_invalid(g, [](auto& b) { b.masses[7] = 0; }, "mass of vertex 7");
-  expect_invalid(g, [](auto& b) { b.masses[7] = INFINITY; }, "mass of vertex 7");
-  expect_invalid(g, [](auto& b) { b.weights[0] = NAN; }, "weight is not finite");
-  expect_invalid(g, [](auto& b) { b.weights[0] *= 1.001; }, "another weight");
-  expect_invalid(g, [](auto& b) { b.logs[3] = NAN; b.mean_edge_length = 1.0; }, "logarithm is not finite");
-  expect_invalid(g, [](auto& b) { b.transports[0] *= 1.01; }, "not orthogonal");
-  expect_invalid(g, [](auto& b) { std::swap(b.transports[0], b.transports[1]); }, "not inverse");
-  expect_invalid(g, [](auto& b) { b.neighbors[0] = 0; }, "self loops");
-  expect_invalid(g, [](auto& b) { b.neighbors[0] = 79; }, "edge 0 -> 79");
-  expect_invalid(g, [](auto& b) { b.neighbors[0] = 80; }, "outside [0, 80)");
-  expect_invalid(g, [](auto& b) { b.mean_edge_length = 0.0; }, "mean edge length");
-  expect_invalid(g, [](auto& b) { b.weights.pop_back(); }, "'weights' has length");
-  expect_invalid(g, [](auto& b) { b.row_begin[3] = 100000; }, "row_begin");
-  expect_invalid(CsrGraphData{.row_begin = {0}}, [](auto&) {}, "no vertices");
-  expect_invalid(line_graph(4).data, [](auto& b) { b.kind = TransportKind::rotation2; b.transports.resize(12); }, "dimension 2");
+  expect_invalid(
+      g, [](auto& b) { b.masses[7] = 0; }, "mass of vertex 7");
+  expect_invalid(
+      g, [](auto& b) { b.masses[7] = INFINITY; }, "mass of vertex 7");
+  expect_invalid(
+      g, [](auto& b) { b.weights[0] = NAN; }, "weight is not finite");
+  expect_invalid(
+      g, [](auto& b) { b.weights[0] *= 1.001; }, "another weight");
+  expect_invalid(
+      g,
+      [](auto& b) {
+        b.logs[3] = NAN;
+        b.mean_edge_length = 1.0;
+      },
+      "logarithm is not finite");
+  expect_invalid(
+      g, [](auto& b) { b.transports[0] *= 1.01; }, "not orthogonal");
+  expect_invalid(
+      g, [](auto& b) { std::swap(b.transports[0], b.transports[1]); }, "not inverse");
+  expect_invalid(
+      g, [](auto& b) { b.neighbors[0] = 0; }, "self loops");
+  expect_invalid(
+      g, [](auto& b) { b.neighbors[0] = 79; }, "edge 0 -> 79");
+  expect_invalid(
+      g, [](auto& b) { b.neighbors[0] = 80; }, "outside [0, 80)");
+  expect_invalid(
+      g, [](auto& b) { b.mean_edge_length = 0.0; }, "mean edge length");
+  expect_invalid(
+      g, [](auto& b) { b.weights.pop_back(); }, "'weights' has length");
+  expect_invalid(
+      g, [](auto& b) { b.row_begin[3] = 100000; }, "row_begin");
+  expect_invalid(
+      CsrGraphData{.row_begin = {0}}, [](auto&) {}, "no vertices");
+  expect_invalid(
+      line_graph(4).data,
+      [](auto& b) {
+        b.kind = TransportKind::rotation2;
+        b.transports.resize(12);
+      },
+      "dimension 2");
 }
 
 TEST(Validate, FindsAMissingReverseEdge) {

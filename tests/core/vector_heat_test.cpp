@@ -15,7 +15,9 @@ namespace {
 class VectorHeat : public testing::TestWithParam<TransportKind> {
  protected:
   VectorHeat()
-      : flat(planar_triangulation(14, GetParam(), GetParam() == TransportKind::block)), graph(flat.data), solver(graph) {}
+      : flat(planar_triangulation(14, GetParam(), GetParam() == TransportKind::block)),
+        graph(flat.data),
+        solver(graph) {}
   FlatGraph flat;
   CsrGraph graph;
   LogMapSolver solver;

@@ -84,7 +84,8 @@ std::array<double, 2> sphere_log(const Vec3& p, const Vec3& x, const Vec3& y, co
   return sine > 0 ? std::array{angle / sine * u, angle / sine * v} : std::array{0.0, 0.0};
 }
 
-SphereError sphere_error(const Cloud& sphere, const pointcloud::PointCloudGraph& graph, const pointcloud::PointMap& map, Index p) {
+SphereError sphere_error(const Cloud& sphere, const pointcloud::PointCloudGraph& graph, const pointcloud::PointMap& map,
+                         Index p) {
   const Frame frame = *graph.graph().frame(graph.vertex_of_point()[p]);
   // The axes at the source as the solver has them, made tangent to the true sphere.
   const Vec3& normal = sphere.normals[p];
@@ -103,7 +104,8 @@ SphereError sphere_error(const Cloud& sphere, const pointcloud::PointCloudGraph&
     if (distance > 0.9 * pi || static_cast<Index>(i) == p) continue;
     ++count;
     const double off = std::hypot(map.u[i] - exact[0], map.v[i] - exact[1]);
-    const double angle = std::atan2(map.v[i] * exact[0] - map.u[i] * exact[1], map.u[i] * exact[0] + map.v[i] * exact[1]);
+    const double angle =
+        std::atan2(map.v[i] * exact[0] - map.u[i] * exact[1], map.u[i] * exact[0] + map.v[i] * exact[1]);
     error.rms += off * off;
     error.angle_rms += angle * angle;
     if (distance < pi / 2) error.hemisphere_max = std::max(error.hemisphere_max, off);
@@ -114,8 +116,8 @@ SphereError sphere_error(const Cloud& sphere, const pointcloud::PointCloudGraph&
 }
 
 Solved::Solved(const Cloud& cloud, bool with_normals, pointcloud::CloudOptions options)
-    : graph(pointcloud::PointCloudGraph::build(cloud.points, with_normals ? std::span<const Vec3>(cloud.normals) : std::span<const Vec3>(),
-                                               options)),
+    : graph(pointcloud::PointCloudGraph::build(
+          cloud.points, with_normals ? std::span<const Vec3>(cloud.normals) : std::span<const Vec3>(), options)),
       solver(graph.graph()) {}
 
 pointcloud::PointMap Solved::map(Index point, Variant variant) const {

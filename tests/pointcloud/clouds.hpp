@@ -23,7 +23,8 @@ Cloud flat_cloud(Index n, unsigned seed = 1);
 /// The unit sphere, evenly (a golden spiral) or at random.
 Cloud even_sphere(Index n);
 Cloud random_sphere(Index n, unsigned seed = 1);
-/// A jittered grid of `rows` points a side on the unit square, rolled to a cylinder of radius `radius` about the x axis.
+/// A jittered grid of `rows` points a side on the unit square, rolled to a cylinder of radius `radius` about the x
+/// axis.
 Cloud rolled_cloud(Index rows, double radius);
 /// A Moebius band of unit radius and half-width 0.4.
 Cloud moebius_cloud(Index n, unsigned seed = 1);
@@ -35,7 +36,8 @@ struct SphereError {
   double rms, angle_rms, hemisphere_max;
 };
 /// Errors against the closed form from input point p, over d < 0.9 pi; all points must be ok.
-SphereError sphere_error(const Cloud& sphere, const pointcloud::PointCloudGraph& graph, const pointcloud::PointMap& map, Index p);
+SphereError sphere_error(const Cloud& sphere, const pointcloud::PointCloudGraph& graph, const pointcloud::PointMap& map,
+                         Index p);
 
 /// Builds, factors and solves in one go.
 struct Solved {

@@ -27,7 +27,8 @@ void expect_error(const std::vector<Vec3>& points, const std::string& text, cons
 
 void expect_nan_exactly_where_not_ok(const PointMap& map) {
   for (std::size_t i = 0; i < map.status.size(); ++i)
-    for (double x : {map.u[i], map.v[i], map.distance[i], map.angle[i]}) ASSERT_EQ(std::isnan(x), map.status[i] != Status::ok);
+    for (double x : {map.u[i], map.v[i], map.distance[i], map.angle[i]})
+      ASSERT_EQ(std::isnan(x), map.status[i] != Status::ok);
 }
 
 TEST(CloudFaults, TooFewPoints) {
@@ -75,7 +76,8 @@ TEST(CloudFaults, FewerPointsThanNeighboursAskedFor) {
   EXPECT_NE(solved.graph.report().warnings.at(0).find("reduced to 11"), std::string::npos);
   const PointMap map = solved.map(0);
   for (std::size_t i = 0; i < 12; ++i)
-    EXPECT_NEAR(map.distance[i], std::hypot(cloud.plane[i][0] - cloud.plane[0][0], cloud.plane[i][1] - cloud.plane[0][1]), 1e-12);
+    EXPECT_NEAR(map.distance[i],
+                std::hypot(cloud.plane[i][0] - cloud.plane[0][0], cloud.plane[i][1] - cloud.plane[0][1]), 1e-12);
 }
 
 TEST(CloudFaults, ThreePointsAreATriangle) {
@@ -123,7 +125,8 @@ TEST(CloudFaults, SeparateClustersAreMasked) {
   EXPECT_EQ(solved.graph.report().components, 2);
   const PointMap map = solved.map(3);
   expect_nan_exactly_where_not_ok(map);
-  for (std::size_t i = 0; i < cloud.points.size(); ++i) ASSERT_EQ(map.status[i], i < first ? Status::ok : Status::component);
+  for (std::size_t i = 0; i < cloud.points.size(); ++i)
+    ASSERT_EQ(map.status[i], i < first ? Status::ok : Status::component);
 }
 
 TEST(CloudFaults, IsolatedOutliersDoNotBendTheMap) {
@@ -131,13 +134,15 @@ TEST(CloudFaults, IsolatedOutliersDoNotBendTheMap) {
   const std::size_t first = cloud.points.size();
   std::mt19937_64 random(8);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-  for (int i = 0; i < 20; ++i) cloud.points.push_back({3 + 3 * uniform(random), 3 * uniform(random), 4 + uniform(random)});
+  for (int i = 0; i < 20; ++i)
+    cloud.points.push_back({3 + 3 * uniform(random), 3 * uniform(random), 4 + uniform(random)});
   const Solved solved(cloud);
   const PointMap map = solved.map(3);
   for (std::size_t i = first; i < cloud.points.size(); ++i) EXPECT_NE(map.status[i], Status::ok);
   for (std::size_t i = 0; i < first; ++i) {
     ASSERT_EQ(map.status[i], Status::ok);
-    ASSERT_NEAR(map.distance[i], std::hypot(cloud.plane[i][0] - cloud.plane[3][0], cloud.plane[i][1] - cloud.plane[3][1]), 1e-11);
+    ASSERT_NEAR(map.distance[i],
+                std::hypot(cloud.plane[i][0] - cloud.plane[3][0], cloud.plane[i][1] - cloud.plane[3][1]), 1e-11);
   }
 }
 

@@ -1,6 +1,7 @@
 // Signs of normals: they fix the mirror where they can be trusted, and change nothing else.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -9,7 +10,6 @@
 namespace ahm::test {
 namespace {
 
-using pointcloud::NormalSigns;
 using pointcloud::PointMap;
 
 /// The axes at the source may differ between two graphs: compare in the basis of two reference points.
@@ -79,6 +79,14 @@ TEST(Normals, MissingAmongGivenOnesAreEstimatedAndCounted) {
   EXPECT_LT(sphere_error(cloud, solved.graph, solved.map(5), 5).angle_rms, 0.05);
 }
 
+TEST(Normals, ThatAreAllMissingAreNoNormals) {
+  Cloud cloud = even_sphere(1000);
+  const PointMap without = Solved(cloud).map(5);
+  std::fill(cloud.normals.begin(), cloud.normals.end(), Vec3{0, 0, 0});
+  const PointMap map = Solved(cloud, true).map(5);
+  EXPECT_EQ(map.u, without.u);
+}
+
 TEST(Normals, OfTwoSheetsOfAThinWallKeepThemApart) {
   // Two parallel squares a tenth of the spacing apart, facing away from each other.
   Cloud wall;
@@ -89,16 +97,16 @@ TEST(Normals, OfTwoSheetsOfAThinWallKeepThemApart) {
     wall.points.push_back({uniform(random), uniform(random), side * 0.001});
     wall.normals.push_back({0, 0, side});
   }
-  pointcloud::CloudOptions trusted;
-  trusted.normal_signs = NormalSigns::oriented;
-  const Solved solved(wall, true, trusted);
+  const Solved solved(wall, true);
+  EXPECT_TRUE(solved.graph.report().oriented);
   EXPECT_GT(solved.graph.report().rejected_normals, 0);
   EXPECT_EQ(solved.graph.report().components, 2);
   const PointMap map = solved.map(0);
   for (std::size_t i = 0; i < wall.points.size(); ++i) {
     ASSERT_EQ(map.status[i], i % 2 ? Status::component : Status::ok);
     if (i % 2 == 0)
-      ASSERT_NEAR(map.distance[i], std::hypot(wall.points[i][0] - wall.points[0][0], wall.points[i][1] - wall.points[0][1]), 1e-11);
+      ASSERT_NEAR(map.distance[i],
+                  std::hypot(wall.points[i][0] - wall.points[0][0], wall.points[i][1] - wall.points[0][1]), 1e-11);
   }
 }
 

@@ -32,7 +32,8 @@ TEST(FlatCloud, IsTheIdentityFromInteriorAndBoundary) {
   const Solved solved(cloud);
   // The interior, the four corners of the square and the rim of the hole.
   std::vector<Index> sources{17, 2000};
-  for (auto corner : {std::array{0.0, 0.0}, std::array{1.0, 0.0}, std::array{0.0, 1.0}, std::array{1.0, 1.0}, std::array{0.65, 0.5}}) {
+  for (auto corner : {std::array{0.0, 0.0}, std::array{1.0, 0.0}, std::array{0.0, 1.0}, std::array{1.0, 1.0},
+                      std::array{0.65, 0.5}}) {
     auto nearest = std::min_element(cloud.plane.begin(), cloud.plane.end(), [&](const auto& a, const auto& b) {
       return std::hypot(a[0] - corner[0], a[1] - corner[1]) < std::hypot(b[0] - corner[0], b[1] - corner[1]);
     });
@@ -52,8 +53,8 @@ TEST(FlatCloud, IsTheIdentityOnARegularGrid) {
 }
 
 TEST(FlatCloud, CoversItsArea) {
-  // The lumped masses of a cloud that fills the unit square (less the hole) add up to about its area; local triangulations that
-  // disagree count a little twice.
+  // The lumped masses of a cloud that fills the unit square (less the hole) add up to about its area; local
+  // triangulations that disagree count a little twice.
   const Cloud cloud = flat_cloud(4000);
   const auto graph = pointcloud::PointCloudGraph::build(cloud.points);
   const auto& masses = graph.graph().data().masses;
@@ -105,7 +106,8 @@ TEST(FlatCloud, DoesNotDependOnTheNumberOfThreads) {
   pointcloud::CloudOptions one, many;
   one.threads = 1;
   many.threads = 7;
-  const auto a = pointcloud::PointCloudGraph::build(cloud.points, {}, one), b = pointcloud::PointCloudGraph::build(cloud.points, {}, many);
+  const auto a = pointcloud::PointCloudGraph::build(cloud.points, {}, one),
+             b = pointcloud::PointCloudGraph::build(cloud.points, {}, many);
   EXPECT_EQ(a.graph().data().neighbors, b.graph().data().neighbors);
   EXPECT_EQ(a.graph().data().weights, b.graph().data().weights);
   EXPECT_EQ(a.graph().data().transports, b.graph().data().transports);

@@ -26,15 +26,17 @@ void expect_brute_force_distances(const NeighborSearchFactory& make, const std::
   for (std::size_t q = 0; q < points.size(); q += 7) {
     std::vector<double> expected;
     for (const Vec3& p : points)
-      expected.push_back(std::pow(p[0] - points[q][0], 2) + std::pow(p[1] - points[q][1], 2) + std::pow(p[2] - points[q][2], 2));
+      expected.push_back(std::pow(p[0] - points[q][0], 2) + std::pow(p[1] - points[q][1], 2) +
+                         std::pow(p[2] - points[q][2], 2));
     std::sort(expected.begin(), expected.end());
     const Index found = search->nearest(points[q], indices, squared);
     ASSERT_EQ(found, static_cast<Index>(std::min(k, points.size())));
     for (Index r = 0; r < found; ++r) {
       ASSERT_NEAR(squared[r], expected[r], 1e-15 * (1 + expected[r]));
       const Vec3& p = points[indices[r]];
-      ASSERT_NEAR(std::pow(p[0] - points[q][0], 2) + std::pow(p[1] - points[q][1], 2) + std::pow(p[2] - points[q][2], 2), squared[r],
-                  1e-15 * (1 + squared[r]));
+      ASSERT_NEAR(
+          std::pow(p[0] - points[q][0], 2) + std::pow(p[1] - points[q][1], 2) + std::pow(p[2] - points[q][2], 2),
+          squared[r], 1e-15 * (1 + squared[r]));
     }
   }
 }
@@ -44,7 +46,9 @@ TEST_P(Search, FindsWhatBruteForceFinds) {
   expect_brute_force_distances(GetParam().make, flat_cloud(500).points, 8);
 }
 
-TEST_P(Search, FindsAllPointsWhenAskedForMore) { expect_brute_force_distances(GetParam().make, random_sphere(20).points, 31); }
+TEST_P(Search, FindsAllPointsWhenAskedForMore) {
+  expect_brute_force_distances(GetParam().make, random_sphere(20).points, 31);
+}
 
 TEST_P(Search, SurvivesManyEqualPoints) {
   std::vector<Vec3> points(300, Vec3{1, 2, 3});

@@ -11,8 +11,16 @@ namespace {
 
 TEST(SphereCloud, ConvergesOnEvenPoints) {
   // Adaptive: bias of the diffusion time, proportional to h = n^-1/2 (docs/method.md).
-  const SphereError coarse = [] { const Cloud c = even_sphere(2500); const Solved s(c); return sphere_error(c, s.graph, s.map(77), 77); }();
-  const SphereError fine = [] { const Cloud c = even_sphere(40000); const Solved s(c); return sphere_error(c, s.graph, s.map(77), 77); }();
+  const SphereError coarse = [] {
+    const Cloud c = even_sphere(2500);
+    const Solved s(c);
+    return sphere_error(c, s.graph, s.map(77), 77);
+  }();
+  const SphereError fine = [] {
+    const Cloud c = even_sphere(40000);
+    const Solved s(c);
+    return sphere_error(c, s.graph, s.map(77), 77);
+  }();
   EXPECT_GE(std::log(coarse.hemisphere_max / fine.hemisphere_max) / std::log(4.0), 0.75);
   EXPECT_GE(std::log(coarse.rms / fine.rms) / std::log(4.0), 0.75);
   const double h = std::sqrt(4 * 3.14159 / 40000);

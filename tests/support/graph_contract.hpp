@@ -4,7 +4,8 @@
 /// \code
 /// struct MyGraphs {
 ///   static std::unique_ptr<ahm::TangentGraph> surface();   // any connected graph of at least 50 vertices
-///   static std::unique_ptr<ahm::TangentGraph> flat();      // a flat one: edge logs are differences of positions in the plane
+///   static std::unique_ptr<ahm::TangentGraph> flat();      // a flat one: edge logs are differences of positions in
+///   the plane
 /// };
 /// INSTANTIATE_TYPED_TEST_SUITE_P(Mine, GraphContract, MyGraphs);
 /// \endcode
@@ -46,8 +47,8 @@ TYPED_TEST_P(GraphContract, HasNonNegativeWeights) {
 }
 
 TYPED_TEST_P(GraphContract, ClosesEveryLoopWhereItIsFlat) {
-  // On a flat graph the log map of the solver must satisfy every edge: phi_j - phi_i = e_ij in the source's frame, so that the
-  // residual of Alg. 2 vanishes whatever the weights.
+  // On a flat graph the log map of the solver must satisfy every edge: phi_j - phi_i = e_ij in the source's frame, so
+  // that the residual of Alg. 2 vanishes whatever the weights.
   const auto graph = TypeParam::flat();
   LogMapSolver solver(*graph);
   const Index source = graph->size() / 2;

@@ -9,7 +9,9 @@ namespace {
 
 using Random = std::mt19937_64;
 
-double uniform(Random& random, double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); }
+double uniform(Random& random, double low, double high) {
+  return std::uniform_real_distribution<double>(low, high)(random);
+}
 
 /// A random rotation by Gram-Schmidt; `mirror` flips its last row.
 std::vector<double> random_frame(int d, Random& random, bool mirror) {
@@ -32,7 +34,8 @@ std::vector<double> random_frame(int d, Random& random, bool mirror) {
   if (d == 1) determinant = Q[0];
   if (d == 2) determinant = Q[0] * Q[3] - Q[1] * Q[2];
   if (d == 3)
-    determinant = Q[0] * (Q[4] * Q[8] - Q[5] * Q[7]) - Q[1] * (Q[3] * Q[8] - Q[5] * Q[6]) + Q[2] * (Q[3] * Q[7] - Q[4] * Q[6]);
+    determinant =
+        Q[0] * (Q[4] * Q[8] - Q[5] * Q[7]) - Q[1] * (Q[3] * Q[8] - Q[5] * Q[6]) + Q[2] * (Q[3] * Q[7] - Q[4] * Q[6]);
   if ((determinant < 0) != mirror)
     for (int c = 0; c < d; ++c) Q[(d - 1) * d + c] *= -1;
   return Q;
@@ -44,7 +47,8 @@ std::vector<double> FlatGraph::exact(Index p, Index i) const {
   const int d = dimension;
   std::vector<double> result(static_cast<std::size_t>(d), 0.0);
   for (int a = 0; a < d; ++a)
-    for (int c = 0; c < d; ++c) result[a] += frames[(p * d + a) * d + c] * (positions[i * d + c] - positions[p * d + c]);
+    for (int c = 0; c < d; ++c)
+      result[a] += frames[(p * d + a) * d + c] * (positions[i * d + c] - positions[p * d + c]);
   return result;
 }
 
@@ -70,8 +74,8 @@ double FlatGraph::diameter() const {
   return std::sqrt(squared);
 }
 
-FlatGraph flat_graph(int d, std::vector<double> positions, const std::vector<Pair>& edges, TransportKind kind, bool reflections,
-                     unsigned seed) {
+FlatGraph flat_graph(int d, std::vector<double> positions, const std::vector<Pair>& edges, TransportKind kind,
+                     bool reflections, unsigned seed) {
   Random random(seed);
   FlatGraph g;
   g.dimension = d;
@@ -92,7 +96,8 @@ FlatGraph flat_graph(int d, std::vector<double> positions, const std::vector<Pai
     directed.push_back({e.a, e.b, w});
     directed.push_back({e.b, e.a, w});
   }
-  std::stable_sort(directed.begin(), directed.end(), [](const Directed& p, const Directed& q) { return p.from < q.from; });
+  std::stable_sort(directed.begin(), directed.end(),
+                   [](const Directed& p, const Directed& q) { return p.from < q.from; });
 
   CsrGraphData& data = g.data;
   data.dimension = d;
@@ -109,7 +114,8 @@ FlatGraph flat_graph(int d, std::vector<double> positions, const std::vector<Pai
     std::vector<double> R(static_cast<std::size_t>(d) * d, 0.0);
     for (int a = 0; a < d; ++a)
       for (int b = 0; b < d; ++b)
-        for (int c = 0; c < d; ++c) R[a * d + b] += g.frames[(e.from * d + a) * d + c] * g.frames[(e.to * d + b) * d + c];
+        for (int c = 0; c < d; ++c)
+          R[a * d + b] += g.frames[(e.from * d + a) * d + c] * g.frames[(e.to * d + b) * d + c];
     if (kind == TransportKind::rotation2) R = {R[0], R[2]};
     data.transports.insert(data.transports.end(), R.begin(), R.end());
   }
@@ -132,8 +138,7 @@ FlatGraph planar_triangulation(Index side, TransportKind kind, bool reflections,
       positions.push_back((y + uniform(random, -0.3, 0.3)) * h);
       if (x + 1 < side) edges.push_back({i, i + 1});
       if (y + 1 < side) edges.push_back({i, i + side});
-      if (x + 1 < side && y + 1 < side)
-        edges.push_back(random() % 2 ? Pair{i, i + side + 1} : Pair{i + 1, i + side});
+      if (x + 1 < side && y + 1 < side) edges.push_back(random() % 2 ? Pair{i, i + side + 1} : Pair{i + 1, i + side});
     }
   return flat_graph(2, std::move(positions), edges, kind, reflections, seed);
 }

@@ -29,8 +29,8 @@ struct Pair {
   Index a, b;
 };
 
-/// Random weights in [0.1, 10], masses in [0.1, 2] x cell, frames rotated at random; `reflections` mirrors half of them, which
-/// needs `kind` block.
+/// Random weights in [0.1, 10], masses in [0.1, 2] x cell, frames rotated at random; `reflections` mirrors half of
+/// them, which needs `kind` block.
 FlatGraph flat_graph(int dimension, std::vector<double> positions, const std::vector<Pair>& edges, TransportKind kind,
                      bool reflections, unsigned seed);
 

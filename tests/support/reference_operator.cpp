@@ -53,8 +53,9 @@ std::vector<double> reference_log_map(const TangentGraph& graph, Index source, V
   // Frames: Eq. 11, normalized by the orthogonal polar factor (for d = 2 rotations: division by the modulus).
   Matrix frame_rhs = Matrix::Zero(n * d, d);
   frame_rhs.block(source * d, 0, d, d).setIdentity();
-  const Matrix U = solve(
-      diffusion(graph, tau, d, [&](Index, const Star& star, std::size_t e) { return transport(graph, star, e); }), frame_rhs);
+  const Matrix U =
+      solve(diffusion(graph, tau, d, [&](Index, const Star& star, std::size_t e) { return transport(graph, star, e); }),
+            frame_rhs);
   std::vector<Matrix> frames;
   for (Index i = 0; i < n; ++i) {
     Eigen::JacobiSVD<Matrix> svd(Matrix(U.block(i * d, 0, d, d)), Eigen::ComputeFullU | Eigen::ComputeFullV);

@@ -1,6 +1,6 @@
 /// \file
-/// The paper's (d + 1) n x (d + 1) n affine connection Laplacian, assembled and solved as written (Alg. 1, Alg. 2). The library
-/// itself never assembles it; this is what its elimination is checked against.
+/// The paper's (d + 1) n x (d + 1) n affine connection Laplacian, assembled and solved as written (Alg. 1, Alg. 2). The
+/// library itself never assembles it; this is what its elimination is checked against.
 #pragma once
 
 #include <vector>

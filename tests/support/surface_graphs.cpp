@@ -14,7 +14,8 @@ CsrGraphData sphere_graph(Index n, unsigned seed) {
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
   std::vector<Eigen::Vector3d> points, axis_x, axis_y;
   for (Index i = 0; i < n; ++i) {
-    const double z = 1.0 - (2.0 * i + 1.0) / n, r = std::sqrt(1.0 - z * z), turn = i * std::numbers::pi * (3.0 - std::sqrt(5.0));
+    const double z = 1.0 - (2.0 * i + 1.0) / n, r = std::sqrt(1.0 - z * z),
+                 turn = i * std::numbers::pi * (3.0 - std::sqrt(5.0));
     const Eigen::Vector3d p(r * std::cos(turn), r * std::sin(turn), z);
     const Eigen::Vector3d side = p.unitOrthogonal();
     const double angle = 2.0 * std::numbers::pi * uniform(random);

@@ -6,8 +6,8 @@
 
 namespace ahm::test {
 
-/// About `n` points of the unit sphere, each joined to its nearest ones, random weights, frames turned at random. The log map
-/// on it has no closed form; both sides of a comparison see the same graph.
+/// About `n` points of the unit sphere, each joined to its nearest ones, random weights, frames turned at random. The
+/// log map on it has no closed form; both sides of a comparison see the same graph.
 CsrGraphData sphere_graph(Index n, unsigned seed = 1);
 
 /// The same graph with every 2 x 2 rotation written out as a block.

@@ -59,17 +59,10 @@ PreparedCloud finite_points(const io::Geometry& input, const LogmapOptions& opti
   return cloud;
 }
 
-void require_normals(const PreparedCloud& cloud, const io::Geometry& input, const LogmapOptions& options) {
+void require_normals(const io::Geometry& input, const LogmapOptions& options) {
   if (input.normals.empty() && (options.normals == "oriented" || options.normals == "unoriented"))
     throw InvalidArgument(fmt::format("--normals {}: {} has no normals; leave the option out to estimate them",
                                       options.normals, options.input));
-  for (std::size_t i = 0; i < cloud.normals.size(); ++i) {
-    const Vec3& n = cloud.normals[i];
-    if (!is_finite(n) || n == Vec3{0, 0, 0})
-      throw InvalidGeometry(
-          fmt::format("{}: the normal of point {} is ({}, {}, {}); --normals estimate ignores the file's normals",
-                      options.input, cloud.input_row[i], n[0], n[1], n[2]));
-  }
 }
 
 #ifdef AHM_WITH_PCL
@@ -111,7 +104,7 @@ PreparedCloud prepare_cloud(const io::Geometry& input, const LogmapOptions& opti
   if (options.voxel || options.outliers) throw InvalidArgument("--voxel and --outliers: this build of ahm has no PCL");
 #endif
   PreparedCloud cloud = finite_points(input, options);
-  require_normals(cloud, input, options);
+  require_normals(input, options);
 #ifdef AHM_WITH_PCL
   if (options.voxel) apply_voxel_grid(cloud, *options.voxel, source);
   if (options.outliers) apply_outlier_removal(cloud, source);

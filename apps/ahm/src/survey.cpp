@@ -138,7 +138,7 @@ Survey survey(const io::Geometry& input, const InfoOptions& options, const Progr
   s.warnings = input.warnings;
   for (const Vec3& n : input.normals)
     if (!is_finite(n) || n == Vec3{0, 0, 0}) ++s.bad_normals;
-  const FiniteCloud cloud = finite_cloud(input, s.normals && s.bad_normals == 0);
+  const FiniteCloud cloud = finite_cloud(input, s.normals);
   s.non_finite = s.points - cloud.points.size();
   find_bounds(cloud.points, s);
   {

@@ -27,7 +27,7 @@ std::string quoted(const std::string& path) {
 std::string normals_text(const Survey& s) {
   if (!s.normals) return "none (they will be estimated)";
   if (s.bad_normals > 0)
-    return fmt::format("yes, but {} are zero or not finite: use --normals estimate", s.bad_normals);
+    return fmt::format("yes, but {} are zero or not finite (they will be estimated)", s.bad_normals);
   if (!s.connectivity) return "yes";
   return s.connectivity->report.oriented ? "yes, consistently oriented"
                                          : "yes, signs not consistent: only their planes are used";
@@ -49,7 +49,6 @@ std::string suggestion(const Survey& s, const std::string& path) {
   const std::string stem = std::filesystem::path(path).stem().string();
   std::string command = fmt::format("ahm logmap {} --source {}", quoted(path), s.connectivity->central_point);
   if (s.non_finite > 0) command += " --drop-nan";
-  if (s.bad_normals > 0) command += " --normals estimate";
   // Many small components are stray points as a rule.
   if (s.connectivity->component_sizes.size() > 20) command += " --outliers";
   return command + fmt::format(" -o {} --view {}", quoted(stem + "_map.csv"), quoted(stem + "_map.png"));

@@ -1,5 +1,6 @@
 /// \file
-/// Input points made ready for geometry: finite, distinct, of order one, in an order that keeps neighbours close in memory.
+/// Input points made ready for geometry: finite, distinct, of order one, in an order that keeps neighbours close in
+/// memory.
 #pragma once
 
 #include <span>
@@ -10,13 +11,14 @@
 namespace ahm::pointcloud {
 
 struct CleanPoints {
-  std::vector<Vec3> points;          ///< distinct, along a Morton curve, (input - centre) / unit
-  std::vector<Index> input;          ///< first input point at each
-  std::vector<Index> clean_of_input; ///< -1: dropped
-  double unit = 1.0;                 ///< power of two
+  std::vector<Vec3> points;           ///< distinct, along a Morton curve, (input - centre) / unit
+  std::vector<Index> input;           ///< first input point at each
+  std::vector<Index> clean_of_input;  ///< -1: dropped
+  double unit = 1.0;                  ///< power of two
 };
 
-/// Cleans, and counts what it drops and merges in `report`. Scaling by powers of two changes no bit of the result but `unit`.
+/// Cleans, and counts what it drops and merges in `report`. Scaling by powers of two changes no bit of the result but
+/// `unit`.
 /// @throws InvalidGeometry
 CleanPoints clean_points(std::span<const Vec3> points, const CloudOptions& options, CloudReport& report);
 

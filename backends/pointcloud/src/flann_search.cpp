@@ -41,7 +41,9 @@ class FlannSearch final : public NeighborSearch {
 
 }  // namespace
 
-std::unique_ptr<NeighborSearch> flann_search(std::span<const Vec3> points) { return std::make_unique<FlannSearch>(points); }
+std::unique_ptr<NeighborSearch> flann_search(std::span<const Vec3> points) {
+  return std::make_unique<FlannSearch>(points);
+}
 
 #else
 

@@ -43,14 +43,19 @@ void convex_hull(std::vector<Inverted>& points, std::vector<Inverted>& hull) {
   hull.pop_back();
 }
 
-/// The Delaunay triangles at one point. Under inversion about the point, circles through it become lines: a circle through the
-/// point and two neighbours is empty exactly when the line through their images has all other images, and the origin, on one
-/// side. So the triangles are the edges of the convex hull of the images and the origin that do not touch the origin.
+/// The Delaunay triangles at one point. Under inversion about the point, circles through it become lines: a circle
+/// through the point and two neighbours is empty exactly when the line through their images has all other images, and
+/// the origin, on one side. So the triangles are the edges of the convex hull of the images and the origin that do not
+/// touch the origin.
 class StarTriangulator {
  public:
-  StarTriangulator(const CleanPoints& cloud, const Neighborhoods& neighborhoods, const TangentPlanes& planes, bool oriented,
-                   double max_edge_ratio)
-      : cloud_(cloud), neighborhoods_(neighborhoods), planes_(planes), oriented_(oriented), max_ratio_(max_edge_ratio) {}
+  StarTriangulator(const CleanPoints& cloud, const Neighborhoods& neighborhoods, const TangentPlanes& planes,
+                   bool oriented, double max_edge_ratio)
+      : cloud_(cloud),
+        neighborhoods_(neighborhoods),
+        planes_(planes),
+        oriented_(oriented),
+        max_ratio_(max_edge_ratio) {}
 
   Offset too_long = 0, other_sheet = 0;
 
@@ -64,7 +69,8 @@ class StarTriangulator {
       const double length = norm(offset);
       if (!accept(i, j, length)) continue;
       const double x = dot(axes.x, offset), y = dot(axes.y, offset), squared = x * x + y * y;
-      if (squared > least_projection * least_projection * length * length) images_.push_back({x / squared, y / squared, j});
+      if (squared > least_projection * least_projection * length * length)
+        images_.push_back({x / squared, y / squared, j});
     }
     if (images_.size() < 2) return;
     images_.push_back({0, 0, -1});
@@ -119,8 +125,9 @@ std::vector<Triangle> unique_triangles(const std::vector<std::vector<Triangle>>&
 
 }  // namespace
 
-std::vector<Triangle> local_delaunay(const CleanPoints& cloud, const Neighborhoods& neighborhoods, const TangentPlanes& planes,
-                                     bool oriented, const CloudOptions& options, CloudReport& report) {
+std::vector<Triangle> local_delaunay(const CleanPoints& cloud, const Neighborhoods& neighborhoods,
+                                     const TangentPlanes& planes, bool oriented, const CloudOptions& options,
+                                     CloudReport& report) {
   const auto n = static_cast<Offset>(cloud.points.size());
   std::vector<std::vector<Triangle>> parts(static_cast<std::size_t>((n + chunk - 1) / chunk));
   std::atomic<Offset> too_long{0}, other_sheet{0};

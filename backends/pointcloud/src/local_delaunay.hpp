@@ -11,10 +11,12 @@ namespace ahm::pointcloud {
 
 using Triangle = std::array<Index, 3>;
 
-/// Triangulates the neighbours of each point, projected to its tangent plane, and keeps the triangles at the point itself. A
-/// triangle found from several of its corners is listed once, corners ascending, triangles in lexicographic order.
+/// Triangulates the neighbours of each point, projected to its tangent plane, and keeps the triangles at the point
+/// itself. A triangle found from several of its corners is listed once, corners ascending, triangles in lexicographic
+/// order.
 /// @param oriented  reject neighbours whose normals point the other way
-std::vector<Triangle> local_delaunay(const CleanPoints& cloud, const Neighborhoods& neighborhoods, const TangentPlanes& planes,
-                                     bool oriented, const CloudOptions& options, CloudReport& report);
+std::vector<Triangle> local_delaunay(const CleanPoints& cloud, const Neighborhoods& neighborhoods,
+                                     const TangentPlanes& planes, bool oriented, const CloudOptions& options,
+                                     CloudReport& report);
 
 }  // namespace ahm::pointcloud

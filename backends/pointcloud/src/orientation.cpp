@@ -84,16 +84,21 @@ struct Evidence {
 
 }  // namespace
 
-bool signs_agree(const TangentPlanes& planes, const Neighborhoods& neighborhoods) {
-  Offset parallel = 0, opposed = 0;
+bool signs_agree(const CleanPoints& cloud, const TangentPlanes& planes, const Neighborhoods& neighborhoods) {
+  Offset parallel = 0, opposed = 0, before = 0, behind = 0;
   const auto n = static_cast<Index>(planes.normals.size());
   for (Index i = 0; i < n; ++i)
     for (Index j : neighborhoods.of(i)) {
       const double cosine = dot(planes.normals[i], planes.normals[j]);
       parallel += std::abs(cosine) > 0.5;
-      opposed += cosine < -0.5;
+      if (!(cosine < -0.5)) continue;
+      ++opposed;
+      const double height = dot(planes.normals[i], cloud.points[j] - cloud.points[i]);
+      before += height > 0;
+      behind += height < 0;
     }
-  return 4 * opposed <= parallel;
+  // With signs at random, before and behind are equally frequent.
+  return 4 * opposed <= parallel || 4 * std::abs(before - behind) >= 3 * opposed;
 }
 
 void orient_normals(const CleanPoints& cloud, const WeightedEdges& edges, bool signs_given, TangentPlanes& planes) {

@@ -39,11 +39,13 @@ void check_arguments(std::span<const Vec3> points, std::span<const Vec3> normals
   if (points.size() < 3)
     throw InvalidGeometry("the cloud has " + std::to_string(points.size()) + " points; at least 3 are needed");
   if (!normals.empty() && normals.size() != points.size())
-    throw InvalidArgument("'normals' has " + std::to_string(normals.size()) + " entries for " + std::to_string(points.size()) +
-                          " points; give none or one per point");
-  if (options.k < 3) throw InvalidArgument("k is " + std::to_string(options.k) + "; it must be at least 3 (default 30)");
+    throw InvalidArgument("'normals' has " + std::to_string(normals.size()) + " entries for " +
+                          std::to_string(points.size()) + " points; give none or one per point");
+  if (options.k < 3)
+    throw InvalidArgument("k is " + std::to_string(options.k) + "; it must be at least 3 (default 30)");
   if (!(options.max_edge_ratio >= 1))
-    throw InvalidArgument("max_edge_ratio is " + detail::number(options.max_edge_ratio) + "; it must be at least 1 (default 3)");
+    throw InvalidArgument("max_edge_ratio is " + detail::number(options.max_edge_ratio) +
+                          "; it must be at least 1 (default 3)");
 }
 
 /// "12, 15, 17 and 240 more"
@@ -54,18 +56,19 @@ std::string first_ten(const std::vector<Index>& indices) {
   return indices.size() > 10 ? text + " and " + std::to_string(indices.size() - 10) + " more" : text;
 }
 
-bool trust_signs(std::span<const Vec3> given, const TangentPlanes& planes, const Neighborhoods& neighborhoods,
-                 const CloudOptions& options, CloudReport& report) {
+bool trust_signs(std::span<const Vec3> given, const CleanPoints& cloud, const TangentPlanes& planes,
+                 const Neighborhoods& neighborhoods, const CloudOptions& options, CloudReport& report) {
   if (given.empty() || options.normal_signs == NormalSigns::unoriented) return false;
   if (options.normal_signs == NormalSigns::oriented) return true;
-  if (signs_agree(planes, neighborhoods)) return true;
-  report.warnings.push_back("the given normals point to both sides at random; only their planes are used, and which side is up is chosen");
+  if (signs_agree(cloud, planes, neighborhoods)) return true;
+  report.warnings.push_back(
+      "the given normals point to both sides at random; only their planes are used, and which side is up is chosen");
   return false;
 }
 
 /// Numbers the points that have a mass; lists the input points that have none.
-std::vector<Index> number_vertices(const CleanPoints& cloud, const WeightedEdges& edges, std::vector<Index>& point_of_vertex,
-                                   CloudReport& report) {
+std::vector<Index> number_vertices(const CleanPoints& cloud, const WeightedEdges& edges,
+                                   std::vector<Index>& point_of_vertex, CloudReport& report) {
   std::vector<Index> vertex_of_clean(cloud.points.size(), -1), removed;
   for (std::size_t i = 0; i < cloud.points.size(); ++i) {
     if (edges.masses[i] > 0) {
@@ -79,16 +82,20 @@ std::vector<Index> number_vertices(const CleanPoints& cloud, const WeightedEdges
   report.degenerate = static_cast<Index>(removed.size());
   std::sort(removed.begin(), removed.end());
   if (report.vertices == 0)
-    throw InvalidGeometry("no point of the cloud has a tangent plane with a triangle in it: the points lie on a line, or are too "
-                          "far apart from each other (points " + first_ten(removed) + ")");
+    throw InvalidGeometry(
+        "no point of the cloud has a tangent plane with a triangle in it: the points lie on a line, or are too "
+        "far apart from each other (points " +
+        first_ten(removed) + ")");
   if (!removed.empty())
-    report.warnings.push_back(std::to_string(removed.size()) + " points have collinear or isolated neighbourhoods and were removed: " +
-                              first_ten(removed));
+    report.warnings.push_back(
+        std::to_string(removed.size()) +
+        " points have collinear or isolated neighbourhoods and were removed: " + first_ten(removed));
   return vertex_of_clean;
 }
 
-void fill_vertex_data(CsrGraphData& g, std::span<const Vec3> input, const CleanPoints& cloud, const TangentPlanes& planes,
-                      const WeightedEdges& edges, const std::vector<Index>& vertex_of_clean) {
+void fill_vertex_data(CsrGraphData& g, std::span<const Vec3> input, const CleanPoints& cloud,
+                      const TangentPlanes& planes, const WeightedEdges& edges,
+                      const std::vector<Index>& vertex_of_clean) {
   g.length_unit = cloud.unit;
   for (std::size_t i = 0; i < cloud.points.size(); ++i) {
     if (vertex_of_clean[i] < 0) continue;
@@ -153,8 +160,10 @@ PointCloudGraph PointCloudGraph::build(std::span<const Vec3> points, std::span<c
   report.k = neighborhoods.k;
   TangentPlanes planes = find_tangent_planes(cloud, normals, *search, neighborhoods, options);
   if (!normals.empty() && planes.estimated > 0)
-    report.warnings.push_back(std::to_string(planes.estimated) + " given normals are zero or not finite and were estimated");
-  report.oriented = trust_signs(normals, planes, neighborhoods, options, report);
+    report.warnings.push_back(std::to_string(planes.estimated) +
+                              " given normals are zero or not finite and were estimated");
+  if (planes.estimated == static_cast<Index>(cloud.points.size())) normals = {};
+  report.oriented = trust_signs(normals, cloud, planes, neighborhoods, options, report);
   report.seconds_normals = lap();
 
   std::vector<Triangle> triangles = local_delaunay(cloud, neighborhoods, planes, report.oriented, options, report);
@@ -183,14 +192,17 @@ PointCloudGraph PointCloudGraph::build(std::span<const Vec3> points, std::span<c
     if (cloud.clean_of_input[i] >= 0) vertex_of_point[i] = vertex_of_clean[cloud.clean_of_input[i]];
   options.progress.step("graph", 1.0);
   report.seconds_graph = lap();
-  return PointCloudGraph(CsrGraph(std::move(data)), std::move(report), std::move(vertex_of_point), std::move(point_of_vertex));
+  return PointCloudGraph(CsrGraph(std::move(data)), std::move(report), std::move(vertex_of_point),
+                         std::move(point_of_vertex));
 } catch (const std::bad_alloc&) {
-  throw ResourceExhausted("out of memory while building the graph of a cloud of " + std::to_string(points.size()) + " points");
+  throw ResourceExhausted("out of memory while building the graph of a cloud of " + std::to_string(points.size()) +
+                          " points");
 }
 
 Source PointCloudGraph::source_at_point(Index point) const {
   if (point < 0 || static_cast<std::size_t>(point) >= vertex_of_point_.size())
-    throw InvalidArgument("source point " + std::to_string(point) + " is outside [0, " + std::to_string(vertex_of_point_.size()) + ")");
+    throw InvalidArgument("source point " + std::to_string(point) + " is outside [0, " +
+                          std::to_string(vertex_of_point_.size()) + ")");
   const Index vertex = vertex_of_point_[point];
   if (vertex < 0)
     throw InvalidArgument("source point " + std::to_string(point) +
@@ -203,7 +215,8 @@ Source PointCloudGraph::source_at_point(Index point, const Vec3& u_direction) co
   const Frame frame = *graph_.frame(vertex);
   const double direction[] = {dot(frame.x, u_direction), dot(frame.y, u_direction)};
   if (!(std::hypot(direction[0], direction[1]) > 1e-9 * norm(u_direction)))
-    throw InvalidArgument("the u direction is zero or perpendicular to the tangent plane at point " + std::to_string(point));
+    throw InvalidArgument("the u direction is zero or perpendicular to the tangent plane at point " +
+                          std::to_string(point));
   return Source::at_vertex(vertex, direction);
 }
 

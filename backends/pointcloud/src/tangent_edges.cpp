@@ -19,9 +19,10 @@ struct Plane {
 
 using Matrix2 = std::array<double, 4>;
 
-/// Components in frame `from` -> components in frame `to` under the smallest rotation that takes the plane of `from` to that of
-/// `to`. With n the normal of `from` and m = +-(normal of `to`) it is v -> v - (m.v)/(1 + n.m) (n + m) on vectors v of the first
-/// plane; the sign that makes n.m >= 0 is taken when `reflect` asks for it, which makes the matrix a reflection.
+/// Components in frame `from` -> components in frame `to` under the smallest rotation that takes the plane of `from` to
+/// that of `to`. With n the normal of `from` and m = +-(normal of `to`) it is v -> v - (m.v)/(1 + n.m) (n + m) on
+/// vectors v of the first plane; the sign that makes n.m >= 0 is taken when `reflect` asks for it, which makes the
+/// matrix a reflection.
 Matrix2 smallest_rotation(const Plane& from, const Plane& to, bool reflect) {
   const Vec3 m = reflect ? -1.0 * to.normal : to.normal;
   const double scale = 1.0 / (1.0 + std::max(dot(from.normal, m), -1.0 + 1e-12));
@@ -59,8 +60,8 @@ std::vector<Offset> row_starts(const WeightedEdges& edges, const std::vector<Ind
 }  // namespace
 
 CsrGraphData tangent_edges(const CleanPoints& cloud, const TangentPlanes& planes, const WeightedEdges& edges,
-                           const std::vector<Index>& vertex_of_clean, Index vertices, bool trusted, EdgeLength edge_length,
-                           unsigned threads, CloudReport& report) {
+                           const std::vector<Index>& vertex_of_clean, Index vertices, bool trusted,
+                           EdgeLength edge_length, unsigned threads, CloudReport& report) {
   const auto count = static_cast<Offset>(edges.tails.size());
   auto is_reflection = [&](std::size_t e) {
     return !trusted && dot(planes.normals[edges.tails[e]], planes.normals[edges.heads[e]]) < 0;
@@ -76,7 +77,8 @@ CsrGraphData tangent_edges(const CleanPoints& cloud, const TangentPlanes& planes
   g.weights.resize(g.neighbors.size());
   g.logs.resize(2 * g.neighbors.size());
   g.transports.resize(width * g.neighbors.size());
-  // Edges come in lexicographic order, so every row fills up with ascending neighbours once the smaller ones went first.
+  // Edges come in lexicographic order, so every row fills up with ascending neighbours once the smaller ones went
+  // first.
   std::vector<Offset> fill(g.row_begin.begin(), g.row_begin.end() - 1), position_in_head(edges.tails.size()),
       position_in_tail(edges.tails.size());
   for (std::size_t e = 0; e < edges.tails.size(); ++e) position_in_head[e] = fill[vertex_of_clean[edges.heads[e]]]++;

@@ -14,7 +14,8 @@ namespace {
 
 constexpr Offset chunk = 4096;  // points per task
 
-/// Neighbours are narrow, and more of them are wanted, when their second principal variance is below this share of the first ...
+/// Neighbours are narrow, and more of them are wanted, when their second principal variance is below this share of the
+/// first ...
 constexpr double narrow_ratio = 1e-3;
 /// ... and on a line, without a plane, below this share.
 constexpr double collinear_ratio = 1e-10;

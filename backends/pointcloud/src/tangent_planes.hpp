@@ -16,7 +16,8 @@ struct Neighborhoods {
   std::vector<Index> indices;  ///< of each point: nearest first, the point itself left out
   std::vector<double> radius;  ///< distance to the last of them
   std::span<const Index> of(Index i) const {
-    return std::span(indices).subspan(static_cast<std::size_t>(begin[i]), static_cast<std::size_t>(begin[i + 1] - begin[i]));
+    return std::span(indices).subspan(static_cast<std::size_t>(begin[i]),
+                                      static_cast<std::size_t>(begin[i + 1] - begin[i]));
   }
 };
 
@@ -28,9 +29,9 @@ struct TangentPlanes {
 
 Neighborhoods find_neighborhoods(const CleanPoints& cloud, const NeighborSearch& search, const CloudOptions& options);
 
-/// Normals as given (zero and non-finite ones are estimated, and turned to the side of their neighbours) or by principal component
-/// analysis of the neighbours. Points whose neighbours lie almost on a line, as on one line of a scanner, get two or four times as
-/// many neighbours.
+/// Normals as given (zero and non-finite ones are estimated, and turned to the side of their neighbours) or by
+/// principal component analysis of the neighbours. Points whose neighbours lie almost on a line, as on one line of a
+/// scanner, get two or four times as many neighbours.
 TangentPlanes find_tangent_planes(const CleanPoints& cloud, std::span<const Vec3> given, const NeighborSearch& search,
                                   Neighborhoods& neighborhoods, const CloudOptions& options);
 

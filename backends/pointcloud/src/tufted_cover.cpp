@@ -33,8 +33,8 @@ double triangle_area(double a, double b, double c) {
   return 0.25 * std::sqrt(std::max(0.0, (x + (y + z)) * (z - (x - y)) * (z + (x - y)) * (x + (y - z))));
 }
 
-/// A closed manifold of 2 |triangles| faces in flat half-edge arrays. Triangle t has the copies 2t, corners (a, b, c), and
-/// 2t + 1, corners (a, c, b).
+/// A closed manifold of 2 |triangles| faces in flat half-edge arrays. Triangle t has the copies 2t, corners (a, b, c),
+/// and 2t + 1, corners (a, c, b).
 class TuftedCover {
  public:
   TuftedCover(const CleanPoints& cloud, const TangentPlanes& planes, const std::vector<Triangle>& triangles)
@@ -140,8 +140,9 @@ void TuftedCover::flip(Half h) {
   }
 }
 
-/// Around every edge the faces are put in a cyclic order, and the front of each is glued to the back of the next. Sides left and
-/// right of the edge alternate, since local triangulations overlap and consecutive faces should continue each other.
+/// Around every edge the faces are put in a cyclic order, and the front of each is glued to the back of the next. Sides
+/// left and right of the edge alternate, since local triangulations overlap and consecutive faces should continue each
+/// other.
 void TuftedCover::glue(const CleanPoints& cloud, const TangentPlanes& planes, const std::vector<Triangle>& triangles) {
   struct Side {
     Index head;
@@ -176,7 +177,8 @@ void TuftedCover::glue(const CleanPoints& cloud, const TangentPlanes& planes, co
     for (auto group = first; group != last;) {
       const auto end = std::find_if(group, last, [&](const Side& s) { return s.head != group->head; });
       // Relative to the first side, so that the signs of the normals do not matter.
-      const auto middle = std::stable_partition(group, end, [left = group->left](const Side& s) { return s.left == left; });
+      const auto middle =
+          std::stable_partition(group, end, [left = group->left](const Side& s) { return s.left == left; });
       ring.clear();
       for (auto l = group, r = middle; l != middle || r != end;) {
         if (l != middle) ring.push_back(*l++);
@@ -232,8 +234,8 @@ WeightedEdges TuftedCover::weighted_edges() const {
 
 }  // namespace
 
-WeightedEdges tufted_laplacian(const CleanPoints& cloud, const TangentPlanes& planes, const std::vector<Triangle>& triangles,
-                               CloudReport& report) {
+WeightedEdges tufted_laplacian(const CleanPoints& cloud, const TangentPlanes& planes,
+                               const std::vector<Triangle>& triangles, CloudReport& report) {
   TuftedCover cover(cloud, planes, triangles);
   report.mollification = cover.mollify();
   report.flips = cover.flip_to_delaunay();

@@ -15,10 +15,10 @@ struct WeightedEdges {
   std::vector<double> masses;
 };
 
-/// Glues two copies of every triangle into a manifold without boundary, mollifies its edge lengths, flips it to an intrinsic
-/// Delaunay triangulation and sums its cotangent weights over the two layers. Parallel edges are summed, loops dropped.
-/// Fills `flips` and `mollification` (in units of the clean points) of the report.
-WeightedEdges tufted_laplacian(const CleanPoints& cloud, const TangentPlanes& planes, const std::vector<Triangle>& triangles,
-                               CloudReport& report);
+/// Glues two copies of every triangle into a manifold without boundary, mollifies its edge lengths, flips it to an
+/// intrinsic Delaunay triangulation and sums its cotangent weights over the two layers. Parallel edges are summed,
+/// loops dropped. Fills `flips` and `mollification` (in units of the clean points) of the report.
+WeightedEdges tufted_laplacian(const CleanPoints& cloud, const TangentPlanes& planes,
+                               const std::vector<Triangle>& triangles, CloudReport& report);
 
 }  // namespace ahm::pointcloud

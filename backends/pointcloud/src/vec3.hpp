@@ -17,8 +17,8 @@ inline Vec3 cross(const Vec3& a, const Vec3& b) {
 inline double norm(const Vec3& a) { return std::sqrt(dot(a, a)); }
 inline Vec3 normalized(const Vec3& a) { return (1.0 / norm(a)) * a; }
 
-/// Orthonormal axes of the plane with a unit normal: x is the projected first coordinate axis of space (the second where the
-/// normal is close to the first), y = normal x x.
+/// Orthonormal axes of the plane with a unit normal: x is the projected first coordinate axis of space (the second
+/// where the normal is close to the first), y = normal x x.
 struct PlaneAxes {
   explicit PlaneAxes(const Vec3& normal) {
     const Vec3 axis = std::abs(normal[0]) < 0.9 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};

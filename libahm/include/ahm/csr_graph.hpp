@@ -26,14 +26,14 @@ namespace ahm {
 struct CsrGraphData {
   int dimension = 2;
   TransportKind kind = TransportKind::rotation2;
-  std::vector<Offset> row_begin;   ///< n + 1 offsets into the edge arrays
-  std::vector<Index> neighbors;    ///< one per directed edge
-  std::vector<double> weights;     ///< one per directed edge
-  std::vector<double> logs;        ///< d per directed edge
-  std::vector<double> transports;  ///< 2 (rotation2) or d*d (block) per directed edge
-  std::vector<double> masses;      ///< n
-  std::vector<Frame> frames;       ///< n, or empty
-  double length_unit = 1.0;        ///< power of two; see TangentGraph::length_unit
+  std::vector<Offset> row_begin;           ///< n + 1 offsets into the edge arrays
+  std::vector<Index> neighbors;            ///< one per directed edge
+  std::vector<double> weights;             ///< one per directed edge
+  std::vector<double> logs;                ///< d per directed edge
+  std::vector<double> transports;          ///< 2 (rotation2) or d*d (block) per directed edge
+  std::vector<double> masses;              ///< n
+  std::vector<Frame> frames;               ///< n, or empty
+  double length_unit = 1.0;                ///< power of two; see TangentGraph::length_unit
   std::optional<double> mean_edge_length;  ///< default: the mean of |e_ij| over all edges
 };
 
@@ -41,7 +41,8 @@ struct CsrGraphData {
 class CsrGraph final : public TangentGraph {
  public:
   /// Takes the arrays over.
-  /// @throws InvalidGraph when array lengths disagree or a neighbour is out of range. The graph's laws are checked by `validate`.
+  /// @throws InvalidGraph when array lengths disagree or a neighbour is out of range. The graph's laws are checked by
+  /// `validate`.
   explicit CsrGraph(CsrGraphData data);
 
   Index size() const noexcept override { return static_cast<Index>(data_.masses.size()); }

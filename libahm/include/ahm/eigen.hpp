@@ -1,6 +1,6 @@
 /// \file
-/// Results seen as Eigen matrices, without a copy. Header only, so that no Eigen object crosses the library's border and the
-/// caller's own compiler flags decide its alignment.
+/// Results seen as Eigen matrices, without a copy. Header only, so that no Eigen object crosses the library's border
+/// and the caller's own compiler flags decide its alignment.
 ///
 /// \code
 /// auto phi = ahm::coordinates(map);              // n x d

@@ -1,5 +1,6 @@
 /// \file
-/// The exceptions libahm throws. Every message names the argument, the element and its index, the value, and what to do.
+/// The exceptions libahm throws. Every message names the argument, the element and its index, the value, and what to
+/// do.
 ///
 /// \code
 /// try {

@@ -1,6 +1,6 @@
 /// \file
-/// The two operators of the affine heat method, factored once: A = M + tau L (scalar) and B = M + tau L^nabla (connection
-/// Laplacian), symmetric positive definite on a graph with weights >= 0.
+/// The two operators of the affine heat method, factored once: A = M + tau L (scalar) and B = M + tau L^nabla
+/// (connection Laplacian), symmetric positive definite on a graph with weights >= 0.
 ///
 /// Most users want `LogMapSolver`, or the functions in vector_heat.hpp; both stand on this class.
 ///
@@ -28,11 +28,12 @@ enum class Ordering {
 };
 
 struct OperatorOptions {
-  double t_coef = 1.0;               ///< tau = t_coef h^2; > 0
+  double t_coef = 1.0;  ///< tau = t_coef h^2; > 0
   Ordering ordering = Ordering::amd;
-  /// Supernodal LL^T (fast; SuiteSparse's GPL module). false: simplicial (LGPL), the only choice in a build with AHM_SUPERNODAL=OFF.
+  /// Supernodal LL^T (fast; SuiteSparse's GPL module). false: simplicial (LGPL), the only choice in a build with
+  /// AHM_SUPERNODAL=OFF.
   bool supernodal = true;
-  bool check_graph = true;           ///< run `validate(graph)` first
+  bool check_graph = true;  ///< run `validate(graph)` first
   Progress progress;
 };
 
@@ -41,16 +42,17 @@ struct FactorStatistics {
   double assemble_seconds = 0;
   double analyze_seconds = 0;
   double factor_seconds = 0;
-  Offset nonzeros_A = 0;       ///< entries of the triangular factor of A
-  Offset nonzeros_B = 0;       ///< entries (complex, or real in the block path) of the factor of B
-  std::size_t bytes = 0;       ///< memory of both factors
+  Offset nonzeros_A = 0;  ///< entries of the triangular factor of A
+  Offset nonzeros_B = 0;  ///< entries (complex, or real in the block path) of the factor of B
+  std::size_t bytes = 0;  ///< memory of both factors
 };
 
 /// A and B of one graph, factored. Immutable: all member functions may be called from many threads at once.
 class HeatOperators {
  public:
   /// Assembles and factorizes A and B, concurrently on two threads.
-  /// @throws InvalidGraph, InvalidArgument (t_coef), NotPositiveDefinite (an operator is not positive definite, or fails
+  /// @throws InvalidGraph, InvalidArgument (t_coef), NotPositiveDefinite (an operator is not positive definite, or
+  /// fails
   ///         its residual check), ResourceExhausted (memory), Cancelled
   HeatOperators(const TangentGraph& graph, const OperatorOptions& options = {});
   ~HeatOperators();
@@ -63,8 +65,8 @@ class HeatOperators {
   double tau() const noexcept;  ///< in squared graph units
   const FactorStatistics& statistics() const noexcept;
 
-  /// X <- (c A)^-1 X for `columns` right-hand sides, column major n x columns. c is the fixed power of two that brings the
-  /// operators to order one; it is the same for A and B and cancels in every quotient of solutions.
+  /// X <- (c A)^-1 X for `columns` right-hand sides, column major n x columns. c is the fixed power of two that brings
+  /// the operators to order one; it is the same for A and B and cancels in every quotient of solutions.
   /// @throws InvalidArgument when the span's length is not n * columns
   void solve_scalar(std::span<double> X, Index columns) const;
   /// X <- (c B)^-1 X for `columns` vector fields, column major: each column holds n vectors of d numbers.
@@ -84,9 +86,9 @@ class HeatOperators {
 
 /// Which BLAS the process runs on, and which CHOLMOD: for reports.
 struct LinearAlgebraInfo {
-  std::string cholmod;    ///< version
-  std::string blas;       ///< e.g. "OpenBLAS 0.3.21 ..." or the library's file name
-  bool blas_optimized;    ///< false for the reference BLAS, which is several times slower
+  std::string cholmod;  ///< version
+  std::string blas;     ///< e.g. "OpenBLAS 0.3.21 ..." or the library's file name
+  bool blas_optimized;  ///< false for the reference BLAS, which is several times slower
 };
 LinearAlgebraInfo linear_algebra_info();
 

@@ -37,7 +37,8 @@ std::string_view to_string(Status status) noexcept;
 std::string_view to_string(Variant variant) noexcept;
 std::string_view to_string(Strategy strategy) noexcept;
 
-/// A logarithmic map: for every vertex i its coordinates phi_i in the source's frame, NaN exactly where the status is not `ok`.
+/// A logarithmic map: for every vertex i its coordinates phi_i in the source's frame, NaN exactly where the status is
+/// not `ok`.
 class LogMap {
  public:
   LogMap(int dimension, Variant variant, Strategy strategy, Source source, std::vector<double> coordinates,

@@ -36,11 +36,13 @@ class LogMapSolver {
   explicit LogMapSolver(TangentGraph&&, const OperatorOptions& = {}) = delete;
 
   /// The log map of one source (Alg. 1 or Alg. 2 with the homogeneous coordinate eliminated, docs/method.md).
-  /// @throws InvalidArgument when the source does not fit the graph (index, dimension, a reflection on a `rotation2` graph)
+  /// @throws InvalidArgument when the source does not fit the graph (index, dimension, a reflection on a `rotation2`
+  /// graph)
   ///         or an option is out of range; Cancelled
   LogMap solve(const Source& source, const MapOptions& options = {}) const;
 
-  /// Many sources as blocks of right-hand sides: the same numbers in the same order as one block at a time on one thread.
+  /// Many sources as blocks of right-hand sides: the same numbers in the same order as one block at a time on one
+  /// thread.
   std::vector<LogMap> solve(std::span<const Source> sources, const MapOptions& options = {}) const;
 
   const TangentGraph& graph() const noexcept { return *graph_; }

@@ -18,7 +18,8 @@ namespace ahm {
 
 /// How a long call reports and is stopped. Default: silent, never stopped.
 struct Progress {
-  /// Called with the stage's name and the fraction of it that is done, in [0, 1]. May be called from any thread, one at a time.
+  /// Called with the stage's name and the fraction of it that is done, in [0, 1]. May be called from any thread, one at
+  /// a time.
   std::function<void(std::string_view stage, double fraction)> report;
   /// Checked between stages and between the blocks of a stage.
   std::stop_token stop;

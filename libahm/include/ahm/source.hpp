@@ -5,10 +5,9 @@
 /// \code
 /// auto vertex = ahm::Source::at_vertex(7);                       // u axis = first axis of frame 7
 /// auto turned = ahm::Source::at_vertex(7, std::array{0.0, 1.0}); // u axis = second axis of frame 7
-/// ahm::Source between(2);                                        // half way between vertices 3 and 4, one apart on a line
-/// between.add(3, 0.5, std::array{-0.5, 0.0}, axes_in_frame_3);
-/// between.add(4, 0.5, std::array{+0.5, 0.0}, axes_in_frame_4);
-/// \endcode
+/// ahm::Source between(2);                                        // half way between vertices 3 and 4, one apart on a
+/// line between.add(3, 0.5, std::array{-0.5, 0.0}, axes_in_frame_3); between.add(4, 0.5, std::array{+0.5, 0.0},
+/// axes_in_frame_4); \endcode
 #pragma once
 
 #include <span>
@@ -18,8 +17,8 @@
 
 namespace ahm {
 
-/// A source p with its frame: for each sample k a weight b_k, the position z_k of vertex k relative to p in the source's
-/// frame, and the source's axes U_k carried to the frame of vertex k.
+/// A source p with its frame: for each sample k a weight b_k, the position z_k of vertex k relative to p in the
+/// source's frame, and the source's axes U_k carried to the frame of vertex k.
 class Source {
  public:
   /// An empty source in dimension d >= 1; fill it with `add`.
@@ -27,8 +26,8 @@ class Source {
 
   /// The vertex itself; the source's axes are those of the vertex's frame, in any dimension.
   static Source at_vertex(Index vertex);
-  /// d = 2: the vertex itself; the u axis points along `direction` (2 numbers, frame of the vertex, any length > 0), v is u
-  /// turned by +90 degrees.
+  /// d = 2: the vertex itself; the u axis points along `direction` (2 numbers, frame of the vertex, any length > 0), v
+  /// is u turned by +90 degrees.
   /// @throws InvalidArgument when the direction is zero or not finite
   static Source at_vertex(Index vertex, std::span<const double> direction);
 

@@ -25,11 +25,12 @@ enum class TransportKind {
 
 /// The out-edges of one vertex i. A neighbour may appear more than once (parallel edges).
 struct Star {
-  int dimension;                      ///< d
-  std::span<const Index> neighbors;   ///< j, one per edge
-  std::span<const double> weights;    ///< w_ij = w_ji
-  std::span<const double> logs;       ///< e_ij in frame i, degree x d: where j lies, seen from i
-  std::span<const double> transports; ///< R_ji: components in frame j -> components in frame i; degree x 2 or degree x d*d
+  int dimension;                     ///< d
+  std::span<const Index> neighbors;  ///< j, one per edge
+  std::span<const double> weights;   ///< w_ij = w_ji
+  std::span<const double> logs;      ///< e_ij in frame i, degree x d: where j lies, seen from i
+  std::span<const double>
+      transports;  ///< R_ji: components in frame j -> components in frame i; degree x 2 or degree x d*d
 
   std::size_t degree() const { return neighbors.size(); }
   /// e_ij of edge number `edge`, d numbers.

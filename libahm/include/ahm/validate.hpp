@@ -11,7 +11,8 @@ namespace ahm {
 ///  - masses finite and > 0;
 ///  - neighbours in range, no self loops; weights, logs and transports finite;
 ///  - transports orthogonal: R R^T = id to 1e-8;
-///  - each edge has its reverse, with the same weight, and R_ij R_ji = id to 1e-8. Parallel edges are matched one to one.
+///  - each edge has its reverse, with the same weight, and R_ij R_ji = id to 1e-8. Parallel edges are matched one to
+///  one.
 ///
 /// Time and memory are linear in the number of edges.
 /// @throws InvalidGraph

@@ -18,8 +18,8 @@ inline unsigned thread_count(unsigned requested) {
   return requested > 0 ? requested : std::max(1u, std::thread::hardware_concurrency());
 }
 
-/// Calls body(begin, end) on consecutive chunks of [0, n), each at most `chunk` long. Chunks do not depend on the number of
-/// threads. The first exception stops the loop and is rethrown.
+/// Calls body(begin, end) on consecutive chunks of [0, n), each at most `chunk` long. Chunks do not depend on the
+/// number of threads. The first exception stops the loop and is rethrown.
 template <class Body>
 void parallel_chunks(Offset n, Offset chunk, unsigned threads, const Body& body) {
   const Offset chunks = (n + chunk - 1) / chunk;
@@ -52,7 +52,8 @@ void for_each_index(std::size_t n, unsigned threads, const Body& body) {
   });
 }
 
-/// Runs two tasks at once when `concurrently`, else one after the other; the first exception is rethrown when both ended.
+/// Runs two tasks at once when `concurrently`, else one after the other; the first exception is rethrown when both
+/// ended.
 template <class First, class Second>
 void run_both(bool concurrently, const First& first, const Second& second) {
   parallel_chunks(2, 1, concurrently ? 2 : 1, [&](Offset begin, Offset) { begin == 0 ? first() : second(); });

@@ -22,7 +22,8 @@ class NeighborSearch {
  public:
   virtual ~NeighborSearch() = default;
 
-  /// The `indices.size()` points nearest to `query`, nearest first; a query that is itself a point of the set finds itself.
+  /// The `indices.size()` points nearest to `query`, nearest first; a query that is itself a point of the set finds
+  /// itself.
   /// @param squared_distances  same length as `indices`
   /// @return the number found: the smaller of `indices.size()` and the number of points
   virtual Index nearest(const Vec3& query, std::span<Index> indices, std::span<double> squared_distances) const = 0;

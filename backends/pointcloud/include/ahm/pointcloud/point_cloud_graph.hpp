@@ -1,5 +1,6 @@
 /// \file
-/// From scattered points to a tangent graph: normals, local Delaunay triangulations, tufted intrinsic Delaunay Laplacian.
+/// From scattered points to a tangent graph: normals, local Delaunay triangulations, tufted intrinsic Delaunay
+/// Laplacian.
 ///
 /// \code
 /// auto cloud = ahm::pointcloud::PointCloudGraph::build(points);                  // std::vector<ahm::Vec3>
@@ -22,49 +23,52 @@ namespace ahm::pointcloud {
 
 /// What the signs of given normals mean.
 enum class NormalSigns {
-  automatic,   ///< oriented when at most a quarter of the neighbouring normals disagree in sign, else unoriented
+  automatic,   ///< oriented when at most a quarter of the neighbouring normals disagree in sign, or when those that do
+               ///< lie consistently behind each other (thin walls); else unoriented
   oriented,    ///< trusted: they fix which side is up, and points whose normals disagree are not joined (thin walls)
   unoriented,  ///< only the tangent planes are used; orientation is propagated over a spanning tree
 };
 
 /// How long the logarithm of an edge is; its direction is that of the neighbour projected to the tangent plane.
 enum class EdgeLength {
-  projected,  ///< the length of the projection: as accurate as the chord on clean clouds, and blind to noise across the surface
+  projected,  ///< the length of the projection: as accurate as the chord on clean clouds, and blind to noise across the
+              ///< surface
   chord,      ///< the distance in space: noise of 30 % of the spacing makes every distance 12 % too long
 };
 
 struct CloudOptions {
-  Index k = 30;                        ///< neighbours per point, the point itself not counted; clamped to n - 1 and reported
+  Index k = 30;  ///< neighbours per point, the point itself not counted; clamped to n - 1 and reported
   NeighborSearchFactory search = nanoflann_search;
   NormalSigns normal_signs = NormalSigns::automatic;
   EdgeLength edge_length = EdgeLength::projected;
-  /// Two points are joined only if their distance is at most this multiple of the distance to the k-th neighbour of either.
+  /// Two points are joined only if their distance is at most this multiple of the distance to the k-th neighbour of
+  /// either.
   double max_edge_ratio = 3.0;
-  bool drop_non_finite = false;        ///< NaN and infinite points: drop (status `removed`) instead of throwing
-  unsigned threads = 0;                ///< 0: one per core; the result does not depend on it
+  bool drop_non_finite = false;  ///< NaN and infinite points: drop (status `removed`) instead of throwing
+  unsigned threads = 0;          ///< 0: one per core; the result does not depend on it
   Progress progress;
 };
 
 /// What was found and done on the way. Counts are of points, edges or triangles as named.
 struct CloudReport {
-  Index points = 0;             ///< input points
-  Index vertices = 0;           ///< vertices of the graph
-  Index non_finite = 0;         ///< points dropped because a coordinate is NaN or infinite
-  Index duplicates = 0;         ///< points merged into an equal one
-  Index degenerate = 0;         ///< points without a tangent plane or without a triangle, removed
-  Index k = 0;                  ///< neighbours used
-  Index components = 0;         ///< connected components of the graph
-  Offset triangles = 0;         ///< of the union of the local Delaunay triangulations
-  Offset flips = 0;             ///< edge flips to the intrinsic Delaunay triangulation of the tufted cover
-  Offset rejected_long = 0;     ///< neighbour pairs not joined: too long for the local spacing
-  Offset rejected_normals = 0;  ///< neighbour pairs not joined: oriented normals disagree (thin wall)
-  Offset reflections = 0;       ///< edges between oppositely oriented frames
-  bool oriented = false;        ///< given normals were trusted in sign
-  double mollification = 0;     ///< length added to every edge of the tufted cover, outside units
-  double seconds_normals = 0;   ///< neighbours and tangent planes
-  double seconds_delaunay = 0;  ///< local triangulations
-  double seconds_laplacian = 0; ///< tufted cover, flips, weights
-  double seconds_graph = 0;     ///< orientation, logs, transports
+  Index points = 0;              ///< input points
+  Index vertices = 0;            ///< vertices of the graph
+  Index non_finite = 0;          ///< points dropped because a coordinate is NaN or infinite
+  Index duplicates = 0;          ///< points merged into an equal one
+  Index degenerate = 0;          ///< points without a tangent plane or without a triangle, removed
+  Index k = 0;                   ///< neighbours used
+  Index components = 0;          ///< connected components of the graph
+  Offset triangles = 0;          ///< of the union of the local Delaunay triangulations
+  Offset flips = 0;              ///< edge flips to the intrinsic Delaunay triangulation of the tufted cover
+  Offset rejected_long = 0;      ///< neighbour pairs not joined: too long for the local spacing
+  Offset rejected_normals = 0;   ///< neighbour pairs not joined: oriented normals disagree (thin wall)
+  Offset reflections = 0;        ///< edges between oppositely oriented frames
+  bool oriented = false;         ///< given normals were trusted in sign
+  double mollification = 0;      ///< length added to every edge of the tufted cover, outside units
+  double seconds_normals = 0;    ///< neighbours and tangent planes
+  double seconds_delaunay = 0;   ///< local triangulations
+  double seconds_laplacian = 0;  ///< tufted cover, flips, weights
+  double seconds_graph = 0;      ///< orientation, logs, transports
   std::vector<std::string> warnings;
 };
 
@@ -82,8 +86,10 @@ class PointCloudGraph {
   /// Builds the graph. Time O(n k log k), memory O(n k).
   /// @param points   n >= 3 positions; equal points are merged
   /// @param normals  empty (estimated by PCA) or one per point, any length > 0
-  /// @throws InvalidGeometry (fewer than 3 distinct points, non-finite values, all points collinear), InvalidArgument, Cancelled
-  static PointCloudGraph build(std::span<const Vec3> points, std::span<const Vec3> normals = {}, const CloudOptions& options = {});
+  /// @throws InvalidGeometry (fewer than 3 distinct points, non-finite values, all points collinear), InvalidArgument,
+  /// Cancelled
+  static PointCloudGraph build(std::span<const Vec3> points, std::span<const Vec3> normals = {},
+                               const CloudOptions& options = {});
 
   const CsrGraph& graph() const noexcept { return graph_; }
   const CloudReport& report() const noexcept { return report_; }
@@ -109,7 +115,8 @@ class PointCloudGraph {
   std::vector<Vec3> normals_on_points() const;
 
  private:
-  PointCloudGraph(CsrGraph graph, CloudReport report, std::vector<Index> vertex_of_point, std::vector<Index> point_of_vertex);
+  PointCloudGraph(CsrGraph graph, CloudReport report, std::vector<Index> vertex_of_point,
+                  std::vector<Index> point_of_vertex);
 
   CsrGraph graph_;
   CloudReport report_;
