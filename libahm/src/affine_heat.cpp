@@ -38,17 +38,19 @@ AffineHeat::AffineHeat(const TangentGraph& graph, const HeatOperators& operators
       threads_(threads),
       frames_(sources.size(), FrameField(graph.size(), graph.dimension(), graph.transport_kind())) {}
 
+double source_heat(const TangentGraph& graph, const HeatOperators& operators, std::span<const Index> vertices) {
+  double mass = 1;
+  for (Index vertex : vertices) mass = std::min(mass, operators.scaling() * graph.mass(vertex));
+  return std::ldexp(heat_scale, std::max(-900, std::ilogb(mass)));
+}
+
 /// Calls visit(vertex, b_k scaled, z_k or empty, U_k or empty) for the samples with b_k > 0. The largest b_k becomes
-/// `heat_scale`, less where a tiny mass would make lambda overflow; the factor cancels in every quotient by lambda.
+/// `source_heat`; the factor cancels in every quotient by lambda.
 template <class Visit>
 void AffineHeat::for_each_sample(std::size_t source, const Visit& visit) const {
   const Source& s = sources_[source];
-  double largest = 0, mass = 1;
-  for (std::size_t k = 0; k < s.vertices().size(); ++k) {
-    largest = std::max(largest, s.weights()[k]);
-    mass = std::min(mass, operators_.scaling() * graph_.mass(s.vertices()[k]));
-  }
-  const double scale = std::ldexp(heat_scale, std::max(-900, std::ilogb(mass)));
+  const double largest = *std::max_element(s.weights().begin(), s.weights().end());
+  const double scale = source_heat(graph_, operators_, s.vertices());
   for (std::size_t k = 0; k < s.vertices().size(); ++k) {
     if (!(s.weights()[k] > 0)) continue;
     const auto z = s.offsets().empty() ? s.offsets() : s.offsets().subspan(k * d_, d_);
@@ -57,28 +59,35 @@ void AffineHeat::for_each_sample(std::size_t source, const Visit& visit) const {
   }
 }
 
-void AffineHeat::diffuse() {
-  const std::size_t count = sources_.size();
-  const auto columns = static_cast<std::size_t>(frames_.empty() ? 1 : frames_[0].columns());
-  const std::size_t frame_size = columns * n_ * d_;
+/// lambda = A^-1 b
+void AffineHeat::diffuse_heat() {
+  lambda_.assign(sources_.size() * n_, 0.0);
+  for (std::size_t s = 0; s < sources_.size(); ++s)
+    for_each_sample(s, [&](Index k, double b, auto, auto) { lambda_[s * n_ + static_cast<std::size_t>(k)] += b; });
+  operators_.solve_scalar(lambda_, static_cast<Index>(sources_.size()));
+  least_heat_.clear();
+  for (std::size_t s = 0; s < sources_.size(); ++s) {
+    const auto heat = lambda(s);
+    least_heat_.push_back(least_share * *std::max_element(heat.begin(), heat.end()));
+  }
+}
 
-  auto scalar = [&] {  // lambda = A^-1 b
-    lambda_.assign(count * n_, 0.0);
-    for (std::size_t s = 0; s < count; ++s)
-      for_each_sample(s, [&](Index k, double b, auto, auto) { lambda_[s * n_ + static_cast<std::size_t>(k)] += b; });
-    operators_.solve_scalar(lambda_, static_cast<Index>(count));
-  };
-  auto vector = [&] {  // U = B^-1 (b U_p), normalized (Eq. 11, 12)
-    std::vector<double> U(count * frame_size, 0.0);
-    for (std::size_t s = 0; s < count; ++s)
-      for_each_sample(s, [&](Index k, double b, auto, auto axes) {
-        frames_[s].add_to_rhs(std::span(U).subspan(s * frame_size, frame_size), k, axes, b);
-      });
-    operators_.solve_vector(U, static_cast<Index>(count * columns));
-    for (std::size_t s = 0; s < count; ++s)
-      frames_[s].normalize(std::span(U).subspan(s * frame_size, frame_size), threads_);
-  };
-  detail::run_both(threads_ > 1, scalar, vector);
+/// U~ = B^-1 (b U_p), normalized (Eq. 11, 12)
+void AffineHeat::diffuse_frames() {
+  const auto columns = static_cast<std::size_t>(frames_.front().columns());
+  const std::size_t size = columns * n_ * d_;
+  std::vector<double> U(sources_.size() * size, 0.0);
+  for (std::size_t s = 0; s < sources_.size(); ++s)
+    for_each_sample(s, [&](Index k, double b, auto, auto axes) {
+      frames_[s].add_to_rhs(std::span(U).subspan(s * size, size), k, axes, b);
+    });
+  operators_.solve_vector(U, static_cast<Index>(sources_.size() * columns));
+  for (std::size_t s = 0; s < sources_.size(); ++s)
+    frames_[s].normalize(std::span(U).subspan(s * size, size), threads_);
+}
+
+void AffineHeat::diffuse() {
+  detail::run_both(threads_ > 1, [&] { diffuse_heat(); }, [&] { diffuse_frames(); });
 }
 
 double AffineHeat::length_unit() const {

@@ -24,14 +24,20 @@ namespace ahm {
 /// @throws InvalidArgument when the source does not fit the graph
 void check_source(const Source& source, const TangentGraph& graph);
 
+/// The right-hand side that stands for a weight of 1 at these vertices: `heat_scale`, less where a tiny mass would make
+/// the solution overflow.
+double source_heat(const TangentGraph& graph, const HeatOperators& operators, std::span<const Index> vertices);
+
 class AffineHeat {
  public:
   /// Sources must have been checked. The numbers do not depend on `threads`.
   AffineHeat(const TangentGraph& graph, const HeatOperators& operators, std::span<const Source> sources,
              unsigned threads = 1);
 
-  /// Solves for lambda and the frames.
+  /// Solves for lambda and the frames, which everything below needs.
   void diffuse();
+  /// Solves for lambda alone: enough for `localized`.
+  void diffuse_heat();
 
   /// x of every source: columns of n numbers, d per source. Multiply by `length_unit()`.
   std::vector<double> adaptive() const;
@@ -41,16 +47,20 @@ class AffineHeat {
   /// x and Y in the range of lambda, which is used up to both ends.
   double length_unit() const;
 
-  /// Whether heat reached the vertex: lambda and U~ are large enough to divide by.
+  /// Whether enough heat reached the vertex, by both operators, for its numbers to be right.
   bool reached(std::size_t source, Index vertex) const {
-    return lambda(source)[static_cast<std::size_t>(vertex)] >= least_heat && frames_[source].valid(vertex);
+    return lambda(source)[static_cast<std::size_t>(vertex)] >= least_heat_[source] &&
+           frames_[source].heat(vertex) >= least_heat_[source];
   }
+  /// The heat that counts: `least_share` of the source's.
+  double least_heat(std::size_t source) const { return least_heat_[source]; }
   std::span<const double> lambda(std::size_t source) const { return std::span(lambda_).subspan(source * n_, n_); }
   const FrameField& frames(std::size_t source) const { return frames_[source]; }
   /// For each vertex, whether its component holds a source sample.
   std::vector<bool> connected(std::size_t source) const;
 
  private:
+  void diffuse_frames();
   std::vector<double> translations() const;
   template <class Visit>
   void for_each_sample(std::size_t source, const Visit& visit) const;
@@ -61,6 +71,7 @@ class AffineHeat {
   std::size_t n_, d_;
   unsigned threads_;
   std::vector<double> lambda_;      ///< n per source
+  std::vector<double> least_heat_;  ///< one per source
   std::vector<FrameField> frames_;  ///< one per source
 };
 

@@ -199,11 +199,11 @@ struct CholeskyFactor::Impl {
     std::uint32_t state = 12345;
     for (double& value : x) value = ((state = state * 1664525u + 1013904223u) >> 8) * 0x1p-23 - 1.0;
     const std::vector<double> b = multiply(matrix, x);
+    const double scale = largest(matrix.values) * largest(x) + largest(b);
     x = b;
     self.solve(x, 1);
     std::vector<double> residual = multiply(matrix, x);
     for (std::size_t i = 0; i < b.size(); ++i) residual[i] -= b[i];
-    const double scale = largest(matrix.values) * largest(x) + largest(b);
     if (!(largest(residual) <= 1e-10 * scale))
       throw NotPositiveDefinite(std::string("operator ") + name + ": the factorization fails its residual check (" +
                                 detail::number(largest(residual) / scale) +

@@ -1,4 +1,4 @@
-#include "components.hpp"
+#include "ahm/components.hpp"
 
 namespace ahm {
 

@@ -1,10 +1,10 @@
 #include "ahm/csr_graph.hpp"
 
-#include <cmath>
 #include <string>
 #include <utility>
 
 #include "ahm/error.hpp"
+#include "small_math.hpp"
 
 namespace ahm {
 namespace {
@@ -33,9 +33,7 @@ double mean_log_length(const CsrGraphData& g) {
   const auto d = static_cast<std::size_t>(g.dimension);
   double sum = 0;
   for (std::size_t e = 0; e < g.neighbors.size(); ++e) {
-    double squared = 0;
-    for (std::size_t a = 0; a < d; ++a) squared += g.logs[e * d + a] * g.logs[e * d + a];
-    sum += std::sqrt(squared);
+    sum += length(std::span(g.logs).subspan(e * d, d));
   }
   return g.neighbors.empty() ? 1.0 : sum / static_cast<double>(g.neighbors.size());
 }

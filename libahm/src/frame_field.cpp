@@ -67,7 +67,7 @@ void FrameField::normalize(std::span<const double> solution, unsigned threads) {
   const std::size_t width = complex_ ? 2 : static_cast<std::size_t>(d_) * d_;
   const auto n = static_cast<std::size_t>(n_);
   frames_.resize(n * width);
-  valid_.assign(n, 1);
+  heat_.resize(n);
   detail::for_each_index(n, threads, [&](std::size_t i) {
     double* frame = frames_.data() + i * width;
     double largest = 0;
@@ -77,8 +77,7 @@ void FrameField::normalize(std::span<const double> solution, unsigned threads) {
         frame[complex_ ? c : c * d_ + a] = entry;
         largest = std::max(largest, std::abs(entry));
       }
-    // Too faint to be reported, but still the best frame for what lies behind it.
-    valid_[i] = largest >= least_heat;
+    heat_[i] = largest;
     if (!(largest >= std::numeric_limits<double>::min())) {
       complex_ ? void((frame[0] = 1, frame[1] = 0)) : set_identity(frame, d_);
       return;

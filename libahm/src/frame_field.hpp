@@ -28,8 +28,8 @@ class FrameField {
   /// graphs. A vertex whose U~_i has no length gets the identity.
   void normalize(std::span<const double> solution, unsigned threads);
 
-  /// Whether U~_i was large enough to be meaningful.
-  bool valid(Index vertex) const { return valid_[static_cast<std::size_t>(vertex)] != 0; }
+  /// Length of U~_i before it was normalized (its largest entry).
+  double heat(Index vertex) const { return heat_[static_cast<std::size_t>(vertex)]; }
 
   /// out = in / U_i: components in frame i -> components in the source's frame (Eq. 12), written `stride` numbers
   /// apart.
@@ -43,14 +43,14 @@ class FrameField {
   int d_;
   bool complex_;
   std::vector<double> frames_;  ///< n x 2 or n x d x d (row major)
-  std::vector<char> valid_;
+  std::vector<double> heat_;
 };
 
-/// Smallest solution of a heat equation, right-hand side at `heat_scale`, that counts as heat. Denormal numbers, which
-/// lose digits, begin at 2^-1022; they would spoil the vertices up to some 40 powers of two above them.
-inline constexpr double least_heat = 0x1p-970;
+/// A vertex is reached when its heat is at least this share of the source's. The triangular factors hold such quotients
+/// themselves, and what is below 2^-1022 there is lost: beyond this share, solutions may come from detours.
+inline constexpr double least_share = 0x1p-970;
 
-/// Right-hand sides are scaled up by this much, which doubles the distance at which solutions underflow.
+/// Right-hand sides are scaled up by this much, which keeps all heat that counts far from the denormal numbers.
 inline constexpr double heat_scale = 0x1p960;
 
 }  // namespace ahm

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "ahm/detail/memory.hpp"
 #include "ahm/detail/parallel.hpp"
 #include "ahm/detail/text.hpp"
 #include "ahm/error.hpp"
@@ -13,7 +14,7 @@
 #include "assemble.hpp"
 #include "blas_control.hpp"
 #include "cholesky.hpp"
-#include "components.hpp"
+#include "ahm/components.hpp"
 
 namespace ahm {
 namespace {
@@ -35,8 +36,12 @@ double scaling_for(const TangentGraph& graph) {
 
 double checked_tau(const TangentGraph& graph, double t_coef) {
   const double tau = t_coef * graph.mean_edge_length() * graph.mean_edge_length();
-  if (!(t_coef > 0) || !std::isfinite(t_coef) || !(tau > 0) || !std::isfinite(tau))
+  if (!(t_coef > 0) || !std::isfinite(t_coef))
     throw InvalidArgument("t_coef is " + detail::number(t_coef) + "; it must be finite and > 0 (default 1)");
+  if (!(tau >= 1e-290) || !(tau <= 1e290))
+    throw InvalidArgument("tau = t_coef h^2 leaves the range of double precision (t_coef " + detail::number(t_coef) +
+                          ", mean edge length " + detail::number(graph.mean_edge_length()) +
+                          "): give the graph a length_unit near its edge length");
   return tau;
 }
 
@@ -50,6 +55,18 @@ struct HeatOperators::Impl {
   Components components;
   FactorStatistics statistics;
   std::optional<CholeskyFactor> A, B;
+
+  /// Constants are in the kernel of L, so A 1 = m: how far A^-1 m is from 1 tells what conditioning leaves of the digits.
+  void check_conservation(const TangentGraph& graph) const {
+    std::vector<double> x(static_cast<std::size_t>(n));
+    for (Index i = 0; i < n; ++i) x[static_cast<std::size_t>(i)] = scaling * graph.mass(i);
+    A->solve(x, 1);
+    double worst = 0;
+    for (double value : x) worst = std::isfinite(value) ? std::max(worst, std::abs(value - 1)) : INFINITY;
+    if (!(worst <= 1e-9))
+      throw NotPositiveDefinite("operator A = M + tau L loses heat (" + detail::number(worst) +
+                                " relative): t_coef is too large for this graph, or its weights differ too much");
+  }
 
   void factorize(const TangentGraph& graph, const OperatorOptions& options) {
     Stopwatch assembling;
@@ -81,6 +98,7 @@ struct HeatOperators::Impl {
     detail::run_both(
         true, [&] { in_thread([&] { B.emplace(matrices.B, blocks ? *blocks : scalar, "B = M + tau L^nabla"); }); },
         [&] { in_thread([&] { A.emplace(matrices.A, scalar, "A = M + tau L"); }); });
+    check_conservation(graph);
     statistics.factor_seconds = factoring.seconds();
     statistics.nonzeros_A = A->nonzeros();
     statistics.nonzeros_B = B->nonzeros();
@@ -123,13 +141,13 @@ Index HeatOperators::component_count() const noexcept { return impl_->components
 void HeatOperators::solve_scalar(std::span<double> X, Index columns) const {
   if (columns < 0 || static_cast<Offset>(X.size()) != static_cast<Offset>(impl_->n) * columns)
     throw InvalidArgument("solve_scalar: 'X' has " + std::to_string(X.size()) + " numbers, expected n x columns");
-  if (columns > 0) impl_->A->solve(X, columns);
+  if (columns > 0) detail::with_memory_check("solving with A", [&] { impl_->A->solve(X, columns); });
 }
 
 void HeatOperators::solve_vector(std::span<double> X, Index columns) const {
   if (columns < 0 || static_cast<Offset>(X.size()) != static_cast<Offset>(impl_->n) * impl_->d * columns)
     throw InvalidArgument("solve_vector: 'X' has " + std::to_string(X.size()) + " numbers, expected n x d x columns");
-  if (columns > 0) impl_->B->solve(X, columns);
+  if (columns > 0) detail::with_memory_check("solving with B", [&] { impl_->B->solve(X, columns); });
 }
 
 }  // namespace ahm

@@ -62,8 +62,11 @@ struct TransportAlgebra {
   }
 };
 
-void check_star_shape(const Star& s, Index i, std::size_t transport_width) {
-  const std::size_t degree = s.degree(), d = static_cast<std::size_t>(s.dimension);
+void check_star_shape(const Star& s, Index i, int dimension, std::size_t transport_width) {
+  const std::size_t degree = s.degree(), d = static_cast<std::size_t>(dimension);
+  if (s.dimension != dimension)
+    throw InvalidGraph("star of vertex " + std::to_string(i) + " has dimension " + std::to_string(s.dimension) +
+                       ", the graph has " + std::to_string(dimension));
   if (s.weights.size() != degree || s.logs.size() != degree * d || s.transports.size() != degree * transport_width)
     throw InvalidGraph("star of vertex " + std::to_string(i) + ": weights, logs or transports do not match its " +
                        std::to_string(degree) + " neighbours in length");
@@ -75,7 +78,7 @@ void check_vertex(const TangentGraph& graph, Index i, const TransportAlgebra& al
     throw InvalidGraph("mass of vertex " + std::to_string(i) + " is " + detail::number(mass) +
                        "; it must be finite and > 0");
   const Star s = graph.star(i);
-  check_star_shape(s, i, algebra.width());
+  check_star_shape(s, i, algebra.d, algebra.width());
   for (std::size_t e = 0; e < s.degree(); ++e) {
     const Index j = s.neighbors[e];
     if (j < 0 || j >= graph.size())

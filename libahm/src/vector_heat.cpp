@@ -5,6 +5,7 @@
 #include <string>
 
 #include "affine_heat.hpp"
+#include "ahm/detail/memory.hpp"
 #include "ahm/detail/parallel.hpp"
 #include "ahm/error.hpp"
 #include "small_math.hpp"
@@ -25,17 +26,17 @@ Source plain_source(const LogMapSolver& solver, std::span<const Index> vertices)
   return source;
 }
 
-/// Status of every vertex, and NaN where it is not ok.
-void finish(VertexField& field, const AffineHeat& heat, std::span<const double> lambda) {
+/// Status of every vertex, and NaN where it is not ok. `reached(i)`: whether the value at vertex i can be trusted.
+template <class Reached>
+void finish(VertexField& field, const AffineHeat& heat, const Reached& reached) {
   const auto width = static_cast<std::size_t>(field.width);
-  const std::size_t n = lambda.size();
   const std::vector<bool> connected = heat.connected(0);
-  field.status.assign(n, Status::ok);
-  for (std::size_t i = 0; i < n; ++i) {
+  field.status.assign(connected.size(), Status::ok);
+  for (std::size_t i = 0; i < connected.size(); ++i) {
     const std::span value = std::span(field.values).subspan(i * width, width);
     if (!connected[i])
       field.status[i] = Status::component;
-    else if (!(lambda[i] >= least_heat) || !all_finite(value))
+    else if (!reached(i) || !all_finite(value))
       field.status[i] = Status::unreached;
     if (field.status[i] != Status::ok) std::fill(value.begin(), value.end(), nan);
   }
@@ -47,40 +48,52 @@ void check_values(std::span<const double> values, std::size_t expected, const ch
                           std::to_string(values.size()) + " (or one is not finite)");
 }
 
-/// A^-1 of two columns at once: sum_k b_k delta_k with b the given values, and with b = 1.
-std::pair<std::vector<double>, std::vector<double>> diffuse_scalars(const HeatOperators& operators,
-                                                                    std::span<const Index> vertices,
-                                                                    std::span<const double> values) {
-  const auto n = static_cast<std::size_t>(operators.size());
+/// sum_k v_k heat from k / sum_k heat from k, and the lower sum.
+struct Blend {
+  std::vector<double> values, heat;
+  double least = 0;  ///< the heat that counts
+
+  bool reached(std::size_t i) const { return heat[i] >= least; }
+};
+
+Blend blend_scalars(const LogMapSolver& solver, std::span<const Index> vertices, std::span<const double> values) {
+  const auto n = static_cast<std::size_t>(solver.graph().size());
   double largest = 0;
   for (double v : values) largest = std::max(largest, std::abs(v));
   const double unit = largest > 0 ? std::ldexp(1.0, -std::ilogb(largest)) : 1.0;
+  const double b = source_heat(solver.graph(), solver.operators(), vertices);
   std::vector<double> columns(2 * n, 0.0);
   for (std::size_t k = 0; k < vertices.size(); ++k) {
-    columns[static_cast<std::size_t>(vertices[k])] += heat_scale * (values[k] * unit);
-    columns[n + static_cast<std::size_t>(vertices[k])] += heat_scale;
+    columns[static_cast<std::size_t>(vertices[k])] += b * (values[k] * unit);
+    columns[n + static_cast<std::size_t>(vertices[k])] += b;
   }
-  operators.solve_scalar(columns, 2);
-  std::vector<double> ones(columns.begin() + static_cast<std::ptrdiff_t>(n), columns.end());
+  solver.operators().solve_scalar(columns, 2);
+  Blend blend;
+  blend.heat.assign(columns.begin() + static_cast<std::ptrdiff_t>(n), columns.end());
+  blend.least = least_share * *std::max_element(blend.heat.begin(), blend.heat.end());
   columns.resize(n);
-  for (std::size_t i = 0; i < n; ++i) columns[i] = columns[i] / ones[i] / unit;
-  return {std::move(columns), std::move(ones)};
+  for (std::size_t i = 0; i < n; ++i) columns[i] = columns[i] / blend.heat[i] / unit;
+  blend.values = std::move(columns);
+  return blend;
 }
 
 }  // namespace
 
 VertexField extend_scalar(const LogMapSolver& solver, std::span<const Index> vertices, std::span<const double> values) {
+  return detail::with_memory_check("extending scalars", [&] {
   check_values(values, vertices.size(), "values");
   const Source source = plain_source(solver, vertices);
   const AffineHeat heat(solver.graph(), solver.operators(), {&source, 1});
-  auto [quotient, heat_of_ones] = diffuse_scalars(solver.operators(), vertices, values);
-  VertexField field{1, std::move(quotient), {}};
-  finish(field, heat, heat_of_ones);
+  Blend blend = blend_scalars(solver, vertices, values);
+  VertexField field{1, std::move(blend.values), {}};
+  finish(field, heat, [&](std::size_t i) { return blend.reached(i); });
   return field;
+  });
 }
 
 VertexField transport_vectors(const LogMapSolver& solver, std::span<const Index> vertices,
                               std::span<const double> vectors) {
+  return detail::with_memory_check("transporting vectors", [&] {
   const auto n = static_cast<std::size_t>(solver.graph().size()),
              d = static_cast<std::size_t>(solver.graph().dimension());
   check_values(vectors, vertices.size() * d, "vectors");
@@ -90,25 +103,30 @@ VertexField transport_vectors(const LogMapSolver& solver, std::span<const Index>
   // Lengths by A (SSC19 Alg. 1, steps II and III) ...
   std::vector<double> lengths;
   for (std::size_t k = 0; k < vertices.size(); ++k) lengths.push_back(length(vectors.subspan(k * d, d)));
-  const auto [extended, heat_of_ones] = diffuse_scalars(solver.operators(), vertices, lengths);
+  const Blend blend = blend_scalars(solver, vertices, lengths);
 
   // ... directions by B (step I).
   const double longest = lengths.empty() ? 0.0 : *std::max_element(lengths.begin(), lengths.end());
+  const double b = source_heat(solver.graph(), solver.operators(), vertices);
   VertexField field{static_cast<int>(d), std::vector<double>(n * d, 0.0), {}};
   for (std::size_t k = 0; k < vertices.size() && longest > 0; ++k)
     for (std::size_t a = 0; a < d; ++a)
-      field.values[static_cast<std::size_t>(vertices[k]) * d + a] += heat_scale * (vectors[k * d + a] / longest);
+      field.values[static_cast<std::size_t>(vertices[k]) * d + a] += b * (vectors[k * d + a] / longest);
   solver.operators().solve_vector(field.values, 1);
+  std::vector<char> reached(n);
   for (std::size_t i = 0; i < n; ++i) {
     const std::span vector = std::span(field.values).subspan(i * d, d);
     const double norm = length(vector);
-    for (double& component : vector) component = norm > 0 ? component / norm * extended[i] : 0.0;
+    reached[i] = blend.reached(i) && (norm >= blend.least || longest == 0);
+    for (double& component : vector) component = norm > 0 ? component / norm * blend.values[i] : 0.0;
   }
-  finish(field, heat, heat_of_ones);
+  finish(field, heat, [&](std::size_t i) { return reached[i] != 0; });
   return field;
+  });
 }
 
 VertexField parallel_transport(const LogMapSolver& solver, const Source& source) {
+  return detail::with_memory_check("transporting a frame", [&] {
   check_source(source, solver.graph());
   const auto n = solver.graph().size();
   const auto width = static_cast<std::size_t>(solver.graph().dimension()) * solver.graph().dimension();
@@ -118,24 +136,26 @@ VertexField parallel_transport(const LogMapSolver& solver, const Source& source)
   for (Index i = 0; i < n; ++i) {
     double* axes = field.values.data() + static_cast<std::size_t>(i) * width;
     heat.frames(0).axes(i, axes);
-    if (!heat.reached(0, i)) std::fill_n(axes, width, nan);
   }
-  finish(field, heat, heat.lambda(0));
+  finish(field, heat, [&](std::size_t i) { return heat.reached(0, static_cast<Index>(i)); });
   return field;
+  });
 }
 
 VertexField radial_field(const LogMapSolver& solver, const Source& source) {
+  return detail::with_memory_check("computing the radial field", [&] {
   check_source(source, solver.graph());
   const auto d = static_cast<std::size_t>(solver.graph().dimension());
   AffineHeat heat(solver.graph(), solver.operators(), {&source, 1}, detail::thread_count(0));
-  heat.diffuse();
+  heat.diffuse_heat();
   VertexField field{static_cast<int>(d), heat.localized(), {}};
   const auto lambda = heat.lambda(0);
   for (std::size_t i = 0; i < lambda.size(); ++i)
     for (std::size_t a = 0; a < d; ++a)
       field.values[i * d + a] = field.values[i * d + a] / lambda[i] * heat.length_unit();
-  finish(field, heat, lambda);
+  finish(field, heat, [&](std::size_t i) { return lambda[i] >= heat.least_heat(0); });
   return field;
+  });
 }
 
 VertexField distance(const LogMap& map) {

@@ -19,7 +19,7 @@ struct BlockGraphs {
 };
 
 struct SpatialGraphs {
-  static std::unique_ptr<TangentGraph> surface() { return std::make_unique<CsrGraph>(lattice3(5).data); }
+  static std::unique_ptr<TangentGraph> surface() { return std::make_unique<CsrGraph>(bent_lattice(5)); }
   static std::unique_ptr<TangentGraph> flat() { return std::make_unique<CsrGraph>(lattice3(6).data); }
 };
 

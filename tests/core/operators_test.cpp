@@ -77,6 +77,22 @@ TEST(HeatOperators, RefuseABrokenGraphBeforeFactoring) {
   EXPECT_THROW(HeatOperators(graph, {.check_graph = false}), Error);  // the factorization's own checks catch it too
 }
 
+TEST(HeatOperators, RefuseTimesThatLeaveNoDigits) {
+  const CsrGraph graph(sphere_graph(300));
+  EXPECT_NO_THROW(HeatOperators(graph, {.t_coef = 1e4}));
+  for (double t_coef : {1e12, 1e16, 1e25, 1e200}) EXPECT_THROW(HeatOperators(graph, {.t_coef = t_coef}), Error) << t_coef;
+}
+
+TEST(HeatOperators, RefuseGraphsWithoutDigitsForTheirTime) {
+  const CsrGraph graph(scaled(sphere_graph(60), 1e-170));
+  try {
+    HeatOperators{graph};
+    ADD_FAILURE();
+  } catch (const Error& e) {
+    SUCCEED();
+  }
+}
+
 TEST(LinearAlgebra, SaysWhatItRunsOn) {
   const LinearAlgebraInfo info = linear_algebra_info();
   EXPECT_FALSE(info.cholmod.empty());

@@ -75,6 +75,24 @@ TEST(Validate, NamesTheBrokenLaw) {
       "dimension 2");
 }
 
+TEST(Validate, FindsStarsOfAnotherDimension) {
+  struct Wrong final : TangentGraph {
+    CsrGraph plane{sphere_graph(60)};
+    Index size() const noexcept override { return plane.size(); }
+    int dimension() const noexcept override { return 2; }
+    TransportKind transport_kind() const noexcept override { return TransportKind::rotation2; }
+    double mean_edge_length() const noexcept override { return plane.mean_edge_length(); }
+    double mass(Index i) const override { return plane.mass(i); }
+    Offset edge_count() const noexcept override { return plane.edge_count(); }
+    Star star(Index i) const override {
+      Star s = plane.star(i);
+      s.dimension = 1;
+      return s;
+    }
+  };
+  EXPECT_THROW(validate(Wrong{}), InvalidGraph);
+}
+
 TEST(Validate, FindsAMissingReverseEdge) {
   CsrGraphData g = sphere_graph(80);
   // Turn the last edge of the last vertex into a second edge to its first neighbour.

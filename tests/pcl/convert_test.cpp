@@ -11,7 +11,7 @@
 #include "ahm/pcl/search.hpp"
 #include "clouds.hpp"
 
-namespace ahm::pcl {
+namespace ahm::pcl_bridge {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -132,4 +132,4 @@ TEST(PointLogMap, SurvivesAPcdFile) {
 }
 
 }  // namespace
-}  // namespace ahm::pcl
+}  // namespace ahm::pcl_bridge

@@ -12,7 +12,7 @@
 #include "ahm/error.hpp"
 #include "clouds.hpp"
 
-namespace ahm::pcl {
+namespace ahm::pcl_bridge {
 namespace {
 
 using test::flat_square;
@@ -135,4 +135,4 @@ TEST(EstimateNormals, RefusesBadParameters) {
 }
 
 }  // namespace
-}  // namespace ahm::pcl
+}  // namespace ahm::pcl_bridge

@@ -10,7 +10,7 @@
 #include "ahm/error.hpp"
 #include "clouds.hpp"
 
-namespace ahm::pcl {
+namespace ahm::pcl_bridge {
 namespace {
 
 using test::random_box;
@@ -108,4 +108,4 @@ TEST(KdTreeSearch, NamesTheNonFinitePoint) {
 TEST(Version, LooksLikeAVersion) { EXPECT_NE(version().find('.'), std::string::npos); }
 
 }  // namespace
-}  // namespace ahm::pcl
+}  // namespace ahm::pcl_bridge

@@ -7,7 +7,8 @@ namespace {
 
 struct CloudGraphs {
   static std::unique_ptr<TangentGraph> make(const Cloud& cloud) {
-    return std::make_unique<CsrGraph>(pointcloud::PointCloudGraph::build(cloud.points).graph().data());
+    const auto built = pointcloud::PointCloudGraph::build(cloud.points);
+    return std::make_unique<CsrGraph>(built.graph().data());
   }
   static std::unique_ptr<TangentGraph> surface() { return make(random_sphere(300)); }
   static std::unique_ptr<TangentGraph> flat() { return make(flat_cloud(600)); }

@@ -65,7 +65,7 @@ TEST(CloudFaults, DuplicatesAreMergedAndAllOfThemGetTheResult) {
   const Solved solved(cloud);
   EXPECT_EQ(solved.graph.report().duplicates, 800);
   const PointMap map = solved.map(409);  // a copy of point 9
-  for (std::size_t i = 0; i < 400; ++i) ASSERT_EQ(map.u[i], once.u[i]);
+  for (std::size_t i = 0; i < 400; ++i) ASSERT_NEAR(map.u[i], once.u[i], 1e-13);
   for (std::size_t i = 400; i < cloud.points.size(); ++i) ASSERT_EQ(map.u[i], map.u[(i - 400) % 20]);
 }
 
@@ -144,6 +144,42 @@ TEST(CloudFaults, IsolatedOutliersDoNotBendTheMap) {
     ASSERT_NEAR(map.distance[i],
                 std::hypot(cloud.plane[i][0] - cloud.plane[3][0], cloud.plane[i][1] - cloud.plane[3][1]), 1e-11);
   }
+}
+
+TEST(CloudFaults, AStrayPointFarAwayCostsTheOthersNoDigit) {
+  const Cloud cloud = flat_cloud(1000);
+  for (double far : {1e6, 1e12, 1e20, 3.4e38}) {
+    Cloud with_stray = cloud;
+    with_stray.points.push_back({far, -far, far});
+    const Solved solved(with_stray);
+    const PointMap map = solved.map(3);
+    EXPECT_NE(map.status.back(), Status::ok);
+    for (std::size_t i = 0; i < cloud.points.size(); ++i)
+      ASSERT_NEAR(map.distance[i], std::hypot(cloud.plane[i][0] - cloud.plane[3][0], cloud.plane[i][1] - cloud.plane[3][1]), 1e-11)
+          << far;
+  }
+}
+
+TEST(CloudFaults, AMapOfAnotherGraphIsRefused) {
+  const Solved one(flat_cloud(100)), two(flat_cloud(120));
+  const LogMap map = one.solver.solve(one.graph.source_at_point(0));
+  EXPECT_THROW(two.graph.on_points(map), InvalidArgument);
+}
+
+TEST(CloudFaults, ASearchThatDoesNotSearchIsRefused) {
+  struct Idle final : pointcloud::NeighborSearch {
+    Index nearest(const Vec3&, std::span<Index> indices, std::span<double>) const override {
+      indices[0] = 0;
+      return 1;
+    }
+  };
+  CloudOptions options;
+  options.search = [](std::span<const Vec3>) { return std::make_unique<Idle>(); };
+  expect_error<InvalidArgument>(flat_cloud(50).points, "options.search", options);
+  options.search = [](std::span<const Vec3>) { return std::unique_ptr<pointcloud::NeighborSearch>(); };
+  expect_error<InvalidArgument>(flat_cloud(50).points, "options.search", options);
+  options.search = nullptr;
+  expect_error<InvalidArgument>(flat_cloud(50).points, "options.search", options);
 }
 
 TEST(CloudFaults, DensityThatVariesAHundredfold) {

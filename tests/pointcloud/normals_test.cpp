@@ -44,6 +44,34 @@ TEST(Normals, FlippedAtRandomGiveTheSameMapUpToItsMirrorImage) {
   expect_equal_up_to_mirror(clean, flipped.map(11), 1e-10);
 }
 
+TEST(Normals, OfWhichSomeAreFlippedLoseNoPoint) {
+  const Cloud clean = random_sphere(4000);
+  const PointMap expected = Solved(clean, true).map(11);
+  for (unsigned percent : {1, 5, 10, 15, 30}) {
+    Cloud cloud = clean;
+    std::mt19937 random(percent);
+    for (std::size_t i = 0; i < cloud.normals.size(); ++i)
+      if (random() % 100 < percent)
+        for (double& c : cloud.normals[i]) c = -c;
+    const Solved solved(cloud, true);
+    EXPECT_GT(solved.graph.report().turned, 0);
+    EXPECT_EQ(solved.graph.report().components, 1);
+    // The majority still points outwards, so that not even the mirror changes; only the axes at the source may turn over.
+    expect_equal_up_to_mirror(expected, solved.map(11), 1e-10);
+  }
+}
+
+TEST(Normals, TurnedToAViewpointDoNotCutTheSurface) {
+  Cloud cloud = random_sphere(4000);
+  const PointMap expected = Solved(cloud, true).map(11);
+  for (Vec3& n : cloud.normals)
+    if (n[2] < 0)
+      for (double& c : n) c = -c;
+  const Solved solved(cloud, true);
+  EXPECT_EQ(solved.graph.report().components, 1);
+  expect_equal_up_to_mirror(expected, solved.map(11), 1e-10);
+}
+
 TEST(Normals, GivenAndOrientedFixTheMirror) {
   Cloud cloud = random_sphere(2000);
   const PointMap outward = Solved(cloud, true).map(11);

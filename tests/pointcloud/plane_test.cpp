@@ -114,20 +114,23 @@ TEST(FlatCloud, DoesNotDependOnTheNumberOfThreads) {
 }
 
 TEST(RolledCloud, ConvergesToThePlaneWithSecondOrder) {
-  auto error = [](Index rows) {
+  auto error = [](Index rows, Variant variant) {
     const Cloud cloud = rolled_cloud(rows, 0.5);
     const Solved solved(cloud, true);
     const Index p = (rows / 2) * rows + rows / 2;
-    // u along the axis of the cylinder, which is the plane's u.
-    const auto map = solved.graph.on_points(solved.solver.solve(solved.graph.source_at_point(p, {1, 0, 0})));
+    // u along the axis of the cylinder, which is the plane's u; v is the normal times u.
+    const LogMap map = solved.solver.solve(solved.graph.source_at_point(p, {1, 0, 0}), {.variant = variant});
+    const auto on_points = solved.graph.on_points(map);
     double worst = 0;
     for (std::size_t i = 0; i < cloud.points.size(); ++i)
-      worst = std::max(worst, std::hypot(map.u[i] - (cloud.plane[i][0] - cloud.plane[p][0]),
-                                         std::abs(map.v[i]) - std::abs(cloud.plane[i][1] - cloud.plane[p][1])));
+      worst = std::max(worst, std::hypot(on_points.u[i] - (cloud.plane[i][0] - cloud.plane[p][0]),
+                                         on_points.v[i] - (cloud.plane[i][1] - cloud.plane[p][1])));
     return worst;
   };
-  const double coarse = error(30), fine = error(60);
-  EXPECT_GE(std::log2(coarse / fine), 1.8) << coarse << " -> " << fine;
+  for (Variant variant : {Variant::adaptive, Variant::localized}) {
+    const double coarse = error(30, variant), fine = error(60, variant);
+    EXPECT_GE(std::log2(coarse / fine), 1.8) << coarse << " -> " << fine;
+  }
 }
 
 TEST(Source, PointsItsUAxisWhereAsked) {

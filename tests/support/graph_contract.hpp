@@ -4,8 +4,7 @@
 /// \code
 /// struct MyGraphs {
 ///   static std::unique_ptr<ahm::TangentGraph> surface();   // any connected graph of at least 50 vertices
-///   static std::unique_ptr<ahm::TangentGraph> flat();      // a flat one: edge logs are differences of positions in
-///   the plane
+///   static std::unique_ptr<ahm::TangentGraph> flat();      // edge logs are differences of positions in the plane
 /// };
 /// INSTANTIATE_TYPED_TEST_SUITE_P(Mine, GraphContract, MyGraphs);
 /// \endcode

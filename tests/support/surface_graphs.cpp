@@ -1,5 +1,7 @@
 #include "support/surface_graphs.hpp"
 
+#include "support/planar_graphs.hpp"
+
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
@@ -56,6 +58,26 @@ CsrGraphData sphere_graph(Index n, unsigned seed) {
     g.row_begin.push_back(static_cast<Offset>(g.neighbors.size()));
     g.masses.push_back(4.0 * std::numbers::pi / n * (0.5 + uniform(random)));
   }
+  return g;
+}
+
+CsrGraphData bent_lattice(Index side, unsigned seed) {
+  CsrGraphData g = lattice3(side).data;
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> angle(-0.1, 0.1);
+  using Block = Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>;
+  for (Index i = 0; i < static_cast<Index>(g.masses.size()); ++i)
+    for (Offset e = g.row_begin[i]; e < g.row_begin[i + 1]; ++e) {
+      const Index j = g.neighbors[e];
+      if (j < i) continue;
+      Block R_ji(g.transports.data() + 9 * e);
+      R_ji = (Eigen::AngleAxisd(angle(random), Eigen::Vector3d::UnitX()) * Eigen::AngleAxisd(angle(random), Eigen::Vector3d::UnitZ()))
+                 .toRotationMatrix() *
+             Eigen::Matrix3d(R_ji);
+      Offset back = g.row_begin[j];
+      while (g.neighbors[back] != i) ++back;
+      Block(g.transports.data() + 9 * back) = Eigen::Matrix3d(R_ji.transpose());
+    }
   return g;
 }
 

@@ -10,6 +10,9 @@ namespace ahm::test {
 /// log map on it has no closed form; both sides of a comparison see the same graph.
 CsrGraphData sphere_graph(Index n, unsigned seed = 1);
 
+/// A jittered lattice in space with frames turned at random and transports bent a little: as if the space were curved.
+CsrGraphData bent_lattice(Index side, unsigned seed = 1);
+
 /// The same graph with every 2 x 2 rotation written out as a block.
 CsrGraphData as_blocks(const CsrGraphData& rotations);
 

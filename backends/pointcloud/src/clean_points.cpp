@@ -13,29 +13,38 @@ namespace {
 
 bool is_finite(const Vec3& p) { return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]); }
 
-double largest_coordinate(const std::vector<Vec3>& points) {
+/// The value in the middle when sorted; reorders.
+double median(std::vector<double>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+void scale(std::vector<Vec3>& points, int exponent) {
+  for (Vec3& p : points)
+    for (double& x : p) x = std::scalbn(x, exponent);
+}
+
+/// Brings the points to order one about their middle and returns the exponent of their unit. Medians, since a single stray
+/// point must cost the others no digits.
+int normalize(std::vector<Vec3>& points) {
   double largest = 0;
   for (const Vec3& p : points)
     for (double x : p) largest = std::max(largest, std::abs(x));
-  return largest;
-}
-
-/// Multiplies by a power of two that brings the largest coordinate into [1, 2); returns its exponent.
-int normalize_scale(std::vector<Vec3>& points) {
-  const double largest = largest_coordinate(points);
-  const int exponent = largest > 0 ? std::ilogb(largest) : 0;
-  for (Vec3& p : points)
-    for (double& x : p) x = std::scalbn(x, -exponent);
-  return exponent;
-}
-
-void center(std::vector<Vec3>& points) {
-  for (int axis = 0; axis < 3; ++axis) {
-    auto [low, high] = std::minmax_element(points.begin(), points.end(),
-                                           [axis](const Vec3& a, const Vec3& b) { return a[axis] < b[axis]; });
-    const double middle = 0.5 * ((*low)[axis] + (*high)[axis]);
+  const int first = largest > 0 ? std::ilogb(largest) : 0;
+  scale(points, -first);
+  std::vector<double> values(points.size());
+  for (int axis = 0; axis < 3 && !points.empty(); ++axis) {
+    std::transform(points.begin(), points.end(), values.begin(), [axis](const Vec3& p) { return p[axis]; });
+    const double middle = median(values);
     for (Vec3& p : points) p[axis] -= middle;
   }
+  std::transform(points.begin(), points.end(), values.begin(),
+                 [](const Vec3& p) { return std::max({std::abs(p[0]), std::abs(p[1]), std::abs(p[2])}); });
+  const double spread = points.empty() ? 0.0 : median(values);
+  const int second = spread > 0 ? std::ilogb(spread) : 0;
+  scale(points, -second);
+  return first + second;
 }
 
 /// Spreads the low 21 bits so that two zero bits follow each.
@@ -48,27 +57,25 @@ std::uint64_t spread_bits(std::uint64_t x) {
   return (x | x << 2) & 0x1249249249249249;
 }
 
-/// Position of a point with coordinates in [-2, 2] along the Morton curve.
+/// Position along the Morton curve through [-16, 16]^3; points beyond count as on its faces.
 std::uint64_t morton_code(const Vec3& p) {
   std::uint64_t code = 0;
-  for (int axis = 0; axis < 3; ++axis)
-    code |= spread_bits(static_cast<std::uint64_t>((p[axis] + 2.0) * 0x1p19)) << axis;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double cell = (std::clamp(p[axis], -16.0, 15.999) + 16.0) * 0x1p16;
+    code |= spread_bits(static_cast<std::uint64_t>(cell)) << axis;
+  }
   return code;
 }
 
-}  // namespace
-
-CleanPoints clean_points(std::span<const Vec3> input, const CloudOptions& options, CloudReport& report) {
-  if (input.size() > static_cast<std::size_t>(std::numeric_limits<Index>::max() / 2))
-    throw InvalidGeometry("the cloud has " + std::to_string(input.size()) + " points; at most 2^30 are supported");
-  report.points = static_cast<Index>(input.size());
-  std::vector<Vec3> scaled;
-  std::vector<Index> kept;
-  scaled.reserve(input.size());
+/// Copies the finite points; `kept` are their numbers.
+std::vector<Vec3> finite_points(std::span<const Vec3> input, const CloudOptions& options, std::vector<Index>& kept,
+                                CloudReport& report) {
+  std::vector<Vec3> points;
+  points.reserve(input.size());
   kept.reserve(input.size());
   for (std::size_t i = 0; i < input.size(); ++i) {
     if (is_finite(input[i])) {
-      scaled.push_back(input[i]);
+      points.push_back(input[i]);
       kept.push_back(static_cast<Index>(i));
       continue;
     }
@@ -78,12 +85,19 @@ CleanPoints clean_points(std::span<const Vec3> input, const CloudOptions& option
                             detail::number(input[i][1]) + ", " + detail::number(input[i][2]) +
                             "): coordinates must be finite; drop such points with drop_non_finite");
   }
+  return points;
+}
 
+}  // namespace
+
+CleanPoints clean_points(std::span<const Vec3> input, const CloudOptions& options, CloudReport& report) {
+  if (input.size() > static_cast<std::size_t>(std::numeric_limits<Index>::max() / 2))
+    throw InvalidGeometry("the cloud has " + std::to_string(input.size()) + " points; at most 2^30 are supported");
+  report.points = static_cast<Index>(input.size());
+  std::vector<Index> kept;
+  std::vector<Vec3> scaled = finite_points(input, options, kept, report);
   CleanPoints clean;
-  int exponent = normalize_scale(scaled);
-  center(scaled);
-  exponent += normalize_scale(scaled);
-  clean.unit = std::scalbn(1.0, exponent);
+  clean.unit = std::scalbn(1.0, normalize(scaled));
 
   struct Key {
     std::uint64_t code;

@@ -84,24 +84,22 @@ struct Evidence {
 
 }  // namespace
 
-bool signs_agree(const CleanPoints& cloud, const TangentPlanes& planes, const Neighborhoods& neighborhoods) {
-  Offset parallel = 0, opposed = 0, before = 0, behind = 0;
+bool have_thin_walls(const CleanPoints& cloud, const TangentPlanes& planes, const Neighborhoods& neighborhoods) {
+  Offset opposed = 0, before = 0, behind = 0;
   const auto n = static_cast<Index>(planes.normals.size());
   for (Index i = 0; i < n; ++i)
     for (Index j : neighborhoods.of(i)) {
-      const double cosine = dot(planes.normals[i], planes.normals[j]);
-      parallel += std::abs(cosine) > 0.5;
-      if (!(cosine < -0.5)) continue;
+      if (!(dot(planes.normals[i], planes.normals[j]) < -0.5)) continue;
       ++opposed;
-      const double height = dot(planes.normals[i], cloud.points[j] - cloud.points[i]);
+      // Twice the mean of how high each lies above the other.
+      const double height = dot(planes.normals[i] - planes.normals[j], cloud.points[j] - cloud.points[i]);
       before += height > 0;
       behind += height < 0;
     }
-  // With signs at random, before and behind are equally frequent.
-  return 4 * opposed <= parallel || 4 * std::abs(before - behind) >= 3 * opposed;
+  return opposed > 0 && 4 * std::abs(before - behind) >= 3 * opposed;
 }
 
-void orient_normals(const CleanPoints& cloud, const WeightedEdges& edges, bool signs_given, TangentPlanes& planes) {
+Index orient_normals(const CleanPoints& cloud, const WeightedEdges& edges, bool signs_given, TangentPlanes& planes) {
   const auto n = static_cast<Index>(cloud.points.size());
   SignedForest forest(n);
   for (std::uint32_t e : flattest_first(edges, planes)) {
@@ -125,8 +123,14 @@ void orient_normals(const CleanPoints& cloud, const WeightedEdges& edges, bool s
     e.spread += norm(offset);
     for (int axis = 0; axis < 3; ++axis) e.normal_sum[axis] += normal[axis];
   }
-  for (Index i = 0; i < n; ++i)
-    if (evidence[forest.find(i).vertex].sign(signs_given) < 0) planes.normals[i] = -1.0 * planes.normals[i];
+  Index against_majority = 0;
+  for (Index i = 0; i < n; ++i) {
+    const auto [root, sign] = forest.find(i);
+    const bool turn = evidence[root].sign(signs_given) < 0;
+    if (turn) planes.normals[i] = -1.0 * planes.normals[i];
+    against_majority += (sign < 0) != turn;
+  }
+  return against_majority;
 }
 
 }  // namespace ahm::pointcloud

@@ -9,14 +9,15 @@
 
 namespace ahm::pointcloud {
 
-/// Whether given normals can be trusted in sign. They can when at most a quarter of the pairs of neighbours with nearly
-/// parallel planes disagree, or when those that disagree lie consistently behind, or before, each other: two sheets of
-/// a thin wall.
-bool signs_agree(const CleanPoints& cloud, const TangentPlanes& planes, const Neighborhoods& neighborhoods);
+/// Whether neighbours of opposite normals are the two sheets of thin walls: they lie consistently behind, or before, each
+/// other. Normals whose signs are wrong, or turned to a viewpoint, show no such thing: what curvature does to one side of
+/// a pair it undoes on the other, and noise has no direction.
+bool have_thin_walls(const CleanPoints& cloud, const TangentPlanes& planes, const Neighborhoods& neighborhoods);
 
-/// Flips normals so that they agree along a spanning tree of the flattest edges, per connected component. The component
-/// as a whole keeps the majority of the signs that were given, else points away from its centroid, else (flat clouds)
-/// along its largest coordinate.
-void orient_normals(const CleanPoints& cloud, const WeightedEdges& edges, bool signs_given, TangentPlanes& planes);
+/// Flips normals so that they agree along a spanning tree of the flattest edges, per connected component. The component as a
+/// whole keeps the majority of the signs that were given, else points away from its centroid, else (flat clouds) along its
+/// largest coordinate.
+/// @return the number of normals that are flipped against the majority of their component
+Index orient_normals(const CleanPoints& cloud, const WeightedEdges& edges, bool signs_given, TangentPlanes& planes);
 
 }  // namespace ahm::pointcloud

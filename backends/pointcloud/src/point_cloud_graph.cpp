@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "ahm/components.hpp"
 #include "ahm/detail/text.hpp"
 #include "ahm/error.hpp"
 #include "clean_points.hpp"
@@ -56,14 +57,25 @@ std::string first_ten(const std::vector<Index>& indices) {
   return indices.size() > 10 ? text + " and " + std::to_string(indices.size() - 10) + " more" : text;
 }
 
-bool trust_signs(std::span<const Vec3> given, const CleanPoints& cloud, const TangentPlanes& planes,
-                 const Neighborhoods& neighborhoods, const CloudOptions& options, CloudReport& report) {
+/// Whether neighbours whose normals are opposed are kept apart.
+bool cut_between_sheets(std::span<const Vec3> given, const CleanPoints& cloud, const TangentPlanes& planes,
+                        const Neighborhoods& neighborhoods, const CloudOptions& options) {
   if (given.empty() || options.normal_signs == NormalSigns::unoriented) return false;
-  if (options.normal_signs == NormalSigns::oriented) return true;
-  if (signs_agree(cloud, planes, neighborhoods)) return true;
-  report.warnings.push_back(
-      "the given normals point to both sides at random; only their planes are used, and which side is up is chosen");
-  return false;
+  return options.normal_signs == NormalSigns::oriented || have_thin_walls(cloud, planes, neighborhoods);
+}
+
+/// Makes the signs of the normals consistent, unless the given ones are to be kept.
+void orient(const CleanPoints& cloud, const WeightedEdges& edges, std::span<const Vec3> given, bool cut,
+            const CloudOptions& options, TangentPlanes& planes, CloudReport& report) {
+  report.oriented = cut;
+  if (cut) return;
+  const bool signs_given = !given.empty() && options.normal_signs == NormalSigns::automatic;
+  report.turned = orient_normals(cloud, edges, signs_given, planes);
+  report.oriented = signs_given && report.turned == 0;
+  if (!signs_given) report.turned = 0;
+  if (report.turned > 0)
+    report.warnings.push_back(std::to_string(report.turned) +
+                              " given normals point to the other side than the majority around them and were turned");
 }
 
 /// Numbers the points that have a mass; lists the input points that have none.
@@ -105,24 +117,6 @@ void fill_vertex_data(CsrGraphData& g, std::span<const Vec3> input, const CleanP
   }
 }
 
-Index count_components(const CsrGraphData& g) {
-  std::vector<Index> parent(g.masses.size());
-  for (std::size_t i = 0; i < parent.size(); ++i) parent[i] = static_cast<Index>(i);
-  auto root = [&](Index v) {
-    while (parent[v] != v) v = parent[v] = parent[parent[v]];
-    return v;
-  };
-  auto count = static_cast<Index>(parent.size());
-  for (std::size_t i = 0; i < parent.size(); ++i)
-    for (Offset e = g.row_begin[i]; e < g.row_begin[i + 1]; ++e) {
-      const Index a = root(static_cast<Index>(i)), b = root(g.neighbors[e]);
-      if (a == b) continue;
-      parent[std::max(a, b)] = std::min(a, b);
-      --count;
-    }
-  return count;
-}
-
 void add_warnings(CloudReport& report, Index k_asked) {
   auto warn = [&](auto count, const char* text) {
     if (count > 0) report.warnings.push_back(std::to_string(count) + text);
@@ -143,7 +137,7 @@ void add_warnings(CloudReport& report, Index k_asked) {
 
 PointCloudGraph::PointCloudGraph(CsrGraph graph, CloudReport report, std::vector<Index> vertex_of_point,
                                  std::vector<Index> point_of_vertex)
-    : graph_(std::move(graph)),
+    : graph_(std::make_unique<const CsrGraph>(std::move(graph))),
       report_(std::move(report)),
       vertex_of_point_(std::move(vertex_of_point)),
       point_of_vertex_(std::move(point_of_vertex)) {}
@@ -154,7 +148,8 @@ PointCloudGraph PointCloudGraph::build(std::span<const Vec3> points, std::span<c
   CloudReport report;
   Lap lap;
   CleanPoints cloud = clean_points(points, options, report);
-  const auto search = options.search(cloud.points);
+  const auto search = options.search ? options.search(cloud.points) : nullptr;
+  if (!search) throw InvalidArgument("options.search made no neighbour search; default: nanoflann_search");
   options.progress.step("neighbours", 0.0);
   Neighborhoods neighborhoods = find_neighborhoods(cloud, *search, options);
   report.k = neighborhoods.k;
@@ -163,10 +158,10 @@ PointCloudGraph PointCloudGraph::build(std::span<const Vec3> points, std::span<c
     report.warnings.push_back(std::to_string(planes.estimated) +
                               " given normals are zero or not finite and were estimated");
   if (planes.estimated == static_cast<Index>(cloud.points.size())) normals = {};
-  report.oriented = trust_signs(normals, cloud, planes, neighborhoods, options, report);
+  const bool cut = cut_between_sheets(normals, cloud, planes, neighborhoods, options);
   report.seconds_normals = lap();
 
-  std::vector<Triangle> triangles = local_delaunay(cloud, neighborhoods, planes, report.oriented, options, report);
+  std::vector<Triangle> triangles = local_delaunay(cloud, neighborhoods, planes, cut, options, report);
   report.seconds_delaunay = lap();
   neighborhoods = {};
 
@@ -180,11 +175,12 @@ PointCloudGraph PointCloudGraph::build(std::span<const Vec3> points, std::span<c
 
   std::vector<Index> point_of_vertex;
   const std::vector<Index> vertex_of_clean = number_vertices(cloud, edges, point_of_vertex, report);
-  if (!report.oriented) orient_normals(cloud, edges, !normals.empty(), planes);
+  orient(cloud, edges, normals, cut, options, planes, report);
   CsrGraphData data = tangent_edges(cloud, planes, edges, vertex_of_clean, report.vertices, report.oriented,
                                     options.edge_length, options.threads, report);
   fill_vertex_data(data, points, cloud, planes, edges, vertex_of_clean);
-  report.components = count_components(data);
+  CsrGraph graph(std::move(data));
+  report.components = connected_components(graph).count;
   add_warnings(report, options.k);
 
   std::vector<Index> vertex_of_point(points.size(), -1);
@@ -192,7 +188,7 @@ PointCloudGraph PointCloudGraph::build(std::span<const Vec3> points, std::span<c
     if (cloud.clean_of_input[i] >= 0) vertex_of_point[i] = vertex_of_clean[cloud.clean_of_input[i]];
   options.progress.step("graph", 1.0);
   report.seconds_graph = lap();
-  return PointCloudGraph(CsrGraph(std::move(data)), std::move(report), std::move(vertex_of_point),
+  return PointCloudGraph(std::move(graph), std::move(report), std::move(vertex_of_point),
                          std::move(point_of_vertex));
 } catch (const std::bad_alloc&) {
   throw ResourceExhausted("out of memory while building the graph of a cloud of " + std::to_string(points.size()) +
@@ -212,7 +208,7 @@ Source PointCloudGraph::source_at_point(Index point) const {
 
 Source PointCloudGraph::source_at_point(Index point, const Vec3& u_direction) const {
   const Index vertex = source_at_point(point).vertices()[0];
-  const Frame frame = *graph_.frame(vertex);
+  const Frame frame = *graph_->frame(vertex);
   const double direction[] = {dot(frame.x, u_direction), dot(frame.y, u_direction)};
   if (!(std::hypot(direction[0], direction[1]) > 1e-9 * norm(u_direction)))
     throw InvalidArgument("the u direction is zero or perpendicular to the tangent plane at point " +
@@ -225,8 +221,8 @@ Index PointCloudGraph::nearest_point(const Vec3& position) const {
     throw InvalidArgument("the source position is not finite");
   Index best = 0;
   double least = std::numeric_limits<double>::infinity();
-  for (Index vertex = 0; vertex < graph_.size(); ++vertex) {
-    const Vec3 offset = graph_.data().frames[vertex].origin - position;
+  for (Index vertex = 0; vertex < graph_->size(); ++vertex) {
+    const Vec3 offset = graph_->data().frames[vertex].origin - position;
     const double distance = std::hypot(offset[0], offset[1], offset[2]);
     if (distance < least) {
       least = distance;
@@ -237,6 +233,9 @@ Index PointCloudGraph::nearest_point(const Vec3& position) const {
 }
 
 PointMap PointCloudGraph::on_points(const LogMap& map) const {
+  if (map.size() != graph_->size() || map.dimension() != 2)
+    throw InvalidArgument("on_points: the map has " + std::to_string(map.size()) + " vertices, this cloud's graph has " +
+                          std::to_string(graph_->size()) + ": it belongs to another graph");
   const std::size_t n = vertex_of_point_.size();
   PointMap result{std::vector<double>(n, nan), std::vector<double>(n, nan), std::vector<double>(n, nan),
                   std::vector<double>(n, nan), std::vector<Status>(n, Status::removed)};
@@ -257,7 +256,7 @@ PointMap PointCloudGraph::on_points(const LogMap& map) const {
 std::vector<Vec3> PointCloudGraph::normals_on_points() const {
   std::vector<Vec3> normals(vertex_of_point_.size(), Vec3{nan, nan, nan});
   for (std::size_t i = 0; i < normals.size(); ++i)
-    if (vertex_of_point_[i] >= 0) normals[i] = graph_.data().frames[vertex_of_point_[i]].normal;
+    if (vertex_of_point_[i] >= 0) normals[i] = graph_->data().frames[vertex_of_point_[i]].normal;
   return normals;
 }
 

@@ -3,10 +3,12 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <iterator>
 #include <utility>
 
 #include "ahm/detail/parallel.hpp"
+#include "ahm/error.hpp"
 #include "vec3.hpp"
 
 namespace ahm::pointcloud {
@@ -56,7 +58,14 @@ std::span<const Index> neighbors_of(std::span<const Vec3> points, Index i, const
                                     QueryBuffers& buffers) {
   buffers.indices.resize(static_cast<std::size_t>(k) + 1);
   buffers.squared.resize(buffers.indices.size());
-  buffers.indices.resize(static_cast<std::size_t>(search.nearest(points[i], buffers.indices, buffers.squared)));
+  const auto wanted = static_cast<Index>(std::min(buffers.indices.size(), points.size()));
+  const Index found = search.nearest(points[i], buffers.indices, buffers.squared);
+  buffers.indices.resize(static_cast<std::size_t>(wanted));
+  for (Index j : buffers.indices)
+    if (found != wanted || j < 0 || static_cast<std::size_t>(j) >= points.size())
+      throw InvalidArgument("options.search: asked for " + std::to_string(wanted) + " neighbours of point " +
+                            std::to_string(i) + ", it found " + std::to_string(found) + ", among them point " +
+                            std::to_string(j));
   // The point is its own nearest neighbour; a search in lower precision may rank it elsewhere or miss it.
   const auto self = std::find(buffers.indices.begin(), buffers.indices.end(), i);
   buffers.indices.erase(self == buffers.indices.end() ? self - 1 : self);

@@ -14,23 +14,19 @@ using Half = std::int64_t;  ///< half-edge 3 f + s: side s of cover face f
 Half next(Half h) { return h % 3 == 2 ? h - 2 : h + 1; }
 Half previous(Half h) { return h % 3 == 0 ? h + 2 : h - 1; }
 
-/// The cotangent of the angle opposite side a of a triangle with side lengths a, b, c.
-double opposite_cotangent(double a, double b, double c) {
-  // Kahan's stable form of 16 area^2, sides sorted.
-  double x = a, y = b, z = c;
-  if (x < y) std::swap(x, y);
-  if (y < z) std::swap(y, z);
-  if (x < y) std::swap(x, y);
-  const double product = (x + (y + z)) * (z - (x - y)) * (z + (x - y)) * (x + (y - z));
-  return (b * b + c * c - a * a) / std::sqrt(std::max(product, 1e-300));
+/// 16 times the squared area of a triangle with these side lengths, by Kahan's stable formula.
+double sixteen_squared_areas(double a, double b, double c) {
+  if (a < b) std::swap(a, b);
+  if (b < c) std::swap(b, c);
+  if (a < b) std::swap(a, b);
+  return std::max(0.0, (a + (b + c)) * (c - (a - b)) * (c + (a - b)) * (a + (b - c)));
 }
 
-double triangle_area(double a, double b, double c) {
-  double x = a, y = b, z = c;
-  if (x < y) std::swap(x, y);
-  if (y < z) std::swap(y, z);
-  if (x < y) std::swap(x, y);
-  return 0.25 * std::sqrt(std::max(0.0, (x + (y + z)) * (z - (x - y)) * (z + (x - y)) * (x + (y - z))));
+double triangle_area(double a, double b, double c) { return 0.25 * std::sqrt(sixteen_squared_areas(a, b, c)); }
+
+/// The cotangent of the angle opposite side a of a triangle with side lengths a, b, c.
+double opposite_cotangent(double a, double b, double c) {
+  return (b * b + c * c - a * a) / std::sqrt(std::max(sixteen_squared_areas(a, b, c), 1e-300));
 }
 
 /// A closed manifold of 2 |triangles| faces in flat half-edge arrays. Triangle t has the copies 2t, corners (a, b, c),
@@ -72,7 +68,7 @@ class TuftedCover {
       if (h < twin_[h] && !is_delaunay(h)) stack.push_back(h);
     Offset flips = 0;
     // Delaunay flipping ends by itself; the cap only guards against rounding on degenerate input.
-    const Offset cap = 64 * static_cast<Offset>(tail_.size()) + 1024;
+    const Offset cap = 4 * static_cast<Offset>(tail_.size()) + 1024;
     while (!stack.empty() && flips < cap) {
       const Half h = stack.back();
       stack.pop_back();
@@ -82,6 +78,12 @@ class TuftedCover {
       for (Half side : {next(h), previous(h), next(twin_[h]), previous(twin_[h])}) stack.push_back(side);
     }
     return flips;
+  }
+
+  bool is_delaunay() const {
+    for (Half h = 0; h < static_cast<Half>(tail_.size()); ++h)
+      if (h < twin_[h] && !is_delaunay(h)) return false;
+    return true;
   }
 
   WeightedEdges weighted_edges() const;
@@ -239,6 +241,8 @@ WeightedEdges tufted_laplacian(const CleanPoints& cloud, const TangentPlanes& pl
   TuftedCover cover(cloud, planes, triangles);
   report.mollification = cover.mollify();
   report.flips = cover.flip_to_delaunay();
+  if (!cover.is_delaunay())
+    report.warnings.push_back("the intrinsic Delaunay flips did not come to an end: some edges of degenerate triangles were left out");
   return cover.weighted_edges();
 }
 

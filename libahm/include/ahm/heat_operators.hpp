@@ -8,7 +8,7 @@
 /// ahm::HeatOperators heat(graph, {.t_coef = 1.0});
 /// std::vector<double> lambda(n, 0.0);
 /// lambda[source] = 1.0;
-/// heat.solve_scalar(lambda, 1);                // lambda = A^-1 delta
+/// heat.solve_scalar(lambda, 1);                // lambda = (c A)^-1 delta
 /// \endcode
 #pragma once
 

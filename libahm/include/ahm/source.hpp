@@ -3,11 +3,12 @@
 /// curve are one and the same thing to the solver.
 ///
 /// \code
-/// auto vertex = ahm::Source::at_vertex(7);                       // u axis = first axis of frame 7
-/// auto turned = ahm::Source::at_vertex(7, std::array{0.0, 1.0}); // u axis = second axis of frame 7
-/// ahm::Source between(2);                                        // half way between vertices 3 and 4, one apart on a
-/// line between.add(3, 0.5, std::array{-0.5, 0.0}, axes_in_frame_3); between.add(4, 0.5, std::array{+0.5, 0.0},
-/// axes_in_frame_4); \endcode
+/// auto vertex = ahm::Source::at_vertex(7);                        // u axis = first axis of frame 7
+/// auto turned = ahm::Source::at_vertex(7, std::array{0.0, 1.0});  // u axis = second axis of frame 7
+/// ahm::Source between(2);  // half way between vertices 3 and 4, one apart
+/// between.add(3, 0.5, std::array{-0.5, 0.0}, axes_in_frame_3);
+/// between.add(4, 0.5, std::array{+0.5, 0.0}, axes_in_frame_4);
+/// \endcode
 #pragma once
 
 #include <span>

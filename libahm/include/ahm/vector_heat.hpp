@@ -2,9 +2,9 @@
 /// What the two factored operators give besides log maps (the vector heat method, SSC19), on every backend.
 ///
 /// \code
-/// auto field  = ahm::parallel_transport(solver, ahm::Source::at_vertex(3));           // frame of 3, carried
-/// everywhere auto colour = ahm::extend_scalar(solver, std::array{3, 9}, std::array{0.0, 1.0});   // nearest-source
-/// blend \endcode
+/// auto frame = ahm::parallel_transport(solver, ahm::Source::at_vertex(3));  // frame of 3, carried everywhere
+/// auto blend = ahm::extend_scalar(solver, std::array{3, 9}, std::array{0.0, 1.0});
+/// \endcode
 #pragma once
 
 #include <span>

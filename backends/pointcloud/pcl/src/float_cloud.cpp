@@ -6,7 +6,7 @@
 
 #include "ahm/error.hpp"
 
-namespace ahm::pcl {
+namespace ahm::pcl_bridge {
 namespace {
 
 void require_finite(std::span<const Vec3> points, std::string_view caller) {
@@ -45,4 +45,4 @@ FloatCloud to_float_cloud(std::span<const Vec3> points, std::string_view caller)
   return result;
 }
 
-}  // namespace ahm::pcl
+}  // namespace ahm::pcl_bridge

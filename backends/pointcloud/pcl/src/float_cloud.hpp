@@ -10,7 +10,7 @@
 
 #include "ahm/types.hpp"
 
-namespace ahm::pcl {
+namespace ahm::pcl_bridge {
 
 /// A cloud in single precision and the map that made it: p -> (p - center) / unit.
 struct FloatCloud {
@@ -30,4 +30,4 @@ struct FloatCloud {
 /// @throws InvalidGeometry (a coordinate is not finite, with its index)
 FloatCloud to_float_cloud(std::span<const Vec3> points, std::string_view caller);
 
-}  // namespace ahm::pcl
+}  // namespace ahm::pcl_bridge

@@ -7,7 +7,7 @@
 #include "ahm/pcl/search.hpp"
 #include "float_cloud.hpp"
 
-namespace ahm::pcl {
+namespace ahm::pcl_bridge {
 namespace {
 
 double squared_distance(const Vec3& a, const Vec3& b) {
@@ -55,4 +55,4 @@ std::unique_ptr<pointcloud::NeighborSearch> kdtree_search(std::span<const Vec3> 
   return std::make_unique<KdTreeSearch>(points);
 }
 
-}  // namespace ahm::pcl
+}  // namespace ahm::pcl_bridge

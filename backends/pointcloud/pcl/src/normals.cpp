@@ -7,7 +7,7 @@
 #include "ahm/pcl/filters.hpp"
 #include "float_cloud.hpp"
 
-namespace ahm::pcl {
+namespace ahm::pcl_bridge {
 
 std::vector<Vec3> estimate_normals(std::span<const Vec3> points, int k, unsigned threads) {
   if (k < 3) throw InvalidArgument("estimate_normals: k is " + std::to_string(k) + ", must be at least 3");
@@ -26,4 +26,4 @@ std::vector<Vec3> estimate_normals(std::span<const Vec3> points, int k, unsigned
   return normals;
 }
 
-}  // namespace ahm::pcl
+}  // namespace ahm::pcl_bridge

@@ -9,7 +9,7 @@
 #include "ahm/pcl/filters.hpp"
 #include "float_cloud.hpp"
 
-namespace ahm::pcl {
+namespace ahm::pcl_bridge {
 
 std::vector<Index> outlier_removal(std::span<const Vec3> points, int mean_k, double stddev_mul) {
   if (mean_k < 1)
@@ -31,4 +31,4 @@ std::vector<Index> outlier_removal(std::span<const Vec3> points, int mean_k, dou
   return kept;
 }
 
-}  // namespace ahm::pcl
+}  // namespace ahm::pcl_bridge

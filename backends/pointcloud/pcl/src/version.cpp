@@ -2,8 +2,8 @@
 
 #include "ahm/pcl/search.hpp"
 
-namespace ahm::pcl {
+namespace ahm::pcl_bridge {
 
 std::string version() { return PCL_VERSION_PRETTY; }
 
-}  // namespace ahm::pcl
+}  // namespace ahm::pcl_bridge

@@ -10,7 +10,7 @@
 #include "ahm/pcl/filters.hpp"
 #include "float_cloud.hpp"
 
-namespace ahm::pcl {
+namespace ahm::pcl_bridge {
 namespace {
 
 using Grid = ::pcl::VoxelGrid<::pcl::PointXYZ>;
@@ -122,4 +122,4 @@ ReducedCloud voxel_grid(std::span<const Vec3> points, std::span<const Vec3> norm
   return gather(points, normals, voxel_of_point, nearest_to_centroids(*input.cloud, centroids, voxel_of_point));
 }
 
-}  // namespace ahm::pcl
+}  // namespace ahm::pcl_bridge

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <exception>
 #include <mutex>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -38,7 +39,11 @@ void parallel_chunks(Offset n, Offset chunk, unsigned threads, const Body& body)
   const auto workers = std::min<Offset>(thread_count(threads), chunks);
   {
     std::vector<std::jthread> pool;
-    for (Offset t = 1; t < workers; ++t) pool.emplace_back(work);
+    try {
+      for (Offset t = 1; t < workers; ++t) pool.emplace_back(work);
+    } catch (const std::system_error&) {
+      // No more threads to be had: those there are, and this one, do the work.
+    }
     work();
   }
   if (error) std::rethrow_exception(error);

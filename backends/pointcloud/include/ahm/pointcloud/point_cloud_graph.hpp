@@ -10,6 +10,7 @@
 /// \endcode
 #pragma once
 
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -23,10 +24,11 @@ namespace ahm::pointcloud {
 
 /// What the signs of given normals mean.
 enum class NormalSigns {
-  automatic,   ///< oriented when at most a quarter of the neighbouring normals disagree in sign, or when those that do
-               ///< lie consistently behind each other (thin walls); else unoriented
-  oriented,    ///< trusted: they fix which side is up, and points whose normals disagree are not joined (thin walls)
-  unoriented,  ///< only the tangent planes are used; orientation is propagated over a spanning tree
+  /// The majority in each component fixes which side is up; others are turned. Neighbours that face away from each other are
+  /// kept apart if they lie consistently behind each other (thin walls).
+  automatic,
+  oriented,    ///< trusted one by one; neighbours whose normals are opposed are kept apart
+  unoriented,  ///< only the planes are used
 };
 
 /// How long the logarithm of an edge is; its direction is that of the neighbour projected to the tangent plane.
@@ -63,7 +65,8 @@ struct CloudReport {
   Offset rejected_long = 0;      ///< neighbour pairs not joined: too long for the local spacing
   Offset rejected_normals = 0;   ///< neighbour pairs not joined: oriented normals disagree (thin wall)
   Offset reflections = 0;        ///< edges between oppositely oriented frames
-  bool oriented = false;         ///< given normals were trusted in sign
+  Index turned = 0;              ///< given normals that pointed to the other side than the majority around them
+  bool oriented = false;         ///< given normals fix which side is up, everywhere
   double mollification = 0;      ///< length added to every edge of the tufted cover, outside units
   double seconds_normals = 0;    ///< neighbours and tangent planes
   double seconds_delaunay = 0;   ///< local triangulations
@@ -91,8 +94,11 @@ class PointCloudGraph {
   static PointCloudGraph build(std::span<const Vec3> points, std::span<const Vec3> normals = {},
                                const CloudOptions& options = {});
 
-  const CsrGraph& graph() const noexcept { return graph_; }
-  const CloudReport& report() const noexcept { return report_; }
+  /// Stays where it is when this object is moved.
+  const CsrGraph& graph() const& noexcept { return *graph_; }
+  void graph() && = delete;
+  const CloudReport& report() const& noexcept { return report_; }
+  void report() && = delete;
 
   /// Vertex of each input point, -1 where it was removed.
   std::span<const Index> vertex_of_point() const noexcept { return vertex_of_point_; }
@@ -118,7 +124,7 @@ class PointCloudGraph {
   PointCloudGraph(CsrGraph graph, CloudReport report, std::vector<Index> vertex_of_point,
                   std::vector<Index> point_of_vertex);
 
-  CsrGraph graph_;
+  std::unique_ptr<const CsrGraph> graph_;
   CloudReport report_;
   std::vector<Index> vertex_of_point_;
   std::vector<Index> point_of_vertex_;

@@ -2,10 +2,10 @@
 /// From `pcl::PointCloud` to the arrays of the point cloud backend, and a log map back to `pcl::PointCloud`.
 ///
 /// \code
-/// auto scan = ahm::pcl::from_pcl(*cloud);                                       // any point type with x, y, z
+/// auto scan = ahm::pcl_bridge::from_pcl(*cloud);                                       // any point type with x, y, z
 /// auto graph = ahm::pointcloud::PointCloudGraph::build(scan.points, scan.normals);
 /// auto map = graph.on_points(ahm::LogMapSolver(graph.graph()).solve(graph.source_at_point(0)));
-/// pcl::PointCloud<ahm::pcl::PointLogMap> result = ahm::pcl::to_pcl(*cloud, map);
+/// pcl::PointCloud<ahm::pcl_bridge::PointLogMap> result = ahm::pcl_bridge::to_pcl(*cloud, map);
 /// \endcode
 ///
 /// Compile sources that include this header for the processor PCL was compiled for: a distribution's PCL crashes in
@@ -25,7 +25,7 @@
 #include "ahm/pcl/point_types.hpp"
 #include "ahm/pointcloud/point_cloud_graph.hpp"
 
-namespace ahm::pcl {
+namespace ahm::pcl_bridge {
 
 /// The arrays `PointCloudGraph::build` takes.
 struct CloudArrays {
@@ -108,4 +108,4 @@ inline ::pcl::PointCloud<PointLogMap> to_pcl(std::span<const Vec3> points, const
   return result;
 }
 
-}  // namespace ahm::pcl
+}  // namespace ahm::pcl_bridge

@@ -2,8 +2,8 @@
 /// PCL's voxel grid, outlier removal and normal estimation on plain arrays, with the way back to the input.
 ///
 /// \code
-/// auto reduced = ahm::pcl::voxel_grid(points, normals, 0.01);
-/// auto kept = ahm::pcl::outlier_removal(reduced.points);             // indices into reduced.points
+/// auto reduced = ahm::pcl_bridge::voxel_grid(points, normals, 0.01);
+/// auto kept = ahm::pcl_bridge::outlier_removal(reduced.points);             // indices into reduced.points
 /// ahm::Index input = reduced.point_of_row[kept[0]];                  // index into points
 /// \endcode
 #pragma once
@@ -13,7 +13,7 @@
 
 #include "ahm/types.hpp"
 
-namespace ahm::pcl {
+namespace ahm::pcl_bridge {
 
 /// A cloud with one point per occupied voxel. Rows are in the order of the input.
 struct ReducedCloud {
@@ -47,4 +47,4 @@ std::vector<Index> outlier_removal(std::span<const Vec3> points, int mean_k = 16
 /// @throws InvalidArgument (k, fewer than 3 points), InvalidGeometry (a coordinate is not finite)
 std::vector<Vec3> estimate_normals(std::span<const Vec3> points, int k = 30, unsigned threads = 0);
 
-}  // namespace ahm::pcl
+}  // namespace ahm::pcl_bridge

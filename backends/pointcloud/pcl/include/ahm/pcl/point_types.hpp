@@ -3,8 +3,8 @@
 /// own.
 ///
 /// \code
-/// pcl::io::savePCDFileBinary("map.pcd", ahm::pcl::to_pcl(*cloud, map));       //
-/// pcl::PointCloud<ahm::pcl::PointLogMap> \endcode
+/// pcl::io::savePCDFileBinary("map.pcd", ahm::pcl_bridge::to_pcl(*cloud, map));  // a pcl::PointCloud<ahm::pcl_bridge::PointLogMap>
+/// \endcode
 #pragma once
 
 #include <pcl/pcl_macros.h>
@@ -36,6 +36,6 @@ POINT_CLOUD_REGISTER_POINT_STRUCT(ahm_point_types::PointLogMap,
   (std::uint32_t, status, status))
 // clang-format on
 
-namespace ahm::pcl {
+namespace ahm::pcl_bridge {
 using PointLogMap = ::ahm_point_types::PointLogMap;
 }

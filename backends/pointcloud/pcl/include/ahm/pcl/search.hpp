@@ -3,7 +3,7 @@
 ///
 /// \code
 /// ahm::pointcloud::CloudOptions options;
-/// options.search = ahm::pcl::kdtree_search;
+/// options.search = ahm::pcl_bridge::kdtree_search;
 /// auto cloud = ahm::pointcloud::PointCloudGraph::build(points, {}, options);
 /// \endcode
 #pragma once
@@ -14,7 +14,7 @@
 
 #include "ahm/pointcloud/neighbor_search.hpp"
 
-namespace ahm::pcl {
+namespace ahm::pcl_bridge {
 
 /// `pcl::KdTreeFLANN` behind the `NeighborSearch` interface.
 ///
@@ -28,4 +28,4 @@ std::unique_ptr<pointcloud::NeighborSearch> kdtree_search(std::span<const Vec3> 
 /// The version of PCL this library was compiled with, e.g. "1.13.0".
 std::string version();
 
-}  // namespace ahm::pcl
+}  // namespace ahm::pcl_bridge

@@ -1,5 +1,9 @@
 /// \file
 /// Connected components of a tangent graph.
+///
+/// \code
+/// std::cout << ahm::connected_components(graph).count << " components\n";
+/// \endcode
 #pragma once
 
 #include <vector>
@@ -14,6 +18,7 @@ struct Components {
   std::vector<Index> of_vertex;
   Index count = 0;
 };
+
 Components connected_components(const TangentGraph& graph);
 
 }  // namespace ahm

@@ -1,0 +1,23 @@
+/// \file
+/// Running out of memory, as an error of ours. Not part of the public interface.
+#pragma once
+
+#include <new>
+#include <stdexcept>
+#include <string>
+
+#include "ahm/error.hpp"
+
+namespace ahm::detail {
+
+/// Returns work(); throws `ResourceExhausted` "out of memory while `doing`" where memory does not suffice.
+template <class Work>
+auto with_memory_check(const std::string& doing, const Work& work) try {
+  return work();
+} catch (const std::bad_alloc&) {
+  throw ResourceExhausted("out of memory while " + doing);
+} catch (const std::length_error&) {
+  throw ResourceExhausted("out of memory while " + doing);
+}
+
+}  // namespace ahm::detail
