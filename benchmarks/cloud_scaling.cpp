@@ -2,39 +2,18 @@
 //
 // One process per size gives honest peak memory; AHM_METIS=1 in the environment orders by nested dissection. The rows
 // are Markdown.
-#include <sys/resource.h>
-
-#include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <optional>
 
 #include "ahm/log_map_solver.hpp"
 #include "ahm/pointcloud/point_cloud_graph.hpp"
-#include "clouds.hpp"
+#include "measure.hpp"
+#include "shapes.hpp"
 
 namespace {
 
-template <class Work>
-double seconds(const Work& work) {
-  const auto start = std::chrono::steady_clock::now();
-  work();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-template <class Work>
-double median_of_five(const Work& work) {
-  double times[5];
-  for (double& t : times) t = seconds(work);
-  std::sort(times, times + 5);
-  return times[2];
-}
-
-double peak_megabytes() {
-  rusage usage;
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_maxrss) / 1e3;
-}
+using ahm::bench::median_of_five, ahm::bench::peak_megabytes, ahm::bench::seconds;
 
 void run(ahm::Index n, ahm::Ordering ordering) {
   const auto points = ahm::bench::random_sphere(n);

@@ -3,7 +3,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include "clouds.hpp"
+#include "shapes.hpp"
 #ifdef AHM_WITH_PCL
 #include "ahm/pcl/search.hpp"
 #endif
@@ -30,7 +30,7 @@ BENCHMARK_CAPTURE(all_neighbors, flann, ahm::pointcloud::flann_search)
     ->Arg(100000)
     ->Unit(benchmark::kMillisecond);
 #ifdef AHM_WITH_PCL
-BENCHMARK_CAPTURE(all_neighbors, pcl, ahm::pcl::kdtree_search)->Arg(10000)->Arg(100000)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(all_neighbors, pcl, ahm::pcl_bridge::kdtree_search)->Arg(10000)->Arg(100000)->Unit(benchmark::kMillisecond);
 #endif
 
 }  // namespace

@@ -13,6 +13,7 @@ Geometry read_by_extension(const std::filesystem::path& path) {
   if (extension == ".ply") return read_ply(load(path));
   if (extension == ".off") return read_off(load(path));
   if (extension == ".obj") return read_obj(load(path));
+  if (extension == ".stl") return read_stl(load(path));
   if (extension == ".pcd") return read_pcd(load(path));
   if (extension == ".xyz" || extension == ".txt") return read_xyz(load(path));
   if (extension == ".csv") return read_csv(load(path));
@@ -20,7 +21,7 @@ Geometry read_by_extension(const std::filesystem::path& path) {
     throw IoError("cannot read " + quoted_path(path) + ": compressed files are not read; unpack it first");
   }
   throw IoError("cannot read " + quoted_path(path) + ": unknown file type " + in_quotes(extension) +
-                "; known are .ply, .off, .obj, .pcd, .xyz, .txt and .csv");
+                "; known are .ply, .off, .obj, .stl, .pcd, .xyz, .txt and .csv");
 }
 
 /// The one law every format shares: a face names vertices that exist.

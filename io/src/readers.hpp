@@ -10,6 +10,8 @@ namespace ahm::io {
 Geometry read_ply(const Input& in);
 Geometry read_off(const Input& in);
 Geometry read_obj(const Input& in);
+/// Text or binary. Corners at exactly equal positions become one vertex, numbered in the order of their first appearance.
+Geometry read_stl(const Input& in);
 /// Columns separated by blanks (.xyz, .txt).
 Geometry read_xyz(const Input& in);
 /// Columns separated by commas, semicolons or tabs, perhaps with names in the first line.

@@ -142,7 +142,7 @@ TEST(Files, FacesAreIgnoredAloud) {
   for (const Vec3& p : sphere(300))
     obj += "v " + std::to_string(p[0]) + " " + std::to_string(p[1]) + " " + std::to_string(p[2]) + "\n";
   const auto input = folder.write("mesh.obj", obj + "vt 0 0\nf 1 2 3\nf -1 -2 -3\n");
-  const auto outcome = run({"logmap", input, "--source", "0", "-o", folder / "map.csv"});
+  const auto outcome = run({"logmap", input, "--source", "0", "-o", folder / "map.csv", "--backend", "pointcloud"});
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_NE(outcome.err.find("faces"), std::string::npos) << outcome.err;
 }

@@ -57,6 +57,9 @@ std::string choose_backend(const io::Geometry& input, const std::string& request
 std::unique_ptr<Model> build_model(const std::string& backend, const io::Geometry& input, const LogmapOptions& options,
                                    const Progress& progress);
 
+/// The triangle mesh backend.
+std::unique_ptr<Model> build_trimesh(const io::Geometry& input, const LogmapOptions& options, const Progress& progress);
+
 /// The point cloud backend.
 std::unique_ptr<Model> build_pointcloud(const io::Geometry& input, const LogmapOptions& options,
                                         const Progress& progress);

@@ -17,15 +17,18 @@ struct Entry {
 };
 
 constexpr std::array<Entry, 3> backends = {{
-    {"trimesh", nullptr},
+    {"trimesh", build_trimesh},
     {"polymesh", nullptr},
     {"pointcloud", build_pointcloud},
 }};
 
 }  // namespace
 
-std::string choose_backend(const io::Geometry&, const std::string& requested) {
-  return requested == "auto" ? "pointcloud" : requested;
+std::string choose_backend(const io::Geometry& input, const std::string& requested) {
+  if (requested != "auto") return requested;
+  bool triangles = input.face_count() > 0;
+  for (std::size_t f = 0; f < input.face_count(); ++f) triangles &= input.face(f).size() == 3;
+  return triangles ? "trimesh" : "pointcloud";
 }
 
 std::unique_ptr<Model> build_model(const std::string& backend, const io::Geometry& input, const LogmapOptions& options,

@@ -66,14 +66,14 @@ void require_normals(const io::Geometry& input, const LogmapOptions& options) {
 }
 
 #ifdef AHM_WITH_PCL
-pcl::ReducedCloud reduce(const PreparedCloud& cloud, double size) try {
-  return pcl::voxel_grid(cloud.points, cloud.normals, size);
+pcl_bridge::ReducedCloud reduce(const PreparedCloud& cloud, double size) try {
+  return pcl_bridge::voxel_grid(cloud.points, cloud.normals, size);
 } catch (const InvalidArgument& e) {
   throw InvalidArgument(fmt::format("--voxel {}: {}", size, e.what()));
 }
 
 void apply_voxel_grid(PreparedCloud& cloud, double size, std::optional<Index> source) {
-  const pcl::ReducedCloud reduced = reduce(cloud, size);
+  const pcl_bridge::ReducedCloud reduced = reduce(cloud, size);
   std::vector<Index> kept = reduced.point_of_row;
   if (source) {  // the source represents its voxel itself
     const auto place =
@@ -86,7 +86,7 @@ void apply_voxel_grid(PreparedCloud& cloud, double size, std::optional<Index> so
 }
 
 void apply_outlier_removal(PreparedCloud& cloud, std::optional<Index> source) {
-  const std::vector<Index> kept = pcl::outlier_removal(cloud.points);
+  const std::vector<Index> kept = pcl_bridge::outlier_removal(cloud.points);
   cloud.outliers = static_cast<Index>(cloud.points.size() - kept.size());
   keep(cloud, kept);
   if (source && !std::binary_search(cloud.input_row.begin(), cloud.input_row.end(), *source))

@@ -29,15 +29,16 @@ constexpr const char* logmap_footer =
     "  1.5,0,-2         the vertex nearest to this position\n"
     "  face:7:.2,.3,.5  a point in face 7, by barycentric coordinates (meshes)\n"
     "\n"
-    "INPUT   .ply .pcd .xyz .txt .csv .off .obj\n"
+    "INPUT   .ply .pcd .xyz .txt .csv .off .obj .stl\n"
     "OUTPUT  .csv (index,x,y,z,u,v,distance,angle,status), .ply, .pcd; one row per vertex of INPUT, in its order.\n"
     "        u, v, distance and angle are nan where status is not ok:\n"
     "          component  not connected to the source      radius   beyond --radius\n"
-    "          unreached  too far for double precision     removed  dropped or replaced (--voxel, --outliers, nan)\n"
+    "          unreached  too far for double precision     removed  dropped, replaced, or in no face\n"
     "\n"
     "Examples:\n"
     "  ahm logmap scan.ply --source 0 -o map.csv\n"
     "  ahm logmap scan.pcd --source 0.1,0.2,1.4 --drop-nan --voxel 0.01 --outliers -o map.ply --view map.html\n"
+    "  ahm logmap mesh.obj --source face:7:.2,.3,.5 --u-axis 1,0,0 -o map.ply\n"
     "  ahm logmap scan.xyz --source 17 -o map.csv --json - | jq .status";
 
 /// Adds an option whose text a parser of ours turns into a value: CLI11's own takes nan, inf and hexadecimal for
@@ -78,7 +79,7 @@ std::string non_empty(const std::string& text) {
 }
 
 void add_input(CLI::App& app, std::string& input) {
-  app.add_option("INPUT", input, "File to read: .ply .pcd .xyz .txt .csv .off .obj")->required()->type_name("");
+  app.add_option("INPUT", input, "File to read: .ply .pcd .xyz .txt .csv .off .obj .stl")->required()->type_name("");
 }
 
 void add_method_options(CLI::App& app, LogmapOptions& o) {
@@ -128,6 +129,15 @@ void add_cloud_options(CLI::App& app, LogmapOptions& o) {
       ->group(group);
 }
 
+void add_mesh_options(CLI::App& app, LogmapOptions& o) {
+  const char* group = "Triangle meshes";
+  app.add_flag("!--no-flips", o.flips, "Keep the edges as they are instead of flipping to intrinsic Delaunay")
+      ->group(group);
+  add_parsed(app, "--non-manifold", o.non_manifold, choice({"error", "split"}), "HOW",
+             "Edges of more than two faces and pinched vertices: error (default) or split, cutting there")
+      ->group(group);
+}
+
 void add_report_options(CLI::App& app, LogmapOptions& o) {
   const char* group = "Reports";
   add_parsed(app, "--json", o.json, non_empty, "FILE|-", "Write a summary for programs; -: to standard output")
@@ -143,6 +153,7 @@ CLI::App& add_logmap(CLI::App& app, LogmapOptions& o) {
   add_parsed(logmap, "-o,--output", o.output, non_empty, "OUTPUT", "File to write, see below")->required();
   add_method_options(logmap, o);
   add_cloud_options(logmap, o);
+  add_mesh_options(logmap, o);
   add_report_options(logmap, o);
   logmap.footer(logmap_footer);
   return logmap;
@@ -161,7 +172,7 @@ CLI::App& add_info(CLI::App& app, InfoOptions& o) {
 }  // namespace
 
 Command parse_command_line(int argc, const char* const* argv) {
-  CLI::App app("Logarithmic maps on point clouds by the affine heat method", "ahm");
+  CLI::App app("Logarithmic maps on triangle meshes and point clouds by the affine heat method", "ahm");
   app.get_formatter()->column_width(26);
   app.footer(main_footer);
   app.require_subcommand(1);

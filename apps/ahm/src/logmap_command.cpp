@@ -115,6 +115,8 @@ void write_view(const LogmapOptions& options, const io::Geometry& input, const R
   view::Scene scene;
   scene.points = input.points;
   scene.normals = normals;
+  scene.face_begin = input.face_begin;
+  scene.face_vertices = input.face_vertices;
   scene.u = rows.u;
   scene.v = rows.v;
   scene.source = source.position;
@@ -198,7 +200,13 @@ void run_logmap(const LogmapOptions& options) {
   write_results(options, input, *model, source, rows, journal);
 
   const Run run{options, input, backend, *model, solver, source, map, rows, journal.times(), journal.warnings()};
-  write_json(options.json, run_as_json(run));
+  try {
+    write_json(options.json, run_as_json(run));
+  } catch (const Error&) {  // all outputs or none
+    for (const std::string& path : {options.output, options.view})
+      if (!path.empty() && !is_stream(path)) std::filesystem::remove(path);
+    throw;
+  }
   const bool stdout_taken = options.json == "-" || is_stream(options.output);
   stdout_taken ? say(run_as_text(run)) : print(run_as_text(run));
 }

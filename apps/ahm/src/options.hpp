@@ -30,6 +30,9 @@ struct LogmapOptions {
   std::string knn = "nanoflann";  ///< nanoflann, flann, pcl
   std::string normals = "auto";   ///< auto, oriented, unoriented, estimate
 
+  bool flips = true;                   ///< intrinsic Delaunay triangulation of triangle meshes
+  std::string non_manifold = "error";  ///< error, split
+
   std::string json;  ///< empty: none; "-": standard output
   std::string view;  ///< empty: none
   unsigned threads = 0;

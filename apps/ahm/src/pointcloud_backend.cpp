@@ -9,6 +9,7 @@
 #include "ahm/pointcloud/point_cloud_graph.hpp"
 #include "backend.hpp"
 #include "cloud_preparation.hpp"
+#include "frames.hpp"
 #ifdef AHM_WITH_PCL
 #include "ahm/pcl/search.hpp"
 #endif
@@ -22,22 +23,6 @@ using pointcloud::NormalSigns;
 using pointcloud::PointCloudGraph;
 
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
-
-double dot(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
-Vec3 cross(const Vec3& a, const Vec3& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
-/// The frame whose x axis is `direction` projected to the tangent plane.
-Frame turned(const Frame& frame, const Vec3& direction) {
-  const double a = dot(direction, frame.x), b = dot(direction, frame.y);
-  const double length = std::hypot(a, b);
-  Frame result = frame;
-  for (std::size_t c = 0; c < 3; ++c) result.x[c] = (a * frame.x[c] + b * frame.y[c]) / length;
-  result.y = cross(frame.normal, result.x);
-  return result;
-}
 
 /// The cheap checks: everything about the source that needs no graph.
 std::optional<Index> checked_source_row(const SourceSpec& spec, const io::Geometry& input) {
@@ -59,7 +44,7 @@ pointcloud::NeighborSearchFactory search_factory(const std::string& name) {
   if (name == "flann") return pointcloud::flann_search;
   if (name == "nanoflann") return pointcloud::nanoflann_search;
 #ifdef AHM_WITH_PCL
-  return pcl::kdtree_search;
+  return pcl_bridge::kdtree_search;
 #else
   throw InvalidArgument("--knn pcl: this build of ahm has no PCL; use nanoflann or flann");
 #endif

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "ahm/components.hpp"
 #include "ahm/error.hpp"
 #include "ahm/pointcloud/neighbor_search.hpp"
 
@@ -65,28 +66,6 @@ std::optional<Spacing> find_spacing(const std::vector<Vec3>& places) {
   return Spacing{distances.front(), distances[distances.size() / 2], distances.back(), distances.size()};
 }
 
-/// Number of the component of each vertex, in order of the first vertex.
-std::vector<Index> component_of_vertex(const TangentGraph& graph) {
-  std::vector<Index> component(at(graph.size()), -1), stack;
-  Index next = 0;
-  for (Index seed = 0; seed < graph.size(); ++seed) {
-    if (component[at(seed)] >= 0) continue;
-    component[at(seed)] = next;
-    stack.push_back(seed);
-    while (!stack.empty()) {
-      const Index i = stack.back();
-      stack.pop_back();
-      for (Index j : graph.star(i).neighbors) {
-        if (component[at(j)] >= 0) continue;
-        component[at(j)] = next;
-        stack.push_back(j);
-      }
-    }
-    ++next;
-  }
-  return component;
-}
-
 /// The vertex of `component` nearest to the mean of its positions.
 Index central_point(const std::vector<Vec3>& points, std::span<const Index> point_of_vertex,
                     const std::vector<Index>& component_of, Index component) {
@@ -114,7 +93,7 @@ Connectivity find_connectivity(const FiniteCloud& cloud, const InfoOptions& opti
   cloud_options.threads = options.threads;
   cloud_options.progress = progress;
   const auto built = pointcloud::PointCloudGraph::build(cloud.points, cloud.normals, cloud_options);
-  const std::vector<Index> component = component_of_vertex(built.graph());
+  const std::vector<Index> component = connected_components(built.graph()).of_vertex;
   Connectivity result;
   result.report = built.report();
   result.component_sizes.resize(component.empty() ? 0 : at(*std::max_element(component.begin(), component.end())) + 1);

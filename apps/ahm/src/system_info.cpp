@@ -36,7 +36,7 @@ nlohmann::ordered_json versions() {
   result["blas_optimized"] = algebra.blas_optimized;
   result["eigen"] = fmt::format("{}.{}.{}", EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION);
 #ifdef AHM_WITH_PCL
-  result["pcl"] = pcl::version();
+  result["pcl"] = pcl_bridge::version();
 #endif
   result["cli11"] = CLI11_VERSION;
   result["fmt"] = fmt::format("{}.{}.{}", FMT_VERSION / 10000, FMT_VERSION / 100 % 100, FMT_VERSION % 100);

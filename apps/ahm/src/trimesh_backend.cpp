@@ -1,0 +1,167 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "ahm/error.hpp"
+#include "ahm/trimesh/triangle_mesh_graph.hpp"
+#include "backend.hpp"
+#include "frames.hpp"
+
+namespace ahm::app {
+namespace {
+
+using trimesh::MeshOptions;
+using trimesh::SurfacePoint;
+using trimesh::Triangle;
+using trimesh::TriangleMeshGraph;
+
+std::vector<Triangle> triangles(const io::Geometry& input) {
+  std::vector<Triangle> result;
+  result.reserve(input.face_count());
+  for (std::size_t f = 0; f < input.face_count(); ++f) {
+    const auto face = input.face(f);
+    if (face.size() != 3)
+      throw InvalidGeometry(
+          fmt::format("face {} has {} corners; --backend trimesh takes triangles only", f, face.size()));
+    result.push_back({face[0], face[1], face[2]});
+  }
+  return result;
+}
+
+void check_options(const LogmapOptions& options) {
+  if (options.voxel || options.outliers || options.drop_nan)
+    throw InvalidArgument(
+        "--voxel, --outliers and --drop-nan are for point clouds; add --backend pointcloud to map the vertices as one");
+}
+
+/// The cheap checks: everything about the source that needs no graph.
+void check_source(const SourceSpec& spec, const io::Geometry& input) {
+  const auto within = [&](Index index, std::size_t count, const char* what) {
+    if (static_cast<std::size_t>(index) >= count)
+      throw InvalidArgument(
+          fmt::format("--source {}: the input has {} {}, numbered from 0", to_string(spec), count, what));
+  };
+  if (const auto* vertex = std::get_if<SourceVertex>(&spec)) within(vertex->index, input.points.size(), "vertices");
+  if (const auto* face = std::get_if<SourceFace>(&spec)) within(face->face, input.face_count(), "faces");
+}
+
+MeshOptions mesh_options(const LogmapOptions& options, const Progress& progress) {
+  MeshOptions result;
+  result.intrinsic_delaunay = options.flips;
+  result.non_manifold = options.non_manifold == "split" ? trimesh::NonManifold::split : trimesh::NonManifold::error;
+  result.threads = options.threads;
+  result.progress = progress;
+  return result;
+}
+
+class TrimeshModel final : public Model {
+ public:
+  TrimeshModel(const io::Geometry& input, const LogmapOptions& options, const Progress& progress)
+      : points_(input.points), mesh_(build(input, options, progress)) {}
+
+  const TangentGraph& graph() const override { return mesh_.graph(); }
+
+  ResolvedSource source(const SourceSpec& spec, const std::optional<Vec3>& u_axis) const override try {
+    if (const auto* face = std::get_if<SourceFace>(&spec)) {
+      const SurfacePoint point{face->face, face->barycentric};
+      const std::optional<Frame> frame = mesh_.frame_at(point);
+      return {u_axis ? mesh_.source_at(point, *u_axis) : mesh_.source_at(point), std::nullopt, frame->origin,
+              u_axis ? turned(*frame, *u_axis) : *frame};
+    }
+    const auto* position = std::get_if<SourcePosition>(&spec);
+    const Index row = position ? nearest(position->position) : std::get<SourceVertex>(spec).index;
+    const Frame frame = *mesh_.graph().frame(mesh_.vertex(row));
+    return {u_axis ? mesh_.source_at_vertex(row, *u_axis) : mesh_.source_at_vertex(row), row, points_[at(row)],
+            u_axis ? turned(frame, *u_axis) : frame};
+  } catch (const InvalidArgument& e) {
+    throw InvalidArgument(fmt::format("--source {}: {}", to_string(spec), e.what()));
+  }
+
+  MapRows rows(const LogMap& map) const override {
+    trimesh::VertexMap on = mesh_.on_vertices(map);
+    return {std::move(on.u), std::move(on.v), std::move(on.distance), std::move(on.angle), std::move(on.status)};
+  }
+
+  std::vector<Vec3> normals() const override {
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    std::vector<Vec3> result(points_.size(), Vec3{nan, nan, nan});
+    const auto vertices = mesh_.mesh().vertex_of_input();
+    for (std::size_t i = 0; i < result.size(); ++i)
+      if (vertices[i] >= 0) result[i] = mesh_.graph().frame(vertices[i])->normal;
+    return result;
+  }
+
+  nlohmann::ordered_json report() const override;
+  std::vector<std::string> warnings() const override { return mesh_.report().warnings; }
+
+ private:
+  static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+
+  static TriangleMeshGraph build(const io::Geometry& input, const LogmapOptions& options, const Progress& progress) {
+    if (input.face_count() == 0)
+      throw InvalidArgument("--backend trimesh: the input has no faces; --backend pointcloud maps its points");
+    check_options(options);
+    check_source(options.source, input);
+    try {
+      return TriangleMeshGraph::build(input.points, triangles(input), mesh_options(options, progress));
+    } catch (const InvalidGeometry& e) {
+      throw InvalidGeometry(in_terms_of_the_program(e.what()));
+    }
+  }
+
+  /// The library's advice names its own option.
+  static std::string in_terms_of_the_program(std::string text) {
+    const std::string own = "NonManifold::split";
+    if (const auto place = text.find(own); place != std::string::npos)
+      text.replace(place, own.size(), "--non-manifold split");
+    return text;
+  }
+
+  Index nearest(const Vec3& position) const {
+    const auto vertices = mesh_.mesh().vertex_of_input();
+    Index best = -1;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      const Vec3& p = points_[i];
+      const double distance = std::hypot(p[0] - position[0], p[1] - position[1], p[2] - position[2]);
+      if (vertices[i] < 0 || !(distance < least)) continue;
+      least = distance;
+      best = static_cast<Index>(i);
+    }
+    return best;
+  }
+
+  const std::vector<Vec3>& points_;
+  TriangleMeshGraph mesh_;
+};
+
+nlohmann::ordered_json TrimeshModel::report() const {
+  const trimesh::MeshReport& r = mesh_.report();
+  nlohmann::ordered_json j;
+  j["vertices"] = r.vertices;
+  j["faces"] = r.topology.faces;
+  j["edges"] = r.edges;
+  j["flips"] = r.flips;
+  j["mollification"] = r.mollification;
+  j["degenerate_faces"] = r.degenerate_faces;
+  j["components"] = r.topology.components;
+  j["boundary_loops"] = r.topology.boundary_loops;
+  j["orientable"] = r.topology.orientable;
+  j["reoriented"] = r.topology.reoriented;
+  j["unreferenced"] = r.topology.unreferenced;
+  j["non_manifold_edges"] = r.topology.non_manifold_edges;
+  j["non_manifold_vertices"] = r.topology.non_manifold_vertices;
+  j["seconds"] = {{"checks", r.seconds_checks}, {"delaunay", r.seconds_delaunay}, {"graph", r.seconds_graph}};
+  return j;
+}
+
+}  // namespace
+
+std::unique_ptr<Model> build_trimesh(const io::Geometry& input, const LogmapOptions& options,
+                                     const Progress& progress) {
+  return std::make_unique<TrimeshModel>(input, options, progress);
+}
+
+}  // namespace ahm::app

@@ -1,0 +1,124 @@
+/// \file
+/// A checked triangle mesh: what the graph of a surface is built from.
+///
+/// \code
+/// auto mesh = ahm::trimesh::TriangleMesh::from_positions(positions, faces);   // std::vector<ahm::Vec3>,
+/// std::vector<Triangle> auto same = ahm::trimesh::TriangleMesh::from_edge_lengths(n, faces, lengths);   // the metric
+/// alone, no positions std::cout << mesh.report().components << " components\n";
+/// \endcode
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "ahm/types.hpp"
+
+namespace ahm::trimesh {
+
+/// Vertex numbers of the three corners of a face.
+using Triangle = std::array<Index, 3>;
+
+/// A half-edge of a mesh: 3 f + s is side s of face f, from its corner s to its corner s + 1 (mod 3).
+using Half = std::int32_t;
+
+/// What to do with edges of more than two faces and with vertices whose faces form several fans.
+enum class NonManifold {
+  error,  ///< throw, naming them
+  /// Cut: all faces at such an edge become boundary faces there, and every fan of faces gets its own copy of the
+  /// vertex. Heat and geodesics do not cross a cut; sheets that hang together nowhere else become separate components.
+  split,
+};
+
+/// What the checks found. Counts are of input vertices, edges or faces as named.
+struct TopologyReport {
+  Index vertices = 0;      ///< input vertices
+  Index faces = 0;         ///< input faces
+  Index unreferenced = 0;  ///< vertices that no face uses; they are no vertices of the graph
+  Index reoriented = 0;    ///< faces turned over to agree with the majority of their component
+  bool orientable = true;  ///< false: e.g. a Moebius band
+  Index components = 0;    ///< connected components (of vertices, after splitting)
+  Index boundary_edges = 0;
+  Index boundary_loops = 0;
+  Index non_manifold_edges = 0;     ///< cut (NonManifold::split)
+  Index non_manifold_vertices = 0;  ///< split into several (NonManifold::split)
+};
+
+/// An immutable triangle mesh in flat half-edge arrays, consistently oriented where that is possible.
+///
+/// Faces keep their number. A face that was turned over has its corners 1 and 2 swapped. Vertices are numbered anew
+/// without the unreferenced ones, in the order of the input; copies made by splitting come last.
+class TriangleMesh {
+ public:
+  /// A mesh in space.
+  /// @throws InvalidGeometry (no faces, index out of range, vertex repeated in a face, duplicate face, coordinate not
+  ///         finite, non-manifold edge or vertex), naming the first ten elements and the count
+  static TriangleMesh from_positions(std::span<const Vec3> positions, std::span<const Triangle> faces,
+                                     NonManifold non_manifold = NonManifold::error);
+  /// A mesh given by its metric alone.
+  /// @param vertices  number of vertices
+  /// @param lengths   one triple per face, length s is that of the side from corner s to corner s + 1; finite, >= 0, equal
+  ///                  (to 1e-9 of it) in both faces of an edge, and within the triangle inequality
+  /// @throws InvalidGeometry as above
+  static TriangleMesh from_edge_lengths(Index vertices, std::span<const Triangle> faces,
+                                        std::span<const std::array<double, 3>> lengths,
+                                        NonManifold non_manifold = NonManifold::error);
+
+  Index vertex_count() const noexcept { return static_cast<Index>(input_of_vertex_.size()); }
+  Index face_count() const noexcept { return static_cast<Index>(tail_.size() / 3); }
+  const TopologyReport& report() const noexcept { return report_; }
+
+  /// Vertex at the start of each half-edge.
+  std::span<const Index> tails() const noexcept { return tail_; }
+  /// Opposite half-edge; negative, -1 minus the number of the boundary edge, on the boundary.
+  std::span<const Half> twins() const noexcept { return twin_; }
+  /// 1 where the two faces at a half-edge are oppositely oriented; empty on an orientable mesh.
+  std::span<const std::uint8_t> mirrored() const noexcept { return mirrored_; }
+  /// 1 where a face was turned over.
+  std::span<const std::uint8_t> reversed() const noexcept { return reversed_; }
+  /// One half-edge that starts at each vertex; the vertex is oriented like its face.
+  std::span<const Half> corners() const noexcept { return corner_; }
+
+  /// First vertex of each input vertex, -1 where no face uses it.
+  std::span<const Index> vertex_of_input() const noexcept { return vertex_of_input_; }
+  /// Input vertex of each vertex.
+  std::span<const Index> input_of_vertex() const noexcept { return input_of_vertex_; }
+
+  bool has_positions() const noexcept { return !position_.empty(); }
+  /// Position of a vertex in units of `length_unit()` about the middle of the bounding box.
+  const Vec3& position(Index vertex) const { return position_[static_cast<std::size_t>(vertex)]; }
+  /// Position of a vertex as given.
+  const Vec3& original_position(Index vertex) const { return original_[static_cast<std::size_t>(vertex)]; }
+  /// A power of two near the size of the mesh.
+  double length_unit() const noexcept { return length_unit_; }
+  /// The face laid out in the plane, counter-clockwise, side 0 along the x axis: its three sides as vectors, in units
+  /// of `length_unit()`.
+  std::array<std::array<double, 2>, 3> layout(Index face) const;
+
+  /// Corner of the face as stored, for a corner of the face as given, and the other way round.
+  int stored_corner(Index face, int corner) const {
+    return reversed_[static_cast<std::size_t>(face)] ? (3 - corner) % 3 : corner;
+  }
+
+ private:
+  TriangleMesh(Index vertices, std::span<const Triangle> faces, NonManifold non_manifold);
+  void build_half_edges(Index vertices, std::span<const Triangle> faces, NonManifold non_manifold);
+  void number_vertices(NonManifold non_manifold);
+  void count_parts();
+
+  TopologyReport report_;
+  std::vector<Index> tail_;
+  std::vector<Half> twin_;
+  std::vector<std::uint8_t> mirrored_;
+  std::vector<std::uint8_t> reversed_;
+  std::vector<Half> corner_;
+  std::vector<Index> vertex_of_input_;
+  std::vector<Index> input_of_vertex_;
+  std::vector<Vec3> position_;  ///< per vertex, or empty
+  std::vector<Vec3> original_;  ///< per vertex, or empty
+  std::vector<double> length_;  ///< per half-edge, or empty
+  double length_unit_ = 1.0;
+};
+
+}  // namespace ahm::trimesh

@@ -1,0 +1,210 @@
+#include "intrinsic_triangulation.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ahm/detail/parallel.hpp"
+#include "face_layout.hpp"
+
+namespace ahm::trimesh {
+namespace {
+
+/// Margin in the triangle inequality of mollified faces, in mean edge lengths.
+constexpr double mollified_margin = 1e-8;
+
+}  // namespace
+
+IntrinsicTriangulation::IntrinsicTriangulation(const TriangleMesh& mesh, bool mollify_now, unsigned threads)
+    : tail_(mesh.tails().begin(), mesh.tails().end()),
+      twin_(mesh.twins().begin(), mesh.twins().end()),
+      mirrored_(mesh.mirrored().begin(), mesh.mirrored().end()),
+      side_(mesh.tails().size()),
+      history_(mesh.tails().size() / 3) {
+  detail::for_each_index(static_cast<std::size_t>(mesh.face_count()), threads, [&](std::size_t f) {
+    const auto layout = mesh.layout(static_cast<Index>(f));
+    for (int s = 0; s < 3; ++s) side_[3 * f + s] = {layout[s][0], layout[s][1]};
+  });
+  if (mollify_now) mollify();
+}
+
+void IntrinsicTriangulation::mollify() {
+  std::vector<double> length(side_.size());
+  double mean = 0;
+  for (std::size_t h = 0; h < side_.size(); ++h) {
+    // Both faces of an edge must agree to the last bit.
+    const Half t = twin_[h];
+    length[h] = norm(side_[t >= 0 && t < static_cast<Half>(h) ? t : static_cast<Half>(h)]);
+    mean += length[h] / static_cast<double>(side_.size());
+  }
+  const double margin = mollified_margin * (mean > 0 ? mean : 1.0);
+  double epsilon = 0;
+  for (std::size_t f = 0; f < length.size(); f += 3) {
+    const double sum = length[f] + length[f + 1] + length[f + 2];
+    for (int s = 0; s < 3; ++s) epsilon = std::max(epsilon, margin - (sum - 2.0 * length[f + s]));
+  }
+  for (std::size_t f = 0; f < length.size(); f += 3) {
+    const FaceLayout layout = layout_of_lengths(length[f] + epsilon, length[f + 1] + epsilon, length[f + 2] + epsilon);
+    std::copy(layout.begin(), layout.end(), side_.begin() + static_cast<std::ptrdiff_t>(f));
+  }
+  mollification_ = epsilon;
+}
+
+double IntrinsicTriangulation::area(Index face) const {
+  const Vec2* s = sides(face);
+  return 0.5 * cross(s[0], s[1]);
+}
+
+double IntrinsicTriangulation::cotangent(Half h) const {
+  const Vec2 a = side_[previous(h)], b = -side_[next(h)];
+  return dot(a, b) / cross(a, b);
+}
+
+double IntrinsicTriangulation::angle(Half h) const {
+  return std::max(0.0, angle_between(side_[h], -side_[previous(h)]));
+}
+
+/// The angles opposite the edge sum to at most pi, but for rounding.
+bool IntrinsicTriangulation::is_delaunay(Half h) const {
+  const Half t = twin_[h];
+  // On the boundary, or two sides of one face, which is folded onto itself and has nothing to flip.
+  if (t < 0 || h / 3 == t / 3) return true;
+  auto opposite = [this](Half side) {
+    const Vec2 a = side_[previous(side)], b = -side_[next(side)];
+    const double scale = 1 / std::sqrt(dot(a, a) * dot(b, b));
+    return Vec2{dot(a, b) * scale, std::max(0.0, cross(a, b)) * scale};  // cosine, sine
+  };
+  const Vec2 p = opposite(h), q = opposite(t);
+  if (p.x < 0 && q.x < 0) return false;
+  return p.x * q.y + p.y * q.x >= -1e-15 - 1e-10 * p.y * q.y;
+}
+
+bool IntrinsicTriangulation::flip_to_delaunay(const Progress& progress) {
+  std::vector<Half> stack;
+  for (Half h = static_cast<Half>(twin_.size()) - 1; h >= 0; --h)
+    if (h < twin_[h] && !is_delaunay(h)) stack.push_back(h);
+  // Delaunay flipping ends by itself; the cap only guards against rounding on degenerate input.
+  const std::size_t cap = 64 * tail_.size() + 1024;
+  while (!stack.empty() && history_.size() < cap) {
+    const Half h = stack.back();
+    stack.pop_back();
+    if (is_delaunay(h)) continue;
+    flip(h);
+    for (Half side : {next(h), previous(h), next(twin_[h]), previous(twin_[h])}) stack.push_back(side);
+    if ((history_.size() & 0xffff) == 0) progress.step("flips", 0.5);
+  }
+  history_.finish();
+  return stack.empty();
+}
+
+/// Turns the face of h over: corners (a, b, c) become (a, c, b), side s becomes side 2 - s, the layout is mirrored.
+/// Returns the new place of h.
+Half IntrinsicTriangulation::turn_over(Half h) {
+  const Half f = 3 * (h / 3);
+  auto moved = [f](Half side) { return f + 2 - (side - f); };
+  std::swap(tail_[f + 1], tail_[f + 2]);
+  const Vec2 old_side[3] = {side_[f], side_[f + 1], side_[f + 2]};
+  const Half old_twin[3] = {twin_[f], twin_[f + 1], twin_[f + 2]};
+  const std::uint8_t old_mirrored[3] = {mirrored_[f], mirrored_[f + 1], mirrored_[f + 2]};
+  for (Half s = 0; s < 3; ++s) {
+    const Half to = f + 2 - s, t = old_twin[s];
+    side_[to] = conj(-old_side[s]);
+    const bool inside = t >= f && t < f + 3;
+    twin_[to] = inside ? moved(t) : t;
+    mirrored_[to] = t < 0 || inside ? old_mirrored[s] : !old_mirrored[s];
+    if (t < 0 || inside) continue;
+    twin_[t] = to;
+    mirrored_[t] = mirrored_[to];
+  }
+  return moved(h);
+}
+
+/// Lays the faces (i, j, k) of h and (j, i, m) of t out together, in the layout of the former.
+IntrinsicTriangulation::Quadrilateral IntrinsicTriangulation::unfold(Half h, Half t) const {
+  Quadrilateral q;
+  const Vec2 ij = side_[h];
+  q.turn = normalized(ij * conj(-side_[t]));
+  q.jk = side_[next(h)];
+  q.ki = side_[previous(h)];
+  q.im = q.turn * side_[next(t)];
+  q.mj = q.turn * side_[previous(t)];
+  // The diagonal by the shorter way round.
+  const bool by_i = dot(q.im, q.im) + dot(q.ki, q.ki) < dot(q.mj, q.mj) + dot(q.jk, q.jk);
+  q.mk = by_i ? -(q.im + q.ki) : q.mj + q.jk;
+  // Where the diagonals cross: gamma k + delta m = alpha i + beta j.
+  const double height_k = std::max(0.0, cross(ij, -q.ki)), height_m = std::max(0.0, cross(q.im, ij));
+  q.gamma = height_k + height_m > 0 ? height_m / (height_k + height_m) : 0.5;
+  const Vec2 crossing = (1 - q.gamma) * q.im - q.gamma * q.ki;
+  q.beta = std::clamp(dot(crossing, ij) / dot(ij, ij), 0.0, 1.0);
+  return q;
+}
+
+/// Replaces the faces (i, j, k) and (j, i, m) on both sides of edge (i, j) by (m, k, i) and (k, m, j).
+void IntrinsicTriangulation::flip(Half h) {
+  const bool mirrored = !mirrored_.empty() && mirrored_[h];
+  const Half t = mirrored ? turn_over(twin_[h]) : twin_[h];
+  const Quadrilateral q = unfold(h, t);
+  history_.add({{h / 3, t / 3},
+                {},
+                {static_cast<std::uint8_t>(h % 3), static_cast<std::uint8_t>(t % 3)},
+                mirrored,
+                q.beta,
+                q.gamma,
+                q.turn,
+                q.mk});
+  const Half jk = next(h), ki = previous(h), im = next(t), mj = previous(t);
+  const Index i = tail_[h], j = tail_[t], k = tail_[ki], m = tail_[mj];
+  relink({ki, im, mj, jk}, {jk, ki, im, mj});
+  auto set = [this](Half half, Index tail, Vec2 side) {
+    tail_[half] = tail;
+    side_[half] = side;
+  };
+  set(h, m, q.mk);
+  set(jk, k, q.ki);
+  set(ki, i, q.im);
+  set(t, k, -q.mk);
+  set(im, m, q.mj);
+  set(mj, j, q.jk);
+  if (!mirrored_.empty()) mirrored_[h] = mirrored_[t] = 0;
+}
+
+/// Moves the outer sides of two faces to other half-edges. A side may be glued to another one of the four.
+void IntrinsicTriangulation::relink(const std::array<Half, 4>& from, const std::array<Half, 4>& to) {
+  Half outer[4];
+  std::uint8_t mirrored[4] = {};
+  for (int s = 0; s < 4; ++s) {
+    outer[s] = twin_[from[s]];
+    if (!mirrored_.empty()) mirrored[s] = mirrored_[from[s]];
+  }
+  for (int s = 0; s < 4; ++s) {
+    Half partner = outer[s];
+    for (int q = 0; q < 4; ++q)
+      if (outer[s] == from[q]) partner = to[q];
+    twin_[to[s]] = partner;
+    if (partner >= 0) twin_[partner] = to[s];
+    if (mirrored_.empty()) continue;
+    mirrored_[to[s]] = mirrored[s];
+    if (partner >= 0) mirrored_[partner] = mirrored[s];
+  }
+}
+
+Index IntrinsicTriangulation::count_degenerate() const {
+  Index count = 0;
+  for (Index f = 0; f < static_cast<Index>(tail_.size() / 3); ++f)
+    count += !(relative_height(sides(f)) >= least_relative_height);
+  return count;
+}
+
+bool IntrinsicTriangulation::has_collapsed_sides() const {
+  for (std::size_t f = 0; f < side_.size(); f += 3) {
+    const double l[3] = {dot(side_[f], side_[f]), dot(side_[f + 1], side_[f + 1]), dot(side_[f + 2], side_[f + 2])};
+    const auto [least, largest] = std::minmax({l[0], l[1], l[2]});
+    if (!(least > least_relative_height * least_relative_height * largest)) return true;
+  }
+  return false;
+}
+
+std::size_t IntrinsicTriangulation::bytes() const {
+  return tail_.size() * (sizeof(Index) + sizeof(Half) + sizeof(Vec2)) + history_.bytes();
+}
+
+}  // namespace ahm::trimesh

@@ -1,0 +1,134 @@
+#include "mesh_edges.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ahm/detail/parallel.hpp"
+
+namespace ahm::trimesh {
+namespace {
+
+/// Weights up to this are rounding (diagonals of cocircular quadrilaterals) and make no edge.
+constexpr double least_weight = 1e-13;
+
+/// Larger weights make the heat at both ends equal to 1e-4 anyway, and cost the solver the digits that the sum of a row
+/// needs.
+constexpr double largest_weight = 1e4;
+
+class Rows {
+ public:
+  Rows(const IntrinsicTriangulation& triangulation, const VertexFrames& frames, bool clamp)
+      : triangulation_(triangulation), edges_(triangulation.half_edges()), frames_(frames), clamp_(clamp) {}
+
+  /// (cot alpha + cot beta) / 2, one of them on the boundary.
+  double cotangents(Half side) const {
+    const Half t = edges_.twin[side];
+    return 0.5 *
+           (t >= 0 ? triangulation_.cotangent(side) + triangulation_.cotangent(t) : triangulation_.cotangent(side));
+  }
+
+  /// w_ij
+  double weight(Half side) const {
+    return clamp_ ? std::clamp(cotangents(side), 0.0, largest_weight) : cotangents(side);
+  }
+
+  /// An edge from a vertex to itself is left out. On a flat surface it contributes nothing: its two logarithms are
+  /// opposite, and its holonomy is the identity. Elsewhere its sole effect would be a damping of vectors at a vertex
+  /// too coarse to resolve them.
+  bool is_edge(Half side) const {
+    return edges_.tail[side] != edges_.head(side) && std::abs(weight(side)) > least_weight;
+  }
+
+  /// Calls visit(side, from_tail, forward) for every edge of the graph that leaves the vertex, counter-clockwise.
+  template <class Visit>
+  void for_each(std::size_t vertex, const Visit& visit) const {
+    const Corner start = frames_.start[vertex];
+    for (Corner c = start;;) {
+      if (is_edge(c.right())) visit(c.right(), c.forward, c.forward);
+      const Corner left = edges_.turn_left(c);
+      if (left.half < 0 && is_edge(c.left())) visit(c.left(), !c.forward, c.forward);
+      if (left.half < 0 || left == start) return;
+      c = left;
+    }
+  }
+
+  void fill(std::size_t i, CsrGraphData& g) const {
+    auto at = static_cast<std::size_t>(g.row_begin[i]);
+    for_each(i, [&](Half side, bool from_tail, bool forward) {
+      g.neighbors[at] = from_tail ? edges_.head(side) : edges_.tail[side];
+      g.weights[at] = weight(side);
+      const Vec2 u_ij = unit(frames_.angle[edges_.directed(side, from_tail)]);
+      const Vec2 u_ji = unit(frames_.angle[edges_.directed(side, !from_tail)]);
+      const double length = triangulation_.length(side);
+      g.logs[2 * at] = length * u_ij.x;
+      g.logs[2 * at + 1] = length * u_ij.y;
+      // The direction of the edge goes to itself: u_ji -> -u_ij, turning the same way or, between frames of opposite
+      // orientation, the other way.
+      const bool reflects = forward != frames_.forward(edges_, side, !from_tail);
+      const Vec2 R = reflects ? -(u_ij * u_ji) : -(u_ij * conj(u_ji));
+      if (g.kind == TransportKind::rotation2) {
+        g.transports[2 * at] = R.x;
+        g.transports[2 * at + 1] = R.y;
+      } else {
+        const double block[] = {R.x, reflects ? R.y : -R.y, R.y, reflects ? -R.x : R.x};
+        std::copy_n(block, 4, g.transports.begin() + static_cast<std::ptrdiff_t>(4 * at));
+      }
+      ++at;
+    });
+  }
+
+  /// Edges of the triangulation: mean length, and what was left out.
+  void summarize(CsrGraphData& g, MeshReport& report) const {
+    double sum = 0;
+    for (Half h = 0; h < edges_.size(); ++h) {
+      const Half t = edges_.twin[h];
+      if (t >= 0 && t < h) continue;
+      ++report.edges;
+      sum += triangulation_.length(h);
+      report.closed_edges += edges_.tail[h] == edges_.head(h);
+      report.clamped_weights += clamp_ && cotangents(h) < -least_weight;
+      report.capped_weights += clamp_ && cotangents(h) > largest_weight;
+    }
+    g.mean_edge_length = sum / static_cast<double>(report.edges);
+  }
+
+ private:
+  const IntrinsicTriangulation& triangulation_;
+  HalfEdges edges_;
+  const VertexFrames& frames_;
+  bool clamp_;
+};
+
+}  // namespace
+
+CsrGraphData mesh_edges(const TriangleMesh& mesh, const IntrinsicTriangulation& triangulation,
+                        const VertexFrames& frames, bool clamp, unsigned threads, MeshReport& report) {
+  const auto n = static_cast<std::size_t>(mesh.vertex_count());
+  const HalfEdges edges = triangulation.half_edges();
+  const Rows rows(triangulation, frames, clamp);
+  CsrGraphData g;
+  g.kind = mesh.report().orientable ? TransportKind::rotation2 : TransportKind::block;
+  g.length_unit = mesh.length_unit();
+  g.masses.assign(n, 0.0);
+  for (Half h = 0; h < edges.size(); h += 3) {
+    const double third = triangulation.area(h / 3) / 3.0;
+    for (Half s = h; s < h + 3; ++s) g.masses[edges.tail[s]] += third;
+  }
+  g.row_begin.assign(n + 1, 0);
+  detail::for_each_index(n, threads, [&](std::size_t i) {
+    Offset degree = 0;
+    rows.for_each(i, [&](Half, bool, bool) { ++degree; });
+    g.row_begin[i + 1] = degree;
+  });
+  for (std::size_t i = 0; i < n; ++i) g.row_begin[i + 1] += g.row_begin[i];
+  const auto count = static_cast<std::size_t>(g.row_begin[n]);
+  g.neighbors.resize(count);
+  g.weights.resize(count);
+  g.logs.resize(2 * count);
+  g.transports.resize((g.kind == TransportKind::block ? 4 : 2) * count);
+  detail::for_each_index(n, threads, [&](std::size_t i) { rows.fill(i, g); });
+  rows.summarize(g, report);
+  return g;
+}
+
+}  // namespace ahm::trimesh

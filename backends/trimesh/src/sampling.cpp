@@ -1,0 +1,180 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "ahm/error.hpp"
+#include "impl.hpp"
+
+namespace ahm::trimesh {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+void check_map(const LogMap& map, const CsrGraph& graph) {
+  if (map.size() != graph.size() || map.dimension() != 2)
+    throw InvalidArgument("the map has " + std::to_string(map.size()) + " vertices in dimension " +
+                          std::to_string(map.dimension()) + "; the mesh's graph has " + std::to_string(graph.size()) +
+                          " in dimension 2");
+}
+
+Vec2 coordinates(const LogMap& map, Index vertex) {
+  const auto phi = map.coordinates(vertex);
+  return {phi[0], phi[1]};
+}
+
+/// A face laid out in the plane, with the map at its corners.
+struct MappedFace {
+  Vec2 side[3];  ///< in outside units
+  Vec2 phi[3];
+
+  MappedFace(const TriangleMesh& mesh, const Vec2* sides) {
+    for (int s = 0; s < 3; ++s) side[s] = mesh.length_unit() * sides[s];
+  }
+
+  /// Whether the map keeps side s within a factor of 1.5.
+  bool keeps(int s) const {
+    const double mapped = norm(phi[(s + 1) % 3] - phi[s]), length = norm(side[s]);
+    return mapped <= 1.5 * length && length <= 1.5 * mapped;
+  }
+  /// Whether the map is nearly isometric here. It turns faces over where it blends the two sides of a cut.
+  bool is_sound(bool orientable) const {
+    return keeps(0) && keeps(1) && keeps(2) && (!orientable || cross(phi[1] - phi[0], phi[2] - phi[0]) > 0);
+  }
+  /// Puts the third corner where the shape of the face asks for it, to the left or right of side s.
+  void follow(int s, bool left) {
+    const Vec2 a = phi[s], b = phi[(s + 1) % 3], along = normalized(b - a);
+    const Vec2 apex = conj(normalized(side[s])) * (-0.5 * side[s] - side[(s + 2) % 3]);  // from the middle of the side
+    phi[(s + 2) % 3] = 0.5 * (a + b) + along * (left ? apex : conj(apex));
+  }
+};
+
+/// The faces of the input mesh with the map on them: sound ones as they are, others unfolded from the nearest sound
+/// one.
+class Unfolding {
+ public:
+  Unfolding(const TriangleMesh& mesh, const LogMap& map)
+      : mesh_(mesh), edges_(mesh), phi_(mesh.tails().size()), done_(static_cast<std::size_t>(mesh.face_count()), no) {
+    std::vector<Index> front;
+    for (Index f = 0; f < mesh.face_count(); ++f) {
+      MappedFace face = mapped(f);
+      bool ok = true;
+      for (int s = 0; s < 3; ++s) {
+        const Index v = edges_.tail[3 * f + s];
+        ok = ok && map.status(v) == Status::ok;
+        if (ok) phi_[3 * f + s] = face.phi[s] = coordinates(map, v);
+      }
+      if (!ok) {
+        done_[f] = masked;
+      } else if (face.is_sound(mesh.report().orientable)) {
+        done_[f] = yes;
+        front.push_back(f);
+      }
+    }
+    for (std::size_t at = 0; at < front.size(); ++at)
+      for (Half h = 3 * front[at]; h < 3 * front[at] + 3; ++h) unfold_across(h, front);
+  }
+
+  bool known(Index face) const { return done_[face] == yes; }
+  Vec2 phi(Half corner) const { return phi_[corner]; }
+
+ private:
+  enum : std::uint8_t { no, yes, masked };
+
+  MappedFace mapped(Index f) const {
+    const auto layout = mesh_.layout(f);
+    const Vec2 sides[3] = {{layout[0][0], layout[0][1]}, {layout[1][0], layout[1][1]}, {layout[2][0], layout[2][1]}};
+    return MappedFace(mesh_, sides);
+  }
+
+  void unfold_across(Half h, std::vector<Index>& front) {
+    const Half t = edges_.twin[h];
+    if (t < 0 || done_[t / 3] != no) return;
+    MappedFace face = mapped(t / 3);
+    const Vec2 a = phi_[h], b = phi_[next(h)], apex = phi_[previous(h)];
+    const bool same_way = edges_.is_mirrored(h);
+    face.phi[t % 3] = same_way ? a : b;
+    face.phi[(t + 1) % 3] = same_way ? b : a;
+    if (!(norm(b - a) > 0) || !(norm(face.side[t % 3]) > 0)) return;
+    // On the other side of the edge than the face it is unfolded from.
+    face.follow(t % 3, (cross(b - a, apex - a) > 0) != same_way);
+    for (int s = 0; s < 3; ++s) phi_[3 * (t / 3) + s] = face.phi[s];
+    done_[t / 3] = yes;
+    front.push_back(t / 3);
+  }
+
+  const TriangleMesh& mesh_;
+  HalfEdges edges_;
+  std::vector<Vec2> phi_;  ///< per half-edge: at the corner of its start
+  std::vector<std::uint8_t> done_;
+};
+
+}  // namespace
+
+VertexMap TriangleMeshGraph::on_vertices(const LogMap& map) const {
+  check_map(map, impl_->graph);
+  const auto n = impl_->mesh.vertex_of_input().size();
+  VertexMap result{std::vector<double>(n, nan), std::vector<double>(n, nan), std::vector<double>(n, nan),
+                   std::vector<double>(n, nan), std::vector<Status>(n, Status::removed)};
+  for (Index v = 0; v < impl_->graph.size(); ++v) {
+    const Index i = impl_->mesh.input_of_vertex()[v];
+    const Status status = map.status(v);
+    if (status != Status::ok) {
+      if (result.status[i] != Status::ok) result.status[i] = status;
+      continue;
+    }
+    const Vec2 phi = coordinates(map, v);
+    const double distance = std::hypot(phi.x, phi.y);
+    if (result.status[i] == Status::ok && result.distance[i] <= distance) continue;  // another copy is nearer
+    result.u[i] = phi.x;
+    result.v[i] = phi.y;
+    result.distance[i] = distance;
+    result.angle[i] = std::atan2(phi.y, phi.x);
+    result.status[i] = Status::ok;
+  }
+  return result;
+}
+
+std::vector<std::array<double, 2>> TriangleMeshGraph::on_corners(const LogMap& map) const {
+  check_map(map, impl_->graph);
+  const TriangleMesh& mesh = impl_->mesh;
+  const Unfolding unfolding(mesh, map);
+  std::vector<std::array<double, 2>> result(mesh.tails().size(), {nan, nan});
+  for (Index f = 0; f < mesh.face_count(); ++f) {
+    if (!unfolding.known(f)) continue;
+    for (int s = 0; s < 3; ++s) {
+      const Vec2 phi = unfolding.phi(3 * f + s);
+      result[3 * f + mesh.stored_corner(f, s)] = {phi.x, phi.y};
+    }
+  }
+  return result;
+}
+
+Sample TriangleMeshGraph::at(const LogMap& map, const SurfacePoint& point) const {
+  check_map(map, impl_->graph);
+  const FlipHistory::Point p = impl_->locate(point);
+  const auto tail = impl_->triangulation.half_edges().tail;
+  MappedFace face(impl_->mesh, impl_->triangulation.sides(p.face));
+  for (int s = 0; s < 3; ++s) {
+    const Index v = tail[3 * p.face + s];
+    if (map.status(v) != Status::ok) return {nan, nan, map.status(v)};
+    face.phi[s] = coordinates(map, v);
+  }
+  const bool orientable = impl_->mesh.report().orientable;
+  if (!face.is_sound(orientable)) {
+    int side = 0;
+    while (side < 3 && !face.keeps(side)) ++side;
+    if (side == 3 || !orientable) return {nan, nan, Status::unreached};
+    face.follow(side, true);
+  }
+  const Vec2 phi = p.weight[0] * face.phi[0] + p.weight[1] * face.phi[1] + p.weight[2] * face.phi[2];
+  return {phi.x, phi.y, Status::ok};
+}
+
+TriangleMeshGraph::Located TriangleMeshGraph::locate(const SurfacePoint& point) const {
+  const FlipHistory::Point p = impl_->locate(point);
+  const auto tail = impl_->triangulation.half_edges().tail;
+  return {{tail[3 * p.face], tail[3 * p.face + 1], tail[3 * p.face + 2]}, p.weight, p.depth};
+}
+
+}  // namespace ahm::trimesh

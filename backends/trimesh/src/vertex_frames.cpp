@@ -1,0 +1,171 @@
+#include "vertex_frames.hpp"
+
+#include <algorithm>
+#include <numbers>
+
+#include "ahm/detail/parallel.hpp"
+
+namespace ahm::trimesh {
+namespace {
+
+using std::numbers::pi;
+
+/// The corner of the input mesh whose right side is the reference direction of a vertex.
+Corner reference_corner(const TriangleMesh& mesh, const HalfEdges& edges, Index vertex) {
+  return edges.rightmost({mesh.corners()[static_cast<std::size_t>(vertex)], true});
+}
+
+/// The reference direction found in the triangulation: its corner, and the angle from the right side of that corner.
+struct Reference {
+  Corner corner;
+  double angle;
+};
+
+Reference find_reference(const TriangleMesh& mesh, const HalfEdges& input, const IntrinsicTriangulation& triangulation,
+                         Index v) {
+  const Corner corner = reference_corner(mesh, input, v);
+  const auto layout = mesh.layout(corner.half / 3);
+  const auto& side = layout[corner.right() % 3];
+  const Vec2 out = corner.forward ? Vec2{side[0], side[1]} : Vec2{-side[0], -side[1]};
+  const auto found = triangulation.history().locate(corner.half, out);
+  const Corner at{found.corner, corner.forward != found.mirrored};
+  const Vec2 right = at.forward ? triangulation.side(at.half) : -triangulation.side(at.right());
+  const double turned = angle_between(right, found.direction);
+  return {at, std::clamp(at.forward ? turned : -turned, 0.0, triangulation.angle(at.half))};
+}
+
+/// Sets start, scale and the angles of the edges of one vertex.
+void set_angles(const HalfEdges& edges, const IntrinsicTriangulation& triangulation, const Reference& reference,
+                std::size_t v, VertexFrames& frames) {
+  const Corner start = edges.rightmost(reference.corner);
+  double sum = 0;
+  bool closed = false;
+  for (Corner c = start; c.half >= 0 && !closed; closed = c == start) {
+    sum += triangulation.angle(c.half);
+    c = edges.turn_left(c);
+  }
+  const double scale = closed ? 2 * pi / sum : 1.0;
+  frames.start[v] = start;
+  frames.scale[v] = scale;
+  auto store = [&](Half side, bool from_tail, double angle, bool forward) {
+    const std::size_t edge = edges.directed(side, from_tail);
+    frames.angle[edge] = angle;
+    if (!frames.sense.empty()) frames.sense[edge] = forward != (edges.is_mirrored(side) && edges.twin[side] < side);
+  };
+  double angle = closed ? -reference.angle * scale : 0.0;
+  for (Corner c = start;;) {
+    store(c.right(), c.forward, angle, c.forward);
+    angle += scale * triangulation.angle(c.half);
+    const Corner left = edges.turn_left(c);
+    if (left.half < 0) store(c.left(), !c.forward, angle, c.forward);
+    if (left.half < 0 || left == start) return;
+    c = left;
+  }
+}
+
+/// The part of an arbitrary axis that is perpendicular to a unit vector.
+Vec3 axis_across(const Vec3& n) {
+  const Vec3 axis = std::abs(n[0]) < 0.9 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+  const Vec3 across = axis - dot(axis, n) * n;
+  return 1 / norm(across) * across;
+}
+
+/// The fan of faces about a vertex of the input mesh, in space.
+class SpatialFan {
+ public:
+  SpatialFan(const TriangleMesh& mesh, const HalfEdges& edges, Index v)
+      : mesh_(mesh), edges_(edges), start_(reference_corner(mesh, edges, v)), center_(mesh.position(v)) {}
+
+  /// Calls visit(first side, second side), as vectors, for each face counter-clockwise; returns whether the fan is
+  /// closed.
+  template <class Visit>
+  bool for_each_face(const Visit& visit) const {
+    for (Corner c = start_;;) {
+      const Vec3 a = mesh_.position(edges_.head(c.half)) - center_,
+                 b = mesh_.position(edges_.tail[previous(c.half)]) - center_;
+      c.forward ? visit(a, b) : visit(b, a);
+      c = edges_.turn_left(c);
+      if (c.half < 0 || c == start_) return c.half >= 0;
+    }
+  }
+
+ private:
+  const TriangleMesh& mesh_;
+  const HalfEdges& edges_;
+  Corner start_;
+  Vec3 center_;
+};
+
+/// The normal is the mean of the face normals weighted by angle; x makes the projected edges lie as close as possible
+/// to where the tangent space has them.
+Frame frame_in_space(const TriangleMesh& mesh, const HalfEdges& edges, Index v) {
+  const SpatialFan fan(mesh, edges, v);
+  Vec3 sum{0, 0, 0}, reference{0, 0, 0};
+  double angle_sum = 0;
+  const bool closed = fan.for_each_face([&](const Vec3& a, const Vec3& b) {
+    if (angle_sum == 0) reference = a;
+    const Vec3 normal = cross(a, b);
+    const double area = norm(normal), angle = std::atan2(area, dot(a, b));
+    if (area > 0) sum = sum + angle / area * normal;
+    angle_sum += angle;
+  });
+  // Where the faces cancel or the reference edge stands on the plane, any axes will do.
+  const double length = norm(sum), reach = norm(reference);
+  const Vec3 normal = length > 1e-12 ? 1 / length * sum
+                      : reach > 0    ? axis_across(1 / reach * reference)
+                                     : Vec3{0, 0, 1};
+  Vec3 x = reference - dot(reference, normal) * normal;
+  x = norm(x) > 1e-12 * reach ? 1 / norm(x) * x : axis_across(normal);
+  const Vec3 y = cross(normal, x);
+
+  const double scale = closed && angle_sum > 0 ? 2 * pi / angle_sum : 1.0;
+  double angle = 0;
+  Vec2 fit;
+  auto add = [&](const Vec3& side, double weight) {
+    const Vec2 p{dot(side, x), dot(side, y)};
+    if (norm(p) > 0) fit = fit + weight / norm(p) * (p * unit(-angle));
+  };
+  fan.for_each_face([&](const Vec3& a, const Vec3& b) {
+    const double corner = scale * std::atan2(norm(cross(a, b)), dot(a, b));
+    add(a, corner);
+    angle += corner;
+    add(b, corner);
+  });
+  fit = norm(fit) > 1e-12 ? normalized(fit) : Vec2{1, 0};
+  const Vec3 fitted = fit.x * x + fit.y * y;
+  return {mesh.original_position(v), fitted, cross(normal, fitted), normal};
+}
+
+}  // namespace
+
+bool VertexFrames::forward(const HalfEdges& edges, Half side, bool from_tail) const {
+  if (sense.empty()) return true;
+  return (sense[edges.directed(side, from_tail)] != 0) != (edges.is_mirrored(side) && edges.twin[side] < side);
+}
+
+VertexFrames find_frames(const TriangleMesh& mesh, const IntrinsicTriangulation& triangulation, unsigned threads) {
+  const HalfEdges input(mesh), edges = triangulation.half_edges();
+  const auto n = static_cast<std::size_t>(mesh.vertex_count());
+  const auto directed = static_cast<std::size_t>(edges.size() + mesh.report().boundary_edges);
+  VertexFrames frames;
+  frames.start.resize(n);
+  frames.scale.resize(n);
+  frames.angle.assign(directed, 0.0);
+  if (!edges.mirrored.empty()) frames.sense.assign(directed, 0);
+  detail::for_each_index(n, threads, [&](std::size_t v) {
+    set_angles(edges, triangulation, find_reference(mesh, input, triangulation, static_cast<Index>(v)), v, frames);
+  });
+  return frames;
+}
+
+std::vector<Frame> frames_in_space(const TriangleMesh& mesh, unsigned threads) {
+  std::vector<Frame> frames;
+  if (!mesh.has_positions()) return frames;
+  frames.resize(static_cast<std::size_t>(mesh.vertex_count()));
+  const HalfEdges edges(mesh);
+  detail::for_each_index(frames.size(), threads,
+                         [&](std::size_t v) { frames[v] = frame_in_space(mesh, edges, static_cast<Index>(v)); });
+  return frames;
+}
+
+}  // namespace ahm::trimesh

@@ -1,0 +1,34 @@
+/// \file
+/// Tangent spaces of the vertices (KCPS13), with true angles at the boundary.
+#pragma once
+
+#include <vector>
+
+#include "ahm/tangent_graph.hpp"
+#include "intrinsic_triangulation.hpp"
+
+namespace ahm::trimesh {
+
+/// Angles of all directed edges in the frames of their start vertices.
+///
+/// Angle 0 is the reference direction of a vertex, fixed on the input mesh: the boundary edge on its right, or the edge
+/// it stores a corner of. Angles about an interior vertex are scaled to the sum 2 pi; at the boundary they are kept,
+/// since scaling them to pi would bend every flat corner.
+struct VertexFrames {
+  std::vector<Corner> start;  ///< per vertex: the corner to start turning from; the rightmost on the boundary
+  std::vector<double> scale;  ///< per vertex: 2 pi over the angle sum, 1 on the boundary
+  std::vector<double> angle;  ///< per directed edge (HalfEdges::directed)
+  std::vector<std::uint8_t>
+      sense;  ///< per directed edge: whether the vertex is oriented like the lower of its faces; or empty
+
+  bool forward(const HalfEdges& edges, Half side, bool from_tail) const;
+};
+
+VertexFrames find_frames(const TriangleMesh& mesh, const IntrinsicTriangulation& triangulation, unsigned threads);
+
+/// Frames in space: the normal is the mean of the face normals weighted by angle; x and y are turned in that plane so
+/// that the projected edges lie as close as possible to their angles in the tangent space. Empty when the mesh has no
+/// positions. Origins in outside units.
+std::vector<Frame> frames_in_space(const TriangleMesh& mesh, unsigned threads);
+
+}  // namespace ahm::trimesh

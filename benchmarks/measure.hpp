@@ -1,0 +1,33 @@
+/// \file
+/// Time and memory.
+#pragma once
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <chrono>
+
+namespace ahm::bench {
+
+template <class Work>
+double seconds(const Work& work) {
+  const auto start = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+template <class Work>
+double median_of_five(const Work& work) {
+  double times[5];
+  for (double& t : times) t = seconds(work);
+  std::sort(times, times + 5);
+  return times[2];
+}
+
+inline double peak_megabytes() {
+  rusage usage;
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1e3;
+}
+
+}  // namespace ahm::bench

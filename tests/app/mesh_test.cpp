@@ -1,0 +1,120 @@
+// Triangle meshes through the program.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <sstream>
+
+#include "program.hpp"
+
+namespace ahm::test {
+namespace {
+
+/// A sheared grid of m x m vertices in the unit square, its triangles long and thin, as OBJ.
+std::string sheet(int m, double z = 0) {
+  std::ostringstream text;
+  text.precision(17);
+  for (int j = 0; j < m; ++j)
+    for (int i = 0; i < m; ++i)
+      text << "v " << (i + 0.3 * std::sin(5.0 * j)) / (m - 1) << ' ' << 0.1 * j / (m - 1) << ' ' << z << '\n';
+  for (int j = 0; j + 1 < m; ++j)
+    for (int i = 0; i + 1 < m; ++i) {
+      const int a = j * m + i + 1;
+      text << "f " << a << ' ' << a + 1 << ' ' << a + m + 1 << "\nf " << a << ' ' << a + m + 1 << ' ' << a + m << '\n';
+    }
+  return text.str();
+}
+
+std::vector<Row> map(const std::string& mesh, const std::string& source, const std::vector<std::string>& more = {},
+                     const std::string& name = "mesh.obj") {
+  Folder folder;
+  std::vector<std::string> words{"logmap", folder.write(name, mesh), "--source=" + source, "-o", folder / "map.csv"};
+  words.insert(words.end(), more.begin(), more.end());
+  const Outcome outcome = run(words);
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  return read_csv(folder / "map.csv");
+}
+
+void expect_refused(const std::string& mesh, const std::string& text, const std::vector<std::string>& more = {},
+                    const std::string& source = "0") {
+  Folder folder;
+  std::vector<std::string> words{"logmap", folder.write("mesh.obj", mesh), "--source=" + source, "-o",
+                                 folder / "map.csv"};
+  words.insert(words.end(), more.begin(), more.end());
+  const Outcome outcome = run(words);
+  EXPECT_EQ(outcome.status, 1) << outcome.out;
+  EXPECT_NE(outcome.err.find(text), std::string::npos) << outcome.err;
+  EXPECT_EQ(folder.files(), std::vector<std::string>{"mesh.obj"});
+}
+
+TEST(Mesh, IsTheIdentityOnAFlatSheetFromAVertexAndFromInsideAFace) {
+  for (const std::vector<std::string>& flips : {std::vector<std::string>{}, {"--no-flips"}}) {
+    auto more = flips;
+    more.insert(more.end(), {"--u-axis", "1,0,0"});
+    const auto from_corner = map(sheet(20), "0", more);
+    for (const Row& row : from_corner) {
+      ASSERT_NEAR(row.u, row.position[0] - from_corner[0].position[0], 1e-10);
+      ASSERT_NEAR(row.v, row.position[1] - from_corner[0].position[1], 1e-10);
+    }
+    // Face 100 is the lower triangle of a cell; find its corners from the numbering.
+    const int cell = 50, a = cell / 19 * 20 + cell % 19;
+    const auto rows = map(sheet(20), "face:100:0.2,0.3,0.5", more);
+    double p[2];
+    for (int c : {0, 1})
+      p[c] = 0.2 * rows[a].position[c] + 0.3 * rows[a + 1].position[c] + 0.5 * rows[a + 21].position[c];
+    for (const Row& row : rows) {
+      ASSERT_NEAR(row.u, row.position[0] - p[0], 1e-10);
+      ASSERT_NEAR(row.v, row.position[1] - p[1], 1e-10);
+    }
+  }
+}
+
+TEST(Mesh, IsChosenForTrianglesAndReportsItself) {
+  Folder folder;
+  const auto input = folder.write("mesh.obj", sheet(12));
+  ASSERT_EQ(run({"logmap", input, "-s", "5", "-o", folder / "map.ply", "--json", folder / "run.json"}).status, 0);
+  const auto json = read_json(folder / "run.json");
+  EXPECT_EQ(json.at("backend"), "trimesh");
+  EXPECT_EQ(json.at("trimesh").at("faces"), 242);
+  EXPECT_GT(json.at("trimesh").at("flips").get<long>(), 0);
+  ASSERT_EQ(run({"logmap", input, "-s", "5", "-o", folder / "map.ply", "--json", folder / "cloud.json", "--backend",
+                 "pointcloud"})
+                .status,
+            0);
+  EXPECT_EQ(read_json(folder / "cloud.json").at("backend"), "pointcloud");
+}
+
+TEST(Mesh, MasksOtherComponentsAndUnusedVertices) {
+  const std::string mesh = sheet(8) + "v 9 9 9\nv 20 0 0\nv 21 0 0\nv 20 1 0\nf 66 67 68\n";
+  const auto rows = map(mesh, "3");
+  EXPECT_EQ(rows[3].status, "ok");
+  EXPECT_EQ(rows[64].status, "removed");
+  EXPECT_EQ(rows[66].status, "component");
+  EXPECT_TRUE(std::isnan(rows[66].u));
+}
+
+TEST(Mesh, WeldsStl) {
+  std::string stl = "solid\n";
+  for (int i = 0; i < 10; ++i)
+    for (int half = 0; half < 2; ++half) {
+      auto vertex = [&](int x, int y) { stl += "vertex " + std::to_string(x) + " " + std::to_string(y) + " 0\n"; };
+      stl += "facet normal 0 0 1\nouter loop\n";
+      vertex(i, 0), vertex(i + 1, half), vertex(half ? i : i + 1, 1);
+      stl += "endloop\nendfacet\n";
+    }
+  const auto rows = map(stl + "endsolid\n", "0", {}, "strip.stl");
+  EXPECT_EQ(rows.size(), 22u);
+  for (const Row& row : rows) EXPECT_NEAR(row.distance, std::hypot(row.position[0], row.position[1]), 1e-10);
+}
+
+TEST(Mesh, RefusesWhatHasNoSurface) {
+  const std::string book = "v 0 0 0\nv 0 0 1\nv 1 0 0\nv 0 1 0\nv -1 0 0\nf 1 2 3\nf 1 2 4\nf 1 2 5\n";
+  expect_refused(book, "--non-manifold split");
+  expect_refused(sheet(4) + "f 1 2 2\n", "face");
+  expect_refused(sheet(4), "face", {}, "face:18:1,0,0");
+  expect_refused(sheet(4), "vertices", {}, "16");
+  expect_refused(sheet(4), "--voxel", {"--voxel", "0.1"});
+  EXPECT_EQ(map(book, "0", {"--non-manifold", "split"}).size(), 5u);
+}
+
+}  // namespace
+}  // namespace ahm::test
