@@ -60,7 +60,9 @@ TEST(Flips, LeaveOnlyWeightsOfDelaunayEdges) {
     for (Index i = 0; i < surface.graph().size(); ++i)
       for (double w : surface.graph().star(i).weights) negative += w < -1e-9;
     EXPECT_LE(negative, 2 * surface.mesh().report().boundary_edges);
-    if (surface.mesh().report().boundary_edges == 0) EXPECT_EQ(negative, 0);
+    if (surface.mesh().report().boundary_edges == 0) {
+      EXPECT_EQ(negative, 0);
+    }
   }
 }
 

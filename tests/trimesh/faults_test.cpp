@@ -173,7 +173,9 @@ TEST(MeshFaults, AMoebiusBandOfPaperIsAsFlatAsItsStrip) {
         TriangleMesh::from_edge_lengths(static_cast<Index>(band.plane.size()), band.faces, band.lengths),
         {.intrinsic_delaunay = flips});
     EXPECT_EQ(surface.graph().transport_kind(), TransportKind::block);
-    if (flips) EXPECT_GT(surface.report().flips, 100);
+    if (flips) {
+      EXPECT_GT(surface.report().flips, 100);
+    }
     const LogMapSolver solver(surface.graph());
     // Sources in faces all round the band, some at the twist; within a third of the band the other way round is far.
     for (std::size_t f = 7; f < band.faces.size(); f += 131)
@@ -185,12 +187,14 @@ TEST(MeshFaults, AMoebiusBandOfPaperIsAsFlatAsItsStrip) {
         const LogMap raw = solver.solve(surface.source_at(point), {.variant = variant});
         const VertexMap map = surface.on_vertices(raw);
         for (std::size_t i = 0; i < band.plane.size(); ++i)
-          if (const double d = band.distance(p, band.plane[i]); d < 0.3)
+          if (const double d = band.distance(p, band.plane[i]); d < 0.3) {
             EXPECT_NEAR(map.distance[i], d, 1e-6) << f << ", " << i;
+          }
         const auto corners = surface.on_corners(raw);
         for (std::size_t k = 0; k < corners.size(); ++k)
-          if (const double d = band.distance(p, band.corners[k]); d < 0.25)
+          if (const double d = band.distance(p, band.corners[k]); d < 0.25) {
             EXPECT_NEAR(std::hypot(corners[k][0], corners[k][1]), d, 1e-6) << f << ", corner " << k;
+          }
         for (Index g = 0; g < static_cast<Index>(band.faces.size()); g += 17) {
           std::array<double, 2> q{0, 0};
           for (int s = 0; s < 3; ++s)
