@@ -24,7 +24,7 @@ TEST_F(ReadFile, RefusesEmptyFilesOfEveryType) {
 }
 
 TEST_F(ReadFile, ListsTheKnownTypes) {
-  expect_refused("a.stl", "solid", {"'.stl'", ".ply", ".off", ".obj", ".pcd", ".xyz"});
+  expect_refused("a.3ds", "solid", {"'.3ds'", ".stl", ".ply", ".off", ".obj", ".pcd", ".xyz"});
   expect_refused("a", "1 2 3\n", {".ply"});
 }
 
