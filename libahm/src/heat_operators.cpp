@@ -1,6 +1,5 @@
 #include "ahm/heat_operators.hpp"
 
-#include <chrono>
 #include <cmath>
 #include <new>
 #include <optional>
@@ -8,6 +7,7 @@
 
 #include "ahm/detail/memory.hpp"
 #include "ahm/detail/parallel.hpp"
+#include "ahm/detail/stopwatch.hpp"
 #include "ahm/detail/text.hpp"
 #include "ahm/error.hpp"
 #include "ahm/validate.hpp"
@@ -18,14 +18,6 @@
 
 namespace ahm {
 namespace {
-
-class Stopwatch {
- public:
-  double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 /// The power of two that brings the mean mass to order one. A power of two, so that scaled models give the same bits.
 double scaling_for(const TangentGraph& graph) {
@@ -69,19 +61,17 @@ struct HeatOperators::Impl {
   }
 
   void factorize(const TangentGraph& graph, const OperatorOptions& options) {
-    Stopwatch assembling;
+    detail::Stopwatch stopwatch;
     AssembledOperators matrices = assemble(graph, tau, scaling);
-    statistics.assemble_seconds = assembling.seconds();
+    statistics.assemble_seconds = stopwatch.lap();
     options.progress.step("analyze", 0.0);
 
-    Stopwatch analyzing;
     const SymbolicCholesky scalar(matrices.A, options.ordering, options.supernodal);
     std::optional<SymbolicCholesky> blocks;
     if (kind == TransportKind::block) blocks.emplace(matrices.B, scalar, d);
-    statistics.analyze_seconds = analyzing.seconds();
+    statistics.analyze_seconds = stopwatch.lap();
     options.progress.step("factor", 0.0);
 
-    Stopwatch factoring;
     // Each factorization gets a thread of its own, with its own OpenMP settings.
     auto in_thread = [](auto&& work) {
       std::exception_ptr error;
@@ -99,7 +89,7 @@ struct HeatOperators::Impl {
         true, [&] { in_thread([&] { B.emplace(matrices.B, blocks ? *blocks : scalar, "B = M + tau L^nabla"); }); },
         [&] { in_thread([&] { A.emplace(matrices.A, scalar, "A = M + tau L"); }); });
     check_conservation(graph);
-    statistics.factor_seconds = factoring.seconds();
+    statistics.factor_seconds = stopwatch.lap();
     statistics.nonzeros_A = A->nonzeros();
     statistics.nonzeros_B = B->nonzeros();
     statistics.bytes = A->bytes() + B->bytes();

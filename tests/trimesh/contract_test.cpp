@@ -7,8 +7,8 @@ namespace {
 
 struct MeshGraphs {
   static std::unique_ptr<TangentGraph> make(const Mesh& mesh, bool flips = true) {
-    return std::make_unique<CsrGraph>(
-        trimesh::TriangleMeshGraph::build(mesh.positions, mesh.faces, {.intrinsic_delaunay = flips}).graph().data());
+    const auto built = trimesh::TriangleMeshGraph::build(mesh.positions, mesh.faces, {.intrinsic_delaunay = flips});
+    return std::make_unique<CsrGraph>(built.graph().data());
   }
   static std::unique_ptr<TangentGraph> surface() { return make(icosphere(5)); }
   static std::unique_ptr<TangentGraph> flat() { return make(sliver_square(400)); }

@@ -1,7 +1,6 @@
 #include "ahm/pointcloud/point_cloud_graph.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <new>
@@ -9,6 +8,7 @@
 #include <utility>
 
 #include "ahm/components.hpp"
+#include "ahm/detail/stopwatch.hpp"
 #include "ahm/detail/text.hpp"
 #include "ahm/error.hpp"
 #include "clean_points.hpp"
@@ -23,18 +23,6 @@ namespace ahm::pointcloud {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-class Lap {
- public:
-  /// Seconds since the last call.
-  double operator()() {
-    const auto now = std::chrono::steady_clock::now();
-    return std::chrono::duration<double>(now - std::exchange(last_, now)).count();
-  }
-
- private:
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-};
 
 void check_arguments(std::span<const Vec3> points, std::span<const Vec3> normals, const CloudOptions& options) {
   if (points.size() < 3)
@@ -146,7 +134,7 @@ PointCloudGraph PointCloudGraph::build(std::span<const Vec3> points, std::span<c
                                        const CloudOptions& options) try {
   check_arguments(points, normals, options);
   CloudReport report;
-  Lap lap;
+  detail::Stopwatch stopwatch;
   CleanPoints cloud = clean_points(points, options, report);
   const auto search = options.search ? options.search(cloud.points) : nullptr;
   if (!search) throw InvalidArgument("options.search made no neighbour search; default: nanoflann_search");
@@ -159,10 +147,10 @@ PointCloudGraph PointCloudGraph::build(std::span<const Vec3> points, std::span<c
                               " given normals are zero or not finite and were estimated");
   if (planes.estimated == static_cast<Index>(cloud.points.size())) normals = {};
   const bool cut = cut_between_sheets(normals, cloud, planes, neighborhoods, options);
-  report.seconds_normals = lap();
+  report.seconds_normals = stopwatch.lap();
 
   std::vector<Triangle> triangles = local_delaunay(cloud, neighborhoods, planes, cut, options, report);
-  report.seconds_delaunay = lap();
+  report.seconds_delaunay = stopwatch.lap();
   neighborhoods = {};
 
   const WeightedEdges edges = triangles.empty()
@@ -171,7 +159,7 @@ PointCloudGraph PointCloudGraph::build(std::span<const Vec3> points, std::span<c
   triangles = {};
   report.mollification *= cloud.unit;
   options.progress.step("laplacian", 1.0);
-  report.seconds_laplacian = lap();
+  report.seconds_laplacian = stopwatch.lap();
 
   std::vector<Index> point_of_vertex;
   const std::vector<Index> vertex_of_clean = number_vertices(cloud, edges, point_of_vertex, report);
@@ -187,7 +175,7 @@ PointCloudGraph PointCloudGraph::build(std::span<const Vec3> points, std::span<c
   for (std::size_t i = 0; i < points.size(); ++i)
     if (cloud.clean_of_input[i] >= 0) vertex_of_point[i] = vertex_of_clean[cloud.clean_of_input[i]];
   options.progress.step("graph", 1.0);
-  report.seconds_graph = lap();
+  report.seconds_graph = stopwatch.lap();
   return PointCloudGraph(std::move(graph), std::move(report), std::move(vertex_of_point),
                          std::move(point_of_vertex));
 } catch (const std::bad_alloc&) {

@@ -1,11 +1,11 @@
 #include "ahm/trimesh/triangle_mesh_graph.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <new>
 #include <utility>
 
+#include "ahm/detail/stopwatch.hpp"
 #include "ahm/detail/text.hpp"
 #include "ahm/error.hpp"
 #include "impl.hpp"
@@ -13,18 +13,6 @@
 
 namespace ahm::trimesh {
 namespace {
-
-class Lap {
- public:
-  /// Seconds since the last call.
-  double operator()() {
-    const auto now = std::chrono::steady_clock::now();
-    return std::chrono::duration<double>(now - std::exchange(last_, now)).count();
-  }
-
- private:
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-};
 
 void measure_edges(const IntrinsicTriangulation& triangulation, double length_unit, MeshReport& report) {
   double shortest = HUGE_VAL, longest = 0;
@@ -88,7 +76,7 @@ TriangleMeshGraph::~TriangleMeshGraph() = default;
 TriangleMeshGraph::TriangleMeshGraph(TriangleMeshGraph&&) noexcept = default;
 TriangleMeshGraph& TriangleMeshGraph::operator=(TriangleMeshGraph&&) noexcept = default;
 
-const CsrGraph& TriangleMeshGraph::graph() const noexcept { return impl_->graph; }
+const CsrGraph& TriangleMeshGraph::graph() const& noexcept { return impl_->graph; }
 const MeshReport& TriangleMeshGraph::report() const noexcept { return impl_->report; }
 const TriangleMesh& TriangleMeshGraph::mesh() const noexcept { return impl_->mesh; }
 
@@ -97,21 +85,21 @@ TriangleMeshGraph TriangleMeshGraph::build(TriangleMesh mesh, const MeshOptions&
   report.seconds_checks = seconds_checks;
   report.topology = mesh.report();
   report.vertices = mesh.vertex_count();
-  Lap lap;
+  detail::Stopwatch stopwatch;
   options.progress.step("flips", 0.0);
   IntrinsicTriangulation triangulation = triangulate(mesh, options, report);
   report.flips = static_cast<Offset>(triangulation.history().size());
   report.history_bytes = static_cast<Offset>(triangulation.history().bytes());
   report.mollification = triangulation.mollification() * mesh.length_unit();
   options.progress.step("flips", 1.0);
-  report.seconds_delaunay = lap();
+  report.seconds_delaunay = stopwatch.lap();
 
   VertexFrames frames = find_frames(mesh, triangulation, options.threads);
   CsrGraphData data = mesh_edges(mesh, triangulation, frames, options.clamp_weights, options.threads, report);
   data.frames = frames_in_space(mesh, options.threads);
   add_warnings(report);
   options.progress.step("graph", 1.0);
-  report.seconds_graph = lap();
+  report.seconds_graph = stopwatch.lap();
   return TriangleMeshGraph(std::make_unique<const Impl>(Impl{
       std::move(mesh), std::move(triangulation), std::move(frames), CsrGraph(std::move(data)), std::move(report)}));
 }
@@ -124,10 +112,10 @@ TriangleMeshGraph TriangleMeshGraph::build(TriangleMesh mesh, const MeshOptions&
 
 TriangleMeshGraph TriangleMeshGraph::build(std::span<const Vec3> positions, std::span<const Triangle> faces,
                                            const MeshOptions& options) try {
-  Lap lap;
+  detail::Stopwatch stopwatch;
   options.progress.step("checks", 0.0);
   TriangleMesh mesh = TriangleMesh::from_positions(positions, faces, options.non_manifold);
-  return build(std::move(mesh), options, lap());
+  return build(std::move(mesh), options, stopwatch.lap());
 } catch (const std::bad_alloc&) {
   throw ResourceExhausted("out of memory while building the graph of a mesh of " + std::to_string(faces.size()) +
                           " faces");

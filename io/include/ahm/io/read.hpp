@@ -14,7 +14,7 @@
 
 namespace ahm::io {
 
-/// Reads .ply, .off, .obj, .pcd, .xyz, .txt or .csv; the extension (in any case) chooses the format.
+/// Reads .ply, .off, .obj, .stl, .pcd, .xyz, .txt or .csv; the extension (in any case) chooses the format.
 ///
 /// Text numbers are read the same way in every locale and keep double precision; vertices and polygons keep the file's
 /// order. A file that is cut short, lies about its counts, or holds something that is no number is refused as a whole.

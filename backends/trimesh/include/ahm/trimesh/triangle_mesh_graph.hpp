@@ -94,7 +94,8 @@ class TriangleMeshGraph {
   TriangleMeshGraph& operator=(TriangleMeshGraph&&) noexcept;
 
   /// Stays where it is when this object is moved.
-  const CsrGraph& graph() const noexcept;
+  const CsrGraph& graph() const& noexcept;
+  void graph() && = delete;
   const MeshReport& report() const noexcept;
   const TriangleMesh& mesh() const noexcept;
 
