@@ -106,6 +106,14 @@ TEST(Mesh, WeldsStl) {
   for (const Row& row : rows) EXPECT_NEAR(row.distance, std::hypot(row.position[0], row.position[1]), 1e-10);
 }
 
+TEST(Outputs, AreAllWrittenOrNone) {
+  Folder folder;
+  const auto input = folder.write("mesh.obj", sheet(8));
+  const auto outcome = run({"logmap", input, "-s", "0", "-o", folder / "map.csv", "--json", "/dev/full"});
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_EQ(folder.files(), std::vector<std::string>{"mesh.obj"});
+}
+
 TEST(Mesh, RefusesWhatHasNoSurface) {
   const std::string book = "v 0 0 0\nv 0 0 1\nv 1 0 0\nv 0 1 0\nv -1 0 0\nf 1 2 3\nf 1 2 4\nf 1 2 5\n";
   expect_refused(book, "--non-manifold split");

@@ -125,13 +125,28 @@ void write_view(const LogmapOptions& options, const io::Geometry& input, const R
   view::write_picture(options.view, scene);
 }
 
-/// The picture first: if it fails, nothing else has been left behind.
+/// What this run has written: all of it or, after a failure, nothing.
+class Written {
+ public:
+  ~Written() {
+    std::error_code ignored;
+    for (const std::string& path : paths_)
+      if (!is_stream(path)) std::filesystem::remove(path, ignored);
+  }
+  void add(const std::string& path) { paths_.push_back(path); }
+  void keep() { paths_.clear(); }
+
+ private:
+  std::vector<std::string> paths_;
+};
+
 void write_results(const LogmapOptions& options, const io::Geometry& input, const Model& model,
-                   const ResolvedSource& source, const MapRows& rows, Journal& journal) {
+                   const ResolvedSource& source, const MapRows& rows, Written& written, Journal& journal) {
   const std::vector<Vec3> normals = model.normals();
   if (!options.view.empty()) {
     journal.start("view");
     write_view(options, input, source, rows, normals);
+    written.add(options.view);
   }
   journal.start("write");
   io::Table table;
@@ -145,6 +160,7 @@ void write_results(const LogmapOptions& options, const io::Geometry& input, cons
   table.face_begin = input.face_begin;
   table.face_vertices = input.face_vertices;
   io::write(options.output, table);
+  written.add(options.output);
   journal.finish();
   journal.clear_display();
 }
@@ -197,16 +213,11 @@ void run_logmap(const LogmapOptions& options) {
   const LogMap map = solve(options, solver, source.source, journal);
   const MapRows rows = model->rows(map);
   comment_on_statuses(rows, options.input, journal);
-  write_results(options, input, *model, source, rows, journal);
-
+  Written written;
+  write_results(options, input, *model, source, rows, written, journal);
   const Run run{options, input, backend, *model, solver, source, map, rows, journal.times(), journal.warnings()};
-  try {
-    write_json(options.json, run_as_json(run));
-  } catch (const Error&) {  // all outputs or none
-    for (const std::string& path : {options.output, options.view})
-      if (!path.empty() && !is_stream(path)) std::filesystem::remove(path);
-    throw;
-  }
+  write_json(options.json, run_as_json(run));
+  written.keep();
   const bool stdout_taken = options.json == "-" || is_stream(options.output);
   stdout_taken ? say(run_as_text(run)) : print(run_as_text(run));
 }

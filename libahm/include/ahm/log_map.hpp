@@ -28,7 +28,7 @@ enum class Status : std::uint8_t {
   ok,
   component,  ///< in a component of the graph without a source
   radius,     ///< farther from the source than the requested radius
-  unreached,  ///< so far (about 700 edges at t_coef = 1) that the heat has left the range of double precision
+  unreached,  ///< so far (about 700 edges at t_coef = 1) that the heat has left the range of double precision, or cancels (negative weights)
   removed,    ///< an input point that is no vertex of the graph (set by backends, never by the solver)
 };
 
