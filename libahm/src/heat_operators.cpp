@@ -20,9 +20,12 @@ namespace ahm {
 namespace {
 
 /// The power of two that brings the mean mass to order one. A power of two, so that scaled models give the same bits.
+/// @throws InvalidGraph
 double scaling_for(const TangentGraph& graph) {
   double mean = 0;
   for (Index i = 0; i < graph.size(); ++i) mean += graph.mass(i) / graph.size();
+  if (!(mean > 0) || !std::isfinite(mean))
+    throw InvalidGraph("the mean mass is " + detail::number(mean) + "; masses must be finite and > 0");
   return std::ldexp(1.0, -std::ilogb(mean));
 }
 

@@ -53,6 +53,15 @@ std::array<int, 2> open_terminal() {
 
 }  // namespace
 
+bool has_terminals() {
+  try {
+    for (int end : open_terminal()) close(end);
+    return true;
+  } catch (const std::runtime_error&) {
+    return false;
+  }
+}
+
 Running start(const std::vector<std::string>& arguments, bool on_terminal) {
   std::array<int, 2> out{}, err = on_terminal ? open_terminal() : std::array<int, 2>{};
   if (pipe2(out.data(), O_CLOEXEC) != 0 || (!on_terminal && pipe2(err.data(), O_CLOEXEC) != 0))

@@ -26,6 +26,9 @@ struct Running {
   int out = -1, err = -1;  ///< read ends of the pipes
 };
 
+/// Whether a pseudo-terminal can be had.
+bool has_terminals();
+
 /// Starts the program with pipes at its outputs, or with a terminal at its standard error.
 Running start(const std::vector<std::string>& arguments, bool on_terminal = false);
 Outcome finish(Running running);

@@ -16,8 +16,6 @@ namespace {
 
 bool is_finite(const Vec3& p) { return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]); }
 
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
-
 std::string list_first(const std::vector<Index>& indices) {
   const std::size_t shown = std::min<std::size_t>(indices.size(), 10);
   return fmt::format("{}{}", fmt::join(indices.begin(), indices.begin() + static_cast<std::ptrdiff_t>(shown), ", "),
@@ -25,6 +23,8 @@ std::string list_first(const std::vector<Index>& indices) {
 }
 
 #ifdef AHM_WITH_PCL
+std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+
 /// Keeps the listed points (indices into `cloud`, ascending).
 void keep(PreparedCloud& cloud, const std::vector<Index>& kept) {
   for (std::size_t i = 0; i < kept.size(); ++i) {  // kept[i] >= i: in place
