@@ -81,6 +81,59 @@ CsrGraphData bent_lattice(Index side, unsigned seed) {
   return g;
 }
 
+CsrGraphData stored(const TangentGraph& graph) {
+  CsrGraphData g;
+  g.dimension = graph.dimension();
+  g.kind = graph.transport_kind();
+  g.length_unit = graph.length_unit();
+  g.mean_edge_length = graph.mean_edge_length();
+  g.row_begin = {0};
+  auto append = [](auto& to, auto from) { to.insert(to.end(), from.begin(), from.end()); };
+  for (Index i = 0; i < graph.size(); ++i) {
+    const Star star = graph.star(i);
+    append(g.neighbors, star.neighbors);
+    append(g.weights, star.weights);
+    append(g.logs, star.logs);
+    append(g.transports, star.transports);
+    g.row_begin.push_back(static_cast<Offset>(g.neighbors.size()));
+    g.masses.push_back(graph.mass(i));
+  }
+  return g;
+}
+
+Turned with_frames_turned(const CsrGraphData& g, unsigned seed) {
+  const int d = g.dimension;
+  const bool rotations = g.kind == TransportKind::rotation2;
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal;
+  std::vector<Eigen::MatrixXd> Q;
+  Turned turned{g, {}};
+  for (std::size_t i = 0; i < g.masses.size(); ++i) {
+    const Eigen::MatrixXd X = Eigen::MatrixXd::NullaryExpr(d, d, [&](auto, auto) { return normal(random); });
+    Q.push_back(Eigen::HouseholderQR<Eigen::MatrixXd>(X).householderQ());
+    const bool mirror = !rotations && i % 2 == 1;
+    if ((Q[i].determinant() < 0) != mirror) Q[i].row(0) *= -1;
+    for (int a = 0; a < d; ++a)
+      for (int b = 0; b < d; ++b) turned.turns.push_back(Q[i](a, b));
+  }
+  using RowMajor = Eigen::Matrix<double, -1, -1, Eigen::RowMajor>;
+  for (std::size_t i = 0; i < g.masses.size(); ++i)
+    for (Offset e = g.row_begin[i]; e < g.row_begin[i + 1]; ++e) {
+      const Eigen::MatrixXd& Q_j = Q[static_cast<std::size_t>(g.neighbors[e])];
+      Eigen::Map<Eigen::VectorXd> log(turned.data.logs.data() + e * d, d);
+      log = (Q[i] * log).eval();
+      if (rotations) {
+        double* R = turned.data.transports.data() + 2 * e;
+        const Eigen::Matrix2d block = Q[i] * (Eigen::Matrix2d() << R[0], -R[1], R[1], R[0]).finished() * Q_j.transpose();
+        R[0] = block(0, 0), R[1] = block(1, 0);
+      } else {
+        Eigen::Map<RowMajor> R(turned.data.transports.data() + e * d * d, d, d);
+        R = (Q[i] * R * Q_j.transpose()).eval();
+      }
+    }
+  return turned;
+}
+
 CsrGraphData as_blocks(const CsrGraphData& g) {
   CsrGraphData blocks = g;
   blocks.kind = TransportKind::block;
@@ -96,6 +149,7 @@ CsrGraphData relabelled(const CsrGraphData& g, const std::vector<Index>& order) 
   CsrGraphData result = g;
   std::vector<Index> inverse(order.size());
   for (std::size_t i = 0; i < order.size(); ++i) inverse[order[i]] = static_cast<Index>(i);
+  const std::size_t d = static_cast<std::size_t>(g.dimension), width = g.kind == TransportKind::rotation2 ? 2 : d * d;
   Offset at = 0;
   for (std::size_t v = 0; v < order.size(); ++v) {
     const Index i = inverse[v];
@@ -104,10 +158,8 @@ CsrGraphData relabelled(const CsrGraphData& g, const std::vector<Index>& order) 
     for (Offset e = g.row_begin[i]; e < g.row_begin[i + 1]; ++e, ++at) {
       result.neighbors[at] = order[g.neighbors[e]];
       result.weights[at] = g.weights[e];
-      for (int a = 0; a < 2; ++a) {
-        result.logs[2 * at + a] = g.logs[2 * e + a];
-        result.transports[2 * at + a] = g.transports[2 * e + a];
-      }
+      std::copy_n(g.logs.begin() + e * d, d, result.logs.begin() + at * d);
+      std::copy_n(g.transports.begin() + e * width, width, result.transports.begin() + at * width);
     }
   }
   return result;
@@ -125,7 +177,9 @@ CsrGraphData mirrored(const CsrGraphData& g) {
 CsrGraphData scaled(const CsrGraphData& g, double factor) {
   CsrGraphData result = g;
   for (double& x : result.logs) x *= factor;
-  for (double& m : result.masses) m *= factor * factor;
+  for (double& m : result.masses) m *= std::pow(factor, g.dimension);
+  for (double& w : result.weights) w *= std::pow(factor, g.dimension - 2);
+  if (result.mean_edge_length) *result.mean_edge_length *= factor;
   return result;
 }
 

@@ -13,6 +13,17 @@ CsrGraphData sphere_graph(Index n, unsigned seed = 1);
 /// A jittered lattice in space with frames turned at random and transports bent a little: as if the space were curved.
 CsrGraphData bent_lattice(Index side, unsigned seed = 1);
 
+/// A copy of any graph in flat arrays.
+CsrGraphData stored(const TangentGraph& graph);
+
+/// The same graph with every frame turned at random: components in frame i become Q_i times them. On `block` graphs
+/// every other frame is mirrored as well.
+struct Turned {
+  CsrGraphData data;
+  std::vector<double> turns;  ///< Q_i, n x d x d, row major
+};
+Turned with_frames_turned(const CsrGraphData& graph, unsigned seed = 1);
+
 /// The same graph with every 2 x 2 rotation written out as a block.
 CsrGraphData as_blocks(const CsrGraphData& rotations);
 
@@ -22,7 +33,7 @@ CsrGraphData relabelled(const CsrGraphData& graph, const std::vector<Index>& ord
 /// The same graph seen from the other side: every frame mirrored in its x axis.
 CsrGraphData mirrored(const CsrGraphData& graph);
 
-/// The same graph with lengths multiplied by `factor` (masses by its square).
+/// The same graph with lengths multiplied by `factor` (masses by its power d, weights by its power d - 2).
 CsrGraphData scaled(const CsrGraphData& graph, double factor);
 
 }  // namespace ahm::test
