@@ -2,10 +2,10 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
-
-#include "ahm/detail/parallel.hpp"
+#include <vector>
 
 namespace ahm {
 namespace {
@@ -49,75 +49,80 @@ void set_identity(double* matrix, int d) {
     for (int b = 0; b < d; ++b) matrix[a * d + b] = a == b;
 }
 
+/// Space for one frame: on the stack for d <= 3.
+class FrameBuffer {
+ public:
+  explicit FrameBuffer(std::size_t width) {
+    if (width > small_.size()) large_.resize(width);
+  }
+  double* data() { return large_.empty() ? small_.data() : large_.data(); }
+
+ private:
+  std::array<double, 9> small_;
+  std::vector<double> large_;
+};
+
 }  // namespace
 
-FrameField::FrameField(Index n, int dimension, TransportKind kind)
-    : n_(n), d_(dimension), complex_(kind == TransportKind::rotation2) {}
+FrameField::FrameField(Index n, int dimension, TransportKind kind, std::span<const double> solution)
+    : n_(static_cast<std::size_t>(n)),
+      d_(dimension),
+      complex_(kind == TransportKind::rotation2),
+      solution_(solution) {}
 
-void FrameField::add_to_rhs(std::span<double> rhs, Index vertex, std::span<const double> axes, double scale) const {
-  const auto column_length = static_cast<std::size_t>(n_) * d_;
+void FrameField::raw(Index vertex, double* out) const {
+  const auto i = static_cast<std::size_t>(vertex);
   for (int a = 0; a < columns(); ++a)
-    for (int c = 0; c < d_; ++c) {
-      const double entry = axes.empty() ? (a == c ? 1.0 : 0.0) : axes[c * d_ + a];
-      rhs[a * column_length + static_cast<std::size_t>(vertex) * d_ + c] += scale * entry;
-    }
+    for (int c = 0; c < d_; ++c) out[complex_ ? c : c * d_ + a] = solution_[(a * n_ + i) * d_ + c];
 }
 
-void FrameField::normalize(std::span<const double> solution, unsigned threads) {
-  const std::size_t width = complex_ ? 2 : static_cast<std::size_t>(d_) * d_;
-  const auto n = static_cast<std::size_t>(n_);
-  frames_.resize(n * width);
-  heat_.resize(n);
-  detail::for_each_index(n, threads, [&](std::size_t i) {
-    double* frame = frames_.data() + i * width;
-    double largest = 0;
-    for (int a = 0; a < columns(); ++a)
-      for (int c = 0; c < d_; ++c) {
-        const double entry = solution[(a * n + i) * d_ + c];
-        frame[complex_ ? c : c * d_ + a] = entry;
-        largest = std::max(largest, std::abs(entry));
-      }
-    heat_[i] = largest;
-    if (!(largest >= std::numeric_limits<double>::min())) {
-      complex_ ? void((frame[0] = 1, frame[1] = 0)) : set_identity(frame, d_);
-      return;
-    }
-    for (std::size_t k = 0; k < width; ++k) frame[k] /= largest;
-    if (complex_) {
-      const double r = std::sqrt(frame[0] * frame[0] + frame[1] * frame[1]);
-      frame[0] /= r;
-      frame[1] /= r;
-    } else {
-      polar_factor(frame, d_);
-    }
-  });
+double FrameField::heat(Index vertex) const {
+  const auto i = static_cast<std::size_t>(vertex);
+  double largest = 0;
+  for (int a = 0; a < columns(); ++a)
+    for (int c = 0; c < d_; ++c) largest = std::max(largest, std::abs(solution_[(a * n_ + i) * d_ + c]));
+  return largest;
+}
+
+/// U_i as a unit complex number or an orthogonal matrix.
+void FrameField::frame(Index vertex, double* out) const {
+  raw(vertex, out);
+  const double largest = heat(vertex);
+  if (!(largest >= std::numeric_limits<double>::min())) {
+    complex_ ? void((out[0] = 1, out[1] = 0)) : set_identity(out, d_);
+    return;
+  }
+  for (std::size_t k = 0; k < width(); ++k) out[k] /= largest;
+  if (!complex_) return polar_factor(out, d_);
+  const double r = std::sqrt(out[0] * out[0] + out[1] * out[1]);
+  out[0] /= r;
+  out[1] /= r;
 }
 
 void FrameField::to_source(Index vertex, const double* in, double* out, std::size_t stride) const {
+  FrameBuffer buffer(width());
+  double* U = buffer.data();
+  frame(vertex, U);
   if (complex_) {
-    const double* u = frames_.data() + static_cast<std::size_t>(vertex) * 2;
-    out[0] = in[0] * u[0] + in[1] * u[1];
-    out[stride] = in[1] * u[0] - in[0] * u[1];
+    out[0] = in[0] * U[0] + in[1] * U[1];
+    out[stride] = in[1] * U[0] - in[0] * U[1];
     return;
   }
-  const double* Q = frames_.data() + static_cast<std::size_t>(vertex) * d_ * d_;
   for (int a = 0; a < d_; ++a) {
     double sum = 0;
-    for (int c = 0; c < d_; ++c) sum += Q[c * d_ + a] * in[c];
+    for (int c = 0; c < d_; ++c) sum += U[c * d_ + a] * in[c];
     out[a * stride] = sum;
   }
 }
 
 void FrameField::axes(Index vertex, double* out) const {
-  if (complex_) {
-    const double* u = frames_.data() + static_cast<std::size_t>(vertex) * 2;
-    out[0] = u[0];
-    out[1] = -u[1];
-    out[2] = u[1];
-    out[3] = u[0];
-    return;
-  }
-  std::copy_n(frames_.data() + static_cast<std::size_t>(vertex) * d_ * d_, d_ * d_, out);
+  if (!complex_) return frame(vertex, out);
+  double u[2];
+  frame(vertex, u);
+  out[0] = u[0];
+  out[1] = -u[1];
+  out[2] = u[1];
+  out[3] = u[0];
 }
 
 }  // namespace ahm

@@ -6,44 +6,41 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
 #include "ahm/source.hpp"
 #include "ahm/tangent_graph.hpp"
 
 namespace ahm {
 
+/// A view of U~, the solution of B for one source, that yields its normalized frames U_i = U~_i / |U~_i| (the orthogonal
+/// polar factor in block graphs). A vertex whose U~_i has no length has the identity.
 class FrameField {
  public:
-  FrameField(Index n, int dimension, TransportKind kind);
+  /// @param solution  `columns()` columns of n vectors of d numbers; may be empty while only right-hand sides are made
+  FrameField(Index n, int dimension, TransportKind kind, std::span<const double> solution = {});
 
   /// Right-hand sides that carry one frame: 1 or d.
   Index columns() const { return complex_ ? 1 : d_; }
+  /// Numbers that hold U~_i: 2 or d x d.
+  std::size_t width() const { return complex_ ? 2 : static_cast<std::size_t>(d_) * d_; }
 
-  /// Adds U_k `scale` at vertex k to right-hand sides of `columns()` columns of n x d numbers.
-  /// @param axes  d x d, row major; empty: identity
-  void add_to_rhs(std::span<double> rhs, Index vertex, std::span<const double> axes, double scale) const;
-
-  /// Takes the solution of B for these right-hand sides: U_i = U~_i / |U~_i|, the orthogonal polar factor in block
-  /// graphs. A vertex whose U~_i has no length gets the identity.
-  void normalize(std::span<const double> solution, unsigned threads);
-
-  /// Length of U~_i before it was normalized (its largest entry).
-  double heat(Index vertex) const { return heat_[static_cast<std::size_t>(vertex)]; }
-
+  /// U~_i: a complex number, or d x d numbers, row major.
+  void raw(Index vertex, double* out) const;
+  /// Length of U~_i (its largest entry).
+  double heat(Index vertex) const;
   /// out = in / U_i: components in frame i -> components in the source's frame (Eq. 12), written `stride` numbers
   /// apart.
   void to_source(Index vertex, const double* in, double* out, std::size_t stride = 1) const;
-
   /// U_i as d x d numbers, row major.
   void axes(Index vertex, double* out) const;
 
  private:
-  Index n_;
+  void frame(Index vertex, double* out) const;
+
+  std::size_t n_;
   int d_;
   bool complex_;
-  std::vector<double> frames_;  ///< n x 2 or n x d x d (row major)
-  std::vector<double> heat_;
+  std::span<const double> solution_;
 };
 
 /// A vertex is reached when its heat is at least this share of the source's. The triangular factors hold such quotients

@@ -35,18 +35,10 @@ LogMap make_map(const AffineHeat& heat, std::size_t s, const TangentGraph& graph
   std::vector<double> coordinates(n * d);
   std::vector<Status> status(n, Status::ok);
   const std::vector<bool> connected = heat.connected(s);
-  const auto lambda = heat.lambda(s);
-  const double unit = heat.length_unit();
-  // x / lambda, or (Y / lambda) / U: division by lambda commutes with the frame.
   detail::for_each_index(n, threads, [&](std::size_t i) {
     const auto vertex = static_cast<Index>(i);
     const std::span phi = std::span(coordinates).subspan(i * d, d);
-    if (options.variant == Variant::adaptive) {
-      for (std::size_t a = 0; a < d; ++a) phi[a] = solution[a * n + i];
-    } else {
-      heat.frames(s).to_source(vertex, solution.data() + i * d, phi.data());
-    }
-    for (double& coordinate : phi) coordinate = coordinate / lambda[i] * unit;
+    heat.coordinates_at(options.variant, s, solution, vertex, phi.data());
     if (!connected[i])
       status[i] = Status::component;
     else if (!heat.reached(s, vertex) || !all_finite(phi))
@@ -63,10 +55,10 @@ LogMap make_map(const AffineHeat& heat, std::size_t s, const TangentGraph& graph
 template <class Emit>
 void solve_block(const TangentGraph& graph, const HeatOperators& operators, std::span<const Source> sources,
                  const MapOptions& options, unsigned threads, const Emit& emit) {
-  AffineHeat heat(graph, operators, sources, threads);
+  AffineHeat heat(graph, operators, inflow_of(sources, graph, operators), threads);
   heat.diffuse();
   if (options.progress.stop.stop_requested()) throw Cancelled("cancelled during solve");
-  const std::vector<double> solution = options.variant == Variant::adaptive ? heat.adaptive() : heat.localized();
+  const std::vector<double> solution = heat.solve(options.variant);
   const std::size_t size = solution.size() / sources.size();
   for (std::size_t s = 0; s < sources.size(); ++s)
     emit(s, make_map(heat, s, graph, sources[s], std::span(solution).subspan(s * size, size), options, threads));

@@ -26,6 +26,11 @@ Source plain_source(const LogMapSolver& solver, std::span<const Index> vertices)
   return source;
 }
 
+AffineHeat affine_heat(const LogMapSolver& solver, const Source& source) {
+  return AffineHeat(solver.graph(), solver.operators(), {inflow_of(source, solver.graph(), solver.operators())},
+                    detail::thread_count(0));
+}
+
 /// Status of every vertex, and NaN where it is not ok. `reached(i)`: whether the value at vertex i can be trusted.
 template <class Reached>
 void finish(VertexField& field, const AffineHeat& heat, const Reached& reached) {
@@ -83,7 +88,7 @@ VertexField extend_scalar(const LogMapSolver& solver, std::span<const Index> ver
   return detail::with_memory_check("extending scalars", [&] {
   check_values(values, vertices.size(), "values");
   const Source source = plain_source(solver, vertices);
-  const AffineHeat heat(solver.graph(), solver.operators(), {&source, 1});
+  const AffineHeat heat = affine_heat(solver, source);
   Blend blend = blend_scalars(solver, vertices, values);
   VertexField field{1, std::move(blend.values), {}};
   finish(field, heat, [&](std::size_t i) { return blend.reached(i); });
@@ -98,7 +103,7 @@ VertexField transport_vectors(const LogMapSolver& solver, std::span<const Index>
              d = static_cast<std::size_t>(solver.graph().dimension());
   check_values(vectors, vertices.size() * d, "vectors");
   const Source source = plain_source(solver, vertices);
-  const AffineHeat heat(solver.graph(), solver.operators(), {&source, 1});
+  const AffineHeat heat = affine_heat(solver, source);
 
   // Lengths by A (SSC19 Alg. 1, steps II and III) ...
   std::vector<double> lengths;
@@ -130,7 +135,7 @@ VertexField parallel_transport(const LogMapSolver& solver, const Source& source)
   check_source(source, solver.graph());
   const auto n = solver.graph().size();
   const auto width = static_cast<std::size_t>(solver.graph().dimension()) * solver.graph().dimension();
-  AffineHeat heat(solver.graph(), solver.operators(), {&source, 1}, detail::thread_count(0));
+  AffineHeat heat = affine_heat(solver, source);
   heat.diffuse();
   VertexField field{static_cast<int>(width), std::vector<double>(static_cast<std::size_t>(n) * width), {}};
   for (Index i = 0; i < n; ++i) {
@@ -146,13 +151,13 @@ VertexField radial_field(const LogMapSolver& solver, const Source& source) {
   return detail::with_memory_check("computing the radial field", [&] {
   check_source(source, solver.graph());
   const auto d = static_cast<std::size_t>(solver.graph().dimension());
-  AffineHeat heat(solver.graph(), solver.operators(), {&source, 1}, detail::thread_count(0));
+  AffineHeat heat = affine_heat(solver, source);
   heat.diffuse_heat();
   VertexField field{static_cast<int>(d), heat.localized(), {}};
   const auto lambda = heat.lambda(0);
   for (std::size_t i = 0; i < lambda.size(); ++i)
     for (std::size_t a = 0; a < d; ++a)
-      field.values[i * d + a] = field.values[i * d + a] / lambda[i] * heat.length_unit();
+      field.values[i * d + a] = field.values[i * d + a] / lambda[i] * solution_unit(solver.graph());
   finish(field, heat, [&](std::size_t i) { return lambda[i] >= heat.least_heat(0); });
   return field;
   });
