@@ -4,7 +4,9 @@
 
 #include <climits>
 #include <cstdlib>
+#include <exception>
 #include <mutex>
+#include <thread>
 
 namespace ahm {
 namespace {
@@ -36,9 +38,21 @@ OneBlasThread::~OneBlasThread() {
   if (--users == 0 && set && threads_before > 1) set(threads_before);
 }
 
-void disable_openmp_regions_on_this_thread() {
+void without_openmp_regions(const std::function<void()>& work) {
   static auto* const set_levels = find_function<void(int)>("omp_set_max_active_levels");
-  if (set_levels) set_levels(0);
+  thread_local bool done = false;
+  if (done) return work();
+  std::exception_ptr error;
+  std::jthread([&] {
+    done = true;
+    if (set_levels) set_levels(0);
+    try {
+      work();
+    } catch (...) {
+      error = std::current_exception();
+    }
+  }).join();
+  if (error) std::rethrow_exception(error);
 }
 
 std::string blas_name() {

@@ -2,6 +2,7 @@
 /// The BLAS of the process: its name, and one thread of it while we work.
 #pragma once
 
+#include <functional>
 #include <string>
 
 namespace ahm {
@@ -17,9 +18,10 @@ class OneBlasThread {
   OneBlasThread& operator=(const OneBlasThread&) = delete;
 };
 
-/// Keeps CHOLMOD's OpenMP regions, started from the calling thread, on that thread: at our sizes they cost more than
-/// they give. Meant for threads that end after the factorization.
-void disable_openmp_regions_on_this_thread();
+/// Runs `work` where CHOLMOD's OpenMP regions stay on one thread, since at our sizes they cost more than they give: on a
+/// thread of its own, so that the caller's settings are left alone, or at once where that has been done already. Rethrows
+/// what it throws.
+void without_openmp_regions(const std::function<void()>& work);
 
 /// Configuration string of OpenBLAS, else the file that provides `dgemm`.
 std::string blas_name();

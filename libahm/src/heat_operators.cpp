@@ -14,6 +14,7 @@
 #include "assemble.hpp"
 #include "blas_control.hpp"
 #include "cholesky.hpp"
+#include "choose_strategy.hpp"
 #include "ahm/components.hpp"
 
 namespace ahm {
@@ -29,6 +30,7 @@ double scaling_for(const TangentGraph& graph) {
   return std::ldexp(1.0, -std::ilogb(mean));
 }
 
+/// @throws InvalidArgument
 double checked_tau(const TangentGraph& graph, double t_coef) {
   const double tau = t_coef * graph.mean_edge_length() * graph.mean_edge_length();
   if (!(t_coef > 0) || !std::isfinite(t_coef))
@@ -75,22 +77,12 @@ struct HeatOperators::Impl {
     statistics.analyze_seconds = stopwatch.lap();
     options.progress.step("factor", 0.0);
 
-    // Each factorization gets a thread of its own, with its own OpenMP settings.
-    auto in_thread = [](auto&& work) {
-      std::exception_ptr error;
-      std::jthread([&] {
-        try {
-          disable_openmp_regions_on_this_thread();
-          work();
-        } catch (...) {
-          error = std::current_exception();
-        }
-      }).join();
-      if (error) std::rethrow_exception(error);
-    };
     detail::run_both(
-        true, [&] { in_thread([&] { B.emplace(matrices.B, blocks ? *blocks : scalar, "B = M + tau L^nabla"); }); },
-        [&] { in_thread([&] { A.emplace(matrices.A, scalar, "A = M + tau L"); }); });
+        options.threads != 1,
+        [&] {
+          without_openmp_regions([&] { B.emplace(matrices.B, blocks ? *blocks : scalar, "B = M + tau L^nabla"); });
+        },
+        [&] { without_openmp_regions([&] { A.emplace(matrices.A, scalar, "A = M + tau L"); }); });
     check_conservation(graph);
     statistics.factor_seconds = stopwatch.lap();
     statistics.nonzeros_A = A->nonzeros();
@@ -100,16 +92,20 @@ struct HeatOperators::Impl {
   }
 };
 
-HeatOperators::HeatOperators(const TangentGraph& graph, const OperatorOptions& options) try
-    : impl_(std::make_unique<Impl>()) {
+double check_operator_options(const TangentGraph& graph, const OperatorOptions& options) {
   if (options.check_graph) {
     options.progress.step("check", 0.0);
     validate(graph);
   }
+  return checked_tau(graph, options.t_coef);
+}
+
+HeatOperators::HeatOperators(const TangentGraph& graph, const OperatorOptions& options) try
+    : impl_(std::make_unique<Impl>()) {
+  impl_->tau = check_operator_options(graph, options);
   impl_->n = graph.size();
   impl_->d = graph.dimension();
   impl_->kind = graph.transport_kind();
-  impl_->tau = checked_tau(graph, options.t_coef);
   impl_->scaling = scaling_for(graph);
   options.progress.step("assemble", 0.0);
   impl_->components = connected_components(graph);

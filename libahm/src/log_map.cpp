@@ -27,20 +27,25 @@ std::string_view to_string(Variant variant) noexcept { return variant == Variant
 
 std::string_view to_string(Strategy strategy) noexcept {
   switch (strategy) {
+    case Strategy::automatic:
+      return "auto";
     case Strategy::global:
       return "global";
+    case Strategy::march:
+      return "march";
   }
   return "unknown";
 }
 
 LogMap::LogMap(int dimension, Variant variant, Strategy strategy, Source source, std::vector<double> coordinates,
-               std::vector<Status> status)
+               std::vector<Status> status, MarchStatistics march)
     : dimension_(dimension),
       variant_(variant),
       strategy_(strategy),
       source_(std::move(source)),
       coordinates_(std::move(coordinates)),
-      status_(std::move(status)) {}
+      status_(std::move(status)),
+      march_(march) {}
 
 std::span<const double> LogMap::coordinates(Index vertex) const {
   const auto d = static_cast<std::size_t>(dimension_);

@@ -65,9 +65,13 @@ TEST_P(Search, BuildsTheSameGraph) {
   EXPECT_EQ(graph.graph().data().neighbors, expected.graph().data().neighbors);
 }
 
-INSTANTIATE_TEST_SUITE_P(Libraries, Search,
-                         testing::Values(NamedSearch{"nanoflann", pointcloud::nanoflann_search},
-                                         NamedSearch{"flann", pointcloud::flann_search}),
+const NamedSearch libraries[] = {
+    {"nanoflann", pointcloud::nanoflann_search},
+#ifdef AHM_WITH_FLANN
+    {"flann", pointcloud::flann_search},
+#endif
+};
+INSTANTIATE_TEST_SUITE_P(Libraries, Search, testing::ValuesIn(libraries),
                          [](const auto& info) { return std::string(info.param.name); });
 
 }  // namespace

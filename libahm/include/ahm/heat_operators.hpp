@@ -34,6 +34,7 @@ struct OperatorOptions {
   /// AHM_SUPERNODAL=OFF.
   bool supernodal = true;
   bool check_graph = true;  ///< run `validate(graph)` first
+  unsigned threads = 0;     ///< 1: factorize A and B one after the other; else concurrently on two threads
   Progress progress;
 };
 
@@ -50,7 +51,7 @@ struct FactorStatistics {
 /// A and B of one graph, factored. Immutable: all member functions may be called from many threads at once.
 class HeatOperators {
  public:
-  /// Assembles and factorizes A and B, concurrently on two threads.
+  /// Assembles and factorizes A and B.
   /// @throws InvalidGraph, InvalidArgument (t_coef), NotPositiveDefinite (an operator is not positive definite, or
   /// fails
   ///         its residual check), ResourceExhausted (memory), Cancelled

@@ -20,15 +20,28 @@ namespace ahm {
 /// Alg. 1 or Alg. 2 of Soliman & Sharp 2025.
 enum class Variant { adaptive, localized };
 
-/// How the linear systems were solved.
-enum class Strategy { global };
+/// How the linear systems are solved (docs/march.md).
+enum class Strategy {
+  automatic,  ///< one of the others, as size, number of maps and memory suggest
+  global,     ///< one factorization of the whole graph, which serves every source; reaches about 700 edges
+  march,      ///< band after band outwards from the source: time and memory linear in n, any distance
+};
+
+/// What a march did.
+struct MarchStatistics {
+  Index bands = 0;         ///< factorizations
+  Index largest_band = 0;  ///< vertices
+  Offset solved = 0;       ///< vertices of all bands
+};
 
 /// Why a vertex has coordinates, or has none.
 enum class Status : std::uint8_t {
   ok,
   component,  ///< in a component of the graph without a source
   radius,     ///< farther from the source than the requested radius
-  unreached,  ///< so far (about 700 edges at t_coef = 1) that the heat has left the range of double precision, or cancels (negative weights)
+  /// Strategy::global: so far (about 700 edges at t_coef = 1) that the heat has left the range of double precision. Any
+  /// strategy: the heat cancels (negative weights).
+  unreached,
   removed,    ///< an input point that is no vertex of the graph (set by backends, never by the solver)
 };
 
@@ -42,12 +55,15 @@ std::string_view to_string(Strategy strategy) noexcept;
 class LogMap {
  public:
   LogMap(int dimension, Variant variant, Strategy strategy, Source source, std::vector<double> coordinates,
-         std::vector<Status> status);
+         std::vector<Status> status, MarchStatistics march = {});
 
   Index size() const noexcept { return static_cast<Index>(status_.size()); }
   int dimension() const noexcept { return dimension_; }
   Variant variant() const noexcept { return variant_; }
+  /// How it was solved: `global`, or `march` where any part was marched.
   Strategy strategy() const noexcept { return strategy_; }
+  /// Zero for a global solve.
+  const MarchStatistics& march() const noexcept { return march_; }
   /// The source whose frame the coordinates refer to.
   const Source& source() const noexcept { return source_; }
 
@@ -69,6 +85,7 @@ class LogMap {
   Source source_;
   std::vector<double> coordinates_;
   std::vector<Status> status_;
+  MarchStatistics march_;
 };
 
 }  // namespace ahm
