@@ -51,7 +51,8 @@ void AffineHeat::diffuse_frames() {
 }
 
 void AffineHeat::diffuse() {
-  detail::run_both(threads_ > 1, [&] { diffuse_heat(); }, [&] { diffuse_frames(); });
+  detail::run_both(
+      threads_ > 1, [&] { diffuse_heat(); }, [&] { diffuse_frames(); });
 }
 
 /// rho_i = -tau sum_j w_ij e_ij lambda_j, columns of n vectors of d numbers. The translation from j to i is -e_ij: it
@@ -108,7 +109,8 @@ std::vector<double> AffineHeat::localized() const {
 
 void AffineHeat::solution_at(Variant variant, std::span<const double> solution, Index vertex, double* out) const {
   const auto i = static_cast<std::size_t>(vertex);
-  for (std::size_t a = 0; a < d_; ++a) out[a] = variant == Variant::adaptive ? solution[a * n_ + i] : solution[i * d_ + a];
+  for (std::size_t a = 0; a < d_; ++a)
+    out[a] = variant == Variant::adaptive ? solution[a * n_ + i] : solution[i * d_ + a];
 }
 
 void AffineHeat::coordinates_at(Variant variant, std::size_t source, std::span<const double> solution, Index vertex,

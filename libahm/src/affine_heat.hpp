@@ -67,8 +67,8 @@ class AffineHeat {
   std::size_t n_, d_;
   FrameField frames_;  ///< of no source: the shape alone
   unsigned threads_;
-  std::vector<double> lambda_;         ///< n per source
-  std::vector<double> least_heat_;     ///< one per source
+  std::vector<double> lambda_;          ///< n per source
+  std::vector<double> least_heat_;      ///< one per source
   std::vector<double> frame_solution_;  ///< U~, frame_size() per source
 };
 

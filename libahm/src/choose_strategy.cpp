@@ -3,8 +3,6 @@
 #include <unistd.h>
 
 #include <cmath>
-#include <fstream>
-#include <string>
 
 namespace ahm {
 namespace {
@@ -12,12 +10,8 @@ namespace {
 /// Graphs of at least this many vertices are marched when only one map is wanted (docs/march.md has the measurements).
 constexpr Index march_from = 50'000;
 
-/// Bytes a new allocation can have without swapping; 0 when the system does not say.
-double available_memory() {
-  std::ifstream file("/proc/meminfo");
-  std::string key, unit;
-  for (double kib; file >> key >> kib; std::getline(file, unit))
-    if (key == "MemAvailable:") return kib * 1024;
+/// Bytes of memory this machine has; 0 when the system does not say.
+double machine_memory() {
   const long pages = sysconf(_SC_PHYS_PAGES), size = sysconf(_SC_PAGE_SIZE);
   return pages > 0 && size > 0 ? static_cast<double>(pages) * static_cast<double>(size) : 0;
 }
@@ -36,7 +30,7 @@ double factor_bytes(const TangentGraph& graph) {
 Strategy choose_strategy(const TangentGraph& graph, const SolverOptions& options) {
   if (options.strategy != Strategy::automatic) return options.strategy;
   if (options.expected_maps == 1 && graph.size() >= march_from && graph.dimension() <= 2) return Strategy::march;
-  const double memory = options.memory > 0 ? static_cast<double>(options.memory) : 0.6 * available_memory();
+  const double memory = options.memory > 0 ? static_cast<double>(options.memory) : 0.5 * machine_memory();
   return memory > 0 && factor_bytes(graph) > memory ? Strategy::march : Strategy::global;
 }
 

@@ -65,10 +65,7 @@ class FrameBuffer {
 }  // namespace
 
 FrameField::FrameField(Index n, int dimension, TransportKind kind, std::span<const double> solution)
-    : n_(static_cast<std::size_t>(n)),
-      d_(dimension),
-      complex_(kind == TransportKind::rotation2),
-      solution_(solution) {}
+    : n_(static_cast<std::size_t>(n)), d_(dimension), complex_(kind == TransportKind::rotation2), solution_(solution) {}
 
 void FrameField::raw(Index vertex, double* out) const {
   const auto i = static_cast<std::size_t>(vertex);

@@ -15,8 +15,8 @@ namespace ahm {
 /// Right-hand sides at `vertices`; parallel arrays, d the dimension.
 struct Inflow {
   std::vector<Index> vertices;
-  std::vector<double> heat;          ///< b: enters A lambda
-  std::vector<double> frames;        ///< b U: enters B U~; 2 (complex) or d x d numbers (row major) in the vertex's frame
+  std::vector<double> heat;    ///< b: enters A lambda
+  std::vector<double> frames;  ///< b U: enters B U~; 2 (complex) or d x d numbers (row major) in the vertex's frame
   std::vector<double> coordinates;   ///< b z: enters A x; d numbers in the source's frame
   std::vector<double> vectors;       ///< b U z: enters B Y; d numbers in the vertex's frame
   std::vector<double> translations;  ///< enters rho, hence both variants; d numbers in the vertex's frame

@@ -37,15 +37,22 @@ std::string_view to_string(Strategy strategy) noexcept {
   return "unknown";
 }
 
+MarchStatistics& MarchStatistics::operator+=(const MarchStatistics& other) {
+  bands += other.bands;
+  largest_band = std::max(largest_band, other.largest_band);
+  solved += other.solved;
+  return *this;
+}
+
 LogMap::LogMap(int dimension, Variant variant, Strategy strategy, Source source, std::vector<double> coordinates,
-               std::vector<Status> status, MarchStatistics march)
+               std::vector<Status> status, MapExtras extras)
     : dimension_(dimension),
       variant_(variant),
       strategy_(strategy),
       source_(std::move(source)),
       coordinates_(std::move(coordinates)),
       status_(std::move(status)),
-      march_(march) {}
+      extras_(std::move(extras)) {}
 
 std::span<const double> LogMap::coordinates(Index vertex) const {
   const auto d = static_cast<std::size_t>(dimension_);

@@ -15,6 +15,7 @@
 #include "ahm/error.hpp"
 #include "ahm/validate.hpp"
 #include "choose_strategy.hpp"
+#include "extrapolate.hpp"
 #include "march.hpp"
 #include "small_math.hpp"
 
@@ -36,6 +37,8 @@ void check_options(const MapOptions& options) {
 void check_options(const SolverOptions& options) {
   if (!(options.accuracy >= 1e-14 && options.accuracy <= 0.1))
     throw InvalidArgument("accuracy is " + detail::number(options.accuracy) + "; it must be in [1e-14, 0.1]");
+  if (options.order != 1 && options.order != 2)
+    throw InvalidArgument("order is " + std::to_string(options.order) + "; it must be 1 or 2");
   if (options.expected_maps < 0)
     throw InvalidArgument("expected_maps is " + std::to_string(options.expected_maps) + "; it must be >= 0 (0: many)");
 }
@@ -46,41 +49,73 @@ Status status_of(std::span<const double> phi, bool reached, double radius) {
   return length(phi) > radius ? Status::radius : Status::ok;
 }
 
+/// One diffusion time.
+struct Time {
+  OperatorOptions options;
+  std::once_flag factored;
+  std::optional<HeatOperators> operators;
+};
+
 }  // namespace
 
 struct LogMapSolver::Impl {
   const TangentGraph& graph;
-  OperatorOptions operator_options;
   SolverOptions options;
+  double t_coef;
   Strategy strategy;
-  mutable std::once_flag factored, numbered;
-  mutable std::optional<HeatOperators> factors;
+  std::vector<double> factors;  ///< of t_coef, ascending from 1
+  mutable std::vector<Time> times;
+  mutable std::once_flag numbered;
   mutable Components parts;
 
-  const HeatOperators& operators() const {
-    std::call_once(factored, [&] { factors.emplace(graph, operator_options); });
-    return *factors;
+  Impl(const TangentGraph& graph, const OperatorOptions& operator_options, const SolverOptions& options);
+
+  const HeatOperators& operators(std::size_t time) const {
+    Time& t = times[time];
+    std::call_once(t.factored, [&] { t.operators.emplace(graph, t.options); });
+    return *t.operators;
   }
   std::span<const Index> components() const {
-    if (strategy == Strategy::global) return operators().components();
+    if (strategy == Strategy::global) return operators(0).components();
     std::call_once(numbered, [&] { parts = connected_components(graph); });
     return parts.of_vertex;
   }
 
-  LogMap march(March&& front, const Source& source, const MapOptions& map) const;
-  LogMap march(const Source& source, const MapOptions& map, unsigned threads) const;
-  LogMap map_of(const AffineHeat& heat, std::size_t s, const Source& source, std::span<const double> solution,
-                const MapOptions& map, unsigned threads) const;
-  template <class Emit>
-  void solve_block(std::span<const Source> sources, const MapOptions& map, unsigned threads, const Emit& emit) const;
+  March front(std::size_t time, const MapOptions& map, unsigned threads) const {
+    return March(graph, times[time].options, map.variant, options.accuracy, map.radius, threads, map.progress);
+  }
+  LogMap map_of(March&& front, const Source& source, const MapOptions& map) const;
+  LogMap map_of(const AffineHeat& heat, std::size_t time, std::size_t s, const Source& source,
+                std::span<const double> solution, const MapOptions& map, unsigned threads) const;
+  std::vector<LogMap> solve_block(std::size_t time, std::span<const Source> sources, const MapOptions& map,
+                                  unsigned threads) const;
+  std::vector<LogMap> solve_block(std::span<const Source> sources, const MapOptions& map, unsigned threads) const;
 };
 
+LogMapSolver::Impl::Impl(const TangentGraph& graph, const OperatorOptions& operator_options,
+                         const SolverOptions& options)
+    : graph(graph),
+      options(options),
+      t_coef(operator_options.t_coef),
+      strategy(choose_strategy(graph, options)),
+      factors(diffusion_times(options.order, graph)),
+      times(factors.size()) {
+  if (strategy == Strategy::march) check_operator_options(graph, operator_options);
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    times[k].options = operator_options;
+    times[k].options.t_coef *= factors[k];
+    times[k].options.check_graph &= k == 0 && strategy == Strategy::global;  // once is enough
+    if (strategy == Strategy::global) operators(k);
+    times[k].options.progress = {};
+  }
+}
+
 /// The result of a march.
-LogMap LogMapSolver::Impl::march(March&& front, const Source& source, const MapOptions& map) const {
+LogMap LogMapSolver::Impl::map_of(March&& front, const Source& source, const MapOptions& map) const {
   const auto n = static_cast<std::size_t>(graph.size()), d = static_cast<std::size_t>(graph.dimension());
   std::vector<double> coordinates = std::move(front.coordinates());
   std::vector<Status> status(n, Status::ok);
-  std::vector<char> with_source;
+  std::vector<char> with_source;  // per component; only needed where the march did not come
   for (std::size_t i = 0; i < n; ++i) {
     const std::span phi = std::span(coordinates).subspan(i * d, d);
     if (front.accepted(static_cast<Index>(i))) {
@@ -92,23 +127,22 @@ LogMap LogMapSolver::Impl::march(March&& front, const Source& source, const MapO
         for (Index k : source.vertices()) with_source[static_cast<std::size_t>(component[k])] = 1;
       }
       status[i] = !with_source[static_cast<std::size_t>(component[i])] ? Status::component
-                  : std::isinf(map.radius)                            ? Status::unreached
-                                                                      : Status::radius;
+                  : std::isinf(map.radius)                             ? Status::unreached
+                                                                       : Status::radius;
     }
     if (status[i] != Status::ok) std::fill(phi.begin(), phi.end(), NAN);
   }
+  MapExtras extras{front.statistics(), {}, {}};
+  if (map.frames) {
+    extras.frames.resize(n * d * d);
+    for (std::size_t i = 0; i < n; ++i) front.axes(static_cast<Index>(i), extras.frames.data() + i * d * d);
+  }
   return LogMap(static_cast<int>(d), map.variant, Strategy::march, source, std::move(coordinates), std::move(status),
-                front.statistics());
-}
-
-LogMap LogMapSolver::Impl::march(const Source& source, const MapOptions& map, unsigned threads) const {
-  March front(graph, operator_options, map.variant, options.accuracy, map.radius, threads, map.progress);
-  front.run(source);
-  return march(std::move(front), source, map);
+                std::move(extras));
 }
 
 /// Coordinates and status of one source from its x (adaptive) or Y (localized).
-LogMap LogMapSolver::Impl::map_of(const AffineHeat& heat, std::size_t s, const Source& source,
+LogMap LogMapSolver::Impl::map_of(const AffineHeat& heat, std::size_t time, std::size_t s, const Source& source,
                                   std::span<const double> solution, const MapOptions& map, unsigned threads) const {
   const auto n = static_cast<std::size_t>(graph.size()), d = static_cast<std::size_t>(graph.dimension());
   std::vector<double> coordinates(n * d);
@@ -121,38 +155,67 @@ LogMap LogMapSolver::Impl::map_of(const AffineHeat& heat, std::size_t s, const S
     status[i] = connected[i] ? status_of(phi, heat.reached(s, vertex), map.radius) : Status::component;
     if (status[i] != Status::ok) std::fill(phi.begin(), phi.end(), NAN);
   });
-  if (options.strategy == Strategy::automatic && std::find(status.begin(), status.end(), Status::unreached) != status.end()) {
-    March front(graph, operator_options, map.variant, options.accuracy, map.radius, threads, map.progress);
-    front.run_on(heat, s, solution);
-    return march(std::move(front), source, map);
+  if (options.strategy == Strategy::automatic && std::ranges::count(status, Status::unreached) > 0) {
+    March on = front(time, map, threads);
+    on.run_on(heat, s, solution);
+    return map_of(std::move(on), source, map);
   }
-  return LogMap(static_cast<int>(d), map.variant, Strategy::global, source, std::move(coordinates), std::move(status));
+  MapExtras extras;
+  if (map.frames) {
+    extras.frames.resize(n * d * d);
+    const FrameField U = heat.frames(s);
+    detail::for_each_index(n, threads,
+                           [&](std::size_t i) { U.axes(static_cast<Index>(i), extras.frames.data() + i * d * d); });
+  }
+  return LogMap(static_cast<int>(d), map.variant, Strategy::global, source, std::move(coordinates), std::move(status),
+                std::move(extras));
 }
 
-/// Solves one block of sources and hands each map to `emit`.
-template <class Emit>
-void LogMapSolver::Impl::solve_block(std::span<const Source> sources, const MapOptions& map, unsigned threads,
-                                     const Emit& emit) const {
-  AffineHeat heat(graph, operators(), inflow_of(sources, graph, operators()), threads);
+/// Solves one block of sources at one diffusion time.
+std::vector<LogMap> LogMapSolver::Impl::solve_block(std::size_t time, std::span<const Source> sources,
+                                                    const MapOptions& map, unsigned threads) const {
+  std::vector<LogMap> maps;
+  if (strategy == Strategy::march) {
+    for (const Source& source : sources) {
+      March on = front(time, map, threads);
+      on.run(source);
+      maps.push_back(map_of(std::move(on), source, map));
+    }
+    return maps;
+  }
+  AffineHeat heat(graph, operators(time), inflow_of(sources, graph, operators(time)), threads);
   heat.diffuse();
   if (map.progress.stop.stop_requested()) throw Cancelled("cancelled during solve");
   const std::vector<double> solution = heat.solve(map.variant);
   const std::size_t size = solution.size() / sources.size();
   for (std::size_t s = 0; s < sources.size(); ++s)
-    emit(s, map_of(heat, s, sources[s], std::span(solution).subspan(s * size, size), map, threads));
+    maps.push_back(map_of(heat, time, s, sources[s], std::span(solution).subspan(s * size, size), map, threads));
+  return maps;
+}
+
+/// The same at all times, extrapolated.
+std::vector<LogMap> LogMapSolver::Impl::solve_block(std::span<const Source> sources, const MapOptions& map,
+                                                    unsigned threads) const {
+  if (factors.size() == 1) return solve_block(0, sources, map, threads);
+  MapOptions wider = map;  // the maps of different times differ a little at the radius
+  wider.radius += 8 * graph.mean_edge_length() * graph.length_unit();
+  std::vector<std::vector<LogMap>> at_times;
+  for (std::size_t time = 0; time < factors.size(); ++time) {
+    wider.frames = map.frames && time + 2 == factors.size();
+    at_times.push_back(solve_block(time, sources, wider, threads));
+  }
+  std::vector<LogMap> result;
+  for (std::size_t s = 0; s < sources.size(); ++s) {
+    std::vector<const LogMap*> maps;
+    for (const auto& at_time : at_times) maps.push_back(&at_time[s]);
+    result.push_back(extrapolate(graph, t_coef, factors, maps, map.radius));
+  }
+  return result;
 }
 
 LogMapSolver::LogMapSolver(const TangentGraph& graph, const OperatorOptions& options, const SolverOptions& solver) {
   check_options(solver);
-  std::unique_ptr<Impl> impl(new Impl{graph, options, solver, choose_strategy(graph, solver), {}, {}, {}, {}});
-  if (impl->strategy == Strategy::global) {
-    impl->operators();
-  } else {
-    check_operator_options(graph, options);
-    impl->operator_options.check_graph = false;  // has just been done
-  }
-  impl->operator_options.progress = {};
-  impl_ = std::move(impl);
+  impl_ = std::make_unique<const Impl>(graph, options, solver);
 }
 
 LogMapSolver::~LogMapSolver() = default;
@@ -161,7 +224,7 @@ LogMapSolver& LogMapSolver::operator=(LogMapSolver&&) noexcept = default;
 
 const TangentGraph& LogMapSolver::graph() const noexcept { return impl_->graph; }
 Strategy LogMapSolver::strategy() const noexcept { return impl_->strategy; }
-const HeatOperators& LogMapSolver::operators() const { return impl_->operators(); }
+const HeatOperators& LogMapSolver::operators() const { return impl_->operators(0); }
 
 LogMap LogMapSolver::solve(const Source& source, const MapOptions& options) const {
   return std::move(solve(std::span(&source, 1), options).front());
@@ -170,8 +233,7 @@ LogMap LogMapSolver::solve(const Source& source, const MapOptions& options) cons
 std::vector<LogMap> LogMapSolver::solve(std::span<const Source> sources, const MapOptions& options) const {
   check_options(options);
   for (const Source& source : sources) check_source(source, impl_->graph);
-  const bool global = impl_->strategy == Strategy::global;
-  const std::size_t block = global ? sources_per_block(impl_->graph.size()) : 1;
+  const std::size_t block = impl_->strategy == Strategy::global ? sources_per_block(impl_->graph.size()) : 1;
   const auto count = static_cast<Offset>(sources.size());
   // A single block cannot be shared out: its own steps use the threads instead, where that pays.
   const bool single = sources.size() <= block && impl_->graph.size() > 5000;
@@ -186,11 +248,9 @@ std::vector<LogMap> LogMapSolver::solve(std::span<const Source> sources, const M
     if (count > 1) quiet.progress.report = nullptr;  // the blocks report
     detail::parallel_chunks(count, static_cast<Offset>(block), options.threads, [&](Offset begin, Offset end) {
       const auto first = static_cast<std::size_t>(begin);
-      if (global)
-        impl_->solve_block(sources.subspan(first, static_cast<std::size_t>(end - begin)), quiet, threads_per_block,
-                           [&](std::size_t s, LogMap map) { maps[first + s] = std::move(map); });
-      else
-        maps[first] = impl_->march(sources[first], quiet, threads_per_block);
+      auto solved =
+          impl_->solve_block(sources.subspan(first, static_cast<std::size_t>(end - begin)), quiet, threads_per_block);
+      for (std::size_t s = 0; s < solved.size(); ++s) maps[first + s] = std::move(solved[s]);
       std::scoped_lock lock(report_mutex);
       done += end - begin;
       options.progress.step("solve", static_cast<double>(done) / static_cast<double>(count));

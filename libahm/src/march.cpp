@@ -191,12 +191,13 @@ March::Band March::find_band(const Source* source, double depth) {
 
 /// Dirichlet data: for an accepted neighbour j of i, A gives tau w_ij lambda_j to the right-hand side of i, B gives
 /// tau w_ij R_ji U~_j, and so on for the other two systems.
-Inflow March::inflow_behind(const Band& band, std::span<const Link> links, double scaling,
-                            std::int32_t& heat_exponent, std::int32_t& frame_exponent) const {
+Inflow March::inflow_behind(const Band& band, std::span<const Link> links, double scaling, std::int32_t& heat_exponent,
+                            std::int32_t& frame_exponent) const {
   // Scale the largest accepted value to `heat_scale`.
   heat_exponent = frame_exponent = std::numeric_limits<std::int32_t>::min();
   auto neighbor = [&](const Link& link) {
-    return static_cast<std::size_t>(graph_.star(band.vertices[static_cast<std::size_t>(link.place)]).neighbors[link.edge]);
+    return static_cast<std::size_t>(
+        graph_.star(band.vertices[static_cast<std::size_t>(link.place)]).neighbors[link.edge]);
   };
   for (const Link& link : links) {
     const std::size_t j = neighbor(link);
@@ -228,14 +229,15 @@ Inflow March::inflow_behind(const Band& band, std::span<const Link> links, doubl
     in.heat.back() += heat * at_.lambda[j];
     const double *x = at_.solution.data() + j * d_, *u = at_.frame.data() + j * width_;
     double *coordinates = in.coordinates.data() + in.coordinates.size() - d_,
-           *vectors = in.vectors.data() + in.vectors.size() - d_, *frames = in.frames.data() + in.frames.size() - width_,
+           *vectors = in.vectors.data() + in.vectors.size() - d_,
+           *frames = in.frames.data() + in.frames.size() - width_,
            *translations = in.translations.data() + in.translations.size() - d_;
     for (std::size_t a = 0; a < d_; ++a) {
       coordinates[a] += heat * x[a];
       translations[a] -= heat * at_.lambda[j] * (to_units * star.logs[link.edge * d_ + a]);
     }
     if (is_complex) {
-      const double *R = star.transports.data() + link.edge * 2;
+      const double* R = star.transports.data() + link.edge * 2;
       frames[0] += turn * (R[0] * u[0] - R[1] * u[1]);
       frames[1] += turn * (R[0] * u[1] + R[1] * u[0]);
       vectors[0] += heat * (R[0] * x[0] - R[1] * x[1]);
@@ -288,6 +290,17 @@ bool March::sends_heat(Index vertex) const {
 double March::level(Index vertex) const {
   const auto i = static_cast<std::size_t>(vertex);
   return -std::log(at_.lambda[i]) - std::log(2.0) * at_.heat_exponent[i];
+}
+
+void March::axes(Index vertex, double* out) const {
+  // One vertex is a field of its own; in block graphs its columns are then the rows of the transposed matrix.
+  std::vector<double> U(
+      at_.frame.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(vertex) * width_),
+      at_.frame.begin() + static_cast<std::ptrdiff_t>((static_cast<std::size_t>(vertex) + 1) * width_));
+  if (graph_.transport_kind() == TransportKind::block)
+    for (std::size_t a = 0; a < d_; ++a)
+      for (std::size_t c = 0; c < a; ++c) std::swap(U[a * d_ + c], U[c * d_ + a]);
+  FrameField(1, graph_.dimension(), graph_.transport_kind(), U).axes(0, out);
 }
 
 /// m + tau sum w: the diagonal of A.

@@ -30,6 +30,8 @@ class March {
   std::vector<double>& coordinates() { return coordinates_; }
   /// Whether the march came to the vertex.
   bool accepted(Index vertex) const { return accepted_[static_cast<std::size_t>(vertex)] != 0; }
+  /// U_i as d x d numbers, row major.
+  void axes(Index vertex, double* out) const;
   const MarchStatistics& statistics() const { return statistics_; }
 
  private:
@@ -69,9 +71,9 @@ class March {
   std::size_t d_, width_;
 
   std::vector<std::uint8_t> accepted_;
-  std::vector<Index> place_;    ///< in the band at hand, or -1
+  std::vector<Index> place_;      ///< in the band at hand, or -1
   std::vector<float> tentative_;  ///< heat distance on the way, less that of the front
-  std::vector<Index> front_;    ///< accepted vertices with neighbours that are not
+  std::vector<Index> front_;      ///< accepted vertices with neighbours that are not
   Solutions at_;
   std::vector<double> coordinates_;
   MarchStatistics statistics_;

@@ -28,7 +28,8 @@ CsrGraph cut_out(const TangentGraph& graph, std::span<const Index> vertices, con
   patch.mean_edge_length = graph.mean_edge_length();
   patch.row_begin.reserve(vertices.size() + 1);
   patch.masses.reserve(vertices.size());
-  const std::size_t expected = vertices.size() * static_cast<std::size_t>(graph.edge_count() / std::max<Index>(graph.size(), 1) + 1);
+  const std::size_t expected =
+      vertices.size() * static_cast<std::size_t>(graph.edge_count() / std::max<Index>(graph.size(), 1) + 1);
   patch.neighbors.reserve(expected);
   patch.weights.reserve(expected);
   patch.logs.reserve(expected * d);

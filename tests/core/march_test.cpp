@@ -45,29 +45,6 @@ Source blended(const TangentGraph& graph) {
   return source;
 }
 
-/// A tube of `rings` rings of `around` vertices, one apart along and around it; the frames' x axes run along it.
-CsrGraph tube(Index rings, Index around) {
-  CsrGraphData g;
-  g.row_begin.push_back(0);
-  for (Index r = 0; r < rings; ++r)
-    for (Index k = 0; k < around; ++k) {
-      auto edge = [&](Index ring, Index place, double x, double y) {
-        if (ring < 0 || ring >= rings) return;
-        g.neighbors.push_back(ring * around + (place + around) % around);
-        g.weights.push_back(y != 0 && (r == 0 || r == rings - 1) ? 0.5 : 1.0);
-        g.logs.insert(g.logs.end(), {x, y});
-        g.transports.insert(g.transports.end(), {1, 0});
-      };
-      edge(r - 1, k, -1, 0);
-      edge(r + 1, k, 1, 0);
-      edge(r, k - 1, 0, -1);
-      edge(r, k + 1, 0, 1);
-      g.row_begin.push_back(static_cast<Offset>(g.neighbors.size()));
-      g.masses.push_back(r == 0 || r == rings - 1 ? 0.5 : 1.0);
-    }
-  return CsrGraph(std::move(g));
-}
-
 TEST(March, AgreesWithTheGlobalSolve) {
   for (const CsrGraphData& data : {sphere_graph(6000), as_blocks(sphere_graph(6000)), bent_lattice(16)}) {
     const CsrGraph graph(data);
@@ -121,7 +98,7 @@ TEST(March, IsExactOnThePlane) {
 }
 
 TEST(March, HasNoHorizon) {
-  const CsrGraph graph = tube(20000, 6);
+  const CsrGraph graph(tube(20000, 6));
   for (Variant variant : variants) {
     const LogMap map = LogMapSolver(graph, {}, marching).solve(Source::at_vertex(0), {.variant = variant});
     EXPECT_EQ(map.count(Status::ok), graph.size());
@@ -131,7 +108,7 @@ TEST(March, HasNoHorizon) {
 }
 
 TEST(March, GoesOnWhereTheGlobalSolveEnds) {
-  const CsrGraph graph = tube(2000, 6);
+  const CsrGraph graph(tube(2000, 6));
   const LogMap masked = LogMapSolver(graph, {}, global).solve(Source::at_vertex(0));
   EXPECT_GT(masked.count(Status::unreached), 0);
   const LogMap map = LogMapSolver(graph).solve(Source::at_vertex(0));

@@ -200,4 +200,26 @@ CsrGraphData doubled(const CsrGraphData& g) {
   return two;
 }
 
+CsrGraphData tube(Index rings, Index around) {
+  CsrGraphData g;
+  g.row_begin.push_back(0);
+  for (Index r = 0; r < rings; ++r)
+    for (Index k = 0; k < around; ++k) {
+      auto edge = [&](Index ring, Index place, double x, double y) {
+        if (ring < 0 || ring >= rings) return;
+        g.neighbors.push_back(ring * around + (place + around) % around);
+        g.weights.push_back(y != 0 && (r == 0 || r == rings - 1) ? 0.5 : 1.0);
+        g.logs.insert(g.logs.end(), {x, y});
+        g.transports.insert(g.transports.end(), {1, 0});
+      };
+      edge(r - 1, k, -1, 0);
+      edge(r + 1, k, 1, 0);
+      edge(r, k - 1, 0, -1);
+      edge(r, k + 1, 0, 1);
+      g.row_begin.push_back(static_cast<Offset>(g.neighbors.size()));
+      g.masses.push_back(r == 0 || r == rings - 1 ? 0.5 : 1.0);
+    }
+  return g;
+}
+
 }  // namespace ahm::test

@@ -50,4 +50,7 @@ FlatGraph strip(Index length);
 /// Two copies of a graph side by side, not connected.
 CsrGraphData doubled(const CsrGraphData& graph);
 
+/// A tube of `rings` rings of `around` vertices, one apart along and around it; the frames' x axes run along it.
+CsrGraphData tube(Index rings, Index around);
+
 }  // namespace ahm::test

@@ -32,6 +32,15 @@ struct MarchStatistics {
   Index bands = 0;         ///< factorizations
   Index largest_band = 0;  ///< vertices
   Offset solved = 0;       ///< vertices of all bands
+
+  MarchStatistics& operator+=(const MarchStatistics& other);
+};
+
+/// What a map may hold besides coordinates.
+struct MapExtras {
+  MarchStatistics march;
+  std::vector<double> frames;
+  std::vector<double> error_estimate;
 };
 
 /// Why a vertex has coordinates, or has none.
@@ -42,7 +51,7 @@ enum class Status : std::uint8_t {
   /// Strategy::global: so far (about 700 edges at t_coef = 1) that the heat has left the range of double precision. Any
   /// strategy: the heat cancels (negative weights).
   unreached,
-  removed,    ///< an input point that is no vertex of the graph (set by backends, never by the solver)
+  removed,  ///< an input point that is no vertex of the graph (set by backends, never by the solver)
 };
 
 /// The word used in files: "ok", "component", "radius", "unreached", "removed".
@@ -55,7 +64,7 @@ std::string_view to_string(Strategy strategy) noexcept;
 class LogMap {
  public:
   LogMap(int dimension, Variant variant, Strategy strategy, Source source, std::vector<double> coordinates,
-         std::vector<Status> status, MarchStatistics march = {});
+         std::vector<Status> status, MapExtras extras = {});
 
   Index size() const noexcept { return static_cast<Index>(status_.size()); }
   int dimension() const noexcept { return dimension_; }
@@ -63,7 +72,13 @@ class LogMap {
   /// How it was solved: `global`, or `march` where any part was marched.
   Strategy strategy() const noexcept { return strategy_; }
   /// Zero for a global solve.
-  const MarchStatistics& march() const noexcept { return march_; }
+  const MarchStatistics& march() const noexcept { return extras_.march; }
+  /// With MapOptions::frames: the source's axes carried to every vertex (Eq. 11 and 12), n x d x d, row major: column a is
+  /// source axis a in the frame of the vertex. Identity where no heat arrived.
+  std::span<const double> frames() const noexcept { return extras_.frames; }
+  /// With SolverOptions::order = 2: an estimate of |error of phi_i| in outside units, from the disagreement of the
+  /// diffusion times; NaN where not ok. Good to a factor of about three inside the cut locus (docs/accuracy.md).
+  std::span<const double> error_estimate() const noexcept { return extras_.error_estimate; }
   /// The source whose frame the coordinates refer to.
   const Source& source() const noexcept { return source_; }
 
@@ -85,7 +100,7 @@ class LogMap {
   Source source_;
   std::vector<double> coordinates_;
   std::vector<Status> status_;
-  MarchStatistics march_;
+  MapExtras extras_;
 };
 
 }  // namespace ahm

@@ -25,9 +25,12 @@ struct SolverOptions {
   Strategy strategy = Strategy::automatic;
   /// For `automatic`: the number of maps to be made; 0: many. A single map of a large graph is faster by march.
   Index expected_maps = 0;
-  /// For `automatic`: bytes that factors may take; 0: three fifths of what the system has available. A graph whose factors
-  /// would need more is marched.
+  /// For `automatic`: bytes that factors may take; 0: half of the machine's memory. A graph whose factors would need more
+  /// is marched.
   std::size_t memory = 0;
+  /// 1: the method as published. 2: extrapolates from maps of two or three diffusion times (docs/accuracy.md), which take
+  /// as many factorizations and solves; several times more accurate on smooth surfaces, with an error estimate per vertex.
+  int order = 1;
   /// For marches: the largest difference to a global solve, relative; in [1e-14, 0.1].
   double accuracy = 1e-9;
 };
@@ -38,6 +41,7 @@ struct MapOptions {
   double radius = std::numeric_limits<double>::infinity();
   /// Threads for a batch; 0: one per core. The result does not depend on it.
   unsigned threads = 0;
+  bool frames = false;  ///< keep the transported frames, for `map_quality` and transport
   Progress progress;
 };
 
@@ -46,7 +50,7 @@ class LogMapSolver {
  public:
   /// Chooses the strategy, and for a global one factors the graph's two operators.
   /// @param graph  must outlive the solver
-  /// @throws as `HeatOperators`; InvalidArgument (accuracy, expected_maps)
+  /// @throws as `HeatOperators`; InvalidArgument (order, accuracy, expected_maps)
   explicit LogMapSolver(const TangentGraph& graph, const OperatorOptions& options = {},
                         const SolverOptions& solver = {});
   explicit LogMapSolver(TangentGraph&&, const OperatorOptions& = {}, const SolverOptions& = {}) = delete;
@@ -68,7 +72,7 @@ class LogMapSolver {
   const TangentGraph& graph() const noexcept;
   /// What was chosen: `global` or `march`.
   Strategy strategy() const noexcept;
-  /// The factored operators of the whole graph. Under strategy `march` the first call factors them.
+  /// The factored operators of the whole graph (at t_coef, whatever the order). Under strategy `march` the first call factors them.
   /// @throws as `HeatOperators`
   const HeatOperators& operators() const;
 
