@@ -4,7 +4,9 @@
 #include <new>
 #include <optional>
 #include <string>
+#include <variant>
 
+#include "ahm/components.hpp"
 #include "ahm/detail/memory.hpp"
 #include "ahm/detail/parallel.hpp"
 #include "ahm/detail/stopwatch.hpp"
@@ -15,10 +17,12 @@
 #include "blas_control.hpp"
 #include "cholesky.hpp"
 #include "choose_strategy.hpp"
-#include "ahm/components.hpp"
+#include "conjugate_gradient.hpp"
 
 namespace ahm {
 namespace {
+
+constexpr const char *name_A = "A = M + tau L", *name_B = "B = M + tau L^nabla";
 
 /// The power of two that brings the mean mass to order one. A power of two, so that scaled models give the same bits.
 /// @throws InvalidGraph
@@ -51,13 +55,18 @@ struct HeatOperators::Impl {
   double tau, scaling;
   Components components;
   FactorStatistics statistics;
-  std::optional<CholeskyFactor> A, B;
+  std::variant<std::monostate, CholeskyFactor, ConjugateGradient> A, B;
+
+  static void solve(const auto& K, std::span<double> X, Offset columns) {
+    if (const auto* factor = std::get_if<CholeskyFactor>(&K)) return factor->solve(X, columns);
+    std::get<ConjugateGradient>(K).solve(X, columns);
+  }
 
   /// Constants are in the kernel of L, so A 1 = m: how far A^-1 m is from 1 tells what conditioning leaves of the digits.
   void check_conservation(const TangentGraph& graph) const {
     std::vector<double> x(static_cast<std::size_t>(n));
     for (Index i = 0; i < n; ++i) x[static_cast<std::size_t>(i)] = scaling * graph.mass(i);
-    A->solve(x, 1);
+    solve(A, x, 1);
     double worst = 0;
     for (double value : x) worst = std::isfinite(value) ? std::max(worst, std::abs(value - 1)) : INFINITY;
     if (!(worst <= 1e-9))
@@ -65,10 +74,27 @@ struct HeatOperators::Impl {
                                 " relative): t_coef is too large for this graph, or its weights differ too much");
   }
 
-  void factorize(const TangentGraph& graph, const OperatorOptions& options) {
+  void prepare(const TangentGraph& graph, const OperatorOptions& options, bool iterative) {
     detail::Stopwatch stopwatch;
     AssembledOperators matrices = assemble(graph, tau, scaling);
     statistics.assemble_seconds = stopwatch.lap();
+    iterative ? precondition(matrices) : factorize(matrices, options);
+    check_conservation(graph);
+    const auto count = [&](const auto& K) {
+      statistics.bytes += K.bytes();
+      return K.nonzeros();
+    };
+    statistics.nonzeros_A = iterative ? count(std::get<ConjugateGradient>(A)) : count(std::get<CholeskyFactor>(A));
+    statistics.nonzeros_B = iterative ? count(std::get<ConjugateGradient>(B)) : count(std::get<CholeskyFactor>(B));
+  }
+
+  void precondition(const AssembledOperators& matrices) {
+    A.emplace<ConjugateGradient>(matrices.A, name_A);
+    B.emplace<ConjugateGradient>(matrices.B, name_B);
+  }
+
+  void factorize(const AssembledOperators& matrices, const OperatorOptions& options) {
+    detail::Stopwatch stopwatch;
     options.progress.step("analyze", 0.0);
 
     const SymbolicCholesky scalar(matrices.A, options.ordering, options.supernodal);
@@ -80,14 +106,10 @@ struct HeatOperators::Impl {
     detail::run_both(
         options.threads != 1,
         [&] {
-          without_openmp_regions([&] { B.emplace(matrices.B, blocks ? *blocks : scalar, "B = M + tau L^nabla"); });
+          without_openmp_regions([&] { B.emplace<CholeskyFactor>(matrices.B, blocks ? *blocks : scalar, name_B); });
         },
-        [&] { without_openmp_regions([&] { A.emplace(matrices.A, scalar, "A = M + tau L"); }); });
-    check_conservation(graph);
+        [&] { without_openmp_regions([&] { A.emplace<CholeskyFactor>(matrices.A, scalar, name_A); }); });
     statistics.factor_seconds = stopwatch.lap();
-    statistics.nonzeros_A = A->nonzeros();
-    statistics.nonzeros_B = B->nonzeros();
-    statistics.bytes = A->bytes() + B->bytes();
     options.progress.step("factor", 1.0);
   }
 };
@@ -100,7 +122,10 @@ double check_operator_options(const TangentGraph& graph, const OperatorOptions& 
   return checked_tau(graph, options.t_coef);
 }
 
-HeatOperators::HeatOperators(const TangentGraph& graph, const OperatorOptions& options) try
+HeatOperators::HeatOperators(const TangentGraph& graph, const OperatorOptions& options)
+    : HeatOperators(graph, options, false) {}
+
+HeatOperators::HeatOperators(const TangentGraph& graph, const OperatorOptions& options, bool iterative) try
     : impl_(std::make_unique<Impl>()) {
   impl_->tau = check_operator_options(graph, options);
   impl_->n = graph.size();
@@ -109,7 +134,7 @@ HeatOperators::HeatOperators(const TangentGraph& graph, const OperatorOptions& o
   impl_->scaling = scaling_for(graph);
   options.progress.step("assemble", 0.0);
   impl_->components = connected_components(graph);
-  impl_->factorize(graph, options);
+  impl_->prepare(graph, options, iterative);
 } catch (const std::bad_alloc&) {
   throw ResourceExhausted("out of memory while factoring a graph of " + std::to_string(graph.size()) + " vertices");
 }
@@ -130,13 +155,13 @@ Index HeatOperators::component_count() const noexcept { return impl_->components
 void HeatOperators::solve_scalar(std::span<double> X, Index columns) const {
   if (columns < 0 || static_cast<Offset>(X.size()) != static_cast<Offset>(impl_->n) * columns)
     throw InvalidArgument("solve_scalar: 'X' has " + std::to_string(X.size()) + " numbers, expected n x columns");
-  if (columns > 0) detail::with_memory_check("solving with A", [&] { impl_->A->solve(X, columns); });
+  if (columns > 0) detail::with_memory_check("solving with A", [&] { Impl::solve(impl_->A, X, columns); });
 }
 
 void HeatOperators::solve_vector(std::span<double> X, Index columns) const {
   if (columns < 0 || static_cast<Offset>(X.size()) != static_cast<Offset>(impl_->n) * impl_->d * columns)
     throw InvalidArgument("solve_vector: 'X' has " + std::to_string(X.size()) + " numbers, expected n x d x columns");
-  if (columns > 0) detail::with_memory_check("solving with B", [&] { impl_->B->solve(X, columns); });
+  if (columns > 0) detail::with_memory_check("solving with B", [&] { Impl::solve(impl_->B, X, columns); });
 }
 
 }  // namespace ahm

@@ -15,6 +15,10 @@ namespace {
 /// fill per vertex, thinner ones solve each vertex more often.
 constexpr double default_step = 24;
 
+/// The same where bands are solved iteratively: the cost of a vertex does not grow with the band's depth, but what has
+/// decayed further loses digits.
+constexpr double iterative_step = 8;
+
 constexpr float far_away = std::numeric_limits<float>::infinity();
 
 }  // namespace
@@ -24,9 +28,10 @@ March::March(const TangentGraph& graph, const OperatorOptions& operators, Varian
     : graph_(graph),
       options_(operators),
       variant_(variant),
+      iterative_(graph.dimension() > 2),
       // What lies ahead by x influences what lies behind by exp(-2 x).
       margin_(1.6 - 0.5 * std::log(accuracy)),
-      step_(default_step),
+      step_(iterative_ ? iterative_step : default_step),
       // A little beyond, since coordinates are not monotone from vertex to vertex.
       radius_(radius + 4 * graph.mean_edge_length() * graph.length_unit()),
       tau_(operators.t_coef * graph.mean_edge_length() * graph.mean_edge_length()),
@@ -67,8 +72,10 @@ void March::march(const Source* source) {
     while (source || !front_.empty()) {
       progress_.step("solve", static_cast<double>(accepted_count_) / graph_.size());
       const bool advanced = advance(source, depth);
-      depth = advanced ? step_ + margin_ : 2 * depth;
-      if (advanced) source = nullptr;
+      if (advanced)
+        source = nullptr;
+      else
+        depth *= 1.4;  // and stays so: where one band was too thin, the next ones would be
     }
   });
 }
@@ -93,7 +100,7 @@ bool March::advance(const Source* source, double depth) {
         links.push_back({static_cast<Index>(k), e});
         return tau_ * star.weights[e];
       });
-  const HeatOperators operators(patch, options_);
+  const HeatOperators operators(patch, options_, iterative_);
 
   std::int32_t heat_exponent = 0, frame_exponent = 0;
   Inflow inflow;
@@ -111,14 +118,18 @@ bool March::advance(const Source* source, double depth) {
 
   // Accept what is farther than the margin from all that was left out, by the heat just found.
   const auto lambda = heat.lambda(0);
-  double least_level = std::numeric_limits<double>::infinity();
+  auto level_of = [&](Index k) { return lambda[k] > 0 ? -std::log(lambda[k]) : INFINITY; };
+  double limit = std::numeric_limits<double>::infinity();
   for (Index k : band.edge)
-    if (lambda[k] > 0) least_level = std::min(least_level, -std::log(lambda[k]));
+    if (lambda[k] > 0) limit = std::min(limit, level_of(k) - margin_);
+  const double resolved = -std::log(*std::max_element(lambda.begin(), lambda.end())) + step_;
+  const bool too_thin = limit < resolved;
+  if (iterative_) limit = std::min(limit, resolved);
   std::vector<Index> near, added;
   for (std::size_t k = 0; k < band.vertices.size(); ++k)
-    if (band.edge.empty() || (lambda[k] > 0 && -std::log(lambda[k]) <= least_level - margin_))
-      near.push_back(static_cast<Index>(k));
-  if (near.size() * 8 < band.vertices.size()) return false;
+    if (const auto place = static_cast<Index>(k); std::isinf(limit) || level_of(place) <= limit) near.push_back(place);
+  if (too_thin && static_cast<double>(near.size()) * std::pow(4.0, d_) < static_cast<double>(band.vertices.size()))
+    return false;
   for (Index k : near) {
     added.push_back(band.vertices[static_cast<std::size_t>(k)]);
     accept(added.back(), k, heat, 0, solution, heat_exponent, frame_exponent);

@@ -65,6 +65,7 @@ class March {
   const TangentGraph& graph_;
   OperatorOptions options_;
   Variant variant_;
+  bool iterative_;  ///< volumes: the factors of a band would fill the memory
   double margin_, step_, radius_, tau_;
   Progress progress_;
   unsigned threads_;

@@ -81,6 +81,11 @@ class HeatOperators {
   Index component_count() const noexcept;
 
  private:
+  friend class March;
+  /// @param iterative  conjugate gradients instead of factors; block graphs only. Errors are then relative to the largest
+  ///                   value of a solution, which is enough for the thin bands of a march.
+  HeatOperators(const TangentGraph& graph, const OperatorOptions& options, bool iterative);
+
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
