@@ -70,6 +70,7 @@ void write_pcd(AtomicFile& file, const Table& table) {
   if (!table.normals.empty()) add_fields(cloud, {"normal_x", "normal_y", "normal_z"}, PCLPointField::FLOAT32);
   add_fields(cloud, {"u", "v", "distance", "angle"}, PCLPointField::FLOAT64);
   add_fields(cloud, {"status"}, PCLPointField::UINT8);
+  for (const Column& column : table.further) add_fields(cloud, {column.name.c_str()}, PCLPointField::FLOAT64);
   file.write(header_of(cloud));
 
   std::string row;
@@ -81,6 +82,7 @@ void write_pcd(AtomicFile& file, const Table& table) {
     }
     for (double value : values_of(table, i)) append(row, value);
     append(row, static_cast<std::uint8_t>(table.status[i]));
+    for (const Column& column : table.further) append(row, value_of(table, column, i));
     file.write(row);
   }
 }

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <limits>
 #include <string>
@@ -64,6 +65,12 @@ void check(const Table& table) {
   check_length("distance", table.distance.size(), n);
   check_length("angle", table.angle.size(), n);
   check_length("status", table.status.size(), n);
+  for (const Column& column : table.further) {
+    check_length(column.name.c_str(), column.values.size(), n);
+    const auto plain = [](unsigned char c) { return c < 128 && (std::isalnum(c) != 0 || c == '_'); };
+    if (column.name.empty() || !std::ranges::all_of(column.name, plain))
+      throw InvalidArgument("table: a column cannot have the name '" + column.name + "'; use letters, digits and _");
+  }
   check_faces(table);
 }
 
@@ -75,6 +82,10 @@ std::array<double, 4> values_of(const Table& table, std::size_t vertex) {
   }
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   return {nan, nan, nan, nan};
+}
+
+double value_of(const Table& table, const Column& column, std::size_t vertex) {
+  return table.status[vertex] == Status::ok ? column.values[vertex] : std::numeric_limits<double>::quiet_NaN();
 }
 
 void write(const std::filesystem::path& path, const Table& table) {

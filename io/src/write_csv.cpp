@@ -21,14 +21,16 @@ void append(std::string& row, double value) {
 }  // namespace
 
 void write_csv(AtomicFile& file, const Table& table) {
-  file.write("index,x,y,z,u,v,distance,angle,status\n");
-  std::string row;
+  std::string row = "index,x,y,z,u,v,distance,angle,status";
+  for (const Column& column : table.further) row += "," + column.name;
+  file.write(row + "\n");
   for (std::size_t i = 0; i < table.points.size(); ++i) {
     row = std::to_string(i);
     for (double coordinate : table.points[i]) append(row, coordinate);
     for (double value : values_of(table, i)) append(row, value);
     row += ',';
     row += to_string(table.status[i]);
+    for (const Column& column : table.further) append(row, value_of(table, column, i));
     row += '\n';
     file.write(row);
   }

@@ -27,6 +27,7 @@ std::string header_of(const Table& table, std::size_t faces, bool many_corners) 
   if (!table.normals.empty()) header += "property double nx\nproperty double ny\nproperty double nz\n";
   for (const char* name : {"u", "v", "distance", "angle"}) header += std::string("property double ") + name + "\n";
   header += "property uchar status\n";
+  for (const Column& column : table.further) header += "property double " + column.name + "\n";
   if (faces > 0) {
     header += "element face " + std::to_string(faces) + "\n";
     header += std::string("property list ") + (many_corners ? "int" : "uchar") + " int vertex_indices\n";
@@ -52,6 +53,7 @@ void write_ply(AtomicFile& file, const Table& table) {
     }
     for (double value : values_of(table, i)) append(row, value);
     append(row, static_cast<std::uint8_t>(table.status[i]));
+    for (const Column& column : table.further) append(row, value_of(table, column, i));
     file.write(row);
   }
   for (std::size_t f = 0; f < faces; ++f) {

@@ -20,5 +20,7 @@ bool is_stream(const std::filesystem::path& path);
 
 /// u, v, distance and angle of a vertex, NaN where its status is not ok.
 std::array<double, 4> values_of(const Table& table, std::size_t vertex);
+/// The same for a further column.
+double value_of(const Table& table, const Column& column, std::size_t vertex);
 
 }  // namespace ahm::io

@@ -88,8 +88,9 @@ void ConjugateGradient::solve(std::span<double> x) const {
     const double energy = dot(p, q);
     if (!(energy > 0) || iteration == most_iterations)
       throw NotPositiveDefinite(std::string("operator ") + name_ +
-                                (energy > 0 ? ": conjugate gradients do not converge; t_coef is too large for this graph"
-                                            : " is not positive definite: too many negative weights"));
+                                (energy > 0
+                                     ? ": conjugate gradients do not converge; t_coef is too large for this graph"
+                                     : " is not positive definite: too many negative weights"));
     const double step = rr / energy;
     for (std::size_t i = 0; i < n; ++i) {
       x[i] += step * p[i];

@@ -15,8 +15,8 @@
 #include "ahm/validate.hpp"
 #include "assemble.hpp"
 #include "blas_control.hpp"
+#include "check_options.hpp"
 #include "cholesky.hpp"
-#include "choose_strategy.hpp"
 #include "conjugate_gradient.hpp"
 
 namespace ahm {

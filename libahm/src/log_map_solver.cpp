@@ -9,12 +9,13 @@
 
 #include "affine_heat.hpp"
 #include "ahm/components.hpp"
+#include "ahm/cost.hpp"
 #include "ahm/detail/memory.hpp"
 #include "ahm/detail/parallel.hpp"
 #include "ahm/detail/text.hpp"
 #include "ahm/error.hpp"
 #include "ahm/validate.hpp"
-#include "choose_strategy.hpp"
+#include "check_options.hpp"
 #include "extrapolate.hpp"
 #include "march.hpp"
 #include "small_math.hpp"
@@ -97,7 +98,7 @@ LogMapSolver::Impl::Impl(const TangentGraph& graph, const OperatorOptions& opera
     : graph(graph),
       options(options),
       t_coef(operator_options.t_coef),
-      strategy(choose_strategy(graph, options)),
+      strategy(choose_strategy({graph.size(), graph.dimension(), graph.transport_kind()}, options)),
       factors(diffusion_times(options.order, graph)),
       times(factors.size()) {
   if (strategy == Strategy::march) check_operator_options(graph, operator_options);

@@ -51,7 +51,8 @@ TEST(March, AgreesWithTheGlobalSolve) {
     const LogMapSolver whole(graph, {}, global), march(graph, {}, marching);
     for (const Source& source : {Source::at_vertex(5), blended(graph)})
       for (Variant variant : variants) {
-        const LogMap expected = whole.solve(source, {.variant = variant}), map = march.solve(source, {.variant = variant});
+        const LogMap expected = whole.solve(source, {.variant = variant}),
+                     map = march.solve(source, {.variant = variant});
         EXPECT_EQ(map.strategy(), Strategy::march);
         EXPECT_LT(difference(expected, map), 1e-9) << to_string(variant) << ", " << map.march().bands << " bands";
       }
@@ -168,7 +169,8 @@ TEST(March, CanBeStopped) {
   const CsrGraph graph(sphere_graph(5000));
   std::stop_source stop;
   stop.request_stop();
-  EXPECT_THROW(LogMapSolver(graph, {}, marching).solve(Source::at_vertex(0), {.progress = {{}, stop.get_token()}}), Cancelled);
+  EXPECT_THROW(LogMapSolver(graph, {}, marching).solve(Source::at_vertex(0), {.progress = {{}, stop.get_token()}}),
+               Cancelled);
 }
 
 TEST(March, StillGivesTheOperatorsOfTheWholeGraph) {

@@ -45,7 +45,8 @@ TEST(MapFrames, AreKeptOnlyWhereAskedFor) {
 }
 
 TEST(MapQuality, IsOneOnFlatGeometry) {
-  for (const FlatGraph& flat : {planar_triangulation(40), lattice3(9), planar_triangulation(20, TransportKind::block, true)}) {
+  for (const FlatGraph& flat :
+       {planar_triangulation(40), lattice3(9), planar_triangulation(20, TransportKind::block, true)}) {
     const CsrGraph graph(flat.data);
     const LogMap map = LogMapSolver(graph).solve(Source::at_vertex(33), {.frames = true});
     for (double q : map_quality(graph, map)) ASSERT_NEAR(q, 1.0, 1e-12);

@@ -12,7 +12,8 @@
 namespace ahm::test {
 namespace {
 
-constexpr SolverOptions global{.strategy = Strategy::global, .order = 2}, marching{.strategy = Strategy::march, .order = 2};
+constexpr SolverOptions global{.strategy = Strategy::global, .order = 2},
+    marching{.strategy = Strategy::march, .order = 2};
 
 /// Largest difference of coordinates; the statuses must agree.
 double difference(const LogMap& a, const LogMap& b) {
@@ -70,8 +71,8 @@ TEST(SecondOrder, ExtrapolatesTwoMapsOfTheFirst) {
   const double h = graph.mean_edge_length(), step = (std::sqrt(2.0) - 1) * h;
   Index smooth = 0, kept = 0;
   for (Index i = 0; i < map.size(); ++i) {
-    const double change = std::hypot(two.coordinates(i)[0] - one.coordinates(i)[0],
-                                     two.coordinates(i)[1] - one.coordinates(i)[1]) / step;
+    const double change =
+        std::hypot(two.coordinates(i)[0] - one.coordinates(i)[0], two.coordinates(i)[1] - one.coordinates(i)[1]) / step;
     for (int a = 0; a < 2; ++a) {
       const double p = one.coordinates(i)[a], q = two.coordinates(i)[a];
       if (change <= 3) {

@@ -59,6 +59,33 @@ TEST_F(Write, CsvHoldsEveryVertexWithEveryBit) {
   EXPECT_EQ(read(path("a.csv")).points, result.points);
 }
 
+TEST_F(Write, FurtherColumnsComeLast) {
+  const Result result;
+  Table table = result.table();
+  const std::vector<double> quality{0.25, 0.5, 0.75, 1};
+  table.further = {{"quality", quality}};
+  write(path("a.csv"), table);
+  const auto rows = rows_of(contents(path("a.csv")));
+  EXPECT_EQ(rows[0].back(), "quality");
+  EXPECT_EQ(number(rows[1].back()), 0.25);
+  EXPECT_EQ(rows[4].back(), "nan");  // not ok
+  write(path("a.ply"), table);
+  EXPECT_NE(contents(path("a.ply")).find("property uchar status\nproperty double quality\n"), std::string::npos);
+  EXPECT_EQ(read(path("a.ply")).points, result.points);
+}
+
+TEST_F(Write, RefusesColumnsThatDoNotFit) {
+  const Result result;
+  Table table = result.table();
+  const std::vector<double> numbers{1, 2, 3, 4};
+  table.further = {{"short", std::span(numbers).first(3)}};
+  EXPECT_THROW(write(path("a.csv"), table), InvalidArgument);
+  for (const char* name : {"", "two words", "comma,", "line\n"}) {
+    table.further = {{name, numbers}};
+    EXPECT_THROW(write(path("a.csv"), table), InvalidArgument) << name;
+  }
+}
+
 TEST_F(Write, CsvSpellsEveryNanAlike) {
   Result result;
   result.points[2] = {-Result::nan, Result::nan, std::copysign(Result::nan, -1.0)};

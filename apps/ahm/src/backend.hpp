@@ -27,10 +27,9 @@ struct ResolvedSource {
   std::optional<Frame> frame;  ///< u axis, v axis and normal in space
 };
 
-/// A log map on the input: one row per input vertex, in input order. NaN where the status is not ok.
-struct MapRows {
-  std::vector<double> u, v, distance, angle;
-  std::vector<Status> status;
+/// A vertex of the graph that stands for a row of the input. A row may have several (where a mesh was cut) or none.
+struct RowVertex {
+  Index row, vertex;
 };
 
 /// The input as a tangent graph, and the way from the user's terms to the graph's and back.
@@ -41,7 +40,7 @@ class Model {
   virtual const TangentGraph& graph() const = 0;
   /// @throws InvalidArgument, in the user's terms: row numbers are those of the input
   virtual ResolvedSource source(const SourceSpec& spec, const std::optional<Vec3>& u_axis) const = 0;
-  virtual MapRows rows(const LogMap& map) const = 0;
+  virtual std::vector<RowVertex> row_vertices() const = 0;
   /// Unit normal per input row, NaN where there is none.
   virtual std::vector<Vec3> normals() const = 0;
   /// What was found and done on the way, under the backend's own keys.

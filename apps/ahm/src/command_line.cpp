@@ -30,8 +30,10 @@ constexpr const char* logmap_footer =
     "  face:7:.2,.3,.5  a point in face 7, by barycentric coordinates (meshes)\n"
     "\n"
     "INPUT   .ply .pcd .xyz .txt .csv .off .obj .stl\n"
-    "OUTPUT  .csv (index,x,y,z,u,v,distance,angle,status), .ply, .pcd; one row per vertex of INPUT, in its order.\n"
-    "        u, v, distance and angle are nan where status is not ok:\n"
+    "OUTPUT  .csv, .ply or .pcd; one row per vertex of INPUT, in its order:\n"
+    "          index,x,y,z,u,v,distance,angle,status,quality, with --order 2 also error_estimate\n"
+    "        quality is in (0, 1]; below 0.5 the vertex lies at a cut locus or in a fold.\n"
+    "        The numbers are nan where status is not ok:\n"
     "          component  not connected to the source      radius   beyond --radius\n"
     "          unreached  too far for double precision     removed  dropped, replaced, or in no face\n"
     "\n"
@@ -109,6 +111,20 @@ void add_method_options(CLI::App& app, LogmapOptions& o) {
       },
       "NAME", "Of the factorization: amd (default) or nested-dissection")
       ->group(group);
+  add_parsed(
+      app, "--strategy", o.strategy,
+      [](const std::string& text) {
+        const std::string name = choice({"auto", "global", "march"})(text);
+        return name == "auto" ? Strategy::automatic : name == "global" ? Strategy::global : Strategy::march;
+      },
+      "NAME", "auto (default), global: one factorization, or march: band by band, any size and distance")
+      ->group(group);
+  add_parsed(app, "--order", o.order, integer_parser(1, 2), "N",
+             "1 (default), or 2: extrapolate from several diffusion times, with an estimate of the error")
+      ->group(group);
+  add_parsed(app, "--accuracy", o.accuracy, parse_positive, "A",
+             "Of a march, against a global solve, relative (default 1e-9)")
+      ->group(group);
   add_parsed(app, "--threads", o.threads, integer_parser(0, 4096), "N", "0 (default): one per core")->group(group);
 }
 
@@ -150,7 +166,11 @@ CLI::App& add_logmap(CLI::App& app, LogmapOptions& o) {
   CLI::App& logmap = *app.add_subcommand("logmap", "Logarithmic map of a surface from one source");
   add_input(logmap, o.input);
   add_parsed(logmap, "-s,--source", o.source, parse_source, "SPEC", "Where the map starts, see below")->required();
-  add_parsed(logmap, "-o,--output", o.output, non_empty, "OUTPUT", "File to write, see below")->required();
+  auto* output = add_parsed(logmap, "-o,--output", o.output, non_empty, "OUTPUT", "File to write, see below");
+  auto* estimate = logmap.add_flag("--estimate", o.estimate, "Tell what time and memory the run would take, and end");
+  logmap.callback([output, estimate] {
+    if (output->count() == 0 && estimate->count() == 0) throw CLI::RequiredError("--output");
+  });
   add_method_options(logmap, o);
   add_cloud_options(logmap, o);
   add_mesh_options(logmap, o);

@@ -9,6 +9,9 @@ namespace ahm::app {
 /// `ahm logmap`. @throws ahm::Error and its kin; the caller reports them
 void run_logmap(const LogmapOptions& options);
 
+/// `ahm logmap --estimate`: time and memory of the run by either strategy. @throws as `run_logmap`
+void run_estimate(const LogmapOptions& options);
+
 /// `ahm info`. @throws as `run_logmap`
 void run_info(const InfoOptions& options);
 

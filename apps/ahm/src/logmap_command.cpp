@@ -13,6 +13,7 @@
 #include "backend.hpp"
 #include "commands.hpp"
 #include "console.hpp"
+#include "map_rows.hpp"
 #include "output_paths.hpp"
 #include "progress_display.hpp"
 #include "run_report.hpp"
@@ -39,6 +40,12 @@ class Journal {
     display_.clear();
     const auto& [stage, seconds] = times_.seconds()[reported_++];
     say(fmt::format("ahm: {:<8}{:8.3f} s   peak memory {}\n", stage, seconds, bytes_as_text(peak_rss_bytes())));
+  }
+
+  /// A line of --verbose.
+  void tell(const std::string& text) {
+    finish();
+    if (verbose_) say(fmt::format("ahm: {}\n", text));
   }
 
   void add_warning(const std::string& text) {
@@ -98,8 +105,8 @@ void comment_on_statuses(const MapRows& rows, const std::string& input, Journal&
                     100.0 * static_cast<double>(apart) / total, input));
   if (const auto unreached = count(Status::unreached); unreached > 0)
     journal.add_warning(
-        fmt::format("{} vertices are too far from the source for double precision; a larger --t-coef or --voxel "
-                    "reaches farther",
+        fmt::format("no heat reaches {} vertices: with --strategy global they are too far away (the "
+                    "march has no such limit), else the weights around them are too bad",
                     unreached));
 }
 
@@ -157,6 +164,8 @@ void write_results(const LogmapOptions& options, const io::Geometry& input, cons
   table.distance = rows.distance;
   table.angle = rows.angle;
   table.status = rows.status;
+  table.further.push_back({"quality", rows.quality});
+  if (!rows.error_estimate.empty()) table.further.push_back({"error_estimate", rows.error_estimate});
   table.face_begin = input.face_begin;
   table.face_vertices = input.face_vertices;
   io::write(options.output, table);
@@ -179,7 +188,12 @@ LogMapSolver factor(const LogmapOptions& options, const Model& model, Journal& j
   operator_options.t_coef = options.t_coef;
   operator_options.ordering = options.ordering;
   operator_options.progress = journal.progress();
-  return LogMapSolver(model.graph(), operator_options);
+  SolverOptions solver_options;
+  solver_options.strategy = options.strategy;
+  solver_options.expected_maps = 1;
+  solver_options.order = options.order;
+  solver_options.accuracy = options.accuracy;
+  return LogMapSolver(model.graph(), operator_options, solver_options);
 }
 
 LogMap solve(const LogmapOptions& options, const LogMapSolver& solver, const Source& source, Journal& journal) {
@@ -188,13 +202,17 @@ LogMap solve(const LogmapOptions& options, const LogMapSolver& solver, const Sou
   map_options.variant = options.variant;
   if (options.radius) map_options.radius = *options.radius;
   map_options.threads = options.threads;
+  map_options.frames = true;
   map_options.progress = journal.progress();
-  return solver.solve(source, map_options);
+  LogMap map = solver.solve(source, map_options);
+  journal.tell(strategy_as_text(map));
+  return map;
 }
 
 }  // namespace
 
 void run_logmap(const LogmapOptions& options) {
+  if (options.estimate) return run_estimate(options);
   check_outputs(options.input, {{"--output", options.output}, {"--json", options.json}, {"--view", options.view}});
   io::check_writable(options.output);
   check_view(options.view);
@@ -211,7 +229,7 @@ void run_logmap(const LogmapOptions& options) {
 
   const LogMapSolver solver = factor(options, *model, journal);
   const LogMap map = solve(options, solver, source.source, journal);
-  const MapRows rows = model->rows(map);
+  const MapRows rows = rows_of(map, *model, input.points.size());
   comment_on_statuses(rows, options.input, journal);
   Written written;
   write_results(options, input, *model, source, rows, written, journal);

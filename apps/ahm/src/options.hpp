@@ -6,7 +6,7 @@
 #include <string>
 
 #include "ahm/heat_operators.hpp"
-#include "ahm/log_map.hpp"
+#include "ahm/log_map_solver.hpp"
 #include "source_spec.hpp"
 
 namespace ahm::app {
@@ -14,7 +14,7 @@ namespace ahm::app {
 /// `ahm logmap`
 struct LogmapOptions {
   std::string input;
-  std::string output;
+  std::string output;  ///< empty with `estimate` only
   SourceSpec source;
   std::optional<Vec3> u_axis;
   Variant variant = Variant::adaptive;
@@ -22,6 +22,10 @@ struct LogmapOptions {
   double t_coef = 1.0;
   std::optional<double> radius;
   Ordering ordering = Ordering::amd;
+  Strategy strategy = Strategy::automatic;
+  int order = 1;
+  double accuracy = SolverOptions{}.accuracy;
+  bool estimate = false;  ///< tell what the run would cost instead of running
 
   std::optional<double> voxel;
   bool outliers = false;

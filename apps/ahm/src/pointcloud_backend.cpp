@@ -84,19 +84,11 @@ class PointcloudModel final : public Model {
     return {turned_source(point, row, *u_axis), row, position, frame};
   }
 
-  MapRows rows(const LogMap& map) const override {
-    const pointcloud::PointMap on_points = cloud_.on_points(map);
-    const double nan = std::numeric_limits<double>::quiet_NaN();
-    const std::vector<double> none(input_points_, nan);
-    MapRows result{none, none, none, none, std::vector<Status>(input_points_, Status::removed)};
-    for (std::size_t p = 0; p < prepared_.input_row.size(); ++p) {
-      const std::size_t row = at(prepared_.input_row[p]);
-      result.u[row] = on_points.u[p];
-      result.v[row] = on_points.v[p];
-      result.distance[row] = on_points.distance[p];
-      result.angle[row] = on_points.angle[p];
-      result.status[row] = on_points.status[p];
-    }
+  std::vector<RowVertex> row_vertices() const override {
+    const auto vertices = cloud_.vertex_of_point();
+    std::vector<RowVertex> result;
+    for (std::size_t p = 0; p < vertices.size(); ++p)
+      if (vertices[p] >= 0) result.push_back({prepared_.input_row[p], vertices[p]});
     return result;
   }
 

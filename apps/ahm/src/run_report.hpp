@@ -8,6 +8,7 @@
 
 #include "ahm/log_map_solver.hpp"
 #include "backend.hpp"
+#include "map_rows.hpp"
 #include "options.hpp"
 #include "stage_times.hpp"
 
@@ -32,6 +33,9 @@ nlohmann::ordered_json run_as_json(const Run& run);
 
 /// The summary for people, a few lines.
 std::string run_as_text(const Run& run);
+
+/// What was done instead of or besides a factorization: "march: 18 bands, largest of 23675 vertices".
+std::string strategy_as_text(const LogMap& map);
 
 /// Writes JSON to standard output ("-"), to a file, or not at all (""). Names that are not UTF-8 are made so.
 /// @throws IoError, BrokenPipe

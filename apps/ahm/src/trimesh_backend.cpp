@@ -79,9 +79,11 @@ class TrimeshModel final : public Model {
     throw InvalidArgument(fmt::format("--source {}: {}", to_string(spec), e.what()));
   }
 
-  MapRows rows(const LogMap& map) const override {
-    trimesh::VertexMap on = mesh_.on_vertices(map);
-    return {std::move(on.u), std::move(on.v), std::move(on.distance), std::move(on.angle), std::move(on.status)};
+  std::vector<RowVertex> row_vertices() const override {
+    const auto rows = mesh_.mesh().input_of_vertex();
+    std::vector<RowVertex> result;
+    for (std::size_t v = 0; v < rows.size(); ++v) result.push_back({rows[v], static_cast<Index>(v)});
+    return result;
   }
 
   std::vector<Vec3> normals() const override {

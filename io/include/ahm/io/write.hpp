@@ -12,12 +12,20 @@
 
 #include <filesystem>
 #include <span>
+#include <string>
+#include <vector>
 
 #include "ahm/error.hpp"
 #include "ahm/log_map.hpp"
 #include "ahm/types.hpp"
 
 namespace ahm::io {
+
+/// A further column of numbers.
+struct Column {
+  std::string name;                ///< letters, digits and _
+  std::span<const double> values;  ///< n; where the status is not ok, NaN is written
+};
 
 /// One row per input vertex, in input order. Views only: the data must outlive the call.
 struct Table {
@@ -30,11 +38,12 @@ struct Table {
   std::span<const Status> status;        ///< n; where it is not ok, u, v, distance and angle are written as NaN
   std::span<const Offset> face_begin;    ///< empty or faces + 1
   std::span<const Index> face_vertices;  ///< vertex numbers in [0, n)
+  std::vector<Column> further = {};      ///< come after the status
 };
 
 /// Writes a .csv, .ply or .pcd; the file appears when it is complete, or not at all (`AtomicFile`).
 ///
-/// - CSV: `index,x,y,z,u,v,distance,angle,status`, shortest decimals that read back to the same double, "nan" for NaN,
+/// - CSV: `index,x,y,z,u,v,distance,angle,status` and further columns, shortest decimals that read back to the same double, "nan" for NaN,
 ///   status as a word. Also chosen for a pipe or device without extension, such as /dev/stdout.
 /// - PLY: binary little endian; doubles x y z, nx ny nz when given, u v distance angle, uchar status (codes in the
 /// comments),

@@ -1,0 +1,25 @@
+/// \file
+/// A log map on the rows of the input.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "ahm/log_map.hpp"
+#include "backend.hpp"
+
+namespace ahm::app {
+
+/// One row per input vertex, in input order. NaN where the status is not ok.
+struct MapRows {
+  std::vector<double> u, v, distance, angle;
+  std::vector<double> quality;         ///< `map_quality`
+  std::vector<double> error_estimate;  ///< of --order 2, else empty
+  std::vector<Status> status;          ///< `removed` for rows without a vertex
+};
+
+/// Of several vertices of a row, the one nearest to the source counts.
+/// @param map  with frames, of the model's graph
+MapRows rows_of(const LogMap& map, const Model& model, std::size_t rows);
+
+}  // namespace ahm::app
