@@ -68,6 +68,49 @@ TEST(Options, VerbosePrintsTheStages) {
     EXPECT_NE(outcome.err.find(word), std::string::npos) << outcome.err;
 }
 
+TEST(Options, StrategiesGiveTheSameMap) {
+  Folder folder;
+  const auto input = folder.write("sphere.xyz", xyz(sphere(4000)));
+  const auto global = summary(input, folder, {"--strategy", "global"});
+  const std::vector<Row> expected = read_csv(folder / "map.csv");
+  const auto march = summary(input, folder, {"--strategy", "march"});
+  const std::vector<Row> rows = read_csv(folder / "map.csv");
+  EXPECT_EQ(global.at("strategy"), "global");
+  EXPECT_GT(global.at("factor").at("nonzeros_A"), 0);
+  EXPECT_EQ(march.at("strategy"), "march");
+  EXPECT_GT(march.at("march").at("bands"), 0);
+  EXPECT_FALSE(march.contains("factor"));
+  for (std::size_t i = 0; i < rows.size(); ++i) ASSERT_NEAR(rows[i].distance, expected[i].distance, 1e-8);
+}
+
+TEST(Options, SecondOrderIsMoreAccurateAndSaysHowMuch) {
+  Folder folder;
+  const auto input = folder.write("sphere.xyz", xyz(sphere(4000)));
+  const auto error = [&](const char* order) {
+    const auto json = summary(input, folder, {"--order", order});
+    EXPECT_EQ(json.contains("median_error_estimate"), std::string(order) == "2");
+    double sum = 0;
+    for (const Row& row : read_csv(folder / "map.csv")) {
+      const double exact = std::acos(std::clamp(row.position[2], -1.0, 1.0));
+      if (exact < 2.5) sum += std::abs(row.distance - exact);
+    }
+    return sum;
+  };
+  EXPECT_LT(error("2"), 0.5 * error("1"));
+  EXPECT_EQ(run({"logmap", input, "-s", "0", "-o", folder / "map.csv", "--order", "3"}).status, 2);
+}
+
+TEST(Options, EstimateRunsNothing) {
+  Folder folder;
+  const auto input = folder.write("sphere.xyz", xyz(sphere(500)));
+  const auto outcome = run({"logmap", input, "--estimate"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  for (const char* word : {"global", "march", "chosen", "machine"})
+    EXPECT_NE(outcome.out.find(word), std::string::npos) << outcome.out;
+  EXPECT_EQ(folder.files(), std::vector<std::string>{"sphere.xyz"});
+  EXPECT_EQ(run({"logmap", input}).status, 2);
+}
+
 TEST(ProgressBar, ShowsOnATerminalAndIsGoneAtTheEnd) {
   if (!has_terminals()) GTEST_SKIP() << "this system gives out no pseudo-terminals";
   Folder folder;

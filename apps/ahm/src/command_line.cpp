@@ -165,11 +165,13 @@ void add_report_options(CLI::App& app, LogmapOptions& o) {
 CLI::App& add_logmap(CLI::App& app, LogmapOptions& o) {
   CLI::App& logmap = *app.add_subcommand("logmap", "Logarithmic map of a surface from one source");
   add_input(logmap, o.input);
-  add_parsed(logmap, "-s,--source", o.source, parse_source, "SPEC", "Where the map starts, see below")->required();
+  auto* source = add_parsed(logmap, "-s,--source", o.source, parse_source, "SPEC", "Where the map starts, see below");
   auto* output = add_parsed(logmap, "-o,--output", o.output, non_empty, "OUTPUT", "File to write, see below");
   auto* estimate = logmap.add_flag("--estimate", o.estimate, "Tell what time and memory the run would take, and end");
-  logmap.callback([output, estimate] {
-    if (output->count() == 0 && estimate->count() == 0) throw CLI::RequiredError("--output");
+  logmap.callback([=] {
+    if (estimate->count() > 0) return;
+    if (source->count() == 0) throw CLI::RequiredError("--source");
+    if (output->count() == 0) throw CLI::RequiredError("--output");
   });
   add_method_options(logmap, o);
   add_cloud_options(logmap, o);
