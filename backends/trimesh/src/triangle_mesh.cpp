@@ -2,58 +2,20 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 
+#include "ahm/detail/gluing.hpp"
 #include "ahm/detail/text.hpp"
 #include "ahm/error.hpp"
 #include "face_layout.hpp"
-#include "gluing.hpp"
 #include "half_edges.hpp"
 #include "vec.hpp"
 
 namespace ahm::trimesh {
 namespace {
 
-/// Sets of vertices joined step by step.
-class Sets {
- public:
-  explicit Sets(std::size_t n) : parent_(n) {
-    for (std::size_t i = 0; i < n; ++i) parent_[i] = static_cast<Index>(i);
-  }
-  Index root(Index v) {
-    while (parent_[v] != v) v = parent_[v] = parent_[parent_[v]];
-    return v;
-  }
-  void join(Index a, Index b) {
-    a = root(a), b = root(b);
-    if (a != b) parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<Index> parent_;
-};
-
-/// Multiplies by the power of two that brings the largest coordinate into [1, 2); returns its exponent.
-int normalize_scale(std::vector<Vec3>& points) {
-  double largest = 0;
-  for (const Vec3& p : points)
-    for (double x : p) largest = std::max(largest, std::abs(x));
-  const int exponent = largest > 0 ? std::ilogb(largest) : 0;
-  for (Vec3& p : points)
-    for (double& x : p) x = std::scalbn(x, -exponent);
-  return exponent;
-}
-
-/// Moves the middle of the bounding box to the origin.
-void center(std::vector<Vec3>& points) {
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto [low, high] = std::minmax_element(points.begin(), points.end(),
-                                                 [axis](const Vec3& a, const Vec3& b) { return a[axis] < b[axis]; });
-    const double middle = 0.5 * ((*low)[axis] + (*high)[axis]);
-    for (Vec3& p : points) p[axis] -= middle;
-  }
-}
+using detail::DisjointSets;
+using detail::ItemList;
 
 void check_lengths(std::span<const Triangle> faces, std::span<const std::array<double, 3>> lengths) {
   if (lengths.size() != faces.size())
@@ -113,7 +75,11 @@ TriangleMesh::TriangleMesh(Index vertices, std::span<const Triangle> faces, NonM
 /// Half-edges of the oriented faces, tails still input vertices. Turning (a, b, c) over to (a, c, b) takes side s to
 /// side 2 - s.
 void TriangleMesh::build_half_edges(Index vertices, std::span<const Triangle> faces, NonManifold non_manifold) {
-  Gluing gluing = glue(vertices, faces, non_manifold, report_);
+  std::vector<Offset> begin(faces.size() + 1);
+  for (std::size_t f = 0; f < begin.size(); ++f) begin[f] = static_cast<Offset>(3 * f);
+  const std::span corners(faces.empty() ? nullptr : faces.front().data(), 3 * faces.size());
+  detail::Gluing gluing = detail::glue(vertices, {begin, corners}, non_manifold);
+  report_.non_manifold_edges = gluing.non_manifold_edges;
   report_.reoriented = gluing.reoriented;
   report_.orientable = gluing.orientable;
   reversed_ = std::move(gluing.reversed);
@@ -159,7 +125,7 @@ void TriangleMesh::number_vertices(NonManifold non_manifold) {
 }
 
 void TriangleMesh::count_parts() {
-  Sets parts(input_of_vertex_.size()), loops(input_of_vertex_.size());
+  DisjointSets parts(input_of_vertex_.size()), loops(input_of_vertex_.size());
   std::vector<std::uint8_t> on_boundary(input_of_vertex_.size(), 0);
   for (Half h = 0; h < static_cast<Half>(tail_.size()); ++h) {
     const Index a = tail_[h], b = tail_[next(h)];
@@ -176,21 +142,11 @@ void TriangleMesh::count_parts() {
 
 TriangleMesh TriangleMesh::from_positions(std::span<const Vec3> positions, std::span<const Triangle> faces,
                                           NonManifold non_manifold) {
-  if (positions.size() > static_cast<std::size_t>(std::numeric_limits<Index>::max() / 2))
-    throw InvalidGeometry("the mesh has " + std::to_string(positions.size()) + " vertices; at most 2^30 are supported");
-  for (std::size_t v = 0; v < positions.size(); ++v)
-    for (double x : positions[v])
-      if (!std::isfinite(x))
-        throw InvalidGeometry("vertex " + std::to_string(v) + " is (" + detail::number(positions[v][0]) + ", " +
-                              detail::number(positions[v][1]) + ", " + detail::number(positions[v][2]) +
-                              "): coordinates must be finite");
+  detail::check_positions(positions);
   TriangleMesh mesh(static_cast<Index>(positions.size()), faces, non_manifold);
   for (Index v : mesh.input_of_vertex_) mesh.original_.push_back(positions[v]);
   mesh.position_ = mesh.original_;
-  int exponent = normalize_scale(mesh.position_);
-  center(mesh.position_);
-  exponent += normalize_scale(mesh.position_);
-  mesh.length_unit_ = std::scalbn(1.0, exponent);
+  mesh.length_unit_ = detail::normalize_positions(mesh.position_);
   return mesh;
 }
 

@@ -13,6 +13,7 @@
 #include <span>
 #include <vector>
 
+#include "ahm/mesh_topology.hpp"
 #include "ahm/types.hpp"
 
 namespace ahm::trimesh {
@@ -23,27 +24,8 @@ using Triangle = std::array<Index, 3>;
 /// A half-edge of a mesh: 3 f + s is side s of face f, from its corner s to its corner s + 1 (mod 3).
 using Half = std::int32_t;
 
-/// What to do with edges of more than two faces and with vertices whose faces form several fans.
-enum class NonManifold {
-  error,  ///< throw, naming them
-  /// Cut: all faces at such an edge become boundary faces there, and every fan of faces gets its own copy of the
-  /// vertex. Heat and geodesics do not cross a cut; sheets that hang together nowhere else become separate components.
-  split,
-};
-
-/// What the checks found. Counts are of input vertices, edges or faces as named.
-struct TopologyReport {
-  Index vertices = 0;      ///< input vertices
-  Index faces = 0;         ///< input faces
-  Index unreferenced = 0;  ///< vertices that no face uses; they are no vertices of the graph
-  Index reoriented = 0;    ///< faces turned over to agree with the majority of their component
-  bool orientable = true;  ///< false: e.g. a Moebius band
-  Index components = 0;    ///< connected components (of vertices, after splitting)
-  Index boundary_edges = 0;
-  Index boundary_loops = 0;
-  Index non_manifold_edges = 0;     ///< cut (NonManifold::split)
-  Index non_manifold_vertices = 0;  ///< split into several (NonManifold::split)
-};
+using ahm::NonManifold;
+using ahm::TopologyReport;
 
 /// An immutable triangle mesh in flat half-edge arrays, consistently oriented where that is possible.
 ///

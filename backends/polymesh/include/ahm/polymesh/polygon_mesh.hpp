@@ -1,0 +1,106 @@
+/// \file
+/// A checked polygon mesh: faces of any number of corners, planar or not.
+///
+/// \code
+/// std::vector<ahm::Offset> begin{0, 4, 9};                        // a quad and a pentagon that share a side
+/// std::vector<ahm::Index> corners{0, 1, 2, 3, 2, 1, 4, 5, 6};
+/// auto mesh = ahm::polymesh::PolygonMesh::from_faces(positions, begin, corners);
+/// ahm::polymesh::Refinement triangles = mesh.refined();           // for backends that take triangles
+/// \endcode
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "ahm/mesh_topology.hpp"
+#include "ahm/types.hpp"
+
+namespace ahm::polymesh {
+
+/// A polygon mesh cut into triangles: every face of more than three corners gets a virtual vertex, the point that
+/// minimises the sum of the squared areas of the triangles around it (BHKB20, Sec. 4).
+struct Refinement {
+  std::vector<Vec3> positions;                  ///< of the mesh's vertices, then of the virtual ones
+  std::vector<std::array<Index, 3>> triangles;  ///< (corner, next corner, virtual vertex), or the face itself
+  std::vector<Offset> face_begin;               ///< faces + 1: the triangles of each face
+};
+
+/// An immutable polygon mesh, consistently oriented where that is possible.
+///
+/// Faces keep their number; one that was turned over has its corners in the opposite order, the first staying first.
+/// Vertices are numbered anew without the unreferenced ones, in the order of the input; copies made by splitting come
+/// last.
+class PolygonMesh {
+ public:
+  /// @param face_begin     faces + 1 offsets into `face_vertices`, rising from 0
+  /// @param face_vertices  vertex numbers, face after face
+  /// @throws InvalidGeometry (no faces, index out of range, fewer than three corners, vertex repeated in a face,
+  ///         duplicate face, coordinate not finite, non-manifold edge or vertex), naming the first ten and the count
+  static PolygonMesh from_faces(std::span<const Vec3> positions, std::span<const Offset> face_begin,
+                                std::span<const Index> face_vertices, NonManifold non_manifold = NonManifold::error);
+
+  Index vertex_count() const noexcept { return static_cast<Index>(input_of_vertex_.size()); }
+  Index face_count() const noexcept { return static_cast<Index>(face_begin_.size()) - 1; }
+  const TopologyReport& report() const noexcept { return report_; }
+
+  std::span<const Offset> face_begin() const noexcept { return face_begin_; }
+  /// Vertices of all corners, oriented.
+  std::span<const Index> corners() const noexcept { return corner_; }
+  std::span<const Index> face(Index f) const {
+    const auto first = static_cast<std::size_t>(face_begin_[static_cast<std::size_t>(f)]);
+    return std::span(corner_).subspan(first,
+                                      static_cast<std::size_t>(face_begin_[static_cast<std::size_t>(f) + 1]) - first);
+  }
+  /// Faces at a vertex: numbers of its corners, the first oriented like the vertex.
+  std::span<const Offset> corners_at(Index vertex) const {
+    const auto first = static_cast<std::size_t>(at_begin_[static_cast<std::size_t>(vertex)]);
+    return std::span(at_).subspan(first,
+                                  static_cast<std::size_t>(at_begin_[static_cast<std::size_t>(vertex) + 1]) - first);
+  }
+  /// Face of a corner.
+  Index face_of(Offset corner) const { return face_of_[static_cast<std::size_t>(corner)]; }
+  /// Whether the face of a corner is oriented against the vertex there; never on an orientable mesh.
+  bool mirrored(Offset corner) const { return !mirrored_.empty() && mirrored_[static_cast<std::size_t>(corner)] != 0; }
+  /// Whether a face was turned over.
+  bool reversed(Index f) const { return reversed_[static_cast<std::size_t>(f)] != 0; }
+
+  /// First vertex of each input vertex, -1 where no face uses it.
+  std::span<const Index> vertex_of_input() const noexcept { return vertex_of_input_; }
+  /// Input vertex of each vertex.
+  std::span<const Index> input_of_vertex() const noexcept { return input_of_vertex_; }
+
+  /// Position of a vertex in units of `length_unit()` about the middle of the bounding box.
+  const Vec3& position(Index vertex) const { return position_[static_cast<std::size_t>(vertex)]; }
+  /// Position of a vertex as given.
+  const Vec3& original_position(Index vertex) const { return original_[static_cast<std::size_t>(vertex)]; }
+  /// A power of two near the size of the mesh.
+  double length_unit() const noexcept { return length_unit_; }
+
+  /// The mesh as triangles; its first `vertex_count()` vertices are those of this mesh.
+  Refinement refined() const;
+
+ private:
+  PolygonMesh() = default;
+  struct Sides;
+  void number_vertices(const Sides& sides, NonManifold non_manifold);
+  void collect_corners();
+  void orient_vertices(const Sides& sides);
+  void count_parts(const Sides& sides);
+
+  TopologyReport report_;
+  std::vector<Offset> face_begin_;
+  std::vector<Index> corner_;
+  std::vector<Index> face_of_;
+  std::vector<std::uint8_t> mirrored_;
+  std::vector<std::uint8_t> reversed_;
+  std::vector<Offset> at_begin_, at_;
+  std::vector<Index> vertex_of_input_;
+  std::vector<Index> input_of_vertex_;
+  std::vector<Vec3> position_;
+  std::vector<Vec3> original_;
+  double length_unit_ = 1.0;
+};
+
+}  // namespace ahm::polymesh

@@ -1,0 +1,45 @@
+/// \file
+/// One polygon, refined by its virtual vertex (Bunge, Herholz, Kazhdan, Botsch 2020).
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "ahm/polymesh/polygon_mesh.hpp"
+
+namespace ahm::polymesh {
+
+/// Work space for one polygon after the other. Lengths are in units of the mesh's `length_unit`.
+class Polygon {
+ public:
+  /// Takes the corners of a face and finds its virtual vertex: the point p that minimises sum |(x_c - p) x (x_c+1 - p)|^2,
+  /// as p = sum w_c x_c with sum w_c = 1 and the smallest sum w_c^2.
+  void read(const PolygonMesh& mesh, Index face);
+
+  std::size_t size() const { return corner_.size(); }
+  const Eigen::Vector3d& corner(std::size_t c) const { return corner_[c]; }
+  const Eigen::Vector3d& middle() const { return middle_; }
+  /// w_c
+  std::span<const double> weights() const { return weight_; }
+  /// Vector area: half the sum of the cross products of consecutive corners.
+  Eigen::Vector3d vector_area() const;
+  /// sum w_c x_c of other positions of the corners.
+  Vec3 blend(std::span<const Vec3> positions, std::span<const Index> corners) const;
+
+  /// Stiffness of the triangles around p restricted to functions with u(p) = sum w_c u_c (BHKB20 Eq. 11): writes the
+  /// m x m weights -K_cd, row major, 0 on the diagonal.
+  void stiffness(double* weights);
+  /// Lumped mass of the same: row sums. Where the share of p would make one negative, it is left out.
+  void mass(double* masses) const;
+
+ private:
+  void find_middle();
+  void find_weights();
+
+  std::vector<Eigen::Vector3d> corner_;
+  Eigen::Vector3d middle_;
+  std::vector<double> weight_, spoke_;
+};
+
+}  // namespace ahm::polymesh

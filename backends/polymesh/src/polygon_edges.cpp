@@ -1,0 +1,187 @@
+#include "polygon_edges.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "ahm/detail/parallel.hpp"
+#include "ahm/error.hpp"
+#include "polygon.hpp"
+
+namespace ahm::polymesh {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double largest_weight = 1e4;
+
+/// Stiffness and mass of every face, and what is worth telling about them.
+class FaceMatrices {
+ public:
+  FaceMatrices(const PolygonMesh& mesh, const PolygonOptions& options) : mesh_(mesh), begin_(1, 0) {
+    for (Index f = 0; f < mesh.face_count(); ++f) {
+      const auto m = static_cast<Offset>(mesh.face(f).size());
+      begin_.push_back(begin_.back() + m * m);
+    }
+    weights_.resize(static_cast<std::size_t>(begin_.back()));
+    masses_.resize(mesh.corners().size());
+    shape_.resize(static_cast<std::size_t>(mesh.face_count()));
+    detail::parallel_chunks(mesh.face_count(), 4096, options.threads, [&](Offset first, Offset last) {
+      Polygon polygon;
+      for (Offset f = first; f < last; ++f) fill(polygon, static_cast<Index>(f));
+    });
+  }
+
+  /// -K_cd for the corner number `corner` and place d of its face.
+  double weight(Offset corner, std::size_t d) const {
+    const Index f = mesh_.face_of(corner);
+    const Offset c = corner - mesh_.face_begin()[f], m = mesh_.face_begin()[f + 1] - mesh_.face_begin()[f];
+    return weights_[static_cast<std::size_t>(begin_[f] + c * m) + d];
+  }
+  double mass(Offset corner) const { return masses_[static_cast<std::size_t>(corner)]; }
+
+  void summarize(bool clamp, PolygonReport& report) const {
+    for (Index f = 0; f < mesh_.face_count(); ++f) {
+      const auto m = static_cast<Index>(mesh_.face(f).size());
+      report.triangles += m == 3;
+      report.largest_face = std::max(report.largest_face, m);
+      report.nonplanar_faces += shape_[f] == Shape::nonplanar;
+      report.degenerate_faces += shape_[f] == Shape::degenerate;
+      for (Index c = 0; c < m; ++c)
+        for (Index d = c + 1; d < m; ++d) {
+          const double w = weights_[static_cast<std::size_t>(begin_[f] + Offset{c} * m + d)];
+          report.negative_weights += w < -1e-12;
+          report.capped_weights += clamp && w > largest_weight;
+        }
+      report.edges += Offset{m} * (m - 1) / 2;
+    }
+  }
+
+ private:
+  enum class Shape : std::uint8_t { plain, nonplanar, degenerate };
+
+  void fill(Polygon& polygon, Index f) {
+    polygon.read(mesh_, f);
+    polygon.stiffness(weights_.data() + begin_[f]);
+    polygon.mass(masses_.data() + mesh_.face_begin()[f]);
+    double area = 0, perimeter = 0;
+    const std::size_t m = polygon.size();
+    for (std::size_t c = 0; c < m; ++c) {
+      area += masses_[static_cast<std::size_t>(mesh_.face_begin()[f]) + c];
+      perimeter += (polygon.corner((c + 1) % m) - polygon.corner(c)).norm();
+    }
+    if (area < 1e-10 * perimeter * perimeter)
+      shape_[f] = Shape::degenerate;
+    else if (polygon.vector_area().norm() < 0.99 * area)
+      shape_[f] = Shape::nonplanar;
+  }
+
+  const PolygonMesh& mesh_;
+  std::vector<Offset> begin_;  ///< of the m x m weights of each face
+  std::vector<double> weights_, masses_;
+  std::vector<Shape> shape_;
+};
+
+/// The mean length of the sides, each edge of the mesh once, and the extremes.
+double measure_sides(const PolygonMesh& mesh, PolygonReport& report) {
+  double sum = 0, shortest = std::numeric_limits<double>::infinity(), longest = 0;
+  for (Index f = 0; f < mesh.face_count(); ++f) {
+    const auto corners = mesh.face(f);
+    for (std::size_t c = 0; c < corners.size(); ++c) {
+      const Vector3d a(mesh.position(corners[c]).data()), b(mesh.position(corners[(c + 1) % corners.size()]).data());
+      const double length = (b - a).norm();
+      sum += length;
+      shortest = std::min(shortest, length);
+      longest = std::max(longest, length);
+    }
+  }
+  report.shortest_edge = shortest * mesh.length_unit();
+  report.longest_edge = longest * mesh.length_unit();
+  if (!(longest > 0)) throw InvalidGeometry("all vertices of the mesh are at the same place");
+  return sum / static_cast<double>(mesh.corners().size());
+}
+
+/// The chord in a tangent plane, at its own length as far as it leans to that plane at all.
+std::complex<double> log_of_chord(const Axes& axes, const Vector3d& chord) {
+  const std::complex<double> projected = axes.components(chord);
+  const double length = chord.norm(), seen = std::abs(projected);
+  return seen > 0.1 * length ? length / seen * projected : 10.0 * projected;
+}
+
+/// R_ji as stored, for corners i and j of one face.
+void write_transport(std::complex<double> turn_i, bool mirrored_i, std::complex<double> turn_j, bool mirrored_j,
+                     TransportKind kind, double* out) {
+  const bool reflects = mirrored_i != mirrored_j;
+  const std::complex<double> R = std::conj(turn_i) * (reflects ? std::conj(turn_j) : turn_j);
+  if (kind == TransportKind::rotation2) {
+    out[0] = R.real();
+    out[1] = R.imag();
+    return;
+  }
+  out[0] = R.real();
+  out[1] = reflects ? R.imag() : -R.imag();
+  out[2] = R.imag();
+  out[3] = reflects ? -R.real() : R.real();
+}
+
+}  // namespace
+
+CsrGraphData polygon_edges(const PolygonMesh& mesh, const Frames& frames, const PolygonOptions& options,
+                           PolygonReport& report) {
+  const auto n = static_cast<std::size_t>(mesh.vertex_count());
+  CsrGraphData g;
+  g.kind = mesh.report().orientable ? TransportKind::rotation2 : TransportKind::block;
+  g.length_unit = mesh.length_unit();
+  g.mean_edge_length = measure_sides(mesh, report);
+  const FaceMatrices matrices(mesh, options);
+  matrices.summarize(options.clamp_weights, report);
+
+  g.row_begin.assign(n + 1, 0);
+  for (std::size_t v = 0; v < n; ++v) {
+    g.row_begin[v + 1] = g.row_begin[v];
+    for (Offset corner : mesh.corners_at(static_cast<Index>(v)))
+      g.row_begin[v + 1] += static_cast<Offset>(mesh.face(mesh.face_of(corner)).size()) - 1;
+  }
+  const auto edges = static_cast<std::size_t>(g.row_begin.back());
+  const std::size_t width = g.kind == TransportKind::rotation2 ? 2 : 4;
+  g.neighbors.resize(edges);
+  g.weights.resize(edges);
+  g.logs.resize(2 * edges);
+  g.transports.resize(width * edges);
+  g.masses.resize(n);
+  detail::for_each_index(n, options.threads, [&](std::size_t k) {
+    const auto v = static_cast<Index>(k);
+    const Vector3d origin(mesh.position(v).data());
+    auto at = static_cast<std::size_t>(g.row_begin[k]);
+    double mass = 0;
+    for (Offset corner : mesh.corners_at(v)) {
+      const Index f = mesh.face_of(corner);
+      const auto vertices = mesh.face(f);
+      mass += matrices.mass(corner);
+      for (std::size_t d = 0; d < vertices.size(); ++d) {
+        const Offset other = mesh.face_begin()[f] + static_cast<Offset>(d);
+        if (other == corner) continue;
+        const double w = matrices.weight(corner, d);
+        g.neighbors[at] = vertices[d];
+        g.weights[at] = options.clamp_weights ? std::clamp(w, 0.0, largest_weight) : w;
+        const auto log = log_of_chord(frames.vertex[k], Vector3d(mesh.position(vertices[d]).data()) - origin);
+        g.logs[2 * at] = log.real();
+        g.logs[2 * at + 1] = log.imag();
+        write_transport(frames.turn[corner], mesh.mirrored(corner), frames.turn[other], mesh.mirrored(other), g.kind,
+                        g.transports.data() + width * at);
+        ++at;
+      }
+    }
+    g.masses[k] = mass;
+  });
+  // Vertices whose faces have no area still need a mass, small against all others.
+  double total = 0;
+  for (double m : g.masses) total += m;
+  const double least = 1e-9 * (total > 0 ? total / static_cast<double>(n) : *g.mean_edge_length * *g.mean_edge_length);
+  for (double& m : g.masses) m = std::max(m, least);
+  return g;
+}
+
+}  // namespace ahm::polymesh

@@ -1,0 +1,31 @@
+/// \file
+/// What the backends for meshes check, and what they tell about it.
+#pragma once
+
+#include "ahm/types.hpp"
+
+namespace ahm {
+
+/// What to do with edges of more than two faces and with vertices whose faces form several fans.
+enum class NonManifold {
+  error,  ///< throw, naming them
+  /// Cut: all faces at such an edge become boundary faces there, and every fan of faces gets its own copy of the
+  /// vertex. Heat and geodesics do not cross a cut; sheets that hang together nowhere else become separate components.
+  split,
+};
+
+/// What the checks found. Counts are of input vertices, edges or faces as named.
+struct TopologyReport {
+  Index vertices = 0;      ///< input vertices
+  Index faces = 0;         ///< input faces
+  Index unreferenced = 0;  ///< vertices that no face uses; they are no vertices of the graph
+  Index reoriented = 0;    ///< faces turned over to agree with the majority of their component
+  bool orientable = true;  ///< false: e.g. a Moebius band
+  Index components = 0;    ///< connected components (of vertices, after splitting)
+  Index boundary_edges = 0;
+  Index boundary_loops = 0;
+  Index non_manifold_edges = 0;     ///< cut (NonManifold::split)
+  Index non_manifold_vertices = 0;  ///< split into several (NonManifold::split)
+};
+
+}  // namespace ahm
