@@ -64,7 +64,7 @@ TEST_F(Arguments, SourcesMustFitTheInput) {
   expect_refused(with({}, "face:0:1,0,0"), 1, "face:0");
 }
 
-TEST_F(Arguments, BackendsThatAreNotThereAreRefusedByName) {
+TEST_F(Arguments, BackendsForMeshesNeedFaces) {
   for (const std::string backend : {"trimesh", "polymesh"}) expect_refused(with({"--backend", backend}), 1, backend);
 }
 

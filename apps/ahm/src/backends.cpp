@@ -13,12 +13,12 @@ using Build = std::unique_ptr<Model> (*)(const io::Geometry&, const LogmapOption
 
 struct Entry {
   std::string_view name;
-  Build build;  ///< null: not in this build
+  Build build;
 };
 
 constexpr std::array<Entry, 3> backends = {{
     {"trimesh", build_trimesh},
-    {"polymesh", nullptr},
+    {"polymesh", build_polymesh},
     {"pointcloud", build_pointcloud},
 }};
 
@@ -26,18 +26,16 @@ constexpr std::array<Entry, 3> backends = {{
 
 std::string choose_backend(const io::Geometry& input, const std::string& requested) {
   if (requested != "auto") return requested;
-  bool triangles = input.face_count() > 0;
-  for (std::size_t f = 0; f < input.face_count(); ++f) triangles &= input.face(f).size() == 3;
-  return triangles ? "trimesh" : "pointcloud";
+  if (input.face_count() == 0) return "pointcloud";
+  for (std::size_t f = 0; f < input.face_count(); ++f)
+    if (input.face(f).size() != 3) return "polymesh";
+  return "trimesh";
 }
 
 std::unique_ptr<Model> build_model(const std::string& backend, const io::Geometry& input, const LogmapOptions& options,
                                    const Progress& progress) {
   const auto* entry = std::find_if(backends.begin(), backends.end(), [&](const Entry& e) { return e.name == backend; });
-  if (entry == backends.end() || entry->build == nullptr)
-    throw InvalidArgument(fmt::format(
-        "--backend {}: this build of ahm has no such backend; --backend pointcloud maps the vertices as a cloud",
-        backend));
+  if (entry == backends.end()) throw InvalidArgument(fmt::format("--backend {}: there is no such backend", backend));
   return entry->build(input, options, progress);
 }
 

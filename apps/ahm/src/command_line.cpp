@@ -27,7 +27,7 @@ constexpr const char* logmap_footer =
     "SPEC is one of\n"
     "  123              a vertex of INPUT, counted from 0\n"
     "  1.5,0,-2         the vertex nearest to this position\n"
-    "  face:7:.2,.3,.5  a point in face 7, by barycentric coordinates (meshes)\n"
+    "  face:7:.2,.3,.5  a point in face 7, by barycentric coordinates, one per corner (meshes)\n"
     "\n"
     "INPUT   .ply .pcd .xyz .txt .csv .off .obj .stl\n"
     "OUTPUT  .csv, .ply or .pcd; one row per vertex of INPUT, in its order:\n"
@@ -94,7 +94,7 @@ void add_method_options(CLI::App& app, LogmapOptions& o) {
       "NAME", "adaptive (default) or localized")
       ->group(group);
   add_parsed(app, "--backend", o.backend, choice({"auto", "trimesh", "polymesh", "pointcloud"}), "NAME",
-             "auto (default), trimesh, polymesh or pointcloud")
+             "auto (default): by the faces of INPUT; trimesh, polymesh or pointcloud")
       ->group(group);
   add_parsed(app, "--t-coef", o.t_coef, parse_positive, "T",
              "Diffusion time in squared mean edge lengths, > 0 (default 1); larger is smoother")
@@ -154,6 +154,13 @@ void add_mesh_options(CLI::App& app, LogmapOptions& o) {
       ->group(group);
 }
 
+void add_polygon_options(CLI::App& app, LogmapOptions& o) {
+  add_parsed(app, "--discretization", o.discretization, choice({"auto", "polygons", "refined"}), "NAME",
+             "polygons: every face one cell, refined: a virtual vertex in every face and intrinsic\n"
+             "triangles. auto (default): refined, or polygons where a face hides a side from its middle")
+      ->group("Polygon meshes");
+}
+
 void add_report_options(CLI::App& app, LogmapOptions& o) {
   const char* group = "Reports";
   add_parsed(app, "--json", o.json, non_empty, "FILE|-", "Write a summary for programs; -: to standard output")
@@ -176,6 +183,7 @@ CLI::App& add_logmap(CLI::App& app, LogmapOptions& o) {
   add_method_options(logmap, o);
   add_cloud_options(logmap, o);
   add_mesh_options(logmap, o);
+  add_polygon_options(logmap, o);
   add_report_options(logmap, o);
   logmap.footer(logmap_footer);
   return logmap;

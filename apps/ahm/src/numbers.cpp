@@ -48,16 +48,20 @@ std::int64_t parse_integer(std::string_view text, std::int64_t low, std::int64_t
   return value;
 }
 
+std::vector<double> parse_numbers(std::string_view text) {
+  std::vector<double> result;
+  for (std::string_view rest = text;;) {
+    const std::size_t comma = std::min(rest.find(','), rest.size());
+    result.push_back(parse_number(rest.substr(0, comma)));
+    if (comma == rest.size()) return result;
+    rest.remove_prefix(comma + 1);
+  }
+}
+
 Vec3 parse_triple(std::string_view text) {
   if (std::count(text.begin(), text.end(), ',') != 2) refuse(text, "three numbers separated by commas");
-  Vec3 result{};
-  std::string_view rest = text;
-  for (double& x : result) {
-    const std::size_t comma = std::min(rest.find(','), rest.size());
-    x = parse_number(rest.substr(0, comma));
-    rest.remove_prefix(std::min(comma + 1, rest.size()));
-  }
-  return result;
+  const std::vector<double> numbers = parse_numbers(text);
+  return {numbers[0], numbers[1], numbers[2]};
 }
 
 Vec3 parse_direction(std::string_view text) {

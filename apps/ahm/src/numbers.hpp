@@ -6,6 +6,7 @@
 #include <limits>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "ahm/types.hpp"
 
@@ -23,6 +24,10 @@ double parse_positive(std::string_view text);
 /// @throws std::invalid_argument
 std::int64_t parse_integer(std::string_view text, std::int64_t low,
                            std::int64_t high = std::numeric_limits<Index>::max());
+
+/// Finite numbers separated by commas, one at the least.
+/// @throws std::invalid_argument
+std::vector<double> parse_numbers(std::string_view text);
 
 /// Three finite numbers separated by commas.
 /// @throws std::invalid_argument

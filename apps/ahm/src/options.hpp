@@ -34,8 +34,9 @@ struct LogmapOptions {
   std::string knn = "nanoflann";  ///< nanoflann, flann, pcl
   std::string normals = "auto";   ///< auto, oriented, unoriented, estimate
 
-  bool flips = true;                   ///< intrinsic Delaunay triangulation of triangle meshes
-  std::string non_manifold = "error";  ///< error, split
+  std::string discretization = "auto";  ///< of polygon meshes: auto, polygons, refined
+  bool flips = true;                    ///< intrinsic Delaunay triangulation of triangle meshes
+  std::string non_manifold = "error";   ///< error, split
 
   std::string json;  ///< empty: none; "-": standard output
   std::string view;  ///< empty: none

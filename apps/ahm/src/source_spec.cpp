@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <stdexcept>
 
 #include "numbers.hpp"
@@ -16,10 +17,13 @@ SourceFace parse_face(std::string_view text) {
   const std::size_t colon = rest.find(':');
   if (colon == std::string_view::npos)
     throw std::invalid_argument(fmt::format("'{}' lacks barycentric coordinates: write face:F:b0,b1,b2", text));
-  SourceFace result{static_cast<Index>(parse_integer(rest.substr(0, colon), 0)), parse_triple(rest.substr(colon + 1))};
-  const auto& b = result.barycentric;
-  const double sum = b[0] + b[1] + b[2];
-  if (*std::min_element(b.begin(), b.end()) < 0 || std::abs(sum - 1) > 1e-6)
+  SourceFace result{static_cast<Index>(parse_integer(rest.substr(0, colon), 0)), parse_numbers(rest.substr(colon + 1))};
+  const auto& weights = result.weights;
+  const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
+  if (weights.size() < 3)
+    throw std::invalid_argument(
+        fmt::format("'{}' has {} barycentric coordinates; write one per corner of the face", text, weights.size()));
+  if (*std::min_element(weights.begin(), weights.end()) < 0 || std::abs(sum - 1) > 1e-6)
     throw std::invalid_argument(fmt::format(
         "'{}' has barycentric coordinates that are negative or do not add up to 1 (they add up to {})", text, sum));
   return result;
@@ -45,7 +49,7 @@ std::string to_string(const SourceSpec& spec) {
       return fmt::format("{},{},{}", s.position[0], s.position[1], s.position[2]);
     }
     std::string operator()(const SourceFace& s) const {
-      return fmt::format("face:{}:{},{},{}", s.face, s.barycentric[0], s.barycentric[1], s.barycentric[2]);
+      return fmt::format("face:{}:{}", s.face, fmt::join(s.weights, ","));
     }
   };
   return std::visit(Visitor{}, spec);

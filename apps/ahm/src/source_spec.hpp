@@ -2,10 +2,10 @@
 /// What the user wrote after --source.
 #pragma once
 
-#include <array>
 #include <string>
 #include <string_view>
 #include <variant>
+#include <vector>
 
 #include "ahm/types.hpp"
 
@@ -21,10 +21,10 @@ struct SourcePosition {
   Vec3 position;
 };
 
-/// `face:F:b0,b1,b2`: a point inside a face.
+/// `face:F:b0,b1,b2...`: a point inside a face.
 struct SourceFace {
   Index face;
-  std::array<double, 3> barycentric;
+  std::vector<double> weights;  ///< one per corner, >= 0, with sum 1
 };
 
 using SourceSpec = std::variant<SourceVertex, SourcePosition, SourceFace>;

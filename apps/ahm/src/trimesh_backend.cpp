@@ -8,6 +8,7 @@
 #include "ahm/trimesh/triangle_mesh_graph.hpp"
 #include "backend.hpp"
 #include "frames.hpp"
+#include "mesh_input.hpp"
 
 namespace ahm::app {
 namespace {
@@ -30,23 +31,6 @@ std::vector<Triangle> triangles(const io::Geometry& input) {
   return result;
 }
 
-void check_options(const LogmapOptions& options) {
-  if (options.voxel || options.outliers || options.drop_nan)
-    throw InvalidArgument(
-        "--voxel, --outliers and --drop-nan are for point clouds; add --backend pointcloud to map the vertices as one");
-}
-
-/// The cheap checks: everything about the source that needs no graph.
-void check_source(const SourceSpec& spec, const io::Geometry& input) {
-  const auto within = [&](Index index, std::size_t count, const char* what) {
-    if (static_cast<std::size_t>(index) >= count)
-      throw InvalidArgument(
-          fmt::format("--source {}: the input has {} {}, numbered from 0", to_string(spec), count, what));
-  };
-  if (const auto* vertex = std::get_if<SourceVertex>(&spec)) within(vertex->index, input.points.size(), "vertices");
-  if (const auto* face = std::get_if<SourceFace>(&spec)) within(face->face, input.face_count(), "faces");
-}
-
 MeshOptions mesh_options(const LogmapOptions& options, const Progress& progress) {
   MeshOptions result;
   result.intrinsic_delaunay = options.flips;
@@ -65,13 +49,14 @@ class TrimeshModel final : public Model {
 
   ResolvedSource source(const SourceSpec& spec, const std::optional<Vec3>& u_axis) const override try {
     if (const auto* face = std::get_if<SourceFace>(&spec)) {
-      const SurfacePoint point{face->face, face->barycentric};
+      const SurfacePoint point{face->face, {face->weights[0], face->weights[1], face->weights[2]}};
       const std::optional<Frame> frame = mesh_.frame_at(point);
       return {u_axis ? mesh_.source_at(point, *u_axis) : mesh_.source_at(point), std::nullopt, frame->origin,
               u_axis ? turned(*frame, *u_axis) : *frame};
     }
     const auto* position = std::get_if<SourcePosition>(&spec);
-    const Index row = position ? nearest(position->position) : std::get<SourceVertex>(spec).index;
+    const Index row = position ? nearest_row(points_, mesh_.mesh().vertex_of_input(), position->position)
+                               : std::get<SourceVertex>(spec).index;
     const Frame frame = *mesh_.graph().frame(mesh_.vertex(row));
     return {u_axis ? mesh_.source_at_vertex(row, *u_axis) : mesh_.source_at_vertex(row), row, points_[at(row)],
             u_axis ? turned(frame, *u_axis) : frame};
@@ -102,37 +87,12 @@ class TrimeshModel final : public Model {
   static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
   static TriangleMeshGraph build(const io::Geometry& input, const LogmapOptions& options, const Progress& progress) {
-    if (input.face_count() == 0)
-      throw InvalidArgument("--backend trimesh: the input has no faces; --backend pointcloud maps its points");
-    check_options(options);
-    check_source(options.source, input);
+    check_mesh_input("trimesh", input, options);
     try {
       return TriangleMeshGraph::build(input.points, triangles(input), mesh_options(options, progress));
     } catch (const InvalidGeometry& e) {
       throw InvalidGeometry(in_terms_of_the_program(e.what()));
     }
-  }
-
-  /// The library's advice names its own option.
-  static std::string in_terms_of_the_program(std::string text) {
-    const std::string own = "NonManifold::split";
-    if (const auto place = text.find(own); place != std::string::npos)
-      text.replace(place, own.size(), "--non-manifold split");
-    return text;
-  }
-
-  Index nearest(const Vec3& position) const {
-    const auto vertices = mesh_.mesh().vertex_of_input();
-    Index best = -1;
-    double least = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < points_.size(); ++i) {
-      const Vec3& p = points_[i];
-      const double distance = std::hypot(p[0] - position[0], p[1] - position[1], p[2] - position[2]);
-      if (vertices[i] < 0 || !(distance < least)) continue;
-      least = distance;
-      best = static_cast<Index>(i);
-    }
-    return best;
   }
 
   const std::vector<Vec3>& points_;

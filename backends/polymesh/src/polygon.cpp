@@ -79,6 +79,15 @@ Vector3d Polygon::vector_area() const {
   return 0.5 * sum;
 }
 
+bool Polygon::folds() const {
+  const Vector3d area = vector_area();
+  for (std::size_t c = 0; c < size(); ++c) {
+    const Vector3d of_triangle = 0.5 * (corner_[c] - middle_).cross(corner_[(c + 1) % size()] - middle_);
+    if (of_triangle.dot(area) < -1e-9 * area.squaredNorm()) return true;
+  }
+  return false;
+}
+
 Vec3 Polygon::blend(std::span<const Vec3> positions, std::span<const Index> corners) const {
   Vec3 sum{0, 0, 0};
   for (std::size_t c = 0; c < corners.size(); ++c)

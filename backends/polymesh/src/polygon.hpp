@@ -24,6 +24,8 @@ class Polygon {
   std::span<const double> weights() const { return weight_; }
   /// Vector area: half the sum of the cross products of consecutive corners.
   Eigen::Vector3d vector_area() const;
+  /// Whether a triangle about p faces away from the vector area.
+  bool folds() const;
   /// sum w_c x_c of other positions of the corners.
   Vec3 blend(std::span<const Vec3> positions, std::span<const Index> corners) const;
 

@@ -178,6 +178,7 @@ Refinement PolygonMesh::refined() const {
       polygon.read(*this, f);
       const auto middle = static_cast<Index>(result.positions.size());
       result.positions.push_back(polygon.blend(original_, corners));
+      if (polygon.folds()) result.folded.push_back(f);
       for (std::size_t s = 0; s < corners.size(); ++s)
         result.triangles.push_back({corners[s], corners[(s + 1) % corners.size()], middle});
     }

@@ -25,6 +25,9 @@ struct Refinement {
   std::vector<Vec3> positions;                  ///< of the mesh's vertices, then of the virtual ones
   std::vector<std::array<Index, 3>> triangles;  ///< (corner, next corner, virtual vertex), or the face itself
   std::vector<Offset> face_begin;               ///< faces + 1: the triangles of each face
+  /// Faces that hide one of their sides from the virtual vertex (U shapes, twisted ones): their triangles overlap, so
+  /// that the refinement is not the surface that was given. Empty for convex faces.
+  std::vector<Index> folded;
 };
 
 /// An immutable polygon mesh, consistently oriented where that is possible.
