@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <random>
 #include <utility>
 #include <vector>
@@ -41,6 +42,33 @@ struct Mesh {
   std::vector<Vec3> points;
   std::vector<std::array<Index, 3>> faces;
 };
+
+/// A torus of radii 1 and 0.4, about n vertices, jittered along the surface, its quads cut at random.
+inline Mesh torus(Index n) {
+  const auto around = static_cast<Index>(std::sqrt(2.5 * n)), across = n / around;
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> jitter(-0.25, 0.25);
+  Mesh mesh;
+  for (Index i = 0; i < around; ++i)
+    for (Index j = 0; j < across; ++j) {
+      const double u = 2 * std::numbers::pi * (i + jitter(random)) / around,
+                   v = 2 * std::numbers::pi * (j + jitter(random)) / across, r = 1 + 0.4 * std::cos(v);
+      mesh.points.push_back({r * std::cos(u), r * std::sin(u), 0.4 * std::sin(v)});
+    }
+  for (Index i = 0; i < around; ++i)
+    for (Index j = 0; j < across; ++j) {
+      auto at = [&](Index x, Index y) { return x % around * across + y % across; };
+      const Index a = at(i, j), b = at(i + 1, j), c = at(i + 1, j + 1), d = at(i, j + 1);
+      if (random() % 2) {
+        mesh.faces.push_back({a, b, c});
+        mesh.faces.push_back({a, c, d});
+      } else {
+        mesh.faces.push_back({a, b, d});
+        mesh.faces.push_back({b, c, d});
+      }
+    }
+  return mesh;
+}
 
 /// An icosahedron whose faces were split in four until there are at least n vertices: 10 4^s + 2.
 inline Mesh icosphere(Index n) {
