@@ -11,6 +11,6 @@ configure_package_config_file(cmake/ahm-config.cmake.in ${CMAKE_CURRENT_BINARY_D
 write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/ahm-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES
   ${CMAKE_CURRENT_BINARY_DIR}/ahm-config.cmake ${CMAKE_CURRENT_BINARY_DIR}/ahm-config-version.cmake
-  cmake/FindCHOLMOD.cmake cmake/FindFLANN.cmake cmake/FindPCLLibraries.cmake
+  cmake/FindCHOLMOD.cmake cmake/FindFLANN.cmake cmake/FindMinizip.cmake cmake/FindPCLLibraries.cmake
   DESTINATION ${AHM_CMAKE_DIR})
 install(FILES LICENSE README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})

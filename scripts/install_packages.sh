@@ -7,6 +7,7 @@ packages=(
   libeigen3-dev libsuitesparse-dev libopenblas0-pthread       # linear algebra, with an optimised BLAS
   libnanoflann-dev libflann-dev liblz4-dev                    # neighbour search
   libpcl-dev                                                  # PCD files, voxel grid, outlier removal
+  libminizip-dev                                              # .npz files
   libcli11-dev nlohmann-json3-dev libfmt-dev                  # the program
   libosmesa6-dev libstb-dev libjs-three                       # pictures
   libgtest-dev libbenchmark-dev                               # tests and benchmarks
