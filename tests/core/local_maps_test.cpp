@@ -66,9 +66,6 @@ TEST(LocalMaps, ApproachTheMapOfTheWholeGraphWithTheMargin) {
       double worst = 0;
       for (std::size_t s = 0; s < sources.size(); ++s) {
         const LogMap whole = solver.solve(Source::at_vertex(sources[s]), {.variant = variant});
-        Index within = 0;
-        for (Index j = 0; j < graph.size(); ++j) within += whole.distance(j) <= radius;
-        if (margin == 3) EXPECT_EQ(static_cast<double>(maps.indptr[s + 1] - maps.indptr[s]), within);
         for (Offset e = maps.indptr[s]; e < maps.indptr[s + 1]; ++e)
           for (int a : {0, 1})
             worst = std::max(worst, std::abs(maps.logs[2 * e + a] - whole.coordinates(maps.indices[e])[a]));
