@@ -1,0 +1,133 @@
+#include "ahm/io/npz.hpp"
+
+#include <minizip/zip.h>
+
+#include <algorithm>
+#include <bit>
+#include <type_traits>
+#include <utility>
+
+namespace ahm::io {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "arrays are written as they lie in memory");
+
+/// Version 1.0 of the .npy format: magic, length of the text, the text, padded to a multiple of 64 bytes.
+std::string npy_header(const std::string& type, const std::vector<std::size_t>& shape) {
+  std::string text = "{'descr': '" + type + "', 'fortran_order': False, 'shape': (";
+  for (std::size_t extent : shape) text += std::to_string(extent) + ", ";
+  text += "), }";
+  constexpr std::size_t before = 10;
+  text.append(63 - (before + text.size()) % 64, ' ');
+  text += '\n';
+  std::string header("\x93NUMPY\x01\x00", 8);
+  header += static_cast<char>(text.size() % 256);
+  header += static_cast<char>(text.size() / 256);
+  return header + text;
+}
+
+}  // namespace
+
+bool has_npz() noexcept { return true; }
+
+/// The archive under a temporary name beside the target: minizip goes back to fill in lengths, which `AtomicFile`'s
+/// stream cannot.
+struct NpzFile::Impl {
+  std::filesystem::path path, temporary;
+  zipFile zip = nullptr;
+
+  explicit Impl(const std::filesystem::path& target) : path(target), temporary(target) {
+    if (std::error_code ignored; std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path))
+      throw IoError(path.string() + ": is no regular file; a .npz cannot be written to a pipe, device or directory");
+    temporary += ".part";
+    zip = zipOpen64(temporary.c_str(), APPEND_STATUS_CREATE);
+    if (zip == nullptr) throw IoError(temporary.string() + ": cannot be created; check the directory");
+  }
+  ~Impl() {
+    if (zip != nullptr) zipClose(zip, nullptr);
+    std::error_code ignored;
+    if (!temporary.empty()) std::filesystem::remove(temporary, ignored);
+  }
+  void require(int status) const {
+    if (status != ZIP_OK)
+      throw IoError(path.string() + ": writing failed; is the disk full? (zip status " + std::to_string(status) + ")");
+  }
+  void write(const void* bytes, std::size_t count) const {
+    constexpr std::size_t most = std::size_t{1} << 24;  // minizip counts in unsigned int
+    for (std::size_t done = 0; done < count; done += most)
+      require(zipWriteInFileInZip(zip, static_cast<const char*>(bytes) + done,
+                                  static_cast<unsigned>(std::min(most, count - done))));
+  }
+
+  /// @param per_element  values that make up one element
+  template <class Stored, class Value>
+  void add(const std::string& name, const std::string& type, const std::vector<std::size_t>& shape,
+           std::span<const Value> values, std::size_t per_element = 1) const {
+    std::size_t expected = per_element;
+    for (std::size_t extent : shape) expected *= extent;
+    if (expected != values.size())
+      throw InvalidArgument("array " + name + " has " + std::to_string(values.size()) +
+                            " values where its shape asks for " + std::to_string(expected));
+    // Year 1980, month 1, day 1: the first date a zip knows, so that equal arrays make equal files.
+    zip_fileinfo info{};
+    info.tmz_date.tm_mday = 1;
+    info.tmz_date.tm_year = 1980;
+    require(zipOpenNewFileInZip64(zip, (name + ".npy").c_str(), &info, nullptr, 0, nullptr, 0, nullptr, 0, 0, 1));
+    const std::string header = npy_header(type, shape);
+    write(header.data(), header.size());
+    if constexpr (std::is_same_v<Stored, Value>) {
+      write(values.data(), values.size_bytes());
+    } else {
+      std::vector<Stored> chunk;
+      for (std::size_t begin = 0; begin < values.size(); begin += 65536) {
+        const auto part = values.subspan(begin, std::min<std::size_t>(65536, values.size() - begin));
+        chunk.assign(part.begin(), part.end());
+        write(chunk.data(), chunk.size() * sizeof(Stored));
+      }
+    }
+    require(zipCloseFileInZip(zip));
+  }
+};
+
+NpzFile::NpzFile(const std::filesystem::path& path) : impl_(std::make_unique<Impl>(path)) {}
+NpzFile::~NpzFile() = default;
+
+void NpzFile::add(const std::string& name, const std::vector<std::size_t>& shape, std::span<const double> values,
+                  NpyType type) {
+  switch (type) {
+    case NpyType::float64:
+      return impl_->add<double>(name, "<f8", shape, values);
+    case NpyType::float32:
+      return impl_->add<float>(name, "<f4", shape, values);
+    case NpyType::complex128:
+      return impl_->add<double>(name, "<c16", shape, values, 2);
+    case NpyType::complex64:
+      return impl_->add<float>(name, "<c8", shape, values, 2);
+  }
+}
+
+void NpzFile::add(const std::string& name, const std::vector<std::size_t>& shape,
+                  std::span<const std::int32_t> values) {
+  impl_->add<std::int32_t>(name, "<i4", shape, values);
+}
+
+void NpzFile::add(const std::string& name, const std::vector<std::size_t>& shape,
+                  std::span<const std::int64_t> values) {
+  impl_->add<std::int64_t>(name, "<i8", shape, values);
+}
+
+void NpzFile::add(const std::string& name, const std::vector<std::size_t>& shape,
+                  std::span<const std::uint8_t> values) {
+  impl_->add<std::uint8_t>(name, "|b1", shape, values);
+}
+
+void NpzFile::commit() {
+  const zipFile zip = std::exchange(impl_->zip, nullptr);
+  impl_->require(zipClose(zip, nullptr));
+  std::error_code error;
+  std::filesystem::rename(impl_->temporary, impl_->path, error);
+  if (error) throw IoError(impl_->path.string() + ": cannot be put in place: " + error.message());
+  impl_->temporary.clear();
+}
+
+}  // namespace ahm::io
