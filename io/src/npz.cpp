@@ -7,6 +7,8 @@
 #include <type_traits>
 #include <utility>
 
+#include "ahm/io/atomic_file.hpp"
+
 namespace ahm::io {
 namespace {
 
@@ -15,8 +17,8 @@ static_assert(std::endian::native == std::endian::little, "arrays are written as
 /// Version 1.0 of the .npy format: magic, length of the text, the text, padded to a multiple of 64 bytes.
 std::string npy_header(const std::string& type, const std::vector<std::size_t>& shape) {
   std::string text = "{'descr': '" + type + "', 'fortran_order': False, 'shape': (";
-  for (std::size_t extent : shape) text += std::to_string(extent) + ", ";
-  text += "), }";
+  for (std::size_t k = 0; k < shape.size(); ++k) text += (k > 0 ? ", " : "") + std::to_string(shape[k]);
+  text += shape.size() == 1 ? ",), }" : "), }";
   constexpr std::size_t before = 10;
   text.append(63 - (before + text.size()) % 64, ' ');
   text += '\n';
@@ -30,23 +32,20 @@ std::string npy_header(const std::string& type, const std::vector<std::size_t>& 
 
 bool has_npz() noexcept { return true; }
 
-/// The archive under a temporary name beside the target: minizip goes back to fill in lengths, which `AtomicFile`'s
-/// stream cannot.
 struct NpzFile::Impl {
-  std::filesystem::path path, temporary;
+  std::filesystem::path path;
+  AtomicFile file;
   zipFile zip = nullptr;
 
-  explicit Impl(const std::filesystem::path& target) : path(target), temporary(target) {
-    if (std::error_code ignored; std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path))
-      throw IoError(path.string() + ": is no regular file; a .npz cannot be written to a pipe, device or directory");
-    temporary += ".part";
-    zip = zipOpen64(temporary.c_str(), APPEND_STATUS_CREATE);
-    if (zip == nullptr) throw IoError(temporary.string() + ": cannot be created; check the directory");
+  explicit Impl(const std::filesystem::path& target) : path(target), file(target) {
+    if (file.temporary().empty())
+      throw IoError(path.string() + ": is no regular file; a .npz cannot be written to a pipe or device");
+    // minizip opens the file by its name, since it goes back to fill in lengths.
+    zip = zipOpen64(file.temporary().c_str(), APPEND_STATUS_CREATE);
+    if (zip == nullptr) throw IoError(path.string() + ": cannot be written");
   }
   ~Impl() {
     if (zip != nullptr) zipClose(zip, nullptr);
-    std::error_code ignored;
-    if (!temporary.empty()) std::filesystem::remove(temporary, ignored);
   }
   void require(int status) const {
     if (status != ZIP_OK)
@@ -122,12 +121,8 @@ void NpzFile::add(const std::string& name, const std::vector<std::size_t>& shape
 }
 
 void NpzFile::commit() {
-  const zipFile zip = std::exchange(impl_->zip, nullptr);
-  impl_->require(zipClose(zip, nullptr));
-  std::error_code error;
-  std::filesystem::rename(impl_->temporary, impl_->path, error);
-  if (error) throw IoError(impl_->path.string() + ": cannot be put in place: " + error.message());
-  impl_->temporary.clear();
+  impl_->require(zipClose(std::exchange(impl_->zip, nullptr), nullptr));
+  impl_->file.commit();
 }
 
 }  // namespace ahm::io

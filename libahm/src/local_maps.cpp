@@ -30,6 +30,8 @@ namespace {
 constexpr std::size_t group_size = 48;
 /// Path lengths along edges exceed distances by up to this factor on good graphs; where it is not enough, a patch grows.
 constexpr double usual_detour = 1.2;
+/// No sensible graph has longer ones. Beyond, it is the map that is short: folded at a cut locus.
+constexpr double largest_detour = 2;
 
 /// n values that are zero until written, of which only those written take memory.
 template <class T>
@@ -156,8 +158,9 @@ class Worker {
   void solve(std::span<const Index> members, std::vector<Entries>& result) {
     const double unit = graph_.length_unit(), sqrt_tau = std::sqrt(options_.t_coef) * graph_.mean_edge_length();
     const double reach = options_.radius / unit + options_.margin * sqrt_tau;  // graph units
-    for (double detour = usual_detour;; detour *= 1.3)
+    for (double detour = usual_detour; detour < largest_detour; detour *= 1.3)
       if (solve(members, detour * reach, reach * unit, result)) return;
+    solve(members, largest_detour * reach, 0, result);
   }
 
  private:
@@ -278,7 +281,10 @@ LocalMaps local_maps(const TangentGraph& graph, std::span<const Source> sources,
   return detail::with_memory_check("solving for local maps", [&] {
     check(graph, sources, options);
     options.progress.step("group", 0.0);
-    const auto groups = group(graph, sources, 2 * options.radius / graph.length_unit());
+    // Sources whose patches overlap anyway.
+    const double reach = options.radius / graph.length_unit() +
+                         (options.margin + 4) * std::sqrt(options.t_coef) * graph.mean_edge_length();
+    const auto groups = group(graph, sources, reach);
     std::vector<Entries> entries(sources.size());
     const OneBlasThread one_thread;
     std::mutex mutex;

@@ -54,13 +54,13 @@ TEST_F(Npz, ReadsBackAsWritten) {
   file.add("mask", {3}, std::span<const std::uint8_t>(mask));
   file.add("none", {0, 2}, std::span<const double>());
   file.commit();
-  EXPECT_EQ(values_of<double>(unzipped(path, "x.npy"), "<f8", "(3, 2, )"), x);
-  EXPECT_EQ(values_of<float>(unzipped(path, "single.npy"), "<f4", "(6, )"), std::vector<float>(x.begin(), x.end()));
-  EXPECT_EQ(values_of<double>(unzipped(path, "z.npy"), "<c16", "(3, )"), x);
-  EXPECT_EQ(values_of<std::int32_t>(unzipped(path, "i.npy"), "<i4", "(3, )"), i);
-  EXPECT_EQ(values_of<std::int64_t>(unzipped(path, "o.npy"), "<i8", "(2, )"), o);
-  EXPECT_EQ(values_of<std::uint8_t>(unzipped(path, "mask.npy"), "|b1", "(3, )"), mask);
-  EXPECT_TRUE(values_of<double>(unzipped(path, "none.npy"), "<f8", "(0, 2, )").empty());
+  EXPECT_EQ(values_of<double>(unzipped(path, "x.npy"), "<f8", "(3, 2)"), x);
+  EXPECT_EQ(values_of<float>(unzipped(path, "single.npy"), "<f4", "(6,)"), std::vector<float>(x.begin(), x.end()));
+  EXPECT_EQ(values_of<double>(unzipped(path, "z.npy"), "<c16", "(3,)"), x);
+  EXPECT_EQ(values_of<std::int32_t>(unzipped(path, "i.npy"), "<i4", "(3,)"), i);
+  EXPECT_EQ(values_of<std::int64_t>(unzipped(path, "o.npy"), "<i8", "(2,)"), o);
+  EXPECT_EQ(values_of<std::uint8_t>(unzipped(path, "mask.npy"), "|b1", "(3,)"), mask);
+  EXPECT_TRUE(values_of<double>(unzipped(path, "none.npy"), "<f8", "(0, 2)").empty());
 }
 
 TEST_F(Npz, AppearsOnCommitOrNotAtAll) {

@@ -84,21 +84,30 @@ void add_input(CLI::App& app, std::string& input) {
   app.add_option("INPUT", input, "File to read: .ply .pcd .xyz .txt .csv .off .obj .stl")->required()->type_name("");
 }
 
-void add_method_options(CLI::App& app, LogmapOptions& o) {
-  const char* group = "Method";
-  add_parsed(
+CLI::Option* add_variant(CLI::App& app, LogmapOptions& o) {
+  return add_parsed(
       app, "--variant", o.variant,
       [](const std::string& text) {
         return choice({"adaptive", "localized"})(text) == "adaptive" ? Variant::adaptive : Variant::localized;
       },
-      "NAME", "adaptive (default) or localized")
-      ->group(group);
-  add_parsed(app, "--backend", o.backend, choice({"auto", "trimesh", "polymesh", "pointcloud"}), "NAME",
-             "auto (default): by the faces of INPUT; trimesh, polymesh or pointcloud")
-      ->group(group);
-  add_parsed(app, "--t-coef", o.t_coef, parse_positive, "T",
-             "Diffusion time in squared mean edge lengths, > 0 (default 1); larger is smoother")
-      ->group(group);
+      "NAME", "adaptive (default) or localized");
+}
+
+CLI::Option* add_backend(CLI::App& app, LogmapOptions& o) {
+  return add_parsed(app, "--backend", o.backend, choice({"auto", "trimesh", "polymesh", "pointcloud"}), "NAME",
+                    "auto (default): by the faces of INPUT; trimesh, polymesh or pointcloud");
+}
+
+CLI::Option* add_t_coef(CLI::App& app, LogmapOptions& o) {
+  return add_parsed(app, "--t-coef", o.t_coef, parse_positive, "T",
+                    "Diffusion time in squared mean edge lengths, > 0 (default 1); larger is smoother");
+}
+
+void add_method_options(CLI::App& app, LogmapOptions& o) {
+  const char* group = "Method";
+  add_variant(app, o)->group(group);
+  add_backend(app, o)->group(group);
+  add_t_coef(app, o)->group(group);
   add_parsed(app, "--radius", o.radius, parse_positive, "R", "Leave out everything farther than this from the source")
       ->group(group);
   add_parsed(app, "--u-axis", o.u_axis, parse_direction, "X,Y,Z",
@@ -128,13 +137,22 @@ void add_method_options(CLI::App& app, LogmapOptions& o) {
   add_parsed(app, "--threads", o.threads, integer_parser(0, 4096), "N", "0 (default): one per core")->group(group);
 }
 
+CLI::Option* add_drop_nan(CLI::App& app, LogmapOptions& o) {
+  return app.add_flag("--drop-nan", o.drop_nan,
+                      "Drop points with nan or infinite coordinates instead of refusing them");
+}
+
+CLI::Option* add_non_manifold(CLI::App& app, LogmapOptions& o) {
+  return add_parsed(app, "--non-manifold", o.non_manifold, choice({"error", "split"}), "HOW",
+                    "Edges of more than two faces and pinched vertices: error (default) or split, cutting there");
+}
+
 void add_cloud_options(CLI::App& app, LogmapOptions& o) {
   const char* group = "Point clouds";
   add_parsed(app, "--voxel", o.voxel, parse_positive, "SIZE", "Keep one point per cube of this edge length first")
       ->group(group);
   app.add_flag("--outliers", o.outliers, "Remove statistical outliers first")->group(group);
-  app.add_flag("--drop-nan", o.drop_nan, "Drop points with nan or infinite coordinates instead of refusing them")
-      ->group(group);
+  add_drop_nan(app, o)->group(group);
   add_parsed(app, "--k", o.k, integer_parser(3), "N", "Neighbours per point, at least 3 (default 30)")->group(group);
   add_parsed(app, "--knn", o.knn, choice({"nanoflann", "flann", "pcl"}), "NAME",
              "Neighbour search: nanoflann (default), flann or pcl")
@@ -149,9 +167,7 @@ void add_mesh_options(CLI::App& app, LogmapOptions& o) {
   const char* group = "Triangle meshes";
   app.add_flag("!--no-flips", o.flips, "Keep the edges as they are instead of flipping to intrinsic Delaunay")
       ->group(group);
-  add_parsed(app, "--non-manifold", o.non_manifold, choice({"error", "split"}), "HOW",
-             "Edges of more than two faces and pinched vertices: error (default) or split, cutting there")
-      ->group(group);
+  add_non_manifold(app, o)->group(group);
 }
 
 void add_polygon_options(CLI::App& app, LogmapOptions& o) {
@@ -189,6 +205,42 @@ CLI::App& add_logmap(CLI::App& app, LogmapOptions& o) {
   return logmap;
 }
 
+constexpr const char* local_maps_footer =
+    "OUTPUT is a NumPy archive. Entry e of source s, indptr[s] <= e < indptr[s+1], nearest first:\n"
+    "  sources[s]    row of INPUT             frames[s]     u axis, v axis and normal in space\n"
+    "  indices[e]    row of the neighbour     log[e]        its coordinates u, v in the source's frame\n"
+    "  distance[e]   length of log[e]         transport[e]  turns u + iv into the neighbour's frame\n"
+    "  weight[e]     area of the neighbour\n"
+    "With --pad the arrays are sources x K, and mask says what is there.\n"
+    "\n"
+    "Example:\n"
+    "  ahm local-maps scan.ply --radius 0.02 --k 32 --pad --float32 -o neighbours.npz";
+
+CLI::App& add_local_maps(CLI::App& app, LocalMapsOptions& o) {
+  CLI::App& local = *app.add_subcommand("local-maps", "Log maps of all neighbourhoods, for learning on surfaces");
+  add_input(local, o.graph.input);
+  add_parsed(local, "--radius", o.radius, parse_positive, "R", "Of the neighbourhoods, along the surface")->required();
+  add_parsed(local, "-o,--output", o.graph.output, non_empty, "OUTPUT", "File to write, .npz")->required();
+  add_parsed(local, "--k", o.nearest, integer_parser(1), "K", "Keep only so many nearest, the source included");
+  add_parsed(local, "--sources", o.sources, non_empty, "all|FILE",
+             "all (default), or a file of rows of INPUT, counted from 0");
+  local.add_flag("--pad", o.pad, "Fixed rows of K entries and a mask; needs --k");
+  local.add_flag("--float32", o.float32, "Numbers in single precision");
+  add_variant(local, o.graph);
+  add_backend(local, o.graph);
+  add_t_coef(local, o.graph);
+  add_drop_nan(local, o.graph);
+  add_non_manifold(local, o.graph);
+  add_parsed(local, "--threads", o.graph.threads, integer_parser(0, 4096), "N", "0 (default): one per core");
+  add_parsed(local, "--json", o.graph.json, non_empty, "FILE|-", "Write a summary for programs; -: to standard output");
+  local.add_flag("--verbose", o.graph.verbose, "Print the time of each stage and the peak memory");
+  local.callback([&o] {
+    if (o.pad && o.nearest == 0) throw CLI::ValidationError("--pad", "needs --k");
+  });
+  local.footer(local_maps_footer);
+  return local;
+}
+
 CLI::App& add_info(CLI::App& app, InfoOptions& o) {
   CLI::App& info = *app.add_subcommand("info", "What is in a file, what is wrong with it, what to run on it");
   add_input(info, o.input);
@@ -202,7 +254,7 @@ CLI::App& add_info(CLI::App& app, InfoOptions& o) {
 }  // namespace
 
 Command parse_command_line(int argc, const char* const* argv) {
-  CLI::App app("Logarithmic maps on triangle meshes and point clouds by the affine heat method", "ahm");
+  CLI::App app("Logarithmic maps on meshes and point clouds by the affine heat method", "ahm");
   app.get_formatter()->column_width(26);
   app.footer(main_footer);
   app.require_subcommand(1);
@@ -210,13 +262,15 @@ Command parse_command_line(int argc, const char* const* argv) {
   app.add_flag("--version", version, "Print the versions of ahm, its libraries and the BLAS in use");
   LogmapOptions logmap_options;
   InfoOptions info_options;
+  LocalMapsOptions local_maps_options;
   const CLI::App& logmap = add_logmap(app, logmap_options);
+  const CLI::App& local_maps = add_local_maps(app, local_maps_options);
   add_info(app, info_options);
   if (argc == 2 && std::string_view(argv[1]) == "--version") return TextRequest{versions_as_text()};
   const std::string first = argc > 1 ? argv[1] : "";
-  if (!first.starts_with("-") && first != "logmap" && first != "info")
+  if (!first.starts_with("-") && first != "logmap" && first != "local-maps" && first != "info")
     throw UsageError{(first.empty() ? "a subcommand is needed" : "'" + first + "' is no subcommand") +
-                     std::string(": write logmap or info\nRun 'ahm --help' for help.")};
+                     std::string(": write logmap, local-maps or info\nRun 'ahm --help' for help.")};
   try {
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp&) {
@@ -228,6 +282,7 @@ Command parse_command_line(int argc, const char* const* argv) {
                                  chosen.empty() ? "" : chosen.front()->get_name() + " ")};
   }
   if (logmap.parsed()) return logmap_options;
+  if (local_maps.parsed()) return local_maps_options;
   return info_options;
 }
 

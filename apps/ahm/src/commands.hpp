@@ -12,6 +12,9 @@ void run_logmap(const LogmapOptions& options);
 /// `ahm logmap --estimate`: time and memory of the run by either strategy. @throws as `run_logmap`
 void run_estimate(const LogmapOptions& options);
 
+/// `ahm local-maps`. @throws as `run_logmap`
+void run_local_maps(const LocalMapsOptions& options);
+
 /// `ahm info`. @throws as `run_logmap`
 void run_info(const InfoOptions& options);
 

@@ -6,70 +6,18 @@
 #include <nlohmann/json.hpp>
 
 #include "ahm/error.hpp"
-#include "ahm/io/read.hpp"
 #include "ahm/io/write.hpp"
 #include "ahm/log_map_solver.hpp"
 #include "ahm/view/picture.hpp"
 #include "backend.hpp"
 #include "commands.hpp"
-#include "console.hpp"
+#include "journal.hpp"
 #include "map_rows.hpp"
 #include "output_paths.hpp"
-#include "progress_display.hpp"
 #include "run_report.hpp"
-#include "stage_times.hpp"
-#include "system_info.hpp"
 
 namespace ahm::app {
 namespace {
-
-/// Stage times, progress and warnings of one run.
-class Journal {
- public:
-  explicit Journal(bool verbose) : verbose_(verbose) {}
-
-  void start(const std::string& stage) {
-    finish();
-    times_.start(stage);
-    display_.update(stage, 0);
-  }
-
-  void finish() {
-    times_.finish();
-    if (!verbose_ || times_.seconds().size() == reported_) return;
-    display_.clear();
-    const auto& [stage, seconds] = times_.seconds()[reported_++];
-    say(fmt::format("ahm: {:<8}{:8.3f} s   peak memory {}\n", stage, seconds, bytes_as_text(peak_rss_bytes())));
-  }
-
-  /// A line of --verbose.
-  void tell(const std::string& text) {
-    finish();
-    if (verbose_) say(fmt::format("ahm: {}\n", text));
-  }
-
-  void add_warning(const std::string& text) {
-    display_.clear();
-    warn(text);
-    warnings_.push_back(text);
-  }
-
-  void add_warnings(const std::vector<std::string>& texts) {
-    for (const std::string& text : texts) add_warning(text);
-  }
-
-  Progress progress() { return display_.progress(); }
-  void clear_display() { display_.clear(); }
-  const StageTimes& times() const { return times_; }
-  const std::vector<std::string>& warnings() const { return warnings_; }
-
- private:
-  bool verbose_;
-  StageTimes times_;
-  std::size_t reported_ = 0;
-  std::vector<std::string> warnings_;
-  ProgressDisplay display_;
-};
 
 void check_view(const std::string& path) {
   if (path.empty()) return;
@@ -108,13 +56,6 @@ void comment_on_statuses(const MapRows& rows, const std::string& input, Journal&
         fmt::format("no heat reaches {} vertices: with --strategy global they are too far away (the "
                     "march has no such limit), else the weights around them are too bad",
                     unreached));
-}
-
-void comment_on_blas(Journal& journal) {
-  const LinearAlgebraInfo info = linear_algebra_info();
-  if (!info.blas_optimized)
-    journal.add_warning("CHOLMOD runs on a BLAS that is not optimized (" + info.blas +
-                        "): several times slower; on Debian install libopenblas0-pthread");
 }
 
 void write_view(const LogmapOptions& options, const io::Geometry& input, const ResolvedSource& source,
@@ -174,14 +115,6 @@ void write_results(const LogmapOptions& options, const io::Geometry& input, cons
   journal.clear_display();
 }
 
-io::Geometry read_input(const LogmapOptions& options, Journal& journal) {
-  journal.start("read");
-  io::Geometry input = io::read(options.input);
-  journal.add_warnings(input.warnings);
-  if (input.points.empty()) throw InvalidGeometry(options.input + ": holds no points");
-  return input;
-}
-
 LogMapSolver factor(const LogmapOptions& options, const Model& model, Journal& journal) {
   journal.start("factor");
   OperatorOptions operator_options;
@@ -218,7 +151,7 @@ void run_logmap(const LogmapOptions& options) {
   check_view(options.view);
   Journal journal(options.verbose);
   comment_on_blas(journal);
-  const io::Geometry input = read_input(options, journal);
+  const io::Geometry input = read_input(options.input, journal);
 
   journal.start("graph");
   const std::string backend = choose_backend(input, options.backend);

@@ -44,6 +44,16 @@ struct LogmapOptions {
   bool verbose = false;
 };
 
+/// `ahm local-maps`
+struct LocalMapsOptions {
+  LogmapOptions graph;  ///< input, output, backend and its options, variant, t_coef, threads, json, verbose
+  double radius = 0;
+  Index nearest = 0;            ///< 0: all
+  std::string sources = "all";  ///< or a file of row numbers
+  bool pad = false;             ///< rows of `nearest` entries and a mask instead of compressed rows
+  bool float32 = false;
+};
+
 /// `ahm info`
 struct InfoOptions {
   std::string input;

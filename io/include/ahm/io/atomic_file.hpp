@@ -31,6 +31,9 @@ class AtomicFile {
 
   /// Appends bytes. @throws IoError when the disk is full, the pipe is closed, or the system reports another fault
   void write(std::string_view bytes);
+  /// The name the file has until `commit`, for libraries that open it themselves (instead of `write`); empty where the
+  /// target is written directly.
+  const std::filesystem::path& temporary() const noexcept { return temporary_; }
   /// Writes what is left, waits until it is on the disk, and gives the file its name. @throws IoError as `write`
   void commit();
 

@@ -1,0 +1,212 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "ahm/io/npz.hpp"
+#include "ahm/local_maps.hpp"
+#include "backend.hpp"
+#include "commands.hpp"
+#include "journal.hpp"
+#include "numbers.hpp"
+#include "output_paths.hpp"
+#include "run_report.hpp"
+
+namespace ahm::app {
+namespace {
+
+std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+
+void check_options(const LocalMapsOptions& options) {
+  const LogmapOptions& o = options.graph;
+  check_outputs(o.input, {{"--output", o.output}, {"--json", o.json}});
+  if (extension_of(o.output) != ".npz")
+    throw InvalidArgument(fmt::format("--output {}: the name must end in .npz", o.output));
+  if (!io::has_npz()) throw InvalidArgument("this build of ahm cannot write .npz files; it was built without minizip");
+}
+
+/// Which vertex stands for a row, and the other way round; -1: none. The first counts.
+struct Rows {
+  std::vector<Index> vertex_of_row, row_of_vertex;
+
+  Rows(const Model& model, std::size_t rows) : vertex_of_row(rows, -1), row_of_vertex(at(model.graph().size()), -1) {
+    for (const auto& [row, vertex] : model.row_vertices()) {
+      if (vertex_of_row[at(row)] < 0) vertex_of_row[at(row)] = vertex;
+      if (row_of_vertex[at(vertex)] < 0) row_of_vertex[at(vertex)] = row;
+    }
+  }
+};
+
+/// Row numbers, one per line.
+std::vector<Index> read_rows(const std::string& path, std::size_t rows) {
+  std::ifstream file(path);
+  if (!file) throw IoError("--sources " + path + ": cannot be read; write all, or the name of a file of row numbers");
+  std::vector<Index> result;
+  std::size_t number = 0;
+  for (std::string line; std::getline(file, line);) {
+    ++number;
+    const auto first = line.find_first_not_of(" \t\r"), last = line.find_last_not_of(" \t\r");
+    if (first == std::string::npos || line[first] == '#') continue;
+    try {
+      result.push_back(static_cast<Index>(
+          parse_integer(line.substr(first, last - first + 1), 0, static_cast<std::int64_t>(rows) - 1)));
+    } catch (const std::invalid_argument& e) {
+      throw InvalidArgument(fmt::format("--sources {}, line {}: {}", path, number, e.what()));
+    }
+  }
+  if (result.empty()) throw InvalidArgument("--sources " + path + ": holds no row numbers");
+  return result;
+}
+
+std::vector<Index> wanted_rows(const LocalMapsOptions& options, const Rows& rows) {
+  if (options.sources != "all") {
+    std::vector<Index> result = read_rows(options.sources, rows.vertex_of_row.size());
+    for (Index row : result)
+      if (rows.vertex_of_row[at(row)] < 0)
+        throw InvalidArgument(fmt::format("--sources {}: row {} is no vertex of the surface", options.sources, row));
+    return result;
+  }
+  std::vector<Index> result;
+  for (std::size_t row = 0; row < rows.vertex_of_row.size(); ++row)
+    if (rows.vertex_of_row[row] >= 0) result.push_back(static_cast<Index>(row));
+  return result;
+}
+
+/// Entries on rows of the input, at most `most` per source (0: all): those on virtual vertices are left out.
+void keep_rows(LocalMaps& maps, const Rows& rows, Index most) {
+  const std::size_t width = maps.transport_width();
+  std::size_t kept = 0;
+  for (std::size_t s = 0; s + 1 < maps.indptr.size(); ++s) {
+    const auto begin = static_cast<std::size_t>(maps.indptr[s]), end = static_cast<std::size_t>(maps.indptr[s + 1]);
+    maps.indptr[s] = static_cast<Offset>(kept);
+    for (std::size_t e = begin; e < end; ++e) {
+      const Index row = rows.row_of_vertex[at(maps.indices[e])];
+      const auto taken = static_cast<Offset>(kept) - maps.indptr[s];
+      if (row < 0 || (most > 0 && taken == most)) continue;
+      maps.indices[kept] = row;
+      maps.distances[kept] = maps.distances[e];
+      maps.weights[kept] = maps.weights[e];
+      std::copy_n(maps.logs.begin() + static_cast<std::ptrdiff_t>(2 * e), 2,
+                  maps.logs.begin() + static_cast<std::ptrdiff_t>(2 * kept));
+      std::copy_n(maps.transports.begin() + static_cast<std::ptrdiff_t>(width * e), width,
+                  maps.transports.begin() + static_cast<std::ptrdiff_t>(width * kept));
+      ++kept;
+    }
+  }
+  maps.indptr.back() = static_cast<Offset>(kept);
+  maps.indices.resize(kept);
+  maps.distances.resize(kept);
+  maps.weights.resize(kept);
+  maps.logs.resize(2 * kept);
+  maps.transports.resize(width * kept);
+}
+
+/// Rows of `count` entries: `values` has `width` numbers per entry, what is missing is 0.
+template <class T>
+std::vector<T> padded(const LocalMaps& maps, const std::vector<T>& values, std::size_t width, std::size_t count) {
+  std::vector<T> result(at(maps.sources()) * count * width, T{});
+  for (std::size_t s = 0; s < at(maps.sources()); ++s)
+    std::copy(values.begin() + maps.indptr[s] * static_cast<Offset>(width),
+              values.begin() + maps.indptr[s + 1] * static_cast<Offset>(width),
+              result.begin() + static_cast<std::ptrdiff_t>(s * count * width));
+  return result;
+}
+
+void write(const LocalMapsOptions& options, const LocalMaps& maps, const std::vector<Index>& rows, const Model& model,
+           const std::vector<Index>& vertices) {
+  const std::size_t sources = rows.size(), entries = maps.indices.size();
+  const auto k = static_cast<std::size_t>(options.nearest);
+  const auto real = options.float32 ? io::NpyType::float32 : io::NpyType::float64;
+  const auto complex = options.float32 ? io::NpyType::complex64 : io::NpyType::complex128;
+  const bool rotations = maps.kind == TransportKind::rotation2;
+  io::NpzFile file(options.graph.output);
+  file.add("sources", {sources}, std::span<const Index>(rows));
+  std::vector<double> frames;
+  for (Index vertex : vertices) {
+    const Frame frame = *model.graph().frame(vertex);
+    for (const Vec3& axis : {frame.x, frame.y, frame.normal}) frames.insert(frames.end(), axis.begin(), axis.end());
+  }
+  file.add("frames", {sources, 3, 3}, frames, real);
+  using Shape = std::vector<std::size_t>;
+  auto add = [&](const std::string& name, const std::vector<double>& values, const Shape& element, io::NpyType type) {
+    Shape shape = options.pad ? Shape{sources, k} : Shape{entries};
+    shape.insert(shape.end(), element.begin(), element.end());
+    const std::size_t width = values.size() / std::max<std::size_t>(entries, 1);
+    file.add(name, shape, options.pad ? padded(maps, values, width, k) : values, type);
+  };
+  if (options.pad) {
+    file.add("indices", {sources, k}, std::span<const Index>(padded(maps, maps.indices, 1, k)));
+    file.add("mask", {sources, k},
+             std::span<const std::uint8_t>(padded(maps, std::vector<std::uint8_t>(entries, 1), 1, k)));
+  } else {
+    file.add("indptr", {sources + 1}, std::span<const Offset>(maps.indptr));
+    file.add("indices", {entries}, std::span<const Index>(maps.indices));
+  }
+  add("log", maps.logs, {2}, real);
+  add("distance", maps.distances, {}, real);
+  add("weight", maps.weights, {}, real);
+  // Surfaces that cannot be oriented carry 2 x 2 matrices, some of them reflections.
+  add("transport", maps.transports, rotations ? Shape{} : Shape{2, 2}, rotations ? complex : real);
+  file.commit();
+}
+
+}  // namespace
+
+void run_local_maps(const LocalMapsOptions& options) {
+  check_options(options);
+  Journal journal(options.graph.verbose);
+  comment_on_blas(journal);
+  const io::Geometry input = read_input(options.graph.input, journal);
+
+  journal.start("graph");
+  LogmapOptions graph_options = options.graph;
+  graph_options.source = SourcePosition{{0, 0, 0}};  // none: the backends check it against the input
+  const std::string backend = choose_backend(input, graph_options.backend);
+  const std::unique_ptr<Model> model = build_model(backend, input, graph_options, journal.progress());
+  journal.add_warnings(model->warnings());
+  const Rows rows(*model, input.points.size());
+  const std::vector<Index> wanted = wanted_rows(options, rows);
+  std::vector<Index> vertices;
+  for (Index row : wanted) vertices.push_back(rows.vertex_of_row[at(row)]);
+
+  journal.start("solve");
+  LocalMapOptions map_options;
+  map_options.radius = options.radius;
+  const bool has_virtual = std::count(rows.row_of_vertex.begin(), rows.row_of_vertex.end(), -1) > 0;
+  map_options.nearest = has_virtual ? 0 : options.nearest;
+  map_options.variant = options.graph.variant;
+  map_options.t_coef = options.graph.t_coef;
+  map_options.threads = options.graph.threads;
+  map_options.progress = journal.progress();
+  LocalMaps maps = local_maps(model->graph(), vertices, map_options);
+  keep_rows(maps, rows, options.nearest);
+
+  journal.start("write");
+  write(options, maps, wanted, *model, vertices);
+  journal.finish();
+  journal.clear_display();
+
+  const double mean = static_cast<double>(maps.indices.size()) / static_cast<double>(wanted.size());
+  nlohmann::ordered_json j;
+  j["program"] = "ahm local-maps";
+  j["input"] = {{"path", options.graph.input}, {"format", input.format}, {"points", input.points.size()}};
+  j["output"] = options.graph.output;
+  j["backend"] = backend;
+  j["radius"] = options.radius;
+  j["sources"] = wanted.size();
+  j["entries"] = maps.indices.size();
+  j["mean_neighbours"] = mean;
+  j["warnings"] = journal.warnings();
+  for (const auto& [stage, seconds] : journal.times().seconds()) j["seconds"][stage] = seconds;
+  j["peak_rss_bytes"] = peak_rss_bytes();
+  write_json(options.graph.json, j);
+  const std::string text =
+      fmt::format("{} neighbourhoods of {:.1f} vertices on average\n{:.2f} s, peak memory {}\nwrote {}\n",
+                  wanted.size(), mean, journal.times().total(), bytes_as_text(peak_rss_bytes()), options.graph.output);
+  options.graph.json == "-" ? say(text) : print(text);
+}
+
+}  // namespace ahm::app

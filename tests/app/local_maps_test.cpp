@@ -1,0 +1,100 @@
+// Neighbourhoods as NumPy archives.
+#include <gtest/gtest.h>
+#include <minizip/unzip.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "program.hpp"
+
+namespace ahm::test {
+namespace {
+
+/// The numbers of one array of an archive, and its header.
+template <class T>
+std::vector<T> array(const std::string& archive, const std::string& name, std::string* header = nullptr) {
+  const unzFile zip = unzOpen64(archive.c_str());
+  EXPECT_NE(zip, nullptr);
+  EXPECT_EQ(unzLocateFile(zip, (name + ".npy").c_str(), 1), UNZ_OK) << name;
+  unzOpenCurrentFile(zip);
+  std::string bytes;
+  char buffer[4096];
+  for (int count; (count = unzReadCurrentFile(zip, buffer, sizeof buffer)) > 0;) bytes.append(buffer, count);
+  unzClose(zip);
+  const std::size_t begin = bytes.find('\n') + 1;
+  if (header != nullptr) *header = bytes.substr(10, begin - 10);
+  std::vector<T> values((bytes.size() - begin) / sizeof(T));
+  std::memcpy(values.data(), bytes.data() + begin, values.size() * sizeof(T));
+  return values;
+}
+
+TEST(LocalMapsCommand, FindsTheNeighboursOnAPlane) {
+  Folder folder;
+  const auto points = plane(15);
+  const std::string out = folder / "maps.npz";
+  const Outcome outcome = run({"local-maps", folder.write("plane.xyz", xyz(points)), "--radius", "0.2", "-o", out});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const auto indptr = array<std::int64_t>(out, "indptr");
+  const auto indices = array<std::int32_t>(out, "indices");
+  const auto log = array<double>(out, "log"), distance = array<double>(out, "distance"),
+             frames = array<double>(out, "frames");
+  ASSERT_EQ(indptr.size(), points.size() + 1);
+  for (std::size_t s = 0; s < points.size(); ++s) {
+    ASSERT_EQ(indices[indptr[s]], s);
+    std::size_t expected = 0;
+    for (const Vec3& q : points) expected += std::hypot(q[0] - points[s][0], q[1] - points[s][1]) < 0.2;
+    ASSERT_EQ(indptr[s + 1] - indptr[s], expected);
+    for (auto e = indptr[s]; e < indptr[s + 1]; ++e) {
+      const Vec3& q = points[indices[e]];
+      for (int c : {0, 1})  // point = source + u x + v y
+        ASSERT_NEAR(points[s][c] + log[2 * e] * frames[9 * s + c] + log[2 * e + 1] * frames[9 * s + 3 + c], q[c],
+                    1e-10);
+      ASSERT_NEAR(distance[e], std::hypot(q[0] - points[s][0], q[1] - points[s][1]), 1e-10);
+    }
+  }
+}
+
+TEST(LocalMapsCommand, PadsToAFixedCount) {
+  Folder folder;
+  const auto input = folder.write("plane.xyz", xyz(plane(12)));
+  const auto list = folder.write("rows.txt", "# rows\n5\n77\n\n30\n");
+  const std::string out = folder / "maps.npz";
+  const Outcome outcome = run({"local-maps", input, "--radius", "0.15", "--k", "20", "--pad", "--float32", "--sources",
+                               list, "-o", out, "--json", "-"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(nlohmann::json::parse(outcome.out).at("sources"), 3);
+  EXPECT_EQ(array<std::int32_t>(out, "sources"), (std::vector<std::int32_t>{5, 77, 30}));
+  std::string header;
+  const auto mask = array<std::uint8_t>(out, "mask", &header);
+  EXPECT_NE(header.find("'shape': (3, 20)"), std::string::npos) << header;
+  array<float>(out, "log", &header);
+  EXPECT_NE(header.find("'<f4'"), std::string::npos) << header;
+  EXPECT_NE(header.find("'shape': (3, 20, 2)"), std::string::npos) << header;
+  array<float>(out, "transport", &header);
+  EXPECT_NE(header.find("'<c8'"), std::string::npos) << header;
+  const auto distance = array<float>(out, "distance");
+  for (std::size_t e = 0; e < mask.size(); ++e) {
+    EXPECT_LE(distance[e], 0.15);
+    EXPECT_TRUE(mask[e] || distance[e] == 0);
+    EXPECT_TRUE(e % 20 == 0 || !mask[e] || mask[e - 1]);
+  }
+}
+
+TEST(LocalMapsCommand, RefusesNonsense) {
+  Folder folder;
+  const auto input = folder.write("plane.xyz", xyz(plane(10)));
+  const std::string out = folder / "maps.npz";
+  EXPECT_EQ(run({"local-maps", input, "-o", out}).status, 2);
+  EXPECT_EQ(run({"local-maps", input, "--radius", "0", "-o", out}).status, 2);
+  EXPECT_EQ(run({"local-maps", input, "--radius", "1", "--pad", "-o", out}).status, 2);
+  EXPECT_EQ(run({"local-maps", input, "--radius", "1", "-o", folder / "maps.csv"}).status, 1);
+  EXPECT_EQ(run({"local-maps", input, "--radius", "1", "--sources", folder / "none", "-o", out}).status, 1);
+  const Outcome beyond =
+      run({"local-maps", input, "--radius", "1", "--sources", folder.write("rows", "5\n100\n"), "-o", out});
+  EXPECT_EQ(beyond.status, 1);
+  EXPECT_NE(beyond.err.find("line 2"), std::string::npos) << beyond.err;
+  EXPECT_EQ(folder.files(), (std::vector<std::string>{"plane.xyz", "rows"}));
+}
+
+}  // namespace
+}  // namespace ahm::test
