@@ -78,15 +78,14 @@ TEST(PolygonFiles, StartInsideAFace) {
   }
 }
 
-TEST(PolygonFiles, AreNotRefinedWhereAFaceHidesASide) {
-  // A U of the plane beside the sheet, which falls into a component of its own.
-  const std::string u =
-      "v 3 0 0\nv 6 0 0\nv 6 3 0\nv 5 3 0\nv 5 1 0\nv 4 1 0\nv 4 3 0\nv 3 3 0\nf 197 198 199 200 201 202 203 204\n";
-  const auto [json, rows] = solved(quads(14, u), "0");
+TEST(PolygonFiles, AreNotRefinedWhereAFaceIsTwisted) {
+  // A crossed quad beside the sheet, which falls into a component of its own.
+  const std::string crossed = "v 3 1 0\nv 3 0 0\nv 5 1.5 0\nv 5 -1 0\nf 197 198 199 200\n";
+  const auto [json, rows] = solved(quads(14, crossed), "0");
   EXPECT_EQ(json.at("polymesh").at("discretization"), "polygons");
   Folder folder;
-  const Outcome refused = run({"logmap", folder.write("mesh.obj", quads(14, u)), "-s", "0", "-o", folder / "map.csv",
-                               "--discretization", "refined"});
+  const Outcome refused = run({"logmap", folder.write("mesh.obj", quads(14, crossed)), "-s", "0", "-o",
+                               folder / "map.csv", "--discretization", "refined"});
   EXPECT_EQ(refused.status, 1);
   EXPECT_NE(refused.err.find("--discretization polygons"), std::string::npos) << refused.err;
 }

@@ -112,11 +112,25 @@ TEST(PolygonRefinement, KeepsTrianglesAndFlatness) {
   }
 }
 
-TEST(PolygonRefinement, NamesFacesThatHideASide) {
+TEST(PolygonRefinement, CutsFacesThatHideASideAlongDiagonals) {
   const Polygons mesh = u_shapes(4);
   const auto refined = polymesh::PolygonMesh::from_faces(mesh.positions, mesh.begin, mesh.corners).refined();
-  EXPECT_EQ(refined.folded.size(), 16u);  // every U, no square
-  for (Index f : refined.folded) EXPECT_EQ(mesh.face(f).size(), 12u);
+  EXPECT_TRUE(refined.folded.empty());
+  EXPECT_EQ(refined.positions.size(), mesh.positions.size() + 16);  // virtual vertices in the squares alone
+  const auto surface = trimesh::TriangleMeshGraph::build(refined.positions, refined.triangles);
+  const LogMap map = LogMapSolver(surface.graph()).solve(surface.source_at_vertex(7));
+  for (Index i = 0; i < mesh.vertices(); ++i) {
+    const double exact = std::hypot(mesh.plane[i][0] - mesh.plane[7][0], mesh.plane[i][1] - mesh.plane[7][1]);
+    ASSERT_NEAR(map.distance(i), exact, 1e-11);
+  }
+}
+
+TEST(PolygonRefinement, NamesTwistedFaces) {
+  // Two quads side by side, the second one twisted so that its outline crosses itself.
+  const Polygons mesh{
+      {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {3, 1.5, 0}, {3, -1, 0}}, {0, 4, 8}, {0, 1, 2, 3, 2, 1, 4, 5}, {}};
+  const auto refined = polymesh::PolygonMesh::from_faces(mesh.positions, mesh.begin, mesh.corners).refined();
+  EXPECT_EQ(refined.folded, std::vector<Index>{1});
 }
 
 }  // namespace

@@ -173,7 +173,7 @@ void add_mesh_options(CLI::App& app, LogmapOptions& o) {
 void add_polygon_options(CLI::App& app, LogmapOptions& o) {
   add_parsed(app, "--discretization", o.discretization, choice({"auto", "polygons", "refined"}), "NAME",
              "polygons: every face one cell, refined: a virtual vertex in every face and intrinsic\n"
-             "triangles. auto (default): refined, or polygons where a face hides a side from its middle")
+             "triangles. auto (default): refined, or polygons where a face is twisted")
       ->group("Polygon meshes");
 }
 

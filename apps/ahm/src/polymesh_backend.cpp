@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -47,46 +48,48 @@ PolygonOptions polygon_options(const LogmapOptions& options, const Progress& pro
 class PolymeshModel final : public Model {
  public:
   PolymeshModel(const io::Geometry& input, const LogmapOptions& options, const Progress& progress)
-      : points_(input.points), polygons_(build(input, options, progress)) {
-    if (options.discretization == "polygons") return;
-    refinement_ = polygons_.mesh().refined();
-    if (!refinement_.folded.empty()) {
-      if (options.discretization == "refined")
-        throw InvalidGeometry(
-            fmt::format("{} faces hide a side from their virtual vertex, the first is face {}; use "
-                        "--discretization polygons",
-                        refinement_.folded.size(), refinement_.folded.front()));
-      warnings_.push_back(fmt::format("{} faces hide a side from their virtual vertex, so the polygons are not refined",
-                                      refinement_.folded.size()));
+      : input_(input), mesh_(check(input, options)) {
+    if (options.discretization != "polygons") refinement_ = mesh_.refined();
+    if (options.discretization == "polygons" || (options.discretization == "auto" && !refinement_.folded.empty())) {
+      polygons_.emplace(PolygonMeshGraph::build(mesh_, polygon_options(options, progress)));
+      warnings_ = polygons_->report().warnings;
+      if (!refinement_.folded.empty()) warnings_.push_back(twisted() + ", so the polygons are not refined");
       return;
     }
+    if (!refinement_.folded.empty()) throw InvalidGeometry(twisted() + "; use --discretization polygons");
     trimesh::MeshOptions mesh_options;
     mesh_options.intrinsic_delaunay = options.flips;
     mesh_options.threads = options.threads;
     mesh_options.progress = progress;
     triangles_.emplace(TriangleMeshGraph::build(refinement_.positions, refinement_.triangles, mesh_options));
+    warnings_ = polymesh::topology_warnings(mesh_.report());
+    for (const std::string& warning : triangles_->report().warnings)
+      if (warning.find("components") == std::string::npos && warning.find("orientable") == std::string::npos)
+        warnings_.push_back(warning);
   }
 
-  const TangentGraph& graph() const override { return triangles_ ? triangles_->graph() : polygons_.graph(); }
+  const TangentGraph& graph() const override { return triangles_ ? triangles_->graph() : polygons_->graph(); }
 
   ResolvedSource source(const SourceSpec& spec, const std::optional<Vec3>& u_axis) const override try {
     if (const auto* face = std::get_if<SourceFace>(&spec)) return source_in_face(*face, u_axis);
     const auto* position = std::get_if<SourcePosition>(&spec);
-    const Index row = position ? nearest_row(points_, polygons_.mesh().vertex_of_input(), position->position)
+    const Index row = position ? nearest_row(input_.points, mesh_.vertex_of_input(), position->position)
                                : std::get<SourceVertex>(spec).index;
-    const Index vertex = polygons_.vertex(row);
+    const Index vertex = mesh_.vertex_of_input()[at(row)];
+    if (vertex < 0) throw InvalidArgument(fmt::format("vertex {} is used by no face; choose another", row));
     const Frame frame = *graph().frame(vertex);
-    ResolvedSource result{Source::at_vertex(vertex), row, points_[at(row)], u_axis ? turned(frame, *u_axis) : frame};
+    ResolvedSource result{Source::at_vertex(vertex), row, input_.points[at(row)],
+                          u_axis ? turned(frame, *u_axis) : frame};
     if (u_axis)
       result.source =
-          triangles_ ? triangles_->source_at_vertex(vertex, *u_axis) : polygons_.source_at_vertex(row, *u_axis);
+          triangles_ ? triangles_->source_at_vertex(vertex, *u_axis) : polygons_->source_at_vertex(row, *u_axis);
     return result;
   } catch (const InvalidArgument& e) {
     throw InvalidArgument(fmt::format("--source {}: {}", to_string(spec), e.what()));
   }
 
   std::vector<RowVertex> row_vertices() const override {
-    const auto rows = polygons_.mesh().input_of_vertex();
+    const auto rows = mesh_.input_of_vertex();
     std::vector<RowVertex> result;
     for (std::size_t v = 0; v < rows.size(); ++v) result.push_back({rows[v], static_cast<Index>(v)});
     return result;
@@ -94,37 +97,47 @@ class PolymeshModel final : public Model {
 
   std::vector<Vec3> normals() const override {
     const double nan = std::numeric_limits<double>::quiet_NaN();
-    std::vector<Vec3> result(points_.size(), Vec3{nan, nan, nan});
-    const auto vertices = polygons_.mesh().vertex_of_input();
+    std::vector<Vec3> result(input_.points.size(), Vec3{nan, nan, nan});
+    const auto vertices = mesh_.vertex_of_input();
     for (std::size_t i = 0; i < result.size(); ++i)
-      if (vertices[i] >= 0) result[i] = polygons_.graph().frame(vertices[i])->normal;
+      if (vertices[i] >= 0) result[i] = graph().frame(vertices[i])->normal;
     return result;
   }
 
   nlohmann::ordered_json report() const override;
-  std::vector<std::string> warnings() const override {
-    std::vector<std::string> result = polygons_.report().warnings;
-    result.insert(result.end(), warnings_.begin(), warnings_.end());
-    return result;
-  }
+  std::vector<std::string> warnings() const override { return warnings_; }
 
  private:
-  static PolygonMeshGraph build(const io::Geometry& input, const LogmapOptions& options, const Progress& progress) {
+  static PolygonMesh check(const io::Geometry& input, const LogmapOptions& options) {
     check_mesh_input("polymesh", input, options);
     try {
-      return PolygonMeshGraph::build(input.points, input.face_begin, input.face_vertices,
-                                     polygon_options(options, progress));
+      return PolygonMesh::from_faces(input.points, input.face_begin, input.face_vertices,
+                                     polygon_options(options, {}).non_manifold);
     } catch (const InvalidGeometry& e) {
       throw InvalidGeometry(in_terms_of_the_program(e.what()));
     }
   }
 
+  std::string twisted() const {
+    return fmt::format("{} faces are twisted, the first is face {}", refinement_.folded.size(),
+                       refinement_.folded.front());
+  }
+
   ResolvedSource source_in_face(const SourceFace& spec, const std::optional<Vec3>& u_axis) const {
-    const Frame frame = polygons_.frame_at_face(spec.face, spec.weights);
-    ResolvedSource result{Source(2), std::nullopt, frame.origin, u_axis ? turned(frame, *u_axis) : frame};
-    const Vec3 u = u_axis ? *u_axis : frame.x;
-    result.source = triangles_ ? triangles_->source_at(locate(spec.face, frame.origin), u)
-                               : polygons_.source_at_face(spec.face, spec.weights, u);
+    if (polygons_) {
+      const Frame frame = polygons_->frame_at_face(spec.face, spec.weights);
+      return {polygons_->source_at_face(spec.face, spec.weights, u_axis ? *u_axis : frame.x), std::nullopt,
+              frame.origin, u_axis ? turned(frame, *u_axis) : frame};
+    }
+    const auto corners = input_.face(at(spec.face));
+    Vec3 position{0, 0, 0};
+    for (std::size_t c = 0; c < corners.size(); ++c)
+      for (int a = 0; a < 3; ++a) position[a] += spec.weights[c] * input_.points[at(corners[c])][a];
+    const trimesh::SurfacePoint point = locate(spec.face, position);
+    const Vec3 u = u_axis ? *u_axis : minus(input_.points[at(corners[1])], input_.points[at(corners[0])]);
+    const std::optional<Frame> frame = triangles_->frame_at(point);
+    ResolvedSource result{triangles_->source_at(point, u), std::nullopt, position, frame};
+    if (frame) result.frame = turned(*frame, u);
     return result;
   }
 
@@ -147,38 +160,43 @@ class PolymeshModel final : public Model {
     return best;
   }
 
-  const std::vector<Vec3>& points_;
-  PolygonMeshGraph polygons_;
+  const io::Geometry& input_;
+  PolygonMesh mesh_;
   polymesh::Refinement refinement_;
-  std::optional<TriangleMeshGraph> triangles_;
+  std::optional<PolygonMeshGraph> polygons_;
+  std::optional<TriangleMeshGraph> triangles_;  ///< either this or the one above
   std::vector<std::string> warnings_;
 };
 
 nlohmann::ordered_json PolymeshModel::report() const {
-  const polymesh::PolygonReport& r = polygons_.report();
+  const TopologyReport& t = mesh_.report();
   nlohmann::ordered_json j;
   j["discretization"] = triangles_ ? "refined" : "polygons";
-  j["vertices"] = r.vertices;
-  j["faces"] = r.topology.faces;
-  j["triangles"] = r.triangles;
-  j["largest_face"] = r.largest_face;
-  j["nonplanar_faces"] = r.nonplanar_faces;
-  j["degenerate_faces"] = r.degenerate_faces;
-  j["negative_weights"] = triangles_ ? 0 : r.negative_weights;
-  j["components"] = r.topology.components;
-  j["boundary_loops"] = r.topology.boundary_loops;
-  j["orientable"] = r.topology.orientable;
-  j["reoriented"] = r.topology.reoriented;
-  j["unreferenced"] = r.topology.unreferenced;
-  j["non_manifold_edges"] = r.topology.non_manifold_edges;
-  j["non_manifold_vertices"] = r.topology.non_manifold_vertices;
-  j["seconds"] = {{"checks", r.seconds_checks}, {"graph", r.seconds_graph}};
+  j["vertices"] = mesh_.vertex_count();
+  j["faces"] = t.faces;
+  Offset largest = 0;
+  for (Index f = 0; f < mesh_.face_count(); ++f)
+    largest = std::max(largest, mesh_.face_begin()[at(f) + 1] - mesh_.face_begin()[at(f)]);
+  j["largest_face"] = largest;
+  j["components"] = t.components;
+  j["boundary_loops"] = t.boundary_loops;
+  j["orientable"] = t.orientable;
+  j["reoriented"] = t.reoriented;
+  j["unreferenced"] = t.unreferenced;
+  j["non_manifold_edges"] = t.non_manifold_edges;
+  j["non_manifold_vertices"] = t.non_manifold_vertices;
   if (triangles_) {
-    j["virtual_vertices"] = triangles_->report().vertices - r.vertices;
-    j["flips"] = triangles_->report().flips;
-    j["mollification"] = triangles_->report().mollification;
-    j["seconds"]["triangles"] = triangles_->report().seconds_checks + triangles_->report().seconds_delaunay +
-                                triangles_->report().seconds_graph;
+    const trimesh::MeshReport& r = triangles_->report();
+    j["virtual_vertices"] = r.vertices - mesh_.vertex_count();
+    j["flips"] = r.flips;
+    j["mollification"] = r.mollification;
+    j["seconds"] = {{"checks", r.seconds_checks}, {"delaunay", r.seconds_delaunay}, {"graph", r.seconds_graph}};
+  } else {
+    const polymesh::PolygonReport& r = polygons_->report();
+    j["nonplanar_faces"] = r.nonplanar_faces;
+    j["degenerate_faces"] = r.degenerate_faces;
+    j["negative_weights"] = r.negative_weights;
+    j["seconds"] = {{"graph", r.seconds_graph}};
   }
   return j;
 }

@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace ahm::polymesh {
 namespace {
@@ -85,6 +86,48 @@ bool Polygon::folds() const {
     const Vector3d of_triangle = 0.5 * (corner_[c] - middle_).cross(corner_[(c + 1) % size()] - middle_);
     if (of_triangle.dot(area) < -1e-9 * area.squaredNorm()) return true;
   }
+  return false;
+}
+
+bool Polygon::cut_ears(std::vector<std::array<std::size_t, 3>>& triangles) const {
+  const Vector3d area = vector_area();
+  if (!(area.norm() > 0)) return false;
+  const Vector3d normal = area.normalized(), x = normal.unitOrthogonal(), y = normal.cross(x);
+  std::vector<Eigen::Vector2d> seen;
+  for (const Vector3d& c : corner_) seen.emplace_back(x.dot(c), y.dot(c));
+  auto turn = [&](std::size_t a, std::size_t b, std::size_t c) {
+    const Eigen::Vector2d u = seen[b] - seen[a], v = seen[c] - seen[b];
+    return u[0] * v[1] - u[1] * v[0];
+  };
+  std::vector<std::size_t> left(size());
+  std::iota(left.begin(), left.end(), std::size_t{0});
+  const std::size_t before = triangles.size();
+  while (left.size() > 3) {
+    // The roundest ear, so that straight corners wait for a better triangle.
+    std::size_t best = left.size();
+    double most = 0;
+    for (std::size_t k = 0; k < left.size(); ++k) {
+      const std::size_t a = left[(k + left.size() - 1) % left.size()], b = left[k], c = left[(k + 1) % left.size()];
+      const double sides =
+          (seen[b] - seen[a]).squaredNorm() + (seen[c] - seen[b]).squaredNorm() + (seen[a] - seen[c]).squaredNorm();
+      const double roundness = turn(a, b, c) / sides;
+      if (!(roundness > std::max(most, 1e-12))) continue;
+      const bool empty = std::none_of(left.begin(), left.end(), [&](std::size_t p) {
+        return p != a && p != b && p != c && turn(a, b, p) >= 0 && turn(b, c, p) >= 0 && turn(c, a, p) >= 0;
+      });
+      if (!empty) continue;
+      most = roundness;
+      best = k;
+    }
+    if (best == left.size()) break;
+    triangles.push_back({left[(best + left.size() - 1) % left.size()], left[best], left[(best + 1) % left.size()]});
+    left.erase(left.begin() + static_cast<std::ptrdiff_t>(best));
+  }
+  if (left.size() == 3 && turn(left[0], left[1], left[2]) > 0) {
+    triangles.push_back({left[0], left[1], left[2]});
+    return true;
+  }
+  triangles.resize(before);
   return false;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <span>
 #include <vector>
 
@@ -26,13 +27,16 @@ class Polygon {
   Eigen::Vector3d vector_area() const;
   /// Whether a triangle about p faces away from the vector area.
   bool folds() const;
+  /// Appends the triangles of the polygon seen along its vector area, cut off ear by ear, as places of corners. Returns
+  /// false, and appends nothing, where the outline seen crosses itself.
+  bool cut_ears(std::vector<std::array<std::size_t, 3>>& triangles) const;
   /// sum w_c x_c of other positions of the corners.
   Vec3 blend(std::span<const Vec3> positions, std::span<const Index> corners) const;
 
   /// Stiffness of the triangles around p restricted to functions with u(p) = sum w_c u_c (BHKB20 Eq. 11): writes the
   /// m x m weights -K_cd, row major, 0 on the diagonal.
   void stiffness(double* weights);
-  /// Lumped mass of the same: row sums. Where the share of p would make one negative, it is left out.
+  /// Lumped mass of the same: row sums, but at least half of what the triangles at the corner give without p.
   void mass(double* masses) const;
 
  private:

@@ -6,6 +6,7 @@
 #include <limits>
 #include <string>
 
+#include "ahm/cost.hpp"
 #include "ahm/detail/parallel.hpp"
 #include "ahm/error.hpp"
 #include "polygon.hpp"
@@ -25,6 +26,7 @@ class FaceMatrices {
       const auto m = static_cast<Offset>(mesh.face(f).size());
       begin_.push_back(begin_.back() + m * m);
     }
+    check_memory();
     weights_.resize(static_cast<std::size_t>(begin_.back()));
     masses_.resize(mesh.corners().size());
     shape_.resize(static_cast<std::size_t>(mesh.face_count()));
@@ -60,6 +62,15 @@ class FaceMatrices {
   }
 
  private:
+  /// The number of edges grows with the square of a face's corners: better said than swapped for.
+  void check_memory() const {
+    const double bytes = 64.0 * static_cast<double>(begin_.back()), memory = machine_memory();
+    if (memory > 0 && bytes > memory)
+      throw ResourceExhausted("every pair of corners of a face is an edge, which would take " +
+                              std::to_string(static_cast<long>(bytes / 1e9)) +
+                              " GB for this mesh; refine it (PolygonMesh::refined) and map the triangles");
+  }
+
   enum class Shape : std::uint8_t { plain, nonplanar, degenerate };
 
   void fill(Polygon& polygon, Index f) {

@@ -33,6 +33,22 @@ struct PolygonMesh::Sides {
   Half across_head(Half h) const { return is_mirrored(h) ? next(twin[h]) : twin[h]; }
 };
 
+std::vector<std::string> topology_warnings(const TopologyReport& t) {
+  std::vector<std::string> warnings;
+  auto warn = [&](auto count, const std::string& text) {
+    if (count > 0) warnings.push_back(std::to_string(count) + text);
+  };
+  warn(t.unreferenced, " vertices are used by no face and were left out");
+  warn(t.reoriented, " faces were turned over to orient the mesh consistently");
+  warn(t.non_manifold_edges, " edges with more than two faces were cut");
+  warn(t.non_manifold_vertices, " additional vertices were made where several fans of faces met");
+  if (!t.orientable) warnings.push_back("the mesh is not orientable; it is solved with reflections");
+  if (t.components > 1)
+    warnings.push_back("the mesh falls into " + std::to_string(t.components) +
+                       " components; a map covers those that hold its source");
+  return warnings;
+}
+
 PolygonMesh PolygonMesh::from_faces(std::span<const Vec3> positions, std::span<const Offset> face_begin,
                                     std::span<const Index> face_vertices, NonManifold non_manifold) {
   detail::check_positions(positions);
@@ -170,17 +186,24 @@ Refinement PolygonMesh::refined() const {
   result.positions = original_;
   result.face_begin.push_back(0);
   Polygon polygon;
+  std::vector<std::array<std::size_t, 3>> ears;
   for (Index f = 0; f < face_count(); ++f) {
     const auto corners = face(f);
     if (corners.size() == 3) {
       result.triangles.push_back({corners[0], corners[1], corners[2]});
     } else {
       polygon.read(*this, f);
-      const auto middle = static_cast<Index>(result.positions.size());
-      result.positions.push_back(polygon.blend(original_, corners));
-      if (polygon.folds()) result.folded.push_back(f);
-      for (std::size_t s = 0; s < corners.size(); ++s)
-        result.triangles.push_back({corners[s], corners[(s + 1) % corners.size()], middle});
+      ears.clear();
+      const bool folds = polygon.folds();
+      if (folds && polygon.cut_ears(ears)) {
+        for (const auto& [a, b, c] : ears) result.triangles.push_back({corners[a], corners[b], corners[c]});
+      } else {
+        if (folds) result.folded.push_back(f);
+        const auto middle = static_cast<Index>(result.positions.size());
+        result.positions.push_back(polygon.blend(original_, corners));
+        for (std::size_t s = 0; s < corners.size(); ++s)
+          result.triangles.push_back({corners[s], corners[(s + 1) % corners.size()], middle});
+      }
     }
     result.face_begin.push_back(static_cast<Offset>(result.triangles.size()));
   }

@@ -38,18 +38,10 @@ Complex direction_in(const Axes& axes, const Vec3& direction, const std::string&
 }
 
 void add_warnings(PolygonReport& report, bool clamped) {
-  const TopologyReport& t = report.topology;
+  report.warnings = topology_warnings(report.topology);
   auto warn = [&](auto count, const std::string& text) {
     if (count > 0) report.warnings.push_back(std::to_string(count) + text);
   };
-  warn(t.unreferenced, " vertices are used by no face and were left out");
-  warn(t.reoriented, " faces were turned over to orient the mesh consistently");
-  warn(t.non_manifold_edges, " edges with more than two faces were cut");
-  warn(t.non_manifold_vertices, " additional vertices were made where several fans of faces met");
-  if (!t.orientable) report.warnings.push_back("the mesh is not orientable; it is solved with reflections");
-  if (t.components > 1)
-    report.warnings.push_back("the mesh falls into " + std::to_string(t.components) +
-                              " components; a map covers those that hold its source");
   warn(report.degenerate_faces, " faces have almost no area");
   if (!clamped)
     warn(report.negative_weights, " edges have negative weights; far from the source heat may lose its sign");

@@ -12,6 +12,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "ahm/mesh_topology.hpp"
@@ -20,15 +21,19 @@
 namespace ahm::polymesh {
 
 /// A polygon mesh cut into triangles: every face of more than three corners gets a virtual vertex, the point that
-/// minimises the sum of the squared areas of the triangles around it (BHKB20, Sec. 4).
+/// minimises the sum of the squared areas of the triangles around it (BHKB20, Sec. 4). A face that hides one of its sides
+/// from there, such as a U, is cut along diagonals instead.
 struct Refinement {
   std::vector<Vec3> positions;                  ///< of the mesh's vertices, then of the virtual ones
-  std::vector<std::array<Index, 3>> triangles;  ///< (corner, next corner, virtual vertex), or the face itself
+  std::vector<std::array<Index, 3>> triangles;  ///< (corner, next corner, virtual vertex), or three corners
   std::vector<Offset> face_begin;               ///< faces + 1: the triangles of each face
-  /// Faces that hide one of their sides from the virtual vertex (U shapes, twisted ones): their triangles overlap, so
-  /// that the refinement is not the surface that was given. Empty for convex faces.
+  /// Faces that neither show all their sides to their virtual vertex nor have an outline free of crossings seen along
+  /// their vector area (twisted ones): their triangles overlap, and the refinement is not the surface that was given.
   std::vector<Index> folded;
 };
+
+/// What a user should know about a checked mesh, one sentence each.
+std::vector<std::string> topology_warnings(const TopologyReport& report);
 
 /// An immutable polygon mesh, consistently oriented where that is possible.
 ///
