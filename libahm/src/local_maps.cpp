@@ -159,7 +159,7 @@ class Worker {
     const double unit = graph_.length_unit(), sqrt_tau = std::sqrt(options_.t_coef) * graph_.mean_edge_length();
     const double reach = options_.radius / unit + options_.margin * sqrt_tau;  // graph units
     for (double detour = usual_detour; detour < largest_detour; detour *= 1.3)
-      if (solve(members, detour * reach, 0.5 * (options_.radius + reach * unit), result)) return;
+      if (solve(members, detour * reach, reach * unit, result)) return;
     solve(members, largest_detour * reach, 0, result);
   }
 

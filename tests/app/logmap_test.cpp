@@ -103,12 +103,25 @@ TEST(Logmap, MarksWhatLiesBeyondTheRadius) {
   Folder folder;
   const auto points = plane(30);
   const auto input = folder.write("plane.xyz", xyz(points));
-  ASSERT_EQ(run({"logmap", input, "--source", "0", "-o", folder / "map.csv", "--radius", "0.3"}).status, 0);
-  for (const Row& row : read_csv(folder / "map.csv")) {
-    const double exact = std::hypot(row.position[0] - points[0][0], row.position[1] - points[0][1]);
-    EXPECT_EQ(row.status, exact > 0.3 ? "radius" : "ok");
-    EXPECT_EQ(std::isnan(row.u), exact > 0.3);
+  for (const std::vector<std::string>& more : {std::vector<std::string>{}, {"--local"}}) {
+    std::vector<std::string> words{"logmap", input, "--source", "0", "-o", folder / "map.csv", "--radius", "0.3"};
+    words.insert(words.end(), more.begin(), more.end());
+    ASSERT_EQ(run(words).status, 0);
+    for (const Row& row : read_csv(folder / "map.csv")) {
+      const double exact = std::hypot(row.position[0] - points[0][0], row.position[1] - points[0][1]);
+      EXPECT_EQ(row.status, exact > 0.3 ? "radius" : "ok");
+      EXPECT_EQ(std::isnan(row.u), exact > 0.3);
+      EXPECT_TRUE(row.status != "ok" || std::abs(row.distance - exact) < 1e-10);
+    }
   }
+}
+
+TEST(Logmap, NeedsARadiusToBeLocal) {
+  Folder folder;
+  const Outcome outcome =
+      run({"logmap", folder.write("plane.xyz", xyz(plane(10))), "-s", "0", "-o", folder / "map.csv", "--local"});
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_NE(outcome.err.find("--radius"), std::string::npos) << outcome.err;
 }
 
 TEST(Logmap, EverySearchGivesTheSameMap) {

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "ahm/error.hpp"
+#include "ahm/pointcloud/surroundings.hpp"
 #ifdef AHM_WITH_PCL
 #include "ahm/pcl/filters.hpp"
 #endif
@@ -22,9 +23,11 @@ std::string list_first(const std::vector<Index>& indices) {
                      indices.size() > shown ? ", ..." : "");
 }
 
-#ifdef AHM_WITH_PCL
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
+double distance(const Vec3& a, const Vec3& b) { return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]); }
+
+#ifdef AHM_WITH_PCL
 /// Keeps the listed points (indices into `cloud`, ascending).
 void keep(PreparedCloud& cloud, const std::vector<Index>& kept) {
   for (std::size_t i = 0; i < kept.size(); ++i) {  // kept[i] >= i: in place
@@ -63,6 +66,26 @@ void require_normals(const io::Geometry& input, const LogmapOptions& options) {
   if (input.normals.empty() && (options.normals == "oriented" || options.normals == "unoriented"))
     throw InvalidArgument(fmt::format("--normals {}: {} has no normals; leave the option out to estimate them",
                                       options.normals, options.input));
+}
+
+/// Keeps what lies within one and a half radii of the source, or of the point nearest to it.
+void keep_surroundings(PreparedCloud& cloud, const io::Geometry& input, const LogmapOptions& options,
+                       std::optional<Index> source) {
+  if (!options.radius) throw InvalidArgument("--local needs --radius");
+  Vec3 center{};
+  if (source) {
+    center = input.points[at(*source)];
+  } else if (const auto* wanted = std::get_if<SourcePosition>(&options.source); wanted && !cloud.points.empty()) {
+    center = *std::min_element(cloud.points.begin(), cloud.points.end(), [&](const Vec3& a, const Vec3& b) {
+      return distance(a, wanted->position) < distance(b, wanted->position);
+    });
+  }
+  pointcloud::Surroundings near = pointcloud::surroundings(cloud.points, cloud.normals, center, 1.5 * *options.radius);
+  cloud.beyond = static_cast<Index>(cloud.points.size() - near.points.size());
+  for (Index& row : near.index) row = cloud.input_row[at(row)];
+  cloud.points = std::move(near.points);
+  cloud.normals = std::move(near.normals);
+  cloud.input_row = std::move(near.index);
 }
 
 #ifdef AHM_WITH_PCL
@@ -105,6 +128,7 @@ PreparedCloud prepare_cloud(const io::Geometry& input, const LogmapOptions& opti
 #endif
   PreparedCloud cloud = finite_points(input, options);
   require_normals(input, options);
+  if (options.local) keep_surroundings(cloud, input, options, source);
 #ifdef AHM_WITH_PCL
   if (options.voxel) apply_voxel_grid(cloud, *options.voxel, source);
   if (options.outliers) apply_outlier_removal(cloud, source);

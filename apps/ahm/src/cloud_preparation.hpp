@@ -19,10 +19,11 @@ struct PreparedCloud {
   Index non_finite = 0;          ///< input points dropped
   Index voxel_replaced = 0;      ///< points represented by another one of their voxel
   Index outliers = 0;            ///< points removed as outliers
+  Index beyond = 0;              ///< points left out by --local
   double seconds = 0;
 };
 
-/// Applies the options of `ahm logmap` that concern the input cloud, in the order non-finite, voxel grid, outliers.
+/// Applies the options of `ahm logmap` that concern the input cloud, in the order non-finite, surroundings, voxel grid, outliers.
 /// @param source  the input row that must remain: it represents its voxel. Not an outlier, or the call is refused
 /// @throws InvalidGeometry (non-finite points without --drop-nan; unusable normals), InvalidArgument
 PreparedCloud prepare_cloud(const io::Geometry& input, const LogmapOptions& options, std::optional<Index> source);

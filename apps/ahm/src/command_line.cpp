@@ -151,6 +151,10 @@ void add_cloud_options(CLI::App& app, LogmapOptions& o) {
   const char* group = "Point clouds";
   add_parsed(app, "--voxel", o.voxel, parse_positive, "SIZE", "Keep one point per cube of this edge length first")
       ->group(group);
+  app.add_flag("--local", o.local,
+               "With --radius: build the graph of the surroundings of the source only, fast on huge scans;\n"
+               "the diffusion time is then that of the surroundings")
+      ->group(group);
   app.add_flag("--outliers", o.outliers, "Remove statistical outliers first")->group(group);
   add_drop_nan(app, o)->group(group);
   add_parsed(app, "--k", o.k, integer_parser(3), "N", "Neighbours per point, at least 3 (default 30)")->group(group);

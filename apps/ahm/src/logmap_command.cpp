@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "ahm/cost.hpp"
 #include "ahm/error.hpp"
 #include "ahm/io/write.hpp"
 #include "ahm/log_map_solver.hpp"
@@ -56,6 +57,12 @@ void comment_on_statuses(const MapRows& rows, const std::string& input, Journal&
         fmt::format("no heat reaches {} vertices: with --strategy global they are too far away (the "
                     "march has no such limit), else the weights around them are too bad",
                     unreached));
+}
+
+/// What was left out because it is farther than the radius in a straight line already.
+void mark_beyond(const std::vector<Vec3>& points, const Vec3& source, double radius, MapRows& rows) {
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (rows.status[i] == Status::removed && distance(points[i], source) > radius) rows.status[i] = Status::radius;
 }
 
 void write_view(const LogmapOptions& options, const io::Geometry& input, const ResolvedSource& source,
@@ -115,7 +122,21 @@ void write_results(const LogmapOptions& options, const io::Geometry& input, cons
   journal.clear_display();
 }
 
+/// Better refused than swapped for.
+void check_memory(const LogmapOptions& options, const TangentGraph& graph) {
+  if (options.strategy != Strategy::global) return;
+  const GraphSize size{graph.size(), graph.dimension(), graph.transport_kind()};
+  const double factors = options.order == 1 ? 1 : 3;
+  const double wanted = factors * estimate_cost(size, Strategy::global).bytes, memory = machine_memory();
+  if (memory > 0 && wanted > memory)
+    throw ResourceExhausted(fmt::format(
+        "--strategy global: the factors would take about {}, this machine has {}; leave the choice to auto, which "
+        "marches",
+        bytes_as_text(static_cast<std::int64_t>(wanted)), bytes_as_text(static_cast<std::int64_t>(memory))));
+}
+
 LogMapSolver factor(const LogmapOptions& options, const Model& model, Journal& journal) {
+  check_memory(options, model.graph());
   journal.start("factor");
   OperatorOptions operator_options;
   operator_options.t_coef = options.t_coef;
@@ -162,7 +183,8 @@ void run_logmap(const LogmapOptions& options) {
 
   const LogMapSolver solver = factor(options, *model, journal);
   const LogMap map = solve(options, solver, source.source, journal);
-  const MapRows rows = rows_of(map, *model, input.points.size());
+  MapRows rows = rows_of(map, *model, input.points.size());
+  if (options.local) mark_beyond(input.points, source.position, *options.radius, rows);
   comment_on_statuses(rows, options.input, journal);
   Written written;
   write_results(options, input, *model, source, rows, written, journal);

@@ -13,9 +13,10 @@ void check_mesh_input(const std::string& backend, const io::Geometry& input, con
   if (input.face_count() == 0)
     throw InvalidArgument(
         fmt::format("--backend {}: the input has no faces; --backend pointcloud maps its points", backend));
-  if (options.voxel || options.outliers || options.drop_nan)
+  if (options.voxel || options.outliers || options.drop_nan || options.local)
     throw InvalidArgument(
-        "--voxel, --outliers and --drop-nan are for point clouds; add --backend pointcloud to map the vertices as one");
+        "--voxel, --outliers, --drop-nan and --local are for point clouds; add --backend pointcloud to map the "
+        "vertices as one");
   const auto within = [&](Index index, std::size_t count, const char* what) {
     if (static_cast<std::size_t>(index) >= count)
       throw InvalidArgument(

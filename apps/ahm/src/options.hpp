@@ -21,6 +21,7 @@ struct LogmapOptions {
   std::string backend = "auto";  ///< auto, trimesh, polymesh, pointcloud
   double t_coef = 1.0;
   std::optional<double> radius;
+  bool local = false;  ///< build the graph of a cloud around the source only; needs `radius`
   Ordering ordering = Ordering::amd;
   Strategy strategy = Strategy::automatic;
   int order = 1;

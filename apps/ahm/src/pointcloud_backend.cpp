@@ -142,6 +142,7 @@ nlohmann::ordered_json PointcloudModel::report() const {
   j["non_finite"] = prepared_.non_finite;
   j["voxel_replaced"] = prepared_.voxel_replaced;
   j["outliers"] = prepared_.outliers;
+  j["beyond"] = prepared_.beyond;
   j["duplicates"] = r.duplicates;
   j["degenerate"] = r.degenerate;
   j["k"] = r.k;
