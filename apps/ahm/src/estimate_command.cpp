@@ -21,8 +21,8 @@ struct GraphCost {
 };
 
 GraphCost graph_cost(const std::string& backend) {
-  if (backend == "pointcloud") return {1800, 1.3e-5};
-  return {1000, 4e-6};
+  if (backend == "pointcloud") return {800, 5.5e-6};
+  return {800, 3e-6};
 }
 
 struct Estimate {
