@@ -79,8 +79,8 @@ TEST(PolygonFiles, StartInsideAFace) {
 }
 
 TEST(PolygonFiles, AreNotRefinedWhereAFaceIsTwisted) {
-  // A crossed quad beside the sheet, which falls into a component of its own.
-  const std::string crossed = "v 3 1 0\nv 3 0 0\nv 5 1.5 0\nv 5 -1 0\nf 197 198 199 200\n";
+  // A crossed pentagon beside the sheet, which falls into a component of its own.
+  const std::string crossed = "v 3 1 0\nv 3 0 0\nv 5 1.5 0\nv 5 -1 0\nv 4 -0.5 0\nf 197 198 199 200 201\n";
   const auto [json, rows] = solved(quads(14, crossed), "0");
   EXPECT_EQ(json.at("polymesh").at("discretization"), "polygons");
   Folder folder;

@@ -125,12 +125,19 @@ TEST(PolygonRefinement, CutsFacesThatHideASideAlongDiagonals) {
   }
 }
 
-TEST(PolygonRefinement, NamesTwistedFaces) {
-  // Two quads side by side, the second one twisted so that its outline crosses itself.
-  const Polygons mesh{
-      {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {3, 1.5, 0}, {3, -1, 0}}, {0, 4, 8}, {0, 1, 2, 3, 2, 1, 4, 5}, {}};
+TEST(PolygonRefinement, NamesTwistedFacesAndBendsTwistedQuads) {
+  // A square, and beside it a pentagon or a quad whose outline crosses itself.
+  Polygons mesh{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {3, 1.5, 0}, {3, -1, 0}, {2, -0.5, 0}},
+                {0, 4, 9},
+                {0, 1, 2, 3, 2, 1, 4, 5, 6},
+                {}};
+  EXPECT_EQ(polymesh::PolygonMesh::from_faces(mesh.positions, mesh.begin, mesh.corners).refined().folded,
+            std::vector<Index>{1});
+  mesh.corners.pop_back();
+  --mesh.begin.back();
   const auto refined = polymesh::PolygonMesh::from_faces(mesh.positions, mesh.begin, mesh.corners).refined();
-  EXPECT_EQ(refined.folded, std::vector<Index>{1});
+  EXPECT_TRUE(refined.folded.empty());
+  EXPECT_EQ(refined.triangles.size(), 6u);
 }
 
 }  // namespace

@@ -91,8 +91,8 @@ bool Polygon::folds() const {
 
 bool Polygon::cut_ears(std::vector<std::array<std::size_t, 3>>& triangles) const {
   const Vector3d area = vector_area();
-  if (!(area.norm() > 0)) return false;
-  const Vector3d normal = area.normalized(), x = normal.unitOrthogonal(), y = normal.cross(x);
+  const Vector3d normal = area.norm() > 0 ? Vector3d(area.normalized()) : Vector3d(0, 0, 1);
+  const Vector3d x = normal.unitOrthogonal(), y = normal.cross(x);
   std::vector<Eigen::Vector2d> seen;
   for (const Vector3d& c : corner_) seen.emplace_back(x.dot(c), y.dot(c));
   auto turn = [&](std::size_t a, std::size_t b, std::size_t c) {
@@ -128,7 +128,16 @@ bool Polygon::cut_ears(std::vector<std::array<std::size_t, 3>>& triangles) const
     return true;
   }
   triangles.resize(before);
-  return false;
+  if (size() != 4) return false;
+  // A twisted quad is a bent one: along the diagonal that leaves less area.
+  auto area_of = [&](std::size_t a, std::size_t b, std::size_t c) {
+    return (corner_[b] - corner_[a]).cross(corner_[c] - corner_[a]).norm();
+  };
+  if (area_of(0, 1, 2) + area_of(0, 2, 3) <= area_of(0, 1, 3) + area_of(1, 2, 3))
+    triangles.insert(triangles.end(), {{0, 1, 2}, {0, 2, 3}});
+  else
+    triangles.insert(triangles.end(), {{0, 1, 3}, {1, 2, 3}});
+  return true;
 }
 
 Vec3 Polygon::blend(std::span<const Vec3> positions, std::span<const Index> corners) const {

@@ -27,8 +27,8 @@ class Polygon {
   Eigen::Vector3d vector_area() const;
   /// Whether a triangle about p faces away from the vector area.
   bool folds() const;
-  /// Appends the triangles of the polygon seen along its vector area, cut off ear by ear, as places of corners. Returns
-  /// false, and appends nothing, where the outline seen crosses itself.
+  /// Appends the triangles of the polygon seen along its vector area, cut off ear by ear, as places of corners. Where the
+  /// outline seen crosses itself, a quad is cut along a diagonal; for others, returns false and appends nothing.
   bool cut_ears(std::vector<std::array<std::size_t, 3>>& triangles) const;
   /// sum w_c x_c of other positions of the corners.
   Vec3 blend(std::span<const Vec3> positions, std::span<const Index> corners) const;

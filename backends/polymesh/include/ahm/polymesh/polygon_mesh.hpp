@@ -27,8 +27,8 @@ struct Refinement {
   std::vector<Vec3> positions;                  ///< of the mesh's vertices, then of the virtual ones
   std::vector<std::array<Index, 3>> triangles;  ///< (corner, next corner, virtual vertex), or three corners
   std::vector<Offset> face_begin;               ///< faces + 1: the triangles of each face
-  /// Faces that neither show all their sides to their virtual vertex nor have an outline free of crossings seen along
-  /// their vector area (twisted ones): their triangles overlap, and the refinement is not the surface that was given.
+  /// Faces of more than four corners that neither show all their sides to their virtual vertex nor have an outline free
+  /// of crossings seen along their vector area (twisted ones): their triangles overlap, and the refinement is not the surface that was given.
   std::vector<Index> folded;
 };
 
