@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <functional>
+#include <numbers>
 #include <stdexcept>
 
 #include "numbers.hpp"
@@ -245,6 +246,60 @@ CLI::App& add_local_maps(CLI::App& app, LocalMapsOptions& o) {
   return local;
 }
 
+constexpr const char* coverage_footer =
+    "SPEC is 123, x,y,z or face:7:.2,.3,.5 as in 'ahm logmap'.\n"
+    "OUTPUT is .csv, or .ply with edges between consecutive points; one row per point, in order of travel:\n"
+    "  piece         a tool lifts between pieces     line          of the raster\n"
+    "  x,y,z         on the surface                  nx,ny,nz      its normal\n"
+    "  hx,hy,hz      heading, unit, in the surface   u,v           coordinates\n"
+    "  arclength     from the start of the piece     spacing       to the next line, in space\n"
+    "\n"
+    "Examples:\n"
+    "  ahm coverage scan.ply --source 0.1,0.2,1.4 --radius 0.2 --spacing 0.01 -o path.csv\n"
+    "  ahm coverage part.stl --source 17 --radius 30 --spacing 2 --pattern spiral -o path.ply";
+
+CLI::App& add_coverage(CLI::App& app, CoverageCommandOptions& o) {
+  CLI::App& coverage = *app.add_subcommand("coverage", "Path that covers a surface around a point, with normals");
+  add_input(coverage, o.graph.input);
+  add_parsed(coverage, "-s,--source", o.graph.source, parse_source, "SPEC", "Middle of what is covered")->required();
+  add_parsed(coverage, "--radius", o.path.radius, parse_positive, "R", "How far to go, along the surface")->required();
+  add_parsed(coverage, "--spacing", o.path.spacing, parse_positive, "S", "Between lines or turns")->required();
+  add_parsed(coverage, "-o,--output", o.graph.output, non_empty, "OUTPUT", "File to write, see below")->required();
+  add_parsed(
+      coverage, "--pattern", o.path.pattern,
+      [](const std::string& text) {
+        return choice({"raster", "spiral"})(text) == "raster" ? CoveragePattern::raster : CoveragePattern::spiral;
+      },
+      "NAME", "raster (default) or spiral");
+  add_parsed(
+      coverage, "--angle", o.path.angle,
+      [](const std::string& text) { return parse_number(text) * std::numbers::pi / 180; }, "DEG",
+      "Direction of the lines, from the u axis (default 0)");
+  add_parsed(coverage, "--step", o.path.step, parse_positive, "L", "Between points of the path (default: S / 2)");
+  add_parsed(
+      coverage, "--min-quality", o.min_quality,
+      [](const std::string& text) {
+        const double value = parse_positive(text);
+        if (value > 1) throw std::invalid_argument(fmt::format("'{}' is greater than 1", text));
+        return value;
+      },
+      "Q", "Trust vertices of this quality and above, in (0, 1] (default 0.5)");
+  add_parsed(coverage, "--u-axis", o.graph.u_axis, parse_direction, "X,Y,Z",
+             "Direction of the u axis, projected to the surface (default: chosen by the backend)");
+  add_variant(coverage, o.graph);
+  add_backend(coverage, o.graph);
+  add_t_coef(coverage, o.graph);
+  add_cloud_options(coverage, o.graph);
+  add_mesh_options(coverage, o.graph);
+  add_polygon_options(coverage, o.graph);
+  add_parsed(coverage, "--threads", o.graph.threads, integer_parser(0, 4096), "N", "0 (default): one per core");
+  add_parsed(coverage, "--json", o.graph.json, non_empty, "FILE|-",
+             "Write a summary for programs; -: to standard output");
+  coverage.add_flag("--verbose", o.graph.verbose, "Print the time of each stage and the peak memory");
+  coverage.footer(coverage_footer);
+  return coverage;
+}
+
 CLI::App& add_info(CLI::App& app, InfoOptions& o) {
   CLI::App& info = *app.add_subcommand("info", "What is in a file, what is wrong with it, what to run on it");
   add_input(info, o.input);
@@ -267,14 +322,16 @@ Command parse_command_line(int argc, const char* const* argv) {
   LogmapOptions logmap_options;
   InfoOptions info_options;
   LocalMapsOptions local_maps_options;
+  CoverageCommandOptions coverage_options;
   const CLI::App& logmap = add_logmap(app, logmap_options);
   const CLI::App& local_maps = add_local_maps(app, local_maps_options);
+  const CLI::App& coverage = add_coverage(app, coverage_options);
   add_info(app, info_options);
   if (argc == 2 && std::string_view(argv[1]) == "--version") return TextRequest{versions_as_text()};
   const std::string first = argc > 1 ? argv[1] : "";
-  if (!first.starts_with("-") && first != "logmap" && first != "local-maps" && first != "info")
+  if (!first.starts_with("-") && first != "logmap" && first != "local-maps" && first != "coverage" && first != "info")
     throw UsageError{(first.empty() ? "a subcommand is needed" : "'" + first + "' is no subcommand") +
-                     std::string(": write logmap, local-maps or info\nRun 'ahm --help' for help.")};
+                     std::string(": write logmap, local-maps, coverage or info\nRun 'ahm --help' for help.")};
   try {
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp&) {
@@ -287,6 +344,7 @@ Command parse_command_line(int argc, const char* const* argv) {
   }
   if (logmap.parsed()) return logmap_options;
   if (local_maps.parsed()) return local_maps_options;
+  if (coverage.parsed()) return coverage_options;
   return info_options;
 }
 

@@ -19,7 +19,7 @@ struct TextRequest {
   std::string text;
 };
 
-using Command = std::variant<LogmapOptions, LocalMapsOptions, InfoOptions, TextRequest>;
+using Command = std::variant<LogmapOptions, LocalMapsOptions, CoverageCommandOptions, InfoOptions, TextRequest>;
 
 /// Reads the command line. All numbers are checked here, and every message names the option.
 /// @throws UsageError

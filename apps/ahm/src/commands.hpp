@@ -15,6 +15,9 @@ void run_estimate(const LogmapOptions& options);
 /// `ahm local-maps`. @throws as `run_logmap`
 void run_local_maps(const LocalMapsOptions& options);
 
+/// `ahm coverage`. @throws as `run_logmap`
+void run_coverage(const CoverageCommandOptions& options);
+
 /// `ahm info`. @throws as `run_logmap`
 void run_info(const InfoOptions& options);
 

@@ -24,6 +24,7 @@ constexpr const char* out_of_memory = "out of memory; thin the input (--voxel), 
 void run(const Command& command) {
   if (const auto* logmap = std::get_if<LogmapOptions>(&command)) return run_logmap(*logmap);
   if (const auto* local_maps = std::get_if<LocalMapsOptions>(&command)) return run_local_maps(*local_maps);
+  if (const auto* coverage = std::get_if<CoverageCommandOptions>(&command)) return run_coverage(*coverage);
   if (const auto* info = std::get_if<InfoOptions>(&command)) return run_info(*info);
   print(std::get<TextRequest>(command).text);
 }

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "ahm/coverage.hpp"
 #include "ahm/heat_operators.hpp"
 #include "ahm/log_map_solver.hpp"
 #include "source_spec.hpp"
@@ -53,6 +54,13 @@ struct LocalMapsOptions {
   std::string sources = "all";  ///< or a file of row numbers
   bool pad = false;             ///< rows of `nearest` entries and a mask instead of compressed rows
   bool float32 = false;
+};
+
+/// `ahm coverage`
+struct CoverageCommandOptions {
+  LogmapOptions graph;  ///< all but radius, strategy, accuracy, ordering, estimate, view
+  CoverageOptions path;
+  double min_quality = trusted_quality;
 };
 
 /// `ahm info`

@@ -1,0 +1,246 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "ahm/coverage.hpp"
+#include "ahm/io/atomic_file.hpp"
+#include "backend.hpp"
+#include "commands.hpp"
+#include "journal.hpp"
+#include "output_paths.hpp"
+#include "run_report.hpp"
+
+namespace ahm::app {
+namespace {
+
+std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+
+void check_options(const CoverageCommandOptions& options) {
+  const LogmapOptions& o = options.graph;
+  check_outputs(o.input, {{"--output", o.output}, {"--json", o.json}});
+  const std::string extension = extension_of(o.output);
+  if (extension != ".csv" && extension != ".ply")
+    throw InvalidArgument(fmt::format("--output {}: the name must end in .csv or .ply", o.output));
+}
+
+LogMap solve(const CoverageCommandOptions& options, const Model& model, const Source& source, Journal& journal) {
+  OperatorOptions operator_options;
+  operator_options.t_coef = options.graph.t_coef;
+  operator_options.progress = journal.progress();
+  const LogMapSolver solver(model.graph(), operator_options, {.expected_maps = 1});
+  MapOptions map_options;
+  map_options.variant = options.graph.variant;
+  map_options.threads = options.graph.threads;
+  map_options.frames = true;
+  map_options.progress = journal.progress();
+  LogMap map = solver.solve(source, map_options);
+  journal.tell(strategy_as_text(map));
+  return map;
+}
+
+/// The faces of the input as fans of triangles, counter-clockwise as seen from the side of the normals.
+std::vector<Triangle3> triangles_of_faces(const io::Geometry& input, const std::vector<Vec3>& normals) {
+  std::vector<Triangle3> result;
+  for (std::size_t f = 0; f < input.face_count(); ++f) {
+    const auto face = input.face(f);
+    for (std::size_t c = 1; c + 1 < face.size(); ++c) {
+      Triangle3 t{face[0], face[c], face[c + 1]};
+      Vec3 a, b;
+      double side = 0;
+      for (std::size_t k = 0; k < 3; ++k) {
+        a[k] = input.points[at(t[1])][k] - input.points[at(t[0])][k];
+        b[k] = input.points[at(t[2])][k] - input.points[at(t[0])][k];
+      }
+      for (Index v : t)
+        for (std::size_t k = 0; k < 3; ++k)
+          side += normals[at(v)][k] * (a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3]);
+      if (side < 0) std::swap(t[1], t[2]);
+      result.push_back(t);
+    }
+  }
+  return result;
+}
+
+/// On the rows and faces of a mesh, so that points lie on it whatever its graph looks like. Of several vertices of a row
+/// the one nearest to the source counts.
+InverseMap inverse_on_faces(const io::Geometry& input, const Model& model, const LogMap& map, double min_quality) {
+  const std::size_t rows = input.points.size();
+  const std::vector<Vec3> graph_normals = source_side_normals(model.graph(), map);
+  const std::vector<double> quality = map_quality(model.graph(), map);
+  std::vector<Index> nearest(rows, -1);
+  for (const auto& [row, vertex] : model.row_vertices())
+    if (map.status(vertex) == Status::ok &&
+        (nearest[at(row)] < 0 || map.distance(vertex) < map.distance(nearest[at(row)])))
+      nearest[at(row)] = vertex;
+  std::vector<Vec3> normals(rows);
+  std::vector<double> coordinates(2 * rows);
+  std::vector<std::uint8_t> valid(rows);
+  for (std::size_t r = 0; r < rows; ++r) {
+    if (nearest[r] < 0) continue;
+    normals[r] = graph_normals[at(nearest[r])];
+    std::copy_n(map.coordinates(nearest[r]).begin(), 2, coordinates.begin() + static_cast<std::ptrdiff_t>(2 * r));
+    valid[r] = quality[at(nearest[r])] >= min_quality;
+  }
+  return InverseMap({input.points, normals, coordinates, valid, triangles_of_faces(input, normals)});
+}
+
+constexpr const char* columns[] = {"x", "y", "z", "nx", "ny", "nz", "hx", "hy", "hz", "u", "v", "arclength", "spacing"};
+
+/// The numbers of a row, each after the separator, as the shortest decimals that read back to the same double.
+void append_numbers(std::string& row, const CoveragePoint& p, char separator) {
+  const auto append = [&](double value) {
+    char text[32];
+    row += separator;
+    row.append(text,
+               std::isnan(value) ? std::copy_n("nan", 3, text) : std::to_chars(text, text + sizeof text, value).ptr);
+  };
+  for (const Vec3& vector : {p.position, p.normal, p.heading})
+    for (double x : vector) append(x);
+  for (double x : p.coordinates) append(x);
+  append(p.arclength);
+  append(p.spacing);
+}
+
+void write_csv(const std::string& name, const CoveragePath& path) {
+  io::AtomicFile file(name);
+  std::string row = "index,piece,line";
+  for (const char* column : columns) row += std::string(",") + column;
+  file.write(row + "\n");
+  for (std::size_t i = 0; i < path.points.size(); ++i) {
+    row = fmt::format("{},{},{}", i, path.points[i].piece, path.points[i].line);
+    append_numbers(row, path.points[i], ',');
+    file.write(row + "\n");
+  }
+  file.commit();
+}
+
+/// Text, with an edge between consecutive points of a piece.
+void write_ply(const std::string& name, const CoveragePath& path) {
+  io::AtomicFile file(name);
+  std::string row =
+      fmt::format("ply\nformat ascii 1.0\ncomment coverage path by libahm\nelement vertex {}\n", path.points.size());
+  row += "property int piece\nproperty int line\n";
+  for (const char* column : columns) row += fmt::format("property double {}\n", column);
+  row += fmt::format("element edge {}\n", path.points.size() - at(path.pieces));
+  file.write(row + "property int vertex1\nproperty int vertex2\nend_header\n");
+  for (const CoveragePoint& point : path.points) {
+    row = fmt::format("{} {}", point.piece, point.line);
+    append_numbers(row, point, ' ');
+    file.write(row + "\n");
+  }
+  for (std::size_t i = 1; i < path.points.size(); ++i)
+    if (path.points[i].piece == path.points[i - 1].piece) file.write(fmt::format("{} {}\n", i - 1, i));
+  file.commit();
+}
+
+/// Of the area within the radius, the share whose vertices are trusted.
+double trusted_share(const TangentGraph& graph, const LogMap& map, const CoverageCommandOptions& options) {
+  const std::vector<double> quality = map_quality(graph, map);
+  double all = 0, trusted = 0;
+  for (Index i = 0; i < graph.size(); ++i) {
+    if (!(map.distance(i) <= options.path.radius)) continue;
+    all += graph.mass(i);
+    if (quality[at(i)] >= options.min_quality) trusted += graph.mass(i);
+  }
+  return trusted / all;
+}
+
+/// What the path amounts to.
+struct Summary {
+  double length = 0;
+  double covered = 0;                        ///< share of the pattern's points that lie on the surface
+  double spacing_low = 0, spacing_high = 0;  ///< in space: 5 and 95 of 100 points have less
+
+  explicit Summary(const CoveragePath& path) {
+    std::vector<double> spacings;
+    for (std::size_t i = 0; i < path.points.size(); ++i) {
+      if (!std::isnan(path.points[i].spacing)) spacings.push_back(path.points[i].spacing);
+      if (i + 1 == path.points.size() || path.points[i + 1].piece != path.points[i].piece)
+        length += path.points[i].arclength;
+    }
+    covered = static_cast<double>(path.points.size()) / static_cast<double>(path.planned);
+    if (spacings.empty()) return;
+    std::sort(spacings.begin(), spacings.end());
+    spacing_low = spacings[spacings.size() / 20];
+    spacing_high = spacings[spacings.size() - 1 - spacings.size() / 20];
+  }
+};
+
+void report(const CoverageCommandOptions& options, const io::Geometry& input, const std::string& backend,
+            const ResolvedSource& source, const CoveragePath& path, double trusted, const Summary& summary,
+            const Journal& journal) {
+  const LogmapOptions& o = options.graph;
+  const std::string pattern = options.path.pattern == CoveragePattern::raster ? "raster" : "spiral";
+  nlohmann::ordered_json j;
+  j["program"] = "ahm coverage";
+  j["input"] = {{"path", o.input}, {"format", input.format}, {"points", input.points.size()}};
+  j["output"] = o.output;
+  j["backend"] = backend;
+  j["source"] = {{"spec", to_string(o.source)}, {"position", source.position}};
+  j["pattern"] = pattern;
+  j["radius"] = options.path.radius;
+  j["spacing"] = options.path.spacing;
+  j["points"] = path.points.size();
+  j["pieces"] = path.pieces;
+  j["length"] = summary.length;
+  j["covered"] = summary.covered;
+  j["trusted_area"] = trusted;
+  j["spacing_in_space"] = {{"percentile_5", summary.spacing_low}, {"percentile_95", summary.spacing_high}};
+  j["warnings"] = journal.warnings();
+  for (const auto& [stage, seconds] : journal.times().seconds()) j["seconds"][stage] = seconds;
+  j["peak_rss_bytes"] = peak_rss_bytes();
+  write_json(o.json, j);
+  const std::string text = fmt::format(
+      "{}: {} points in {} pieces, {:.4g} long, lines {:.4g} to {:.4g} apart in space\n"
+      "on the surface: {:.1f} % of the pattern; trusted: {:.1f} % of the area within the radius\n"
+      "{:.2f} s, peak memory {}\nwrote {}\n",
+      pattern, path.points.size(), path.pieces, summary.length, summary.spacing_low, summary.spacing_high,
+      100 * summary.covered, 100 * trusted, journal.times().total(), bytes_as_text(peak_rss_bytes()), o.output);
+  o.json == "-" ? say(text) : print(text);
+}
+
+}  // namespace
+
+void run_coverage(const CoverageCommandOptions& options) {
+  check_options(options);
+  Journal journal(options.graph.verbose);
+  comment_on_blas(journal);
+  const io::Geometry input = read_input(options.graph.input, journal);
+
+  journal.start("graph");
+  const std::string backend = choose_backend(input, options.graph.backend);
+  const std::unique_ptr<Model> model = build_model(backend, input, options.graph, journal.progress());
+  journal.add_warnings(model->warnings());
+  const ResolvedSource source = model->source(options.graph.source, options.graph.u_axis);
+
+  journal.start("solve");
+  const LogMap map = solve(options, *model, source.source, journal);
+  journal.start("path");
+  const bool has_faces = backend != "pointcloud";
+  const InverseMap inverse = has_faces ? inverse_on_faces(input, *model, map, options.min_quality)
+                                       : inverse_map(model->graph(), map, {.min_quality = options.min_quality});
+  const CoveragePath path = coverage_path(inverse, options.path);
+  if (path.points.empty())
+    throw InvalidArgument(fmt::format(
+        "--source {}: no line of the pattern meets a trusted part of the surface within {}; choose another source, or "
+        "lower --spacing or --min-quality",
+        to_string(options.graph.source), options.path.radius));
+  const Summary summary(path);
+  if (summary.spacing_high > 1.25 * options.path.spacing)
+    journal.add_warning(fmt::format(
+        "lines lie up to {:.4g} apart in space, more than --spacing {}: the surface is saddle-shaped or rough",
+        summary.spacing_high, options.path.spacing));
+
+  journal.start("write");
+  extension_of(options.graph.output) == ".ply" ? write_ply(options.graph.output, path)
+                                               : write_csv(options.graph.output, path);
+  journal.finish();
+  journal.clear_display();
+  report(options, input, backend, source, path, trusted_share(model->graph(), map, options), summary, journal);
+}
+
+}  // namespace ahm::app
