@@ -53,18 +53,18 @@ std::string choose_backend(const io::Geometry& input, const std::string& request
 
 /// Builds the model. Cheap checks of the arguments against the input come first.
 /// @throws what the backend throws
-std::unique_ptr<Model> build_model(const std::string& backend, const io::Geometry& input, const LogmapOptions& options,
+std::unique_ptr<Model> build_model(const std::string& backend, const io::Geometry& input, const RunOptions& options,
                                    const Progress& progress);
 
 /// The triangle mesh backend.
-std::unique_ptr<Model> build_trimesh(const io::Geometry& input, const LogmapOptions& options, const Progress& progress);
+std::unique_ptr<Model> build_trimesh(const io::Geometry& input, const RunOptions& options, const Progress& progress);
 
 /// The polygon mesh backend, by either discretization.
-std::unique_ptr<Model> build_polymesh(const io::Geometry& input, const LogmapOptions& options,
+std::unique_ptr<Model> build_polymesh(const io::Geometry& input, const RunOptions& options,
                                       const Progress& progress);
 
 /// The point cloud backend.
-std::unique_ptr<Model> build_pointcloud(const io::Geometry& input, const LogmapOptions& options,
+std::unique_ptr<Model> build_pointcloud(const io::Geometry& input, const RunOptions& options,
                                         const Progress& progress);
 
 }  // namespace ahm::app

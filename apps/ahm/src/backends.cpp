@@ -9,7 +9,7 @@
 namespace ahm::app {
 namespace {
 
-using Build = std::unique_ptr<Model> (*)(const io::Geometry&, const LogmapOptions&, const Progress&);
+using Build = std::unique_ptr<Model> (*)(const io::Geometry&, const RunOptions&, const Progress&);
 
 struct Entry {
   std::string_view name;
@@ -32,7 +32,7 @@ std::string choose_backend(const io::Geometry& input, const std::string& request
   return "trimesh";
 }
 
-std::unique_ptr<Model> build_model(const std::string& backend, const io::Geometry& input, const LogmapOptions& options,
+std::unique_ptr<Model> build_model(const std::string& backend, const io::Geometry& input, const RunOptions& options,
                                    const Progress& progress) {
   const auto* entry = std::find_if(backends.begin(), backends.end(), [&](const Entry& e) { return e.name == backend; });
   if (entry == backends.end()) throw InvalidArgument(fmt::format("--backend {}: there is no such backend", backend));

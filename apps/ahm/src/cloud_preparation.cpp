@@ -41,7 +41,7 @@ void keep(PreparedCloud& cloud, const std::vector<Index>& kept) {
 }
 #endif
 
-PreparedCloud finite_points(const io::Geometry& input, const LogmapOptions& options) {
+PreparedCloud finite_points(const io::Geometry& input, const RunOptions& options) {
   PreparedCloud cloud;
   const bool with_normals = !input.normals.empty() && options.normals != "estimate";
   std::vector<Index> bad;
@@ -62,14 +62,14 @@ PreparedCloud finite_points(const io::Geometry& input, const LogmapOptions& opti
   return cloud;
 }
 
-void require_normals(const io::Geometry& input, const LogmapOptions& options) {
+void require_normals(const io::Geometry& input, const RunOptions& options) {
   if (input.normals.empty() && (options.normals == "oriented" || options.normals == "unoriented"))
     throw InvalidArgument(fmt::format("--normals {}: {} has no normals; leave the option out to estimate them",
                                       options.normals, options.input));
 }
 
 /// Keeps what lies within one and a half radii of the source, or of the point nearest to it.
-void keep_surroundings(PreparedCloud& cloud, const io::Geometry& input, const LogmapOptions& options,
+void keep_surroundings(PreparedCloud& cloud, const io::Geometry& input, const RunOptions& options,
                        std::optional<Index> source) {
   if (!options.radius) throw InvalidArgument("--local needs --radius");
   Vec3 center{};
@@ -120,7 +120,7 @@ void apply_outlier_removal(PreparedCloud& cloud, std::optional<Index> source) {
 
 }  // namespace
 
-PreparedCloud prepare_cloud(const io::Geometry& input, const LogmapOptions& options,
+PreparedCloud prepare_cloud(const io::Geometry& input, const RunOptions& options,
                             [[maybe_unused]] std::optional<Index> source) {
   const auto begin = std::chrono::steady_clock::now();
 #ifndef AHM_WITH_PCL

@@ -26,6 +26,6 @@ struct PreparedCloud {
 /// Applies the options of `ahm logmap` that concern the input cloud, in the order non-finite, surroundings, voxel grid, outliers.
 /// @param source  the input row that must remain: it represents its voxel. Not an outlier, or the call is refused
 /// @throws InvalidGeometry (non-finite points without --drop-nan; unusable normals), InvalidArgument
-PreparedCloud prepare_cloud(const io::Geometry& input, const LogmapOptions& options, std::optional<Index> source);
+PreparedCloud prepare_cloud(const io::Geometry& input, const RunOptions& options, std::optional<Index> source);
 
 }  // namespace ahm::app

@@ -1,11 +1,9 @@
 /// \file
-/// From argv to options.
+/// From argv to what is to be done.
 #pragma once
 
+#include <functional>
 #include <string>
-#include <variant>
-
-#include "options.hpp"
 
 namespace ahm::app {
 
@@ -14,15 +12,9 @@ struct UsageError {
   std::string message;
 };
 
-/// The command line asks only for text (help, version).
-struct TextRequest {
-  std::string text;
-};
-
-using Command = std::variant<LogmapOptions, LocalMapsOptions, CoverageCommandOptions, InfoOptions, TextRequest>;
-
-/// Reads the command line. All numbers are checked here, and every message names the option.
+/// Reads the command line; calling the result does what it asks for. All numbers are checked here, and every message
+/// names the option.
 /// @throws UsageError
-Command parse_command_line(int argc, const char* const* argv);
+std::function<void()> parse_command_line(int argc, const char* const* argv);
 
 }  // namespace ahm::app

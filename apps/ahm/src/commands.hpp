@@ -2,23 +2,28 @@
 /// The subcommands.
 #pragma once
 
+#include <functional>
+
 #include "options.hpp"
+
+namespace CLI {
+class App;
+}
 
 namespace ahm::app {
 
-/// `ahm logmap`. @throws ahm::Error and its kin; the caller reports them
-void run_logmap(const LogmapOptions& options);
+/// A part of the command line and what it asks for.
+struct Subcommand {
+  CLI::App* app;              ///< owned by the program's
+  std::function<void()> run;  ///< once the command line is read; throws ahm::Error and its kin, the caller reports them
+};
 
-/// `ahm logmap --estimate`: time and memory of the run by either strategy. @throws as `run_logmap`
-void run_estimate(const LogmapOptions& options);
+Subcommand add_info(CLI::App& program);
+Subcommand add_logmap(CLI::App& program);
+Subcommand add_local_maps(CLI::App& program);
+Subcommand add_coverage(CLI::App& program);
 
-/// `ahm local-maps`. @throws as `run_logmap`
-void run_local_maps(const LocalMapsOptions& options);
-
-/// `ahm coverage`. @throws as `run_logmap`
-void run_coverage(const CoverageCommandOptions& options);
-
-/// `ahm info`. @throws as `run_logmap`
-void run_info(const InfoOptions& options);
+/// `ahm logmap --estimate`: time and memory of the run by either strategy.
+void run_estimate(const RunOptions& options);
 
 }  // namespace ahm::app

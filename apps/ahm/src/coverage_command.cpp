@@ -3,43 +3,47 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
 #include "ahm/coverage.hpp"
 #include "ahm/io/atomic_file.hpp"
-#include "backend.hpp"
 #include "commands.hpp"
-#include "journal.hpp"
+#include "numbers.hpp"
+#include "option_adders.hpp"
 #include "output_paths.hpp"
-#include "run_report.hpp"
+#include "surface.hpp"
 
 namespace ahm::app {
 namespace {
 
+constexpr const char* coverage_footer =
+    "SPEC is 123, x,y,z or face:7:.2,.3,.5 as in 'ahm logmap'.\n"
+    "OUTPUT is .csv, or .ply with edges between consecutive points; one row per point, in order of travel:\n"
+    "  piece         a tool lifts between pieces     line          of the raster\n"
+    "  x,y,z         on the surface                  nx,ny,nz      its normal\n"
+    "  hx,hy,hz      heading, unit, in the surface   u,v           coordinates\n"
+    "  arclength     from the start of the piece     spacing       to the next line, in space\n"
+    "\n"
+    "Examples:\n"
+    "  ahm coverage scan.ply --source 0.1,0.2,1.4 --radius 0.2 --spacing 0.01 -o path.csv\n"
+    "  ahm coverage part.stl --source 17 --radius 30 --spacing 2 --pattern spiral -o path.ply";
+
+struct CoverageCommandOptions {
+  RunOptions run;
+  CoverageOptions path;
+  double min_quality = trusted_quality;
+};
+
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 void check_options(const CoverageCommandOptions& options) {
-  const LogmapOptions& o = options.graph;
+  const RunOptions& o = options.run;
   check_outputs(o.input, {{"--output", o.output}, {"--json", o.json}});
   const std::string extension = extension_of(o.output);
   if (extension != ".csv" && extension != ".ply")
     throw InvalidArgument(fmt::format("--output {}: the name must end in .csv or .ply", o.output));
-}
-
-LogMap solve(const CoverageCommandOptions& options, const Model& model, const Source& source, Journal& journal) {
-  OperatorOptions operator_options;
-  operator_options.t_coef = options.graph.t_coef;
-  operator_options.progress = journal.progress();
-  const LogMapSolver solver(model.graph(), operator_options, {.expected_maps = 1});
-  MapOptions map_options;
-  map_options.variant = options.graph.variant;
-  map_options.threads = options.graph.threads;
-  map_options.frames = true;
-  map_options.progress = journal.progress();
-  LogMap map = solver.solve(source, map_options);
-  journal.tell(strategy_as_text(map));
-  return map;
 }
 
 /// The faces of the input as fans of triangles, counter-clockwise as seen from the side of the normals.
@@ -170,55 +174,37 @@ struct Summary {
   }
 };
 
-void report(const CoverageCommandOptions& options, const io::Geometry& input, const std::string& backend,
-            const ResolvedSource& source, const CoveragePath& path, double trusted, const Summary& summary,
-            const Journal& journal) {
-  const LogmapOptions& o = options.graph;
+void report(const CoverageCommandOptions& options, const Surface& surface, const ResolvedSource& source,
+            const CoveragePath& path, double trusted, const Summary& amount, const Journal& journal) {
   const std::string pattern = options.path.pattern == CoveragePattern::raster ? "raster" : "spiral";
-  nlohmann::ordered_json j;
-  j["program"] = "ahm coverage";
-  j["input"] = {{"path", o.input}, {"format", input.format}, {"points", input.points.size()}};
-  j["output"] = o.output;
-  j["backend"] = backend;
-  j["source"] = {{"spec", to_string(o.source)}, {"position", source.position}};
+  nlohmann::ordered_json j = summary("ahm coverage", options.run, surface);
+  j["source"] = {{"spec", to_string(options.run.source)}, {"position", source.position}};
   j["pattern"] = pattern;
   j["radius"] = options.path.radius;
   j["spacing"] = options.path.spacing;
   j["points"] = path.points.size();
   j["pieces"] = path.pieces;
-  j["length"] = summary.length;
-  j["covered"] = summary.covered;
+  j["length"] = amount.length;
+  j["covered"] = amount.covered;
   j["trusted_area"] = trusted;
-  j["spacing_in_space"] = {{"percentile_5", summary.spacing_low}, {"percentile_95", summary.spacing_high}};
-  j["warnings"] = journal.warnings();
-  for (const auto& [stage, seconds] : journal.times().seconds()) j["seconds"][stage] = seconds;
-  j["peak_rss_bytes"] = peak_rss_bytes();
-  write_json(o.json, j);
-  const std::string text = fmt::format(
-      "{}: {} points in {} pieces, {:.4g} long, lines {:.4g} to {:.4g} apart in space\n"
-      "on the surface: {:.1f} % of the pattern; trusted: {:.1f} % of the area within the radius\n"
-      "{:.2f} s, peak memory {}\nwrote {}\n",
-      pattern, path.points.size(), path.pieces, summary.length, summary.spacing_low, summary.spacing_high,
-      100 * summary.covered, 100 * trusted, journal.times().total(), bytes_as_text(peak_rss_bytes()), o.output);
-  o.json == "-" ? say(text) : print(text);
+  j["spacing_in_space"] = {{"percentile_5", amount.spacing_low}, {"percentile_95", amount.spacing_high}};
+  deliver(j,
+          fmt::format("{}: {} points in {} pieces, {:.4g} long, lines {:.4g} to {:.4g} apart in space\n"
+                      "on the surface: {:.1f} % of the pattern; trusted: {:.1f} % of the area within the radius\n",
+                      pattern, path.points.size(), path.pieces, amount.length, amount.spacing_low, amount.spacing_high,
+                      100 * amount.covered, 100 * trusted),
+          options.run, journal);
 }
-
-}  // namespace
 
 void run_coverage(const CoverageCommandOptions& options) {
   check_options(options);
-  Journal journal(options.graph.verbose);
-  comment_on_blas(journal);
-  const io::Geometry input = read_input(options.graph.input, journal);
+  Journal journal(options.run.verbose);
+  const Surface surface = open_surface(options.run, journal);
+  const auto& [input, backend, model] = surface;
+  const ResolvedSource source = model->source(options.run.source, options.run.u_axis);
+  const LogMapSolver solver = make_solver(options.run, *model, journal);
+  const LogMap map = solve(options.run, solver, source.source, journal);
 
-  journal.start("graph");
-  const std::string backend = choose_backend(input, options.graph.backend);
-  const std::unique_ptr<Model> model = build_model(backend, input, options.graph, journal.progress());
-  journal.add_warnings(model->warnings());
-  const ResolvedSource source = model->source(options.graph.source, options.graph.u_axis);
-
-  journal.start("solve");
-  const LogMap map = solve(options, *model, source.source, journal);
   journal.start("path");
   const bool has_faces = backend != "pointcloud";
   const InverseMap inverse = has_faces ? inverse_on_faces(input, *model, map, options.min_quality)
@@ -228,19 +214,57 @@ void run_coverage(const CoverageCommandOptions& options) {
     throw InvalidArgument(fmt::format(
         "--source {}: no line of the pattern meets a trusted part of the surface within {}; choose another source, or "
         "lower --spacing or --min-quality",
-        to_string(options.graph.source), options.path.radius));
-  const Summary summary(path);
-  if (summary.spacing_high > 1.25 * options.path.spacing)
+        to_string(options.run.source), options.path.radius));
+  const Summary amount(path);
+  if (amount.spacing_high > 1.25 * options.path.spacing)
     journal.add_warning(fmt::format(
         "lines lie up to {:.4g} apart in space, more than --spacing {}: the surface is saddle-shaped or rough",
-        summary.spacing_high, options.path.spacing));
+        amount.spacing_high, options.path.spacing));
 
   journal.start("write");
-  extension_of(options.graph.output) == ".ply" ? write_ply(options.graph.output, path)
-                                               : write_csv(options.graph.output, path);
+  extension_of(options.run.output) == ".ply" ? write_ply(options.run.output, path)
+                                             : write_csv(options.run.output, path);
   journal.finish();
   journal.clear_display();
-  report(options, input, backend, source, path, trusted_share(model->graph(), map, options), summary, journal);
+  report(options, surface, source, path, trusted_share(model->graph(), map, options), amount, journal);
+}
+
+}  // namespace
+
+Subcommand add_coverage(CLI::App& program) {
+  const auto options = std::make_shared<CoverageCommandOptions>();
+  CoverageCommandOptions& o = *options;
+  CLI::App& coverage = *program.add_subcommand("coverage", "Path that covers a surface around a point, with normals");
+  add_input(coverage, o.run.input);
+  add_source(coverage, o.run, "Middle of what is covered")->required();
+  add_parsed(coverage, "--radius", o.path.radius, parse_positive, "R", "How far to go, along the surface")->required();
+  add_parsed(coverage, "--spacing", o.path.spacing, parse_positive, "S", "Between lines or turns")->required();
+  add_output(coverage, o.run)->required();
+  add_parsed(
+      coverage, "--pattern", o.path.pattern,
+      [](const std::string& text) {
+        return choice({"raster", "spiral"})(text) == "raster" ? CoveragePattern::raster : CoveragePattern::spiral;
+      },
+      "NAME", "raster (default) or spiral");
+  add_parsed(
+      coverage, "--angle", o.path.angle,
+      [](const std::string& text) { return parse_number(text) * std::numbers::pi / 180; }, "DEG",
+      "Direction of the lines, from the u axis (default 0)");
+  add_parsed(coverage, "--step", o.path.step, parse_positive, "L", "Between points of the path (default: S / 2)");
+  add_parsed(
+      coverage, "--min-quality", o.min_quality,
+      [](const std::string& text) {
+        const double value = parse_positive(text);
+        if (value > 1) throw std::invalid_argument(fmt::format("'{}' is greater than 1", text));
+        return value;
+      },
+      "Q", "Trust vertices of this quality and above, in (0, 1] (default 0.5)");
+  add_u_axis(coverage, o.run);
+  add_graph_options(coverage, o.run);
+  add_json(coverage, o.run);
+  add_verbose(coverage, o.run);
+  coverage.footer(coverage_footer);
+  return {&coverage, [options] { run_coverage(*options); }};
 }
 
 }  // namespace ahm::app

@@ -39,7 +39,7 @@ Estimate estimate(const GraphSize& size, Strategy strategy, const GraphCost& gra
 
 }  // namespace
 
-void run_estimate(const LogmapOptions& options) {
+void run_estimate(const RunOptions& options) {
   check_outputs(options.input, {{"--json", options.json}});
   const io::Geometry input = io::read(options.input);
   const std::string backend = choose_backend(input, options.backend);

@@ -7,9 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "ahm/error.hpp"
-#include "ahm/heat_operators.hpp"
-#include "ahm/io/read.hpp"
 #include "console.hpp"
 #include "progress_display.hpp"
 #include "stage_times.hpp"
@@ -64,22 +61,5 @@ class Journal {
   std::vector<std::string> warnings_;
   ProgressDisplay display_;
 };
-
-/// Reads the input as the first stage.
-/// @throws InvalidGeometry where there are no points
-inline io::Geometry read_input(const std::string& path, Journal& journal) {
-  journal.start("read");
-  io::Geometry input = io::read(path);
-  journal.add_warnings(input.warnings);
-  if (input.points.empty()) throw InvalidGeometry(path + ": holds no points");
-  return input;
-}
-
-inline void comment_on_blas(Journal& journal) {
-  const LinearAlgebraInfo info = linear_algebra_info();
-  if (!info.blas_optimized)
-    journal.add_warning("CHOLMOD runs on a BLAS that is not optimized (" + info.blas +
-                        "): several times slower; on Debian install libopenblas0-pthread");
-}
 
 }  // namespace ahm::app

@@ -3,25 +3,45 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "ahm/io/npz.hpp"
 #include "ahm/local_maps.hpp"
-#include "backend.hpp"
 #include "commands.hpp"
-#include "journal.hpp"
 #include "numbers.hpp"
+#include "option_adders.hpp"
 #include "output_paths.hpp"
-#include "run_report.hpp"
+#include "surface.hpp"
 
 namespace ahm::app {
 namespace {
 
+constexpr const char* local_maps_footer =
+    "OUTPUT is a NumPy archive. Entry e of source s, indptr[s] <= e < indptr[s+1], nearest first:\n"
+    "  sources[s]    row of INPUT             frames[s]     u axis, v axis and normal in space\n"
+    "  indices[e]    row of the neighbour     log[e]        its coordinates u, v in the source's frame\n"
+    "  distance[e]   length of log[e]         transport[e]  turns u + iv into the neighbour's frame\n"
+    "  weight[e]     area of the neighbour\n"
+    "With --pad the arrays are sources x K, and mask says what is there.\n"
+    "\n"
+    "Example:\n"
+    "  ahm local-maps scan.ply --radius 0.02 --k 32 --pad --float32 -o neighbours.npz";
+
+struct LocalMapsOptions {
+  RunOptions run;  ///< a part of it
+  double radius = 0;
+  Index nearest = 0;            ///< 0: all
+  std::string sources = "all";  ///< or a file of row numbers
+  bool pad = false;             ///< rows of `nearest` entries and a mask instead of compressed rows
+  bool float32 = false;
+};
+
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 void check_options(const LocalMapsOptions& options) {
-  const LogmapOptions& o = options.graph;
+  const RunOptions& o = options.run;
   check_outputs(o.input, {{"--output", o.output}, {"--json", o.json}});
   if (extension_of(o.output) != ".npz")
     throw InvalidArgument(fmt::format("--output {}: the name must end in .npz", o.output));
@@ -122,7 +142,7 @@ void write(const LocalMapsOptions& options, const LocalMaps& maps, const std::ve
   const auto real = options.float32 ? io::NpyType::float32 : io::NpyType::float64;
   const auto complex = options.float32 ? io::NpyType::complex64 : io::NpyType::complex128;
   const bool rotations = maps.kind == TransportKind::rotation2;
-  io::NpzFile file(options.graph.output);
+  io::NpzFile file(options.run.output);
   file.add("sources", {sources}, std::span<const Index>(rows));
   std::vector<double> frames;
   for (Index vertex : vertices) {
@@ -153,20 +173,13 @@ void write(const LocalMapsOptions& options, const LocalMaps& maps, const std::ve
   file.commit();
 }
 
-}  // namespace
-
 void run_local_maps(const LocalMapsOptions& options) {
   check_options(options);
-  Journal journal(options.graph.verbose);
-  comment_on_blas(journal);
-  const io::Geometry input = read_input(options.graph.input, journal);
-
-  journal.start("graph");
-  LogmapOptions graph_options = options.graph;
-  graph_options.source = SourcePosition{{0, 0, 0}};  // none: the backends check it against the input
-  const std::string backend = choose_backend(input, graph_options.backend);
-  const std::unique_ptr<Model> model = build_model(backend, input, graph_options, journal.progress());
-  journal.add_warnings(model->warnings());
+  Journal journal(options.run.verbose);
+  RunOptions run = options.run;
+  run.source = SourcePosition{{0, 0, 0}};  // none: the backends check it against the input
+  const Surface surface = open_surface(run, journal);
+  const auto& [input, backend, model] = surface;
   const Rows rows(*model, input.points.size());
   const std::vector<Index> wanted = wanted_rows(options, rows);
   std::vector<Index> vertices;
@@ -177,9 +190,9 @@ void run_local_maps(const LocalMapsOptions& options) {
   map_options.radius = options.radius;
   const bool has_virtual = std::count(rows.row_of_vertex.begin(), rows.row_of_vertex.end(), -1) > 0;
   map_options.nearest = has_virtual ? 0 : options.nearest;
-  map_options.variant = options.graph.variant;
-  map_options.t_coef = options.graph.t_coef;
-  map_options.threads = options.graph.threads;
+  map_options.variant = options.run.variant;
+  map_options.t_coef = options.run.t_coef;
+  map_options.threads = options.run.threads;
   map_options.progress = journal.progress();
   LocalMaps maps = local_maps(model->graph(), vertices, map_options);
   keep_rows(maps, rows, options.nearest);
@@ -190,23 +203,42 @@ void run_local_maps(const LocalMapsOptions& options) {
   journal.clear_display();
 
   const double mean = static_cast<double>(maps.indices.size()) / static_cast<double>(wanted.size());
-  nlohmann::ordered_json j;
-  j["program"] = "ahm local-maps";
-  j["input"] = {{"path", options.graph.input}, {"format", input.format}, {"points", input.points.size()}};
-  j["output"] = options.graph.output;
-  j["backend"] = backend;
+  nlohmann::ordered_json j = summary("ahm local-maps", options.run, surface);
   j["radius"] = options.radius;
   j["sources"] = wanted.size();
   j["entries"] = maps.indices.size();
   j["mean_neighbours"] = mean;
-  j["warnings"] = journal.warnings();
-  for (const auto& [stage, seconds] : journal.times().seconds()) j["seconds"][stage] = seconds;
-  j["peak_rss_bytes"] = peak_rss_bytes();
-  write_json(options.graph.json, j);
-  const std::string text =
-      fmt::format("{} neighbourhoods of {:.1f} vertices on average\n{:.2f} s, peak memory {}\nwrote {}\n",
-                  wanted.size(), mean, journal.times().total(), bytes_as_text(peak_rss_bytes()), options.graph.output);
-  options.graph.json == "-" ? say(text) : print(text);
+  deliver(j, fmt::format("{} neighbourhoods of {:.1f} vertices on average\n", wanted.size(), mean), options.run,
+          journal);
+}
+
+}  // namespace
+
+Subcommand add_local_maps(CLI::App& program) {
+  const auto options = std::make_shared<LocalMapsOptions>();
+  LocalMapsOptions& o = *options;
+  CLI::App& local = *program.add_subcommand("local-maps", "Log maps of all neighbourhoods, for learning on surfaces");
+  add_input(local, o.run.input);
+  add_parsed(local, "--radius", o.radius, parse_positive, "R", "Of the neighbourhoods, along the surface")->required();
+  add_parsed(local, "-o,--output", o.run.output, non_empty, "OUTPUT", "File to write, .npz")->required();
+  add_parsed(local, "--k", o.nearest, integer_parser(1), "K", "Keep only so many nearest, the source included");
+  add_parsed(local, "--sources", o.sources, non_empty, "all|FILE",
+             "all (default), or a file of rows of INPUT, counted from 0");
+  local.add_flag("--pad", o.pad, "Fixed rows of K entries and a mask; needs --k");
+  local.add_flag("--float32", o.float32, "Numbers in single precision");
+  add_variant(local, o.run);
+  add_backend(local, o.run);
+  add_t_coef(local, o.run);
+  add_drop_nan(local, o.run);
+  add_non_manifold(local, o.run);
+  add_threads(local, o.run.threads);
+  add_json(local, o.run);
+  add_verbose(local, o.run);
+  local.callback([&o] {
+    if (o.pad && o.nearest == 0) throw CLI::ValidationError("--pad", "needs --k");
+  });
+  local.footer(local_maps_footer);
+  return {&local, [options] { run_local_maps(*options); }};
 }
 
 }  // namespace ahm::app

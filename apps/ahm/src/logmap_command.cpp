@@ -3,22 +3,43 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <memory>
 #include <nlohmann/json.hpp>
 
-#include "ahm/cost.hpp"
 #include "ahm/error.hpp"
 #include "ahm/io/write.hpp"
 #include "ahm/log_map_solver.hpp"
 #include "ahm/view/picture.hpp"
-#include "backend.hpp"
 #include "commands.hpp"
-#include "journal.hpp"
 #include "map_rows.hpp"
+#include "numbers.hpp"
+#include "option_adders.hpp"
 #include "output_paths.hpp"
 #include "run_report.hpp"
+#include "surface.hpp"
 
 namespace ahm::app {
 namespace {
+
+constexpr const char* logmap_footer =
+    "SPEC is one of\n"
+    "  123              a vertex of INPUT, counted from 0\n"
+    "  1.5,0,-2         the vertex nearest to this position\n"
+    "  face:7:.2,.3,.5  a point in face 7, by barycentric coordinates, one per corner (meshes)\n"
+    "\n"
+    "INPUT   .ply .pcd .xyz .txt .csv .off .obj .stl\n"
+    "OUTPUT  .csv, .ply or .pcd; one row per vertex of INPUT, in its order:\n"
+    "          index,x,y,z,u,v,distance,angle,status,quality, with --order 2 also error_estimate\n"
+    "        quality is in (0, 1]; below 0.5 the vertex lies at a cut locus or in a fold.\n"
+    "        The numbers are nan where status is not ok:\n"
+    "          component  not connected to the source      radius   beyond --radius\n"
+    "          unreached  too far for double precision     removed  dropped, replaced, or in no face\n"
+    "\n"
+    "Examples:\n"
+    "  ahm logmap scan.ply --source 0 -o map.csv\n"
+    "  ahm logmap scan.pcd --source 0.1,0.2,1.4 --drop-nan --voxel 0.01 --outliers -o map.ply --view map.html\n"
+    "  ahm logmap mesh.obj --source face:7:.2,.3,.5 --u-axis 1,0,0 -o map.ply\n"
+    "  ahm logmap scan.xyz --source 17 -o map.csv --json - | jq .status";
 
 void check_view(const std::string& path) {
   if (path.empty()) return;
@@ -33,8 +54,7 @@ void check_view(const std::string& path) {
 double distance(const Vec3& a, const Vec3& b) { return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]); }
 
 /// Something the user should know about where the source ended up.
-void comment_on_source(const LogmapOptions& options, const Model& model, const ResolvedSource& source,
-                       Journal& journal) {
+void comment_on_source(const RunOptions& options, const Model& model, const ResolvedSource& source, Journal& journal) {
   const auto* wanted = std::get_if<SourcePosition>(&options.source);
   if (wanted == nullptr) return;
   const double away = distance(wanted->position, source.position);
@@ -65,8 +85,8 @@ void mark_beyond(const std::vector<Vec3>& points, const Vec3& source, double rad
     if (rows.status[i] == Status::removed && distance(points[i], source) > radius) rows.status[i] = Status::radius;
 }
 
-void write_view(const LogmapOptions& options, const io::Geometry& input, const ResolvedSource& source,
-                const MapRows& rows, const std::vector<Vec3>& normals) {
+void write_view(const RunOptions& options, const io::Geometry& input, const ResolvedSource& source, const MapRows& rows,
+                const std::vector<Vec3>& normals) {
   view::Scene scene;
   scene.points = input.points;
   scene.normals = normals;
@@ -95,7 +115,7 @@ class Written {
   std::vector<std::string> paths_;
 };
 
-void write_results(const LogmapOptions& options, const io::Geometry& input, const Model& model,
+void write_results(const RunOptions& options, const io::Geometry& input, const Model& model,
                    const ResolvedSource& source, const MapRows& rows, Written& written, Journal& journal) {
   const std::vector<Vec3> normals = model.normals();
   if (!options.view.empty()) {
@@ -122,66 +142,18 @@ void write_results(const LogmapOptions& options, const io::Geometry& input, cons
   journal.clear_display();
 }
 
-/// Better refused than swapped for.
-void check_memory(const LogmapOptions& options, const TangentGraph& graph) {
-  if (options.strategy != Strategy::global) return;
-  const GraphSize size{graph.size(), graph.dimension(), graph.transport_kind()};
-  const double factors = options.order == 1 ? 1 : 3;
-  const double wanted = factors * estimate_cost(size, Strategy::global).bytes, memory = machine_memory();
-  if (memory > 0 && wanted > memory)
-    throw ResourceExhausted(fmt::format(
-        "--strategy global: the factors would take about {}, this machine has {}; leave the choice to auto, which "
-        "marches",
-        bytes_as_text(static_cast<std::int64_t>(wanted)), bytes_as_text(static_cast<std::int64_t>(memory))));
-}
-
-LogMapSolver factor(const LogmapOptions& options, const Model& model, Journal& journal) {
-  check_memory(options, model.graph());
-  journal.start("factor");
-  OperatorOptions operator_options;
-  operator_options.t_coef = options.t_coef;
-  operator_options.ordering = options.ordering;
-  operator_options.progress = journal.progress();
-  SolverOptions solver_options;
-  solver_options.strategy = options.strategy;
-  solver_options.expected_maps = 1;
-  solver_options.order = options.order;
-  solver_options.accuracy = options.accuracy;
-  return LogMapSolver(model.graph(), operator_options, solver_options);
-}
-
-LogMap solve(const LogmapOptions& options, const LogMapSolver& solver, const Source& source, Journal& journal) {
-  journal.start("solve");
-  MapOptions map_options;
-  map_options.variant = options.variant;
-  if (options.radius) map_options.radius = *options.radius;
-  map_options.threads = options.threads;
-  map_options.frames = true;
-  map_options.progress = journal.progress();
-  LogMap map = solver.solve(source, map_options);
-  journal.tell(strategy_as_text(map));
-  return map;
-}
-
-}  // namespace
-
-void run_logmap(const LogmapOptions& options) {
+void run_logmap(const RunOptions& options) {
   if (options.estimate) return run_estimate(options);
   check_outputs(options.input, {{"--output", options.output}, {"--json", options.json}, {"--view", options.view}});
   io::check_writable(options.output);
   check_view(options.view);
   Journal journal(options.verbose);
-  comment_on_blas(journal);
-  const io::Geometry input = read_input(options.input, journal);
-
-  journal.start("graph");
-  const std::string backend = choose_backend(input, options.backend);
-  const std::unique_ptr<Model> model = build_model(backend, input, options, journal.progress());
-  journal.add_warnings(model->warnings());
+  const Surface surface = open_surface(options, journal);
+  const auto& [input, backend, model] = surface;
   const ResolvedSource source = model->source(options.source, options.u_axis);
   comment_on_source(options, *model, source, journal);
 
-  const LogMapSolver solver = factor(options, *model, journal);
+  const LogMapSolver solver = make_solver(options, *model, journal);
   const LogMap map = solve(options, solver, source.source, journal);
   MapRows rows = rows_of(map, *model, input.points.size());
   if (options.local) mark_beyond(input.points, source.position, *options.radius, rows);
@@ -193,6 +165,77 @@ void run_logmap(const LogmapOptions& options) {
   written.keep();
   const bool stdout_taken = options.json == "-" || is_stream(options.output);
   stdout_taken ? say(run_as_text(run)) : print(run_as_text(run));
+}
+
+void add_method_options(CLI::App& app, RunOptions& o) {
+  const char* group = "Method";
+  add_variant(app, o)->group(group);
+  add_backend(app, o)->group(group);
+  add_t_coef(app, o)->group(group);
+  add_parsed(app, "--radius", o.radius, parse_positive, "R", "Leave out everything farther than this from the source")
+      ->group(group);
+  add_u_axis(app, o)->group(group);
+  add_parsed(
+      app, "--ordering", o.ordering,
+      [](const std::string& text) {
+        return choice({"amd", "nested-dissection"})(text) == "amd" ? Ordering::amd : Ordering::nested_dissection;
+      },
+      "NAME", "Of the factorization: amd (default) or nested-dissection")
+      ->group(group);
+  add_parsed(
+      app, "--strategy", o.strategy,
+      [](const std::string& text) {
+        const std::string name = choice({"auto", "global", "march"})(text);
+        return name == "auto" ? Strategy::automatic : name == "global" ? Strategy::global : Strategy::march;
+      },
+      "NAME", "auto (default), global: one factorization, or march: band by band, any size and distance")
+      ->group(group);
+  add_parsed(app, "--order", o.order, integer_parser(1, 2), "N",
+             "1 (default), or 2: extrapolate from several diffusion times, with an estimate of the error")
+      ->group(group);
+  add_parsed(app, "--accuracy", o.accuracy, parse_positive, "A",
+             "Of a march, against a global solve, relative (default 1e-9)")
+      ->group(group);
+  add_threads(app, o.threads)->group(group);
+}
+
+void add_local(CLI::App& app, RunOptions& o) {
+  app.add_flag("--local", o.local,
+               "With --radius: build the graph of the surroundings of the source only, fast on huge scans;\n"
+               "the diffusion time is then that of the surroundings")
+      ->group("Point clouds");
+}
+
+void add_report_options(CLI::App& app, RunOptions& o) {
+  const char* group = "Reports";
+  add_json(app, o)->group(group);
+  add_view(app, o)->group(group);
+  add_verbose(app, o)->group(group);
+}
+
+}  // namespace
+
+Subcommand add_logmap(CLI::App& program) {
+  const auto options = std::make_shared<RunOptions>();
+  RunOptions& o = *options;
+  CLI::App& logmap = *program.add_subcommand("logmap", "Logarithmic map of a surface from one source");
+  add_input(logmap, o.input);
+  auto* source = add_source(logmap, o, "Where the map starts, see below");
+  auto* output = add_output(logmap, o);
+  auto* estimate = logmap.add_flag("--estimate", o.estimate, "Tell what time and memory the run would take, and end");
+  logmap.callback([=] {
+    if (estimate->count() > 0) return;
+    if (source->count() == 0) throw CLI::RequiredError("--source");
+    if (output->count() == 0) throw CLI::RequiredError("--output");
+  });
+  add_method_options(logmap, o);
+  add_cloud_options(logmap, o);
+  add_local(logmap, o);
+  add_mesh_options(logmap, o);
+  add_polygon_options(logmap, o);
+  add_report_options(logmap, o);
+  logmap.footer(logmap_footer);
+  return {&logmap, [options] { run_logmap(*options); }};
 }
 
 }  // namespace ahm::app

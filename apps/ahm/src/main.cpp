@@ -5,11 +5,9 @@
 #include <new>
 #include <stdexcept>
 #include <string>
-#include <variant>
 
 #include "ahm/error.hpp"
 #include "command_line.hpp"
-#include "commands.hpp"
 #include "console.hpp"
 #include "interrupt.hpp"
 
@@ -21,14 +19,6 @@ constexpr int failed = 1;
 constexpr int usage = 2;
 constexpr const char* out_of_memory = "out of memory; thin the input (--voxel), lower --k, or use a machine with more";
 
-void run(const Command& command) {
-  if (const auto* logmap = std::get_if<LogmapOptions>(&command)) return run_logmap(*logmap);
-  if (const auto* local_maps = std::get_if<LocalMapsOptions>(&command)) return run_local_maps(*local_maps);
-  if (const auto* coverage = std::get_if<CoverageCommandOptions>(&command)) return run_coverage(*coverage);
-  if (const auto* info = std::get_if<InfoOptions>(&command)) return run_info(*info);
-  print(std::get<TextRequest>(command).text);
-}
-
 int report(const std::string& message, int status) {
   say("ahm: error: " + message + "\n");
   return status;
@@ -38,7 +28,7 @@ int report(const std::string& message, int status) {
 
 int main(int argc, char** argv) try {
   install_interrupt_handling();
-  run(parse_command_line(argc, argv));
+  parse_command_line(argc, argv)();
   return 0;
 } catch (const UsageError& e) {
   return report(e.message, usage);

@@ -9,7 +9,7 @@
 
 namespace ahm::app {
 
-void check_mesh_input(const std::string& backend, const io::Geometry& input, const LogmapOptions& options) {
+void check_mesh_input(const std::string& backend, const io::Geometry& input, const RunOptions& options) {
   if (input.face_count() == 0)
     throw InvalidArgument(
         fmt::format("--backend {}: the input has no faces; --backend pointcloud maps its points", backend));

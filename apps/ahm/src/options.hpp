@@ -5,15 +5,14 @@
 #include <optional>
 #include <string>
 
-#include "ahm/coverage.hpp"
 #include "ahm/heat_operators.hpp"
 #include "ahm/log_map_solver.hpp"
 #include "source_spec.hpp"
 
 namespace ahm::app {
 
-/// `ahm logmap`
-struct LogmapOptions {
+/// What subcommands that build a graph understand; each has the part it offers.
+struct RunOptions {
   std::string input;
   std::string output;  ///< empty with `estimate` only
   SourceSpec source;
@@ -44,23 +43,6 @@ struct LogmapOptions {
   std::string view;  ///< empty: none
   unsigned threads = 0;
   bool verbose = false;
-};
-
-/// `ahm local-maps`
-struct LocalMapsOptions {
-  LogmapOptions graph;  ///< input, output, backend and its options, variant, t_coef, threads, json, verbose
-  double radius = 0;
-  Index nearest = 0;            ///< 0: all
-  std::string sources = "all";  ///< or a file of row numbers
-  bool pad = false;             ///< rows of `nearest` entries and a mask instead of compressed rows
-  bool float32 = false;
-};
-
-/// `ahm coverage`
-struct CoverageCommandOptions {
-  LogmapOptions graph;  ///< all but radius, strategy, accuracy, ordering, estimate, view
-  CoverageOptions path;
-  double min_quality = trusted_quality;
 };
 
 /// `ahm info`

@@ -50,7 +50,7 @@ pointcloud::NeighborSearchFactory search_factory(const std::string& name) {
 #endif
 }
 
-CloudOptions cloud_options(const LogmapOptions& options, const Progress& progress) {
+CloudOptions cloud_options(const RunOptions& options, const Progress& progress) {
   CloudOptions result;
   result.k = options.k;
   result.search = search_factory(options.knn);
@@ -63,7 +63,7 @@ CloudOptions cloud_options(const LogmapOptions& options, const Progress& progres
 
 class PointcloudModel final : public Model {
  public:
-  PointcloudModel(const io::Geometry& input, const LogmapOptions& options, const Progress& progress)
+  PointcloudModel(const io::Geometry& input, const RunOptions& options, const Progress& progress)
       : PointcloudModel(input, options, progress,
                         prepare_cloud(input, options, checked_source_row(options.source, input))) {}
 
@@ -104,7 +104,7 @@ class PointcloudModel final : public Model {
   std::vector<std::string> warnings() const override;
 
  private:
-  PointcloudModel(const io::Geometry& input, const LogmapOptions& options, const Progress& progress,
+  PointcloudModel(const io::Geometry& input, const RunOptions& options, const Progress& progress,
                   PreparedCloud prepared)
       : prepared_(std::move(prepared)),
         input_points_(input.points.size()),
@@ -176,7 +176,7 @@ std::vector<std::string> PointcloudModel::warnings() const {
 
 }  // namespace
 
-std::unique_ptr<Model> build_pointcloud(const io::Geometry& input, const LogmapOptions& options,
+std::unique_ptr<Model> build_pointcloud(const io::Geometry& input, const RunOptions& options,
                                         const Progress& progress) {
   return std::make_unique<PointcloudModel>(input, options, progress);
 }

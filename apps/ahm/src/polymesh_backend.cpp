@@ -35,7 +35,7 @@ std::array<double, 3> barycentric(const Vec3& p, const Vec3& a, const Vec3& b, c
   return {1 - s - t, s, t};
 }
 
-PolygonOptions polygon_options(const LogmapOptions& options, const Progress& progress) {
+PolygonOptions polygon_options(const RunOptions& options, const Progress& progress) {
   PolygonOptions result;
   result.non_manifold = options.non_manifold == "split" ? NonManifold::split : NonManifold::error;
   result.threads = options.threads;
@@ -47,7 +47,7 @@ PolygonOptions polygon_options(const LogmapOptions& options, const Progress& pro
 /// the first vertices of either graph.
 class PolymeshModel final : public Model {
  public:
-  PolymeshModel(const io::Geometry& input, const LogmapOptions& options, const Progress& progress)
+  PolymeshModel(const io::Geometry& input, const RunOptions& options, const Progress& progress)
       : input_(input), mesh_(check(input, options)) {
     if (options.discretization != "polygons") refinement_ = mesh_.refined();
     if (options.discretization == "polygons" || (options.discretization == "auto" && !refinement_.folded.empty())) {
@@ -108,7 +108,7 @@ class PolymeshModel final : public Model {
   std::vector<std::string> warnings() const override { return warnings_; }
 
  private:
-  static PolygonMesh check(const io::Geometry& input, const LogmapOptions& options) {
+  static PolygonMesh check(const io::Geometry& input, const RunOptions& options) {
     check_mesh_input("polymesh", input, options);
     try {
       return PolygonMesh::from_faces(input.points, input.face_begin, input.face_vertices,
@@ -203,7 +203,7 @@ nlohmann::ordered_json PolymeshModel::report() const {
 
 }  // namespace
 
-std::unique_ptr<Model> build_polymesh(const io::Geometry& input, const LogmapOptions& options,
+std::unique_ptr<Model> build_polymesh(const io::Geometry& input, const RunOptions& options,
                                       const Progress& progress) {
   return std::make_unique<PolymeshModel>(input, options, progress);
 }

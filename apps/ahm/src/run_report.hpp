@@ -16,7 +16,7 @@ namespace ahm::app {
 
 /// The parts of a finished run. References live as long as the call that is given them.
 struct Run {
-  const LogmapOptions& options;
+  const RunOptions& options;
   const io::Geometry& input;
   std::string backend;
   const Model& model;

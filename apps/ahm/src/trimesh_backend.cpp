@@ -31,7 +31,7 @@ std::vector<Triangle> triangles(const io::Geometry& input) {
   return result;
 }
 
-MeshOptions mesh_options(const LogmapOptions& options, const Progress& progress) {
+MeshOptions mesh_options(const RunOptions& options, const Progress& progress) {
   MeshOptions result;
   result.intrinsic_delaunay = options.flips;
   result.non_manifold = options.non_manifold == "split" ? trimesh::NonManifold::split : trimesh::NonManifold::error;
@@ -42,7 +42,7 @@ MeshOptions mesh_options(const LogmapOptions& options, const Progress& progress)
 
 class TrimeshModel final : public Model {
  public:
-  TrimeshModel(const io::Geometry& input, const LogmapOptions& options, const Progress& progress)
+  TrimeshModel(const io::Geometry& input, const RunOptions& options, const Progress& progress)
       : points_(input.points), mesh_(build(input, options, progress)) {}
 
   const TangentGraph& graph() const override { return mesh_.graph(); }
@@ -86,7 +86,7 @@ class TrimeshModel final : public Model {
  private:
   static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
-  static TriangleMeshGraph build(const io::Geometry& input, const LogmapOptions& options, const Progress& progress) {
+  static TriangleMeshGraph build(const io::Geometry& input, const RunOptions& options, const Progress& progress) {
     check_mesh_input("trimesh", input, options);
     try {
       return TriangleMeshGraph::build(input.points, triangles(input), mesh_options(options, progress));
@@ -121,7 +121,7 @@ nlohmann::ordered_json TrimeshModel::report() const {
 
 }  // namespace
 
-std::unique_ptr<Model> build_trimesh(const io::Geometry& input, const LogmapOptions& options,
+std::unique_ptr<Model> build_trimesh(const io::Geometry& input, const RunOptions& options,
                                      const Progress& progress) {
   return std::make_unique<TrimeshModel>(input, options, progress);
 }
