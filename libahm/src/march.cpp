@@ -139,7 +139,7 @@ bool March::advance(const Source* source, double depth) {
 }
 
 /// The vertices ahead of the front within `depth` of heat distance (Dijkstra's algorithm, the levels on the front being
-/// those of the heat that was found there), in that order.
+/// those of the heat that was found there), in the order of the graph.
 March::Band March::find_band(const Source* source, double depth) {
   using Entry = std::pair<float, Index>;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
@@ -187,6 +187,10 @@ March::Band March::find_band(const Source* source, double depth) {
     spread(vertex, distance);
   }
   for (Index vertex : touched) tentative_[static_cast<std::size_t>(vertex)] = far_away;
+  // The graph's own order keeps neighbours close in memory; that of the distance scatters them all around the front.
+  std::sort(band.vertices.begin(), band.vertices.end());
+  for (std::size_t k = 0; k < band.vertices.size(); ++k)
+    place_[static_cast<std::size_t>(band.vertices[k])] = static_cast<Index>(k);
   for (std::size_t k = 0; k < band.vertices.size(); ++k) {
     tentative_[static_cast<std::size_t>(band.vertices[k])] = far_away;
     const Star star = graph_.star(band.vertices[k]);
