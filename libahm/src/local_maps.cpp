@@ -224,6 +224,11 @@ class Worker {
       order_.resize(static_cast<std::size_t>(options_.nearest));
 
     entries = {};
+    const std::size_t size = order_.size();
+    entries.vertices.reserve(size);
+    entries.distances.reserve(size);
+    entries.logs.reserve(size * d_);
+    entries.transports.reserve(size * (graph_.transport_kind() == TransportKind::rotation2 ? 2 : d_ * d_));
     const FrameField frames = heat.frames(m);
     std::vector<double> axes(d_ * d_);
     for (Index k : order_) {
