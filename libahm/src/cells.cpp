@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "ahm/detail/memory.hpp"
+#include "ahm/distance.hpp"
 #include "ahm/error.hpp"
 #include "inflow.hpp"
 #include "small_math.hpp"
@@ -119,6 +120,89 @@ std::vector<Index> nearest_source(const LogMapSolver& solver, std::span<const In
     cells.run();
     return cells.take_labels();
   });
+}
+
+namespace {
+
+void check_labels(const TangentGraph& graph, std::span<const Index> vertices, std::span<const Index> labels) {
+  check_vertices(graph, vertices);
+  if (labels.size() != static_cast<std::size_t>(graph.size()))
+    throw InvalidArgument("distance_in_cells: 'labels' has " + std::to_string(labels.size()) + " entries for " +
+                          std::to_string(graph.size()) + " vertices");
+  for (std::size_t i = 0; i < labels.size(); ++i)
+    if (labels[i] < nobody || labels[i] >= static_cast<Index>(vertices.size()))
+      throw InvalidArgument("distance_in_cells: 'labels' [" + std::to_string(i) + "] is " + std::to_string(labels[i]) +
+                            ", there are " + std::to_string(vertices.size()) + " sources");
+}
+
+/// For every cell the cells it touches.
+std::vector<std::vector<Index>> touching_cells(const TangentGraph& graph, std::span<const Index> labels,
+                                               std::size_t count) {
+  std::vector<std::vector<Index>> touching(count);
+  for (Index i = 0; i < graph.size(); ++i) {
+    const Index own = labels[static_cast<std::size_t>(i)];
+    if (own == nobody) continue;
+    std::vector<Index>& others = touching[static_cast<std::size_t>(own)];
+    for (Index j : graph.star(i).neighbors) {
+      const Index other = labels[static_cast<std::size_t>(j)];
+      if (other != own && other != nobody && std::find(others.begin(), others.end(), other) == others.end())
+        others.push_back(other);
+    }
+  }
+  return touching;
+}
+
+/// Groups such that cells that touch, or touch a common one, are in different ones.
+std::vector<Index> groups_apart(const std::vector<std::vector<Index>>& touching) {
+  std::vector<Index> group(touching.size(), nobody);
+  std::vector<std::size_t> taken_by(touching.size(), touching.size());  // the last cell that cannot have this group
+  for (std::size_t cell = 0; cell < touching.size(); ++cell) {
+    const auto avoid = [&](Index other) {
+      if (const Index g = group[static_cast<std::size_t>(other)]; g != nobody)
+        taken_by[static_cast<std::size_t>(g)] = cell;
+    };
+    for (Index near : touching[cell]) {
+      avoid(near);
+      for (Index next : touching[static_cast<std::size_t>(near)]) avoid(next);
+    }
+    Index free = 0;
+    while (taken_by[static_cast<std::size_t>(free)] == cell) ++free;
+    group[cell] = free;
+  }
+  return group;
+}
+
+/// A source everywhere at these vertices: nothing is measured from one to the other.
+Source all_of(int dimension, std::span<const Index> vertices) {
+  const auto d = static_cast<std::size_t>(dimension);
+  std::vector<double> offset(d, 0.0), axes(d * d, 0.0);
+  for (std::size_t a = 0; a < d; ++a) axes[a * d + a] = 1;
+  Source source(dimension);
+  for (Index vertex : vertices) source.add(vertex, 1, offset, axes);
+  return source;
+}
+
+}  // namespace
+
+VertexField distance_in_cells(const LogMapSolver& solver, std::span<const Index> vertices,
+                              std::span<const Index> labels) {
+  const TangentGraph& graph = solver.graph();
+  check_labels(graph, vertices, labels);
+  const std::vector<Index> group = groups_apart(touching_cells(graph, labels, vertices.size()));
+  VertexField result{1, std::vector<double>(labels.size(), std::numeric_limits<double>::quiet_NaN()),
+                     std::vector<Status>(labels.size(), Status::component)};
+  for (Index g = 0; g <= *std::max_element(group.begin(), group.end()); ++g) {
+    std::vector<Index> sources;
+    for (std::size_t k = 0; k < group.size(); ++k)
+      if (group[k] == g) sources.push_back(vertices[k]);
+    const DistanceField field = distance_and_gradient(solver, all_of(graph.dimension(), sources));
+    for (std::size_t i = 0; i < labels.size(); ++i) {
+      if (labels[i] == nobody || group[static_cast<std::size_t>(labels[i])] != g) continue;
+      result.values[i] = field.distance.values[i];
+      result.status[i] = field.distance.status[i];
+    }
+  }
+  return result;
 }
 
 std::vector<Index> farthest_points(const LogMapSolver& solver, Index first, Index count, const MapOptions& options) {

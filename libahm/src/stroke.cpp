@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <string>
 
 #include "ahm/error.hpp"
@@ -108,22 +109,45 @@ void add_sample(Source& source, Index vertex, double weight, const Vec2& z, cons
   source.add(vertex, weight, z, axes);
 }
 
+void check_shape(const StrokeOptions& options) {
+  if (options.shape == StrokeShape::circle && !options.closed)
+    throw InvalidArgument("stroke_source: shape 'circle' needs a closed curve");
+}
+
+/// Where the point at arclength s lies in the plane of coordinates, and which way the curve runs there.
+struct Place {
+  Vec2 position, direction;
+};
+
+Place place(double s, double length, StrokeShape shape) {
+  if (shape == StrokeShape::line) return {{s, 0}, {1, 0}};
+  const double radius = length / (2 * std::numbers::pi), c = std::cos(s / radius), d = std::sin(s / radius);
+  return {{radius * c, radius * d}, {-d, c}};
+}
+
+void check_points(std::span<const Source> points, std::span<const double> lengths, bool closed) {
+  const std::size_t least = closed ? 3 : 2;
+  if (points.size() < least)
+    throw InvalidArgument("stroke_source: 'points' has " + std::to_string(points.size()) + " entries; give at least " +
+                          std::to_string(least));
+  if (lengths.size() != points.size() - (closed ? 0 : 1))
+    throw InvalidArgument("stroke_source: 'lengths' has " + std::to_string(lengths.size()) + " entries for " +
+                          std::to_string(points.size()) + " points; an open curve has one fewer, a closed one as many");
+  for (std::size_t k = 0; k < lengths.size(); ++k)
+    if (!(lengths[k] > 0) || !std::isfinite(lengths[k]))
+      throw InvalidArgument("stroke_source: 'lengths' [" + std::to_string(k) + "] is " + std::to_string(lengths[k]) +
+                            ", not positive and finite; leave out points that coincide");
+}
+
 }  // namespace
 
 Source stroke_source(const TangentGraph& graph, std::span<const Index> path, const StrokeOptions& options) {
-  if (options.shape == StrokeShape::circle && !options.closed)
-    throw InvalidArgument("stroke_source: shape 'circle' needs a closed path");
+  check_shape(options);
   const Curve curve = follow(graph, path, options.closed);
-  const double radius = curve.length / (2 * std::numbers::pi);
   Source source(2);
   for (std::size_t k = 0; k < path.size(); ++k) {
-    Vec2 z{curve.s[k], 0}, direction{1, 0};
-    if (options.shape == StrokeShape::circle) {
-      const double angle = curve.s[k] / radius;
-      direction = {-std::sin(angle), std::cos(angle)};
-      z = {radius * direction[1], -radius * direction[0]};
-    }
-    add_sample(source, path[k], curve.weights[k], z, curve.tangents[k], curve.sides[k], direction);
+    const auto [position, direction] = place(curve.s[k], curve.length, options.shape);
+    add_sample(source, path[k], curve.weights[k], position, curve.tangents[k], curve.sides[k], direction);
   }
   return source;
 }
@@ -168,6 +192,23 @@ Source stroke_source(std::span<const StrokePoint> points) {
     }
   }
   return source;
+}
+
+Source stroke_source(std::span<const Source> points, std::span<const double> lengths, const StrokeOptions& options) {
+  check_shape(options);
+  check_points(points, lengths, options.closed);
+  const double length = std::accumulate(lengths.begin(), lengths.end(), 0.0);
+  std::vector<StrokePoint> stroke;
+  stroke.reserve(points.size());
+  double s = 0;
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const double before = k > 0 ? lengths[k - 1] : options.closed ? lengths.back() : 0;
+    const double after = k < lengths.size() ? lengths[k] : 0;
+    const auto [position, direction] = place(s, length, options.shape);
+    stroke.push_back({points[k], (before + after) / 2, position, std::atan2(direction[1], direction[0])});
+    s += after;
+  }
+  return stroke_source(stroke);
 }
 
 }  // namespace ahm

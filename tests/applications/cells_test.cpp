@@ -54,6 +54,45 @@ TEST(Cells, AreThoseOfSeparateHeatsWhereverOneHasTheMajority) {
   EXPECT_LT(doubtful, 2 * area * graph.size() / (4 * pi));
 }
 
+TEST(Cells, HaveTheirDistancesUpToTheBorder) {
+  const FlatGraph flat = planar_triangulation(30);
+  const CsrGraph graph(flat.data);
+  const LogMapSolver solver(graph);
+  for (const Index count : {1, 2, 5, 40}) {
+    const std::vector<Index> sources = farthest_points(solver, 17, count);
+    const auto labels = nearest_source(solver, sources);
+    const VertexField away = distance_in_cells(solver, sources, labels);
+    const std::vector<LogMap> separate = solver.solve([&] {
+      std::vector<Source> all;
+      for (Index vertex : sources) all.push_back(Source::at_vertex(vertex));
+      return all;
+    }());
+    for (Index i = 0; i < graph.size(); ++i) {
+      const auto own = static_cast<std::size_t>(labels[static_cast<std::size_t>(i)]);
+      // Few cells all touch or nearly so, and each is solved for alone: exact. Of many, sources of a group are a cell of
+      // several edges farther away than the own one, and add a little of their heat.
+      const double exact = separate[own].distance(i);
+      EXPECT_NEAR(away.values[static_cast<std::size_t>(i)], exact, count <= 5 ? 1e-11 : graph.mean_edge_length() / 4);
+      EXPECT_EQ(away.status[static_cast<std::size_t>(i)], Status::ok);
+    }
+  }
+}
+
+TEST(Cells, DistancesNeedLabelsThatFit) {
+  const CsrGraph graph(planar_triangulation(8).data);
+  const LogMapSolver solver(graph);
+  const std::vector<Index> sources{3, 40};
+  std::vector<Index> labels = nearest_source(solver, sources);
+  EXPECT_THROW(distance_in_cells(solver, std::span(sources).first(0), labels), InvalidArgument);
+  EXPECT_THROW(distance_in_cells(solver, sources, std::span(labels).first(5)), InvalidArgument);
+  labels[0] = 2;
+  EXPECT_THROW(distance_in_cells(solver, sources, labels), InvalidArgument);
+  labels[0] = -1;
+  const VertexField away = distance_in_cells(solver, sources, labels);
+  EXPECT_EQ(away.status[0], Status::component);
+  EXPECT_TRUE(std::isnan(away.values[0]));
+}
+
 TEST(Cells, ContainTheirSourcesAndAreConnected) {
   const CsrGraph graph(planar_triangulation(30).data);
   const LogMapSolver solver(graph);

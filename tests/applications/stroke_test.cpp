@@ -181,6 +181,41 @@ TEST(Stroke, OfPointsIsTheStrokeOfTheirVertices) {
   for (std::size_t i = 0; i < a.coordinates().size(); ++i) EXPECT_NEAR(a.coordinates()[i], b.coordinates()[i], 1e-12);
 }
 
+TEST(Stroke, OfPointsBesideVerticesIsExactInThePlane) {
+  const FlatGraph flat = planar_triangulation(16);
+  const CsrGraph graph(flat.data);
+  Vec2 low = position(flat, 0), high = low;
+  for (Index i = 0; i < flat.size(); ++i)
+    for (int a : {0, 1})
+      low[a] = std::min(low[a], position(flat, i)[a]), high[a] = std::max(high[a], position(flat, i)[a]);
+  const Vec2 middle{(low[0] + high[0]) / 2, (low[1] + high[1]) / 2};
+  const double radius = (high[0] - low[0]) / 4;
+  // Points of a circle, each carried by the vertex nearest to it.
+  const int n = 80;
+  std::vector<Source> points;
+  for (int k = 0; k < n; ++k) {
+    const double angle = 2 * std::numbers::pi * k / n, c = std::cos(angle), s = std::sin(angle);
+    const Vec2 p{middle[0] + radius * c, middle[1] + radius * s};
+    Index nearest = 0;
+    const auto away = [&](Index i) { return std::hypot(position(flat, i)[0] - p[0], position(flat, i)[1] - p[1]); };
+    for (Index i = 1; i < flat.size(); ++i)
+      if (away(i) < away(nearest)) nearest = i;
+    const Vec2 a = position(flat, nearest);
+    const double* F = &flat.frames[4 * static_cast<std::size_t>(nearest)];
+    const double axes[] = {-F[0] * s + F[1] * c, -F[0] * c - F[1] * s, -F[2] * s + F[3] * c, -F[2] * c - F[3] * s};
+    const Vec2 d{a[0] - p[0], a[1] - p[1]};
+    const double offset[] = {-s * d[0] + c * d[1], -c * d[0] - s * d[1]};
+    points.push_back(Source(2).add(nearest, 1, offset, axes));
+  }
+  const std::vector<double> lengths(n, 2 * std::numbers::pi * radius / n);
+  const LogMap map =
+      LogMapSolver(graph).solve(stroke_source(points, lengths, {.closed = true, .shape = StrokeShape::circle}));
+  for (Index i = 0; i < flat.size(); ++i)
+    for (int a : {0, 1})
+      EXPECT_NEAR(map.coordinates(i)[static_cast<std::size_t>(a)], position(flat, i)[a] - middle[a],
+                  1e-11 * flat.diameter());
+}
+
 TEST(Stroke, RefusesWhatIsNoCurve) {
   const CsrGraph graph(planar_triangulation(6).data);
   const std::array<Index, 2> jump{0, 35}, outside{0, 36};
@@ -190,6 +225,16 @@ TEST(Stroke, RefusesWhatIsNoCurve) {
   EXPECT_THROW(stroke_source(graph, back), InvalidArgument);
   EXPECT_THROW(stroke_source(graph, std::span(jump).first(1)), InvalidArgument);
   EXPECT_THROW(stroke_source(graph, std::array<Index, 2>{0, 1}, {.shape = StrokeShape::circle}), InvalidArgument);
+  const double along[] = {1, 0};
+  const std::vector<Source> points(3, Source::at_vertex(0, along));
+  const std::vector<Source> unturned(3, Source::at_vertex(0));
+  const std::array<double, 3> lengths{1, 1, 1}, still{1, 0, 1};
+  EXPECT_NO_THROW(stroke_source(points, lengths, {.closed = true}));
+  EXPECT_THROW(stroke_source(points, lengths), InvalidArgument);
+  EXPECT_THROW(stroke_source(points, still, {.closed = true}), InvalidArgument);
+  EXPECT_THROW(stroke_source(unturned, lengths, {.closed = true}), InvalidArgument);
+  EXPECT_THROW(stroke_source(points, std::span(lengths).first(2), {.shape = StrokeShape::circle}), InvalidArgument);
+  EXPECT_THROW(stroke_source(std::span(points).first(1), std::span(lengths).first(0)), InvalidArgument);
 }
 
 }  // namespace

@@ -71,6 +71,14 @@ class InverseMap {
   /// The triangles that answer, nearest to the source first.
   std::span<const Triangle3> triangles() const noexcept { return triangles_; }
   double max_stretch() const noexcept { return max_stretch_; }
+  /// Number of vertices n, and what was given of each.
+  std::size_t size() const noexcept { return positions_.size(); }
+  std::array<double, 2> coordinates(Index vertex) const {
+    const Vec2& q = plane_[static_cast<std::size_t>(vertex)];
+    return {q[0] * unit_, q[1] * unit_};
+  }
+  const Vec3& position(Index vertex) const { return positions_[static_cast<std::size_t>(vertex)]; }
+  const Vec3& normal(Index vertex) const { return normals_[static_cast<std::size_t>(vertex)]; }
 
  private:
   using Vec2 = std::array<double, 2>;

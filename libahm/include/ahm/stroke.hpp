@@ -6,6 +6,8 @@
 /// std::vector<ahm::Index> path{4, 5, 6, 7};                               // neighbours in the graph
 /// auto map = solver.solve(ahm::stroke_source(graph, path));              // u: arclength, v: signed distance (left > 0)
 /// auto ring = solver.solve(ahm::stroke_source(graph, loop, {.closed = true, .shape = ahm::StrokeShape::circle}));
+/// // points in faces, at vertices, ..., whose u axes run along the curve, and the way from each to the next
+/// auto drawn = solver.solve(ahm::stroke_source(sources, lengths));
 /// \endcode
 #pragma once
 
@@ -52,5 +54,12 @@ struct StrokePoint {
 /// One source from the points of a polyline. Its spacing should not exceed the edge length by much.
 /// @throws InvalidArgument (no points, a source that is not of dimension 2)
 Source stroke_source(std::span<const StrokePoint> points);
+
+/// The same by arclength: weights, positions and angles follow from the lengths of the segments.
+/// @param points   at least 2, closed: 3; sources whose u axis runs along the curve and whose v axis is left of it
+/// @param lengths  > 0: lengths[k] from point k to the next one, outside units; one fewer than points, closed: as many
+/// @throws InvalidArgument (counts, a length, a source that is not of dimension 2, `circle` on an open curve)
+Source stroke_source(std::span<const Source> points, std::span<const double> lengths,
+                     const StrokeOptions& options = {});
 
 }  // namespace ahm

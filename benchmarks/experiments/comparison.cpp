@@ -1,0 +1,169 @@
+#include "experiments/comparison.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <queue>
+
+#include "ahm/error.hpp"
+#include "sphere_error.hpp"
+
+namespace ahm::bench {
+
+namespace {
+
+trimesh::TriangleMeshGraph build(const Mesh& mesh, trimesh::MeshOptions options) {
+  options.non_manifold = trimesh::NonManifold::split;
+  return trimesh::TriangleMeshGraph::build(mesh.points, mesh.faces, options);
+}
+
+}  // namespace
+
+Surface::Surface(std::string name, const Mesh& mesh, trimesh::MeshOptions options)
+    : name_(std::move(name)), surface_(build(mesh, std::move(options))) {
+  const trimesh::TriangleMesh& checked = surface_.mesh();
+  for (Index i = 0; i < checked.vertex_count(); ++i) points_.push_back(checked.original_position(i));
+  const std::span<const Index> tails = checked.tails();
+  for (std::size_t h = 0; h < tails.size(); h += 3) faces_.push_back({tails[h], tails[h + 1], tails[h + 2]});
+}
+
+std::vector<double> Surface::plane_log(Index source) const {
+  const Frame frame = *graph().frame(source);
+  std::vector<double> result;
+  for (const Vec3& q : points_) {
+    const Vec3 offset{q[0] - frame.origin[0], q[1] - frame.origin[1], q[2] - frame.origin[2]};
+    result.push_back(dot(frame.x, offset));
+    result.push_back(dot(frame.y, offset));
+  }
+  return result;
+}
+
+std::vector<double> Surface::sphere_log(Index source) const {
+  const Frame frame = *graph().frame(source);
+  const Vec3& p = points_[static_cast<std::size_t>(source)];
+  std::vector<double> result;
+  for (const Vec3& q : points_) {
+    const double x = dot(frame.x, q), y = dot(frame.y, q), r = std::hypot(x, y);
+    const double scale = r > 0 ? std::atan2(r, dot(p, q)) / r : 0;
+    result.push_back(scale * x);
+    result.push_back(scale * y);
+  }
+  return result;
+}
+
+std::vector<double> Surface::path_lengths(Index source) const {
+  std::vector<double> length(points_.size(), std::numeric_limits<double>::infinity());
+  using Entry = std::pair<double, Index>;
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
+  length[static_cast<std::size_t>(source)] = 0;
+  queue.push({0, source});
+  while (!queue.empty()) {
+    const auto [here, i] = queue.top();
+    queue.pop();
+    if (here > length[static_cast<std::size_t>(i)]) continue;
+    const Star star = graph().star(i);
+    for (std::size_t e = 0; e < star.degree(); ++e) {
+      const double there = here + graph().length_unit() * std::hypot(star.log(e)[0], star.log(e)[1]);
+      double& known = length[static_cast<std::size_t>(star.neighbors[e])];
+      if (there < known) {
+        known = there;
+        queue.push({there, star.neighbors[e]});
+      }
+    }
+  }
+  return length;
+}
+
+Index Surface::nearest(const Vec3& point) const {
+  auto squared = [&](const Vec3& q) {
+    const Vec3 off{q[0] - point[0], q[1] - point[1], q[2] - point[2]};
+    return dot(off, off);
+  };
+  const auto best = std::ranges::min_element(points_, {}, squared);
+  return static_cast<Index>(best - points_.begin());
+}
+
+void for_user_surfaces(const Settings& settings, Index largest, const std::function<void(const Surface&)>& use) {
+  for (const NamedMesh& mesh : user_meshes(settings, largest)) try {
+      use(Surface(mesh.name, mesh));
+    } catch (const Error& e) {
+      fmt::print(stderr, "left out: {}: {}\n", mesh.name, e.what());
+    }
+}
+
+std::span<const NamedMethod> log_map_methods() {
+  static constexpr NamedMethod list[] = {
+      {"AHM_a", [](const TangentGraph& graph) { return baselines::affine_heat(graph, Variant::adaptive); }},
+      {"AHM_l", [](const TangentGraph& graph) { return baselines::affine_heat(graph, Variant::localized); }},
+      {"VHM_log", [](const TangentGraph& graph) { return baselines::vector_heat_log(graph); }},
+      {"SEM", [](const TangentGraph& graph) { return baselines::smoothed_exponential(graph); }},
+      {"DEM",
+       [](const TangentGraph& graph) {
+         return baselines::discrete_exponential(graph, {.turn = baselines::FrameTurn::in_space});
+       }},
+  };
+  return list;
+}
+
+Errors errors(std::span<const double> coordinates, std::span<const double> exact, const Choice& chosen) {
+  Errors e;
+  for (std::size_t i = 0; 2 * i < exact.size(); ++i) {
+    if (!chosen(i)) continue;
+    const double off = std::hypot(coordinates[2 * i] - exact[2 * i], coordinates[2 * i + 1] - exact[2 * i + 1]);
+    if (!std::isfinite(off)) {
+      ++e.missing;
+      continue;
+    }
+    e.rms += off * off;
+    e.mean += off;
+    e.largest = std::max(e.largest, off);
+    ++e.count;
+  }
+  if (e.count > 0) e.rms = std::sqrt(e.rms / e.count), e.mean /= e.count;
+  return e;
+}
+
+double distance_rms(std::span<const double> found, std::span<const double> exact, double within) {
+  double sum = 0, count = 0;
+  for (std::size_t i = 0; i < exact.size(); ++i)
+    if (exact[i] <= within && std::isfinite(found[i])) sum += std::pow(found[i] - exact[i], 2), count += 1;
+  return std::sqrt(sum / count);
+}
+
+std::vector<int> rings(std::span<const double> lengths, int count) {
+  double longest = 0;
+  for (double x : lengths)
+    if (std::isfinite(x)) longest = std::max(longest, x);
+  std::vector<int> result;
+  for (double x : lengths)
+    result.push_back(std::isfinite(x) ? std::min(count - 1, static_cast<int>(count * x / longest)) : -1);
+  return result;
+}
+
+Cell known(double number) { return std::isfinite(number) ? Cell(number) : Cell(); }
+
+double quantile(std::vector<double> values, double q) {
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(q * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+std::vector<double> lengths(std::span<const double> coordinates) {
+  std::vector<double> result;
+  for (std::size_t i = 0; i < coordinates.size(); i += 2)
+    result.push_back(std::hypot(coordinates[i], coordinates[i + 1]));
+  return result;
+}
+
+double fitted_order(std::span<const double> x, std::span<const double> y) {
+  const auto n = static_cast<double>(x.size());
+  double sx = 0, sy = 0, sxx = 0, sxy = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double a = std::log(x[i]), b = std::log(y[i]);
+    sx += a, sy += b, sxx += a * a, sxy += a * b;
+  }
+  return (n * sxy - sx * sy) / (n * sxx - sx * sx);
+}
+
+}  // namespace ahm::bench

@@ -1,0 +1,90 @@
+/// \file
+/// What the experiments share: a surface made ready for all methods, the methods, and errors against known answers.
+///
+/// \code
+/// const Surface surface("sphere", icosphere(10000));
+/// const Index source = surface.size() / 3;
+/// for (const NamedMethod& method : log_map_methods()) {
+///   const auto result = method.make(surface.graph())->solve(source);
+///   const Errors e = errors(result.coordinates, surface.sphere_log(source), [](std::size_t) { return true; });
+/// }
+/// \endcode
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "ahm/trimesh/triangle_mesh_graph.hpp"
+#include "baselines/baselines.hpp"
+#include "experiments/surfaces.hpp"
+
+namespace ahm::bench {
+
+/// A mesh and its graph; vertices and faces are those of the graph.
+class Surface {
+ public:
+  /// Non-manifold edges are cut, whatever `options` say.
+  Surface(std::string name, const Mesh& mesh, trimesh::MeshOptions options = {});
+
+  const std::string& name() const noexcept { return name_; }
+  const TangentGraph& graph() const noexcept { return surface_.graph(); }
+  const trimesh::TriangleMeshGraph& mesh() const noexcept { return surface_; }
+  Index size() const noexcept { return surface_.graph().size(); }
+  std::span<const Vec3> points() const noexcept { return points_; }
+  std::span<const trimesh::Triangle> faces() const noexcept { return faces_; }
+  double mean_edge() const noexcept { return graph().mean_edge_length() * graph().length_unit(); }
+
+  /// Exact log maps, n x 2: of a surface that lies in a plane, and of the unit sphere.
+  std::vector<double> plane_log(Index source) const;
+  std::vector<double> sphere_log(Index source) const;
+  /// Lengths of the shortest paths of edges: a measure of "how far" that favours no method. Infinite where there is none.
+  std::vector<double> path_lengths(Index source) const;
+  Index nearest(const Vec3& point) const;
+
+ private:
+  std::string name_;
+  trimesh::TriangleMeshGraph surface_;
+  std::vector<Vec3> points_;
+  std::vector<trimesh::Triangle> faces_;
+};
+
+/// Runs `use` on every mesh of the user that has at most `largest` vertices. One on which it throws an `Error` is named on
+/// the error stream; the others go on.
+void for_user_surfaces(const Settings& settings, Index largest, const std::function<void(const Surface&)>& use);
+
+struct NamedMethod {
+  std::string_view name;
+  baselines::Method (*make)(const TangentGraph&);
+};
+/// AHM_a, AHM_l, VHM_log, SEM, DEM as published.
+std::span<const NamedMethod> log_map_methods();
+
+/// Errors of vectors against known ones, over chosen vertices.
+struct Errors {
+  double rms = 0, mean = 0, largest = 0;
+  Index count = 0;    ///< vertices measured
+  Index missing = 0;  ///< chosen vertices without coordinates
+};
+using Choice = std::function<bool(std::size_t)>;
+Errors errors(std::span<const double> coordinates, std::span<const double> exact, const Choice& chosen);
+
+/// Root mean square error of distances over the vertices within an exact distance.
+double distance_rms(std::span<const double> found, std::span<const double> exact, double within);
+
+/// Cuts [0, longest finite length] into `count` equal rings and returns the ring of each length, -1 where infinite.
+std::vector<int> rings(std::span<const double> lengths, int count);
+
+/// A number that may not exist: an empty cell where it is not finite.
+Cell known(double number);
+
+/// The value below which a share q of the values lie; values are not empty.
+double quantile(std::vector<double> values, double q);
+
+/// Lengths of n vectors of the plane.
+std::vector<double> lengths(std::span<const double> coordinates);
+
+/// Slope of log y over log x, least squares: the order of convergence where x is h and y the error.
+double fitted_order(std::span<const double> x, std::span<const double> y);
+
+}  // namespace ahm::bench

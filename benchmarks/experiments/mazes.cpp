@@ -1,0 +1,36 @@
+// Fig. 27: planar mazes, where no straight line leads from the source to most points.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "experiments/comparison.hpp"
+#include "trimesh/meshes.hpp"
+
+namespace ahm::bench {
+
+Table mazes(const Settings& settings) {
+  Table table({"cells", "vertices", "method", "longest path / diameter", "longest path / h", "rms / diameter",
+               "largest / diameter", "missing"});
+  for (Index cells : settings.toy ? std::vector<Index>{4, 8} : std::vector<Index>{5, 10, 20, 40}) {
+    const test::Mesh maze = test::maze(cells);
+    const Surface surface("maze", {maze.positions, maze.faces});
+    const std::vector<double> exact = surface.plane_log(0), paths = surface.path_lengths(0);
+    const double diameter = maze.diameter(), longest = std::ranges::max(paths);
+    for (const NamedMethod& method : log_map_methods()) {
+      const auto map = method.make(surface.graph())->solve(0).coordinates;
+      const Errors e = errors(map, exact, [](std::size_t) { return true; });
+      table.add({cells, surface.size(), method.name, longest / diameter, longest / surface.mean_edge(),
+                 e.rms / diameter, e.largest / diameter, e.missing});
+    }
+  }
+  auto worst = [&](const char* method) { return table.where("method", method).largest("largest / diameter"); };
+  table.seen = fmt::format(
+      "AHM_a and AHM_l are off by {:.1g} of the diameter, also {:.0f} diameters of path away from the source; VHM_log "
+      "by {:.2g}, SEM by {:.2g}.",
+      std::max(worst("AHM_a"), worst("AHM_l")), table.largest("longest path / diameter"), worst("VHM_log"),
+      worst("SEM"));
+  return table;
+}
+
+}  // namespace ahm::bench

@@ -1,0 +1,81 @@
+#include <array>
+
+#include "experiments/experiment.hpp"
+
+namespace ahm::bench {
+
+Table backends(const Settings&);
+Table boundary(const Settings&);
+Table convergence(const Settings&);
+Table cut_locus(const Settings&);
+Table delaunay(const Settings&);
+Table dem(const Settings&);
+Table discretizations(const Settings&);
+Table distance(const Settings&);
+Table distortion(const Settings&);
+Table flat(const Settings&);
+Table mazes(const Settings&);
+Table radial(const Settings&);
+Table runtime(const Settings&);
+Table tessellations(const Settings&);
+Table times(const Settings&);
+Table variants(const Settings&);
+
+std::span<const Experiment> experiments() {
+  static constexpr std::array list{
+      Experiment{"flat", "Fig. 6", "In the plane",
+                 "Both affine variants reproduce the plane; the vector heat method distorts it near the source.", flat},
+      Experiment{
+          "mazes", "Fig. 27", "Planar mazes",
+          "Beyond the reach of straight lines, the affine heat method still gives the identity on planar domains.",
+          mazes},
+      Experiment{
+          "distortion", "Fig. 2, 26", "Metric distortion",
+          "The affine variants distort less than VHM_log, SEM and DEM, and more smoothly; near the source VHM_log "
+          "and SEM distort most, DEM far from it.",
+          distortion},
+      Experiment{
+          "distance", "Fig. 20", "Distance",
+          "In a neighbourhood of the source |phi| is more accurate than the heat method (HM) and the signed heat "
+          "method (SHM); at the cut locus it is not.",
+          distance},
+      Experiment{"convergence", "Fig. 24", "Convergence on the sphere",
+                 "Both variants converge linearly in L2 and in L-infinity; the adaptive one is slightly more accurate.",
+                 convergence},
+      Experiment{
+          "variants", "Fig. 8", "Localized or adaptive",
+          "Within the injectivity radius the localized variant is nearly the adaptive one; they differ at the cut "
+          "locus.",
+          variants},
+      Experiment{"cut_locus", "Fig. 12", "Colliding geodesics",
+                 "Coordinates are smooth on the whole surface, also across the cut locus and where it is near.",
+                 cut_locus},
+      Experiment{"times", "Fig. 13", "Diffusion times",
+                 "AHM is accurate over orders of magnitude of the diffusion time, VHM_log is not.", times},
+      Experiment{"delaunay", "Fig. 14", "Intrinsic Delaunay triangulation",
+                 "With it the quality of the map does not depend on that of the mesh.", delaunay},
+      Experiment{"tessellations", "Fig. 23", "Coarse and bad triangles",
+                 "AHM_l stays accurate on coarse meshes and bad triangles, where VHM_log and SEM struggle.",
+                 tessellations},
+      Experiment{"dem", "Fig. 25", "Discrete exponential maps",
+                 "DEM is accurate near the source; its errors accumulate with distance. AHM_a stays smooth.", dem},
+      Experiment{"boundary", "Fig. 4", "Boundaries", "As with SHM, distances take no notice of the boundary.",
+                 boundary},
+      Experiment{"radial", "Fig. 21", "Radial field on thin triangles",
+                 "On anisotropic meshes affine diffusion gives a more isotropic radial field than vector diffusion.",
+                 radial},
+      Experiment{
+          "runtime", "Fig. 22", "Run time",
+          "AHM_l is 27 % slower than VHM_log, AHM_a 70 %; further maps are 7 to 30 (AHM_l) and 3 to 10 (AHM_a) times "
+          "faster than the first.",
+          runtime},
+      Experiment{"discretizations", "Fig. 15, 16", "The sphere as triangles, polygons and points",
+                 "The same algorithm runs on point clouds and polygon meshes; the paper gives pictures, no numbers.",
+                 discretizations},
+      Experiment{"backends", "after Fig. 16", "What each backend costs",
+                 "The same algorithm runs on triangles, polygons and point clouds, with like results.", backends},
+  };
+  return list;
+}
+
+}  // namespace ahm::bench

@@ -1,0 +1,77 @@
+// Fig. 22: run time by size, of the first map and of further ones; and beside it the vector heat method's.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <optional>
+
+#include "ahm/error.hpp"
+#include "ahm/log_map_solver.hpp"
+#include "experiments/comparison.hpp"
+#include "experiments/timing.hpp"
+
+namespace ahm::bench {
+namespace {
+
+void measure(const std::string& name, const Mesh& mesh, unsigned threads, Table& table) {
+  std::optional<Surface> surface;
+  std::optional<LogMapSolver> solver;
+  std::optional<baselines::Method> vector_heat;
+  const double build = least_seconds([&] { surface.emplace(name, mesh, trimesh::MeshOptions{.threads = threads}); });
+  const TangentGraph& graph = surface->graph();
+  const double factor = least_seconds([&] {
+    solver.emplace(graph, OperatorOptions{.check_graph = false, .threads = threads},
+                   SolverOptions{.strategy = Strategy::global});
+  });
+  const Index source = graph.size() / 2;
+  auto further = [&](Variant variant) {
+    return least_seconds([&] { solver->solve(Source::at_vertex(source), {.variant = variant, .threads = threads}); });
+  };
+  const double adaptive = further(Variant::adaptive), localized = further(Variant::localized);
+  std::vector<Source> sources;
+  for (Index s = 0; s < 32; ++s)
+    sources.push_back(Source::at_vertex(static_cast<Index>(static_cast<Offset>(s) * graph.size() / 32)));
+  const double batch = least_seconds([&] { solver->solve(sources, {.threads = threads}); }) / 32;
+  solver.reset();
+  const double vector_factor = least_seconds([&] { vector_heat.emplace(baselines::vector_heat_log(graph)); });
+  const double vector_further = least_seconds([&] { (*vector_heat)->solve(source); });
+  table.add({name, graph.size(), build, factor, factor + adaptive, adaptive, factor + localized, localized, batch,
+             vector_factor + vector_further, vector_further});
+}
+
+/// Generated surfaces, one after the other.
+Mesh generated(int number, Index n) { return number == 0 ? jittered_icosphere(n, 0.15) : torus(n); }
+
+double order(const Table& table, std::string_view what) {
+  return fitted_order(table.numbers("vertices"), table.numbers(what));
+}
+
+}  // namespace
+
+Table runtime(const Settings& settings) {
+  Table table({"mesh", "vertices", "build s", "factor s", "first AHM_a s", "further AHM_a s", "first AHM_l s",
+               "further AHM_l s", "batch of 32 s each", "first VHM_log s", "further VHM_log s"});
+  std::vector<Index> sizes{640, 2560};
+  if (!settings.toy) sizes.insert(sizes.end(), {10000, 40000, 160000});
+  for (int number : {0, 1})
+    for (Index n : sizes) measure(number == 0 ? "sphere" : "torus", generated(number, n), settings.threads, table);
+  for (const NamedMesh& mesh : user_meshes(settings)) try {
+      measure(mesh.name, mesh, settings.threads, table);
+    } catch (const Error& e) {
+      fmt::print(stderr, "left out: {}: {}\n", mesh.name, e.what());
+    }
+  auto ratio = [&](const char* a, const char* b) {
+    std::vector<double> x = table.numbers(a), y = table.numbers(b);
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] /= y[i];
+    return quantile(x, 0.5);
+  };
+  table.seen = fmt::format(
+      "The first map takes n^{:.2f}, a further one n^{:.2f}. A further AHM_a takes 1/{:.0f} of the first, AHM_l "
+      "1/{:.0f}; "
+      "the first AHM_a {:.2f} times, AHM_l {:.2f} times as long as VHM_log (medians).",
+      order(table, "first AHM_a s"), order(table, "further AHM_a s"), ratio("first AHM_a s", "further AHM_a s"),
+      ratio("first AHM_l s", "further AHM_l s"), ratio("first AHM_a s", "first VHM_log s"),
+      ratio("first AHM_l s", "first VHM_log s"));
+  return table;
+}
+
+}  // namespace ahm::bench

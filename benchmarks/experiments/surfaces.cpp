@@ -1,0 +1,162 @@
+#include "experiments/surfaces.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <random>
+
+#include "ahm/error.hpp"
+#include "ahm/io/read.hpp"
+
+namespace ahm::bench {
+namespace {
+
+using std::numbers::pi;
+
+Vec3 to_sphere(const Vec3& p) {
+  const double r = std::hypot(p[0], p[1], p[2]);
+  return {p[0] / r, p[1] / r, p[2] / r};
+}
+
+Vec3 on_sphere(double polar, double turn) {
+  return {std::sin(polar) * std::cos(turn), std::sin(polar) * std::sin(turn), std::cos(polar)};
+}
+
+NamedMesh read_triangles(const std::filesystem::path& path) {
+  const io::Geometry file = io::read(path);
+  NamedMesh mesh{{file.points, {}}, path.stem().string()};
+  for (std::size_t f = 0; f < file.face_count(); ++f) {
+    if (file.face(f).size() != 3)
+      throw InvalidGeometry(fmt::format("face {} has {} corners; triangulate the mesh", f, file.face(f).size()));
+    mesh.faces.push_back({file.face(f)[0], file.face(f)[1], file.face(f)[2]});
+  }
+  if (mesh.faces.empty()) throw InvalidGeometry("has no faces");
+  return mesh;
+}
+
+}  // namespace
+
+std::vector<NamedMesh> user_meshes(const Settings& settings, Index largest) {
+  std::vector<std::pair<std::uintmax_t, std::filesystem::path>> files;
+  if (!settings.meshes.empty())
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(settings.meshes))
+      if (const auto type = entry.path().extension();
+          type == ".ply" || type == ".off" || type == ".obj" || type == ".stl")
+        files.emplace_back(entry.file_size(), entry.path());
+  std::sort(files.begin(), files.end());
+  std::vector<NamedMesh> meshes;
+  for (const auto& [size, path] : files) try {
+      if (NamedMesh mesh = read_triangles(path); static_cast<Index>(mesh.points.size()) <= largest)
+        meshes.push_back(std::move(mesh));
+    } catch (const Error& e) {
+      fmt::print(stderr, "left out: {}: {}\n", path.string(), e.what());
+    }
+  return meshes;
+}
+
+Mesh parallels_and_meridians(int parallels, int meridians, double last) {
+  Mesh mesh;
+  mesh.points.push_back(on_sphere(0, 0));
+  const bool closed = last >= pi;
+  const int rings = closed ? parallels - 1 : parallels;
+  for (int r = 1; r <= rings; ++r)
+    for (int m = 0; m < meridians; ++m) mesh.points.push_back(on_sphere(last * r / parallels, 2 * pi * m / meridians));
+  auto at = [&](int r, int m) { return 1 + (r - 1) * meridians + m % meridians; };
+  for (int m = 0; m < meridians; ++m) {
+    mesh.faces.push_back({0, at(1, m), at(1, m + 1)});
+    for (int r = 1; r < rings; ++r) {
+      mesh.faces.push_back({at(r, m), at(r + 1, m), at(r + 1, m + 1)});
+      mesh.faces.push_back({at(r, m), at(r + 1, m + 1), at(r, m + 1)});
+    }
+  }
+  if (!closed) return mesh;
+  mesh.points.push_back(on_sphere(pi, 0));
+  for (int m = 0; m < meridians; ++m)
+    mesh.faces.push_back({static_cast<Index>(mesh.points.size() - 1), at(rings, m + 1), at(rings, m)});
+  return mesh;
+}
+
+Mesh with_needles(Index n) {
+  Mesh mesh = icosphere(n);
+  std::vector<std::array<Index, 3>> faces;
+  for (const auto& [a, b, c] : mesh.faces) {
+    Vec3 p;
+    for (int axis = 0; axis < 3; ++axis)
+      p[axis] = 0.5 * mesh.points[a][axis] + 0.49 * mesh.points[b][axis] + 0.01 * mesh.points[c][axis];
+    const auto middle = static_cast<Index>(mesh.points.size());
+    mesh.points.push_back(to_sphere(p));
+    faces.insert(faces.end(), {{a, b, middle}, {b, c, middle}, {c, a, middle}});
+  }
+  mesh.faces = faces;
+  return mesh;
+}
+
+Mesh sliver_sphere(Index n) {
+  Mesh mesh = icosphere(642);
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> uniform(0.05, 1.0);
+  while (static_cast<Index>(mesh.points.size()) < n) {
+    const auto f = static_cast<std::size_t>(random() % mesh.faces.size());
+    const auto [a, b, c] = mesh.faces[f];
+    const double x = uniform(random), y = uniform(random), z = uniform(random);
+    Vec3 p;
+    for (int axis = 0; axis < 3; ++axis)
+      p[axis] = x * mesh.points[a][axis] + y * mesh.points[b][axis] + z * mesh.points[c][axis];
+    const auto middle = static_cast<Index>(mesh.points.size());
+    mesh.points.push_back(to_sphere(p));
+    mesh.faces[f] = {a, b, middle};
+    mesh.faces.insert(mesh.faces.end(), {{b, c, middle}, {c, a, middle}});
+  }
+  return mesh;
+}
+
+Mesh jittered_icosphere(Index n, double amount) {
+  Mesh mesh = icosphere(n);
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  const double edge = std::sqrt(4 * pi / (std::sqrt(3.0) / 2 * static_cast<double>(mesh.points.size())));
+  for (Vec3& p : mesh.points) {
+    for (double& x : p) x += amount * edge * uniform(random);
+    p = to_sphere(p);
+  }
+  return mesh;
+}
+
+Mesh stretched_icosphere(Index n, double factor) {
+  Mesh mesh = icosphere(n);
+  for (Vec3& p : mesh.points) p = to_sphere({p[0], p[1], factor * p[2]});
+  return mesh;
+}
+
+Mesh ellipsoid(Index n) {
+  Mesh mesh = icosphere(n);
+  for (Vec3& p : mesh.points) p[2] *= 2;
+  return mesh;
+}
+
+Mesh bumpy_sphere(Index n) {
+  Mesh mesh = icosphere(n);
+  for (Vec3& p : mesh.points) {
+    const double r = 1 + 0.1 * std::sin(5 * p[0]) * std::sin(5 * p[1] + 1) * std::sin(5 * p[2] + 2);
+    for (double& x : p) x *= r;
+  }
+  return mesh;
+}
+
+Mesh tube(int around, double radius) {
+  Mesh mesh;
+  const int rings = 1 + static_cast<int>(std::lround(around / (pi * radius)));
+  for (int r = 0; r < rings; ++r)
+    for (int m = 0; m < around; ++m)
+      mesh.points.push_back(
+          {2.0 * r / (rings - 1), radius * std::cos(2 * pi * m / around), radius * std::sin(2 * pi * m / around)});
+  for (int r = 0; r + 1 < rings; ++r)
+    for (int m = 0; m < around; ++m) {
+      const Index a = r * around + m, b = r * around + (m + 1) % around;
+      mesh.faces.push_back({a, a + around, b});
+      mesh.faces.push_back({b, a + around, b + around});
+    }
+  return mesh;
+}
+
+}  // namespace ahm::bench

@@ -1,0 +1,59 @@
+// Fig. 8: how far the localized variant is from the adaptive one.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "ahm/log_map_solver.hpp"
+#include "ahm/quality.hpp"
+#include "experiments/comparison.hpp"
+
+namespace ahm::bench {
+namespace {
+
+constexpr int ring_count = 10;
+
+void measure(const Surface& surface, Table& table) {
+  const Index source = surface.size() / 2;
+  const LogMapSolver solver(surface.graph());
+  const LogMap adaptive = solver.solve(Source::at_vertex(source), {.frames = true}),
+               localized = solver.solve(Source::at_vertex(source), {.variant = Variant::localized});
+  const std::vector<double> quality = map_quality(surface.graph(), adaptive), paths = surface.path_lengths(source);
+  const std::vector<int> ring_of = rings(paths, ring_count);
+  double longest = 0;
+  for (Index i = 0; i < adaptive.size(); ++i)
+    if (adaptive.status(i) == Status::ok) longest = std::max(longest, adaptive.distance(i));
+  for (int ring = 0; ring < ring_count; ++ring) {
+    std::vector<double> all, trusted;
+    for (Index i = 0; i < adaptive.size(); ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      if (ring_of[k] != ring || adaptive.status(i) != Status::ok || localized.status(i) != Status::ok) continue;
+      const auto a = adaptive.coordinates(i), l = localized.coordinates(i);
+      all.push_back(std::hypot(a[0] - l[0], a[1] - l[1]) / longest);
+      if (quality[k] >= trusted_quality) trusted.push_back(all.back());
+    }
+    if (all.empty()) continue;
+    table.add({surface.name(), surface.size(), (ring + 0.5) / ring_count, quantile(all, 0.5), quantile(all, 0.95),
+               trusted.empty() ? Cell() : Cell(quantile(trusted, 0.5)),
+               static_cast<double>(trusted.size()) / static_cast<double>(all.size())});
+  }
+}
+
+}  // namespace
+
+Table variants(const Settings& settings) {
+  Table table({"shape", "vertices", "distance / longest", "median difference", "95% difference",
+               "median difference, trusted", "trusted share"});
+  const Index n = settings.toy ? 600 : 40000;
+  measure(Surface("sphere", icosphere(n)), table);
+  measure(Surface("ellipsoid", ellipsoid(n)), table);
+  measure(Surface("bumpy sphere", bumpy_sphere(n)), table);
+  measure(Surface("torus", torus(n)), table);
+  for_user_surfaces(settings, 200000, [&](const Surface& surface) { measure(surface, table); });
+  table.seen = fmt::format(
+      "Median differences, relative to the largest distance: up to {:.2g} where the map is trusted (quality above one "
+      "half), up to {:.2g} elsewhere.",
+      table.largest("median difference, trusted"), table.largest("median difference"));
+  return table;
+}
+
+}  // namespace ahm::bench

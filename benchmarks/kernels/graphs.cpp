@@ -1,0 +1,51 @@
+#include "graphs.hpp"
+
+#include <optional>
+
+namespace ahm::bench {
+namespace {
+
+/// Keeps what was made last, since Google Benchmark calls every function several times.
+template <class Made>
+class Last {
+ public:
+  template <class Make>
+  const Made& get(Index n, const Make& make) {
+    if (n != n_) made_.emplace(make());
+    n_ = n;
+    return *made_;
+  }
+
+ private:
+  Index n_ = -1;
+  std::optional<Made> made_;
+};
+
+}  // namespace
+
+const Mesh& torus_mesh(Index n) {
+  static Last<Mesh> last;
+  return last.get(n, [n] { return torus(n); });
+}
+
+const std::vector<Vec3>& sphere_points(Index n) {
+  static Last<std::vector<Vec3>> last;
+  return last.get(n, [n] { return random_sphere(n); });
+}
+
+const CsrGraph& graph_of(Shape shape, Index n) {
+  static Last<trimesh::TriangleMeshGraph> meshes;
+  static Last<pointcloud::PointCloudGraph> clouds;
+  if (shape == Shape::mesh)
+    return meshes
+        .get(n,
+             [n] {
+               const Mesh& mesh = torus_mesh(n);
+               return trimesh::TriangleMeshGraph::build(mesh.points, mesh.faces, {.threads = 1});
+             })
+        .graph();
+  return clouds.get(n, [n] { return pointcloud::PointCloudGraph::build(sphere_points(n), {}, {.threads = 1}); })
+      .graph();
+}
+
+}  // namespace ahm::bench

@@ -1,0 +1,102 @@
+// From graph to factors: assembly, symbolic analysis, factorization.
+#include <benchmark/benchmark.h>
+#include <cholmod.h>
+
+#include "graphs.hpp"
+#include "libahm/src/assemble.hpp"
+#include "libahm/src/cholesky.hpp"
+#include "machine.hpp"
+
+namespace {
+
+using ahm::Ordering, ahm::SparseUpper, ahm::bench::report_bandwidth, ahm::bench::report_flops, ahm::bench::run,
+    ahm::bench::Shape;
+
+ahm::AssembledOperators operators(const ahm::TangentGraph& graph) {
+  const double h = graph.mean_edge_length();
+  return ahm::assemble(graph, h * h, 1.0 / (h * h));
+}
+
+double bytes(const SparseUpper& matrix) {
+  return 8.0 * static_cast<double>(matrix.column_begin.size() + matrix.rows.size() + matrix.values.size());
+}
+
+/// A and B in one pass. Bytes: the rows of the graph but its logs, and both matrices.
+void assemble(benchmark::State& state, Shape shape) {
+  const ahm::CsrGraph& graph = graph_of(shape, static_cast<ahm::Index>(state.range(0)));
+  const double seconds = run(state, [&] { benchmark::DoNotOptimize(operators(graph)); });
+  const ahm::AssembledOperators matrices = operators(graph);
+  state.counters["nnz"] = static_cast<double>(matrices.A.rows.size());
+  state.SetItemsProcessed(state.iterations() * graph.size());
+  report_bandwidth(
+      state,
+      bytes(matrices.A) + bytes(matrices.B) + 28.0 * static_cast<double>(graph.edge_count()) + 16.0 * graph.size(),
+      seconds);
+}
+
+/// Ordering, elimination tree and supernodes, which A and B share.
+void analyze(benchmark::State& state, Shape shape, Ordering ordering) {
+  const ahm::AssembledOperators matrices = operators(graph_of(shape, static_cast<ahm::Index>(state.range(0))));
+  for (auto _ : state) benchmark::DoNotOptimize(ahm::SymbolicCholesky(matrices.A, ordering, true));
+  state.SetItemsProcessed(state.iterations() * state.range(0));
+}
+
+/// What CHOLMOD says of the factor of a pattern: its entries without padding, and the operations of a real factorization.
+struct Count {
+  double entries, flops;
+};
+
+Count count(SparseUpper& matrix, Ordering ordering) {
+  cholmod_common common;
+  cholmod_l_start(&common);
+  common.nmethods = 1;
+  common.method[0].ordering = ordering == Ordering::amd ? CHOLMOD_AMD : CHOLMOD_METIS;
+  cholmod_sparse view{};
+  view.nrow = view.ncol = static_cast<std::size_t>(matrix.size());
+  view.nzmax = matrix.rows.size();
+  view.p = matrix.column_begin.data();
+  view.i = matrix.rows.data();
+  view.stype = view.sorted = view.packed = 1;
+  view.itype = CHOLMOD_LONG;
+  view.xtype = CHOLMOD_PATTERN;
+  cholmod_factor* L = cholmod_l_analyze(&view, &common);
+  const Count result{common.lnz, common.fl};
+  cholmod_l_free_factor(&L, &common);
+  cholmod_l_finish(&common);
+  return result;
+}
+
+/// Numbers into the analyzed pattern; the check of the residual is part of it.
+void factorize(benchmark::State& state, Shape shape, Ordering ordering, bool scalar) {
+  ahm::AssembledOperators matrices = operators(graph_of(shape, static_cast<ahm::Index>(state.range(0))));
+  const ahm::SymbolicCholesky symbolic(matrices.A, ordering, true);
+  const SparseUpper& matrix = scalar ? matrices.A : matrices.B;
+  const double seconds =
+      run(state, [&] { benchmark::DoNotOptimize(ahm::CholeskyFactor(matrix, symbolic, "benchmark")); });
+  const ahm::CholeskyFactor factor(matrix, symbolic, "benchmark");
+  const Count size = count(matrices.A, ordering);
+  state.counters["nnz(L)"] = size.entries;
+  state.counters["stored"] = static_cast<double>(factor.nonzeros());
+  state.counters["MB"] = 1e-6 * static_cast<double>(factor.bytes());
+  state.SetItemsProcessed(state.iterations() * state.range(0));
+  report_flops(state, size.flops * (scalar ? 1 : 4), !scalar, seconds);
+}
+
+void add_sizes(benchmark::internal::Benchmark* kernel) {
+  kernel->ArgName("n")->Arg(2500)->Arg(40000)->Arg(160000)->Unit(benchmark::kMillisecond);
+}
+
+BENCHMARK_CAPTURE(assemble, mesh, Shape::mesh)->Apply(add_sizes);
+BENCHMARK_CAPTURE(assemble, cloud, Shape::cloud)->Apply(add_sizes);
+BENCHMARK_CAPTURE(analyze, mesh_amd, Shape::mesh, Ordering::amd)->Apply(add_sizes);
+BENCHMARK_CAPTURE(analyze, mesh_nested_dissection, Shape::mesh, Ordering::nested_dissection)->Apply(add_sizes);
+BENCHMARK_CAPTURE(factorize, A_mesh_amd, Shape::mesh, Ordering::amd, true)->Apply(add_sizes);
+BENCHMARK_CAPTURE(factorize, B_mesh_amd, Shape::mesh, Ordering::amd, false)->Apply(add_sizes);
+BENCHMARK_CAPTURE(factorize, A_mesh_nested_dissection, Shape::mesh, Ordering::nested_dissection, true)
+    ->Apply(add_sizes);
+BENCHMARK_CAPTURE(factorize, B_mesh_nested_dissection, Shape::mesh, Ordering::nested_dissection, false)
+    ->Apply(add_sizes);
+BENCHMARK_CAPTURE(factorize, A_cloud_amd, Shape::cloud, Ordering::amd, true)->Apply(add_sizes);
+BENCHMARK_CAPTURE(factorize, B_cloud_amd, Shape::cloud, Ordering::amd, false)->Apply(add_sizes);
+
+}  // namespace
