@@ -68,7 +68,8 @@ void write_pcd(AtomicFile& file, const Table& table) {
   cloud.point_step = 0;
   add_fields(cloud, {"x", "y", "z"}, floats ? PCLPointField::FLOAT32 : PCLPointField::FLOAT64);
   if (!table.normals.empty()) add_fields(cloud, {"normal_x", "normal_y", "normal_z"}, PCLPointField::FLOAT32);
-  add_fields(cloud, {"u", "v", "distance", "angle"}, PCLPointField::FLOAT64);
+  const std::vector<Column> columns = map_columns(table);
+  for (const Column& column : columns) add_fields(cloud, {column.name.c_str()}, PCLPointField::FLOAT64);
   add_fields(cloud, {"status"}, PCLPointField::UINT8);
   for (const Column& column : table.further) add_fields(cloud, {column.name.c_str()}, PCLPointField::FLOAT64);
   file.write(header_of(cloud));
@@ -80,7 +81,7 @@ void write_pcd(AtomicFile& file, const Table& table) {
     if (!table.normals.empty()) {
       for (double coordinate : table.normals[i]) append_real(row, coordinate, true);
     }
-    for (double value : values_of(table, i)) append(row, value);
+    for (const Column& column : columns) append(row, value_of(table, column, i));
     append(row, static_cast<std::uint8_t>(table.status[i]));
     for (const Column& column : table.further) append(row, value_of(table, column, i));
     file.write(row);

@@ -60,10 +60,7 @@ void check(const Table& table) {
   if (n > static_cast<std::size_t>(std::numeric_limits<Index>::max()))
     throw InvalidArgument("table: more than 2147483647 points");
   if (!table.normals.empty()) check_length("normals", table.normals.size(), n);
-  check_length("u", table.u.size(), n);
-  check_length("v", table.v.size(), n);
-  check_length("distance", table.distance.size(), n);
-  check_length("angle", table.angle.size(), n);
+  for (const Column& column : map_columns(table)) check_length(column.name.c_str(), column.values.size(), n);
   check_length("status", table.status.size(), n);
   for (const Column& column : table.further) {
     check_length(column.name.c_str(), column.values.size(), n);
@@ -76,12 +73,10 @@ void check(const Table& table) {
 
 }  // namespace
 
-std::array<double, 4> values_of(const Table& table, std::size_t vertex) {
-  if (table.status[vertex] == Status::ok) {
-    return {table.u[vertex], table.v[vertex], table.distance[vertex], table.angle[vertex]};
-  }
-  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-  return {nan, nan, nan, nan};
+std::vector<Column> map_columns(const Table& table) {
+  std::vector<Column> result{{"u", table.u}, {"v", table.v}, {"distance", table.distance}, {"angle", table.angle}};
+  std::erase_if(result, [](const Column& column) { return column.values.empty(); });
+  return result;
 }
 
 double value_of(const Table& table, const Column& column, std::size_t vertex) {

@@ -21,13 +21,16 @@ void append(std::string& row, double value) {
 }  // namespace
 
 void write_csv(AtomicFile& file, const Table& table) {
-  std::string row = "index,x,y,z,u,v,distance,angle,status";
+  const std::vector<Column> columns = map_columns(table);
+  std::string row = "index,x,y,z";
+  for (const Column& column : columns) row += "," + column.name;
+  row += ",status";
   for (const Column& column : table.further) row += "," + column.name;
   file.write(row + "\n");
   for (std::size_t i = 0; i < table.points.size(); ++i) {
     row = std::to_string(i);
     for (double coordinate : table.points[i]) append(row, coordinate);
-    for (double value : values_of(table, i)) append(row, value);
+    for (const Column& column : columns) append(row, value_of(table, column, i));
     row += ',';
     row += to_string(table.status[i]);
     for (const Column& column : table.further) append(row, value_of(table, column, i));

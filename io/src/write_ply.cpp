@@ -1,20 +1,10 @@
-#include <algorithm>
-#include <array>
-#include <bit>
 #include <string>
 
+#include "little_endian.hpp"
 #include "writers.hpp"
 
 namespace ahm::io {
 namespace {
-
-/// Appends the bytes of a value, lowest first.
-template <class T>
-void append(std::string& bytes, T value) {
-  auto raw = std::bit_cast<std::array<char, sizeof(T)>>(value);
-  if constexpr (std::endian::native == std::endian::big) std::ranges::reverse(raw);
-  bytes.append(raw.data(), raw.size());
-}
 
 std::string header_of(const Table& table, std::size_t faces, bool many_corners) {
   std::string header = "ply\nformat binary_little_endian 1.0\ncomment logarithmic map by libahm\n";
@@ -25,7 +15,7 @@ std::string header_of(const Table& table, std::size_t faces, bool many_corners) 
   header += "element vertex " + std::to_string(table.points.size()) + "\n";
   for (const char* name : {"x", "y", "z"}) header += std::string("property double ") + name + "\n";
   if (!table.normals.empty()) header += "property double nx\nproperty double ny\nproperty double nz\n";
-  for (const char* name : {"u", "v", "distance", "angle"}) header += std::string("property double ") + name + "\n";
+  for (const Column& column : map_columns(table)) header += "property double " + column.name + "\n";
   header += "property uchar status\n";
   for (const Column& column : table.further) header += "property double " + column.name + "\n";
   if (faces > 0) {
@@ -44,6 +34,7 @@ void write_ply(AtomicFile& file, const Table& table) {
     many_corners = many_corners || table.face_begin[f + 1] - table.face_begin[f] > 255;
   file.write(header_of(table, faces, many_corners));
 
+  const std::vector<Column> columns = map_columns(table);
   std::string row;
   for (std::size_t i = 0; i < table.points.size(); ++i) {
     row.clear();
@@ -51,7 +42,7 @@ void write_ply(AtomicFile& file, const Table& table) {
     if (!table.normals.empty()) {
       for (double coordinate : table.normals[i]) append(row, coordinate);
     }
-    for (double value : values_of(table, i)) append(row, value);
+    for (const Column& column : columns) append(row, value_of(table, column, i));
     append(row, static_cast<std::uint8_t>(table.status[i]));
     for (const Column& column : table.further) append(row, value_of(table, column, i));
     file.write(row);

@@ -2,7 +2,7 @@
 /// One writer per format; `write` chooses among them.
 #pragma once
 
-#include <array>
+#include <vector>
 
 #include "ahm/io/atomic_file.hpp"
 #include "ahm/io/write.hpp"
@@ -18,9 +18,9 @@ bool has_pcd() noexcept;
 /// Whether the path leads to what cannot be replaced by a renamed file: a pipe, a device, or the process's own output.
 bool is_stream(const std::filesystem::path& path);
 
-/// u, v, distance and angle of a vertex, NaN where its status is not ok.
-std::array<double, 4> values_of(const Table& table, std::size_t vertex);
-/// The same for a further column.
+/// Those of u, v, distance and angle that the table has.
+std::vector<Column> map_columns(const Table& table);
+/// An entry of a column, NaN where the status of the vertex is not ok.
 double value_of(const Table& table, const Column& column, std::size_t vertex);
 
 }  // namespace ahm::io

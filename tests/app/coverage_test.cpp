@@ -3,32 +3,11 @@
 
 #include <cmath>
 #include <map>
-#include <sstream>
 
 #include "program.hpp"
 
 namespace ahm::test {
 namespace {
-
-using PathRow = std::map<std::string, double>;
-
-/// The rows of a CSV by column name.
-std::vector<PathRow> read_path(const std::string& path) {
-  std::istringstream lines(read_text(path));
-  std::string line, field;
-  std::vector<std::string> names;
-  std::getline(lines, line);
-  for (std::istringstream header(line); std::getline(header, field, ',');) names.push_back(field);
-  std::vector<PathRow> rows;
-  while (std::getline(lines, line)) {
-    rows.emplace_back();
-    std::size_t column = 0;
-    for (std::istringstream fields(line); std::getline(fields, field, ',');)
-      rows.back()[names.at(column++)] = std::strtod(field.c_str(), nullptr);
-    EXPECT_EQ(column, names.size()) << line;
-  }
-  return rows;
-}
 
 TEST(CoverageCommand, LaysARasterOverAPlaneOfPoints) {
   Folder folder;
@@ -37,10 +16,10 @@ TEST(CoverageCommand, LaysARasterOverAPlaneOfPoints) {
   const Outcome outcome = run({"coverage", folder.write("plane.xyz", xyz(points)), "--source", "0", "--radius", "0.4",
                                "--spacing", "0.05", "--u-axis", "1,0,0", "-o", out, "--json", folder / "path.json"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
-  const auto rows = read_path(out);
+  const auto rows = read_numbers(out);
   ASSERT_GT(rows.size(), 100U);
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    PathRow p = rows[i];
+    NumberRow p = rows[i];
     const double across = p["y"] - points[0][1], line = (p["line"] - 8) * 0.05;
     EXPECT_EQ(p["index"], static_cast<double>(i));
     EXPECT_NEAR(std::abs(across), std::abs(line), 1e-9);  // the plane may be seen from either side
@@ -62,10 +41,10 @@ TEST(CoverageCommand, WindsASpiralOnASphereOfPoints) {
   const Outcome outcome = run({"coverage", folder.write("sphere.xyz", xyz(sphere(3000))), "-s", "0", "--radius", "1.2",
                                "--spacing", "0.1", "--pattern", "spiral", "-o", out});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
-  const auto rows = read_path(out);
+  const auto rows = read_numbers(out);
   ASSERT_GT(rows.size(), 100U);
   double side = 0;
-  for (PathRow p : rows) {
+  for (NumberRow p : rows) {
     const double h = 0.07;  // between points
     EXPECT_NEAR(std::hypot(p["x"], p["y"], p["z"]), 1, h * h);
     EXPECT_NEAR(std::acos(std::min(1.0, p["z"])), std::hypot(p["u"], p["v"]), h);
@@ -97,7 +76,7 @@ TEST(CoverageCommand, StaysOnTheFacesOfAMeshAndSparesItsHole) {
                                "--spacing", "0.1", "--angle", "30", "-o", out});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   std::map<double, std::map<double, int>> pieces;
-  for (PathRow p : read_path(out)) {
+  for (NumberRow p : read_numbers(out)) {
     EXPECT_FALSE(p["x"] > 1.201 && p["x"] < 1.599 && p["y"] > 0.801 && p["y"] < 1.199) << p["x"] << ' ' << p["y"];
     EXPECT_NEAR(p["z"], 0, 1e-12);
     ++pieces[p["line"]][p["piece"]];

@@ -13,7 +13,8 @@ namespace {
 using Words = std::vector<std::string>;
 
 nlohmann::json summary(const std::string& input, const Folder& folder, const Words& more) {
-  Words words = {"logmap", input, "--source", "0", "-o", folder / "map.csv", "--json", "-"};
+  Words words = {"logmap", input, "-o", folder / "map.csv", "--json", "-"};
+  if (std::find(more.begin(), more.end(), "--source") == more.end()) words.insert(words.end(), {"--source", "0"});
   words.insert(words.end(), more.begin(), more.end());
   const auto outcome = run(words);
   EXPECT_EQ(outcome.status, 0) << outcome.err;
@@ -36,6 +37,56 @@ TEST(Options, UAxisTurnsTheFrame) {
       EXPECT_NEAR(std::remainder(row.angle - std::atan2(-row.position[0], row.position[1]), 2 * std::numbers::pi), 0,
                   0.3);
     }
+}
+
+TEST(Options, UAxisAlongTheCurvatureRunsAroundACylinder) {
+  Folder folder;
+  std::vector<Vec3> points;
+  const int around = 60;
+  for (int j = 0; j < 40; ++j)
+    for (int i = 0; i < around; ++i) {
+      const double angle = 2 * std::numbers::pi * (i + 0.5 * j) / around;
+      points.push_back({std::cos(angle), std::sin(angle), 0.09 * j});
+    }
+  const auto input = folder.write("cylinder.xyz", xyz(points));
+  const int source = 20 * around + 7;
+  const auto frame = summary(input, folder, {"--source", std::to_string(source), "--u-axis", "curvature"})
+                         .at("source")
+                         .at("frame")
+                         .at("u");
+  const double h = 2 * std::numbers::pi / around;
+  EXPECT_LT(std::abs(frame.at(2).get<double>()), h);
+  EXPECT_LT(std::abs(frame.at(0).get<double>() * points[source][0] + frame.at(1).get<double>() * points[source][1]), h);
+}
+
+TEST(Options, UAxisAlongTheCurvatureIsRefusedWhereThereIsNone) {
+  for (const auto& points : {plane(20), sphere(2000)}) {
+    Folder folder;
+    const auto input = folder.write("points.xyz", xyz(points));
+    const auto outcome = run({"logmap", input, "-s", "0", "--u-axis", "curvature", "-o", folder / "map.csv"});
+    EXPECT_EQ(outcome.status, 1);
+    EXPECT_NE(outcome.err.find("--u-axis curvature"), std::string::npos) << outcome.err;
+    EXPECT_EQ(folder.files(), Words{"points.xyz"});
+  }
+}
+
+TEST(Options, GradientPointsAwayFromTheSourceAlongTheSurface) {
+  Folder folder;
+  const auto points = plane(20);
+  summary(folder.write("plane.xyz", xyz(points)), folder, {"--gradient"});
+  for (NumberRow p : read_numbers(folder / "map.csv")) {
+    const double x = p["x"] - points[0][0], y = p["y"] - points[0][1], r = std::hypot(x, y);
+    EXPECT_NEAR(p["gx"], r > 0 ? x / r : 0, 1e-9);
+    EXPECT_NEAR(p["gy"], r > 0 ? y / r : 0, 1e-9);
+    EXPECT_NEAR(p["gz"], 0, 1e-12);
+  }
+  summary(folder.write("sphere.xyz", xyz(sphere(2000))), folder, {"--gradient"});
+  const double h = std::sqrt(4 * std::numbers::pi / 2000);
+  for (NumberRow p : read_numbers(folder / "map.csv")) {  // the source is the north pole
+    if (std::abs(p["z"]) > 0.9) continue;
+    const double r = std::hypot(p["x"], p["y"]);
+    EXPECT_NEAR(std::hypot(p["gx"] - p["z"] * p["x"] / r, p["gy"] - p["z"] * p["y"] / r, p["gz"] + r), 0, 2 * h);
+  }
 }
 
 TEST(Options, ReachTheLibrary) {

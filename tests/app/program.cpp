@@ -156,6 +156,23 @@ std::vector<Row> read_csv(const std::string& path) {
   return rows;
 }
 
+std::vector<NumberRow> read_numbers(const std::string& path) {
+  std::istringstream lines(read_text(path));
+  std::string line, field;
+  std::vector<std::string> names;
+  std::getline(lines, line);
+  for (std::istringstream header(line); std::getline(header, field, ',');) names.push_back(field);
+  std::vector<NumberRow> rows;
+  while (std::getline(lines, line)) {
+    rows.emplace_back();
+    std::size_t column = 0;
+    for (std::istringstream fields(line); std::getline(fields, field, ',');)
+      rows.back()[names.at(column++)] = std::strtod(field.c_str(), nullptr);
+    EXPECT_EQ(column, names.size()) << line;
+  }
+  return rows;
+}
+
 std::string xyz(const std::vector<Vec3>& points, const std::vector<Vec3>& normals) {
   std::ostringstream text;
   text.precision(17);

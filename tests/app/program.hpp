@@ -65,6 +65,12 @@ struct Row {
 /// Reads the CSV; fails the running test when the header or a row is not as documented.
 std::vector<Row> read_csv(const std::string& path);
 
+/// A row of numbers by the names of the columns; words count as 0.
+using NumberRow = std::map<std::string, double>;
+
+/// Reads any CSV; fails the running test when a row is not as long as the header.
+std::vector<NumberRow> read_numbers(const std::string& path);
+
 std::string read_text(const std::string& path);
 nlohmann::json read_json(const std::string& path);
 

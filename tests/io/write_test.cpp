@@ -106,6 +106,24 @@ TEST_F(Write, CsvIsTheSameInALocaleWithCommas) {
   EXPECT_EQ(contents(path("a.csv")), contents(path("b.csv")));
 }
 
+TEST_F(Write, ColumnsThatAreNotGivenAreLeftOut) {
+  const Result result;
+  Table table = result.table();
+  table.u = table.v = table.angle = {};
+  table.further.push_back({"label", result.u});
+  write(path("a.csv"), table);
+  const auto rows = rows_of(contents(path("a.csv")));
+  EXPECT_EQ(rows[0], (std::vector<std::string>{"index", "x", "y", "z", "distance", "status", "label"}));
+  for (const auto& row : rows) EXPECT_EQ(row.size(), 7u);
+  EXPECT_EQ(number(rows[2][4]), result.distance[1]);
+  EXPECT_EQ(rows[3][4], "nan");
+  write(path("a.ply"), table);
+  const std::string header = contents(path("a.ply"));
+  EXPECT_NE(header.find("double nz\nproperty double distance\nproperty uchar status\nproperty double label\n"),
+            std::string::npos);
+  EXPECT_EQ(read(path("a.ply")).points, result.points);
+}
+
 TEST_F(Write, PlyReadsBackExactly) {
   const Result result;
   write(path("a.ply"), result.table());

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <regex>
 
 #include "patch.hpp"
@@ -74,6 +75,26 @@ TEST_F(Html, HoldsEveryFaceOfAMesh) {
 TEST_F(Html, IsTheSameEveryTime) {
   const Patch patch(40, false);
   EXPECT_EQ(page(patch.scene()), page(patch.scene()));
+}
+
+TEST_F(Html, HoldsThePatternTheCurveAndTheDots) {
+  const Patch patch(10, true);
+  const std::vector<Vec3> curve{{0, 0, 0}, {0.5, 0, 0}, {0.5, 0.5, 0}}, dots{{0, 0, 0}, {1, 1, 0}};
+  Scene scene = patch.scene();
+  scene.curve = curve;
+  scene.dots = dots;
+  PictureOptions options;
+  options.pattern = Pattern::grid;
+  write_html(folder / "grid.html", scene, options);
+  const std::string meta = data(read(folder / "grid.html"), "meta");
+  EXPECT_NE(meta.find("\"pattern\":\"grid\""), std::string::npos);
+  const auto triples = [&](const std::string& name) {
+    const std::size_t begin = meta.find("\"" + name + "\":[") + name.size() + 4, end = meta.find("]]", begin);
+    return std::count(meta.begin() + static_cast<std::ptrdiff_t>(begin),
+                      meta.begin() + static_cast<std::ptrdiff_t>(end), '[');
+  };
+  EXPECT_EQ(triples("curve"), 3);
+  EXPECT_EQ(triples("dots"), 2);
 }
 
 TEST_F(Html, LeavesNoPlaceholder) {

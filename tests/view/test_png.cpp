@@ -114,6 +114,77 @@ TEST_F(Png, RingsHaveTheGivenWidth) {
   }
 }
 
+/// Pixel of the place (x, y) of the patch, seen from straight above.
+Rgb at_place(const Pixels& pixels, double x, double y) {
+  const double scale = 0.5 * 300 / 1.08;
+  return pixels(static_cast<int>(200 + scale * x), static_cast<int>(150 - scale * y));
+}
+
+int difference(const Rgb& a, const Rgb& b) {
+  return std::abs(a[0] - b[0]) + std::abs(a[1] - b[1]) + std::abs(a[2] - b[2]);
+}
+
+TEST_F(Png, SquaresAreWarmOnTheLeftAndColdOnTheRight) {
+  for (const bool is_mesh : {true, false}) {
+    const Patch patch(40, is_mesh);
+    options.pattern = Pattern::grid;
+    options.ring_width = 0.2;
+    const Pixels pixels = picture(folder, patch.scene(), options);
+    for (const double x : {-0.7, -0.3, 0.3, 0.5}) {
+      const Rgb left = at_place(pixels, x, 0.1), right = at_place(pixels, x, -0.1);
+      EXPECT_GT(left[0], left[2] + 30);
+      EXPECT_GT(right[2], right[0] + 30);
+      for (const double y : {0.1, -0.1})  // next to each other, light and dark
+        EXPECT_GT(difference(at_place(pixels, x, y), at_place(pixels, x + 0.2, y)), 60);
+    }
+  }
+}
+
+TEST_F(Png, NeighbouringCellsDifferAndPointsOfNoCellAreGrey) {
+  for (const bool is_mesh : {true, false}) {
+    const Patch patch(60, is_mesh);
+    std::vector<Index> labels;
+    for (const Vec3& p : patch.points) {  // bricks, numbered so that neighbours have any numbers
+      const int column = static_cast<int>(std::floor(2.5 * (p[0] + 1))),
+                row = static_cast<int>(std::floor(2.5 * (p[1] + 1)));
+      labels.push_back(row >= 5 || column >= 5 || (row == 2 && column == 2) ? -1 : 7 * (5 * row + column) % 25);
+    }
+    const std::vector<double> distance(labels.size(), 0.1);
+    Scene scene = patch.scene();
+    scene.u = scene.v = {};
+    scene.labels = labels;
+    scene.distance = distance;
+    scene.source = patch.points.front();
+    scene.source_axes.reset();
+    options.pattern = Pattern::cells;
+    const Pixels pixels = picture(folder, scene, options);
+    const auto brick = [&](int row, int column) { return at_place(pixels, 0.4 * column - 0.8, 0.4 * row - 0.8); };
+    EXPECT_FALSE(is_coloured(brick(2, 2)));
+    for (int row = 0; row < 5; ++row)
+      for (int column = 0; column < 5; ++column)
+        for (const auto& [r, c] :
+             {std::pair{row, column + 1}, std::pair{row + 1, column}, std::pair{row + 1, column + 1}}) {
+          if (r == 5 || c == 5) continue;
+          EXPECT_GT(difference(brick(row, column), brick(r, c)), 40) << row << ' ' << column << ' ' << r << ' ' << c;
+        }
+  }
+}
+
+TEST_F(Png, DrawsCurveAndDotsWhereNothingHidesThem) {
+  for (const bool is_mesh : {true, false}) {
+    const Patch patch(40, is_mesh);
+    for (const double z : {0.0, -0.5}) {
+      const std::vector<Vec3> curve{{-0.5, 0.5, z}, {0.5, 0.5, z}}, dots{{-0.5, -0.5, z}};
+      Scene scene = patch.scene();
+      scene.curve = curve;
+      scene.dots = dots;
+      const Pixels pixels = picture(folder, scene, options);
+      for (const double x : {-0.45, -0.2, 0.45}) EXPECT_EQ(is_source_red(at_place(pixels, x, 0.5)), z == 0) << x;
+      EXPECT_EQ(is_source_red(at_place(pixels, -0.5, -0.5)), z == 0);
+    }
+  }
+}
+
 TEST_F(Png, IsTheSameEveryTime) {
   for (const bool is_mesh : {true, false}) {
     const Patch patch(40, is_mesh);

@@ -67,6 +67,22 @@ TEST(Picture, ArraysMustMatch) {
   expect_throw<InvalidArgument>(scene);
 }
 
+TEST(Picture, CellsNeedLabelsAndMapsNeedCoordinates) {
+  const Patch patch(4, true);
+  PictureOptions options;
+  options.pattern = Pattern::cells;
+  expect_throw<InvalidArgument>(patch.scene(), options);
+  const std::vector<Index> labels(patch.points.size(), 0);
+  Scene scene = patch.scene();
+  scene.labels = labels;
+  scene.distance = patch.u;
+  expect_throw<InvalidArgument>(scene);
+  scene.u = scene.v = {};
+  expect_throw<InvalidArgument>(scene);
+  const Folder folder;
+  for (const std::string& name : names()) EXPECT_NO_THROW(write_picture(folder / name, scene, options));
+}
+
 TEST(Picture, FacesMustNamePoints) {
   for (const Index bad : {-1, 25}) {
     Patch patch(4, true);

@@ -116,6 +116,7 @@ Vector3d Camera::to_pixels(const Vector3d& x, int width, int height) const {
 
 bool has_coordinate(const Scene& scene, Index point) {
   const auto i = static_cast<std::size_t>(point);
+  if (!scene.labels.empty()) return scene.labels[i] >= 0 && std::isfinite(scene.distance[i]);
   return std::isfinite(scene.u[i]) && std::isfinite(scene.v[i]);
 }
 
@@ -170,13 +171,23 @@ Camera choose_camera(const Scene& scene, const std::vector<Index>& shown, const 
 
 double choose_ring_width(const Scene& scene, const std::vector<Index>& shown, const PictureOptions& options) {
   if (options.ring_width) return *options.ring_width;
-  std::vector<double> distances;
-  for (const Index i : shown)
-    if (has_coordinate(scene, i))
-      distances.push_back(std::hypot(scene.u[static_cast<std::size_t>(i)], scene.v[static_cast<std::size_t>(i)]));
-  const double largest = distances.empty() ? 0 : robust_range(std::move(distances)).high;
-  if (!(largest > 0) || !std::isfinite(largest)) return 1;
-  const double exact = largest / 12, power = std::pow(10.0, std::floor(std::log10(exact)));
+  std::vector<double> first, second;
+  for (const Index i : shown) {
+    if (!has_coordinate(scene, i)) continue;
+    const auto k = static_cast<std::size_t>(i);
+    if (options.pattern == Pattern::polar) first.push_back(std::hypot(scene.u[k], scene.v[k]));
+    if (options.pattern == Pattern::cells) first.push_back(scene.distance[k]);
+    if (options.pattern == Pattern::grid) first.push_back(scene.u[k]), second.push_back(scene.v[k]);
+  }
+  if (first.empty()) return 1;
+  const Range range = robust_range(std::move(first));
+  double exact = range.high / (options.pattern == Pattern::polar ? 12 : 4);
+  if (!second.empty()) {
+    const Range other = robust_range(std::move(second));
+    exact = std::max(range.high - range.low, other.high - other.low) / 24;
+  }
+  if (!(exact > 0) || !std::isfinite(exact)) return 1;
+  const double power = std::pow(10.0, std::floor(std::log10(exact)));
   double best = power;
   for (const double step : {1.0, 2.0, 2.5, 5.0, 10.0})
     if (std::abs(std::log(step * power / exact)) < std::abs(std::log(best / exact))) best = step * power;

@@ -44,7 +44,8 @@ bool has_coordinate(const Scene& scene, Index point);
 /// Frames the mapped part, or everything if nothing is mapped.
 Camera choose_camera(const Scene& scene, const std::vector<Index>& shown, const PictureOptions& options);
 
-/// The option, or the round number that gives about 12 rings on the part of the map in the picture.
+/// The option, or the round number that gives about 12 rings (4 per cell, 24 squares) on the part of the map in the
+/// picture.
 double choose_ring_width(const Scene& scene, const std::vector<Index>& shown, const PictureOptions& options);
 
 }  // namespace ahm::view

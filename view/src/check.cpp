@@ -41,19 +41,25 @@ void check_faces(const Scene& scene) {
   }
 }
 
-void check_size(std::size_t size, std::size_t points, const char* name) {
-  require(size == points, std::string(name) + ": " + std::to_string(size) + " entries for " + std::to_string(points) +
-                              " points; give one per point");
+void check_size(std::size_t size, std::size_t expected, const char* name) {
+  require(size == expected, std::string(name) + ": " + std::to_string(size) + " entries instead of " +
+                                std::to_string(expected) +
+                                "; give one per point where the pattern needs it, else none");
 }
 
 }  // namespace
 
 void check(const Scene& scene, const PictureOptions& options) {
-  check_size(scene.u.size(), scene.points.size(), "scene.u");
-  check_size(scene.v.size(), scene.points.size(), "scene.v");
+  const bool cells = options.pattern == Pattern::cells;
+  check_size(scene.u.size(), cells ? 0 : scene.points.size(), "scene.u");
+  check_size(scene.v.size(), cells ? 0 : scene.points.size(), "scene.v");
+  check_size(scene.labels.size(), cells ? scene.points.size() : 0, "scene.labels");
+  check_size(scene.distance.size(), cells ? scene.points.size() : 0, "scene.distance");
   if (!scene.normals.empty()) check_size(scene.normals.size(), scene.points.size(), "scene.normals");
   check_faces(scene);
   require(is_finite(scene.source), "scene.source: must be finite");
+  for (const Vec3& dot : scene.dots) require(is_finite(dot), "scene.dots: must be finite");
+  for (const Vec3& point : scene.curve) require(is_finite(point), "scene.curve: must be finite");
   if (scene.source_axes)
     for (const Vec3& axis : *scene.source_axes) require(is_finite(axis), "scene.source_axes: must be finite");
 

@@ -1,8 +1,10 @@
 #include "direction.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 #include <limits>
+#include <vector>
 
 namespace ahm::view {
 namespace {
@@ -11,15 +13,24 @@ using Eigen::Vector3d;
 
 constexpr std::size_t sample_size = 50'000;
 
-/// Normal at the source: from its axes, else of the nearest point, else none (zero).
-Vector3d source_normal(const Scene& scene, const std::vector<Index>& shown) {
-  if (scene.source_axes) return as_vector((*scene.source_axes)[2]).normalized();
-  if (scene.normals.empty()) return Vector3d::Zero();
+/// What the picture is about: the source, or points along the curve.
+std::vector<Vec3> places(const Scene& scene) {
+  if (scene.curve.empty()) return {scene.source};
+  constexpr std::size_t most = 16;
+  const std::size_t count = std::min(most, scene.curve.size());
+  std::vector<Vec3> result;
+  for (std::size_t k = 0; k < count; ++k) result.push_back(scene.curve[k * scene.curve.size() / count]);
+  return result;
+}
+
+/// The normal given at the point nearest to a place; zero if there is none.
+Vector3d nearest_normal(const Scene& scene, const std::vector<Index>& shown, const Vec3& place) {
   Vector3d normal = Vector3d::Zero();
+  if (scene.normals.empty()) return normal;
   double nearest = std::numeric_limits<double>::infinity();
   for (const Index i : shown) {
     const auto k = static_cast<std::size_t>(i);
-    const double distance = (as_vector(scene.points[k]) - as_vector(scene.source)).squaredNorm();
+    const double distance = (as_vector(scene.points[k]) - as_vector(place)).squaredNorm();
     if (distance >= nearest || !as_vector(scene.normals[k]).allFinite()) continue;
     nearest = distance;
     normal = as_vector(scene.normals[k]).normalized();
@@ -27,17 +38,27 @@ Vector3d source_normal(const Scene& scene, const std::vector<Index>& shown) {
   return normal;
 }
 
-/// Number of sampled points in a tube from the source towards the camera, beyond the source's own surroundings.
+/// Normal at the source: from its axes, else of the nearest point, else none (zero). Of a curve: the mean.
+Vector3d mean_normal(const Scene& scene, const std::vector<Index>& shown) {
+  if (scene.source_axes && scene.curve.empty()) return as_vector((*scene.source_axes)[2]).normalized();
+  Vector3d sum = Vector3d::Zero();
+  for (const Vec3& place : places(scene)) sum += nearest_normal(scene, shown, place);
+  return sum.norm() > 0 ? Vector3d(sum.normalized()) : sum;
+}
+
+/// Number of sampled points in tubes from the places towards the camera, beyond their own surroundings.
 std::size_t blockers(const Scene& scene, const std::vector<Index>& shown, const Camera& camera,
                      const Vector3d& direction) {
   constexpr double start = 0.08, radius = 0.05;
-  const Vector3d source = camera.to_scene(scene.source);
-  const std::size_t stride = shown.size() / sample_size + 1;
   std::size_t count = 0;
-  for (std::size_t k = 0; k < shown.size(); k += stride) {
-    const Vector3d d = camera.to_scene(scene.points[static_cast<std::size_t>(shown[k])]) - source;
-    const double along = d.dot(direction);
-    if (along > start && (d - along * direction).squaredNorm() < radius * radius) ++count;
+  for (const Vec3& position : places(scene)) {
+    const Vector3d place = camera.to_scene(position);
+    const std::size_t stride = shown.size() / sample_size + 1;
+    for (std::size_t k = 0; k < shown.size(); k += stride) {
+      const Vector3d d = camera.to_scene(scene.points[static_cast<std::size_t>(shown[k])]) - place;
+      const double along = d.dot(direction);
+      if (along > start && (d - along * direction).squaredNorm() < radius * radius) ++count;
+    }
   }
   return count;
 }
@@ -49,7 +70,7 @@ Vector3d choose_direction(const Scene& scene, const std::vector<Index>& shown, c
   const Vector3d up = up_axis.normalized();
   Vector3d side = extent.x() < extent.z() ? Vector3d(1, 0, 0) : Vector3d(0, 0, 1);  // across the longer horizontal side
   if (std::abs(up.z()) > 0.9) side = extent.x() < extent.y() ? Vector3d(1, 0, 0) : Vector3d(0, -1, 0);
-  const Vector3d normal = source_normal(scene, shown);
+  const Vector3d normal = mean_normal(scene, shown);
   if (!(normal.norm() > 0)) return (side + 0.4 * up.cross(side) + 0.6 * up).normalized();
 
   const bool is_level = std::abs(normal.dot(up)) > 0.9;  // ground seen straight down shows no relief: lean back more

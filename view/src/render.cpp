@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "gl.hpp"
 #include "resources.hpp"
@@ -127,6 +128,7 @@ void paint(const GlContext& context, const GlTarget& layers, const Lens& lens, c
     constexpr std::array names = {"winners", "map_sums", "normal_sums"};
     gl.glUniform1i(shade.uniform(names[unit]), static_cast<GLint>(unit));
   }
+  gl.glUniform1i(shade.uniform("pattern"), static_cast<GLint>(options.pattern));
   gl.glUniform1f(shade.uniform("sectors"), static_cast<float>(options.sectors));
   gl.glUniform1f(shade.uniform("spacing"), static_cast<float>(spacing.in_rings));
   gl.glUniform1f(shade.uniform("gap"), static_cast<float>(4 * spacing.in_scene));
@@ -136,6 +138,16 @@ void paint(const GlContext& context, const GlTarget& layers, const Lens& lens, c
                  static_cast<float>(lens.height - factor * legend.y), static_cast<float>(factor * legend.radius));
   gl.glUniform1f(shade.uniform("legend_rings"), static_cast<float>(legend.rings));
   gl.glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+/// Of what has been drawn into the bound target.
+std::vector<float> read_depths(const GlFunctions& gl, const Camera& camera, int width, int height) {
+  std::vector<float> depths(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  gl.glReadPixels(0, 0, width, height, GL_DEPTH_COMPONENT, GL_FLOAT, depths.data());
+  const auto n = static_cast<float>(camera.near_plane), f = static_cast<float>(camera.far_plane);
+  for (float& depth : depths)  // the inverse of the projection
+    depth = depth < 1 ? n * f / (f - depth * (f - n)) : std::numeric_limits<float>::infinity();
+  return depths;
 }
 
 /// Mean of factor x factor pixels, as light adds up (not as sRGB numbers do); rows are turned over, OpenGL's go
@@ -168,8 +180,20 @@ Image reduce(const std::vector<std::uint8_t>& rgba, int width, int height, int f
 
 }  // namespace
 
-Image render(const Drawable& drawable, const Camera& camera, double ring_width, const PictureOptions& options,
-             const Legend& legend) {
+bool Rendering::shows(const Camera& camera, const Eigen::Vector3d& position, double tolerance) const {
+  const double depth = -camera.to_view(position).z();
+  if (depth < camera.near_plane) return false;
+  const Eigen::Vector3d pixel = camera.to_pixels(position, image.width(), image.height());
+  const int x = static_cast<int>(std::floor(pixel.x() * factor)), y = static_cast<int>(std::floor(pixel.y() * factor));
+  const int width = factor * image.width(), height = factor * image.height();
+  if (x < 0 || y < 0 || x >= width || y >= height) return false;
+  return depth < tolerance + static_cast<double>(
+                                 depths[static_cast<std::size_t>(height - 1 - y) * static_cast<std::size_t>(width) +
+                                        static_cast<std::size_t>(x)]);
+}
+
+Rendering render(const Drawable& drawable, const Camera& camera, double ring_width, const PictureOptions& options,
+                 const Legend& legend) {
   const int factor = supersampling(options), width = factor * options.width, height = factor * options.height;
   const Lens lens{view_matrix(camera), projection_matrix(camera, static_cast<double>(width) / height),
                   static_cast<float>(0.5 * height / std::tan(Camera::field_of_view / 2)), height};
@@ -184,6 +208,8 @@ Image render(const Drawable& drawable, const Camera& camera, double ring_width, 
   GlVertices vertices(context);
   upload(vertices, drawable);
   drawable.is_mesh() ? draw_mesh(context, layers, drawable, lens) : draw_splats(context, layers, drawable, lens);
+  layers.bind({true, true, true});
+  std::vector<float> depths = read_depths(gl, camera, width, height);
   context.check("drawing the scene");
 
   const GlTarget picture(context, width, height, {GL_RGBA8}, false);
@@ -194,7 +220,7 @@ Image render(const Drawable& drawable, const Camera& camera, double ring_width, 
   gl.glReadBuffer(GL_COLOR_ATTACHMENT0);
   gl.glReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
   context.check("painting the picture");
-  return reduce(rgba, options.width, options.height, factor);
+  return {reduce(rgba, options.width, options.height, factor), factor, std::move(depths)};
 }
 
 }  // namespace ahm::view

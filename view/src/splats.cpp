@@ -97,7 +97,7 @@ std::vector<float> limited_radii(const std::vector<Local>& locals) {
 
 }  // namespace
 
-Drawable make_splats(const Scene& scene, const std::vector<Index>& shown, const Camera& camera, double ring_width) {
+Drawable make_splats(const Scene& scene, const std::vector<Index>& shown, const Camera& camera, const Paint& paint) {
   std::vector<Vector3d> points;
   points.reserve(shown.size());
   for (const Index i : shown) points.push_back(camera.to_scene(scene.points[static_cast<std::size_t>(i)]));
@@ -105,7 +105,7 @@ Drawable make_splats(const Scene& scene, const std::vector<Index>& shown, const 
   const std::size_t n = points.size();
   Drawable out;
   out.positions.resize(n), out.normals.resize(n);
-  out.uv.resize(n, Eigen::Vector2f::Zero()), out.known.resize(n, 0);
+  out.uv.resize(n), out.known.resize(n);
   std::vector<Local> locals(n);
   const PointsAdaptor adaptor{points};
   const Tree tree(3, adaptor, nanoflann::KDTreeSingleIndexAdaptorParams(16));
@@ -116,10 +116,8 @@ Drawable make_splats(const Scene& scene, const std::vector<Index>& shown, const 
       locals[k] = look_around(tree, points, k, given);
       out.positions[k] = points[k].cast<float>();
       out.normals[k] = locals[k].normal;
-      if (!has_coordinate(scene, shown[k])) continue;
-      out.uv[k] =
-          Eigen::Vector2f(static_cast<float>(scene.u[i] / ring_width), static_cast<float>(scene.v[i] / ring_width));
-      out.known[k] = 1;
+      out.uv[k] = paint.uv[i].cast<float>();
+      out.known[k] = paint.known[i];
     }
   });
   out.radii = limited_radii(locals);

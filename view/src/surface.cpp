@@ -48,15 +48,11 @@ void triangulate(const std::vector<Vector3d>& points, std::span<const Index> pol
 /// Collects vertices; a vertex asked for again with the same normal is shared.
 class SurfaceBuilder {
  public:
-  SurfaceBuilder(const Scene& scene, const Camera& camera, double ring_width) : ring_width_(ring_width) {
+  SurfaceBuilder(const Scene& scene, const Camera& camera, const Paint& paint)
+      : paint_(paint), rings_per_length_(camera.scale / paint.ring_width) {
     const std::size_t n = scene.points.size();
-    points_.reserve(n), uv_.resize(n, Vector2d::Zero()), known_.resize(n, 0);
-    for (std::size_t i = 0; i < n; ++i) {
-      points_.push_back(camera.to_scene(scene.points[i]));
-      if (!has_coordinate(scene, static_cast<Index>(i))) continue;
-      uv_[i] = Vector2d(scene.u[i], scene.v[i]) / ring_width;
-      known_[i] = 1;
-    }
+    points_.reserve(n);
+    for (std::size_t i = 0; i < n; ++i) points_.push_back(camera.to_scene(scene.points[i]));
     for (std::size_t f = 0; f + 1 < scene.face_begin.size(); ++f) {
       const auto begin = static_cast<std::size_t>(scene.face_begin[f]),
                  end = static_cast<std::size_t>(scene.face_begin[f + 1]);
@@ -65,8 +61,6 @@ class SurfaceBuilder {
       for (const Index i : polygon) usable = usable && points_[static_cast<std::size_t>(i)].allFinite();
       if (usable) triangulate(points_, polygon, triangles_);
     }
-    // One ring width in scene units: how far the map may move per unit of length where it is an isometry.
-    rings_per_length_ = camera.scale / ring_width_;
   }
 
   Drawable build() {
@@ -122,54 +116,68 @@ class SurfaceBuilder {
     const auto i = static_cast<std::size_t>(point);
     for (const std::uint32_t candidate : shared_[i])
       if ((out_.normals[candidate].cast<double>() - normal).norm() < 1e-3) return candidate;
-    shared_[i].push_back(add(points_[i], normal, uv_[i], known_[i]));
+    shared_[i].push_back(add(points_[i], normal, paint_.uv[i], paint_.known[i]));
     return shared_[i].back();
   }
 
-  /// Two corners whose coordinates point in different directions and lie much farther apart than the corners: geodesics
-  /// arrive there from two sides, and between the corners the map jumps. Interpolated, that would be a sheaf of
-  /// stripes.
+  /// Two corners whose coordinates lie much farther apart than the corners (and, around a source, point in different
+  /// directions): geodesics arrive there from two sides, and between the corners the map jumps. Interpolated, that would
+  /// be a sheaf of stripes. Between cells the colour jumps.
   bool is_torn(const Triangle& t) const {
     for (std::size_t k = 0; k < 3; ++k) {
       const auto i = static_cast<std::size_t>(t[k]), j = static_cast<std::size_t>(t[(k + 1) % 3]);
-      if (known_[i] == 0 || known_[j] == 0) return false;
-      const double length = (points_[i] - points_[j]).norm() * rings_per_length_;
-      const bool turns = uv_[i].dot(uv_[j]) < 0.94 * uv_[i].norm() * uv_[j].norm();
-      if (turns && (uv_[i] - uv_[j]).norm() > 3 * length) return true;
+      const Vector2d &a = paint_.uv[i], &b = paint_.uv[j];
+      if (paint_.known[i] == 0 || paint_.known[j] == 0) return false;
+      if (paint_.pattern == Pattern::cells) {
+        if (a.x() != b.x()) return true;
+        continue;
+      }
+      const bool turns = paint_.pattern == Pattern::grid || a.dot(b) < 0.94 * a.norm() * b.norm();
+      if (turns && (a - b).norm() > 3 * rings_per_length_ * (points_[i] - points_[j]).norm()) return true;
     }
     return false;
   }
 
-  /// Each corner keeps its own direction up to the middle; the distance, which does not jump, is interpolated.
+  /// What does not jump where the map does: the distance from the source, the curve or the cell's source.
+  double distance(const Vector2d& uv) const {
+    if (paint_.pattern == Pattern::polar) return uv.norm();
+    return paint_.pattern == Pattern::grid ? std::abs(uv.y()) : uv.y();
+  }
+
+  Vector2d with_distance(const Vector2d& uv, double distance) const {
+    if (paint_.pattern == Pattern::polar) return distance * uv.normalized();
+    return {uv.x(), paint_.pattern == Pattern::grid ? std::copysign(distance, uv.y()) : distance};
+  }
+
+  /// Each corner keeps its side up to the middle; the distance is interpolated.
   void add_torn(const std::array<std::uint32_t, 3>& vertex) {
     const auto mean = [&](std::initializer_list<std::size_t> corners, Vector3d& position, Vector3d& normal) {
-      double distance = 0;
+      double sum = 0;
       position = normal = Vector3d::Zero();
       for (const std::size_t k : corners) {
         position += out_.positions[vertex[k]].cast<double>() / static_cast<double>(corners.size());
         normal += out_.normals[vertex[k]].cast<double>();
-        distance += out_.uv[vertex[k]].cast<double>().norm() / static_cast<double>(corners.size());
+        sum += distance(out_.uv[vertex[k]].cast<double>()) / static_cast<double>(corners.size());
       }
       normal.normalize();
-      return distance;
+      return sum;
     };
     for (std::size_t k = 0; k < 3; ++k) {
       const std::size_t next = (k + 1) % 3, previous = (k + 2) % 3;
-      const Vector2d direction = out_.uv[vertex[k]].cast<double>().normalized();
+      const Vector2d own = out_.uv[vertex[k]].cast<double>();
       const auto part = [&](std::initializer_list<std::size_t> corners) {
         Vector3d position, normal;
-        const double distance = mean(corners, position, normal);
-        return add(position, normal, distance * direction, 1);
+        const double shared = mean(corners, position, normal);
+        return add(position, normal, with_distance(own, shared), 1);
       };
       const std::uint32_t a = part({k, next}), centre = part({0, 1, 2}), b = part({k, previous});
       out_.triangles.insert(out_.triangles.end(), {vertex[k], a, centre, vertex[k], centre, b});
     }
   }
 
-  double ring_width_, rings_per_length_ = 1;
+  const Paint& paint_;
+  double rings_per_length_;  ///< how far the map may move per unit of length where it is an isometry
   std::vector<Vector3d> points_;
-  std::vector<Vector2d> uv_;
-  std::vector<float> known_;
   std::vector<Triangle> triangles_;
   std::vector<Vector3d> areas_;
   std::vector<std::size_t> corner_begin_, triangle_of_corner_;
@@ -179,13 +187,12 @@ class SurfaceBuilder {
 
 }  // namespace
 
-Drawable make_surface(const Scene& scene, const Camera& camera, double ring_width) {
-  return SurfaceBuilder(scene, camera, ring_width).build();
+Drawable make_surface(const Scene& scene, const Camera& camera, const Paint& paint) {
+  return SurfaceBuilder(scene, camera, paint).build();
 }
 
-Drawable make_drawable(const Scene& scene, const std::vector<Index>& shown, const Camera& camera, double ring_width) {
-  return scene.face_vertices.empty() ? make_splats(scene, shown, camera, ring_width)
-                                     : make_surface(scene, camera, ring_width);
+Drawable make_drawable(const Scene& scene, const std::vector<Index>& shown, const Camera& camera, const Paint& paint) {
+  return scene.face_vertices.empty() ? make_splats(scene, shown, camera, paint) : make_surface(scene, camera, paint);
 }
 
 }  // namespace ahm::view

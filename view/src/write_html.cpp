@@ -84,6 +84,13 @@ std::string triple(const Vector3d& x) {
   return out.append("]");
 }
 
+std::string triples(std::span<const Vec3> points, const Camera& camera) {
+  std::string out = "[";
+  for (std::size_t k = 0; k < points.size(); ++k)
+    out.append(k == 0 ? "" : ",").append(triple(camera.to_scene(points[k])));
+  return out.append("]");
+}
+
 float largest_radius(const Drawable& drawable) {
   return drawable.is_mesh() ? 1 : *std::max_element(drawable.radii.begin(), drawable.radii.end());
 }
@@ -91,16 +98,19 @@ float largest_radius(const Drawable& drawable) {
 /// What the viewer needs besides arrays, as JSON.
 std::string describe(const Scene& scene, const Drawable& drawable, const Camera& camera, double ring_width,
                      const PictureOptions& options) {
+  constexpr const char* patterns[] = {"polar", "grid", "cells"};
   std::string axes;
   if (scene.source_axes)
     for (std::size_t k = 0; k < 2; ++k)
       axes.append(k == 0 ? "" : ",").append(triple(as_vector((*scene.source_axes)[k]).normalized()));
   const bool is_mapped = std::find(drawable.known.begin(), drawable.known.end(), 1.0F) != drawable.known.end();
   return std::string("{\"is_mesh\":") + (drawable.is_mesh() ? "true" : "false") +
-         ",\"is_mapped\":" + (is_mapped ? "true" : "false") + ",\"sectors\":" + std::to_string(options.sectors) +
+         ",\"is_mapped\":" + (is_mapped ? "true" : "false") + ",\"pattern\":\"" +
+         patterns[static_cast<std::size_t>(options.pattern)] + "\",\"sectors\":" + std::to_string(options.sectors) +
          ",\"ring_width\":" + number(ring_width) + ",\"largest_radius\":" + number(largest_radius(drawable)) +
          ",\"source\":" + triple(camera.to_scene(scene.source)) + ",\"axes\":[" + axes +
-         "],\"eye\":" + triple(camera.eye()) + ",\"target\":" + triple(camera.target) + ",\"up\":" + triple(camera.up) +
+         "],\"dots\":" + triples(scene.dots, camera) + ",\"curve\":" + triples(scene.curve, camera) +
+         ",\"eye\":" + triple(camera.eye()) + ",\"target\":" + triple(camera.target) + ",\"up\":" + triple(camera.up) +
          ",\"field_of_view\":" + number(Camera::field_of_view * 180 / std::numbers::pi) +
          ",\"far\":" + number(camera.far_plane) +
          ",\"aspect\":" + number(static_cast<double>(options.width) / options.height) + "}";
@@ -153,11 +163,11 @@ void write_html(const std::filesystem::path& path, const Scene& scene, const Pic
   check(scene, options);
   const std::vector<Index> shown = shown_points(scene);
   const Camera camera = choose_camera(scene, shown, options);
-  const double ring_width = choose_ring_width(scene, shown, options);
-  const Drawable drawable = make_drawable(scene, shown, camera, ring_width);
+  const Paint paint = make_paint(scene, shown, options);
+  const Drawable drawable = make_drawable(scene, shown, camera, paint);
 
   const std::string title = escape(scene.title.empty() ? "logarithmic map" : scene.title);
-  const std::string meta = describe(scene, drawable, camera, ring_width, options);
+  const std::string meta = describe(scene, drawable, camera, paint.ring_width, options);
   const std::string positions = base64(drawable.positions), uv = base64(coordinates(drawable));
   const std::string disc = base64(discs(drawable)), triangles = base64(drawable.triangles);
   io::AtomicFile file(path);

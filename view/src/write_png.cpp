@@ -31,6 +31,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
+constexpr double mark_tolerance = 0.02;  // of the scene's size: a polyline dips into what bulges
 constexpr Colour white = {255, 255, 255}, ink = {25, 25, 30}, red = {225, 20, 30};
 
 std::string shortest(double value) {
@@ -72,6 +73,30 @@ void draw_letter(Image& image, const Arrow& arrow, double unit, std::string_view
   if (d.norm() < 6 * unit) return;
   const Vector2d at = arrow.to + 11 * unit * d.normalized() + Vector2d(-4 * unit, 4 * unit);
   draw_text(image, at, 12 * unit, unit, letter);
+}
+
+/// What nothing hides of the curve and of the dots, in red on white.
+void draw_marks(Rendering& rendering, const Scene& scene, const Camera& camera, double unit) {
+  std::vector<Vector2d> pixels;  // two per visible piece
+  for (std::size_t k = 0; k + 1 < scene.curve.size(); ++k) {
+    const Vector3d a = camera.to_scene(scene.curve[k]), b = camera.to_scene(scene.curve[k + 1]);
+    const int pieces = 1 + static_cast<int>(std::min((b - a).norm() / mark_tolerance, 200.0));
+    for (int p = 0; p < pieces; ++p) {
+      const Vector3d from = a + p * (b - a) / pieces, to = a + (p + 1) * (b - a) / pieces;
+      if (!rendering.shows(camera, (from + to) / 2, mark_tolerance)) continue;
+      for (const Vector3d& end : {from, to})
+        pixels.push_back(camera.to_pixels(end, rendering.image.width(), rendering.image.height()).head<2>());
+    }
+  }
+  for (const auto& [width, colour] : {std::pair{8 * unit, white}, std::pair{5 * unit, red}})
+    for (std::size_t k = 0; k < pixels.size(); k += 2) rendering.image.line(pixels[k], pixels[k + 1], width, colour);
+  for (const Vec3& dot : scene.dots) {
+    const Vector3d place = camera.to_scene(dot);
+    if (!rendering.shows(camera, place, mark_tolerance)) continue;
+    const Vector2d pixel = camera.to_pixels(place, rendering.image.width(), rendering.image.height()).head<2>();
+    rendering.image.disc(pixel, 8 * unit, white);
+    rendering.image.disc(pixel, 6 * unit, red);
+  }
 }
 
 void draw_source(Image& image, const Scene& scene, const Camera& camera, double unit) {
@@ -126,23 +151,28 @@ void write_png(const std::filesystem::path& path, const Scene& scene, const Pict
   check(scene, options);
   const std::vector<Index> shown = shown_points(scene);
   const Camera camera = choose_camera(scene, shown, options);
-  const double ring_width = choose_ring_width(scene, shown, options);
+  const Paint paint = make_paint(scene, shown, options);
   const bool is_mapped = std::any_of(shown.begin(), shown.end(), [&](Index i) { return has_coordinate(scene, i); });
 
   const double unit = std::min(options.width, options.height) / 1200.0;  // marks keep their share of the picture
   Legend legend;
-  if (is_mapped && unit > 0.25) {
+  if (is_mapped && unit > 0.25 && options.pattern != Pattern::cells) {
     legend.radius = 68 * unit;
     legend.x = legend.radius + 36 * unit;
     legend.y = options.height - legend.radius - 60 * unit;
     legend.rings = 4;
   }
-  Image image = render(make_drawable(scene, shown, camera, ring_width), camera, ring_width, options, legend);
+  Rendering rendering = render(make_drawable(scene, shown, camera, paint), camera, paint.ring_width, options, legend);
+  Image& image = rendering.image;
   if (legend.radius > 0) {
-    draw_scale(image, legend, ring_width, unit);
+    draw_scale(image, legend, paint.ring_width, unit);
     draw_legend_axes(image, legend, unit);
   }
-  draw_source(image, scene, camera, std::max(unit, 0.35));
+  draw_marks(rendering, scene, camera, std::max(unit, 0.35));
+  // Of a curve or of many sources only what can be seen; a single source is what the picture is about.
+  const bool is_single = scene.curve.empty() && scene.dots.empty();
+  if (is_single || rendering.shows(camera, camera.to_scene(scene.source), mark_tolerance))
+    draw_source(image, scene, camera, std::max(unit, 0.35));
 
   std::string png;
   if (stbi_write_png_to_func(append, &png, image.width(), image.height(), 3, image.data(), 3 * image.width()) == 0)

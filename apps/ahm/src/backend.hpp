@@ -41,6 +41,9 @@ class Model {
   /// @throws InvalidArgument, in the user's terms: row numbers are those of the input
   virtual ResolvedSource source(const SourceSpec& spec, const std::optional<Vec3>& u_axis) const = 0;
   virtual std::vector<RowVertex> row_vertices() const = 0;
+  /// The vertex at every corner of the input's faces, face after face, all oriented alike where that is possible; empty
+  /// for clouds.
+  virtual std::vector<Index> corner_vertices() const { return {}; }
   /// Unit normal per input row, NaN where there is none.
   virtual std::vector<Vec3> normals() const = 0;
   /// What was found and done on the way, under the backend's own keys.

@@ -22,6 +22,11 @@ Subcommand add_info(CLI::App& program);
 Subcommand add_logmap(CLI::App& program);
 Subcommand add_local_maps(CLI::App& program);
 Subcommand add_coverage(CLI::App& program);
+Subcommand add_stroke(CLI::App& program);
+Subcommand add_cells(CLI::App& program);
+Subcommand add_center(CLI::App& program);
+Subcommand add_atlas(CLI::App& program);
+Subcommand add_decal(CLI::App& program);
 
 /// `ahm logmap --estimate`: time and memory of the run by either strategy.
 void run_estimate(const RunOptions& options);

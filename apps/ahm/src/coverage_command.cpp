@@ -13,7 +13,7 @@
 #include "numbers.hpp"
 #include "option_adders.hpp"
 #include "output_paths.hpp"
-#include "surface.hpp"
+#include "skin.hpp"
 
 namespace ahm::app {
 namespace {
@@ -44,52 +44,6 @@ void check_options(const CoverageCommandOptions& options) {
   const std::string extension = extension_of(o.output);
   if (extension != ".csv" && extension != ".ply")
     throw InvalidArgument(fmt::format("--output {}: the name must end in .csv or .ply", o.output));
-}
-
-/// The faces of the input as fans of triangles, counter-clockwise as seen from the side of the normals.
-std::vector<Triangle3> triangles_of_faces(const io::Geometry& input, const std::vector<Vec3>& normals) {
-  std::vector<Triangle3> result;
-  for (std::size_t f = 0; f < input.face_count(); ++f) {
-    const auto face = input.face(f);
-    for (std::size_t c = 1; c + 1 < face.size(); ++c) {
-      Triangle3 t{face[0], face[c], face[c + 1]};
-      Vec3 a, b;
-      double side = 0;
-      for (std::size_t k = 0; k < 3; ++k) {
-        a[k] = input.points[at(t[1])][k] - input.points[at(t[0])][k];
-        b[k] = input.points[at(t[2])][k] - input.points[at(t[0])][k];
-      }
-      for (Index v : t)
-        for (std::size_t k = 0; k < 3; ++k)
-          side += normals[at(v)][k] * (a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3]);
-      if (side < 0) std::swap(t[1], t[2]);
-      result.push_back(t);
-    }
-  }
-  return result;
-}
-
-/// On the rows and faces of a mesh, so that points lie on it whatever its graph looks like. Of several vertices of a row
-/// the one nearest to the source counts.
-InverseMap inverse_on_faces(const io::Geometry& input, const Model& model, const LogMap& map, double min_quality) {
-  const std::size_t rows = input.points.size();
-  const std::vector<Vec3> graph_normals = source_side_normals(model.graph(), map);
-  const std::vector<double> quality = map_quality(model.graph(), map);
-  std::vector<Index> nearest(rows, -1);
-  for (const auto& [row, vertex] : model.row_vertices())
-    if (map.status(vertex) == Status::ok &&
-        (nearest[at(row)] < 0 || map.distance(vertex) < map.distance(nearest[at(row)])))
-      nearest[at(row)] = vertex;
-  std::vector<Vec3> normals(rows);
-  std::vector<double> coordinates(2 * rows);
-  std::vector<std::uint8_t> valid(rows);
-  for (std::size_t r = 0; r < rows; ++r) {
-    if (nearest[r] < 0) continue;
-    normals[r] = graph_normals[at(nearest[r])];
-    std::copy_n(map.coordinates(nearest[r]).begin(), 2, coordinates.begin() + static_cast<std::ptrdiff_t>(2 * r));
-    valid[r] = quality[at(nearest[r])] >= min_quality;
-  }
-  return InverseMap({input.points, normals, coordinates, valid, triangles_of_faces(input, normals)});
 }
 
 constexpr const char* columns[] = {"x", "y", "z", "nx", "ny", "nz", "hx", "hy", "hz", "u", "v", "arclength", "spacing"};
@@ -201,14 +155,12 @@ void run_coverage(const CoverageCommandOptions& options) {
   Journal journal(options.run.verbose);
   const Surface surface = open_surface(options.run, journal);
   const auto& [input, backend, model] = surface;
-  const ResolvedSource source = model->source(options.run.source, options.run.u_axis);
+  const ResolvedSource source = resolve(options.run, *model);
   const LogMapSolver solver = make_solver(options.run, *model, journal);
   const LogMap map = solve(options.run, solver, source.source, journal);
 
   journal.start("path");
-  const bool has_faces = backend != "pointcloud";
-  const InverseMap inverse = has_faces ? inverse_on_faces(input, *model, map, options.min_quality)
-                                       : inverse_map(model->graph(), map, {.min_quality = options.min_quality});
+  const InverseMap inverse = inverse_of(surface, map, options.min_quality);
   const CoveragePath path = coverage_path(inverse, options.path);
   if (path.points.empty())
     throw InvalidArgument(fmt::format(
@@ -251,14 +203,7 @@ Subcommand add_coverage(CLI::App& program) {
       [](const std::string& text) { return parse_number(text) * std::numbers::pi / 180; }, "DEG",
       "Direction of the lines, from the u axis (default 0)");
   add_parsed(coverage, "--step", o.path.step, parse_positive, "L", "Between points of the path (default: S / 2)");
-  add_parsed(
-      coverage, "--min-quality", o.min_quality,
-      [](const std::string& text) {
-        const double value = parse_positive(text);
-        if (value > 1) throw std::invalid_argument(fmt::format("'{}' is greater than 1", text));
-        return value;
-      },
-      "Q", "Trust vertices of this quality and above, in (0, 1] (default 0.5)");
+  add_min_quality(coverage, o.min_quality);
   add_u_axis(coverage, o.run);
   add_graph_options(coverage, o.run);
   add_json(coverage, o.run);

@@ -1,22 +1,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "ahm/error.hpp"
-#include "ahm/io/write.hpp"
 #include "ahm/log_map_solver.hpp"
-#include "ahm/view/picture.hpp"
 #include "commands.hpp"
-#include "map_rows.hpp"
 #include "numbers.hpp"
 #include "option_adders.hpp"
 #include "output_paths.hpp"
+#include "results.hpp"
 #include "run_report.hpp"
-#include "surface.hpp"
 
 namespace ahm::app {
 namespace {
@@ -29,7 +26,8 @@ constexpr const char* logmap_footer =
     "\n"
     "INPUT   .ply .pcd .xyz .txt .csv .off .obj .stl\n"
     "OUTPUT  .csv, .ply or .pcd; one row per vertex of INPUT, in its order:\n"
-    "          index,x,y,z,u,v,distance,angle,status,quality, with --order 2 also error_estimate\n"
+    "          index,x,y,z,u,v,distance,angle,status,quality, with --order 2 also error_estimate,\n"
+    "          with --gradient also gx,gy,gz: unit vector in space, away from the source along the surface\n"
     "        quality is in (0, 1]; below 0.5 the vertex lies at a cut locus or in a fold.\n"
     "        The numbers are nan where status is not ok:\n"
     "          component  not connected to the source      radius   beyond --radius\n"
@@ -40,16 +38,6 @@ constexpr const char* logmap_footer =
     "  ahm logmap scan.pcd --source 0.1,0.2,1.4 --drop-nan --voxel 0.01 --outliers -o map.ply --view map.html\n"
     "  ahm logmap mesh.obj --source face:7:.2,.3,.5 --u-axis 1,0,0 -o map.ply\n"
     "  ahm logmap scan.xyz --source 17 -o map.csv --json - | jq .status";
-
-void check_view(const std::string& path) {
-  if (path.empty()) return;
-  const std::string extension = extension_of(path);
-  const bool html = extension == ".html" || extension == ".htm";
-  if (!html && extension != ".png")
-    throw InvalidArgument(fmt::format("--view {}: the name must end in .png or .html", path));
-  if (html ? !view::can_write_html() : !view::can_write_png())
-    throw InvalidArgument(fmt::format("--view {}: this build of ahm cannot write {} files", path, extension));
-}
 
 double distance(const Vec3& a, const Vec3& b) { return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]); }
 
@@ -65,68 +53,15 @@ void comment_on_source(const RunOptions& options, const Model& model, const Reso
                     to_string(*wanted), away, source.position[0], source.position[1], source.position[2], away / edge));
 }
 
-void comment_on_statuses(const MapRows& rows, const std::string& input, Journal& journal) {
-  const auto count = [&](Status s) { return std::count(rows.status.begin(), rows.status.end(), s); };
-  const auto total = static_cast<double>(rows.status.size());
-  if (const auto apart = count(Status::component); static_cast<double>(apart) > 0.1 * total)
-    journal.add_warning(
-        fmt::format("{:.0f} % of the vertices are not connected to the source; 'ahm info {}' tells about components",
-                    100.0 * static_cast<double>(apart) / total, input));
-  if (const auto unreached = count(Status::unreached); unreached > 0)
-    journal.add_warning(
-        fmt::format("no heat reaches {} vertices: with --strategy global they are too far away (the "
-                    "march has no such limit), else the weights around them are too bad",
-                    unreached));
-}
-
 /// What was left out because it is farther than the radius in a straight line already.
 void mark_beyond(const std::vector<Vec3>& points, const Vec3& source, double radius, MapRows& rows) {
   for (std::size_t i = 0; i < points.size(); ++i)
     if (rows.status[i] == Status::removed && distance(points[i], source) > radius) rows.status[i] = Status::radius;
 }
 
-void write_view(const RunOptions& options, const io::Geometry& input, const ResolvedSource& source, const MapRows& rows,
-                const std::vector<Vec3>& normals) {
-  view::Scene scene;
-  scene.points = input.points;
-  scene.normals = normals;
-  scene.face_begin = input.face_begin;
-  scene.face_vertices = input.face_vertices;
-  scene.u = rows.u;
-  scene.v = rows.v;
-  scene.source = source.position;
-  if (source.frame) scene.source_axes = {source.frame->x, source.frame->y, source.frame->normal};
-  scene.title = std::filesystem::path(options.input).filename().string();
-  view::write_picture(options.view, scene);
-}
-
-/// What this run has written: all of it or, after a failure, nothing.
-class Written {
- public:
-  ~Written() {
-    std::error_code ignored;
-    for (const std::string& path : paths_)
-      if (!is_stream(path)) std::filesystem::remove(path, ignored);
-  }
-  void add(const std::string& path) { paths_.push_back(path); }
-  void keep() { paths_.clear(); }
-
- private:
-  std::vector<std::string> paths_;
-};
-
-void write_results(const RunOptions& options, const io::Geometry& input, const Model& model,
-                   const ResolvedSource& source, const MapRows& rows, Written& written, Journal& journal) {
-  const std::vector<Vec3> normals = model.normals();
-  if (!options.view.empty()) {
-    journal.start("view");
-    write_view(options, input, source, rows, normals);
-    written.add(options.view);
-  }
-  journal.start("write");
-  io::Table table;
-  table.points = input.points;
-  table.normals = normals;
+void write_results(const ResolvedSource& source, const MapRows& rows, const std::vector<Vec3>& away, Results& results,
+                   Journal& journal) {
+  io::Table table = results.table();
   table.u = rows.u;
   table.v = rows.v;
   table.distance = rows.distance;
@@ -134,35 +69,40 @@ void write_results(const RunOptions& options, const io::Geometry& input, const M
   table.status = rows.status;
   table.further.push_back({"quality", rows.quality});
   if (!rows.error_estimate.empty()) table.further.push_back({"error_estimate", rows.error_estimate});
-  table.face_begin = input.face_begin;
-  table.face_vertices = input.face_vertices;
-  io::write(options.output, table);
-  written.add(options.output);
-  journal.finish();
-  journal.clear_display();
+  std::array<std::vector<double>, 3> components;
+  constexpr const char* names[] = {"gx", "gy", "gz"};
+  for (std::size_t k = 0; k < 3 && !away.empty(); ++k) {
+    for (const Vec3& vector : away) components[k].push_back(vector[k]);
+    table.further.push_back({names[k], components[k]});
+  }
+  view::Scene scene = results.scene();
+  scene.u = rows.u;
+  scene.v = rows.v;
+  scene.source = source.position;
+  if (source.frame) scene.source_axes = {source.frame->x, source.frame->y, source.frame->normal};
+  results.write(table, scene, journal);
 }
 
 void run_logmap(const RunOptions& options) {
   if (options.estimate) return run_estimate(options);
-  check_outputs(options.input, {{"--output", options.output}, {"--json", options.json}, {"--view", options.view}});
-  io::check_writable(options.output);
-  check_view(options.view);
+  check_results(options);
   Journal journal(options.verbose);
   const Surface surface = open_surface(options, journal);
   const auto& [input, backend, model] = surface;
-  const ResolvedSource source = model->source(options.source, options.u_axis);
+  const ResolvedSource source = resolve(options, *model);
   comment_on_source(options, *model, source, journal);
 
   const LogMapSolver solver = make_solver(options, *model, journal);
   const LogMap map = solve(options, solver, source.source, journal);
   MapRows rows = rows_of(map, *model, input.points.size());
   if (options.local) mark_beyond(input.points, source.position, *options.radius, rows);
-  comment_on_statuses(rows, options.input, journal);
-  Written written;
-  write_results(options, input, *model, source, rows, written, journal);
+  comment_on_statuses(rows.status, options.input, journal);
+  Results results(options, surface);
+  const std::vector<Vec3> away = options.gradient ? gradients(map, *model, rows) : std::vector<Vec3>();
+  write_results(source, rows, away, results, journal);
   const Run run{options, input, backend, *model, solver, source, map, rows, journal.times(), journal.warnings()};
   write_json(options.json, run_as_json(run));
-  written.keep();
+  results.keep();
   const bool stdout_taken = options.json == "-" || is_stream(options.output);
   stdout_taken ? say(run_as_text(run)) : print(run_as_text(run));
 }
@@ -196,6 +136,7 @@ void add_method_options(CLI::App& app, RunOptions& o) {
   add_parsed(app, "--accuracy", o.accuracy, parse_positive, "A",
              "Of a march, against a global solve, relative (default 1e-9)")
       ->group(group);
+  app.add_flag("--gradient", o.gradient, "Add the direction away from the source to the rows of OUTPUT")->group(group);
   add_threads(app, o.threads)->group(group);
 }
 

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "ahm/error.hpp"
+#include "source_list.hpp"
 
 namespace ahm::app {
 
@@ -17,20 +18,7 @@ void check_mesh_input(const std::string& backend, const io::Geometry& input, con
     throw InvalidArgument(
         "--voxel, --outliers, --drop-nan and --local are for point clouds; add --backend pointcloud to map the "
         "vertices as one");
-  const auto within = [&](Index index, std::size_t count, const char* what) {
-    if (static_cast<std::size_t>(index) >= count)
-      throw InvalidArgument(
-          fmt::format("--source {}: the input has {} {}, numbered from 0", to_string(options.source), count, what));
-  };
-  if (const auto* vertex = std::get_if<SourceVertex>(&options.source))
-    within(vertex->index, input.points.size(), "vertices");
-  if (const auto* face = std::get_if<SourceFace>(&options.source)) {
-    within(face->face, input.face_count(), "faces");
-    const std::size_t corners = input.face(static_cast<std::size_t>(face->face)).size();
-    if (face->weights.size() != corners)
-      throw InvalidArgument(fmt::format("--source {}: this face has {} corners, give as many coordinates",
-                                        to_string(options.source), corners));
-  }
+  position_in(input, options.source, "--source");
 }
 
 Index nearest_row(std::span<const Vec3> points, std::span<const Index> vertex_of_row, const Vec3& position) {

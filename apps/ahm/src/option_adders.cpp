@@ -58,8 +58,25 @@ CLI::Option* add_t_coef(CLI::App& app, RunOptions& o) {
 }
 
 CLI::Option* add_u_axis(CLI::App& app, RunOptions& o) {
-  return add_parsed(app, "--u-axis", o.u_axis, parse_direction, "X,Y,Z",
-                    "Direction of the u axis, projected to the surface (default: chosen by the backend)");
+  return add_parsed(
+      app, "--u-axis", o.u_axis,
+      [](const std::string& text) {
+        return text == "curvature" ? UAxis{true, {}} : UAxis{false, parse_direction(text)};
+      },
+      "X,Y,Z|curvature",
+      "Direction of the u axis, projected to the surface (default: chosen by the backend), or\n"
+      "curvature: where the surface bends most, which planes and spheres do nowhere");
+}
+
+CLI::Option* add_min_quality(CLI::App& app, double& min_quality) {
+  return add_parsed(
+      app, "--min-quality", min_quality,
+      [](const std::string& text) {
+        const double value = parse_positive(text);
+        if (value > 1) throw std::invalid_argument(fmt::format("'{}' is greater than 1", text));
+        return value;
+      },
+      "Q", "Trust vertices of this quality and above, in (0, 1] (default 0.5)");
 }
 
 CLI::Option* add_threads(CLI::App& app, unsigned& threads) {

@@ -47,6 +47,7 @@ CLI::Option* add_variant(CLI::App& app, RunOptions& o);
 CLI::Option* add_backend(CLI::App& app, RunOptions& o);
 CLI::Option* add_t_coef(CLI::App& app, RunOptions& o);
 CLI::Option* add_u_axis(CLI::App& app, RunOptions& o);
+CLI::Option* add_min_quality(CLI::App& app, double& min_quality);
 CLI::Option* add_threads(CLI::App& app, unsigned& threads);
 CLI::Option* add_drop_nan(CLI::App& app, RunOptions& o);
 CLI::Option* add_non_manifold(CLI::App& app, RunOptions& o);

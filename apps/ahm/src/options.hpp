@@ -11,12 +11,18 @@
 
 namespace ahm::app {
 
+/// Where the u axis points.
+struct UAxis {
+  bool curvature = false;  ///< where the surface bends most, or
+  Vec3 direction{};        ///< a vector of space
+};
+
 /// What subcommands that build a graph understand; each has the part it offers.
 struct RunOptions {
   std::string input;
   std::string output;  ///< empty with `estimate` only
   SourceSpec source;
-  std::optional<Vec3> u_axis;
+  std::optional<UAxis> u_axis;
   Variant variant = Variant::adaptive;
   std::string backend = "auto";  ///< auto, trimesh, polymesh, pointcloud
   double t_coef = 1.0;
@@ -26,6 +32,7 @@ struct RunOptions {
   Strategy strategy = Strategy::automatic;
   int order = 1;
   double accuracy = SolverOptions{}.accuracy;
+  bool gradient = false;  ///< columns with the direction away from the source
   bool estimate = false;  ///< tell what the run would cost instead of running
 
   std::optional<double> voxel;

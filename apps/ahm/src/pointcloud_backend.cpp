@@ -10,6 +10,7 @@
 #include "backend.hpp"
 #include "cloud_preparation.hpp"
 #include "frames.hpp"
+#include "source_list.hpp"
 #ifdef AHM_WITH_PCL
 #include "ahm/pcl/search.hpp"
 #endif
@@ -31,12 +32,7 @@ std::optional<Index> checked_source_row(const SourceSpec& spec, const io::Geomet
         "--source {}: a cloud has no faces (backend pointcloud); write a vertex index or x,y,z", to_string(*face)));
   const auto* vertex = std::get_if<SourceVertex>(&spec);
   if (vertex == nullptr) return std::nullopt;
-  if (at(vertex->index) >= input.points.size())
-    throw InvalidArgument(fmt::format("--source {}: the input has {} points, numbered from 0 to {}", vertex->index,
-                                      input.points.size(), static_cast<std::int64_t>(input.points.size()) - 1));
-  for (double x : input.points[at(vertex->index)])
-    if (!std::isfinite(x))
-      throw InvalidArgument(fmt::format("--source {}: this point has a coordinate that is {}", vertex->index, x));
+  position_in(input, spec, "--source");
   return vertex->index;
 }
 
@@ -123,8 +119,13 @@ class PointcloudModel final : public Model {
   Index prepared_point(const SourceSpec& spec) const {
     if (const auto* position = std::get_if<SourcePosition>(&spec)) return cloud_.nearest_point(position->position);
     const auto& rows = prepared_.input_row;
-    return static_cast<Index>(std::lower_bound(rows.begin(), rows.end(), std::get<SourceVertex>(spec).index) -
-                              rows.begin());
+    const Index row = std::get<SourceVertex>(spec).index;
+    const auto place = std::lower_bound(rows.begin(), rows.end(), row);
+    if (place == rows.end() || *place != row)
+      throw InvalidArgument(fmt::format(
+          "--source {}: the point was left out (--voxel, --outliers, --drop-nan); choose another one, or write x,y,z",
+          row));
+    return static_cast<Index>(place - rows.begin());
   }
 
   PreparedCloud prepared_;

@@ -95,6 +95,8 @@ class PolymeshModel final : public Model {
     return result;
   }
 
+  std::vector<Index> corner_vertices() const override { return {mesh_.corners().begin(), mesh_.corners().end()}; }
+
   std::vector<Vec3> normals() const override {
     const double nan = std::numeric_limits<double>::quiet_NaN();
     std::vector<Vec3> result(input_.points.size(), Vec3{nan, nan, nan});
@@ -203,8 +205,7 @@ nlohmann::ordered_json PolymeshModel::report() const {
 
 }  // namespace
 
-std::unique_ptr<Model> build_polymesh(const io::Geometry& input, const RunOptions& options,
-                                      const Progress& progress) {
+std::unique_ptr<Model> build_polymesh(const io::Geometry& input, const RunOptions& options, const Progress& progress) {
   return std::make_unique<PolymeshModel>(input, options, progress);
 }
 

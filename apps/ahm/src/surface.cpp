@@ -2,12 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "ahm/cost.hpp"
 #include "ahm/error.hpp"
 #include "ahm/io/read.hpp"
+#include "frames.hpp"
+#include "output_paths.hpp"
 #include "run_report.hpp"
+#include "source_list.hpp"
 #include "system_info.hpp"
 
 namespace ahm::app {
@@ -52,6 +56,34 @@ Surface open_surface(const RunOptions& options, Journal& journal) {
   surface.model = build_model(surface.backend, surface.input, options, journal.progress());
   journal.add_warnings(surface.model->warnings());
   return surface;
+}
+
+ResolvedSource resolve(const Model& model, const SourceSpec& spec, const std::optional<Vec3>& u_axis,
+                       const std::string& option) try {
+  return model.source(spec, u_axis);
+} catch (const InvalidArgument& e) {
+  std::string message = e.what();
+  const std::string own = "--source";
+  if (message.starts_with(own)) message.replace(0, own.size(), option);
+  throw InvalidArgument(message);
+}
+
+Index vertex_at(const Surface& surface, const SourceSpec& spec, const std::string& option) {
+  position_in(surface.input, spec, option);
+  if (std::holds_alternative<SourceFace>(spec))
+    throw InvalidArgument(fmt::format("{} {}: must be a vertex; write its number or x,y,z", option, to_string(spec)));
+  return resolve(*surface.model, spec, std::nullopt, option).source.vertices().front();
+}
+
+ResolvedSource resolve(const RunOptions& options, const Model& model) {
+  const std::optional<UAxis>& axis = options.u_axis;
+  if (!axis || !axis->curvature)
+    return model.source(options.source, axis ? std::optional(axis->direction) : std::nullopt);
+  const Source plain = model.source(options.source, std::nullopt).source;
+  // In a face: at the corner that has most of the source.
+  const auto most = std::max_element(plain.weights().begin(), plain.weights().end()) - plain.weights().begin();
+  const Index vertex = plain.vertices()[static_cast<std::size_t>(most)];
+  return model.source(options.source, bending_direction(model.graph(), vertex));
 }
 
 LogMapSolver make_solver(const RunOptions& options, const Model& model, Journal& journal, int maps) {
@@ -100,10 +132,12 @@ void deliver(nlohmann::ordered_json summary, const std::string& text, const RunO
   summary["seconds_total"] = journal.times().total();
   summary["peak_rss_bytes"] = peak_rss_bytes();
   write_json(options.json, summary);
-  const std::string all =
-      fmt::format("{}{:.2f} s, peak memory {}\n{}", text, journal.times().total(), bytes_as_text(peak_rss_bytes()),
-                  options.output.empty() ? "" : "wrote " + options.output + "\n");
-  options.json == "-" ? say(all) : print(all);
+  std::string wrote = options.output.empty() ? "" : "wrote " + options.output;
+  if (!options.view.empty()) wrote += (wrote.empty() ? "wrote " : " and ") + options.view;
+  if (!wrote.empty()) wrote += "\n";
+  const std::string all = fmt::format("{}{:.2f} s, peak memory {}\n{}", text, journal.times().total(),
+                                      bytes_as_text(peak_rss_bytes()), wrote);
+  options.json == "-" || is_stream(options.output) ? say(all) : print(all);
 }
 
 }  // namespace ahm::app

@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 
 #include "ahm/log_map_solver.hpp"
@@ -22,6 +23,19 @@ struct Surface {
 /// Reads the input, chooses the backend and builds the graph; warnings go to the journal.
 /// @throws InvalidGeometry where there are no points; what the reader and the backend throw
 Surface open_surface(const RunOptions& options, Journal& journal);
+
+/// A source where the user wants it. @param option  that asked for it, for messages
+/// @throws InvalidArgument
+ResolvedSource resolve(const Model& model, const SourceSpec& spec, const std::optional<Vec3>& u_axis,
+                       const std::string& option);
+
+/// The vertex of the graph at a row of the input or nearest to a position.
+/// @throws InvalidArgument, also for a point in a face
+Index vertex_at(const Surface& surface, const SourceSpec& spec, const std::string& option);
+
+/// The source of --source and --u-axis.
+/// @throws InvalidArgument, also where the surface bends alike in all directions, or its directions are noise
+ResolvedSource resolve(const RunOptions& options, const Model& model);
 
 /// The solver of the options: t_coef, ordering, strategy, order, accuracy.
 /// @param maps  how many are expected

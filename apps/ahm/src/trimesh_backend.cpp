@@ -71,6 +71,11 @@ class TrimeshModel final : public Model {
     return result;
   }
 
+  std::vector<Index> corner_vertices() const override {
+    const auto tails = mesh_.mesh().tails();
+    return {tails.begin(), tails.end()};
+  }
+
   std::vector<Vec3> normals() const override {
     const double nan = std::numeric_limits<double>::quiet_NaN();
     std::vector<Vec3> result(points_.size(), Vec3{nan, nan, nan});
@@ -121,8 +126,7 @@ nlohmann::ordered_json TrimeshModel::report() const {
 
 }  // namespace
 
-std::unique_ptr<Model> build_trimesh(const io::Geometry& input, const RunOptions& options,
-                                     const Progress& progress) {
+std::unique_ptr<Model> build_trimesh(const io::Geometry& input, const RunOptions& options, const Progress& progress) {
   return std::make_unique<TrimeshModel>(input, options, progress);
 }
 

@@ -11,19 +11,23 @@
     return out.buffer;
   }
 
-  // Shared by both shaders below; coordinates are in ring widths, those beyond 1e29 stand for "none".
+  // Shared by both shaders below; coordinates are in ring widths, those beyond 1e29 stand for "none". Of cells, the first
+  // one is a colour.
   const common = element("palette").textContent + `
+    uniform int pattern;
     uniform float sectors, ring_scale;
     vec3 paint(vec2 uv, vec2 dx, vec2 dy) {
       if (!(abs(uv.x) < 1e29)) return unknown_colour();
-      return map_colour(uv * ring_scale, dx * ring_scale, dy * ring_scale, sectors);
+      vec2 scale = vec2(pattern == 2 ? 1.0 : ring_scale, ring_scale);
+      return map_colour(pattern, uv * scale, dx * scale, dy * scale, sectors);
     }
     vec4 finish(vec3 colour, vec3 n, vec3 p) {
       if (dot(n, p) > 0.0) n = -n;
       return vec4(to_srgb(clamp(lit(colour, n, vec3(0.0, 0.0, 1.0)), 0.0, 1.0)), 1.0);
     }`;
+  const pattern = ["polar", "grid", "cells"].indexOf(meta.pattern);
   const uniforms = {
-    sectors: { value: meta.sectors }, ring_scale: { value: 1 }, largest_radius: { value: meta.largest_radius },
+    pattern: { value: pattern }, sectors: { value: meta.sectors }, ring_scale: { value: 1 }, largest_radius: { value: meta.largest_radius },
     pixels_per_unit: { value: 1 }
   };
 
@@ -122,10 +126,30 @@
     return group;
   }
 
-  // The checkerboard by itself, drawn in the lower left corner.
+  // The curve as a thin tube, the further dots as balls; `scale` is the radius.
+  function make_marks(scale) {
+    const group = new THREE.Group(), red = new THREE.MeshBasicMaterial({ color: 0xe1141e });
+    const at = (triple) => new THREE.Vector3().fromArray(triple);
+    if (meta.curve.length > 1) {
+      const path = new THREE.CurvePath();
+      for (let k = 0; k + 1 < meta.curve.length; ++k)
+        path.add(new THREE.LineCurve3(at(meta.curve[k]), at(meta.curve[k + 1])));
+      const pieces = Math.min(2000, 2 * meta.curve.length);
+      group.add(new THREE.Mesh(new THREE.TubeBufferGeometry(path, pieces, scale, 8), red));
+    }
+    const ball = new THREE.SphereBufferGeometry(3 * scale, 24, 16);
+    for (const dot of meta.dots) {
+      const mesh = new THREE.Mesh(ball, red);
+      mesh.position.copy(at(dot));
+      group.add(mesh);
+    }
+    return group;
+  }
+
+  // The pattern by itself, drawn in the lower left corner.
   function make_legend() {
     const scene = new THREE.Scene();
-    const legend_uniforms = { sectors: uniforms.sectors, ring_scale: { value: 1 }, pixel: { value: 0.05 } };
+    const legend_uniforms = { pattern: uniforms.pattern, sectors: uniforms.sectors, ring_scale: { value: 1 }, pixel: { value: 0.05 } };
     scene.add(new THREE.Mesh(new THREE.PlaneBufferGeometry(2, 2), new THREE.ShaderMaterial({
       uniforms: legend_uniforms, transparent: true,
       vertexShader: "varying vec2 at; void main() { at = position.xy; gl_Position = vec4(position.xy, 0.0, 1.0); }",
@@ -134,7 +158,7 @@
         uniform float pixel;
         void main() {
           float cover = clamp((0.98 - length(at)) / pixel + 0.5, 0.0, 1.0);
-          vec3 c = map_colour(at * 4.0, vec2(4.0 * pixel, 0.0), vec2(0.0, 4.0 * pixel), sectors);
+          vec3 c = map_colour(pattern, at * 4.0, vec2(4.0 * pixel, 0.0), vec2(0.0, 4.0 * pixel), sectors);
           if (length(at) < 0.06) c = vec3(0.75, 0.007, 0.013);
           gl_FragColor = vec4(to_srgb(c), cover);
         }`
@@ -150,11 +174,12 @@
     document.body.insertBefore(renderer.domElement, document.body.firstChild);
 
     const scene = new THREE.Scene(), source = make_source(), legend = make_legend();
-    scene.add(make_object(), source);
+    scene.add(make_object(), source, make_marks(0.004));
     const camera = new THREE.PerspectiveCamera(meta.field_of_view, 1, 0.01, 1000);
     camera.up.fromArray(meta.up);
     const controls = new THREE.OrbitControls(camera, renderer.domElement);
     const source_position = new THREE.Vector3().fromArray(meta.source);
+    const has_legend = meta.is_mapped && meta.pattern !== "cells";
     let pending = false;
 
     function draw() {
@@ -174,7 +199,7 @@
       renderer.setViewport(0, 0, width, height);
       renderer.clear();
       renderer.render(scene, camera);
-      if (!meta.is_mapped) return;
+      if (!has_legend) return;
       renderer.clearDepth();
       renderer.setViewport(20, 20, 140, 140);
       legend.uniforms.pixel.value = 2 / (140 * renderer.getPixelRatio());
@@ -208,7 +233,8 @@
     window.addEventListener("keydown", (event) => { if (event.key === "r" || event.key === "R") reset(); });
     element("reset").addEventListener("click", reset);
     element("ring").addEventListener("input", set_ring);
-    if (!meta.is_mapped) for (const id of ["axis_u", "axis_v"]) element(id).style.display = "none";
+    element("ring_name").textContent = meta.pattern === "grid" ? "square width" : "ring width";
+    if (!has_legend) for (const id of ["axis_u", "axis_v"]) element(id).style.display = "none";
     resize();
     set_ring();
     reset();

@@ -26,8 +26,10 @@ float square_wave(float x, float width) {
   return (triangle_wave(x + 0.5 * w) - triangle_wave(x - 0.5 * w)) / w;
 }
 
-// The polar checkerboard at uv (in ring widths), where dx and dy are the changes of uv over one pixel. Linear RGB.
-vec3 map_colour(vec2 uv, vec2 dx, vec2 dy, float sectors) {
+// Below, dx and dy are the changes of uv over one pixel; the result is linear RGB.
+
+// Rings and sectors about the source; uv in ring widths.
+vec3 polar_colour(vec2 uv, vec2 dx, vec2 dy, float sectors) {
   float r = max(length(uv), 1e-6);
   vec2 radial = uv / r, around = vec2(-radial.y, radial.x);
   float ring_width = abs(dot(radial, dx)) + abs(dot(radial, dy));
@@ -37,6 +39,34 @@ vec3 map_colour(vec2 uv, vec2 dx, vec2 dy, float sectors) {
   float checker = square_wave(r, ring_width) * square_wave(angle * sectors_per_radian, sector_width);
   float hue = angle + 0.5;
   return mix(oklch(0.50, 0.125, hue), oklch(0.83, 0.105, hue), 0.5 + 0.5 * checker);
+}
+
+// Squares of u and v: warm to the left of the curve (v > 0), cold to its right, further round the hues with every stripe.
+vec3 grid_colour(vec2 uv, vec2 dx, vec2 dy) {
+  vec2 width = abs(dx) + abs(dy);
+  float checker = square_wave(uv.x, width.x) * square_wave(uv.y, width.y);
+  float left = clamp(0.5 + uv.y / max(width.y, 1e-6), 0.0, 1.0);
+  float turn = 1.6 * (1.0 - exp(-abs(uv.y) / 6.0));
+  vec3 dark = mix(oklch(0.47, 0.12, 4.4 + turn), oklch(0.56, 0.125, 0.8 + turn), left);
+  vec3 light = mix(oklch(0.80, 0.09, 4.4 + turn), oklch(0.88, 0.10, 0.8 + turn), left);
+  return mix(dark, light, 0.5 + 0.5 * checker);
+}
+
+// Cells: uv.x is one of twelve colours, uv.y the distance from the cell's source in ring widths. Neighbouring hues
+// differ in lightness, and colours of successive numbers are far apart.
+vec3 cell_colour(vec2 uv, vec2 dx, vec2 dy) {
+  float number = floor(uv.x + 0.5);
+  float hue = mod(5.0 * number, 12.0) * pi / 6.0 + 0.5;
+  float ring = square_wave(uv.y, abs(dx.y) + abs(dy.y));
+  float lightness = mod(number, 2.0) < 0.5 ? 0.58 : 0.80;
+  return oklch(lightness + 0.035 * ring, 0.115, hue);
+}
+
+// The numbers of ahm::view::Pattern.
+vec3 map_colour(int pattern, vec2 uv, vec2 dx, vec2 dy, float sectors) {
+  if (pattern == 1) return grid_colour(uv, dx, dy);
+  if (pattern == 2) return cell_colour(uv, dx, dy);
+  return polar_colour(uv, dx, dy, sectors);
 }
 
 vec3 unknown_colour() { return vec3(0.42); }

@@ -1,6 +1,7 @@
 #version 330 core
 // Paints the picture from what the first passes left per pixel. `palette.glsl` is inserted after the version line.
 uniform sampler2D winners, map_sums, normal_sums;
+uniform int pattern;
 uniform float sectors, pixels_per_unit;
 uniform float spacing, gap;  // of points, in ring widths and in scene units; 0: not a cloud
 uniform float detail;        // radius of fine shading in pixels
@@ -41,9 +42,13 @@ vec3 map_at(ivec2 p) {
   if (sum.w <= 0.5 * all || sum.w <= 0.0) return vec3(0.0);
   vec2 uv = sum.xy / sum.w;
   float r = sum.z / sum.w;
-  // Directions that cancel far from the source: points beyond a cut were averaged. The nearest one then says where to.
   vec3 nearest = texelFetch(winners, p, 0).xyz;
-  if (spacing > 0.0 && r > 3.0 * spacing && length(uv) < 0.9 * r && nearest.z > 0.5) uv = normalize(nearest.xy) * r;
+  if (pattern == 2) return nearest.z > 0.5 ? vec3(nearest.x, uv.y, 1.0) : vec3(0.0);  // colours have no mean
+  // Points beyond a cut were averaged: the nearest one then says where to.
+  if (pattern == 1 && spacing > 0.0 && length(uv - nearest.xy) > 3.0 * spacing && nearest.z > 0.5) uv = nearest.xy;
+  // As directions that cancel far from the source.
+  if (pattern == 0 && spacing > 0.0 && r > 3.0 * spacing && length(uv) < 0.9 * r && nearest.z > 0.5)
+    uv = normalize(nearest.xy) * r;
   return vec3(uv, 1.0);
 }
 
@@ -81,14 +86,14 @@ void main() {
     if (map.z > 0.0) {
       vec2 dx = change(map.xy, map_at(p - ivec2(1, 0)), map_at(p + ivec2(1, 0)));
       vec2 dy = change(map.xy, map_at(p - ivec2(0, 1)), map_at(p + ivec2(0, 1)));
-      base = map_colour(map.xy, dx, dy, sectors);
+      base = map_colour(pattern, map.xy, dx, dy, sectors);
     }
     linear = lit(base, n, vec3(0.0, 0.0, 1.0)) * crevices(p, depth_at(p));
   }
   if (legend.z > 0.0 && rim < 0.12 * legend.z) linear = mix(linear, vec3(1.0), 0.85);
   if (legend.z > 0.0 && rim < 0.0) {
     float step = legend_rings / legend.z;
-    linear = map_colour(from_legend * step, vec2(step, 0.0), vec2(0.0, step), sectors);
+    linear = map_colour(pattern, from_legend * step, vec2(step, 0.0), vec2(0.0, step), sectors);
   }
   colour = vec4(to_srgb(clamp(linear, 0.0, 1.0)), 1.0);
 }

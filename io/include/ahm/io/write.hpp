@@ -31,10 +31,10 @@ struct Column {
 struct Table {
   std::span<const Vec3> points;          ///< n
   std::span<const Vec3> normals;         ///< empty or n; NaN where there is none
-  std::span<const double> u;             ///< n, first coordinate
-  std::span<const double> v;             ///< n, second coordinate
-  std::span<const double> distance;      ///< n, length of (u, v)
-  std::span<const double> angle;         ///< n, radians
+  std::span<const double> u;             ///< empty (no such column) or n, first coordinate
+  std::span<const double> v;             ///< empty or n, second coordinate
+  std::span<const double> distance;      ///< empty or n, e.g. the length of (u, v)
+  std::span<const double> angle;         ///< empty or n, radians
   std::span<const Status> status;        ///< n; where it is not ok, u, v, distance and angle are written as NaN
   std::span<const Offset> face_begin;    ///< empty or faces + 1
   std::span<const Index> face_vertices;  ///< vertex numbers in [0, n)

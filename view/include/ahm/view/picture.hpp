@@ -1,6 +1,6 @@
 /// \file
-/// Pictures of a logarithmic map: a surface or scan painted with a polar checkerboard, as a PNG file or as one HTML
-/// page.
+/// Pictures of what was found on a surface or scan: a logarithmic map as a polar checkerboard, coordinates along a curve
+/// as squares, cells in colours. As a PNG file or as one HTML page.
 ///
 /// \code
 /// ahm::view::Scene scene;
@@ -21,6 +21,13 @@
 
 namespace ahm::view {
 
+/// What the points are painted by.
+enum class Pattern {
+  polar,  ///< (u, v): rings of equal distance, sectors of equal direction
+  grid,   ///< (u, v): squares, warm colours where v > 0 (left of a curve), cold ones where v < 0
+  cells,  ///< labels: neighbouring cells in different colours, with rings of equal distance
+};
+
 /// What is shown. The spans are only read, and only during the call.
 struct Scene {
   /// Positions, outside units. Points that are not finite are left out.
@@ -31,10 +38,16 @@ struct Scene {
   /// cloud.
   std::span<const Offset> face_begin;
   std::span<const Index> face_vertices;
-  /// The map, one number per point in outside units; NaN where there is no coordinate (painted grey).
+  /// The map, one number per point in outside units; NaN where there is no coordinate (painted grey). Empty for cells.
   std::span<const double> u, v;
-  /// Position of the source (need not be one of the points).
+  /// For cells only: the number of each point's cell, and the distance from the cell's source in outside units. Points
+  /// are grey where the one is negative or the other is not finite.
+  std::span<const Index> labels;
+  std::span<const double> distance;
+  /// Position of the source (need not be one of the points), a red dot.
   Vec3 source{};
+  /// Further red dots, and a polyline in red; drawn where nothing stands before them.
+  std::span<const Vec3> dots, curve;
   /// Unit axes u, v and normal at the source; u and v are drawn as arrows.
   std::optional<std::array<Vec3, 3>> source_axes;
   /// Heading of the HTML page; a PNG has none.
@@ -43,9 +56,11 @@ struct Scene {
 
 /// How it is shown.
 struct PictureOptions {
+  Pattern pattern = Pattern::polar;
   /// Pixels of a PNG, 16 to 8192 each. An HTML page fills its window.
   int width = 1600, height = 1200;
-  /// Width of a distance ring in outside units. Default: the round number that gives about 12 rings.
+  /// Width of a distance ring, or of a square, in outside units. Default: the round number that gives about 12 rings, 24
+  /// squares along the curve, or 4 rings per cell.
   std::optional<double> ring_width;
   /// Number of angle sectors; even and positive, so that the checkerboard closes.
   int sectors = 24;

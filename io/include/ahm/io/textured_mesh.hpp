@@ -1,0 +1,53 @@
+/// \file
+/// Meshes with textures and colours to files.
+///
+/// \code
+/// ahm::io::MeshPart part{.name = "atlas", .points = points, .face_begin = begin, .face_vertices = vertices};
+/// part.texture_coordinates = uv;                       // two per corner
+/// part.texture = &image;
+/// ahm::io::write_textured("bunny.glb", std::array{part});
+/// \endcode
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+
+#include "ahm/error.hpp"
+#include "ahm/io/image.hpp"
+#include "ahm/types.hpp"
+
+namespace ahm::io {
+
+/// A piece of a mesh with one material. Views only: the data must outlive the call.
+struct MeshPart {
+  std::string name;                                  ///< of the object and its material; letters, digits and _
+  std::span<const Vec3> points;                      ///< those that no face uses are not written
+  std::span<const Vec3> normals = {};                ///< empty or one per point
+  std::span<const Offset> face_begin;                ///< faces + 1
+  std::span<const Index> face_vertices;              ///< one per corner, polygons
+  std::span<const double> texture_coordinates = {};  ///< empty or corners x 2; (0, 0) is the image's lower left corner
+  const Image* texture = nullptr;                    ///< needs texture coordinates
+  std::array<double, 3> color{0.75, 0.75, 0.75};     ///< without a texture; red, green, blue in [0, 1]
+  bool transparent = false;                          ///< the texture's opacity counts
+};
+
+/// Writes .obj (with .mtl and one .png per texture beside it) or .glb (glTF 2.0, all in one file).
+///
+/// - OBJ: doubles, polygons, per-corner texture coordinates; a file NAME.obj comes with NAME.mtl and NAME_<part>.png.
+///   It appears last, when all others are complete.
+/// - GLB: triangles (polygons as fans), floats about the middle of the bounding box, which is the nodes' translation,
+///   so that models far from the origin keep their shape.
+/// @throws InvalidArgument (lengths, indices, a point or texture coordinate in use that is not finite), IoError
+void write_textured(const std::filesystem::path& path, std::span<const MeshPart> parts);
+
+/// Writes points with colours, and faces if any, as binary little endian PLY: double x y z, double nx ny nz when given,
+/// uchar red green blue.
+/// @throws InvalidArgument (lengths), IoError
+void write_colored_ply(const std::filesystem::path& path, std::span<const Vec3> points, std::span<const Vec3> normals,
+                       std::span<const std::array<std::uint8_t, 3>> colors, std::span<const Offset> face_begin = {},
+                       std::span<const Index> face_vertices = {});
+
+}  // namespace ahm::io

@@ -1,0 +1,18 @@
+// Stands in for stb.cpp and pack.cpp in a build without stb.
+#include "ahm/io/image.hpp"
+#include "ahm/io/texture_atlas.hpp"
+
+namespace ahm::io {
+
+bool has_images() noexcept { return false; }
+Image read_image(const std::filesystem::path& path) {
+  throw IoError(path.string() + ": this build has no stb, which reads images (Debian: libstb-dev)");
+}
+std::string png_bytes(const Image&) {
+  throw IoError("this build has no stb, which writes images (Debian: libstb-dev)");
+}
+TextureAtlas pack(const Atlas&, const FaceList&, const PackOptions&) {
+  throw IoError("this build has no stb, which packs charts (Debian: libstb-dev)");
+}
+
+}  // namespace ahm::io

@@ -1,0 +1,75 @@
+// The only place of io that includes stb_image and stb_image_write.
+#include <algorithm>
+#include <climits>
+#include <fstream>
+#include <iterator>
+#include <memory>
+
+#include "ahm/io/image.hpp"
+
+#define STB_IMAGE_IMPLEMENTATION
+#define STB_IMAGE_STATIC
+#define STBI_ONLY_PNG
+#define STBI_ONLY_JPEG
+#define STBI_NO_STDIO
+#define STB_IMAGE_WRITE_IMPLEMENTATION
+#define STB_IMAGE_WRITE_STATIC
+#define STBI_WRITE_NO_STDIO
+#if defined(__GNUC__)
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wunused-function"
+#pragma GCC diagnostic ignored "-Wmissing-field-initializers"
+#pragma GCC diagnostic ignored "-Wsign-compare"
+#endif
+#include <stb_image.h>
+#include <stb_image_write.h>
+#if defined(__GNUC__)
+#pragma GCC diagnostic pop
+#endif
+
+namespace ahm::io {
+namespace {
+
+std::string bytes_of(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::error_code error;
+  if (!file || std::filesystem::is_directory(path, error))
+    throw IoError(path.string() + ": cannot be opened; give a PNG or JPEG image");
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+void append(void* context, void* data, int size) {
+  static_cast<std::string*>(context)->append(static_cast<const char*>(data), static_cast<std::size_t>(size));
+}
+
+}  // namespace
+
+bool has_images() noexcept { return true; }
+
+Image read_image(const std::filesystem::path& path) {
+  const std::string bytes = bytes_of(path);
+  if (bytes.size() > INT_MAX) throw IoError(path.string() + ": larger than 2 GB; scale the image down");
+  int width = 0, height = 0, channels = 0;
+  const std::unique_ptr<stbi_uc, decltype(&stbi_image_free)> pixels(
+      stbi_load_from_memory(reinterpret_cast<const stbi_uc*>(bytes.data()), static_cast<int>(bytes.size()), &width,
+                            &height, &channels, 4),
+      stbi_image_free);
+  if (!pixels) throw IoError(path.string() + ": no PNG or JPEG image that can be read (" + stbi_failure_reason() + ")");
+  Image image(width, height);
+  std::copy_n(pixels.get(), image.rgba.size(), image.rgba.begin());
+  return image;
+}
+
+std::string png_bytes(const Image& image) {
+  if (image.width < 1 || image.height < 1 ||
+      image.rgba.size() != 4 * static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height))
+    throw InvalidArgument("image: " + std::to_string(image.width) + " x " + std::to_string(image.height) +
+                          " pixels do not fit " + std::to_string(image.rgba.size()) + " bytes");
+  std::string png;
+  if (stbi_write_png_to_func(append, &png, image.width, image.height, 4, image.rgba.data(), 4 * image.width) == 0)
+    throw ResourceExhausted("out of memory while encoding an image of " + std::to_string(image.width) + " x " +
+                            std::to_string(image.height) + " pixels");
+  return png;
+}
+
+}  // namespace ahm::io

@@ -1,0 +1,230 @@
+#include <cmath>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "ahm/io/texture_atlas.hpp"
+#include "ahm/io/textured_mesh.hpp"
+#include "files.hpp"
+
+namespace ahm::io::test {
+namespace {
+
+using Textured = Files;
+
+/// A quadrilateral and a triangle that share an edge, with a seam along it.
+struct Shape {
+  std::vector<Vec3> points{{0, 0, 0}, {1, 0, 0}, {9, 9, 9}, {1, 1, 0.25}, {0, 1, 0}, {2, 0.1, 1e-9}};  // 2: unused
+  std::vector<Vec3> normals = std::vector<Vec3>(6, Vec3{0, 0, 1});
+  std::vector<Offset> begin{0, 4, 7};
+  std::vector<Index> vertices{0, 1, 3, 4, 1, 5, 3};
+  std::vector<double> uv{0, 0, 0.5, 0, 0.5, 0.5, 0, 0.5, 0.75, 0.75, 1, 1, 0.75, 1};
+
+  MeshPart part(const Image* image) const {
+    return {.name = "shape",
+            .points = points,
+            .normals = normals,
+            .face_begin = begin,
+            .face_vertices = vertices,
+            .texture_coordinates = uv,
+            .texture = image};
+  }
+};
+
+Image gradient(int width, int height) {
+  Image image(width, height);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x)
+      for (int c = 0; c < 4; ++c) image.pixel(x, y)[c] = static_cast<std::uint8_t>(16 * x + 5 * y + 40 * c);
+  return image;
+}
+
+TEST_F(Textured, ImagesReadBackAsWritten) {
+  if (!has_images()) GTEST_SKIP() << "this build has no stb";
+  const Image image = gradient(7, 5);
+  write_png(path("a.png"), image);
+  const Image back = read_image(path("a.png"));
+  EXPECT_EQ(back.width, 7);
+  EXPECT_EQ(back.height, 5);
+  EXPECT_EQ(back.rgba, image.rgba);
+  EXPECT_THROW(read_image(path("none.png")), IoError);
+  EXPECT_THROW(read_image(make("text.png", "no image")), IoError);
+  EXPECT_THROW(read_image(make("cut.png", png_bytes(image).substr(0, 60))), IoError);
+}
+
+TEST(ImageSample, IsTheMiddleOfAPixelAndLinearBetween) {
+  Image image(4, 2);
+  for (int y = 0; y < 2; ++y)
+    for (int x = 0; x < 4; ++x)
+      for (int c = 0; c < 4; ++c) image.pixel(x, y)[c] = static_cast<std::uint8_t>(c == 3 ? 255 : 40 * x + 10 * y + c);
+  for (int y = 0; y < 2; ++y)
+    for (int x = 0; x < 4; ++x)
+      for (int c = 0; c < 4; ++c)
+        EXPECT_NEAR(image.sample((x + 0.5) / 4, 1 - (y + 0.5) / 2)[static_cast<std::size_t>(c)],
+                    image.pixel(x, y)[c] / 255.0, 1e-12);
+  EXPECT_NEAR(image.sample(0.4, 0.6)[0] * 255, 40 * (0.4 * 4 - 0.5) + 10 * (0.4 * 2 - 0.5), 1e-12);
+  EXPECT_EQ(image.sample(-3, 5), image.sample(0, 1));
+  // What is transparent does not lend its colour.
+  image.pixel(1, 0)[3] = 0;
+  EXPECT_NEAR(image.sample(0.25, 0.75)[0] * 255, 0, 1e-12);
+  EXPECT_NEAR(image.sample(0.25, 0.75)[3], 0.5, 1e-12);
+}
+
+TEST_F(Textured, ObjReadsBackWithItsMaterialsAndTexture) {
+  if (!has_images()) GTEST_SKIP() << "this build has no stb";
+  const Shape shape;
+  const Image image = gradient(8, 8);
+  MeshPart base = shape.part(nullptr);
+  base.name = "base", base.texture_coordinates = {}, base.color = {0.25, 0.5, 0.125};
+  MeshPart decal = shape.part(&image);
+  decal.transparent = true;
+  write_textured(path("out.obj"), std::array{base, decal});
+  EXPECT_EQ(files_left(), 3U);
+  EXPECT_EQ(read_image(path("out_shape.png")).rgba, image.rgba);
+  const std::string materials = contents(path("out.mtl"));
+  EXPECT_NE(materials.find("newmtl base\n"), std::string::npos);
+  EXPECT_NE(materials.find("Kd 0.25 0.5 0.125\n"), std::string::npos);
+  EXPECT_NE(materials.find("map_Kd out_shape.png\nmap_d out_shape.png\n"), std::string::npos);
+
+  const Geometry back = read(path("out.obj"));
+  ASSERT_EQ(back.points.size(), 10U);
+  ASSERT_EQ(back.face_count(), 4U);
+  // Texture coordinates, by the numbers of the second part's corners.
+  std::vector<std::array<double, 2>> vt;
+  std::vector<double> uv;
+  std::vector<Index> corners;
+  std::istringstream text(contents(path("out.obj")));
+  for (std::string word; text >> word;) {
+    if (word == "vt") vt.emplace_back(), text >> vt.back()[0] >> vt.back()[1];
+    if (word.find('/') == std::string::npos || word.find("//") != std::string::npos) continue;
+    std::size_t slash = word.find('/');
+    corners.push_back(std::stoi(word) - 1);
+    for (double x : vt.at(std::stoul(word.substr(slash + 1)) - 1)) uv.push_back(x);
+  }
+  EXPECT_EQ(uv, shape.uv);
+  ASSERT_EQ(corners.size(), shape.vertices.size());
+  for (std::size_t c = 0; c < corners.size(); ++c) {
+    EXPECT_EQ(back.points[static_cast<std::size_t>(corners[c])],
+              shape.points[static_cast<std::size_t>(shape.vertices[c])]);
+    EXPECT_EQ(back.points[static_cast<std::size_t>(back.face_vertices[c])],
+              shape.points[static_cast<std::size_t>(shape.vertices[c])]);
+  }
+}
+
+/// The two chunks of a .glb file.
+struct Glb {
+  nlohmann::json json;
+  std::string bytes;
+
+  explicit Glb(const std::string& file) {
+    const auto word = [&](std::size_t at) {
+      std::uint32_t value;
+      std::memcpy(&value, file.data() + at, 4);
+      return value;
+    };
+    EXPECT_EQ(file.substr(0, 4), "glTF");
+    EXPECT_EQ(word(4), 2U);
+    EXPECT_EQ(word(8), file.size());
+    EXPECT_EQ(word(12) % 4, 0U);
+    EXPECT_EQ(file.substr(16, 4), "JSON");
+    json = nlohmann::json::parse(file.substr(20, word(12)));
+    const std::size_t binary = 20 + word(12);
+    EXPECT_EQ(file.substr(binary + 4, 4), std::string("BIN\0", 4));
+    bytes = file.substr(binary + 8);
+    EXPECT_EQ(bytes.size(), word(binary));
+    EXPECT_EQ(json["buffers"].at(0)["byteLength"], bytes.size());
+  }
+
+  template <class T>
+  std::vector<T> accessor(int index) const {
+    const auto& a = json.at("accessors").at(static_cast<std::size_t>(index));
+    const auto& view = json.at("bufferViews").at(a.at("bufferView").get<std::size_t>());
+    const std::size_t width = a.at("type") == "SCALAR" ? 1 : a.at("type") == "VEC2" ? 2 : 3;
+    EXPECT_EQ(view.at("byteLength"), a.at("count").get<std::size_t>() * width * sizeof(T));
+    EXPECT_EQ(view.at("byteOffset").get<std::size_t>() % 4, 0U);
+    std::vector<T> values(a.at("count").get<std::size_t>() * width);
+    std::memcpy(values.data(), bytes.data() + view.at("byteOffset").get<std::size_t>(), values.size() * sizeof(T));
+    return values;
+  }
+};
+
+TEST_F(Textured, GlbReadsBackFarFromTheOriginToo) {
+  if (!has_images()) GTEST_SKIP() << "this build has no stb";
+  for (double away : {0.0, 4e6}) {
+    Shape shape;
+    for (Vec3& p : shape.points)
+      for (double& x : p) x += away;
+    const Image image = gradient(8, 8);
+    MeshPart part = shape.part(&image);
+    part.transparent = true;
+    write_textured(path("out.glb"), std::array{part});
+    const Glb glb(contents(path("out.glb")));
+    EXPECT_EQ(glb.json["asset"]["version"], "2.0");
+    const auto& primitive = glb.json["meshes"].at(0)["primitives"].at(0);
+    const auto positions = glb.accessor<float>(primitive["attributes"]["POSITION"]),
+               uv = glb.accessor<float>(primitive["attributes"]["TEXCOORD_0"]),
+               normals = glb.accessor<float>(primitive["attributes"]["NORMAL"]);
+    const auto indices = glb.accessor<std::uint32_t>(primitive["indices"]);
+    const auto& node = glb.json["nodes"].at(glb.json["scenes"].at(0)["nodes"].at(0).get<std::size_t>());
+    EXPECT_EQ(node["mesh"], 0);
+    const int corners[] = {0, 1, 2, 0, 2, 3, 4, 5, 6};  // of the fans
+    ASSERT_EQ(indices.size(), 9U);
+    for (std::size_t k = 0; k < 9; ++k) {
+      const auto c = static_cast<std::size_t>(corners[k]);
+      for (std::size_t a = 0; a < 3; ++a) {
+        EXPECT_NEAR(positions[3 * indices[k] + a] + node["translation"].at(a).get<double>(),
+                    shape.points[static_cast<std::size_t>(shape.vertices[c])][a], 2e-7);
+        EXPECT_EQ(normals[3 * indices[k] + a], a == 2 ? 1.f : 0.f);
+      }
+      EXPECT_EQ(uv[2 * indices[k]], static_cast<float>(shape.uv[2 * c]));
+      EXPECT_EQ(uv[2 * indices[k] + 1], static_cast<float>(1 - shape.uv[2 * c + 1]));
+    }
+    const auto& material = glb.json["materials"].at(primitive["material"].get<std::size_t>());
+    EXPECT_EQ(material["alphaMode"], "BLEND");
+    const auto& view = glb.json["bufferViews"].at(glb.json["images"].at(0)["bufferView"].get<std::size_t>());
+    make("inside.png", glb.bytes.substr(view["byteOffset"], view["byteLength"]));
+    EXPECT_EQ(read_image(path("inside.png")).rgba, image.rgba);
+  }
+}
+
+TEST_F(Textured, ColoredPlyReadsBack) {
+  const Shape shape;
+  std::vector<std::array<std::uint8_t, 3>> colors;
+  for (std::size_t i = 0; i < shape.points.size(); ++i)
+    colors.push_back({static_cast<std::uint8_t>(i), 100, static_cast<std::uint8_t>(255 - i)});
+  write_colored_ply(path("out.ply"), shape.points, shape.normals, colors, shape.begin, shape.vertices);
+  const Geometry back = read(path("out.ply"));
+  EXPECT_EQ(back.points, shape.points);
+  EXPECT_EQ(back.normals, shape.normals);
+  EXPECT_EQ(back.colors, colors);
+  EXPECT_EQ(back.face_vertices, shape.vertices);
+  EXPECT_EQ(back.face_begin, shape.begin);
+  colors.pop_back();
+  EXPECT_THROW(write_colored_ply(path("out.ply"), shape.points, {}, colors), InvalidArgument);
+}
+
+TEST_F(Textured, RefusesWhatDoesNotFitAndLeavesNothingBehind) {
+  const Shape shape;
+  const Image image = gradient(2, 2);
+  const auto refuses = [&](const MeshPart& part) {
+    for (const char* name : {"x.obj", "x.glb"})
+      EXPECT_THROW(write_textured(path(name), std::array{part}), InvalidArgument);
+  };
+  MeshPart part = shape.part(&image);
+  part.texture_coordinates = part.texture_coordinates.first(12);
+  refuses(part);
+  part = shape.part(&image), part.name = "two words";
+  refuses(part);
+  Shape broken;
+  broken.uv[3] = std::nan("");
+  refuses(broken.part(&image));
+  broken = shape, broken.vertices[2] = 6;
+  refuses(broken.part(&image));
+  broken = shape, broken.points[3][1] = std::nan("");
+  refuses(broken.part(&image));
+  EXPECT_THROW(write_textured(path("x.stl"), std::array{shape.part(nullptr)}), IoError);
+  EXPECT_EQ(files_left(), 0U);
+}
+
+}  // namespace
+}  // namespace ahm::io::test

@@ -1,0 +1,75 @@
+#include "paint.hpp"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+namespace ahm::view {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr std::size_t colours = 12;  // of `cell_colour` in palette.glsl
+
+struct Cell {
+  Index label;
+  Vector3d middle;
+};
+
+/// The cells by their labels, each with the mean of its points.
+std::vector<Cell> cells_of(const Scene& scene, const std::vector<Index>& shown) {
+  std::vector<Index> order;
+  for (const Index i : shown)
+    if (has_coordinate(scene, i)) order.push_back(i);
+  const auto label = [&](Index i) { return scene.labels[static_cast<std::size_t>(i)]; };
+  std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return label(a) < label(b); });
+  std::vector<Cell> cells;
+  for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) {
+    Vector3d sum = Vector3d::Zero();
+    for (; end < order.size() && label(order[end]) == label(order[begin]); ++end)
+      sum += as_vector(scene.points[static_cast<std::size_t>(order[end])]);
+    cells.push_back({label(order[begin]), sum / static_cast<double>(end - begin)});
+  }
+  return cells;
+}
+
+/// Per cell the colour whose cells so far are the farthest away.
+std::vector<double> colours_of(const std::vector<Cell>& cells) {
+  std::vector<double> result;
+  for (std::size_t c = 0; c < cells.size(); ++c) {
+    std::array<double, colours> nearest;
+    nearest.fill(std::numeric_limits<double>::infinity());
+    for (std::size_t other = 0; other < c; ++other) {
+      double& distance = nearest[static_cast<std::size_t>(result[other])];
+      distance = std::min(distance, (cells[other].middle - cells[c].middle).squaredNorm());
+    }
+    result.push_back(static_cast<double>(std::max_element(nearest.begin(), nearest.end()) - nearest.begin()));
+  }
+  return result;
+}
+
+}  // namespace
+
+Paint make_paint(const Scene& scene, const std::vector<Index>& shown, const PictureOptions& options) {
+  const std::size_t n = scene.points.size();
+  Paint paint{options.pattern, choose_ring_width(scene, shown, options), std::vector<Vector2d>(n, Vector2d::Zero()),
+              std::vector<float>(n, 0)};
+  const std::vector<Cell> cells = scene.labels.empty() ? std::vector<Cell>() : cells_of(scene, shown);
+  const std::vector<double> colour = colours_of(cells);
+  for (const Index point : shown) {
+    if (!has_coordinate(scene, point)) continue;
+    const auto i = static_cast<std::size_t>(point);
+    paint.known[i] = 1;
+    if (scene.labels.empty()) {
+      paint.uv[i] = Vector2d(scene.u[i], scene.v[i]) / paint.ring_width;
+      continue;
+    }
+    const auto cell = std::lower_bound(cells.begin(), cells.end(), scene.labels[i],
+                                       [](const Cell& c, Index label) { return c.label < label; });
+    paint.uv[i] = {colour[static_cast<std::size_t>(cell - cells.begin())], scene.distance[i] / paint.ring_width};
+  }
+  return paint;
+}
+
+}  // namespace ahm::view

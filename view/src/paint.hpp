@@ -1,0 +1,18 @@
+// What every point is painted by, in the units of the shaders.
+#pragma once
+
+#include "camera.hpp"
+
+namespace ahm::view {
+
+struct Paint {
+  Pattern pattern = Pattern::polar;
+  double ring_width = 1;            ///< outside units
+  std::vector<Eigen::Vector2d> uv;  ///< per point of the scene, in ring widths; cells: number of the colour, distance
+  std::vector<float> known;         ///< 1, or 0 where there is nothing to paint by; uv is then 0
+};
+
+/// Cells get colours such that the sources of cells of one colour lie far apart.
+Paint make_paint(const Scene& scene, const std::vector<Index>& shown, const PictureOptions& options);
+
+}  // namespace ahm::view
