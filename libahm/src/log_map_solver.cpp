@@ -73,9 +73,13 @@ struct LogMapSolver::Impl {
 
   const HeatOperators& operators(std::size_t time) const {
     Time& t = times[time];
-    std::call_once(t.factored, [&] { t.operators.emplace(graph, t.options); });
+    std::call_once(t.factored, [&] {
+      if (strategy == Strategy::march) check_memory();
+      t.operators.emplace(graph, t.options);
+    });
     return *t.operators;
   }
+  void check_memory() const;
   std::span<const Index> components() const {
     if (strategy == Strategy::global) return operators(0).components();
     std::call_once(numbered, [&] { parts = connected_components(graph); });
@@ -192,6 +196,18 @@ std::vector<LogMap> LogMapSolver::Impl::solve_block(std::size_t time, std::span<
   for (std::size_t s = 0; s < sources.size(); ++s)
     maps.push_back(map_of(heat, time, s, sources[s], std::span(solution).subspan(s * size, size), map, threads));
   return maps;
+}
+
+/// A marching solver was asked for the factors that it does without: better refused than swapped for.
+void LogMapSolver::Impl::check_memory() const {
+  const double wanted =
+      estimate_cost({graph.size(), graph.dimension(), graph.transport_kind()}, Strategy::global).bytes;
+  const double memory = options.memory > 0 ? static_cast<double>(options.memory) : machine_memory();
+  if (memory > 0 && wanted > memory)
+    throw ResourceExhausted("this needs the factors of all " + std::to_string(graph.size()) + " vertices, about " +
+                            detail::number(std::round(wanted / 1e7) / 100) + " GB of " +
+                            detail::number(std::round(memory / 1e7) / 100) +
+                            " GB; thin the surface or cut out the part that is wanted");
 }
 
 /// The same at all times, extrapolated.

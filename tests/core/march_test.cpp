@@ -180,6 +180,13 @@ TEST(March, StillGivesTheOperatorsOfTheWholeGraph) {
   EXPECT_EQ(a.values, b.values);
 }
 
+TEST(March, RefusesFactorsBeyondTheMemory) {
+  const CsrGraph graph(sphere_graph(3000));
+  const LogMapSolver small_memory(graph, {}, {.memory = 1 << 20});
+  EXPECT_EQ(small_memory.solve(Source::at_vertex(4)).count(Status::ok), graph.size());
+  EXPECT_THROW(parallel_transport(small_memory, Source::at_vertex(4)), ResourceExhausted);
+}
+
 TEST(Strategy, IsChosenFromTheNumberOfMapsAndTheMemory) {
   const CsrGraph small(sphere_graph(2000)), large(sphere_graph(60000));
   auto chosen = [](const TangentGraph& graph, const SolverOptions& options) {

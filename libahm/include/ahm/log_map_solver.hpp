@@ -73,7 +73,7 @@ class LogMapSolver {
   /// What was chosen: `global` or `march`.
   Strategy strategy() const noexcept;
   /// The factored operators of the whole graph (at t_coef, whatever the order). Under strategy `march` the first call factors them.
-  /// @throws as `HeatOperators`
+  /// @throws as `HeatOperators`; ResourceExhausted where a marching solver's would not fit into memory
   const HeatOperators& operators() const;
 
  private:
