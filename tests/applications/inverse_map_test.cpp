@@ -93,25 +93,6 @@ TEST(InverseMap, LiesOnASphereToSecondOrder) {
   EXPECT_GT(std::log2(errors[1] / errors[2]), 1.8);
 }
 
-/// A strip whose map goes forth, back and forth again: u = 0..1, 1..0.5, 0.5..1.5 along x = 0..1, 1..1.5, 1.5..2.5.
-Patch pleat() {
-  Patch strip;
-  const int columns = 51;
-  for (int row : {0, 1})
-    for (int k = 0; k < columns; ++k) {
-      const double x = 0.05 * k, u = k <= 20 ? x : k <= 30 ? 2 - x : x - 1;
-      strip.positions.push_back({x, 0.05 * row, 0});
-      strip.normals.push_back({0, 0, 1});
-      strip.coordinates.insert(strip.coordinates.end(), {u, 0.05 * row});
-      strip.valid.push_back(1);
-    }
-  for (Index k = 0; k + 1 < columns; ++k) {
-    strip.triangles.push_back({k, k + 1, k + 1 + columns});
-    strip.triangles.push_back({k, k + 1 + columns, k + columns});
-  }
-  return strip;
-}
-
 TEST(InverseMap, InAFoldTheSheetNearestToTheSourceAnswers) {
   Patch strip = pleat();
   for (const bool reversed : {false, true}) {
