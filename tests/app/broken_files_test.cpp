@@ -23,7 +23,7 @@ std::string ply(const std::string& format, const std::string& elements, const st
   return "ply\nformat " + format + " 1.0\n" + elements + "end_header\n" + body;
 }
 
-std::string pcd(const std::string& header, const std::string& body) {
+[[maybe_unused]] std::string pcd(const std::string& header, const std::string& body) {
   return "VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\n" + header + "DATA ascii\n" + body;
 }
 
