@@ -208,9 +208,9 @@ void measure(const char* part, const Shape& shape, const Exact& exact, const Set
     logs.push_back({map.u, map.v});
   }
   const double further = least_seconds([&] { solver->solve(sources[0], options); });
+  const bool global = setup.strategy == Strategy::global;  // a march has no factors and gains nothing in a batch
   while (sources.size() < 32) sources.push_back(sources[sources.size() - 2]);
-  const double batch = least_seconds([&] { solver->solve(sources, options); }) / static_cast<double>(sources.size());
-  const bool global = setup.strategy == Strategy::global;
+  const Cell batch = global ? Cell(least_seconds([&] { solver->solve(sources, options); }) / 32) : Cell();
   const Accuracy error = accuracy(shape, exact, logs);
   table.add({part, shape.name, Backend::name, static_cast<Index>(shape.quads.points.size()), setup.name,
              known(error.mean), known(error.median), known(error.vector), build, factor, factor + further, further,

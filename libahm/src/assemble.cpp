@@ -49,7 +49,10 @@ class ColumnWriter {
   void gather(Index i, const Star& star) {
     order_.resize(star.degree());
     std::iota(order_.begin(), order_.end(), 0);
-    std::stable_sort(order_.begin(), order_.end(), [&](int a, int b) { return star.neighbors[a] < star.neighbors[b]; });
+    // As a stable sort, which would allocate a buffer for every row.
+    std::sort(order_.begin(), order_.end(), [&](int a, int b) {
+      return star.neighbors[a] < star.neighbors[b] || (star.neighbors[a] == star.neighbors[b] && a < b);
+    });
     columns_.clear();
     scalar_.clear();
     blocks_.clear();
