@@ -1,5 +1,6 @@
 // The experiments about cost, at toy size.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -52,7 +53,7 @@ void write_off(const Mesh& mesh, const std::filesystem::path& path) {
 }
 
 TEST(RuntimeExperiment, TakesTheMeshesOfAFolderAndLeavesOutWhatIsNone) {
-  const auto folder = std::filesystem::path(testing::TempDir()) / "ahm_runtime_meshes";
+  const auto folder = std::filesystem::path(testing::TempDir()) / ("ahm_runtime_meshes" + std::to_string(getpid()));
   std::filesystem::remove_all(folder);
   std::filesystem::create_directories(folder / "below");
   write_off(torus(300), folder / "ring.off");
