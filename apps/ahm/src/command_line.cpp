@@ -27,8 +27,8 @@ constexpr const char* main_footer =
     "\n"
     "Exit status: 0 success, 1 the work failed, 2 the command line is wrong, 130 or 143 interrupted.";
 
-constexpr auto subcommands = {add_info,  add_logmap, add_local_maps, add_coverage, add_stroke,
-                              add_cells, add_center, add_atlas,      add_decal};
+constexpr auto subcommands = {add_info,   add_logmap, add_local_maps, add_inverse, add_coverage,
+                              add_stroke, add_cells,  add_center,     add_atlas,   add_decal};
 
 std::function<void()> print_later(std::string text) {
   return [text = std::move(text)] { print(text); };

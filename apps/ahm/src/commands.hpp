@@ -21,6 +21,7 @@ struct Subcommand {
 Subcommand add_info(CLI::App& program);
 Subcommand add_logmap(CLI::App& program);
 Subcommand add_local_maps(CLI::App& program);
+Subcommand add_inverse(CLI::App& program);
 Subcommand add_coverage(CLI::App& program);
 Subcommand add_stroke(CLI::App& program);
 Subcommand add_cells(CLI::App& program);

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -48,19 +47,11 @@ void check_options(const CoverageCommandOptions& options) {
 
 constexpr const char* columns[] = {"x", "y", "z", "nx", "ny", "nz", "hx", "hy", "hz", "u", "v", "arclength", "spacing"};
 
-/// The numbers of a row, each after the separator, as the shortest decimals that read back to the same double.
+/// The numbers of a row, each after the separator.
 void append_numbers(std::string& row, const CoveragePoint& p, char separator) {
-  const auto append = [&](double value) {
-    char text[32];
-    row += separator;
-    row.append(text,
-               std::isnan(value) ? std::copy_n("nan", 3, text) : std::to_chars(text, text + sizeof text, value).ptr);
-  };
   for (const Vec3& vector : {p.position, p.normal, p.heading})
-    for (double x : vector) append(x);
-  for (double x : p.coordinates) append(x);
-  append(p.arclength);
-  append(p.spacing);
+    for (double x : vector) append_number(row, separator, x);
+  for (double x : {p.coordinates[0], p.coordinates[1], p.arclength, p.spacing}) append_number(row, separator, x);
 }
 
 void write_csv(const std::string& name, const CoveragePath& path) {

@@ -69,6 +69,17 @@ std::vector<double> parse_weights(const std::string& text) {
   return result;
 }
 
+std::vector<std::array<double, 2>> parse_plane_points(const std::string& text) {
+  std::vector<std::array<double, 2>> result;
+  for_each_entry(text, [&](const std::string& entry) {
+    const std::vector<std::string> words = words_of(entry);
+    const std::vector<double> numbers = parse_numbers(words.size() == 2 ? words[0] + "," + words[1] : entry);
+    if (numbers.size() != 2) throw std::invalid_argument(fmt::format("'{}' is not of the form u,v", entry));
+    result.push_back({numbers[0], numbers[1]});
+  });
+  return result;
+}
+
 Vec3 position_in(const io::Geometry& input, const SourceSpec& spec, const std::string& option) {
   const auto within = [&](Index index, std::size_t count, const char* what) {
     if (static_cast<std::size_t>(index) < count) return static_cast<std::size_t>(index);

@@ -2,6 +2,7 @@
 /// Lists of sources and of numbers, written after an option or in a file.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,10 @@ std::vector<SourceSpec> parse_sources(const std::string& text);
 
 /// Numbers, separated by blanks or in a file, one per line. @throws as `parse_sources`
 std::vector<double> parse_weights(const std::string& text);
+
+/// Points of the (u, v) plane: u,v separated by blanks, or one per line of a file, where they may also be written as two
+/// numbers between blanks. @throws as `parse_sources`
+std::vector<std::array<double, 2>> parse_plane_points(const std::string& text);
 
 /// Checks that the input has such a vertex or face, and the position of the source, as it was written.
 /// @param option  for messages, "--source"
