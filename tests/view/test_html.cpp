@@ -81,7 +81,9 @@ TEST_F(Html, HoldsThePatternTheCurveAndTheDots) {
   const Patch patch(10, true);
   const std::vector<Vec3> curve{{0, 0, 0}, {0.5, 0, 0}, {0.5, 0.5, 0}}, dots{{0, 0, 0}, {1, 1, 0}};
   Scene scene = patch.scene();
+  const std::vector<Index> pieces{2};
   scene.curve = curve;
+  scene.curve_pieces = pieces;
   scene.dots = dots;
   PictureOptions options;
   options.pattern = Pattern::grid;
@@ -95,6 +97,7 @@ TEST_F(Html, HoldsThePatternTheCurveAndTheDots) {
   };
   EXPECT_EQ(triples("curve"), 3);
   EXPECT_EQ(triples("dots"), 2);
+  EXPECT_NE(meta.find("\"curve_pieces\":[0,2]"), std::string::npos);
 }
 
 TEST_F(Html, LeavesNoPlaceholder) {

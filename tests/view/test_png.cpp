@@ -185,6 +185,23 @@ TEST_F(Png, DrawsCurveAndDotsWhereNothingHidesThem) {
   }
 }
 
+TEST_F(Png, DrawsNothingBetweenThePiecesOfACurve) {
+  const Patch patch(40, true);
+  const std::vector<Vec3> curve{{-0.5, 0.5, 0}, {-0.2, 0.5, 0}, {0.2, 0.5, 0}, {0.5, 0.5, 0}};
+  const std::vector<Index> pieces{2}, beyond{4}, unsorted{2, 1};
+  Scene scene = patch.scene();
+  scene.curve = curve;
+  EXPECT_TRUE(is_source_red(at_place(picture(folder, scene, options), 0, 0.5)));
+  scene.curve_pieces = pieces;
+  const Pixels pixels = picture(folder, scene, options);
+  for (const double x : {-0.35, 0.35}) EXPECT_TRUE(is_source_red(at_place(pixels, x, 0.5))) << x;
+  EXPECT_FALSE(is_source_red(at_place(pixels, 0, 0.5)));
+  for (const auto& wrong : {beyond, unsorted}) {
+    scene.curve_pieces = wrong;
+    EXPECT_THROW(write_png(folder / "curve.png", scene, options), InvalidArgument);
+  }
+}
+
 TEST_F(Png, IsTheSameEveryTime) {
   for (const bool is_mesh : {true, false}) {
     const Patch patch(40, is_mesh);

@@ -60,6 +60,12 @@ void check(const Scene& scene, const PictureOptions& options) {
   require(is_finite(scene.source), "scene.source: must be finite");
   for (const Vec3& dot : scene.dots) require(is_finite(dot), "scene.dots: must be finite");
   for (const Vec3& point : scene.curve) require(is_finite(point), "scene.curve: must be finite");
+  Index least = 1;
+  for (Index piece : scene.curve_pieces) {
+    require(piece >= least && static_cast<std::size_t>(piece) < scene.curve.size(),
+            "scene.curve_pieces: must ascend, between 1 and the number of points of the curve");
+    least = piece + 1;
+  }
   if (scene.source_axes)
     for (const Vec3& axis : *scene.source_axes) require(is_finite(axis), "scene.source_axes: must be finite");
 

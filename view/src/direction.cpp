@@ -13,9 +13,12 @@ using Eigen::Vector3d;
 
 constexpr std::size_t sample_size = 50'000;
 
-/// What the picture is about: the source, or points along the curve.
+/// The picture is about a curve in one piece, else about the source.
+bool is_about_curve(const Scene& scene) { return !scene.curve.empty() && scene.curve_pieces.empty(); }
+
+/// The source, or points along the curve.
 std::vector<Vec3> places(const Scene& scene) {
-  if (scene.curve.empty()) return {scene.source};
+  if (!is_about_curve(scene)) return {scene.source};
   constexpr std::size_t most = 16;
   const std::size_t count = std::min(most, scene.curve.size());
   std::vector<Vec3> result;
@@ -40,7 +43,7 @@ Vector3d nearest_normal(const Scene& scene, const std::vector<Index>& shown, con
 
 /// Normal at the source: from its axes, else of the nearest point, else none (zero). Of a curve: the mean.
 Vector3d mean_normal(const Scene& scene, const std::vector<Index>& shown) {
-  if (scene.source_axes && scene.curve.empty()) return as_vector((*scene.source_axes)[2]).normalized();
+  if (scene.source_axes && !is_about_curve(scene)) return as_vector((*scene.source_axes)[2]).normalized();
   Vector3d sum = Vector3d::Zero();
   for (const Vec3& place : places(scene)) sum += nearest_normal(scene, shown, place);
   return sum.norm() > 0 ? Vector3d(sum.normalized()) : sum;

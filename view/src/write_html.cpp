@@ -103,6 +103,8 @@ std::string describe(const Scene& scene, const Drawable& drawable, const Camera&
   if (scene.source_axes)
     for (std::size_t k = 0; k < 2; ++k)
       axes.append(k == 0 ? "" : ",").append(triple(as_vector((*scene.source_axes)[k]).normalized()));
+  std::string pieces = "0";
+  for (Index piece : scene.curve_pieces) pieces.append(",").append(std::to_string(piece));
   const bool is_mapped = std::find(drawable.known.begin(), drawable.known.end(), 1.0F) != drawable.known.end();
   return std::string("{\"is_mesh\":") + (drawable.is_mesh() ? "true" : "false") +
          ",\"is_mapped\":" + (is_mapped ? "true" : "false") + ",\"pattern\":\"" +
@@ -110,7 +112,8 @@ std::string describe(const Scene& scene, const Drawable& drawable, const Camera&
          ",\"ring_width\":" + number(ring_width) + ",\"largest_radius\":" + number(largest_radius(drawable)) +
          ",\"source\":" + triple(camera.to_scene(scene.source)) + ",\"axes\":[" + axes +
          "],\"dots\":" + triples(scene.dots, camera) + ",\"curve\":" + triples(scene.curve, camera) +
-         ",\"eye\":" + triple(camera.eye()) + ",\"target\":" + triple(camera.target) + ",\"up\":" + triple(camera.up) +
+         ",\"curve_pieces\":[" + pieces + "]" + ",\"eye\":" + triple(camera.eye()) +
+         ",\"target\":" + triple(camera.target) + ",\"up\":" + triple(camera.up) +
          ",\"field_of_view\":" + number(Camera::field_of_view * 180 / std::numbers::pi) +
          ",\"far\":" + number(camera.far_plane) +
          ",\"aspect\":" + number(static_cast<double>(options.width) / options.height) + "}";

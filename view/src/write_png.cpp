@@ -79,6 +79,7 @@ void draw_letter(Image& image, const Arrow& arrow, double unit, std::string_view
 void draw_marks(Rendering& rendering, const Scene& scene, const Camera& camera, double unit) {
   std::vector<Vector2d> pixels;  // two per visible piece
   for (std::size_t k = 0; k + 1 < scene.curve.size(); ++k) {
+    if (std::binary_search(scene.curve_pieces.begin(), scene.curve_pieces.end(), static_cast<Index>(k + 1))) continue;
     const Vector3d a = camera.to_scene(scene.curve[k]), b = camera.to_scene(scene.curve[k + 1]);
     const int pieces = 1 + static_cast<int>(std::min((b - a).norm() / mark_tolerance, 200.0));
     for (int p = 0; p < pieces; ++p) {

@@ -71,7 +71,8 @@ void report(const CenterCommandOptions& options, const Surface& surface, const C
                  {"converged", center.converged}};
   const Vec3 &v = frame.origin, &p = position;
   const std::string text = fmt::format(
-      "{} of {} points at {:.9g} {:.9g} {:.9g}\nnearest vertex {} at {:.9g} {:.9g} {:.9g}\n{} {:.6g}; maps used: {}, {}\n",
+      "{} of {} points at {:.9g} {:.9g} {:.9g}\nnearest vertex {} at {:.9g} {:.9g} {:.9g}\n{} {:.6g}; maps used: {}, "
+      "{}\n",
       name, options.points.size(), p[0], p[1], p[2], row < 0 ? "(inside a face)" : fmt::format("{}", row), v[0], v[1],
       v[2], options.median ? "mean distance" : "root mean squared distance", center.spread, center.maps,
       center.converged ? "converged" : "not converged");

@@ -12,6 +12,7 @@
 #include "numbers.hpp"
 #include "option_adders.hpp"
 #include "output_paths.hpp"
+#include "results.hpp"
 #include "skin.hpp"
 
 namespace ahm::app {
@@ -39,7 +40,7 @@ std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 void check_options(const CoverageCommandOptions& options) {
   const RunOptions& o = options.run;
-  check_outputs(o.input, {{"--output", o.output}, {"--json", o.json}});
+  check_results(o);
   const std::string extension = extension_of(o.output);
   if (extension != ".csv" && extension != ".ply")
     throw InvalidArgument(fmt::format("--output {}: the name must end in .csv or .ply", o.output));
@@ -84,6 +85,27 @@ void write_ply(const std::string& name, const CoveragePath& path) {
   for (std::size_t i = 1; i < path.points.size(); ++i)
     if (path.points[i].piece == path.points[i - 1].piece) file.write(fmt::format("{} {}\n", i - 1, i));
   file.commit();
+}
+
+/// The path on the map, as a picture.
+void write_view(const Surface& surface, const ResolvedSource& source, const LogMap& map, const CoveragePath& path,
+                Results& results, Journal& journal) {
+  const MapRows rows = rows_of(map, *surface.model, surface.input.points.size());
+  std::vector<Vec3> curve;
+  std::vector<Index> pieces;
+  for (const CoveragePoint& point : path.points) {
+    if (!curve.empty() && point.piece != path.points[curve.size() - 1].piece)
+      pieces.push_back(static_cast<Index>(curve.size()));
+    curve.push_back(point.position);
+  }
+  view::Scene scene = results.scene();
+  scene.u = rows.u;
+  scene.v = rows.v;
+  scene.source = source.position;
+  if (source.frame) scene.source_axes = {source.frame->x, source.frame->y, source.frame->normal};
+  scene.curve = curve;
+  scene.curve_pieces = pieces;
+  results.write_view(scene, journal);
 }
 
 /// Of the area within the radius, the share whose vertices are trusted.
@@ -164,12 +186,15 @@ void run_coverage(const CoverageCommandOptions& options) {
         "lines lie up to {:.4g} apart in space, more than --spacing {}: the surface is saddle-shaped or rough",
         amount.spacing_high, options.path.spacing));
 
+  Results results(options.run, surface);
+  write_view(surface, source, map, path, results, journal);
   journal.start("write");
   extension_of(options.run.output) == ".ply" ? write_ply(options.run.output, path)
                                              : write_csv(options.run.output, path);
   journal.finish();
   journal.clear_display();
   report(options, surface, source, path, trusted_share(model->graph(), map, options), amount, journal);
+  results.keep();
 }
 
 }  // namespace
@@ -198,6 +223,7 @@ Subcommand add_coverage(CLI::App& program) {
   add_u_axis(coverage, o.run);
   add_graph_options(coverage, o.run);
   add_json(coverage, o.run);
+  add_view(coverage, o.run);
   add_verbose(coverage, o.run);
   coverage.footer(coverage_footer);
   return {&coverage, [options] { run_coverage(*options); }};

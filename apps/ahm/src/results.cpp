@@ -71,13 +71,16 @@ view::Scene Results::scene() const {
   return scene;
 }
 
+void Results::write_view(const view::Scene& scene, Journal& journal, const view::PictureOptions& picture) {
+  if (options_.view.empty()) return;
+  journal.start("view");
+  view::write_picture(options_.view, scene, picture);
+  written_.push_back(options_.view);
+}
+
 void Results::write(const io::Table& table, const view::Scene& scene, Journal& journal,
                     const view::PictureOptions& picture) {
-  if (!options_.view.empty()) {
-    journal.start("view");
-    view::write_picture(options_.view, scene, picture);
-    written_.push_back(options_.view);
-  }
+  write_view(scene, journal, picture);
   journal.start("write");
   io::write(options_.output, table);
   written_.push_back(options_.output);

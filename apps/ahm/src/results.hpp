@@ -31,7 +31,9 @@ class Results {
   io::Table table() const;
   /// Likewise, with a title.
   view::Scene scene() const;
-  /// Writes --output, and --view where it was asked for.
+  /// Writes --view where it was asked for.
+  void write_view(const view::Scene& scene, Journal& journal, const view::PictureOptions& picture = {});
+  /// Likewise, and --output.
   void write(const io::Table& table, const view::Scene& scene, Journal& journal,
              const view::PictureOptions& picture = {});
   /// The run has succeeded.

@@ -130,13 +130,14 @@
   function make_marks(scale) {
     const group = new THREE.Group(), red = new THREE.MeshBasicMaterial({ color: 0xe1141e });
     const at = (triple) => new THREE.Vector3().fromArray(triple);
-    if (meta.curve.length > 1) {
+    meta.curve_pieces.forEach((begin, piece) => {
+      const end = piece + 1 < meta.curve_pieces.length ? meta.curve_pieces[piece + 1] : meta.curve.length;
+      if (end - begin < 2) return;
       const path = new THREE.CurvePath();
-      for (let k = 0; k + 1 < meta.curve.length; ++k)
-        path.add(new THREE.LineCurve3(at(meta.curve[k]), at(meta.curve[k + 1])));
-      const pieces = Math.min(2000, 2 * meta.curve.length);
-      group.add(new THREE.Mesh(new THREE.TubeBufferGeometry(path, pieces, scale, 8), red));
-    }
+      for (let k = begin; k + 1 < end; ++k) path.add(new THREE.LineCurve3(at(meta.curve[k]), at(meta.curve[k + 1])));
+      const steps = Math.min(2000, 2 * (end - begin));
+      group.add(new THREE.Mesh(new THREE.TubeBufferGeometry(path, steps, scale, 8), red));
+    });
     const ball = new THREE.SphereBufferGeometry(3 * scale, 24, 16);
     for (const dot of meta.dots) {
       const mesh = new THREE.Mesh(ball, red);

@@ -48,6 +48,8 @@ struct Scene {
   Vec3 source{};
   /// Further red dots, and a polyline in red; drawn where nothing stands before them.
   std::span<const Vec3> dots, curve;
+  /// Where a further piece of the polyline begins: points of `curve`, ascending. Empty: it is in one piece.
+  std::span<const Index> curve_pieces;
   /// Unit axes u, v and normal at the source; u and v are drawn as arrows.
   std::optional<std::array<Vec3, 3>> source_axes;
   /// Heading of the HTML page; a PNG has none.
@@ -64,7 +66,8 @@ struct PictureOptions {
   std::optional<double> ring_width;
   /// Number of angle sectors; even and positive, so that the checkerboard closes.
   int sectors = 24;
-  /// From the picture's centre towards the camera. Default: a free view of the source, slightly from above.
+  /// From the picture's centre towards the camera. Default: a free view of the source, or of a curve in one piece,
+  /// slightly from above.
   std::optional<Vec3> view_direction;
   /// Upwards in the picture. Default: z for flat scans (z is by far the thinnest side of the box), else y.
   std::optional<Vec3> up;
