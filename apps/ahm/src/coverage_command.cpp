@@ -4,7 +4,6 @@
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
 #include "ahm/coverage.hpp"
 #include "ahm/io/atomic_file.hpp"
@@ -214,10 +213,8 @@ Subcommand add_coverage(CLI::App& program) {
         return choice({"raster", "spiral"})(text) == "raster" ? CoveragePattern::raster : CoveragePattern::spiral;
       },
       "NAME", "raster (default) or spiral");
-  add_parsed(
-      coverage, "--angle", o.path.angle,
-      [](const std::string& text) { return parse_number(text) * std::numbers::pi / 180; }, "DEG",
-      "Direction of the lines, from the u axis (default 0)");
+  add_parsed(coverage, "--angle", o.path.angle, parse_degrees, "DEG",
+             "Direction of the lines, from the u axis (default 0)");
   add_parsed(coverage, "--step", o.path.step, parse_positive, "L", "Between points of the path (default: S / 2)");
   add_min_quality(coverage, o.min_quality);
   add_u_axis(coverage, o.run);

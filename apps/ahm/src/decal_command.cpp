@@ -4,7 +4,6 @@
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
 #include "ahm/decal.hpp"
 #include "ahm/distortion.hpp"
@@ -218,10 +217,7 @@ Subcommand add_decal(CLI::App& program) {
   add_source(decal, o.run, "Where the middle of the image lies")->required();
   add_parsed(decal, "--size", o.size, parse_positive, "S", "Longer side of the image, along the surface")->required();
   add_output(decal, o.run)->required();
-  add_parsed(
-      decal, "--angle", o.decal.angle,
-      [](const std::string& text) { return parse_number(text) * std::numbers::pi / 180; }, "DEG",
-      "Turns the image, from the u axis (default 0)");
+  add_parsed(decal, "--angle", o.decal.angle, parse_degrees, "DEG", "Turns the image, from the u axis (default 0)");
   decal.add_flag("--mirror", o.decal.mirrored, "Exchange left and right, for clouds whose normals point inwards");
   add_parsed(decal, "--radius", o.decal.radius, parse_positive, "R", "Cut off what is farther from the source");
   add_parsed(decal, "--lift", o.lift, parse_number, "L", "Above the surface, .obj and .glb (default: S / 500)");

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 
 namespace ahm::app {
@@ -35,6 +36,8 @@ double parse_positive(std::string_view text) {
   if (!(value > 0)) refuse(text, "a number > 0");
   return value;
 }
+
+double parse_degrees(std::string_view text) { return parse_number(text) * std::numbers::pi / 180; }
 
 std::int64_t parse_integer(std::string_view text, std::int64_t low, std::int64_t high) {
   const std::string_view digits = without_plus(text);

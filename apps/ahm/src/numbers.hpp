@@ -21,6 +21,10 @@ double parse_number(std::string_view text);
 /// @throws std::invalid_argument
 double parse_positive(std::string_view text);
 
+/// A finite number of degrees, as radians.
+/// @throws std::invalid_argument
+double parse_degrees(std::string_view text);
+
 /// A whole number in [low, high].
 /// @throws std::invalid_argument
 std::int64_t parse_integer(std::string_view text, std::int64_t low,
