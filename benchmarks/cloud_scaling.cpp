@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <optional>
 
-#include "ahm/log_map_solver.hpp"
+#include "ahm/maps/log_map_solver.hpp"
 #include "ahm/pointcloud/point_cloud_graph.hpp"
 #include "measure.hpp"
 #include "shapes.hpp"

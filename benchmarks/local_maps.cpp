@@ -1,5 +1,5 @@
 // Local maps of every vertex, and how far their margins must reach: bench_local_maps [vertices [threads]]
-#include "ahm/local_maps.hpp"
+#include "ahm/maps/local_maps.hpp"
 
 #include <cmath>
 #include <cstdio>
@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "ahm/log_map_solver.hpp"
+#include "ahm/maps/log_map_solver.hpp"
 #include "ahm/trimesh/triangle_mesh_graph.hpp"
 #include "measure.hpp"
 #include "shapes.hpp"

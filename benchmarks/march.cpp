@@ -6,7 +6,7 @@
 #include <cstring>
 #include <optional>
 
-#include "ahm/log_map_solver.hpp"
+#include "ahm/maps/log_map_solver.hpp"
 #include "ahm/pointcloud/point_cloud_graph.hpp"
 #include "ahm/trimesh/triangle_mesh_graph.hpp"
 #include "measure.hpp"

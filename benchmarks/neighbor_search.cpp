@@ -30,7 +30,10 @@ BENCHMARK_CAPTURE(all_neighbors, flann, ahm::pointcloud::flann_search)
     ->Arg(100000)
     ->Unit(benchmark::kMillisecond);
 #ifdef AHM_WITH_PCL
-BENCHMARK_CAPTURE(all_neighbors, pcl, ahm::pcl_bridge::kdtree_search)->Arg(10000)->Arg(100000)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(all_neighbors, pcl, ahm::pcl_bridge::kdtree_search)
+    ->Arg(10000)
+    ->Arg(100000)
+    ->Unit(benchmark::kMillisecond);
 #endif
 
 }  // namespace

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <span>
 
-#include "ahm/tangent_graph.hpp"
+#include "ahm/graph/tangent_graph.hpp"
 
 namespace ahm::bench {
 

@@ -1,4 +1,5 @@
-# ahm_library(<component> SOURCES <file...> [HEADERS_FROM <dir>]): the static or shared library ahm_<component>, alias ahm::<component>.
+# ahm_library(<component> SOURCES <file...>): the static or shared library ahm_<component>, alias ahm::<component>, with
+# its public headers in include/ and private ones beside its sources in src/.
 function(ahm_library component)
   cmake_parse_arguments(ARG "" "" "SOURCES" ${ARGN})
   set(target ahm_${component})
@@ -10,6 +11,8 @@ function(ahm_library component)
     $<$<CXX_COMPILER_ID:GNU,Clang>:-Wall -Wextra -Wpedantic> $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)
   target_include_directories(${target} PUBLIC
     $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  target_include_directories(${target} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}/src)
+  target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:ahm_util>)
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${component} POSITION_INDEPENDENT_CODE ON)
   if(AHM_INSTALL)
     install(TARGETS ${target} EXPORT ahm-${component}-targets

@@ -1,5 +1,5 @@
 // From scattered points to the direction and distance of each of them, seen from one.
-#include <ahm/log_map_solver.hpp>
+#include <ahm/maps/log_map_solver.hpp>
 #include <ahm/pointcloud/point_cloud_graph.hpp>
 #include <cmath>
 #include <cstdio>

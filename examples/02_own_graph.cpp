@@ -1,7 +1,7 @@
 // Any discretization can be solved on: here points on a helix, a graph of dimension 1 that no backend knows.
-#include <ahm/csr_graph.hpp>
-#include <ahm/log_map_solver.hpp>
-#include <ahm/validate.hpp>
+#include <ahm/graph/csr_graph.hpp>
+#include <ahm/graph/validate.hpp>
+#include <ahm/maps/log_map_solver.hpp>
 #include <cmath>
 #include <cstdio>
 

@@ -1,5 +1,5 @@
 // Many sources on one factorization, local by a radius, with progress and a way to stop.
-#include <ahm/log_map_solver.hpp>
+#include <ahm/maps/log_map_solver.hpp>
 #include <ahm/pointcloud/point_cloud_graph.hpp>
 #include <cmath>
 #include <cstdio>

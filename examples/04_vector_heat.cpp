@@ -1,6 +1,6 @@
 // What the same factors give besides log maps: vectors and scalars carried from where they are known to everywhere.
+#include <ahm/fields/vector_heat.hpp>
 #include <ahm/pointcloud/point_cloud_graph.hpp>
-#include <ahm/vector_heat.hpp>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -17,8 +17,7 @@ int main() {
 
   // One number known at each of two corners: every point takes that of the nearer one.
   const ahm::VertexField label = ahm::extend_scalar(solver, known, std::array{1.0, 2.0});
-  std::printf("label near the second corner: %.3f\n",
-              label.values[static_cast<std::size_t>(cloud.vertex_of_point()[2448])]);
+  std::printf("label near the second corner: %.3f\n", label.values[cloud.vertex_of_point()[2448]]);
 
   // One vector, carried along shortest paths to the opposite corner.
   const ahm::VertexField field = ahm::transport_vectors(solver, std::span(known).first(1), std::array{0.6, 0.8});

@@ -1,5 +1,5 @@
 // A source inside a face, sampled at another point of the surface: both given on the input mesh.
-#include <ahm/log_map_solver.hpp>
+#include <ahm/maps/log_map_solver.hpp>
 #include <ahm/trimesh/triangle_mesh_graph.hpp>
 #include <cmath>
 #include <cstdio>
@@ -7,7 +7,7 @@
 int main() {
   // A long thin strip of needles: two rows of vertices, folded in the middle.
   std::vector<ahm::Vec3> positions;
-  std::vector<ahm::trimesh::Triangle> faces;
+  std::vector<ahm::Triangle> faces;
   const int n = 40;
   for (int i = 0; i <= n; ++i)
     for (double x : {0.0, 5.0})

@@ -1,6 +1,6 @@
 // The nearest of three beacons on foot in a building of two rooms, and a log map in a voxel grid.
+#include <ahm/fields/vector_heat.hpp>
 #include <ahm/grid/grid_graph.hpp>
-#include <ahm/vector_heat.hpp>
 #include <array>
 #include <cmath>
 #include <cstdio>

@@ -1,5 +1,5 @@
 // A floor of hexagonal tiles, and the map seen from the middle of one of them.
-#include <ahm/log_map_solver.hpp>
+#include <ahm/maps/log_map_solver.hpp>
 #include <ahm/polymesh/polygon_mesh_graph.hpp>
 #include <array>
 #include <cmath>

@@ -1,7 +1,7 @@
 // A plate parameterized along a stroke, and cut into cells around points spread evenly.
-#include <ahm/cells.hpp>
+#include <ahm/applications/cells.hpp>
+#include <ahm/applications/stroke.hpp>
 #include <ahm/grid/grid_graph.hpp>
-#include <ahm/stroke.hpp>
 #include <array>
 #include <cmath>
 #include <cstdio>

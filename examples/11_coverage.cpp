@@ -1,6 +1,6 @@
 // A path that covers a curved panel: a raster in log coordinates, carried back to points, normals and headings.
-#include <ahm/coverage.hpp>
-#include <ahm/log_map_solver.hpp>
+#include <ahm/applications/coverage.hpp>
+#include <ahm/maps/log_map_solver.hpp>
 #include <ahm/pointcloud/point_cloud_graph.hpp>
 #include <cmath>
 #include <cstdio>

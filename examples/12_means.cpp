@@ -1,8 +1,8 @@
 // Where to meet: mean and median of points on a dome, and the u axis along its meridians.
-#include <ahm/directions.hpp>
-#include <ahm/distance.hpp>
-#include <ahm/mean.hpp>
+#include <ahm/applications/mean.hpp>
+#include <ahm/fields/distance.hpp>
 #include <ahm/pointcloud/point_cloud_graph.hpp>
+#include <ahm/surface/directions.hpp>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -28,7 +28,7 @@ int main() {
 
   // How far is each point from the mean, and which way leads away from it?
   const ahm::DistanceField field = ahm::distance_and_gradient(solver, ahm::source_at(mean));
-  std::printf("a town is %.3f away\n", field.distance.values[static_cast<std::size_t>(towns[1])]);
+  std::printf("a town is %.3f away\n", field.distance.values[towns[1]]);
 
   // The surface seen from a town, u running uphill.
   const ahm::LogMap map =

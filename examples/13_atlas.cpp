@@ -1,7 +1,7 @@
 // A texture atlas: cells around spread points, each flattened by its own log map; and how much that distorts.
-#include <ahm/atlas.hpp>
-#include <ahm/cells.hpp>
-#include <ahm/log_map_solver.hpp>
+#include <ahm/applications/atlas.hpp>
+#include <ahm/applications/cells.hpp>
+#include <ahm/maps/log_map_solver.hpp>
 #include <ahm/trimesh/triangle_mesh_graph.hpp>
 #include <cmath>
 #include <cstdio>
@@ -12,7 +12,7 @@ int main() {
   // A torus of radii 1 and 0.4.
   constexpr int around = 80, across = 32;
   std::vector<ahm::Vec3> points;
-  std::vector<ahm::trimesh::Triangle> triangles;
+  std::vector<ahm::Triangle> triangles;
   for (int i = 0; i < around; ++i)
     for (int j = 0; j < across; ++j) {
       const double a = 2 * std::numbers::pi * i / around, b = 2 * std::numbers::pi * j / across;

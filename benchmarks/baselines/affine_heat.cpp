@@ -1,5 +1,5 @@
 // The affine heat method of this library.
-#include "ahm/log_map_solver.hpp"
+#include "ahm/maps/log_map_solver.hpp"
 #include "baselines/baselines.hpp"
 #include "baselines/heat_fields.hpp"
 

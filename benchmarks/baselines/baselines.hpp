@@ -16,8 +16,8 @@
 #include <string_view>
 #include <vector>
 
-#include "ahm/log_map.hpp"
-#include "ahm/tangent_graph.hpp"
+#include "ahm/graph/tangent_graph.hpp"
+#include "ahm/maps/log_map.hpp"
 #include "ahm/trimesh/triangle_mesh.hpp"
 
 namespace ahm::baselines {
@@ -97,7 +97,7 @@ Method heat_distance(const trimesh::TriangleMesh& mesh, double t_coef = 1.0);
 #ifdef AHM_BASELINES_CGAL
 /// Exact distance on the polyhedron (Xin & Wang 2009, by CGAL). Vertices and positions as given.
 /// @throws InvalidGeometry when the faces are no oriented manifold
-Method exact_distance(std::span<const Vec3> positions, std::span<const trimesh::Triangle> faces);
+Method exact_distance(std::span<const Vec3> positions, std::span<const Triangle> faces);
 #endif
 
 }  // namespace ahm::baselines

@@ -62,15 +62,15 @@ class Propagation {
         vector_(d_) {}
 
   std::vector<double> run(Index source) {
-    path_[static_cast<std::size_t>(source)] = 0;
+    path_[source] = 0;
     queue_.emplace(0.0, source);
     while (!queue_.empty()) {
       const auto [length, i] = queue_.top();
       queue_.pop();
-      if (settled_[static_cast<std::size_t>(i)]) continue;
+      if (settled_[i]) continue;
       const Star star = graph_.star(i);
       i == source ? start(i) : place(i, star);
-      settled_[static_cast<std::size_t>(i)] = true;
+      settled_[i] = true;
       for (std::size_t e = 0; e < star.degree(); ++e) relax(star.neighbors[e], length + log_length(star, e));
     }
     return std::move(coordinates_);
@@ -78,7 +78,7 @@ class Propagation {
 
  private:
   void relax(Index j, double length) {
-    if (double& path = path_[static_cast<std::size_t>(j)]; length < path) {
+    if (double& path = path_[j]; length < path) {
       path = length;
       queue_.emplace(length, j);
     }
@@ -99,8 +99,8 @@ class Propagation {
     for (std::size_t a = 0; a < d_; ++a) at(i)[a] = 0;
     for (std::size_t e = 0; e < star.degree(); ++e) {
       const Index q = star.neighbors[e];
-      if (!settled_[static_cast<std::size_t>(q)]) continue;
-      const double edge = log_length(star, e), length = path_[static_cast<std::size_t>(q)] + edge;
+      if (!settled_[q]) continue;
+      const double edge = log_length(star, e), length = path_[q] + edge;
       if (length < shortest) shortest = length, last_edge = e;
       if (options_.upwind_average && edge > 0) add_prediction(i, star, e, 1 / edge), weights += 1 / edge;
     }

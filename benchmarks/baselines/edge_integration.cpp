@@ -8,19 +8,18 @@ namespace {
 std::vector<Index> first_vertices(const Components& components) {
   std::vector<Index> first(static_cast<std::size_t>(components.count), -1);
   for (std::size_t i = 0; i < components.of_vertex.size(); ++i)
-    if (Index& entry = first[static_cast<std::size_t>(components.of_vertex[i])]; entry < 0)
-      entry = static_cast<Index>(i);
+    if (Index& entry = first[components.of_vertex[i]]; entry < 0) entry = static_cast<Index>(i);
   return first;
 }
 
 /// The graph Laplacian with the rows and columns of the pinned vertices replaced by those of the identity.
 Eigen::SparseMatrix<double> pinned_laplacian(const TangentGraph& graph, const std::vector<Index>& pinned) {
   std::vector<bool> is_pinned(static_cast<std::size_t>(graph.size()), false);
-  for (Index i : pinned) is_pinned[static_cast<std::size_t>(i)] = true;
+  for (Index i : pinned) is_pinned[i] = true;
   std::vector<Eigen::Triplet<double>> entries;
   entries.reserve(static_cast<std::size_t>(graph.edge_count()) / 2 + is_pinned.size());
   for (Index i = 0; i < graph.size(); ++i) {
-    if (is_pinned[static_cast<std::size_t>(i)]) {
+    if (is_pinned[i]) {
       entries.emplace_back(i, i, 1.0);
       continue;
     }
@@ -29,7 +28,7 @@ Eigen::SparseMatrix<double> pinned_laplacian(const TangentGraph& graph, const st
     for (std::size_t e = 0; e < star.degree(); ++e) {
       const Index j = star.neighbors[e];
       diagonal += star.weights[e];
-      if (j < i && !is_pinned[static_cast<std::size_t>(j)]) entries.emplace_back(i, j, -star.weights[e]);
+      if (j < i && !is_pinned[j]) entries.emplace_back(i, j, -star.weights[e]);
     }
     entries.emplace_back(i, i, diagonal);
   }

@@ -11,8 +11,8 @@
 #include <span>
 #include <vector>
 
-#include "ahm/components.hpp"
-#include "ahm/tangent_graph.hpp"
+#include "ahm/graph/components.hpp"
+#include "ahm/graph/tangent_graph.hpp"
 #include "baselines/sparse_cholesky.hpp"
 
 namespace ahm::baselines {

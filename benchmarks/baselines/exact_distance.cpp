@@ -18,7 +18,7 @@ using Geodesics = CGAL::Surface_mesh_shortest_path<CGAL::Surface_mesh_shortest_p
 
 Surface::Vertex_index cgal_vertex(Index vertex) { return Surface::Vertex_index(static_cast<unsigned>(vertex)); }
 
-Surface cgal_surface(std::span<const Vec3> positions, std::span<const trimesh::Triangle> faces) {
+Surface cgal_surface(std::span<const Vec3> positions, std::span<const Triangle> faces) {
   Surface surface;
   for (const Vec3& p : positions) surface.add_vertex({p[0], p[1], p[2]});
   for (std::size_t f = 0; f < faces.size(); ++f) {
@@ -37,7 +37,7 @@ Surface cgal_surface(std::span<const Vec3> positions, std::span<const trimesh::T
 
 class ExactDistance final : public Baseline {
  public:
-  ExactDistance(std::span<const Vec3> positions, std::span<const trimesh::Triangle> faces)
+  ExactDistance(std::span<const Vec3> positions, std::span<const Triangle> faces)
       : surface_(cgal_surface(positions, faces)) {}
 
   std::string_view name() const noexcept override { return "exact polyhedral"; }
@@ -64,7 +64,7 @@ class ExactDistance final : public Baseline {
 
 }  // namespace
 
-Method exact_distance(std::span<const Vec3> positions, std::span<const trimesh::Triangle> faces) {
+Method exact_distance(std::span<const Vec3> positions, std::span<const Triangle> faces) {
   return std::make_unique<ExactDistance>(positions, faces);
 }
 

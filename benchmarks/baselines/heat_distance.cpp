@@ -35,11 +35,11 @@ std::vector<double> StarHeat::from_heat(std::vector<double> lambda, Index source
   std::vector<double> field(lambda.size() * d, 0.0), increments;
   StarGradient gradient(graph_.dimension());
   for (Index i = 0; i < graph_.size(); ++i) {
-    const double here = lambda[static_cast<std::size_t>(i)];
+    const double here = lambda[i];
     if (std::isnan(here)) continue;
     const Star star = graph_.star(i);
     increments.clear();
-    for (Index j : star.neighbors) increments.push_back(here - lambda[static_cast<std::size_t>(j)]);
+    for (Index j : star.neighbors) increments.push_back(here - lambda[j]);
     const Eigen::VectorXd& g = gradient.fit(star, increments);
     if (const double length = g.norm(); length > 0)
       for (std::size_t a = 0; a < d; ++a)

@@ -50,7 +50,7 @@ double log_length(const Star& star, std::size_t edge) {
 
 std::vector<double> scalar_heat(const HeatOperators& heat, Index source) {
   std::vector<double> lambda(static_cast<std::size_t>(heat.size()), 0.0);
-  lambda[static_cast<std::size_t>(source)] = source_heat;
+  lambda[source] = source_heat;
   heat.solve_scalar(lambda, 1);
   return lambda;
 }

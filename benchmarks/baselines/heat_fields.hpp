@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "ahm/heat_operators.hpp"
-#include "ahm/tangent_graph.hpp"
+#include "ahm/graph/tangent_graph.hpp"
+#include "ahm/heat/heat_operators.hpp"
 
 namespace ahm::baselines {
 
@@ -62,7 +62,7 @@ class StarGradient {
 /// Distances f - f[source] in outside units, NaN where `reached` is false.
 template <class Reached>
 std::vector<double> distances_from(std::vector<double> f, Index source, double length_unit, const Reached& reached) {
-  const double zero = f[static_cast<std::size_t>(source)];
+  const double zero = f[source];
   for (std::size_t i = 0; i < f.size(); ++i) f[i] = reached(i) ? (f[i] - zero) * length_unit : nan;
   return f;
 }

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <string>
 
-#include "ahm/detail/text.hpp"
 #include "ahm/error.hpp"
+#include "ahm/util/text.hpp"
 #include "baselines/baselines.hpp"
 #include "baselines/heat_fields.hpp"
 #include "baselines/sparse_cholesky.hpp"
@@ -29,7 +29,7 @@ Face lay_out(const trimesh::TriangleMesh& mesh, Index f) {
     throw InvalidGeometry("face " + std::to_string(f) + ": area " + detail::number(face.area) +
                           " must be positive; use the graph of the intrinsic Delaunay triangulation");
   for (int k = 0; k < 3; ++k) {
-    face.vertices[k] = mesh.tails()[static_cast<std::size_t>(3 * f + k)];
+    face.vertices[k] = mesh.tails()[3 * f + k];
     const auto& opposite = sides[(k + 1) % 3];
     face.gradients[k] = Eigen::Vector2d(-opposite[1], opposite[0]) / (2 * face.area);
   }
@@ -42,7 +42,7 @@ double mean_edge_length(const trimesh::TriangleMesh& mesh) {
   for (Index f = 0; f < mesh.face_count(); ++f) {
     const auto sides = mesh.layout(f);
     for (int s = 0; s < 3; ++s)
-      if (const trimesh::Half h = 3 * f + s, twin = mesh.twins()[static_cast<std::size_t>(h)]; twin < h) {
+      if (const trimesh::Half h = 3 * f + s, twin = mesh.twins()[h]; twin < h) {
         sum += std::hypot(sides[s][0], sides[s][1]);
         ++count;
       }

@@ -62,7 +62,7 @@ std::vector<double> SignedHeat::signed_distance(const Source& curve) const {
   std::vector<double> f = integration_.integrate(X);
   double mean = 0, weights = 0;
   for (std::size_t k = 0; k < curve.vertices().size(); ++k) {
-    mean += curve.weights()[k] / most * f[static_cast<std::size_t>(curve.vertices()[k])];
+    mean += curve.weights()[k] / most * f[curve.vertices()[k]];
     weights += curve.weights()[k] / most;
   }
   mean /= weights;

@@ -8,8 +8,8 @@
 /// \endcode
 #pragma once
 
-#include "ahm/heat_operators.hpp"
-#include "ahm/source.hpp"
+#include "ahm/heat/heat_operators.hpp"
+#include "ahm/maps/source.hpp"
 #include "baselines/baselines.hpp"
 #include "baselines/edge_integration.hpp"
 

@@ -72,7 +72,7 @@ Result VectorHeatLog::solve(Index source) const {
   std::fill_n(&radial[static_cast<std::size_t>(source) * static_cast<std::size_t>(d)], d, 0.0);
   // Laplacian r = div R.
   const std::vector<double> r = integration_.integrate(radial, options_.radial_at_source ? source : -1);
-  const double zero = r[static_cast<std::size_t>(source)];
+  const double zero = r[source];
 
   // phi = r (R in the carried frame).
   Result result{std::vector<double>(nd, nan), std::vector<double>(r.size(), nan)};
@@ -81,8 +81,8 @@ Result VectorHeatLog::solve(Index source) const {
     const auto begin = static_cast<std::size_t>(i) * static_cast<std::size_t>(d);
     const Eigen::Map<const Eigen::VectorXd> R(&radial[begin], d);
     if (!frame(std::span(fields).subspan(nd), i, U) || (i != source && R.isZero(0))) continue;
-    double& distance = result.distance[static_cast<std::size_t>(i)];
-    distance = (r[static_cast<std::size_t>(i)] - zero) * graph_.length_unit();
+    double& distance = result.distance[i];
+    distance = (r[i] - zero) * graph_.length_unit();
     Eigen::Map<Eigen::VectorXd>(&result.coordinates[begin], d) = distance * U.transpose() * R;
   }
   return result;

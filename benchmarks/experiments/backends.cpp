@@ -7,7 +7,7 @@
 #include <random>
 
 #include "ahm/error.hpp"
-#include "ahm/log_map_solver.hpp"
+#include "ahm/maps/log_map_solver.hpp"
 #include "ahm/pointcloud/point_cloud_graph.hpp"
 #include "experiments/comparison.hpp"
 #include "experiments/timing.hpp"
@@ -26,7 +26,7 @@ constexpr Vec3 u_direction{0.3, 0.5, 0.8};  // projected to the tangent plane of
 struct Shape {
   std::string name;
   Quads quads;
-  std::vector<trimesh::Triangle> triangles;
+  std::vector<Triangle> triangles;
 };
 
 Shape cut_at_random(std::string name, Quads quads) {
@@ -128,7 +128,7 @@ std::vector<Index> sources_of(const Shape& shape) {
 Exact exact_distances(const Shape& shape) {
   Exact exact;
   for (Index source : sources_of(shape)) {
-    const Vec3& p = shape.quads.points[static_cast<std::size_t>(source)];
+    const Vec3& p = shape.quads.points[source];
     std::vector<double> distance;
     if (shape.name == "sphere")
       for (const Vec3& q : shape.quads.points)

@@ -41,7 +41,7 @@ std::vector<double> Surface::plane_log(Index source) const {
 
 std::vector<double> Surface::sphere_log(Index source) const {
   const Frame frame = *graph().frame(source);
-  const Vec3& p = points_[static_cast<std::size_t>(source)];
+  const Vec3& p = points_[source];
   std::vector<double> result;
   for (const Vec3& q : points_) {
     const double x = dot(frame.x, q), y = dot(frame.y, q), r = std::hypot(x, y);
@@ -56,16 +56,16 @@ std::vector<double> Surface::path_lengths(Index source) const {
   std::vector<double> length(points_.size(), std::numeric_limits<double>::infinity());
   using Entry = std::pair<double, Index>;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
-  length[static_cast<std::size_t>(source)] = 0;
+  length[source] = 0;
   queue.push({0, source});
   while (!queue.empty()) {
     const auto [here, i] = queue.top();
     queue.pop();
-    if (here > length[static_cast<std::size_t>(i)]) continue;
+    if (here > length[i]) continue;
     const Star star = graph().star(i);
     for (std::size_t e = 0; e < star.degree(); ++e) {
       const double there = here + graph().length_unit() * std::hypot(star.log(e)[0], star.log(e)[1]);
-      double& known = length[static_cast<std::size_t>(star.neighbors[e])];
+      double& known = length[star.neighbors[e]];
       if (there < known) {
         known = there;
         queue.push({there, star.neighbors[e]});

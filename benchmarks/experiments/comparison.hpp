@@ -32,7 +32,7 @@ class Surface {
   const trimesh::TriangleMeshGraph& mesh() const noexcept { return surface_; }
   Index size() const noexcept { return surface_.graph().size(); }
   std::span<const Vec3> points() const noexcept { return points_; }
-  std::span<const trimesh::Triangle> faces() const noexcept { return faces_; }
+  std::span<const Triangle> faces() const noexcept { return faces_; }
   double mean_edge() const noexcept { return graph().mean_edge_length() * graph().length_unit(); }
 
   /// Exact log maps, n x 2: of a surface that lies in a plane, and of the unit sphere.
@@ -46,7 +46,7 @@ class Surface {
   std::string name_;
   trimesh::TriangleMeshGraph surface_;
   std::vector<Vec3> points_;
-  std::vector<trimesh::Triangle> faces_;
+  std::vector<Triangle> faces_;
 };
 
 /// Runs `use` on every mesh of the user that has at most `largest` vertices. One on which it throws an `Error` is named on

@@ -33,8 +33,7 @@ struct Unrolled {
       if (step < 0) step += around;
       if (step > around / 2) step -= around;
       from_cut.push_back(around / 2 - std::abs(step));
-      const double x =
-          surface.points()[static_cast<std::size_t>(i)][0] - surface.points()[static_cast<std::size_t>(source)][0];
+      const double x = surface.points()[i][0] - surface.points()[source][0];
       for (std::size_t a = 0; a < 2; ++a) log.push_back(x * along[a] + step * side * round[a]);
     }
   }

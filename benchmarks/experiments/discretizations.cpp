@@ -67,7 +67,7 @@ void measure_cloud(const char* name, const std::vector<Vec3>& points, Table& tab
              auto on = cloud.on_points(map);
              return std::array{std::move(on.u), std::move(on.v)};
            },
-           [&](Index p) { return cloud.vertex_of_point()[static_cast<std::size_t>(p)]; }},
+           [&](Index p) { return cloud.vertex_of_point()[p]; }},
           table);
 }
 

@@ -37,10 +37,10 @@ void measure(const Surface& surface, const DistanceMethod& method, std::span<con
     for (std::size_t i = 0; i < distance.size(); ++i)
       if (const double error = std::abs(distance[i] / exact[s][i] - 1);
           ring_of[i] >= 0 && exact[s][i] > 0 && std::isfinite(error))
-        by_ring[static_cast<std::size_t>(ring_of[i])].push_back(error);
+        by_ring[ring_of[i]].push_back(error);
   }
   for (int r = 0; r < ring_count; ++r) {
-    const std::vector<double>& e = by_ring[static_cast<std::size_t>(r)];
+    const std::vector<double>& e = by_ring[r];
     if (e.empty()) continue;
     double mean = 0;
     for (double x : e) mean += x / static_cast<double>(e.size());

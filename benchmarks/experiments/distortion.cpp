@@ -1,5 +1,5 @@
 // Fig. 2 and 26: metric distortion of the maps, by distance from the source.
-#include "ahm/distortion.hpp"
+#include "ahm/applications/distortion.hpp"
 
 #include <fmt/format.h>
 
@@ -16,13 +16,12 @@ void add(const Surface& surface, std::span<const int> ring_of, std::string_view 
   const std::vector<TriangleDistortion> all = ahm::distortion(surface.points(), surface.faces(), map);
   std::vector<std::vector<TriangleDistortion>> by_ring(ring_count);
   for (std::size_t f = 0; f < all.size(); ++f)
-    if (const int ring = ring_of[static_cast<std::size_t>(surface.faces()[f][0])]; ring >= 0)
-      by_ring[static_cast<std::size_t>(ring)].push_back(all[f]);
+    if (const int ring = ring_of[surface.faces()[f][0]]; ring >= 0) by_ring[ring].push_back(all[f]);
   auto row = [&](Cell ring, const DistortionSummary& s) {
     table.add({surface.name(), surface.size(), method, std::move(ring), known(s.median), known(s.percentile_95),
                known(s.flipped_area), s.unmeasured});
   };
-  for (int r = 0; r < ring_count; ++r) row((r + 0.5) / ring_count, summary(by_ring[static_cast<std::size_t>(r)]));
+  for (int r = 0; r < ring_count; ++r) row((r + 0.5) / ring_count, summary(by_ring[r]));
   row("all", summary(all));
 }
 

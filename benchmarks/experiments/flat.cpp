@@ -4,7 +4,7 @@
 #include <cmath>
 #include <map>
 
-#include "ahm/distortion.hpp"
+#include "ahm/applications/distortion.hpp"
 #include "baselines/tests/flat_meshes.hpp"
 #include "experiments/comparison.hpp"
 

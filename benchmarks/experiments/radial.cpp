@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "ahm/vector_heat.hpp"
+#include "ahm/fields/vector_heat.hpp"
 #include "baselines/heat_fields.hpp"
 #include "baselines/tests/flat_meshes.hpp"
 #include "experiments/comparison.hpp"

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "ahm/error.hpp"
-#include "ahm/log_map_solver.hpp"
+#include "ahm/maps/log_map_solver.hpp"
 #include "experiments/comparison.hpp"
 #include "experiments/timing.hpp"
 

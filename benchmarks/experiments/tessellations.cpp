@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "ahm/distortion.hpp"
+#include "ahm/applications/distortion.hpp"
 #include "experiments/comparison.hpp"
 
 namespace ahm::bench {

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "ahm/log_map_solver.hpp"
-#include "ahm/quality.hpp"
+#include "ahm/maps/log_map_solver.hpp"
+#include "ahm/maps/quality.hpp"
 #include "experiments/comparison.hpp"
 
 namespace ahm::bench {

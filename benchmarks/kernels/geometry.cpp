@@ -100,7 +100,7 @@ struct CloudSteps {
   std::unique_ptr<ahm::pointcloud::NeighborSearch> search;
   ahm::pointcloud::Neighborhoods neighborhoods;
   ahm::pointcloud::TangentPlanes planes;
-  std::vector<ahm::pointcloud::Triangle> triangles;
+  std::vector<ahm::Triangle> triangles;
   ahm::pointcloud::WeightedEdges edges;
   std::vector<Index> vertices;
 

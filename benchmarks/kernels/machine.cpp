@@ -7,7 +7,7 @@
 #include <complex>
 #include <vector>
 
-#include "libahm/src/blas_control.hpp"
+#include "heat/blas_control.hpp"
 
 namespace ahm::bench {
 namespace {

@@ -5,8 +5,8 @@
 // measured right after the kernel. Where n is small enough for the caches, the share may be above 1.
 #include <benchmark/benchmark.h>
 
-#include "ahm/heat_operators.hpp"
-#include "libahm/src/blas_control.hpp"
+#include "ahm/heat/heat_operators.hpp"
+#include "heat/blas_control.hpp"
 
 int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);

@@ -3,9 +3,9 @@
 
 #include <optional>
 
-#include "ahm/local_maps.hpp"
-#include "ahm/log_map_solver.hpp"
-#include "ahm/quality.hpp"
+#include "ahm/maps/local_maps.hpp"
+#include "ahm/maps/log_map_solver.hpp"
+#include "ahm/maps/quality.hpp"
 #include "graphs.hpp"
 #include "machine.hpp"
 

@@ -3,8 +3,8 @@
 #include <cholmod.h>
 
 #include "graphs.hpp"
-#include "libahm/src/assemble.hpp"
-#include "libahm/src/cholesky.hpp"
+#include "heat/assemble.hpp"
+#include "heat/cholesky.hpp"
 #include "machine.hpp"
 
 namespace {

@@ -4,8 +4,8 @@
 #include <algorithm>
 
 #include "graphs.hpp"
-#include "libahm/src/assemble.hpp"
-#include "libahm/src/cholesky.hpp"
+#include "heat/assemble.hpp"
+#include "heat/cholesky.hpp"
 #include "machine.hpp"
 
 namespace {

@@ -1,6 +1,6 @@
 // Stands in for the PCL sources in a build without PCL.
-#include "readers.hpp"
-#include "writers.hpp"
+#include "read/readers.hpp"
+#include "write/writers.hpp"
 
 namespace ahm::io {
 

@@ -77,8 +77,8 @@ TEST(AtlasCommand, WritesEveryPolygonOnceInsideTheTexture) {
     for (const auto& [v, vt] : face)
       for (double x : obj.vt.at(static_cast<std::size_t>(vt))) EXPECT_TRUE(x > 0 && x < 1);
     const auto [a, b] = std::array{face[0], face[1]};
-    const auto &p = obj.v[static_cast<std::size_t>(a[0])], &q = obj.v[static_cast<std::size_t>(b[0])];
-    const auto &s = obj.vt[static_cast<std::size_t>(a[1])], &t = obj.vt[static_cast<std::size_t>(b[1])];
+    const auto &p = obj.v[a[0]], &q = obj.v[b[0]];
+    const auto &s = obj.vt[a[1]], &t = obj.vt[b[1]];
     ratio += std::hypot(s[0] - t[0], s[1] - t[1]) / scale / std::hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]) / 512;
   }
   EXPECT_EQ(quads, 32U * 14);

@@ -191,7 +191,7 @@ std::vector<Vec3> plane(int m) {
   for (int i = 0; i < m; ++i)
     for (int j = 0; j < m; ++j)
       points.push_back({(i + 0.5) / m + jitter(generator), (j + 0.5) / m + jitter(generator), 0});
-  std::swap(points[0], points[static_cast<std::size_t>(m / 2 * m + m / 2)]);
+  std::swap(points[0], points[m / 2 * m + m / 2]);
   return points;
 }
 

@@ -1,4 +1,4 @@
-#include "ahm/atlas.hpp"
+#include "ahm/applications/atlas.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,9 @@
 #include <numbers>
 #include <set>
 
-#include "ahm/cells.hpp"
+#include "ahm/applications/cells.hpp"
+#include "ahm/applications/inverse_map.hpp"
 #include "ahm/error.hpp"
-#include "ahm/inverse_map.hpp"
 #include "ahm/polymesh/polygon_mesh_graph.hpp"
 #include "support/planar_graphs.hpp"
 #include "trimesh/meshes.hpp"
@@ -23,7 +23,7 @@ std::size_t to_size(Offset i) { return static_cast<std::size_t>(i); }
 /// A mesh, its solver, and its faces as the atlas wants them.
 struct Surface {
   explicit Surface(const Mesh& mesh) : positions(mesh.positions), solved(mesh) {
-    for (const trimesh::Triangle& t : mesh.faces) {
+    for (const Triangle& t : mesh.faces) {
       begin.push_back(static_cast<Offset>(vertices.size()));
       vertices.insert(vertices.end(), t.begin(), t.end());
     }
@@ -63,9 +63,9 @@ void expect_partition(const Atlas& atlas, const FaceList& faces) {
     ASSERT_TRUE(std::is_sorted(chart.faces.begin(), chart.faces.end()));
     std::map<std::pair<Index, Index>, std::vector<Index>> sides;
     for (Index f : chart.faces) {
-      ++taken[to_size(f)];
-      EXPECT_EQ(atlas.chart_of_face[to_size(f)], static_cast<Index>(k));
-      const auto face = faces.face(to_size(f));
+      ++taken[f];
+      EXPECT_EQ(atlas.chart_of_face[f], static_cast<Index>(k));
+      const auto face = faces[f];
       for (std::size_t c = 0; c < face.size(); ++c)
         sides[std::minmax(face[c], face[(c + 1) % face.size()])].push_back(f);
     }
@@ -108,11 +108,10 @@ TEST(Atlas, CoordinatesAreTheLogMapsOfTheirSources) {
   expect_partition(atlas, surface.faces());
   EXPECT_EQ(atlas.sources, sources);
   for (const Chart& chart : atlas.charts) {
-    const LogMap map = surface.solver().solve(Source::at_vertex(sources[to_size(chart.source)]));
+    const LogMap map = surface.solver().solve(Source::at_vertex(sources[chart.source]));
     for (Index f : chart.faces)
-      for (Offset c = surface.begin[to_size(f)]; c < surface.begin[to_size(f) + 1]; ++c)
-        for (std::size_t a : {0, 1})
-          EXPECT_NEAR(atlas.corner(c)[a], map.coordinates(surface.vertices[to_size(c)])[a], 1e-9);
+      for (Offset c = surface.begin[f]; c < surface.begin[to_size(f) + 1]; ++c)
+        for (std::size_t a : {0, 1}) EXPECT_NEAR(atlas.corner(c)[a], map.coordinates(surface.vertices[c])[a], 1e-9);
   }
 }
 
@@ -124,7 +123,7 @@ TEST(Atlas, GivesFacesToTheSourceNearestToTheirMiddle) {
   for (Index s : sources) maps.push_back(surface.solver().solve(Source::at_vertex(s)));
   const auto sum = [&](std::size_t source, std::size_t f) {
     double total = 0;
-    for (Index v : surface.faces().face(f)) total += maps[source].distance(v);
+    for (Index v : surface.faces()[f]) total += maps[source].distance(v);
     return total;
   };
   const double h = surface.solver().graph().mean_edge_length() * surface.solver().graph().length_unit();
@@ -133,7 +132,7 @@ TEST(Atlas, GivesFacesToTheSourceNearestToTheirMiddle) {
     std::size_t best = 0;
     for (std::size_t s = 1; s < sources.size(); ++s)
       if (sum(s, f) < sum(best, f)) best = s;
-    const auto own = to_size(atlas.charts[to_size(atlas.chart_of_face[f])].source);
+    const auto own = to_size(atlas.charts[atlas.chart_of_face[f]].source);
     differ += own != best;
     EXPECT_LT(sum(own, f) / 3, sum(best, f) / 3 + h);  // heat decides which sources are asked at all
   }
@@ -165,7 +164,7 @@ TEST(Atlas, ChartsAreCounterClockwiseAlsoWhereFramesAreMirrored) {
   const LogMap map = solver.solve(Source::at_vertex(0), {.frames = true});
   std::vector<Offset> begin{0};
   std::vector<Index> vertices;
-  for (const Triangle3& t : star_triangles(graph, map)) {
+  for (const Triangle& t : star_triangles(graph, map)) {
     vertices.insert(vertices.end(), t.begin(), t.end());
     begin.push_back(begin.back() + 3);
   }
@@ -207,10 +206,10 @@ TEST(Atlas, LeavesOutComponentsWithoutASource) {
   const Index n = two.vertices();
   const auto faces = two.faces;
   for (Index i = 0; i < n; ++i) {
-    const Vec3 p = two.positions[to_size(i)];
+    const Vec3 p = two.positions[i];
     two.positions.push_back({p[0] + 3, p[1], p[2]});
   }
-  for (const trimesh::Triangle& t : faces) two.faces.push_back({t[0] + n, t[1] + n, t[2] + n});
+  for (const Triangle& t : faces) two.faces.push_back({t[0] + n, t[1] + n, t[2] + n});
   const Surface surface(two);
   const Atlas atlas = make_atlas(surface.solver(), std::array<Index, 2>{0, 7}, surface.faces());
   expect_partition(atlas, surface.faces());
@@ -270,7 +269,7 @@ TEST(ChartBoxes, AreTheLeastOfAllTurns) {
       const double c = std::cos(degree * std::numbers::pi / 180), s = std::sin(degree * std::numbers::pi / 180);
       std::array<double, 2> low{1e9, 1e9}, high{-1e9, -1e9};
       for (Index f : atlas.charts[k].faces)
-        for (Offset corner = surface.begin[to_size(f)]; corner < surface.begin[to_size(f) + 1]; ++corner) {
+        for (Offset corner = surface.begin[f]; corner < surface.begin[to_size(f) + 1]; ++corner) {
           const auto [u, v] = atlas.corner(corner);
           const double x = box.turn[0] * u + box.turn[1] * v, y = box.turn[0] * v - box.turn[1] * u;
           EXPECT_GE(x, box.low[0] - 1e-12);

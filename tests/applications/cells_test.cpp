@@ -1,5 +1,5 @@
 // Geodesic Voronoi cells and farthest points.
-#include "ahm/cells.hpp"
+#include "ahm/applications/cells.hpp"
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ std::vector<std::vector<double>> separate_heats(const LogMapSolver& solver, cons
   std::vector<std::vector<double>> heats;
   for (Index source : sources) {
     std::vector<double> heat(static_cast<std::size_t>(solver.graph().size()), 0.0);
-    heat[static_cast<std::size_t>(source)] = 1;
+    heat[source] = 1;
     solver.operators().solve_scalar(heat, 1);
     heats.push_back(heat);
   }
@@ -68,12 +68,12 @@ TEST(Cells, HaveTheirDistancesUpToTheBorder) {
       return all;
     }());
     for (Index i = 0; i < graph.size(); ++i) {
-      const auto own = static_cast<std::size_t>(labels[static_cast<std::size_t>(i)]);
+      const auto own = static_cast<std::size_t>(labels[i]);
       // Few cells all touch or nearly so, and each is solved for alone: exact. Of many, sources of a group are a cell of
       // several edges farther away than the own one, and add a little of their heat.
       const double exact = separate[own].distance(i);
-      EXPECT_NEAR(away.values[static_cast<std::size_t>(i)], exact, count <= 5 ? 1e-11 : graph.mean_edge_length() / 4);
-      EXPECT_EQ(away.status[static_cast<std::size_t>(i)], Status::ok);
+      EXPECT_NEAR(away.values[i], exact, count <= 5 ? 1e-11 : graph.mean_edge_length() / 4);
+      EXPECT_EQ(away.status[i], Status::ok);
     }
   }
 }
@@ -101,16 +101,15 @@ TEST(Cells, ContainTheirSourcesAndAreConnected) {
   for (std::size_t k = 0; k < sources.size(); ++k) {
     std::vector<Index> stack{sources[k]};
     std::vector<bool> seen(label.size(), false);
-    seen[static_cast<std::size_t>(sources[k])] = true;
+    seen[sources[k]] = true;
     std::ptrdiff_t size = 0;
     while (!stack.empty()) {
       const Index i = stack.back();
       stack.pop_back(), ++size;
       for (Index j : graph.star(i).neighbors)
-        if (!seen[static_cast<std::size_t>(j)] && label[static_cast<std::size_t>(j)] == static_cast<Index>(k))
-          seen[static_cast<std::size_t>(j)] = true, stack.push_back(j);
+        if (!seen[j] && label[j] == static_cast<Index>(k)) seen[j] = true, stack.push_back(j);
     }
-    EXPECT_EQ(label[static_cast<std::size_t>(sources[k])], static_cast<Index>(k));
+    EXPECT_EQ(label[sources[k]], static_cast<Index>(k));
     EXPECT_EQ(size, std::count(label.begin(), label.end(), static_cast<Index>(k)));
   }
 }
@@ -119,7 +118,7 @@ TEST(Cells, LeaveComponentsWithoutASourceUnlabelled) {
   const FlatGraph flat = planar_triangulation(8);
   const CsrGraph graph(doubled(flat.data));
   const auto label = nearest_source(LogMapSolver(graph), std::array<Index, 1>{3});
-  for (Index i = 0; i < graph.size(); ++i) EXPECT_EQ(label[static_cast<std::size_t>(i)], i < flat.size() ? 0 : -1);
+  for (Index i = 0; i < graph.size(); ++i) EXPECT_EQ(label[i], i < flat.size() ? 0 : -1);
 }
 
 TEST(Cells, OfALineOfAnyLengthMeetHalfWay) {
@@ -127,7 +126,7 @@ TEST(Cells, OfALineOfAnyLengthMeetHalfWay) {
   const CsrGraph graph(line_graph(n).data);
   const auto label = nearest_source(LogMapSolver(graph), std::array<Index, 2>{0, n - 1});
   for (Index i = 0; i < n; ++i)
-    if (i != n / 2) EXPECT_EQ(label[static_cast<std::size_t>(i)], i < n / 2 ? 0 : 1);
+    if (i != n / 2) EXPECT_EQ(label[i], i < n / 2 ? 0 : 1);
 }
 
 TEST(FarthestPoints, AreSpreadAsAGreedyCoverOfThePlane) {
@@ -138,9 +137,8 @@ TEST(FarthestPoints, AreSpreadAsAGreedyCoverOfThePlane) {
   const auto between = [&](Index a, Index b) { return std::hypot(flat.exact(a, b)[0], flat.exact(a, b)[1]); };
   std::vector<double> away(static_cast<std::size_t>(flat.size()), 1e300);
   for (std::size_t k = 0; k + 1 < points.size(); ++k) {
-    for (Index i = 0; i < flat.size(); ++i)
-      away[static_cast<std::size_t>(i)] = std::min(away[static_cast<std::size_t>(i)], between(points[k], i));
-    EXPECT_NEAR(away[static_cast<std::size_t>(points[k + 1])], *std::max_element(away.begin(), away.end()), 1e-10);
+    for (Index i = 0; i < flat.size(); ++i) away[i] = std::min(away[i], between(points[k], i));
+    EXPECT_NEAR(away[points[k + 1]], *std::max_element(away.begin(), away.end()), 1e-10);
   }
 }
 

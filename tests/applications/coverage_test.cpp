@@ -1,5 +1,5 @@
 // Paths that cover a surface.
-#include "ahm/coverage.hpp"
+#include "ahm/applications/coverage.hpp"
 
 #include <gtest/gtest.h>
 
@@ -107,13 +107,13 @@ TEST(Coverage, IsCutIntoPiecesWhereTheMapIsNotValid) {
     const bool first = i == 0 || path.points[i - 1].piece != p.piece;
     if (first) {
       EXPECT_EQ(p.piece, i == 0 ? 0 : path.points[i - 1].piece + 1);
-      ++pieces_of_line[static_cast<std::size_t>(p.line)];
+      ++pieces_of_line[p.line];
     } else {
       EXPECT_LE(distance(p.position, path.points[i - 1].position), step + 1e-12);
     }
   }
   EXPECT_EQ(path.points.back().piece + 1, path.pieces);
-  for (int line = 5; line <= 15; ++line) EXPECT_EQ(pieces_of_line[static_cast<std::size_t>(line)], 2) << line;
+  for (int line = 5; line <= 15; ++line) EXPECT_EQ(pieces_of_line[line], 2) << line;
 }
 
 TEST(Coverage, NeverJumpsFromSheetToSheet) {

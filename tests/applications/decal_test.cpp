@@ -1,4 +1,4 @@
-#include "ahm/decal.hpp"
+#include "ahm/applications/decal.hpp"
 
 #include <gtest/gtest.h>
 
@@ -32,10 +32,9 @@ double area_of(const Decal& decal) {
   for (std::size_t f = 0; f + 1 < decal.face_begin.size(); ++f)
     for (Offset c = decal.face_begin[f] + 1; c + 1 < decal.face_begin[f + 1]; ++c) {
       std::array<Vec3, 2> side;
-      const Vec3& o = decal.points[to_size(decal.face_vertices[to_size(decal.face_begin[f])])];
+      const Vec3& o = decal.points[decal.face_vertices[decal.face_begin[f]]];
       for (std::size_t k = 0; k < 2; ++k)
-        for (std::size_t a = 0; a < 3; ++a)
-          side[k][a] = decal.points[to_size(decal.face_vertices[to_size(c) + k])][a] - o[a];
+        for (std::size_t a = 0; a < 3; ++a) side[k][a] = decal.points[decal.face_vertices[to_size(c) + k]][a] - o[a];
       const auto& [a, b] = side;
       area += std::sqrt(dot(a, a) * dot(b, b) - dot(a, b) * dot(a, b)) / 2;
     }

@@ -1,5 +1,5 @@
 // Directions for the u axis: of space, and of principal curvature.
-#include "ahm/directions.hpp"
+#include "ahm/surface/directions.hpp"
 
 #include <gtest/gtest.h>
 

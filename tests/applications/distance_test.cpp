@@ -1,5 +1,5 @@
 // Distance and its gradient by the radial field.
-#include "ahm/distance.hpp"
+#include "ahm/fields/distance.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "ahm/distortion.hpp"
+#include "ahm/applications/distortion.hpp"
 
 #include <gtest/gtest.h>
 
@@ -61,7 +61,7 @@ TEST(Distortion, OfALinearMapAreItsSingularValues) {
 
 TEST(Distortion, OfACollapseIsInfiniteAndOfUnknownsNothing) {
   const std::vector<Vec3> positions{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {2, 0, 0}};
-  const std::vector<Triangle3> triangles{{0, 1, 2}, {0, 1, 3}};  // the second has no area
+  const std::vector<Triangle> triangles{{0, 1, 2}, {0, 1, 3}};  // the second has no area
   const auto collapsed = distortion(positions, triangles, std::vector<double>{0, 0, 1, 0, 2, 0, 0, 0});
   EXPECT_EQ(collapsed[0].value(), std::numeric_limits<double>::infinity());
   EXPECT_TRUE(std::isnan(collapsed[1].value()));
@@ -76,7 +76,7 @@ TEST(Distortion, OfACollapseIsInfiniteAndOfUnknownsNothing) {
 TEST(Distortion, PerCornerAgreesWithPerVertex) {
   const Patch cap = patch(15, 1.2, on_sphere);
   std::vector<double> corners;
-  for (const Triangle3& t : cap.triangles)
+  for (const Triangle& t : cap.triangles)
     for (Index v : t)
       for (std::size_t c : {0, 1}) corners.push_back(cap.coordinates[2 * static_cast<std::size_t>(v) + c]);
   const auto a = distortion(cap.positions, cap.triangles, cap.coordinates),
@@ -137,7 +137,7 @@ TEST(Distortion, RefusesWhatDoesNotFit) {
   const Patch plane = patch(4, 1, flat);
   EXPECT_THROW(distortion(plane.positions, plane.triangles, std::vector<double>(3)), InvalidArgument);
   EXPECT_THROW(corner_distortion(plane.positions, plane.triangles, plane.coordinates), InvalidArgument);
-  const std::vector<Triangle3> outside{{0, 1, 16}};
+  const std::vector<Triangle> outside{{0, 1, 16}};
   EXPECT_THROW(distortion(plane.positions, outside, plane.coordinates), InvalidArgument);
 }
 

@@ -1,5 +1,5 @@
 // From coordinates back to the surface.
-#include "ahm/inverse_map.hpp"
+#include "ahm/applications/inverse_map.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 
 #include "ahm/error.hpp"
 #include "ahm/grid/grid_graph.hpp"
-#include "ahm/log_map_solver.hpp"
+#include "ahm/maps/log_map_solver.hpp"
 #include "ahm/pointcloud/point_cloud_graph.hpp"
 #include "ahm/trimesh/triangle_mesh_graph.hpp"
 #include "mapped_surfaces.hpp"
@@ -37,10 +37,9 @@ TEST(InverseMap, IsTheIdentityOnThePlaneAndNothingBeyond) {
 TEST(InverseMap, AnswersAtVerticesAndOnEdges) {
   const Patch plane = patch(15, 1, flat);
   const InverseMap inverse(plane.surface());
-  for (const Triangle3& t : plane.triangles)
+  for (const Triangle& t : plane.triangles)
     for (int c = 0; c < 3; ++c) {
-      const Vec3 &a = plane.positions[static_cast<std::size_t>(t[c])],
-                 &b = plane.positions[static_cast<std::size_t>(t[(c + 1) % 3])];
+      const Vec3 &a = plane.positions[t[c]], &b = plane.positions[t[(c + 1) % 3]];
       for (double s : {0.0, 0.3, 0.5}) EXPECT_TRUE(inverse.at(a[0] + s * (b[0] - a[0]), a[1] + s * (b[1] - a[1])));
     }
 }
@@ -124,7 +123,7 @@ TEST(InverseMap, AnswersFromValidTrianglesOnly) {
     if (u >= 0.3) EXPECT_FALSE(point);
     if (u < 0.3 - plane.longest_edge && std::hypot(u - hole[0], v - hole[1]) > plane.longest_edge) EXPECT_TRUE(point);
     if (point)
-      for (Index corner : point->vertices) EXPECT_TRUE(plane.valid[static_cast<std::size_t>(corner)]);
+      for (Index corner : point->vertices) EXPECT_TRUE(plane.valid[corner]);
   }
 }
 
@@ -202,7 +201,7 @@ TEST(StarTriangles, OfATriangulationAreItsTriangles) {
   const LogMap map = LogMapSolver(graph).solve(Source::at_vertex(0), {.frames = true});
   const auto triangles = star_triangles(graph, map);
   EXPECT_EQ(triangles.size(), 2U * 24 * 24);
-  for (const Triangle3& t : triangles) {
+  for (const Triangle& t : triangles) {
     const auto position = [&](int c, int axis) {
       return flat_graph.positions[2 * static_cast<std::size_t>(t[c]) + axis];
     };
@@ -216,7 +215,7 @@ TEST(StarTriangles, CoverTheCellsOfAGridAndSpareItsHoles) {
   grid::Grid shape{.shape = {21, 21}, .spacing = {0.1, 0.1}, .origin = {-1, -1}};
   shape.blocked.assign(400, 0);
   for (int y = 4; y < 8; ++y)
-    for (int x = 4; x < 8; ++x) shape.blocked[static_cast<std::size_t>(20 * y + x)] = 1;
+    for (int x = 4; x < 8; ++x) shape.blocked[20 * y + x] = 1;
   const grid::GridGraph graph(shape);
   const LogMap map = LogMapSolver(graph).solve(Source::at_vertex(220), {.frames = true});
   const InverseMap inverse = inverse_map(graph, map);

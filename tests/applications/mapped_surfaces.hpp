@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-#include "ahm/inverse_map.hpp"
+#include "ahm/applications/inverse_map.hpp"
 
 namespace ahm::test {
 
@@ -18,7 +18,7 @@ struct Patch {
   std::vector<double> coordinates;
   std::vector<Vec3> positions, normals;
   std::vector<std::uint8_t> valid;
-  std::vector<Triangle3> triangles;
+  std::vector<Triangle> triangles;
   double longest_edge = 0;  ///< in the plane
 
   MappedSurface surface() const { return {positions, normals, coordinates, valid, triangles}; }
@@ -61,7 +61,7 @@ inline Patch patch(int side, double half, const Immersion& immersion) {
       else
         p.triangles.push_back({a, b, c}), p.triangles.push_back({b, d, c});
     }
-  for (const Triangle3& t : p.triangles)
+  for (const Triangle& t : p.triangles)
     for (int c = 0; c < 3; ++c) {
       const auto i = static_cast<std::size_t>(t[c]), j = static_cast<std::size_t>(t[(c + 1) % 3]);
       p.longest_edge = std::max(p.longest_edge, std::hypot(p.coordinates[2 * i] - p.coordinates[2 * j],

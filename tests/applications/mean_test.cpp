@@ -1,5 +1,5 @@
 // Means and medians: exact where the surface is flat, on every backend, and near the truth on the sphere.
-#include "ahm/mean.hpp"
+#include "ahm/applications/mean.hpp"
 
 #include <gtest/gtest.h>
 

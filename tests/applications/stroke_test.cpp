@@ -1,5 +1,5 @@
 // Stroke-aligned parameterization: what a curve in the plane, on a cylinder and on any flat graph must give.
-#include "ahm/stroke.hpp"
+#include "ahm/applications/stroke.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,14 +8,12 @@
 #include <numbers>
 
 #include "ahm/error.hpp"
-#include "ahm/log_map_solver.hpp"
+#include "ahm/maps/log_map_solver.hpp"
 #include "support/planar_graphs.hpp"
 #include "support/surface_graphs.hpp"
 
 namespace ahm::test {
 namespace {
-
-using Vec2 = std::array<double, 2>;
 
 Vec2 position(const FlatGraph& flat, Index i) {
   return {flat.positions[2 * static_cast<std::size_t>(i)], flat.positions[2 * static_cast<std::size_t>(i) + 1]};
@@ -114,13 +112,11 @@ FlatGraph even_rings(Index around, Index count, double spacing) {
   const auto radius = [&](Index i) { return 1 + i / around * spacing; };
   for (Index i = 0; i < flat.size(); ++i) {
     const double arc = 2 * std::numbers::pi / around * radius(i);
-    g.masses[static_cast<std::size_t>(i)] = arc * spacing;
-    for (Offset e = g.row_begin[static_cast<std::size_t>(i)]; e < g.row_begin[static_cast<std::size_t>(i) + 1]; ++e) {
-      const Index j = g.neighbors[static_cast<std::size_t>(e)];
+    g.masses[i] = arc * spacing;
+    for (Offset e = g.row_begin[i]; e < g.row_begin[static_cast<std::size_t>(i) + 1]; ++e) {
+      const Index j = g.neighbors[e];
       const double between = std::numbers::pi / around * (radius(i) + radius(j));
-      g.weights[static_cast<std::size_t>(e)] = i / around == j / around   ? spacing / arc
-                                               : i % around == j % around ? between / spacing
-                                                                          : 0.0;
+      g.weights[e] = i / around == j / around ? spacing / arc : i % around == j % around ? between / spacing : 0.0;
     }
   }
   return flat;
@@ -211,9 +207,7 @@ TEST(Stroke, OfPointsBesideVerticesIsExactInThePlane) {
   const LogMap map =
       LogMapSolver(graph).solve(stroke_source(points, lengths, {.closed = true, .shape = StrokeShape::circle}));
   for (Index i = 0; i < flat.size(); ++i)
-    for (int a : {0, 1})
-      EXPECT_NEAR(map.coordinates(i)[static_cast<std::size_t>(a)], position(flat, i)[a] - middle[a],
-                  1e-11 * flat.diameter());
+    for (int a : {0, 1}) EXPECT_NEAR(map.coordinates(i)[a], position(flat, i)[a] - middle[a], 1e-11 * flat.diameter());
 }
 
 TEST(Stroke, RefusesWhatIsNoCurve) {

@@ -5,7 +5,7 @@
 #include <thread>
 
 #include "ahm/error.hpp"
-#include "ahm/log_map_solver.hpp"
+#include "ahm/maps/log_map_solver.hpp"
 #include "support/surface_graphs.hpp"
 
 namespace ahm::test {

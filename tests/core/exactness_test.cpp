@@ -2,7 +2,7 @@
 // App. B).
 #include <gtest/gtest.h>
 
-#include "ahm/log_map_solver.hpp"
+#include "ahm/maps/log_map_solver.hpp"
 #include "support/planar_graphs.hpp"
 
 namespace ahm::test {

@@ -1,5 +1,5 @@
 // Batches of local maps against maps of the whole graph.
-#include "ahm/local_maps.hpp"
+#include "ahm/maps/local_maps.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <set>
 
 #include "ahm/error.hpp"
-#include "ahm/log_map_solver.hpp"
+#include "ahm/maps/log_map_solver.hpp"
 #include "support/planar_graphs.hpp"
 #include "support/surface_graphs.hpp"
 

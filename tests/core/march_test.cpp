@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "ahm/error.hpp"
-#include "ahm/log_map_solver.hpp"
-#include "ahm/vector_heat.hpp"
+#include "ahm/fields/vector_heat.hpp"
+#include "ahm/maps/log_map_solver.hpp"
 #include "support/planar_graphs.hpp"
 #include "support/surface_graphs.hpp"
 

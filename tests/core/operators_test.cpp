@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "ahm/error.hpp"
-#include "ahm/heat_operators.hpp"
+#include "ahm/heat/heat_operators.hpp"
 #include "support/surface_graphs.hpp"
 
 namespace ahm::test {
@@ -80,7 +80,8 @@ TEST(HeatOperators, RefuseABrokenGraphBeforeFactoring) {
 TEST(HeatOperators, RefuseTimesThatLeaveNoDigits) {
   const CsrGraph graph(sphere_graph(300));
   EXPECT_NO_THROW(HeatOperators(graph, {.t_coef = 1e4}));
-  for (double t_coef : {1e12, 1e16, 1e25, 1e200}) EXPECT_THROW(HeatOperators(graph, {.t_coef = t_coef}), Error) << t_coef;
+  for (double t_coef : {1e12, 1e16, 1e25, 1e200})
+    EXPECT_THROW(HeatOperators(graph, {.t_coef = t_coef}), Error) << t_coef;
 }
 
 TEST(HeatOperators, RefuseGraphsWithoutDigitsForTheirTime) {

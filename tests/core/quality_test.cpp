@@ -1,5 +1,5 @@
 // The frames of a map, and the quality judged by them.
-#include "ahm/quality.hpp"
+#include "ahm/maps/quality.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "ahm/error.hpp"
-#include "ahm/log_map_solver.hpp"
-#include "ahm/vector_heat.hpp"
+#include "ahm/fields/vector_heat.hpp"
+#include "ahm/maps/log_map_solver.hpp"
 #include "support/planar_graphs.hpp"
 #include "support/surface_graphs.hpp"
 

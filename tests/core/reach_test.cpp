@@ -8,8 +8,8 @@
 #endif
 
 #include "ahm/error.hpp"
-#include "ahm/log_map_solver.hpp"
-#include "ahm/vector_heat.hpp"
+#include "ahm/fields/vector_heat.hpp"
+#include "ahm/maps/log_map_solver.hpp"
 #include "support/planar_graphs.hpp"
 
 namespace ahm::test {
@@ -56,7 +56,8 @@ TEST(Reach, IsNeverOverstatedWhereFactorsHoldLongJumps) {
         for (Index i = 0; i < flat.size(); ++i) {
           if (map.status(i) != Status::ok) continue;
           const auto exact = flat.exact(0, i);
-          ASSERT_NEAR(map.coordinates(i)[0], exact[0], 1e-11 * flat.diameter()) << "t_coef " << t_coef << ", vertex " << i;
+          ASSERT_NEAR(map.coordinates(i)[0], exact[0], 1e-11 * flat.diameter())
+              << "t_coef " << t_coef << ", vertex " << i;
           ASSERT_NEAR(map.coordinates(i)[1], exact[1], 1e-11 * flat.diameter());
         }
       }

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "ahm/error.hpp"
-#include "ahm/log_map_solver.hpp"
+#include "ahm/maps/log_map_solver.hpp"
 #include "support/planar_graphs.hpp"
 #include "support/surface_graphs.hpp"
 

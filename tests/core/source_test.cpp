@@ -1,5 +1,5 @@
 // Sources and options that make no sense are refused with a message that names them.
-#include "ahm/source.hpp"
+#include "ahm/maps/source.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "ahm/error.hpp"
-#include "ahm/log_map_solver.hpp"
+#include "ahm/maps/log_map_solver.hpp"
 #include "support/planar_graphs.hpp"
 #include "support/surface_graphs.hpp"
 

@@ -6,7 +6,7 @@
 #include <numeric>
 #include <random>
 
-#include "ahm/log_map_solver.hpp"
+#include "ahm/maps/log_map_solver.hpp"
 #include "support/surface_graphs.hpp"
 
 namespace ahm::test {

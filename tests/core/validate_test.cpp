@@ -1,12 +1,12 @@
 // Every law of a tangent graph, broken once, is found and named.
-#include "ahm/validate.hpp"
+#include "ahm/graph/validate.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "ahm/csr_graph.hpp"
 #include "ahm/error.hpp"
+#include "ahm/graph/csr_graph.hpp"
 #include "support/planar_graphs.hpp"
 #include "support/surface_graphs.hpp"
 

@@ -6,7 +6,7 @@
 #include <random>
 #include <string>
 
-#include "ahm/log_map_solver.hpp"
+#include "ahm/maps/log_map_solver.hpp"
 #include "ahm/pointcloud/point_cloud_graph.hpp"
 #include "ahm/polymesh/polygon_mesh_graph.hpp"
 #include "ahm/trimesh/triangle_mesh_graph.hpp"
@@ -48,7 +48,7 @@ Map pack(const Values& values) {
 }
 
 Map on_triangles(const Surface& s, const MapOptions& options) {
-  std::vector<trimesh::Triangle> faces;
+  std::vector<Triangle> faces;
   std::mt19937 random(2);
   for (Index j = 0; j + 1 < s.side; ++j)
     for (Index i = 0; i + 1 < s.side; ++i) {

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
+#include "ahm/fields/vector_heat.hpp"
 #include "ahm/grid/grid_graph.hpp"
-#include "ahm/vector_heat.hpp"
 #include "support/surface_graphs.hpp"
 
 namespace ahm::test {

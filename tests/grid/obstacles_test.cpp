@@ -4,9 +4,9 @@
 #include <cmath>
 #include <random>
 
-#include "ahm/components.hpp"
+#include "ahm/fields/vector_heat.hpp"
+#include "ahm/graph/components.hpp"
 #include "ahm/grid/grid_graph.hpp"
-#include "ahm/vector_heat.hpp"
 
 namespace ahm::test {
 namespace {
@@ -28,12 +28,11 @@ Grid maze(Index rooms, Index wide, unsigned seed = 1) {
   std::vector<std::array<Index, 2>> path{{0, 0}};
   while (!path.empty()) {
     const auto [x, y] = path.back();
-    seen[static_cast<std::size_t>(y * rooms + x)] = true;
+    seen[y * rooms + x] = true;
     open(x * step, y * step, x * step + wide, y * step + wide);
     std::vector<std::array<Index, 2>> next;
     for (const auto& [u, v] : {std::array{x + 1, y}, {x - 1, y}, {x, y + 1}, {x, y - 1}})
-      if (u >= 0 && v >= 0 && u < rooms && v < rooms && !seen[static_cast<std::size_t>(v * rooms + u)])
-        next.push_back({u, v});
+      if (u >= 0 && v >= 0 && u < rooms && v < rooms && !seen[v * rooms + u]) next.push_back({u, v});
     if (next.empty()) {
       path.pop_back();
       continue;
@@ -96,7 +95,7 @@ TEST(GridObstacles, AreGoneRoundByHeat) {
   const Index below = grid.vertex(std::array<Index, 2>{2, 5}), above = grid.vertex(std::array<Index, 2>{25, 16}),
               here = grid.vertex(std::array<Index, 2>{2, 14});
   const auto field = extend_scalar(solver, std::array{below, above}, std::array{0.0, 1.0});
-  EXPECT_GT(field.values[static_cast<std::size_t>(here)], 0.99);
+  EXPECT_GT(field.values[here], 0.99);
 }
 
 TEST(GridObstacles, EqualASmallerGridWhereTheyFillTheRest) {

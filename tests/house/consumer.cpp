@@ -1,5 +1,5 @@
 // The least program on top of libahm: the log map of a flat grid of points.
-#include <ahm/log_map_solver.hpp>
+#include <ahm/maps/log_map_solver.hpp>
 #include <ahm/pointcloud/point_cloud_graph.hpp>
 #include <cmath>
 #include <cstdio>

@@ -11,8 +11,6 @@
 namespace ahm::io::test {
 namespace {
 
-std::size_t at(Offset i) { return static_cast<std::size_t>(i); }
-
 /// Charts of one turned rectangle each, as two triangles, all sizes from 0.02 to 1.
 struct Charts {
   Atlas atlas;
@@ -31,7 +29,7 @@ struct Charts {
       const std::array<std::array<double, 2>, 4> corner{{{0, 0}, {a, 0}, {a, b}, {0, b}}};
       atlas.charts.push_back({k, {2 * k, 2 * k + 1}});
       for (int which : {0, 1, 2, 0, 2, 3}) {
-        const auto [p, q] = corner[at(which)];
+        const auto [p, q] = corner[which];
         atlas.coordinates.insert(atlas.coordinates.end(), {x + c * p - s * q, y + s * p + c * q});
         vertices.push_back(4 * k + which);
       }

@@ -60,8 +60,7 @@ TEST(ImageSample, IsTheMiddleOfAPixelAndLinearBetween) {
   for (int y = 0; y < 2; ++y)
     for (int x = 0; x < 4; ++x)
       for (int c = 0; c < 4; ++c)
-        EXPECT_NEAR(image.sample((x + 0.5) / 4, 1 - (y + 0.5) / 2)[static_cast<std::size_t>(c)],
-                    image.pixel(x, y)[c] / 255.0, 1e-12);
+        EXPECT_NEAR(image.sample((x + 0.5) / 4, 1 - (y + 0.5) / 2)[c], image.pixel(x, y)[c] / 255.0, 1e-12);
   EXPECT_NEAR(image.sample(0.4, 0.6)[0] * 255, 40 * (0.4 * 4 - 0.5) + 10 * (0.4 * 2 - 0.5), 1e-12);
   EXPECT_EQ(image.sample(-3, 5), image.sample(0, 1));
   // What is transparent does not lend its colour.
@@ -104,10 +103,8 @@ TEST_F(Textured, ObjReadsBackWithItsMaterialsAndTexture) {
   EXPECT_EQ(uv, shape.uv);
   ASSERT_EQ(corners.size(), shape.vertices.size());
   for (std::size_t c = 0; c < corners.size(); ++c) {
-    EXPECT_EQ(back.points[static_cast<std::size_t>(corners[c])],
-              shape.points[static_cast<std::size_t>(shape.vertices[c])]);
-    EXPECT_EQ(back.points[static_cast<std::size_t>(back.face_vertices[c])],
-              shape.points[static_cast<std::size_t>(shape.vertices[c])]);
+    EXPECT_EQ(back.points[corners[c]], shape.points[shape.vertices[c]]);
+    EXPECT_EQ(back.points[back.face_vertices[c]], shape.points[shape.vertices[c]]);
   }
 }
 
@@ -173,7 +170,7 @@ TEST_F(Textured, GlbReadsBackFarFromTheOriginToo) {
       const auto c = static_cast<std::size_t>(corners[k]);
       for (std::size_t a = 0; a < 3; ++a) {
         EXPECT_NEAR(positions[3 * indices[k] + a] + node["translation"].at(a).get<double>(),
-                    shape.points[static_cast<std::size_t>(shape.vertices[c])][a], 2e-7);
+                    shape.points[shape.vertices[c]][a], 2e-7);
         EXPECT_EQ(normals[3 * indices[k] + a], a == 2 ? 1.f : 0.f);
       }
       EXPECT_EQ(uv[2 * indices[k]], static_cast<float>(shape.uv[2 * c]));

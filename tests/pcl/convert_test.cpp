@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <limits>
 
-#include "ahm/log_map_solver.hpp"
+#include "ahm/maps/log_map_solver.hpp"
 #include "ahm/pcl/search.hpp"
 #include "clouds.hpp"
 

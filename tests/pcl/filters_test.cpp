@@ -35,13 +35,12 @@ TEST(VoxelGrid, EveryVoxelHasOneRepresentativeOfItsOwn) {
     ASSERT_LT(at(row), reduced.points.size());
     used.insert(row);
     // Both lie in the same box, up to single precision.
-    for (std::size_t a = 0; a < 3; ++a)
-      EXPECT_LE(std::abs(points[i][a] - reduced.points[at(row)][a]), size * (1 + 1e-5));
+    for (std::size_t a = 0; a < 3; ++a) EXPECT_LE(std::abs(points[i][a] - reduced.points[row][a]), size * (1 + 1e-5));
   }
   EXPECT_EQ(used.size(), reduced.points.size());
   for (std::size_t row = 0; row < reduced.points.size(); ++row) {
-    EXPECT_EQ(reduced.points[row], points[at(reduced.point_of_row[row])]);
-    EXPECT_EQ(reduced.row_of_point[at(reduced.point_of_row[row])], static_cast<Index>(row));
+    EXPECT_EQ(reduced.points[row], points[reduced.point_of_row[row]]);
+    EXPECT_EQ(reduced.row_of_point[reduced.point_of_row[row]], static_cast<Index>(row));
   }
 }
 
@@ -56,7 +55,7 @@ TEST(VoxelGrid, RepresentativeIsTheMemberNearestToTheCentroid) {
       for (std::size_t a = 0; a < 3; ++a) centroid[a] += points[i][a] / static_cast<double>(list.size());
     double best = std::numeric_limits<double>::infinity();
     for (std::size_t i : list) best = std::min(best, squared_distance(points[i], centroid));
-    EXPECT_NEAR(std::sqrt(squared_distance(reduced.points[at(row)], centroid)), std::sqrt(best), 1e-6);
+    EXPECT_NEAR(std::sqrt(squared_distance(reduced.points[row], centroid)), std::sqrt(best), 1e-6);
   }
 }
 

@@ -35,7 +35,7 @@ void expect_agrees(const std::vector<Vec3>& points, double extent, std::size_t k
     EXPECT_EQ(index[0], static_cast<Index>(q));
     EXPECT_TRUE(std::is_sorted(squared.begin(), squared.begin() + static_cast<std::ptrdiff_t>(exact.size())));
     for (std::size_t i = 0; i < exact.size(); ++i) {
-      EXPECT_EQ(squared[i], squared_distance(points[q], points[static_cast<std::size_t>(index[i])]));
+      EXPECT_EQ(squared[i], squared_distance(points[q], points[index[i]]));
       EXPECT_NEAR(std::sqrt(squared[i]), std::sqrt(exact[i]), 4e-7 * extent);
     }
   }

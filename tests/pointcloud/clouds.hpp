@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "ahm/log_map_solver.hpp"
+#include "ahm/maps/log_map_solver.hpp"
 #include "ahm/pointcloud/point_cloud_graph.hpp"
 
 namespace ahm::test {

@@ -155,7 +155,8 @@ TEST(CloudFaults, AStrayPointFarAwayCostsTheOthersNoDigit) {
     const PointMap map = solved.map(3);
     EXPECT_NE(map.status.back(), Status::ok);
     for (std::size_t i = 0; i < cloud.points.size(); ++i)
-      ASSERT_NEAR(map.distance[i], std::hypot(cloud.plane[i][0] - cloud.plane[3][0], cloud.plane[i][1] - cloud.plane[3][1]), 1e-11)
+      ASSERT_NEAR(map.distance[i],
+                  std::hypot(cloud.plane[i][0] - cloud.plane[3][0], cloud.plane[i][1] - cloud.plane[3][1]), 1e-11)
           << far;
   }
 }

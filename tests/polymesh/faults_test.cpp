@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "ahm/error.hpp"
+#include "ahm/graph/validate.hpp"
 #include "ahm/trimesh/triangle_mesh_graph.hpp"
-#include "ahm/validate.hpp"
 #include "polygons.hpp"
 
 namespace ahm::test {

@@ -67,7 +67,7 @@ TEST(PolygonLaplacian, IsTheCotanLaplacianOnTriangles) {
   Polygons sphere = quad_grid(12, true);  // bent
   for (Vec3& p : sphere.positions) p[2] += 0.3 * p[0] * p[0] - 0.2 * p[0] * p[1];
   for (const Polygons& mesh : {grid, sphere}) {
-    std::vector<trimesh::Triangle> triangles;
+    std::vector<Triangle> triangles;
     for (Index f = 0; f < mesh.faces(); ++f) triangles.push_back({mesh.face(f)[0], mesh.face(f)[1], mesh.face(f)[2]});
     const auto cotan = trimesh::TriangleMeshGraph::build(mesh.positions, triangles,
                                                          {.intrinsic_delaunay = false, .clamp_weights = false});
@@ -80,7 +80,7 @@ TEST(PolygonLaplacian, IsTheCotanLaplacianOnTriangles) {
 
 TEST(PolygonLaplacian, GivesTheMapOfTheTriangleBackendOnThePlane) {
   const Polygons mesh = quad_grid(20, true);
-  std::vector<trimesh::Triangle> triangles;
+  std::vector<Triangle> triangles;
   for (Index f = 0; f < mesh.faces(); ++f) triangles.push_back({mesh.face(f)[0], mesh.face(f)[1], mesh.face(f)[2]});
   const auto other = trimesh::TriangleMeshGraph::build(mesh.positions, triangles, {.intrinsic_delaunay = false});
   const auto surface = mesh.graph();

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "ahm/log_map_solver.hpp"
+#include "ahm/maps/log_map_solver.hpp"
 #include "ahm/polymesh/polygon_mesh_graph.hpp"
 
 namespace ahm::test {

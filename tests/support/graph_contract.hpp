@@ -23,9 +23,9 @@
 #include <thread>
 #include <vector>
 
-#include "ahm/log_map_solver.hpp"
-#include "ahm/validate.hpp"
-#include "ahm/vector_heat.hpp"
+#include "ahm/fields/vector_heat.hpp"
+#include "ahm/graph/validate.hpp"
+#include "ahm/maps/log_map_solver.hpp"
 #include "support/planar_graphs.hpp"
 #include "support/reference_operator.hpp"
 #include "support/surface_graphs.hpp"
@@ -220,8 +220,7 @@ TYPED_TEST_P(GraphContract, DoesNotDependOnTheNumbering) {
                  same = map_of(other, Source::at_vertex(order[3]), variant);
     for (Index i = 0; i < graph.size(); ++i)
       for (int a = 0; a < graph.dimension(); ++a)
-        ASSERT_NEAR(same.coordinates(order[static_cast<std::size_t>(i)])[a], map.coordinates(i)[a],
-                    1e-11 * largest(map.coordinates()));
+        ASSERT_NEAR(same.coordinates(order[i])[a], map.coordinates(i)[a], 1e-11 * largest(map.coordinates()));
   }
 }
 

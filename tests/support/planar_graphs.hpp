@@ -5,7 +5,7 @@
 #include <random>
 #include <vector>
 
-#include "ahm/csr_graph.hpp"
+#include "ahm/graph/csr_graph.hpp"
 
 namespace ahm::test {
 

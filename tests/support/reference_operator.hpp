@@ -5,8 +5,8 @@
 
 #include <vector>
 
-#include "ahm/log_map.hpp"
-#include "ahm/tangent_graph.hpp"
+#include "ahm/graph/tangent_graph.hpp"
+#include "ahm/maps/log_map.hpp"
 
 namespace ahm::test {
 

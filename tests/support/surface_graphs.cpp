@@ -1,13 +1,13 @@
 #include "support/surface_graphs.hpp"
 
-#include "support/planar_graphs.hpp"
-
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
 #include <set>
+
+#include "support/planar_graphs.hpp"
 
 namespace ahm::test {
 
@@ -71,7 +71,8 @@ CsrGraphData bent_lattice(Index side, unsigned seed) {
       const Index j = g.neighbors[e];
       if (j < i) continue;
       Block R_ji(g.transports.data() + 9 * e);
-      R_ji = (Eigen::AngleAxisd(angle(random), Eigen::Vector3d::UnitX()) * Eigen::AngleAxisd(angle(random), Eigen::Vector3d::UnitZ()))
+      R_ji = (Eigen::AngleAxisd(angle(random), Eigen::Vector3d::UnitX()) *
+              Eigen::AngleAxisd(angle(random), Eigen::Vector3d::UnitZ()))
                  .toRotationMatrix() *
              Eigen::Matrix3d(R_ji);
       Offset back = g.row_begin[j];
@@ -119,12 +120,13 @@ Turned with_frames_turned(const CsrGraphData& g, unsigned seed) {
   using RowMajor = Eigen::Matrix<double, -1, -1, Eigen::RowMajor>;
   for (std::size_t i = 0; i < g.masses.size(); ++i)
     for (Offset e = g.row_begin[i]; e < g.row_begin[i + 1]; ++e) {
-      const Eigen::MatrixXd& Q_j = Q[static_cast<std::size_t>(g.neighbors[e])];
+      const Eigen::MatrixXd& Q_j = Q[g.neighbors[e]];
       Eigen::Map<Eigen::VectorXd> log(turned.data.logs.data() + e * d, d);
       log = (Q[i] * log).eval();
       if (rotations) {
         double* R = turned.data.transports.data() + 2 * e;
-        const Eigen::Matrix2d block = Q[i] * (Eigen::Matrix2d() << R[0], -R[1], R[1], R[0]).finished() * Q_j.transpose();
+        const Eigen::Matrix2d block =
+            Q[i] * (Eigen::Matrix2d() << R[0], -R[1], R[1], R[0]).finished() * Q_j.transpose();
         R[0] = block(0, 0), R[1] = block(1, 0);
       } else {
         Eigen::Map<RowMajor> R(turned.data.transports.data() + e * d * d, d, d);

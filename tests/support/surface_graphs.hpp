@@ -2,7 +2,7 @@
 /// Curved graphs for tests that compare two ways of solving the same problem.
 #pragma once
 
-#include "ahm/csr_graph.hpp"
+#include "ahm/graph/csr_graph.hpp"
 
 namespace ahm::test {
 

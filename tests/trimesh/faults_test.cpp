@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "ahm/error.hpp"
-#include "ahm/validate.hpp"
+#include "ahm/graph/validate.hpp"
 #include "meshes.hpp"
 
 namespace ahm::test {
@@ -281,7 +281,7 @@ TEST(MeshFaults, EdgeLengthsOverManyOrdersOfMagnitude) {
 }
 
 TEST(MeshFaults, BadEdgeLengths) {
-  const std::vector<trimesh::Triangle> faces{{0, 1, 2}, {1, 0, 3}};
+  const std::vector<Triangle> faces{{0, 1, 2}, {1, 0, 3}};
   const double nan = std::numeric_limits<double>::quiet_NaN();
   using Lengths = std::vector<std::array<double, 3>>;
   for (const Lengths& lengths : {Lengths{{1, 1, 1}}, Lengths{{1, 1, 1}, {nan, 1, 1}}, Lengths{{1, 1, 1}, {1, 1, -1}},

@@ -14,7 +14,6 @@ namespace ahm::test {
 namespace {
 
 using std::numbers::pi;
-using trimesh::Triangle;
 
 /// A plane in general position.
 Vec3 tilted(double u, double v) {

@@ -5,14 +5,14 @@
 #include <array>
 #include <vector>
 
-#include "ahm/log_map_solver.hpp"
+#include "ahm/maps/log_map_solver.hpp"
 #include "ahm/trimesh/triangle_mesh_graph.hpp"
 
 namespace ahm::test {
 
 struct Mesh {
   std::vector<Vec3> positions;
-  std::vector<trimesh::Triangle> faces;
+  std::vector<Triangle> faces;
   /// Position in the plane, counter-clockwise like the faces, for flat meshes and meshes bent from the plane.
   std::vector<std::array<double, 2>> plane;
 
@@ -45,7 +45,7 @@ Mesh moebius_mesh(Index around, Index across);
 /// lengths.
 struct PaperBand {
   Index around = 0, across = 0;  ///< quads
-  std::vector<trimesh::Triangle> faces;
+  std::vector<Triangle> faces;
   std::vector<std::array<double, 3>> lengths;
   /// Positions of corner s of face f in the strip, without wrapping round: 3 per face.
   std::vector<std::array<double, 2>> corners;

@@ -10,7 +10,6 @@
 namespace ahm::test {
 namespace {
 
-using trimesh::Triangle;
 using trimesh::VertexMap;
 
 /// A patch of a bumpy height field, with non-Delaunay edges.

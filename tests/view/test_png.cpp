@@ -47,7 +47,7 @@ struct Pixels {
       at.push_back({data[3 * k], data[3 * k + 1], data[3 * k + 2]});
     stbi_image_free(data);
   }
-  const Rgb& operator()(int x, int y) const { return at[static_cast<std::size_t>(y * width + x)]; }
+  const Rgb& operator()(int x, int y) const { return at[y * width + x]; }
   template <class Predicate>
   int count(const Predicate& predicate) const {
     return static_cast<int>(std::count_if(at.begin(), at.end(), predicate));

@@ -39,7 +39,7 @@ Range robust_range(std::vector<double> values) {
   const auto quantile = [&](double q) {
     const auto k = static_cast<std::ptrdiff_t>(std::lround(q * static_cast<double>(values.size() - 1)));
     std::nth_element(values.begin(), values.begin() + k, values.end());
-    return values[static_cast<std::size_t>(k)];
+    return values[k];
   };
   const double low = quantile(0), trimmed_low = quantile(0.01), trimmed_high = quantile(0.99), high = quantile(1);
   const double slack = 0.15 * (trimmed_high - trimmed_low);
@@ -52,8 +52,7 @@ Eigen::AlignedBox3d robust_box(const Scene& scene, const std::vector<Index>& poi
   Vector3d low, high;
   std::vector<double> values(points.size());
   for (int k = 0; k < 3; ++k) {
-    for (std::size_t i = 0; i < points.size(); ++i)
-      values[i] = as_vector(scene.points[static_cast<std::size_t>(points[i])]).dot(axes.col(k));
+    for (std::size_t i = 0; i < points.size(); ++i) values[i] = as_vector(scene.points[points[i]]).dot(axes.col(k));
     const Range range = robust_range(values);
     low[k] = range.low;
     high[k] = range.high;
@@ -122,7 +121,7 @@ bool has_coordinate(const Scene& scene, Index point) {
 
 std::vector<Index> shown_points(const Scene& scene) {
   std::vector<bool> used(scene.points.size(), scene.face_vertices.empty());
-  for (const Index vertex : scene.face_vertices) used[static_cast<std::size_t>(vertex)] = true;
+  for (const Index vertex : scene.face_vertices) used[vertex] = true;
   std::vector<Index> shown;
   for (std::size_t i = 0; i < scene.points.size(); ++i)
     if (used[i] && as_vector(scene.points[i]).allFinite()) shown.push_back(static_cast<Index>(i));
@@ -155,15 +154,14 @@ Camera choose_camera(const Scene& scene, const std::vector<Index>& shown, const 
   view_box = {(view_box.min() - shift) / camera.scale, (view_box.max() - shift) / camera.scale};
   std::vector<Vector3d> points;
   for (const Index i : framed) {
-    const Vector3d p = axes.transpose() * camera.to_scene(scene.points[static_cast<std::size_t>(i)]);
+    const Vector3d p = axes.transpose() * camera.to_scene(scene.points[i]);
     if (view_box.contains(p)) points.push_back(p);
   }
   if (points.empty()) points.push_back(view_box.center());
   fit(camera, points, view_box, static_cast<double>(options.width) / options.height, is_local ? 1.35 : 1.08);
 
   double deepest = 0;
-  for (const Index i : shown)
-    deepest = std::max(deepest, -camera.to_view(camera.to_scene(scene.points[static_cast<std::size_t>(i)])).z());
+  for (const Index i : shown) deepest = std::max(deepest, -camera.to_view(camera.to_scene(scene.points[i])).z());
   camera.near_plane = 0.02 * camera.distance;
   camera.far_plane = std::clamp(1.1 * deepest, 2 * camera.distance, 1e4 * camera.distance);
   return camera;

@@ -58,7 +58,7 @@ std::size_t blockers(const Scene& scene, const std::vector<Index>& shown, const 
     const Vector3d place = camera.to_scene(position);
     const std::size_t stride = shown.size() / sample_size + 1;
     for (std::size_t k = 0; k < shown.size(); k += stride) {
-      const Vector3d d = camera.to_scene(scene.points[static_cast<std::size_t>(shown[k])]) - place;
+      const Vector3d d = camera.to_scene(scene.points[shown[k]]) - place;
       const double along = d.dot(direction);
       if (along > start && (d - along * direction).squaredNorm() < radius * radius) ++count;
     }

@@ -17,12 +17,13 @@ namespace ahm::view {
 // anything with VTK does) would otherwise get libGL's functions, which know nothing of this context.
 #define AHM_GL_FUNCTIONS(X)                                                                                            \
   X(glActiveTexture)                                                                                                   \
-  X(glAttachShader) X(glBindBuffer) X(glBindFramebuffer) X(glBindRenderbuffer) X(glBindTexture) X(glBindVertexArray)   \
-      X(glBlendFunc) X(glBufferData) X(glCheckFramebufferStatus) X(glClear) X(glClearColor) X(glCompileShader)         \
-          X(glCreateProgram) X(glCreateShader) X(glDeleteBuffers) X(glDeleteFramebuffers) X(glDeleteProgram)           \
-              X(glDeleteShader) X(glDeleteTextures) X(glDeleteVertexArrays) X(glDepthFunc) X(glDepthMask) X(glDisable) \
-                  X(glDrawArrays) X(glDrawBuffers) X(glDrawElements) X(glEnable) X(glEnableVertexAttribArray)          \
-                      X(glFinish) X(glFramebufferTexture2D) X(glGenBuffers) X(glGenFramebuffers) X(glGenTextures)      \
+  X(glAttachShader)                                                                                                    \
+  X(glBindBuffer) X(glBindFramebuffer) X(glBindRenderbuffer) X(glBindTexture) X(glBindVertexArray) X(glBlendFunc)      \
+      X(glBufferData) X(glCheckFramebufferStatus) X(glClear) X(glClearColor) X(glCompileShader) X(glCreateProgram)     \
+          X(glCreateShader) X(glDeleteBuffers) X(glDeleteFramebuffers) X(glDeleteProgram) X(glDeleteShader)            \
+              X(glDeleteTextures) X(glDeleteVertexArrays) X(glDepthFunc) X(glDepthMask) X(glDisable) X(glDrawArrays)   \
+                  X(glDrawBuffers) X(glDrawElements) X(glEnable) X(glEnableVertexAttribArray) X(glFinish)              \
+                      X(glFramebufferTexture2D) X(glGenBuffers) X(glGenFramebuffers) X(glGenTextures)                  \
                           X(glGenVertexArrays) X(glGetError) X(glGetIntegerv) X(glGetProgramInfoLog) X(glGetProgramiv) \
                               X(glGetShaderInfoLog) X(glGetShaderiv) X(glGetUniformLocation) X(glLinkProgram)          \
                                   X(glPixelStorei) X(glReadBuffer) X(glReadPixels) X(glShaderSource) X(glTexImage2D)   \

@@ -22,13 +22,13 @@ std::vector<Cell> cells_of(const Scene& scene, const std::vector<Index>& shown) 
   std::vector<Index> order;
   for (const Index i : shown)
     if (has_coordinate(scene, i)) order.push_back(i);
-  const auto label = [&](Index i) { return scene.labels[static_cast<std::size_t>(i)]; };
+  const auto label = [&](Index i) { return scene.labels[i]; };
   std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return label(a) < label(b); });
   std::vector<Cell> cells;
   for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) {
     Vector3d sum = Vector3d::Zero();
     for (; end < order.size() && label(order[end]) == label(order[begin]); ++end)
-      sum += as_vector(scene.points[static_cast<std::size_t>(order[end])]);
+      sum += as_vector(scene.points[order[end]]);
     cells.push_back({label(order[begin]), sum / static_cast<double>(end - begin)});
   }
   return cells;
@@ -41,7 +41,7 @@ std::vector<double> colours_of(const std::vector<Cell>& cells) {
     std::array<double, colours> nearest;
     nearest.fill(std::numeric_limits<double>::infinity());
     for (std::size_t other = 0; other < c; ++other) {
-      double& distance = nearest[static_cast<std::size_t>(result[other])];
+      double& distance = nearest[result[other]];
       distance = std::min(distance, (cells[other].middle - cells[c].middle).squaredNorm());
     }
     result.push_back(static_cast<double>(std::max_element(nearest.begin(), nearest.end()) - nearest.begin()));
@@ -67,7 +67,7 @@ Paint make_paint(const Scene& scene, const std::vector<Index>& shown, const Pict
     }
     const auto cell = std::lower_bound(cells.begin(), cells.end(), scene.labels[i],
                                        [](const Cell& c, Index label) { return c.label < label; });
-    paint.uv[i] = {colour[static_cast<std::size_t>(cell - cells.begin())], scene.distance[i] / paint.ring_width};
+    paint.uv[i] = {colour[cell - cells.begin()], scene.distance[i] / paint.ring_width};
   }
   return paint;
 }

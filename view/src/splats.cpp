@@ -100,7 +100,7 @@ std::vector<float> limited_radii(const std::vector<Local>& locals) {
 Drawable make_splats(const Scene& scene, const std::vector<Index>& shown, const Camera& camera, const Paint& paint) {
   std::vector<Vector3d> points;
   points.reserve(shown.size());
-  for (const Index i : shown) points.push_back(camera.to_scene(scene.points[static_cast<std::size_t>(i)]));
+  for (const Index i : shown) points.push_back(camera.to_scene(scene.points[i]));
 
   const std::size_t n = points.size();
   Drawable out;

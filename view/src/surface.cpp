@@ -10,13 +10,12 @@ namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-using Triangle = std::array<Index, 3>;
 
 constexpr double crease_cosine = 0.7;  // faces that meet at more than 45 degrees keep a sharp edge
 
 Vector3d area_vector(const std::vector<Vector3d>& points, const Triangle& t) {
   const auto& [a, b, c] = t;
-  const auto at = [&](Index i) -> const Vector3d& { return points[static_cast<std::size_t>(i)]; };
+  const auto at = [&](Index i) -> const Vector3d& { return points[i]; };
   return (at(b) - at(a)).cross(at(c) - at(a)) / 2;
 }
 
@@ -58,7 +57,7 @@ class SurfaceBuilder {
                  end = static_cast<std::size_t>(scene.face_begin[f + 1]);
       const std::span<const Index> polygon = scene.face_vertices.subspan(begin, end - begin);
       bool usable = polygon.size() >= 3;
-      for (const Index i : polygon) usable = usable && points_[static_cast<std::size_t>(i)].allFinite();
+      for (const Index i : polygon) usable = usable && points_[i].allFinite();
       if (usable) triangulate(points_, polygon, triangles_);
     }
   }
@@ -89,7 +88,7 @@ class SurfaceBuilder {
     triangle_of_corner_.resize(3 * triangles_.size());
     std::vector<std::size_t> next(corner_begin_.begin(), corner_begin_.end() - 1);
     for (std::size_t t = 0; t < triangles_.size(); ++t)
-      for (const Index i : triangles_[t]) triangle_of_corner_[next[static_cast<std::size_t>(i)]++] = t;
+      for (const Index i : triangles_[t]) triangle_of_corner_[next[i]++] = t;
   }
 
   /// Area-weighted mean of the normals around the corner that are within the crease angle of this triangle's own.

@@ -58,7 +58,7 @@ class Canvas {
         Vector3d w(cross(b - p, c - p) / area, cross(c - p, a - p) / area, 0);
         w.z() = 1 - w.x() - w.y();
         if (!(w.minCoeff() >= 0)) continue;
-        for (int k = 0; k < 3; ++k) w[k] *= t[static_cast<std::size_t>(k)].pixel.z();  // perspective
+        for (int k = 0; k < 3; ++k) w[k] *= t[k].pixel.z();  // perspective
         const double nearness = w.sum();
         if (!is_seen(x, y, nearness)) continue;
         w /= nearness;
@@ -111,8 +111,7 @@ class Canvas {
       shade = 0.4 + 0.6 * std::max(0.0, facing * normal.dot(light) / norm);
     }
     Eigen::Vector3f& pixel = color_[at(x, y)];
-    for (int c = 0; c < 3; ++c)
-      pixel[c] = static_cast<float>((1 - opacity) * pixel[c] + opacity * shade * color[static_cast<std::size_t>(c)]);
+    for (int c = 0; c < 3; ++c) pixel[c] = static_cast<float>((1 - opacity) * pixel[c] + opacity * shade * color[c]);
     if (!transparent) nearness_[at(x, y)] = static_cast<float>(nearness);
   }
 
@@ -161,7 +160,7 @@ class Gathered {
       if (faces_.empty()) faces_.push_back(0);
       for (std::size_t f = 0; f + 1 < part.face_begin.size(); ++f) {
         for (Offset c = part.face_begin[f]; c < part.face_begin[f + 1]; ++c)
-          vertices_.push_back(first + part.face_vertices[static_cast<std::size_t>(c)]);
+          vertices_.push_back(first + part.face_vertices[c]);
         faces_.push_back(static_cast<Offset>(vertices_.size()));
       }
     }

@@ -6,8 +6,8 @@
 #include <limits>
 #include <string>
 
-#include "ahm/detail/text.hpp"
 #include "ahm/error.hpp"
+#include "ahm/util/text.hpp"
 
 namespace ahm::grid {
 namespace {
@@ -99,7 +99,7 @@ bool GridGraph::is_free(const Steps& cell) const {
     if (cell[a] < 0 || cell[a] + 1 >= grid_.shape[a]) return false;
     number = number * (grid_.shape[a] - 1) + cell[a];
   }
-  return grid_.blocked.empty() || grid_.blocked[static_cast<std::size_t>(number)] == 0;
+  return grid_.blocked.empty() || grid_.blocked[number] == 0;
 }
 
 std::size_t GridGraph::pattern_at(Index vertex) const {

@@ -5,8 +5,8 @@
 #include <limits>
 #include <string>
 
-#include "ahm/detail/text.hpp"
 #include "ahm/error.hpp"
+#include "ahm/util/text.hpp"
 
 namespace ahm::pointcloud {
 namespace {
@@ -39,8 +39,9 @@ int normalize(std::vector<Vec3>& points) {
     const double middle = median(values);
     for (Vec3& p : points) p[axis] -= middle;
   }
-  std::transform(points.begin(), points.end(), values.begin(),
-                 [](const Vec3& p) { return std::max({std::abs(p[0]), std::abs(p[1]), std::abs(p[2])}); });
+  std::transform(points.begin(), points.end(), values.begin(), [](const Vec3& p) {
+    return std::max({std::abs(p[0]), std::abs(p[1]), std::abs(p[2])});
+  });
   const double spread = points.empty() ? 0.0 : median(values);
   const int second = spread > 0 ? std::ilogb(spread) : 0;
   scale(points, -second);

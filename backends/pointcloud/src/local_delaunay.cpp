@@ -4,7 +4,7 @@
 #include <atomic>
 #include <cmath>
 
-#include "ahm/detail/parallel.hpp"
+#include "ahm/util/parallel.hpp"
 #include "vec3.hpp"
 
 namespace ahm::pointcloud {
@@ -133,7 +133,7 @@ std::vector<Triangle> local_delaunay(const CleanPoints& cloud, const Neighborhoo
   std::atomic<Offset> too_long{0}, other_sheet{0};
   detail::parallel_chunks(n, chunk, options.threads, [&](Offset begin, Offset end) {
     StarTriangulator star(cloud, neighborhoods, planes, oriented, options.max_edge_ratio);
-    auto& part = parts[static_cast<std::size_t>(begin / chunk)];
+    auto& part = parts[begin / chunk];
     part.reserve(static_cast<std::size_t>(end - begin) * 6);
     for (Offset i = begin; i < end; ++i)
       if (planes.has_plane(static_cast<Index>(i))) star.triangulate(static_cast<Index>(i), part);

@@ -9,8 +9,6 @@
 
 namespace ahm::pointcloud {
 
-using Triangle = std::array<Index, 3>;
-
 /// Triangulates the neighbours of each point, projected to its tangent plane, and keeps the triangles at the point
 /// itself. A triangle found from several of its corners is listed once, corners ascending, triangles in lexicographic
 /// order.

@@ -7,10 +7,10 @@
 #include <string>
 #include <utility>
 
-#include "ahm/components.hpp"
-#include "ahm/detail/stopwatch.hpp"
-#include "ahm/detail/text.hpp"
 #include "ahm/error.hpp"
+#include "ahm/graph/components.hpp"
+#include "ahm/util/stopwatch.hpp"
+#include "ahm/util/text.hpp"
 #include "clean_points.hpp"
 #include "local_delaunay.hpp"
 #include "orientation.hpp"
@@ -176,8 +176,7 @@ PointCloudGraph PointCloudGraph::build(std::span<const Vec3> points, std::span<c
     if (cloud.clean_of_input[i] >= 0) vertex_of_point[i] = vertex_of_clean[cloud.clean_of_input[i]];
   options.progress.step("graph", 1.0);
   report.seconds_graph = stopwatch.lap();
-  return PointCloudGraph(std::move(graph), std::move(report), std::move(vertex_of_point),
-                         std::move(point_of_vertex));
+  return PointCloudGraph(std::move(graph), std::move(report), std::move(vertex_of_point), std::move(point_of_vertex));
 } catch (const std::bad_alloc&) {
   throw ResourceExhausted("out of memory while building the graph of a cloud of " + std::to_string(points.size()) +
                           " points");
@@ -222,8 +221,9 @@ Index PointCloudGraph::nearest_point(const Vec3& position) const {
 
 PointMap PointCloudGraph::on_points(const LogMap& map) const {
   if (map.size() != graph_->size() || map.dimension() != 2)
-    throw InvalidArgument("on_points: the map has " + std::to_string(map.size()) + " vertices, this cloud's graph has " +
-                          std::to_string(graph_->size()) + ": it belongs to another graph");
+    throw InvalidArgument("on_points: the map has " + std::to_string(map.size()) +
+                          " vertices, this cloud's graph has " + std::to_string(graph_->size()) +
+                          ": it belongs to another graph");
   const std::size_t n = vertex_of_point_.size();
   PointMap result{std::vector<double>(n, nan), std::vector<double>(n, nan), std::vector<double>(n, nan),
                   std::vector<double>(n, nan), std::vector<Status>(n, Status::removed)};

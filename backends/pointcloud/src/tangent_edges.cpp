@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "ahm/detail/parallel.hpp"
+#include "ahm/util/parallel.hpp"
 #include "vec3.hpp"
 
 namespace ahm::pointcloud {

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "ahm/csr_graph.hpp"
+#include "ahm/graph/csr_graph.hpp"
 #include "tangent_planes.hpp"
 #include "tufted_cover.hpp"
 

@@ -3,12 +3,12 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <string>
 #include <iterator>
+#include <string>
 #include <utility>
 
-#include "ahm/detail/parallel.hpp"
 #include "ahm/error.hpp"
+#include "ahm/util/parallel.hpp"
 #include "vec3.hpp"
 
 namespace ahm::pointcloud {
@@ -154,7 +154,7 @@ TangentPlanes find_tangent_planes(const CleanPoints& cloud, std::span<const Vec3
       if (!(fit.ratio > narrow_ratio) && n > neighborhoods.k + 1) {
         WiderNeighborhood candidate{point, {}};
         fit = fit_wider(cloud.points, search, neighborhoods.k, candidate);
-        wider[static_cast<std::size_t>(begin / chunk)].push_back(std::move(candidate));
+        wider[begin / chunk].push_back(std::move(candidate));
       }
       if (!given.empty()) planes.normals[i] = direction(given[cloud.input[i]]);
       is_estimated[i] = planes.normals[i] == Vec3{0, 0, 0};

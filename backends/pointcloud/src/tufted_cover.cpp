@@ -242,7 +242,8 @@ WeightedEdges tufted_laplacian(const CleanPoints& cloud, const TangentPlanes& pl
   report.mollification = cover.mollify();
   report.flips = cover.flip_to_delaunay();
   if (!cover.is_delaunay())
-    report.warnings.push_back("the intrinsic Delaunay flips did not come to an end: some edges of degenerate triangles were left out");
+    report.warnings.push_back(
+        "the intrinsic Delaunay flips did not come to an end: some edges of degenerate triangles were left out");
   return cover.weighted_edges();
 }
 

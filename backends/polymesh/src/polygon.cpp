@@ -143,7 +143,7 @@ bool Polygon::cut_ears(std::vector<std::array<std::size_t, 3>>& triangles) const
 Vec3 Polygon::blend(std::span<const Vec3> positions, std::span<const Index> corners) const {
   Vec3 sum{0, 0, 0};
   for (std::size_t c = 0; c < corners.size(); ++c)
-    for (int a = 0; a < 3; ++a) sum[a] += weight_[c] * positions[static_cast<std::size_t>(corners[c])][a];
+    for (int a = 0; a < 3; ++a) sum[a] += weight_[c] * positions[corners[c]][a];
   return sum;
 }
 

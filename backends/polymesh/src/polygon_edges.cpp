@@ -6,9 +6,9 @@
 #include <limits>
 #include <string>
 
-#include "ahm/cost.hpp"
-#include "ahm/detail/parallel.hpp"
 #include "ahm/error.hpp"
+#include "ahm/maps/cost.hpp"
+#include "ahm/util/parallel.hpp"
 #include "polygon.hpp"
 
 namespace ahm::polymesh {
@@ -42,7 +42,7 @@ class FaceMatrices {
     const Offset c = corner - mesh_.face_begin()[f], m = mesh_.face_begin()[f + 1] - mesh_.face_begin()[f];
     return weights_[static_cast<std::size_t>(begin_[f] + c * m) + d];
   }
-  double mass(Offset corner) const { return masses_[static_cast<std::size_t>(corner)]; }
+  double mass(Offset corner) const { return masses_[corner]; }
 
   void summarize(bool clamp, PolygonReport& report) const {
     for (Index f = 0; f < mesh_.face_count(); ++f) {
@@ -53,7 +53,7 @@ class FaceMatrices {
       report.degenerate_faces += shape_[f] == Shape::degenerate;
       for (Index c = 0; c < m; ++c)
         for (Index d = c + 1; d < m; ++d) {
-          const double w = weights_[static_cast<std::size_t>(begin_[f] + Offset{c} * m + d)];
+          const double w = weights_[begin_[f] + Offset{c} * m + d];
           report.negative_weights += w < -1e-12;
           report.capped_weights += clamp && w > largest_weight;
         }

@@ -3,7 +3,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "ahm/detail/parallel.hpp"
+#include "ahm/util/parallel.hpp"
 #include "polygon.hpp"
 
 namespace ahm::polymesh {
@@ -20,7 +20,7 @@ Vector3d across(const Vector3d& n) { return n.unitOrthogonal(); }
 Vector3d vertex_normal(const PolygonMesh& mesh, const std::vector<Vector3d>& area, Index v) {
   Vector3d sum = Vector3d::Zero(), largest = Vector3d::Zero();
   for (Offset corner : mesh.corners_at(v)) {
-    const Vector3d& of_face = area[static_cast<std::size_t>(mesh.face_of(corner))];
+    const Vector3d& of_face = area[mesh.face_of(corner)];
     const Vector3d oriented = mesh.mirrored(corner) ? Vector3d(-of_face) : of_face;
     sum += oriented;
     if (oriented.squaredNorm() > largest.squaredNorm()) largest = oriented;

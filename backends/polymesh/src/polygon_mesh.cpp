@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <string>
 
-#include "ahm/detail/gluing.hpp"
 #include "ahm/error.hpp"
+#include "ahm/surface/gluing.hpp"
 #include "polygon.hpp"
 
 namespace ahm::polymesh {
@@ -52,11 +52,11 @@ std::vector<std::string> topology_warnings(const TopologyReport& t) {
 PolygonMesh PolygonMesh::from_faces(std::span<const Vec3> positions, std::span<const Offset> face_begin,
                                     std::span<const Index> face_vertices, NonManifold non_manifold) {
   detail::check_positions(positions);
-  const detail::Faces faces{face_begin, face_vertices};
+  const FaceList faces{face_begin, face_vertices};
   PolygonMesh mesh;
   mesh.report_.vertices = static_cast<Index>(positions.size());
   detail::Gluing gluing = detail::glue(mesh.report_.vertices, faces, non_manifold);
-  mesh.report_.faces = faces.count();
+  mesh.report_.faces = static_cast<Index>(faces.size());
   mesh.report_.reoriented = gluing.reoriented;
   mesh.report_.orientable = gluing.orientable;
   mesh.report_.non_manifold_edges = gluing.non_manifold_edges;
@@ -68,7 +68,7 @@ PolygonMesh PolygonMesh::from_faces(std::span<const Vec3> positions, std::span<c
   Sides sides{mesh.face_begin_, mesh.face_of_, {}, {}};
   sides.tail.resize(face_vertices.size());
   sides.twin.resize(face_vertices.size());
-  for (Index f = 0; f < faces.count(); ++f)
+  for (Index f = 0; f < static_cast<Index>(faces.size()); ++f)
     std::fill(mesh.face_of_.begin() + face_begin[f], mesh.face_of_.begin() + face_begin[f + 1], f);
   auto stored = [&](Half h) {
     const Index f = mesh.face_of_[h];

@@ -6,10 +6,10 @@
 #include <limits>
 #include <utility>
 
-#include "ahm/detail/memory.hpp"
-#include "ahm/detail/stopwatch.hpp"
-#include "ahm/detail/text.hpp"
 #include "ahm/error.hpp"
+#include "ahm/util/memory.hpp"
+#include "ahm/util/stopwatch.hpp"
+#include "ahm/util/text.hpp"
 #include "polygon_edges.hpp"
 
 namespace ahm::polymesh {

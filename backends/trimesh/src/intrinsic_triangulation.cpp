@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ahm/detail/parallel.hpp"
+#include "ahm/util/parallel.hpp"
 #include "face_layout.hpp"
 
 namespace ahm::trimesh {

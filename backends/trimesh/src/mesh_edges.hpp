@@ -2,7 +2,7 @@
 /// The rows of a mesh's graph: cotangent weights, masses, logarithms, transports.
 #pragma once
 
-#include "ahm/csr_graph.hpp"
+#include "ahm/graph/csr_graph.hpp"
 #include "ahm/trimesh/triangle_mesh_graph.hpp"
 #include "intrinsic_triangulation.hpp"
 #include "vertex_frames.hpp"

@@ -2,8 +2,8 @@
 #include <cmath>
 #include <string>
 
-#include "ahm/detail/text.hpp"
 #include "ahm/error.hpp"
+#include "ahm/util/text.hpp"
 #include "impl.hpp"
 
 namespace ahm::trimesh {

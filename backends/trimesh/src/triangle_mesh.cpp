@@ -4,9 +4,9 @@
 #include <cmath>
 #include <string>
 
-#include "ahm/detail/gluing.hpp"
-#include "ahm/detail/text.hpp"
 #include "ahm/error.hpp"
+#include "ahm/surface/gluing.hpp"
+#include "ahm/util/text.hpp"
 #include "face_layout.hpp"
 #include "half_edges.hpp"
 #include "vec.hpp"

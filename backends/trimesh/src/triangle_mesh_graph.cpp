@@ -5,9 +5,9 @@
 #include <new>
 #include <utility>
 
-#include "ahm/detail/stopwatch.hpp"
-#include "ahm/detail/text.hpp"
 #include "ahm/error.hpp"
+#include "ahm/util/stopwatch.hpp"
+#include "ahm/util/text.hpp"
 #include "impl.hpp"
 #include "mesh_edges.hpp"
 

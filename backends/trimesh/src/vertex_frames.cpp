@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numbers>
 
-#include "ahm/detail/parallel.hpp"
+#include "ahm/util/parallel.hpp"
 
 namespace ahm::trimesh {
 namespace {
@@ -12,7 +12,7 @@ using std::numbers::pi;
 
 /// The corner of the input mesh whose right side is the reference direction of a vertex.
 Corner reference_corner(const TriangleMesh& mesh, const HalfEdges& edges, Index vertex) {
-  return edges.rightmost({mesh.corners()[static_cast<std::size_t>(vertex)], true});
+  return edges.rightmost({mesh.corners()[vertex], true});
 }
 
 /// The reference direction found in the triangulation: its corner, and the angle from the right side of that corner.

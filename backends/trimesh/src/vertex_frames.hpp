@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "ahm/tangent_graph.hpp"
+#include "ahm/graph/tangent_graph.hpp"
 #include "intrinsic_triangulation.hpp"
 
 namespace ahm::trimesh {

@@ -87,7 +87,7 @@ TEST(MeshHeatDistance, KeepsToItsComponent) {
 
 TEST(MeshHeatDistance, RefusesFacesWithoutArea) {
   const std::vector<Vec3> positions{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {0, 1, 0}};
-  const std::vector<trimesh::Triangle> faces{{0, 1, 2}, {0, 2, 3}};
+  const std::vector<Triangle> faces{{0, 1, 2}, {0, 2, 3}};
   const auto mesh = TriangleMesh::from_positions(positions, faces);
   EXPECT_THROW(baselines::heat_distance(mesh), InvalidGeometry);
   EXPECT_THROW(baselines::heat_distance(mesh, 0.0), InvalidArgument);
@@ -107,8 +107,8 @@ TEST(ExactDistance, IsThePlanesOnAConvexFlatMesh) {
 TEST(ExactDistance, UnfoldsTheCube) {
   const std::vector<Vec3> corners{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0},
                                   {0, 0, 1}, {1, 0, 1}, {0, 1, 1}, {1, 1, 1}};
-  const std::vector<trimesh::Triangle> faces{{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
-                                             {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+  const std::vector<Triangle> faces{{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
+                                    {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
   const Result result = baselines::exact_distance(corners, faces)->solve(0);
   for (Index i = 0; i < 8; ++i) {
     const double axes = corners[i][0] + corners[i][1] + corners[i][2];
@@ -134,7 +134,7 @@ TEST(ExactDistance, IsNoLongerThanAnyPathOfEdges) {
 
 TEST(ExactDistance, ReachesNoOtherComponent) {
   const std::vector<Vec3> positions{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {3, 0, 0}, {4, 0, 0}, {3, 1, 0}, {9, 9, 9}};
-  const std::vector<trimesh::Triangle> faces{{0, 1, 2}, {3, 4, 5}};
+  const std::vector<Triangle> faces{{0, 1, 2}, {3, 4, 5}};
   const Method exact = baselines::exact_distance(positions, faces);
   const Result result = exact->solve(1);
   for (Index i = 0; i < 7; ++i) EXPECT_EQ(std::isfinite(result.distance[i]), i < 3) << i;
@@ -143,9 +143,8 @@ TEST(ExactDistance, ReachesNoOtherComponent) {
 
 TEST(ExactDistance, RefusesFacesThatAreNoOrientedManifold) {
   const std::vector<Vec3> positions{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}};
-  EXPECT_THROW(baselines::exact_distance(positions, std::vector<trimesh::Triangle>{{0, 1, 2}, {1, 2, 3}}),
-               InvalidGeometry);
-  EXPECT_THROW(baselines::exact_distance(positions, std::vector<trimesh::Triangle>{{0, 1, 7}}), InvalidGeometry);
+  EXPECT_THROW(baselines::exact_distance(positions, std::vector<Triangle>{{0, 1, 2}, {1, 2, 3}}), InvalidGeometry);
+  EXPECT_THROW(baselines::exact_distance(positions, std::vector<Triangle>{{0, 1, 7}}), InvalidGeometry);
 }
 
 #endif

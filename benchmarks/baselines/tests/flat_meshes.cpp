@@ -41,9 +41,7 @@ Mesh hexagon(Index rings) {
   Mesh mesh;
   const Index width = 2 * rings + 1;
   std::vector<Index> number(static_cast<std::size_t>(width) * static_cast<std::size_t>(width), -1);
-  auto at = [&](Index i, Index j) -> Index& {
-    return number[static_cast<std::size_t>((j + rings) * width + i + rings)];
-  };
+  auto at = [&](Index i, Index j) -> Index& { return number[(j + rings) * width + i + rings]; };
   auto exists = [&](Index i, Index j) { return std::max({std::abs(i), std::abs(j), std::abs(i + j)}) <= rings; };
   auto add = [&](Index i, Index j) {
     at(i, j) = static_cast<Index>(mesh.plane.size());

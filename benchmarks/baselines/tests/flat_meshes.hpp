@@ -26,13 +26,13 @@ std::array<double, 2> exact_log(const Mesh& mesh, const TangentGraph& graph, Ind
 
 /// Distance of a vertex from the sides of the unit square.
 inline double from_border(const Mesh& mesh, Index i) {
-  const auto& p = mesh.plane[static_cast<std::size_t>(i)];
+  const auto& p = mesh.plane[i];
   return std::min({p[0], p[1], 1 - p[0], 1 - p[1]});
 }
 
 /// Distance in the plane.
 inline double plane_distance(const Mesh& mesh, Index i, Index j) {
-  const auto &p = mesh.plane[static_cast<std::size_t>(i)], &q = mesh.plane[static_cast<std::size_t>(j)];
+  const auto &p = mesh.plane[i], &q = mesh.plane[j];
   return std::hypot(p[0] - q[0], p[1] - q[1]);
 }
 

@@ -18,13 +18,11 @@ std::vector<FlatGraph> flat_graphs() {
 /// Components of a vector of the ambient R^d in the frame of a vertex.
 Eigen::VectorXd in_frame(const FlatGraph& g, Index i, const Eigen::VectorXd& vector) {
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  return Eigen::Map<const RowMajor>(&g.frames[static_cast<std::size_t>(i * g.dimension * g.dimension)], g.dimension,
-                                    g.dimension) *
-         vector;
+  return Eigen::Map<const RowMajor>(&g.frames[i * g.dimension * g.dimension], g.dimension, g.dimension) * vector;
 }
 
 Eigen::VectorXd position(const FlatGraph& g, Index i) {
-  return Eigen::Map<const Eigen::VectorXd>(&g.positions[static_cast<std::size_t>(i * g.dimension)], g.dimension);
+  return Eigen::Map<const Eigen::VectorXd>(&g.positions[i * g.dimension], g.dimension);
 }
 
 TEST(EdgeIntegration, IsExactForQuadraticsOnFlatGraphs) {

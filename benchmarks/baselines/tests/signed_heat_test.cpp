@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ahm/applications/stroke.hpp"
 #include "ahm/error.hpp"
-#include "ahm/stroke.hpp"
 #include "ahm/trimesh/triangle_mesh_graph.hpp"
 #include "flat_meshes.hpp"
 #include "support/surface_graphs.hpp"
@@ -23,7 +23,7 @@ std::vector<Index> middle_row(Index side, Index first, Index last) {
 }
 
 /// Distance above the row of a vertex of `flat_square`.
-double height(const Mesh& mesh, Index i) { return mesh.plane[static_cast<std::size_t>(i)][1] - 0.5; }
+double height(const Mesh& mesh, Index i) { return mesh.plane[i][1] - 0.5; }
 
 TEST(SignedHeat, IsExactForAStraightLineInThePlane) {
   const Index side = 31;

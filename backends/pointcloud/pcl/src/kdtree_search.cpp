@@ -33,8 +33,7 @@ class KdTreeSearch final : public pointcloud::NeighborSearch {
                          found, ignored);
     std::vector<std::pair<double, Index>> sorted;
     sorted.reserve(found.size());
-    for (const auto i : found)
-      sorted.emplace_back(squared_distance(query, points_[static_cast<std::size_t>(i)]), static_cast<Index>(i));
+    for (const auto i : found) sorted.emplace_back(squared_distance(query, points_[i]), static_cast<Index>(i));
     std::sort(sorted.begin(), sorted.end());
     for (std::size_t i = 0; i < wanted; ++i) {
       squared_distances[i] = sorted[i].first;

@@ -95,7 +95,7 @@ ReducedCloud gather(std::span<const Vec3> points, std::span<const Vec3> normals,
     result.point_of_row.push_back(static_cast<Index>(i));
   }
   result.row_of_point.reserve(points.size());
-  for (Index voxel : voxel_of_point) result.row_of_point.push_back(row_of_voxel[static_cast<std::size_t>(voxel)]);
+  for (Index voxel : voxel_of_point) result.row_of_point.push_back(row_of_voxel[voxel]);
   return result;
 }
 

@@ -10,7 +10,7 @@
 #include <array>
 #include <vector>
 
-#include "ahm/atlas.hpp"
+#include "ahm/applications/atlas.hpp"
 #include "ahm/io/image.hpp"
 
 namespace ahm::io {

@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "ahm/error.hpp"
-#include "ahm/log_map.hpp"
+#include "ahm/maps/log_map.hpp"
 #include "ahm/types.hpp"
 
 namespace ahm::io {

@@ -15,8 +15,8 @@
 #include <span>
 #include <vector>
 
-#include "ahm/source.hpp"
-#include "ahm/tangent_graph.hpp"
+#include "ahm/graph/tangent_graph.hpp"
+#include "ahm/maps/source.hpp"
 
 namespace ahm::grid {
 

@@ -15,8 +15,8 @@
 #include <string>
 #include <vector>
 
-#include "ahm/csr_graph.hpp"
-#include "ahm/log_map.hpp"
+#include "ahm/graph/csr_graph.hpp"
+#include "ahm/maps/log_map.hpp"
 #include "ahm/pointcloud/neighbor_search.hpp"
 #include "ahm/progress.hpp"
 

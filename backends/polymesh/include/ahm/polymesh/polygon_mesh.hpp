@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "ahm/mesh_topology.hpp"
+#include "ahm/surface/mesh_topology.hpp"
 #include "ahm/types.hpp"
 
 namespace ahm::polymesh {
@@ -57,22 +57,22 @@ class PolygonMesh {
   /// Vertices of all corners, oriented.
   std::span<const Index> corners() const noexcept { return corner_; }
   std::span<const Index> face(Index f) const {
-    const auto first = static_cast<std::size_t>(face_begin_[static_cast<std::size_t>(f)]);
+    const auto first = static_cast<std::size_t>(face_begin_[f]);
     return std::span(corner_).subspan(first,
                                       static_cast<std::size_t>(face_begin_[static_cast<std::size_t>(f) + 1]) - first);
   }
   /// Faces at a vertex: numbers of its corners, the first oriented like the vertex.
   std::span<const Offset> corners_at(Index vertex) const {
-    const auto first = static_cast<std::size_t>(at_begin_[static_cast<std::size_t>(vertex)]);
+    const auto first = static_cast<std::size_t>(at_begin_[vertex]);
     return std::span(at_).subspan(first,
                                   static_cast<std::size_t>(at_begin_[static_cast<std::size_t>(vertex) + 1]) - first);
   }
   /// Face of a corner.
-  Index face_of(Offset corner) const { return face_of_[static_cast<std::size_t>(corner)]; }
+  Index face_of(Offset corner) const { return face_of_[corner]; }
   /// Whether the face of a corner is oriented against the vertex there; never on an orientable mesh.
-  bool mirrored(Offset corner) const { return !mirrored_.empty() && mirrored_[static_cast<std::size_t>(corner)] != 0; }
+  bool mirrored(Offset corner) const { return !mirrored_.empty() && mirrored_[corner] != 0; }
   /// Whether a face was turned over.
-  bool reversed(Index f) const { return reversed_[static_cast<std::size_t>(f)] != 0; }
+  bool reversed(Index f) const { return reversed_[f] != 0; }
 
   /// First vertex of each input vertex, -1 where no face uses it.
   std::span<const Index> vertex_of_input() const noexcept { return vertex_of_input_; }
@@ -80,9 +80,9 @@ class PolygonMesh {
   std::span<const Index> input_of_vertex() const noexcept { return input_of_vertex_; }
 
   /// Position of a vertex in units of `length_unit()` about the middle of the bounding box.
-  const Vec3& position(Index vertex) const { return position_[static_cast<std::size_t>(vertex)]; }
+  const Vec3& position(Index vertex) const { return position_[vertex]; }
   /// Position of a vertex as given.
-  const Vec3& original_position(Index vertex) const { return original_[static_cast<std::size_t>(vertex)]; }
+  const Vec3& original_position(Index vertex) const { return original_[vertex]; }
   /// A power of two near the size of the mesh.
   double length_unit() const noexcept { return length_unit_; }
 

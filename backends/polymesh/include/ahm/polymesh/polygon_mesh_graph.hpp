@@ -15,11 +15,11 @@
 #include <string>
 #include <vector>
 
-#include "ahm/csr_graph.hpp"
-#include "ahm/log_map.hpp"
+#include "ahm/graph/csr_graph.hpp"
+#include "ahm/maps/log_map.hpp"
+#include "ahm/maps/source.hpp"
 #include "ahm/polymesh/polygon_mesh.hpp"
 #include "ahm/progress.hpp"
-#include "ahm/source.hpp"
 
 namespace ahm::polymesh {
 

@@ -13,13 +13,10 @@
 #include <span>
 #include <vector>
 
-#include "ahm/mesh_topology.hpp"
+#include "ahm/surface/mesh_topology.hpp"
 #include "ahm/types.hpp"
 
 namespace ahm::trimesh {
-
-/// Vertex numbers of the three corners of a face.
-using Triangle = std::array<Index, 3>;
 
 /// A half-edge of a mesh: 3 f + s is side s of face f, from its corner s to its corner s + 1 (mod 3).
 using Half = std::int32_t;
@@ -69,9 +66,9 @@ class TriangleMesh {
 
   bool has_positions() const noexcept { return !position_.empty(); }
   /// Position of a vertex in units of `length_unit()` about the middle of the bounding box.
-  const Vec3& position(Index vertex) const { return position_[static_cast<std::size_t>(vertex)]; }
+  const Vec3& position(Index vertex) const { return position_[vertex]; }
   /// Position of a vertex as given.
-  const Vec3& original_position(Index vertex) const { return original_[static_cast<std::size_t>(vertex)]; }
+  const Vec3& original_position(Index vertex) const { return original_[vertex]; }
   /// A power of two near the size of the mesh.
   double length_unit() const noexcept { return length_unit_; }
   /// The face laid out in the plane, counter-clockwise, side 0 along the x axis: its three sides as vectors, in units
@@ -79,9 +76,7 @@ class TriangleMesh {
   std::array<std::array<double, 2>, 3> layout(Index face) const;
 
   /// Corner of the face as stored, for a corner of the face as given, and the other way round.
-  int stored_corner(Index face, int corner) const {
-    return reversed_[static_cast<std::size_t>(face)] ? (3 - corner) % 3 : corner;
-  }
+  int stored_corner(Index face, int corner) const { return reversed_[face] ? (3 - corner) % 3 : corner; }
 
  private:
   TriangleMesh(Index vertices, std::span<const Triangle> faces, NonManifold non_manifold);

@@ -1,0 +1,33 @@
+#include "cli/interrupt.hpp"
+
+#include <signal.h>
+#include <unistd.h>
+
+#include <string_view>
+
+#include "ahm/io/atomic_file.hpp"
+
+namespace ahm::app {
+namespace {
+
+// Only calls that are allowed in a handler.
+extern "C" void on_signal(int number) {
+  io::remove_unfinished_files();
+  constexpr std::string_view message = "\nahm: interrupted\n";
+  [[maybe_unused]] const ssize_t ignored = write(STDERR_FILENO, message.data(), message.size());
+  _exit(128 + number);
+}
+
+}  // namespace
+
+void install_interrupt_handling() {
+  signal(SIGPIPE, SIG_IGN);  // writing reports EPIPE
+  signal(SIGXFSZ, SIG_IGN);  // writing reports EFBIG
+  struct sigaction action {};
+  action.sa_handler = on_signal;
+  sigemptyset(&action.sa_mask);
+  for (int number : {SIGINT, SIGTERM}) sigaddset(&action.sa_mask, number);
+  for (int number : {SIGINT, SIGTERM}) sigaction(number, &action, nullptr);
+}
+
+}  // namespace ahm::app

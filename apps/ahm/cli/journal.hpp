@@ -1,0 +1,65 @@
+/// \file
+/// Stage times, progress and warnings of one run.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <string>
+#include <vector>
+
+#include "cli/console.hpp"
+#include "cli/progress_display.hpp"
+#include "cli/stage_times.hpp"
+#include "cli/system_info.hpp"
+
+namespace ahm::app {
+
+/// Stage times, progress and warnings of one run.
+class Journal {
+ public:
+  explicit Journal(bool verbose) : verbose_(verbose) {}
+
+  void start(const std::string& stage) {
+    finish();
+    times_.start(stage);
+    display_.update(stage, 0);
+  }
+
+  void finish() {
+    times_.finish();
+    if (!verbose_ || times_.seconds().size() == reported_) return;
+    display_.clear();
+    const auto& [stage, seconds] = times_.seconds()[reported_++];
+    say(fmt::format("ahm: {:<8}{:8.3f} s   peak memory {}\n", stage, seconds, bytes_as_text(peak_rss_bytes())));
+  }
+
+  /// A line of --verbose.
+  void tell(const std::string& text) {
+    finish();
+    if (verbose_) say(fmt::format("ahm: {}\n", text));
+  }
+
+  void add_warning(const std::string& text) {
+    display_.clear();
+    warn(text);
+    warnings_.push_back(text);
+  }
+
+  void add_warnings(const std::vector<std::string>& texts) {
+    for (const std::string& text : texts) add_warning(text);
+  }
+
+  Progress progress() { return display_.progress(); }
+  void clear_display() { display_.clear(); }
+  const StageTimes& times() const { return times_; }
+  const std::vector<std::string>& warnings() const { return warnings_; }
+
+ private:
+  bool verbose_;
+  StageTimes times_;
+  std::size_t reported_ = 0;
+  std::vector<std::string> warnings_;
+  ProgressDisplay display_;
+};
+
+}  // namespace ahm::app

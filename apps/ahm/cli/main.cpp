@@ -1,0 +1,45 @@
+/// \file
+/// The program ahm: reads the command line, runs the command, turns exceptions into messages and exit statuses.
+
+#include <exception>
+#include <new>
+#include <stdexcept>
+#include <string>
+
+#include "ahm/error.hpp"
+#include "cli/command_line.hpp"
+#include "cli/console.hpp"
+#include "cli/interrupt.hpp"
+
+namespace {
+
+using namespace ahm::app;
+
+constexpr int failed = 1;
+constexpr int usage = 2;
+constexpr const char* out_of_memory = "out of memory; thin the input (--voxel), lower --k, or use a machine with more";
+
+int report(const std::string& message, int status) {
+  say("ahm: error: " + message + "\n");
+  return status;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  install_interrupt_handling();
+  parse_command_line(argc, argv)();
+  return 0;
+} catch (const UsageError& e) {
+  return report(e.message, usage);
+} catch (const BrokenPipe&) {
+  return failed;
+} catch (const std::bad_alloc&) {
+  return report(out_of_memory, failed);
+} catch (const std::length_error&) {  // an array longer than any memory
+  return report(out_of_memory, failed);
+} catch (const std::exception& e) {
+  return report(e.what(), failed);
+} catch (...) {
+  return report("unknown failure", failed);
+}

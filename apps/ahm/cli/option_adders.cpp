@@ -1,0 +1,148 @@
+#include "cli/option_adders.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "cli/numbers.hpp"
+
+namespace ahm::app {
+
+std::function<Index(const std::string&)> integer_parser(std::int64_t low, std::int64_t high) {
+  return [=](const std::string& text) { return static_cast<Index>(parse_integer(text, low, high)); };
+}
+
+std::function<std::string(const std::string&)> choice(std::vector<std::string> allowed) {
+  return [allowed = std::move(allowed)](const std::string& text) {
+    if (std::find(allowed.begin(), allowed.end(), text) == allowed.end())
+      throw std::invalid_argument(fmt::format("'{}' is none of {}", text, fmt::join(allowed, ", ")));
+    return text;
+  };
+}
+
+std::string non_empty(const std::string& text) {
+  if (text.empty()) throw std::invalid_argument("the name is empty");
+  return text;
+}
+
+void add_input(CLI::App& app, std::string& input) {
+  app.add_option("INPUT", input, "File to read: .ply .pcd .xyz .txt .csv .off .obj .stl")->required()->type_name("");
+}
+
+CLI::Option* add_source(CLI::App& app, RunOptions& o, const std::string& help) {
+  return add_parsed(app, "-s,--source", o.source, parse_source, "SPEC", help);
+}
+
+CLI::Option* add_output(CLI::App& app, RunOptions& o) {
+  return add_parsed(app, "-o,--output", o.output, non_empty, "OUTPUT", "File to write, see below");
+}
+
+CLI::Option* add_variant(CLI::App& app, RunOptions& o) {
+  return add_parsed(
+      app, "--variant", o.variant,
+      [](const std::string& text) {
+        return choice({"adaptive", "localized"})(text) == "adaptive" ? Variant::adaptive : Variant::localized;
+      },
+      "NAME", "adaptive (default) or localized");
+}
+
+CLI::Option* add_backend(CLI::App& app, RunOptions& o) {
+  return add_parsed(app, "--backend", o.backend, choice({"auto", "trimesh", "polymesh", "pointcloud"}), "NAME",
+                    "auto (default): by the faces of INPUT; trimesh, polymesh or pointcloud");
+}
+
+CLI::Option* add_t_coef(CLI::App& app, RunOptions& o) {
+  return add_parsed(app, "--t-coef", o.t_coef, parse_positive, "T",
+                    "Diffusion time in squared mean edge lengths, > 0 (default 1); larger is smoother");
+}
+
+CLI::Option* add_u_axis(CLI::App& app, RunOptions& o) {
+  return add_parsed(
+      app, "--u-axis", o.u_axis,
+      [](const std::string& text) {
+        return text == "curvature" ? UAxis{true, {}} : UAxis{false, parse_direction(text)};
+      },
+      "X,Y,Z|curvature",
+      "Direction of the u axis, projected to the surface (default: chosen by the backend), or\n"
+      "curvature: where the surface bends most, which planes and spheres do nowhere");
+}
+
+CLI::Option* add_min_quality(CLI::App& app, double& min_quality) {
+  return add_parsed(
+      app, "--min-quality", min_quality,
+      [](const std::string& text) {
+        const double value = parse_positive(text);
+        if (value > 1) throw std::invalid_argument(fmt::format("'{}' is greater than 1", text));
+        return value;
+      },
+      "Q", "Trust vertices of this quality and above, in (0, 1] (default 0.5)");
+}
+
+CLI::Option* add_threads(CLI::App& app, unsigned& threads) {
+  return add_parsed(app, "--threads", threads, integer_parser(0, 4096), "N", "0 (default): one per core");
+}
+
+CLI::Option* add_json(CLI::App& app, RunOptions& o) {
+  return add_parsed(app, "--json", o.json, non_empty, "FILE|-", "Write a summary for programs; -: to standard output");
+}
+
+CLI::Option* add_view(CLI::App& app, RunOptions& o) {
+  return add_parsed(app, "--view", o.view, non_empty, "FILE", "Draw the result: .png or .html");
+}
+
+CLI::Option* add_verbose(CLI::App& app, RunOptions& o) {
+  return app.add_flag("--verbose", o.verbose, "Print the time of each stage and the peak memory");
+}
+
+CLI::Option* add_drop_nan(CLI::App& app, RunOptions& o) {
+  return app.add_flag("--drop-nan", o.drop_nan,
+                      "Drop points with nan or infinite coordinates instead of refusing them");
+}
+
+CLI::Option* add_non_manifold(CLI::App& app, RunOptions& o) {
+  return add_parsed(app, "--non-manifold", o.non_manifold, choice({"error", "split"}), "HOW",
+                    "Edges of more than two faces and pinched vertices: error (default) or split, cutting there");
+}
+
+void add_cloud_options(CLI::App& app, RunOptions& o) {
+  const char* group = "Point clouds";
+  add_parsed(app, "--voxel", o.voxel, parse_positive, "SIZE", "Keep one point per cube of this edge length first")
+      ->group(group);
+  app.add_flag("--outliers", o.outliers, "Remove statistical outliers first")->group(group);
+  add_drop_nan(app, o)->group(group);
+  add_parsed(app, "--k", o.k, integer_parser(3), "N", "Neighbours per point, at least 3 (default 30)")->group(group);
+  add_parsed(app, "--knn", o.knn, choice({"nanoflann", "flann", "pcl"}), "NAME",
+             "Neighbour search: nanoflann (default), flann or pcl")
+      ->group(group);
+  add_parsed(app, "--normals", o.normals, choice({"auto", "oriented", "unoriented", "estimate"}), "HOW",
+             "Normals of INPUT: auto (default) judges their signs, oriented trusts them, unoriented\n"
+             "ignores the signs, estimate ignores the normals")
+      ->group(group);
+}
+
+void add_mesh_options(CLI::App& app, RunOptions& o) {
+  const char* group = "Triangle meshes";
+  app.add_flag("!--no-flips", o.flips, "Keep the edges as they are instead of flipping to intrinsic Delaunay")
+      ->group(group);
+  add_non_manifold(app, o)->group(group);
+}
+
+void add_polygon_options(CLI::App& app, RunOptions& o) {
+  add_parsed(app, "--discretization", o.discretization, choice({"auto", "polygons", "refined"}), "NAME",
+             "polygons: every face one cell, refined: a virtual vertex in every face and intrinsic\n"
+             "triangles. auto (default): refined, or polygons where a face is twisted")
+      ->group("Polygon meshes");
+}
+
+void add_graph_options(CLI::App& app, RunOptions& o) {
+  add_variant(app, o);
+  add_backend(app, o);
+  add_t_coef(app, o);
+  add_threads(app, o.threads);
+  add_cloud_options(app, o);
+  add_mesh_options(app, o);
+  add_polygon_options(app, o);
+}
+
+}  // namespace ahm::app

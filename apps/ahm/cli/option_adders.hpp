@@ -1,0 +1,67 @@
+/// \file
+/// The options that subcommands share, each written once.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "cli/options.hpp"
+
+namespace ahm::app {
+
+/// Adds an option whose text a parser of ours turns into a value: CLI11's own takes nan, inf and hexadecimal for
+/// numbers.
+template <class Value, class Parse>
+CLI::Option* add_parsed(CLI::App& app, const std::string& name, Value& value, const Parse& parse,
+                        const std::string& type, const std::string& help) {
+  const std::string label = name.substr(name.find("--"));
+  return app
+      .add_option_function<std::string>(
+          name,
+          [&value, parse, label](const std::string& text) {
+            try {
+              value = parse(text);
+            } catch (const std::invalid_argument& e) {
+              throw CLI::ValidationError(label, e.what());
+            }
+          },
+          help)
+      ->type_name(type);
+}
+
+/// Parsers for `add_parsed`. @throws std::invalid_argument when they are called
+std::function<Index(const std::string&)> integer_parser(std::int64_t low,
+                                                        std::int64_t high = std::numeric_limits<Index>::max());
+std::function<std::string(const std::string&)> choice(std::vector<std::string> allowed);
+std::string non_empty(const std::string& text);
+
+void add_input(CLI::App& app, std::string& input);
+CLI::Option* add_source(CLI::App& app, RunOptions& o, const std::string& help);
+CLI::Option* add_output(CLI::App& app, RunOptions& o);
+CLI::Option* add_variant(CLI::App& app, RunOptions& o);
+CLI::Option* add_backend(CLI::App& app, RunOptions& o);
+CLI::Option* add_t_coef(CLI::App& app, RunOptions& o);
+CLI::Option* add_u_axis(CLI::App& app, RunOptions& o);
+CLI::Option* add_min_quality(CLI::App& app, double& min_quality);
+CLI::Option* add_threads(CLI::App& app, unsigned& threads);
+CLI::Option* add_drop_nan(CLI::App& app, RunOptions& o);
+CLI::Option* add_non_manifold(CLI::App& app, RunOptions& o);
+CLI::Option* add_json(CLI::App& app, RunOptions& o);
+CLI::Option* add_view(CLI::App& app, RunOptions& o);
+CLI::Option* add_verbose(CLI::App& app, RunOptions& o);
+
+/// How points become a graph: --voxel, --outliers, --drop-nan, --k, --knn, --normals.
+void add_cloud_options(CLI::App& app, RunOptions& o);
+/// --no-flips, --non-manifold
+void add_mesh_options(CLI::App& app, RunOptions& o);
+/// --discretization
+void add_polygon_options(CLI::App& app, RunOptions& o);
+/// --variant, --backend, --t-coef, --threads and the three groups above.
+void add_graph_options(CLI::App& app, RunOptions& o);
+
+}  // namespace ahm::app

@@ -1,0 +1,58 @@
+#include "cli/system_info.hpp"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <CLI/Version.hpp>
+#include <Eigen/Core>
+#include <nlohmann/json.hpp>
+
+#include "ahm/heat/heat_operators.hpp"
+#ifdef AHM_WITH_PCL
+#include "ahm/pcl/search.hpp"
+#endif
+
+namespace ahm::app {
+
+std::int64_t peak_rss_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::int64_t>(usage.ru_maxrss) * 1024;  // Linux counts in kibibytes
+}
+
+std::string bytes_as_text(std::int64_t bytes) {
+  const auto x = static_cast<double>(bytes);
+  if (x >= 1e9) return fmt::format("{:.2f} GB", x / 1e9);
+  if (x >= 1e6) return fmt::format("{:.0f} MB", x / 1e6);
+  return fmt::format("{:.0f} kB", x / 1e3);
+}
+
+nlohmann::ordered_json versions() {
+  const LinearAlgebraInfo algebra = linear_algebra_info();
+  nlohmann::ordered_json result;
+  result["ahm"] = AHM_VERSION;
+  result["cholmod"] = algebra.cholmod;
+  result["blas"] = algebra.blas;
+  result["blas_optimized"] = algebra.blas_optimized;
+  result["eigen"] = fmt::format("{}.{}.{}", EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION);
+#ifdef AHM_WITH_PCL
+  result["pcl"] = pcl_bridge::version();
+#endif
+  result["cli11"] = CLI11_VERSION;
+  result["fmt"] = fmt::format("{}.{}.{}", FMT_VERSION / 10000, FMT_VERSION / 100 % 100, FMT_VERSION % 100);
+  result["nlohmann_json"] =
+      fmt::format("{}.{}.{}", NLOHMANN_JSON_VERSION_MAJOR, NLOHMANN_JSON_VERSION_MINOR, NLOHMANN_JSON_VERSION_PATCH);
+  return result;
+}
+
+std::string versions_as_text() {
+  const nlohmann::ordered_json v = versions();
+  const auto text = [&](const char* key) { return v.at(key).get<std::string>(); };
+  std::string result =
+      fmt::format("ahm {}\nCHOLMOD {}\nBLAS {}{}\nEigen {}\n", text("ahm"), text("cholmod"), text("blas"),
+                  v.at("blas_optimized").get<bool>() ? "" : " (reference BLAS: several times slower)", text("eigen"));
+  if (v.contains("pcl")) result += fmt::format("PCL {}\n", text("pcl"));
+  return result;
+}
+
+}  // namespace ahm::app

@@ -1,0 +1,210 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "ahm/applications/cells.hpp"
+#include "ahm/graph/components.hpp"
+#include "ahm/io/texture_atlas.hpp"
+#include "ahm/view/textured_picture.hpp"
+#include "cli/numbers.hpp"
+#include "cli/option_adders.hpp"
+#include "cli/source_list.hpp"
+#include "commands/commands.hpp"
+#include "output/texture_output.hpp"
+
+namespace ahm::app {
+namespace {
+
+constexpr const char* atlas_footer =
+    "SOURCES is a list between blanks, or a file with one entry per line, of vertices of INPUT (123, counted from 0) "
+    "or\n"
+    "positions (1.5,0,-2: the nearest vertex). The region nearest to each becomes one chart, flattened by its own "
+    "map.\n"
+    "\n"
+    "OUTPUT  .obj (with .mtl and _atlas.png beside it) or .glb; polygons of .obj stay whole, clouds become triangles\n"
+    "\n"
+    "Distortion D = max(1/sigma1, sigma2) of every triangle: 1 where it keeps its shape and size. Flipped triangles "
+    "lie\n"
+    "where a chart closes around a handle or a limb; more charts, or --max-distortion, open it.\n"
+    "\n"
+    "Examples:\n"
+    "  ahm atlas bunny.ply --charts 30 -o bunny.glb --view bunny.png\n"
+    "  ahm atlas part.stl --max-distortion 2 --size 4096 -o part.obj\n"
+    "  ahm atlas quads.obj --sources '12 480 901' --texture wood.jpg -o wood.obj";
+
+struct AtlasCommandOptions {
+  RunOptions run;
+  std::vector<SourceSpec> sources;
+  Index charts = 20;
+  std::optional<double> max_distortion;
+  io::PackOptions pack;
+  std::string texture;
+};
+
+std::vector<Index> choose_sources(const AtlasCommandOptions& options, const Surface& surface,
+                                  const LogMapSolver& solver, const MapOptions& map) {
+  if (options.sources.empty()) return farthest_points(solver, 0, std::min(options.charts, solver.graph().size()), map);
+  std::vector<Index> result;
+  for (const SourceSpec& spec : options.sources) result.push_back(vertex_at(surface, spec, "--sources"));
+  return result;
+}
+
+/// Everything that is reported.
+struct Made {
+  Atlas atlas;
+  AtlasDistortion distortion;
+  io::TextureAtlas packed;
+  std::size_t faces = 0, uncharted = 0;
+  std::vector<Vec3> sources;
+
+  Made(Atlas made, const Skin& skin, const TangentGraph& graph, const std::vector<Vec3>& positions,
+       const io::PackOptions& options)
+      : atlas(std::move(made)),
+        distortion(ahm::distortion(atlas, skin.faces(), positions)),
+        packed(io::pack(atlas, skin.faces(), options)),
+        faces(atlas.chart_of_face.size()),
+        uncharted(static_cast<std::size_t>(std::count(atlas.chart_of_face.begin(), atlas.chart_of_face.end(), -1))) {
+    for (Index vertex : atlas.sources) sources.push_back(graph.frame(vertex)->origin);
+  }
+};
+
+std::vector<Vec3> positions_of(const Skin& skin, Index vertices) {
+  std::vector<Vec3> positions(static_cast<std::size_t>(vertices));
+  for (std::size_t c = 0; c < skin.corner_vertices.size(); ++c)
+    positions[skin.corner_vertices[c]] = skin.points[skin.corner_points[c]];
+  return positions;
+}
+
+void comment(const AtlasCommandOptions& options, const Made& made, const TangentGraph& graph, Journal& journal) {
+  if (made.uncharted > 0) {
+    const Index components = connected_components(graph).count;
+    journal.add_warning(
+        fmt::format("{} of {} faces have no chart and are grey{}", made.uncharted, made.faces,
+                    components > static_cast<Index>(made.atlas.sources.size())
+                        ? fmt::format(": the surface has {} components, give at least one source to each", components)
+                        : ": no map reaches them"));
+  }
+  const auto bad = std::count_if(made.distortion.charts.begin(), made.distortion.charts.end(),
+                                 [](const DistortionSummary& chart) { return chart.flipped_area > 0.01; });
+  if (bad > 0)
+    journal.add_warning(fmt::format(
+        "{} of {} charts have more than 1 % of their area flipped: they close around a handle or a limb; {}", bad,
+        made.atlas.charts.size(),
+        options.max_distortion ? "raise --charts or lower --max-distortion"
+                               : "raise --charts, or let --max-distortion 2 add sources"));
+}
+
+void write_files(const AtlasCommandOptions& options, const Skin& skin, const Made& made) {
+  const io::Image texture = options.texture.empty() ? io::checkerboard(made.packed) : io::read_image(options.texture);
+  const auto is_charted = [&](std::size_t f) { return made.atlas.chart_of_face[f] >= 0; };
+  const SkinPart charted(skin, is_charted, made.packed.coordinates);
+  const SkinPart rest(skin, [&](std::size_t f) { return !is_charted(f); });
+  std::vector<io::MeshPart> parts{charted.view("atlas")};
+  parts.front().texture = &texture;
+  if (!rest.empty()) parts.push_back(rest.view("rest"));
+  io::write_textured(options.run.output, parts);
+  if (options.run.view.empty()) return;
+  view::TexturedScene scene;
+  scene.parts = parts;
+  scene.towards = made.sources.front();
+  view::write_textured_png(options.run.view, scene);
+}
+
+nlohmann::ordered_json as_json(const DistortionSummary& s) {
+  return {{"mean", s.mean},       {"median", s.median},   {"percentile_95", s.percentile_95},
+          {"largest", s.largest}, {"flipped", s.flipped}, {"flipped_area", s.flipped_area}};
+}
+
+void report(const AtlasCommandOptions& options, const Surface& surface, const Made& made, const Journal& journal) {
+  nlohmann::ordered_json j = summary("ahm atlas", options.run, surface);
+  j["faces"] = made.faces;
+  j["uncharted"] = made.uncharted;
+  j["sources"] = made.sources;
+  j["distortion"] = as_json(made.distortion.all);
+  for (std::size_t k = 0; k < made.atlas.charts.size(); ++k) {
+    nlohmann::ordered_json chart = {{"source", made.atlas.charts[k].source},
+                                    {"faces", made.atlas.charts[k].faces.size()}};
+    chart["distortion"] = as_json(made.distortion.charts[k]);
+    j["charts"].push_back(chart);
+  }
+  const io::TextureAtlas& packed = made.packed;
+  j["texture"] = {
+      {"size", packed.size}, {"margin", packed.margin}, {"texels_per_unit", packed.scale}, {"filled", packed.filled}};
+  const DistortionSummary& d = made.distortion.all;
+  const std::string text = fmt::format(
+      "{} charts around {} sources, {} faces\n"
+      "distortion: mean {:.4g}, median {:.4g}, 95 % of the area below {:.4g}; flipped: {:.3g} % of the triangles, "
+      "{:.3g} % of the area\n"
+      "texture: {} x {}, {:.1f} % filled, {:.4g} texels per unit of length\n",
+      made.atlas.charts.size(), made.atlas.sources.size(), made.faces, d.mean, d.median, d.percentile_95,
+      100 * d.flipped, 100 * d.flipped_area, packed.size, packed.size, 100 * packed.filled, packed.scale);
+  deliver(std::move(j), text, options.run, journal);
+}
+
+void run_atlas(const AtlasCommandOptions& options) {
+  check_texture_output(options.run, {".obj", ".glb"}, {"atlas"}, options.texture);
+  if (!options.texture.empty()) io::read_image(options.texture);  // better refused now than after the work
+  Journal journal(options.run.verbose);
+  const Surface surface = open_surface(options.run, journal);
+  const TangentGraph& graph = surface.model->graph();
+  const LogMapSolver solver = make_solver(options.run, *surface.model, journal, 0);
+
+  journal.start("sources");
+  MapOptions map;
+  map.variant = options.run.variant;
+  map.threads = options.run.threads;
+  const std::vector<Index> sources = choose_sources(options, surface, solver, map);
+  const Skin skin = skin_of(surface, solver, sources);
+  const std::vector<Vec3> positions = positions_of(skin, graph.size());
+  journal.start("charts");
+  RefineOptions refine;
+  if (options.max_distortion) refine.max_distortion = *options.max_distortion;
+  const Made made(options.max_distortion ? make_atlas(solver, sources, skin.faces(), positions, refine, map)
+                                         : make_atlas(solver, sources, skin.faces(), map),
+                  skin, graph, positions, options.pack);
+  comment(options, made, graph, journal);
+
+  journal.start("write");
+  write_files(options, skin, made);
+  journal.finish();
+  journal.clear_display();
+  report(options, surface, made, journal);
+}
+
+}  // namespace
+
+Subcommand add_atlas(CLI::App& program) {
+  const auto options = std::make_shared<AtlasCommandOptions>();
+  AtlasCommandOptions& o = *options;
+  o.run.source = SourcePosition{};  // none: the sources are checked by themselves
+  CLI::App& atlas = *program.add_subcommand("atlas", "Texture atlas: charts of low distortion, packed in a square");
+  add_input(atlas, o.run.input);
+  auto* charts = add_parsed(atlas, "--charts", o.charts, integer_parser(1), "K",
+                            "Spread K sources, each the farthest from those before (default 20)");
+  add_parsed(atlas, "--sources", o.sources, parse_sources, "SOURCES", "List or file instead, see below")
+      ->excludes(charts);
+  add_parsed(
+      atlas, "--max-distortion", o.max_distortion,
+      [](const std::string& text) {
+        const double value = parse_number(text);
+        if (!(value > 1)) throw std::invalid_argument(fmt::format("'{}' is not greater than 1", text));
+        return value;
+      },
+      "D", "Add sources until 99 % of every chart have no more, unflipped");
+  add_parsed(atlas, "--size", o.pack.size, integer_parser(16, 32768), "N", "Side of the texture (default 2048)");
+  add_parsed(atlas, "--margin", o.pack.margin, integer_parser(0, 1024), "N", "Texels free around charts (default 4)");
+  add_parsed(atlas, "--texture", o.texture, non_empty, "FILE", "PNG or JPEG instead of a checkerboard");
+  add_output(atlas, o.run)->required();
+  add_graph_options(atlas, o.run);
+  add_json(atlas, o.run);
+  add_view(atlas, o.run)->description("Draw the result: .png");
+  add_verbose(atlas, o.run);
+  atlas.footer(atlas_footer);
+  return {&atlas, [options] { run_atlas(*options); }};
+}
+
+}  // namespace ahm::app

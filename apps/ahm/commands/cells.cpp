@@ -1,0 +1,237 @@
+#include "ahm/applications/cells.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "cli/numbers.hpp"
+#include "cli/option_adders.hpp"
+#include "cli/source_list.hpp"
+#include "commands/commands.hpp"
+#include "output/results.hpp"
+
+namespace ahm::app {
+namespace {
+
+constexpr const char* cells_footer =
+    "SOURCES is a list between blanks, or a file with one entry per line, of vertices of INPUT (123, counted from 0) "
+    "or\n"
+    "positions (1.5,0,-2: the nearest vertex; in files also 1.5 0 -2).\n"
+    "\n"
+    "OUTPUT  .csv, .ply or .pcd; one row per vertex of INPUT, in its order: index,x,y,z,distance,status,label\n"
+    "          label     place of the nearest source in the list, from 0\n"
+    "          distance  from it\n"
+    "\n"
+    "Examples:\n"
+    "  ahm cells scan.ply --count 40 -o cells.csv --view cells.png\n"
+    "  ahm cells part.stl --sources '12 480 901' -o cells.ply";
+
+struct CellsOptions {
+  RunOptions run;
+  std::vector<SourceSpec> sources;
+  Index count = 0;  ///< of spread sources; 0: `sources`
+  std::optional<SourceSpec> start;
+};
+
+/// Sources as vertices of the graph.
+std::vector<Index> vertices_of(const Surface& surface, const std::vector<SourceSpec>& specs) {
+  std::vector<Index> result;
+  for (const SourceSpec& spec : specs) {
+    const Index vertex = vertex_at(surface, spec, "--sources");
+    if (std::find(result.begin(), result.end(), vertex) != result.end())
+      throw InvalidArgument(
+          fmt::format("--sources {}: this is the vertex of an entry before; give every source once", to_string(spec)));
+    result.push_back(vertex);
+  }
+  return result;
+}
+
+std::vector<Index> rows_of_vertices(const Surface& surface) {
+  std::vector<Index> result(static_cast<std::size_t>(surface.model->graph().size()), -1);
+  for (const auto& [row, vertex] : surface.model->row_vertices()) result[vertex] = row;
+  return result;
+}
+
+/// A vertex that is none of the input's (inside a polygon) gives way to its nearest neighbour that is one and is free.
+void move_to_rows(const TangentGraph& graph, const std::vector<Index>& row_of_vertex, std::vector<Index>& vertices) {
+  for (Index& vertex : vertices) {
+    if (row_of_vertex[vertex] >= 0) continue;
+    const Star star = graph.star(vertex);
+    double least = std::numeric_limits<double>::infinity();
+    Index nearest = vertex;
+    for (std::size_t e = 0; e < star.degree(); ++e) {
+      const Index j = star.neighbors[e];
+      const double away = std::hypot(star.log(e)[0], star.log(e)[1]);
+      if (row_of_vertex[j] < 0 || !(away < least)) continue;
+      if (std::find(vertices.begin(), vertices.end(), j) != vertices.end()) continue;
+      least = away;
+      nearest = j;
+    }
+    vertex = nearest;
+  }
+}
+
+std::vector<Index> spread(const CellsOptions& options, const Surface& surface, const LogMapSolver& solver,
+                          Journal& journal) {
+  journal.start("spread");
+  const TangentGraph& graph = surface.model->graph();
+  if (options.count > graph.size())
+    throw InvalidArgument(fmt::format("--count {}: the graph has {} vertices only", options.count, graph.size()));
+  const Index first = options.start ? vertex_at(surface, *options.start, "--start") : 0;
+  MapOptions map;
+  map.variant = options.run.variant;
+  map.threads = options.run.threads;
+  std::vector<Index> result = farthest_points(solver, first, options.count, map);
+  move_to_rows(graph, rows_of_vertices(surface), result);
+  return result;
+}
+
+/// What is known of every row of the input.
+struct CellRows {
+  std::vector<double> distance, label;
+  std::vector<Index> labels;  ///< -1: none
+  std::vector<Status> status;
+};
+
+/// Of several vertices of a row, the one nearest to its source counts.
+CellRows rows_of(const Surface& surface, const std::vector<Index>& labels, const std::vector<double>& distance) {
+  const std::size_t n = surface.input.points.size();
+  const std::vector<double> none(n, std::numeric_limits<double>::quiet_NaN());
+  CellRows rows{none, none, std::vector<Index>(n, -1), std::vector<Status>(n, Status::removed)};
+  for (const auto& [row, vertex] : surface.model->row_vertices()) {
+    const auto r = static_cast<std::size_t>(row), v = static_cast<std::size_t>(vertex);
+    if (rows.status[r] == Status::ok && !(distance[v] < rows.distance[r])) continue;
+    if (labels[v] < 0) {
+      rows.status[r] = Status::component;
+      continue;
+    }
+    rows.status[r] = Status::ok;
+    rows.labels[r] = labels[v];
+    rows.label[r] = labels[v];
+    rows.distance[r] = distance[v];
+  }
+  return rows;
+}
+
+struct Cell {
+  Index vertices = 0;
+  double area = 0;
+};
+
+std::vector<Cell> sizes(const TangentGraph& graph, const std::vector<Index>& labels, std::size_t count) {
+  std::vector<Cell> cells(count);
+  const double unit = graph.length_unit();
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    if (labels[i] < 0) continue;
+    Cell& cell = cells[labels[i]];
+    ++cell.vertices;
+    cell.area += graph.mass(static_cast<Index>(i)) * unit * unit;
+  }
+  return cells;
+}
+
+void write_results(const CellRows& rows, const std::vector<Vec3>& sources, Results& results, Journal& journal) {
+  io::Table table = results.table();
+  table.distance = rows.distance;
+  table.status = rows.status;
+  table.further.push_back({"label", rows.label});
+  view::Scene scene = results.scene();
+  scene.labels = rows.labels;
+  scene.distance = rows.distance;
+  scene.source = sources.front();
+  scene.dots = sources;
+  view::PictureOptions picture;
+  picture.pattern = view::Pattern::cells;
+  results.write(table, scene, journal, picture);
+}
+
+void report(const CellsOptions& options, const Surface& surface, const std::vector<Index>& rows,
+            const std::vector<Vec3>& positions, const std::vector<Cell>& cells, double farthest,
+            const Journal& journal) {
+  nlohmann::ordered_json j = summary("ahm cells", options.run, surface);
+  const auto [smallest, largest] =
+      std::minmax_element(cells.begin(), cells.end(), [](const Cell& a, const Cell& b) { return a.area < b.area; });
+  j["largest_distance"] = farthest;
+  j["smallest_area"] = smallest->area;
+  j["largest_area"] = largest->area;
+  for (std::size_t k = 0; k < rows.size(); ++k)
+    j["sources"].push_back({{"label", k},
+                            {"row", rows[k]},
+                            {"position", positions[k]},
+                            {"vertices", cells[k].vertices},
+                            {"area", cells[k].area}});
+  const std::size_t shown = std::min<std::size_t>(rows.size(), 12);
+  const std::string text =
+      fmt::format("{} cells around vertices {}{}\nareas {:.4g} to {:.4g}, farthest point {:.6g} from its source\n",
+                  rows.size(), fmt::join(rows.begin(), rows.begin() + static_cast<std::ptrdiff_t>(shown), " "),
+                  shown < rows.size() ? " ..." : "", smallest->area, largest->area, farthest);
+  deliver(std::move(j), text, options.run, journal);
+}
+
+void run_cells(const CellsOptions& options) {
+  check_results(options.run);
+  Journal journal(options.run.verbose);
+  const Surface surface = open_surface(options.run, journal);
+  const TangentGraph& graph = surface.model->graph();
+  std::vector<Index> sources = vertices_of(surface, options.sources);
+  const LogMapSolver solver = make_solver(options.run, *surface.model, journal, 0);
+  if (options.count > 0) sources = spread(options, surface, solver, journal);
+
+  journal.start("cells");
+  const std::vector<Index> labels = nearest_source(solver, sources);
+  const VertexField field = distance_in_cells(solver, sources, labels);
+  const CellRows rows = rows_of(surface, labels, field.values);
+  comment_on_statuses(rows.status, options.run.input, journal);
+  if (const auto far = std::count(field.status.begin(), field.status.end(), Status::unreached); far > 0)
+    journal.add_warning(fmt::format(
+        "{} vertices are about 700 edges or more from every source: they have a label, but no distance; give more "
+        "sources",
+        far));
+
+  const std::vector<Index> row_of_vertex = rows_of_vertices(surface);
+  std::vector<Index> source_rows;
+  std::vector<Vec3> positions;
+  for (Index vertex : sources) {
+    source_rows.push_back(row_of_vertex[vertex]);
+    positions.push_back(graph.frame(vertex)->origin);
+  }
+  double farthest = 0;
+  for (double d : rows.distance) farthest = std::max(farthest, std::isnan(d) ? 0 : d);
+  Results results(options.run, surface);
+  write_results(rows, positions, results, journal);
+  report(options, surface, source_rows, positions, sizes(graph, labels, sources.size()), farthest, journal);
+  results.keep();
+}
+
+}  // namespace
+
+Subcommand add_cells(CLI::App& program) {
+  const auto options = std::make_shared<CellsOptions>();
+  CellsOptions& o = *options;
+  o.run.source = SourcePosition{};  // none: the sources are checked by themselves
+  CLI::App& cells = *program.add_subcommand("cells", "Regions nearest to given or evenly spread points");
+  add_input(cells, o.run.input);
+  auto* sources = add_parsed(cells, "--sources", o.sources, parse_sources, "SOURCES", "List or file, see below");
+  auto* count = add_parsed(cells, "--count", o.count, integer_parser(1), "K",
+                           "Spread K sources instead, each the farthest from those before");
+  add_parsed(cells, "--start", o.start, parse_source, "SPEC", "With --count: the first one (default: any)")
+      ->needs(count);
+  cells.callback([=] {
+    if ((sources->count() > 0) == (count->count() > 0))
+      throw CLI::ValidationError("--sources", "give either --sources or --count");
+  });
+  add_output(cells, o.run)->required();
+  add_graph_options(cells, o.run);
+  add_json(cells, o.run);
+  add_view(cells, o.run);
+  add_verbose(cells, o.run);
+  cells.footer(cells_footer);
+  return {&cells, [options] { run_cells(*options); }};
+}
+
+}  // namespace ahm::app

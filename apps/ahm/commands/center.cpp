@@ -1,0 +1,125 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "ahm/applications/mean.hpp"
+#include "cli/numbers.hpp"
+#include "cli/option_adders.hpp"
+#include "cli/source_list.hpp"
+#include "commands/commands.hpp"
+#include "input/surface.hpp"
+#include "output/output_paths.hpp"
+
+namespace ahm::app {
+namespace {
+
+constexpr const char* center_footer =
+    "POINTS is a list between blanks, or a file with one entry per line, of vertices of INPUT (123, counted from 0) "
+    "or\n"
+    "positions (1.5,0,-2: the nearest vertex; in files also 1.5 0 -2). WEIGHTS likewise, one number per point.\n"
+    "\n"
+    "The center lies between vertices: it is printed as a position in the tangent plane of the vertex nearest to it.\n"
+    "Points over more than half of a closed surface may have several centers; --start chooses among them.\n"
+    "\n"
+    "Examples:\n"
+    "  ahm center scan.ply --points '12 480 901'\n"
+    "  ahm center terrain.ply --points towns.xyz --weights people.txt --median --json center.json";
+
+struct CenterCommandOptions {
+  RunOptions run;
+  std::vector<SourceSpec> points;
+  std::vector<double> weights;
+  std::optional<SourceSpec> start;
+  bool median = false;
+};
+
+Center find_center(const CenterCommandOptions& options, const Surface& surface, const LogMapSolver& solver,
+                   Journal& journal) {
+  std::vector<Index> vertices;
+  for (const SourceSpec& spec : options.points) vertices.push_back(vertex_at(surface, spec, "--points"));
+  if (!options.weights.empty() && options.weights.size() != vertices.size())
+    throw InvalidArgument(fmt::format("--weights: {} numbers for {} points", options.weights.size(), vertices.size()));
+  CenterOptions center;
+  if (options.start) center.start = vertex_at(surface, *options.start, "--start");
+  center.map.variant = options.run.variant;
+  center.map.threads = options.run.threads;
+  center.map.progress = journal.progress();
+  journal.start("search");
+  const auto find = options.median ? geometric_median : karcher_mean;
+  return find(solver, vertices, options.weights, center);
+}
+
+void report(const CenterCommandOptions& options, const Surface& surface, const Center& center, const Journal& journal) {
+  const Frame frame = *surface.model->graph().frame(center.vertex);
+  Vec3 position = frame.origin;
+  for (std::size_t a = 0; a < 3; ++a) position[a] += center.offset[0] * frame.x[a] + center.offset[1] * frame.y[a];
+  Index row = -1;
+  for (const RowVertex& entry : surface.model->row_vertices())
+    if (entry.vertex == center.vertex) row = entry.row;
+  const char* name = options.median ? "median" : "mean";
+  nlohmann::ordered_json j = summary("ahm center", options.run, surface);
+  j.erase("output");
+  j["center"] = {{"kind", name},
+                 {"points", options.points.size()},
+                 {"row", row < 0 ? nlohmann::ordered_json() : nlohmann::ordered_json(row)},
+                 {"vertex_position", frame.origin},
+                 {"position", position},
+                 {"spread", center.spread},
+                 {"maps", center.maps},
+                 {"converged", center.converged}};
+  const Vec3 &v = frame.origin, &p = position;
+  const std::string text = fmt::format(
+      "{} of {} points at {:.9g} {:.9g} {:.9g}\nnearest vertex {} at {:.9g} {:.9g} {:.9g}\n{} {:.6g}; maps used: {}, "
+      "{}\n",
+      name, options.points.size(), p[0], p[1], p[2], row < 0 ? "(inside a face)" : fmt::format("{}", row), v[0], v[1],
+      v[2], options.median ? "mean distance" : "root mean squared distance", center.spread, center.maps,
+      center.converged ? "converged" : "not converged");
+  deliver(std::move(j), text, options.run, journal);
+}
+
+void comment_on(const Center& center, const TangentGraph& graph, Journal& journal) {
+  if (!center.converged)
+    journal.add_warning(fmt::format("the center is still moving after {} maps; give another --start", center.maps));
+  const double away = std::hypot(center.offset[0], center.offset[1]);
+  const double edge = graph.mean_edge_length() * graph.length_unit();
+  if (away > 3 * edge)
+    journal.add_warning(fmt::format(
+        "the center lies {:.4g}, {:.0f} mean edge lengths, from the vertex nearest to it: in a hole, or the "
+        "points are too far apart on this surface for one center; try another --start",
+        away, away / edge));
+}
+
+void run_center(const CenterCommandOptions& options) {
+  check_outputs(options.run.input, {{"--json", options.run.json}});
+  Journal journal(options.run.verbose);
+  const Surface surface = open_surface(options.run, journal);
+  const LogMapSolver solver = make_solver(options.run, *surface.model, journal, 6);
+  const Center center = find_center(options, surface, solver, journal);
+  comment_on(center, surface.model->graph(), journal);
+  journal.finish();
+  journal.clear_display();
+  report(options, surface, center, journal);
+}
+
+}  // namespace
+
+Subcommand add_center(CLI::App& program) {
+  const auto options = std::make_shared<CenterCommandOptions>();
+  CenterCommandOptions& o = *options;
+  o.run.source = SourcePosition{};  // none: the points are checked by themselves
+  CLI::App& center = *program.add_subcommand("center", "Mean or median of points of a surface");
+  add_input(center, o.run.input);
+  add_parsed(center, "--points", o.points, parse_sources, "POINTS", "List or file, see below")->required();
+  add_parsed(center, "--weights", o.weights, parse_weights, "WEIGHTS", "List or file (default: all equal)");
+  center.add_flag("--median", o.median, "Least sum of distances instead of squared distances");
+  add_parsed(center, "--start", o.start, parse_source, "SPEC", "Where to begin (default: the heaviest point)");
+  add_graph_options(center, o.run);
+  add_json(center, o.run);
+  add_verbose(center, o.run);
+  center.footer(center_footer);
+  return {&center, [options] { run_center(*options); }};
+}
+
+}  // namespace ahm::app

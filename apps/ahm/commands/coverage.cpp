@@ -1,0 +1,230 @@
+#include "ahm/applications/coverage.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "ahm/io/atomic_file.hpp"
+#include "cli/numbers.hpp"
+#include "cli/option_adders.hpp"
+#include "commands/commands.hpp"
+#include "input/skin.hpp"
+#include "output/output_paths.hpp"
+#include "output/results.hpp"
+
+namespace ahm::app {
+namespace {
+
+constexpr const char* coverage_footer =
+    "SPEC is 123, x,y,z or face:7:.2,.3,.5 as in 'ahm logmap'.\n"
+    "OUTPUT is .csv, or .ply with edges between consecutive points; one row per point, in order of travel:\n"
+    "  piece         a tool lifts between pieces     line          of the raster\n"
+    "  x,y,z         on the surface                  nx,ny,nz      its normal\n"
+    "  hx,hy,hz      heading, unit, in the surface   u,v           coordinates\n"
+    "  arclength     from the start of the piece     spacing       to the next line, in space\n"
+    "\n"
+    "Examples:\n"
+    "  ahm coverage scan.ply --source 0.1,0.2,1.4 --radius 0.2 --spacing 0.01 -o path.csv\n"
+    "  ahm coverage part.stl --source 17 --radius 30 --spacing 2 --pattern spiral -o path.ply";
+
+struct CoverageCommandOptions {
+  RunOptions run;
+  CoverageOptions path;
+  double min_quality = trusted_quality;
+};
+
+std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+
+void check_options(const CoverageCommandOptions& options) {
+  const RunOptions& o = options.run;
+  check_results(o);
+  const std::string extension = extension_of(o.output);
+  if (extension != ".csv" && extension != ".ply")
+    throw InvalidArgument(fmt::format("--output {}: the name must end in .csv or .ply", o.output));
+}
+
+constexpr const char* columns[] = {"x", "y", "z", "nx", "ny", "nz", "hx", "hy", "hz", "u", "v", "arclength", "spacing"};
+
+/// The numbers of a row, each after the separator.
+void append_numbers(std::string& row, const CoveragePoint& p, char separator) {
+  for (const Vec3& vector : {p.position, p.normal, p.heading})
+    for (double x : vector) append_number(row, separator, x);
+  for (double x : {p.coordinates[0], p.coordinates[1], p.arclength, p.spacing}) append_number(row, separator, x);
+}
+
+void write_csv(const std::string& name, const CoveragePath& path) {
+  io::AtomicFile file(name);
+  std::string row = "index,piece,line";
+  for (const char* column : columns) row += std::string(",") + column;
+  file.write(row + "\n");
+  for (std::size_t i = 0; i < path.points.size(); ++i) {
+    row = fmt::format("{},{},{}", i, path.points[i].piece, path.points[i].line);
+    append_numbers(row, path.points[i], ',');
+    file.write(row + "\n");
+  }
+  file.commit();
+}
+
+/// Text, with an edge between consecutive points of a piece.
+void write_ply(const std::string& name, const CoveragePath& path) {
+  io::AtomicFile file(name);
+  std::string row =
+      fmt::format("ply\nformat ascii 1.0\ncomment coverage path by libahm\nelement vertex {}\n", path.points.size());
+  row += "property int piece\nproperty int line\n";
+  for (const char* column : columns) row += fmt::format("property double {}\n", column);
+  row += fmt::format("element edge {}\n", path.points.size() - at(path.pieces));
+  file.write(row + "property int vertex1\nproperty int vertex2\nend_header\n");
+  for (const CoveragePoint& point : path.points) {
+    row = fmt::format("{} {}", point.piece, point.line);
+    append_numbers(row, point, ' ');
+    file.write(row + "\n");
+  }
+  for (std::size_t i = 1; i < path.points.size(); ++i)
+    if (path.points[i].piece == path.points[i - 1].piece) file.write(fmt::format("{} {}\n", i - 1, i));
+  file.commit();
+}
+
+/// The path on the map, as a picture.
+void write_view(const Surface& surface, const ResolvedSource& source, const LogMap& map, const CoveragePath& path,
+                Results& results, Journal& journal) {
+  const MapRows rows = rows_of(map, *surface.model, surface.input.points.size());
+  std::vector<Vec3> curve;
+  std::vector<Index> pieces;
+  for (const CoveragePoint& point : path.points) {
+    if (!curve.empty() && point.piece != path.points[curve.size() - 1].piece)
+      pieces.push_back(static_cast<Index>(curve.size()));
+    curve.push_back(point.position);
+  }
+  view::Scene scene = results.scene();
+  scene.u = rows.u;
+  scene.v = rows.v;
+  scene.source = source.position;
+  if (source.frame) scene.source_axes = {source.frame->x, source.frame->y, source.frame->normal};
+  scene.curve = curve;
+  scene.curve_pieces = pieces;
+  results.write_view(scene, journal);
+}
+
+/// Of the area within the radius, the share whose vertices are trusted.
+double trusted_share(const TangentGraph& graph, const LogMap& map, const CoverageCommandOptions& options) {
+  const std::vector<double> quality = map_quality(graph, map);
+  double all = 0, trusted = 0;
+  for (Index i = 0; i < graph.size(); ++i) {
+    if (!(map.distance(i) <= options.path.radius)) continue;
+    all += graph.mass(i);
+    if (quality[i] >= options.min_quality) trusted += graph.mass(i);
+  }
+  return trusted / all;
+}
+
+/// What the path amounts to.
+struct Summary {
+  double length = 0;
+  double covered = 0;                        ///< share of the pattern's points that lie on the surface
+  double spacing_low = 0, spacing_high = 0;  ///< in space: 5 and 95 of 100 points have less
+
+  explicit Summary(const CoveragePath& path) {
+    std::vector<double> spacings;
+    for (std::size_t i = 0; i < path.points.size(); ++i) {
+      if (!std::isnan(path.points[i].spacing)) spacings.push_back(path.points[i].spacing);
+      if (i + 1 == path.points.size() || path.points[i + 1].piece != path.points[i].piece)
+        length += path.points[i].arclength;
+    }
+    covered = static_cast<double>(path.points.size()) / static_cast<double>(path.planned);
+    if (spacings.empty()) return;
+    std::sort(spacings.begin(), spacings.end());
+    spacing_low = spacings[spacings.size() / 20];
+    spacing_high = spacings[spacings.size() - 1 - spacings.size() / 20];
+  }
+};
+
+void report(const CoverageCommandOptions& options, const Surface& surface, const ResolvedSource& source,
+            const CoveragePath& path, double trusted, const Summary& amount, const Journal& journal) {
+  const std::string pattern = options.path.pattern == CoveragePattern::raster ? "raster" : "spiral";
+  nlohmann::ordered_json j = summary("ahm coverage", options.run, surface);
+  j["source"] = {{"spec", to_string(options.run.source)}, {"position", source.position}};
+  j["pattern"] = pattern;
+  j["radius"] = options.path.radius;
+  j["spacing"] = options.path.spacing;
+  j["points"] = path.points.size();
+  j["pieces"] = path.pieces;
+  j["length"] = amount.length;
+  j["covered"] = amount.covered;
+  j["trusted_area"] = trusted;
+  j["spacing_in_space"] = {{"percentile_5", amount.spacing_low}, {"percentile_95", amount.spacing_high}};
+  deliver(j,
+          fmt::format("{}: {} points in {} pieces, {:.4g} long, lines {:.4g} to {:.4g} apart in space\n"
+                      "on the surface: {:.1f} % of the pattern; trusted: {:.1f} % of the area within the radius\n",
+                      pattern, path.points.size(), path.pieces, amount.length, amount.spacing_low, amount.spacing_high,
+                      100 * amount.covered, 100 * trusted),
+          options.run, journal);
+}
+
+void run_coverage(const CoverageCommandOptions& options) {
+  check_options(options);
+  Journal journal(options.run.verbose);
+  const Surface surface = open_surface(options.run, journal);
+  const auto& [input, backend, model] = surface;
+  const ResolvedSource source = resolve(options.run, *model);
+  const LogMapSolver solver = make_solver(options.run, *model, journal);
+  const LogMap map = solve(options.run, solver, source.source, journal);
+
+  journal.start("path");
+  const InverseMap inverse = inverse_of(surface, map, options.min_quality);
+  const CoveragePath path = coverage_path(inverse, options.path);
+  if (path.points.empty())
+    throw InvalidArgument(fmt::format(
+        "--source {}: no line of the pattern meets a trusted part of the surface within {}; choose another source, or "
+        "lower --spacing or --min-quality",
+        to_string(options.run.source), options.path.radius));
+  const Summary amount(path);
+  if (amount.spacing_high > 1.25 * options.path.spacing)
+    journal.add_warning(fmt::format(
+        "lines lie up to {:.4g} apart in space, more than --spacing {}: the surface is saddle-shaped or rough",
+        amount.spacing_high, options.path.spacing));
+
+  Results results(options.run, surface);
+  write_view(surface, source, map, path, results, journal);
+  journal.start("write");
+  extension_of(options.run.output) == ".ply" ? write_ply(options.run.output, path)
+                                             : write_csv(options.run.output, path);
+  journal.finish();
+  journal.clear_display();
+  report(options, surface, source, path, trusted_share(model->graph(), map, options), amount, journal);
+  results.keep();
+}
+
+}  // namespace
+
+Subcommand add_coverage(CLI::App& program) {
+  const auto options = std::make_shared<CoverageCommandOptions>();
+  CoverageCommandOptions& o = *options;
+  CLI::App& coverage = *program.add_subcommand("coverage", "Path that covers a surface around a point, with normals");
+  add_input(coverage, o.run.input);
+  add_source(coverage, o.run, "Middle of what is covered")->required();
+  add_parsed(coverage, "--radius", o.path.radius, parse_positive, "R", "How far to go, along the surface")->required();
+  add_parsed(coverage, "--spacing", o.path.spacing, parse_positive, "S", "Between lines or turns")->required();
+  add_output(coverage, o.run)->required();
+  add_parsed(
+      coverage, "--pattern", o.path.pattern,
+      [](const std::string& text) {
+        return choice({"raster", "spiral"})(text) == "raster" ? CoveragePattern::raster : CoveragePattern::spiral;
+      },
+      "NAME", "raster (default) or spiral");
+  add_parsed(coverage, "--angle", o.path.angle, parse_degrees, "DEG",
+             "Direction of the lines, from the u axis (default 0)");
+  add_parsed(coverage, "--step", o.path.step, parse_positive, "L", "Between points of the path (default: S / 2)");
+  add_min_quality(coverage, o.min_quality);
+  add_u_axis(coverage, o.run);
+  add_graph_options(coverage, o.run);
+  add_json(coverage, o.run);
+  add_view(coverage, o.run);
+  add_verbose(coverage, o.run);
+  coverage.footer(coverage_footer);
+  return {&coverage, [options] { run_coverage(*options); }};
+}
+
+}  // namespace ahm::app

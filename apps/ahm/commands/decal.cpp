@@ -1,0 +1,234 @@
+#include "ahm/applications/decal.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "ahm/applications/distortion.hpp"
+#include "ahm/view/textured_picture.hpp"
+#include "cli/numbers.hpp"
+#include "cli/option_adders.hpp"
+#include "commands/commands.hpp"
+#include "output/output_paths.hpp"
+#include "output/texture_output.hpp"
+
+namespace ahm::app {
+namespace {
+
+constexpr const char* decal_footer =
+    "SPEC is 123, x,y,z or face:7:.2,.3,.5 as in 'ahm logmap'; the middle of the image lies there. The image's\n"
+    "direction from left to right is the u axis, turned by --angle.\n"
+    "\n"
+    "OUTPUT  .obj or .glb  the surface in grey and, a little above it, the piece under the image, cut at its borders,\n"
+    "                      with its texture (opacity included); of clouds, the piece alone\n"
+    "        .ply          the points of INPUT, coloured where the image lies on them\n"
+    "Where the map is not to be trusted there is no decal, and where it folds it lies on one sheet only.\n"
+    "\n"
+    "Examples:\n"
+    "  ahm decal bowl.ply --image logo.png --source 0,0.2,1.4 --size 0.3 -o bowl.glb --view bowl.png\n"
+    "  ahm decal scan.ply --image arrow.png --source 17 --size 0.2 --angle 45 -o painted.ply";
+
+struct DecalCommandOptions {
+  RunOptions run;
+  std::string image;
+  double size = 0;
+  DecalOptions decal;
+  std::optional<double> lift;
+  double min_quality = trusted_quality;
+  bool alone = false;
+};
+
+/// As far as the image reaches, and a few edges more, so that triangles at its border are whole.
+double map_radius(const DecalOptions& decal, const TangentGraph& graph) {
+  return std::min(decal.radius, std::hypot(decal.width, decal.height) / 2) +
+         5 * graph.mean_edge_length() * graph.length_unit();
+}
+
+/// What the decal amounts to.
+struct Amount {
+  DistortionSummary distortion;
+  double covered = 0;  ///< share of the image's area that lies on the surface
+
+  Amount(const Decal& decal, const DecalOptions& options) {
+    std::vector<std::array<Index, 3>> triangles;
+    for (std::size_t f = 0; f + 1 < decal.face_begin.size(); ++f)
+      for (Offset c = decal.face_begin[f] + 1; c + 1 < decal.face_begin[f + 1]; ++c) {
+        auto& triangle = triangles.emplace_back();
+        for (std::size_t k = 0; k < 3; ++k)
+          triangle[k] = decal.face_vertices[k == 0 ? decal.face_begin[f] : c + static_cast<Offset>(k) - 1];
+      }
+    std::vector<double> plane = decal.image_coordinates;
+    for (std::size_t i = 0; i + 1 < plane.size(); i += 2)
+      plane[i] *= options.mirrored ? -options.width : options.width, plane[i + 1] *= options.height;
+    const auto measured = ahm::distortion(decal.points, triangles, plane);
+    distortion = summary(measured);
+    double area = 0;
+    for (const TriangleDistortion& t : measured)
+      if (!std::isnan(t.value())) area += t.area * t.sigma1 * t.sigma2;
+    covered = std::min(1.0, area / (options.width * options.height));  // triangles of clouds may overlap
+  }
+};
+
+Skin skin_behind(const DecalCommandOptions& options, const Surface& surface, const LogMapSolver& solver) {
+  if (options.alone || surface.backend == "pointcloud") return {};
+  return skin_of(surface, solver, {});
+}
+
+void write_mesh(const DecalCommandOptions& options, const Surface& surface, const LogMapSolver& solver,
+                const Decal& decal, const io::Image& image, const Vec3& source) {
+  const Skin skin = skin_behind(options, surface, solver);
+  const SkinPart behind(skin, [](std::size_t) { return true; });
+  std::vector<double> corners;
+  for (Index v : decal.face_vertices)
+    for (std::size_t c : {0, 1}) corners.push_back(decal.image_coordinates[2 * static_cast<std::size_t>(v) + c]);
+  std::vector<io::MeshPart> parts;
+  if (!behind.empty()) parts.push_back(behind.view("surface"));
+  io::MeshPart& part = parts.emplace_back();
+  part.name = "decal";
+  part.points = decal.points, part.normals = decal.normals;
+  part.face_begin = decal.face_begin, part.face_vertices = decal.face_vertices;
+  part.texture_coordinates = corners;
+  part.texture = &image;
+  part.transparent = true;
+  io::write_textured(options.run.output, parts);
+  if (options.run.view.empty()) return;
+  view::TexturedScene scene;
+  scene.parts = parts;
+  scene.towards = source;
+  view::write_textured_png(options.run.view, scene);
+}
+
+/// The colours of the input, light grey where there are none, under the image.
+std::vector<std::array<std::uint8_t, 3>> painted(const Surface& surface, const std::vector<double>& places,
+                                                 const io::Image& image) {
+  std::vector<std::array<std::uint8_t, 3>> colors = surface.input.colors;
+  colors.resize(surface.input.points.size(), {200, 200, 200});
+  const bool by_row = surface.backend != "pointcloud";
+  for (const auto& [row, vertex] : surface.model->row_vertices()) {
+    const auto k = static_cast<std::size_t>(by_row ? row : vertex);
+    if (std::isnan(places[2 * k])) continue;
+    const auto texel = image.sample(places[2 * k], places[2 * k + 1]);
+    for (std::size_t c = 0; c < 3; ++c) {
+      std::uint8_t& color = colors[row][c];
+      color = static_cast<std::uint8_t>(std::lround((1 - texel[3]) * color + texel[3] * 255 * texel[c]));
+    }
+  }
+  return colors;
+}
+
+/// For a picture of the rows: two thirds of the way to a neighbour.
+std::vector<double> disc_radii(const Surface& surface) {
+  const TangentGraph& graph = surface.model->graph();
+  std::vector<double> radii(surface.input.points.size(), 0.0);
+  for (const auto& [row, vertex] : surface.model->row_vertices()) {
+    const Star star = graph.star(vertex);
+    double sum = 0;
+    for (std::size_t e = 0; e < star.degree(); ++e) sum += std::hypot(star.log(e)[0], star.log(e)[1]);
+    if (star.degree() > 0) radii[row] = graph.length_unit() * sum / static_cast<double>(star.degree()) / 1.5;
+  }
+  return radii;
+}
+
+void write_points(const DecalCommandOptions& options, const Surface& surface, const InverseMap& inverse,
+                  const io::Image& image, const Vec3& source) {
+  const auto colors = painted(surface, image_coordinates_of_vertices(inverse, options.decal), image);
+  const std::vector<Vec3> normals = surface.model->normals();
+  const io::Geometry& input = surface.input;
+  io::write_colored_ply(options.run.output, input.points, input.normals, colors, input.face_begin, input.face_vertices);
+  if (options.run.view.empty()) return;
+  view::TexturedScene scene;
+  scene.points = input.points, scene.colors = colors, scene.normals = normals;
+  const std::vector<double> radii = disc_radii(surface);
+  scene.radii = radii;
+  scene.towards = source;
+  view::write_textured_png(options.run.view, scene);
+}
+
+void report(const DecalCommandOptions& options, const Surface& surface, const Decal& decal, const Amount& amount,
+            const Vec3& source, const Journal& journal) {
+  nlohmann::ordered_json j = summary("ahm decal", options.run, surface);
+  const DistortionSummary& d = amount.distortion;
+  j["image"] = options.image;
+  j["source"] = {{"spec", to_string(options.run.source)}, {"position", source}};
+  j["width"] = options.decal.width;
+  j["height"] = options.decal.height;
+  j["faces"] = decal.face_begin.size() - 1;
+  j["hidden"] = decal.hidden;
+  j["covered"] = amount.covered;
+  j["distortion"] = {{"mean", d.mean}, {"percentile_95", d.percentile_95}, {"largest", d.largest}};
+  const std::string text = fmt::format(
+      "image {:.4g} x {:.4g}, {:.1f} % of it on the surface, {} faces\n"
+      "distortion: mean {:.4g}, 95 % of the area below {:.4g}\n",
+      options.decal.width, options.decal.height, 100 * amount.covered, decal.face_begin.size() - 1, d.mean,
+      d.percentile_95);
+  deliver(std::move(j), text, options.run, journal);
+}
+
+void run_decal(DecalCommandOptions options) {
+  check_texture_output(options.run, {".obj", ".glb", ".ply"}, {"decal"}, options.image);
+  const io::Image image = io::read_image(options.image);
+  const double longer = std::max(image.width, image.height);
+  options.decal.width = options.size * image.width / longer;
+  options.decal.height = options.size * image.height / longer;
+  options.decal.lift = options.lift.value_or(0.002 * options.size);
+
+  Journal journal(options.run.verbose);
+  const Surface surface = open_surface(options.run, journal);
+  const ResolvedSource source = resolve(options.run, *surface.model);
+  const LogMapSolver solver = make_solver(options.run, *surface.model, journal);
+  RunOptions near = options.run;
+  near.radius = map_radius(options.decal, surface.model->graph());
+  const LogMap map = solve(near, solver, source.source, journal);
+
+  journal.start("decal");
+  const InverseMap inverse = inverse_of(surface, map, options.min_quality);
+  const Decal decal = make_decal(inverse, options.decal);
+  if (decal.face_begin.size() < 2)
+    throw InvalidArgument(fmt::format(
+        "--source {}: no part of the image lies on a trusted part of the surface; choose another source, or raise "
+        "--size, or lower --min-quality",
+        to_string(options.run.source)));
+  const Amount amount(decal, options.decal);
+  if (amount.covered < 0.9 && std::isinf(options.decal.radius))
+    journal.add_warning(
+        fmt::format("{:.0f} % of the image do not lie on the surface: it ends there, or the map is not to be trusted",
+                    100 - 100 * amount.covered));
+
+  journal.start("write");
+  extension_of(options.run.output) == ".ply" ? write_points(options, surface, inverse, image, source.position)
+                                             : write_mesh(options, surface, solver, decal, image, source.position);
+  journal.finish();
+  journal.clear_display();
+  report(options, surface, decal, amount, source.position, journal);
+}
+
+}  // namespace
+
+Subcommand add_decal(CLI::App& program) {
+  const auto options = std::make_shared<DecalCommandOptions>();
+  DecalCommandOptions& o = *options;
+  CLI::App& decal = *program.add_subcommand("decal", "An image laid on a surface around a point");
+  add_input(decal, o.run.input);
+  add_parsed(decal, "--image", o.image, non_empty, "FILE", "PNG or JPEG; its opacity counts")->required();
+  add_source(decal, o.run, "Where the middle of the image lies")->required();
+  add_parsed(decal, "--size", o.size, parse_positive, "S", "Longer side of the image, along the surface")->required();
+  add_output(decal, o.run)->required();
+  add_parsed(decal, "--angle", o.decal.angle, parse_degrees, "DEG", "Turns the image, from the u axis (default 0)");
+  decal.add_flag("--mirror", o.decal.mirrored, "Exchange left and right, for clouds whose normals point inwards");
+  add_parsed(decal, "--radius", o.decal.radius, parse_positive, "R", "Cut off what is farther from the source");
+  add_parsed(decal, "--lift", o.lift, parse_number, "L", "Above the surface, .obj and .glb (default: S / 500)");
+  decal.add_flag("--alone", o.alone, "Write the decal without the surface (.obj, .glb)");
+  add_min_quality(decal, o.min_quality);
+  add_u_axis(decal, o.run);
+  add_graph_options(decal, o.run);
+  add_json(decal, o.run);
+  add_view(decal, o.run)->description("Draw the result: .png");
+  add_verbose(decal, o.run);
+  decal.footer(decal_footer);
+  return {&decal, [options] { run_decal(*options); }};
+}
+
+}  // namespace ahm::app

@@ -1,0 +1,147 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "cli/numbers.hpp"
+#include "cli/option_adders.hpp"
+#include "cli/source_list.hpp"
+#include "commands/commands.hpp"
+#include "input/curve.hpp"
+#include "output/results.hpp"
+
+namespace ahm::app {
+namespace {
+
+constexpr const char* stroke_footer =
+    "CURVE is a list between blanks, or a file with one entry per line, of\n"
+    "  123              a vertex of INPUT, counted from 0\n"
+    "  1.5,0,-2         the nearest point of the surface; in files also 1.5 0 -2\n"
+    "  face:7:.2,.3,.5  a point in face 7, by barycentric coordinates, one per corner (meshes)\n"
+    "They are joined by straight lines, sampled every half edge, and each sample is moved to the nearest point of\n"
+    "the surface: give points so close that the lines stay near it.\n"
+    "\n"
+    "OUTPUT  .csv, .ply or .pcd; one row per vertex of INPUT, in its order: index,x,y,z,u,v,distance,status\n"
+    "          u  arclength along the curve, before and after its ends straight on\n"
+    "          v  distance from it, positive on its left as seen from outside (the side of the normals)\n"
+    "        With --circle the curve becomes a circle of its length about the origin.\n"
+    "\n"
+    "Examples:\n"
+    "  ahm stroke scan.ply --curve '0,0,1.2 0.3,0,1.1 0.5,0.2,1' -o stroke.csv --view stroke.png\n"
+    "  ahm stroke part.stl --curve seam.xyz --closed -o stroke.ply";
+
+struct StrokeCommandOptions {
+  RunOptions run;
+  std::vector<SourceSpec> curve;
+  StrokeOptions shape;
+};
+
+/// From a vertex with these coordinates to the curve, in the plane of coordinates.
+double distance_from_curve(double u, double v, double length, const StrokeOptions& shape) {
+  if (shape.shape == StrokeShape::circle) return std::abs(std::hypot(u, v) - length / (2 * std::numbers::pi));
+  return shape.closed ? std::abs(v) : std::hypot(std::max({0.0, -u, u - length}), v);
+}
+
+void comment_on_curve(const Curve& curve, double edge, Journal& journal) {
+  if (curve.gap > 2 * edge)
+    journal.add_warning(fmt::format(
+        "--curve: the straight lines between its points leave the surface by up to {:.4g}, {:.0f} mean edge lengths; "
+        "give more points",
+        curve.gap, curve.gap / edge));
+  if (curve.jump > 3 * edge)
+    journal.add_warning(fmt::format(
+        "--curve: jumps by up to {:.4g} along the surface, {:.0f} mean edge lengths; give more points, nearer to it",
+        curve.jump, curve.jump / edge));
+}
+
+void write_results(const Curve& curve, const StrokeOptions& shape, const MapRows& rows,
+                   const std::vector<double>& distance, Results& results, Journal& journal) {
+  io::Table table = results.table();
+  table.u = rows.u;
+  table.v = rows.v;
+  table.distance = distance;
+  table.status = rows.status;
+  std::vector<Vec3> line = curve.points;
+  if (shape.closed) line.push_back(line.front());
+  view::Scene scene = results.scene();
+  scene.u = rows.u;
+  scene.v = rows.v;
+  scene.curve = line;
+  scene.source = line.front();
+  if (curve.first) scene.source_axes = {curve.first->x, curve.first->y, curve.first->normal};
+  view::PictureOptions picture;
+  if (shape.shape == StrokeShape::line) picture.pattern = view::Pattern::grid;
+  results.write(table, scene, journal, picture);
+}
+
+void report(const StrokeCommandOptions& options, const Surface& surface, const Curve& curve, const MapRows& rows,
+            const std::vector<double>& distance, const Journal& journal) {
+  const auto mapped = std::count(rows.status.begin(), rows.status.end(), Status::ok);
+  double farthest = 0;
+  for (double d : distance) farthest = std::max(farthest, std::isnan(d) ? 0 : d);
+  nlohmann::ordered_json j = summary("ahm stroke", options.run, surface);
+  j["curve"] = {{"given", options.curve.size()},
+                {"points", curve.points.size()},
+                {"length", curve.length},
+                {"closed", options.shape.closed},
+                {"shape", options.shape.shape == StrokeShape::circle ? "circle" : "line"},
+                {"largest_gap", curve.gap}};
+  j["n"] = rows.status.size();
+  j["mapped"] = mapped;
+  j["largest_distance"] = farthest;
+  const std::string text = fmt::format(
+      "{} curve of {} points, {:.6g} long, off the surface by {:.2g} at most\n{} of {} vertices mapped, up to {:.6g} "
+      "from "
+      "the curve\n",
+      options.shape.closed ? "closed" : "open", curve.points.size(), curve.length, curve.gap, mapped,
+      rows.status.size(), farthest);
+  deliver(std::move(j), text, options.run, journal);
+}
+
+void run_stroke(const StrokeCommandOptions& options) {
+  check_results(options.run);
+  Journal journal(options.run.verbose);
+  const Surface surface = open_surface(options.run, journal);
+  const TangentGraph& graph = surface.model->graph();
+  const Curve curve = draw_curve(surface, options.curve, options.shape);
+  comment_on_curve(curve, graph.mean_edge_length() * graph.length_unit(), journal);
+
+  const LogMapSolver solver = make_solver(options.run, *surface.model, journal);
+  const LogMap map = solve(options.run, solver, curve.source, journal);
+  const MapRows rows = rows_of(map, *surface.model, surface.input.points.size());
+  std::vector<double> distance;
+  for (std::size_t i = 0; i < rows.u.size(); ++i)
+    distance.push_back(distance_from_curve(rows.u[i], rows.v[i], curve.length, options.shape));
+  comment_on_statuses(rows.status, options.run.input, journal);
+  Results results(options.run, surface);
+  write_results(curve, options.shape, rows, distance, results, journal);
+  report(options, surface, curve, rows, distance, journal);
+  results.keep();
+}
+
+}  // namespace
+
+Subcommand add_stroke(CLI::App& program) {
+  const auto options = std::make_shared<StrokeCommandOptions>();
+  StrokeCommandOptions& o = *options;
+  o.run.source = SourcePosition{};  // none: the curve is checked by itself
+  CLI::App& stroke = *program.add_subcommand("stroke", "Coordinates along a curve on a surface and across it");
+  add_input(stroke, o.run.input);
+  add_parsed(stroke, "--curve", o.curve, parse_sources, "CURVE", "List or file of points, see below")->required();
+  add_output(stroke, o.run)->required();
+  stroke.add_flag("--closed", o.shape.closed, "Join the last point to the first");
+  stroke.add_flag_callback(
+      "--circle", [&o] { o.shape.closed = true, o.shape.shape = StrokeShape::circle; },
+      "Closed; map the curve to a circle instead of a line");
+  add_graph_options(stroke, o.run);
+  add_json(stroke, o.run);
+  add_view(stroke, o.run);
+  add_verbose(stroke, o.run);
+  stroke.footer(stroke_footer);
+  return {&stroke, [options] { run_stroke(*options); }};
+}
+
+}  // namespace ahm::app

@@ -1,0 +1,71 @@
+/// \file
+/// What the program needs of a backend. A new backend is one more source file with a `build_...` function and one line
+/// in the table of backends.cpp.
+#pragma once
+
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "ahm/graph/tangent_graph.hpp"
+#include "ahm/io/geometry.hpp"
+#include "ahm/maps/log_map.hpp"
+#include "ahm/maps/source.hpp"
+#include "ahm/progress.hpp"
+#include "cli/options.hpp"
+
+namespace ahm::app {
+
+/// Where the map starts.
+struct ResolvedSource {
+  Source source;
+  std::optional<Index> row;  ///< the input vertex, when it is one
+  Vec3 position{};
+  std::optional<Frame> frame;  ///< u axis, v axis and normal in space
+};
+
+/// A vertex of the graph that stands for a row of the input. A row may have several (where a mesh was cut) or none.
+struct RowVertex {
+  Index row, vertex;
+};
+
+/// The input as a tangent graph, and the way from the user's terms to the graph's and back.
+class Model {
+ public:
+  virtual ~Model() = default;
+
+  virtual const TangentGraph& graph() const = 0;
+  /// @throws InvalidArgument, in the user's terms: row numbers are those of the input
+  virtual ResolvedSource source(const SourceSpec& spec, const std::optional<Vec3>& u_axis) const = 0;
+  virtual std::vector<RowVertex> row_vertices() const = 0;
+  /// The vertex at every corner of the input's faces, face after face, all oriented alike where that is possible; empty
+  /// for clouds.
+  virtual std::vector<Index> corner_vertices() const { return {}; }
+  /// Unit normal per input row, NaN where there is none.
+  virtual std::vector<Vec3> normals() const = 0;
+  /// What was found and done on the way, under the backend's own keys.
+  virtual nlohmann::ordered_json report() const = 0;
+  virtual std::vector<std::string> warnings() const = 0;
+};
+
+/// Name of the backend for an input: the user's choice, or for `auto` the one that suits the input.
+std::string choose_backend(const io::Geometry& input, const std::string& requested);
+
+/// Builds the model. Cheap checks of the arguments against the input come first.
+/// @throws what the backend throws
+std::unique_ptr<Model> build_model(const std::string& backend, const io::Geometry& input, const RunOptions& options,
+                                   const Progress& progress);
+
+/// The triangle mesh backend.
+std::unique_ptr<Model> build_trimesh(const io::Geometry& input, const RunOptions& options, const Progress& progress);
+
+/// The polygon mesh backend, by either discretization.
+std::unique_ptr<Model> build_polymesh(const io::Geometry& input, const RunOptions& options, const Progress& progress);
+
+/// The point cloud backend.
+std::unique_ptr<Model> build_pointcloud(const io::Geometry& input, const RunOptions& options, const Progress& progress);
+
+}  // namespace ahm::app

@@ -1,0 +1,31 @@
+/// \file
+/// What happens to a cloud before its graph is built: non-finite points, voxel grid, outliers, normals.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ahm/io/geometry.hpp"
+#include "cli/options.hpp"
+
+namespace ahm::app {
+
+/// The points that remain, and where they stand in the input.
+struct PreparedCloud {
+  std::vector<Vec3> points;
+  std::vector<Vec3> normals;     ///< empty, or one per point
+  std::vector<Index> input_row;  ///< of each point, ascending
+  Index non_finite = 0;          ///< input points dropped
+  Index voxel_replaced = 0;      ///< points represented by another one of their voxel
+  Index outliers = 0;            ///< points removed as outliers
+  Index beyond = 0;              ///< points left out by --local
+  double seconds = 0;
+};
+
+/// Applies the options of `ahm logmap` that concern the input cloud, in the order non-finite, surroundings, voxel grid, outliers.
+/// @param source  the input row that must remain: it represents its voxel. Not an outlier, or the call is refused
+/// @throws InvalidGeometry (non-finite points without --drop-nan; unusable normals), InvalidArgument
+PreparedCloud prepare_cloud(const io::Geometry& input, const RunOptions& options, std::optional<Index> source);
+
+}  // namespace ahm::app

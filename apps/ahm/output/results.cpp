@@ -1,0 +1,91 @@
+#include "output/results.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "ahm/error.hpp"
+#include "output/output_paths.hpp"
+
+namespace ahm::app {
+namespace {
+
+void check_view(const std::string& path) {
+  if (path.empty()) return;
+  const std::string extension = extension_of(path);
+  const bool html = extension == ".html" || extension == ".htm";
+  if (!html && extension != ".png")
+    throw InvalidArgument(fmt::format("--view {}: the name must end in .png or .html", path));
+  if (html ? !view::can_write_html() : !view::can_write_png())
+    throw InvalidArgument(fmt::format("--view {}: this build of ahm cannot write {} files", path, extension));
+}
+
+}  // namespace
+
+void check_results(const RunOptions& options) {
+  check_outputs(options.input, {{"--output", options.output}, {"--json", options.json}, {"--view", options.view}});
+  io::check_writable(options.output);
+  check_view(options.view);
+}
+
+void comment_on_statuses(const std::vector<Status>& status, const std::string& input, Journal& journal) {
+  const auto count = [&](Status s) { return std::count(status.begin(), status.end(), s); };
+  const auto total = static_cast<double>(status.size());
+  if (const auto apart = count(Status::component); static_cast<double>(apart) > 0.1 * total)
+    journal.add_warning(
+        fmt::format("{:.0f} % of the vertices are not connected to the source; 'ahm info {}' tells about components",
+                    100.0 * static_cast<double>(apart) / total, input));
+  if (const auto unreached = count(Status::unreached); unreached > 0)
+    journal.add_warning(
+        fmt::format("no heat reaches {} vertices: with --strategy global they are too far away (the "
+                    "march has no such limit), else the weights around them are too bad",
+                    unreached));
+}
+
+Results::Results(const RunOptions& options, const Surface& surface)
+    : options_(options), input_(surface.input), normals_(surface.model->normals()) {}
+
+Results::~Results() {
+  std::error_code ignored;
+  for (const std::string& path : written_)
+    if (!is_stream(path)) std::filesystem::remove(path, ignored);
+}
+
+io::Table Results::table() const {
+  io::Table table;
+  table.points = input_.points;
+  table.normals = normals_;
+  table.face_begin = input_.face_begin;
+  table.face_vertices = input_.face_vertices;
+  return table;
+}
+
+view::Scene Results::scene() const {
+  view::Scene scene;
+  scene.points = input_.points;
+  scene.normals = normals_;
+  scene.face_begin = input_.face_begin;
+  scene.face_vertices = input_.face_vertices;
+  scene.title = std::filesystem::path(options_.input).filename().string();
+  return scene;
+}
+
+void Results::write_view(const view::Scene& scene, Journal& journal, const view::PictureOptions& picture) {
+  if (options_.view.empty()) return;
+  journal.start("view");
+  view::write_picture(options_.view, scene, picture);
+  written_.push_back(options_.view);
+}
+
+void Results::write(const io::Table& table, const view::Scene& scene, Journal& journal,
+                    const view::PictureOptions& picture) {
+  write_view(scene, journal, picture);
+  journal.start("write");
+  io::write(options_.output, table);
+  written_.push_back(options_.output);
+  journal.finish();
+  journal.clear_display();
+}
+
+}  // namespace ahm::app

@@ -1,0 +1,54 @@
+/// \file
+/// What the subcommands that write textures share.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ahm/io/textured_mesh.hpp"
+#include "input/skin.hpp"
+
+namespace ahm::app {
+
+/// Before the work: whether all files can be written, those beside an .obj included, and none is `image`.
+/// @param extensions  that --output may have
+/// @throws IoError, InvalidArgument
+void check_texture_output(const RunOptions& options, const std::vector<std::string>& extensions,
+                          const std::vector<std::string>& parts, const std::string& image);
+
+/// Some faces of a skin, with or without texture coordinates, as a part of a textured mesh.
+class SkinPart {
+ public:
+  /// @param keep         whether to take face f
+  /// @param coordinates  of all corners of the skin, or empty
+  template <class Keep>
+  SkinPart(const Skin& skin, const Keep& keep, const std::vector<double>& coordinates = {}) : skin_(skin) {
+    for (std::size_t f = 0; f + 1 < skin.face_begin.size(); ++f) {
+      if (!keep(f)) continue;
+      for (Offset c = skin.face_begin[f]; c < skin.face_begin[f + 1]; ++c) {
+        vertices_.push_back(skin.corner_points[c]);
+        if (!coordinates.empty())
+          coordinates_.insert(coordinates_.end(), coordinates.begin() + 2 * c, coordinates.begin() + 2 * c + 2);
+      }
+      begin_.push_back(static_cast<Offset>(vertices_.size()));
+    }
+  }
+  bool empty() const { return vertices_.empty(); }
+  io::MeshPart view(const std::string& name) const {
+    io::MeshPart part;
+    part.name = name;
+    part.points = skin_.points, part.normals = skin_.normals;
+    part.face_begin = begin_, part.face_vertices = vertices_;
+    part.texture_coordinates = coordinates_;
+    return part;
+  }
+
+ private:
+  const Skin& skin_;
+  std::vector<Offset> begin_{0};
+  std::vector<Index> vertices_;
+  std::vector<double> coordinates_;
+};
+
+}  // namespace ahm::app

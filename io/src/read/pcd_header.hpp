@@ -1,0 +1,38 @@
+/// \file
+/// The header of a PCD file, checked against the file before PCL sees it.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "read/input.hpp"
+
+namespace ahm::io {
+
+enum class PcdData { ascii, binary, compressed };
+
+struct PcdField {
+  std::string name;
+  char type = 'F';          ///< F float, I signed, U unsigned
+  std::uint64_t size = 4;   ///< bytes of one value
+  std::uint64_t count = 1;  ///< values per point
+};
+
+struct PcdHeader {
+  std::vector<PcdField> fields;
+  std::uint64_t points = 0;
+  std::uint64_t point_size = 0;  ///< bytes of one point
+  PcdData data = PcdData::ascii;
+  std::size_t body = 0;        ///< position of the first byte behind the header
+  std::int64_t body_line = 0;  ///< number of the first line behind the header
+};
+
+/// Reads the header and checks everything a PCD reader would have to believe: fields and counts against each other and
+/// against the size of the file, the sizes of compressed data, and in text every line and word. What passes is safe to
+/// hand on.
+/// @throws IoError naming the line or byte
+PcdHeader check_pcd(const Input& in);
+
+}  // namespace ahm::io

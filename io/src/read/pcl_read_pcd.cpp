@@ -1,0 +1,146 @@
+// PCL reads PCD: its format. PCL trusts the header and reads "1,5" as 1, so check_pcd goes first; PCL then works on the
+// same bytes in memory, never on the file again. This file must not be compiled with -march flags: PCL's Eigen types
+// cross the border.
+#include <pcl/PCLPointCloud2.h>
+#include <pcl/io/pcd_io.h>
+
+#include <algorithm>
+#include <cstring>
+#include <sstream>
+
+#include "read/pcd_header.hpp"
+#include "read/pcl_quiet.hpp"
+#include "read/readers.hpp"
+
+namespace ahm::io {
+namespace {
+
+using pcl::PCLPointCloud2;
+using pcl::PCLPointField;
+
+const PCLPointField* find(const PCLPointCloud2& cloud, const char* name) {
+  const auto found = std::ranges::find(cloud.fields, name, &PCLPointField::name);
+  return found == cloud.fields.end() ? nullptr : &*found;
+}
+
+template <class T>
+double load_as(const std::uint8_t* bytes) {
+  T value;
+  std::memcpy(&value, bytes, sizeof value);
+  return static_cast<double>(value);
+}
+
+double load_value(const Input& in, const PCLPointField& field, const std::uint8_t* point) {
+  const std::uint8_t* bytes = point + field.offset;
+  switch (field.datatype) {
+    case PCLPointField::INT8:
+      return load_as<std::int8_t>(bytes);
+    case PCLPointField::UINT8:
+      return load_as<std::uint8_t>(bytes);
+    case PCLPointField::INT16:
+      return load_as<std::int16_t>(bytes);
+    case PCLPointField::UINT16:
+      return load_as<std::uint16_t>(bytes);
+    case PCLPointField::INT32:
+      return load_as<std::int32_t>(bytes);
+    case PCLPointField::UINT32:
+      return load_as<std::uint32_t>(bytes);
+    case PCLPointField::INT64:
+      return load_as<std::int64_t>(bytes);
+    case PCLPointField::UINT64:
+      return load_as<std::uint64_t>(bytes);
+    case PCLPointField::FLOAT32:
+      return load_as<float>(bytes);
+    case PCLPointField::FLOAT64:
+      return load_as<double>(bytes);
+    default:
+      fail(in, "field '" + field.name + "' has a type PCL does not know");
+  }
+}
+
+PCLPointCloud2 read_with_pcl(const Input& in, const PcdHeader& header) {
+  const PclQuiet quiet;
+  pcl::PCDReader reader;
+  PCLPointCloud2 cloud;
+  Eigen::Vector4f origin;
+  Eigen::Quaternionf orientation;
+  int version = 0;
+  int data = 0;
+  unsigned int position = 0;
+  std::istringstream head(in.bytes.substr(0, header.body));
+  int error = reader.readHeader(head, cloud, origin, orientation, version, data, position);
+  // Before PCL copies that many bytes out of the file: it must have understood the header as check_pcd did.
+  if (error == 0 && (cloud.point_step != header.point_size || cloud.data.size() != header.points * header.point_size))
+    error = -1;
+  if (error == 0 && header.data == PcdData::ascii) {
+    std::istringstream body(in.bytes.substr(header.body));
+    body.imbue(std::locale::classic());
+    error = reader.readBodyASCII(body, cloud, version);
+  } else if (error == 0) {
+    const auto* body = reinterpret_cast<const unsigned char*>(in.bytes.data() + header.body);
+    error = reader.readBodyBinary(body, cloud, version, header.data == PcdData::compressed, 0);
+  }
+  if (error != 0) fail(in, "PCL cannot read the data; the file is damaged");
+  return cloud;
+}
+
+/// What PCL made of the file must be what the header said.
+void check_result(const Input& in, const PcdHeader& header, const PCLPointCloud2& cloud) {
+  const std::uint64_t points = std::uint64_t{cloud.width} * cloud.height;
+  bool inside = points == header.points && cloud.data.size() >= points * cloud.point_step;
+  for (const PCLPointField& field : cloud.fields) {
+    const std::uint64_t size = static_cast<std::uint64_t>(std::max(0, pcl::getFieldSize(field.datatype)));
+    inside = inside && size > 0 && field.offset + size * field.count <= cloud.point_step;
+  }
+  if (!inside)
+    fail(in, "PCL read " + std::to_string(points) + " of " + std::to_string(header.points) +
+                 " points; the file is damaged");
+}
+
+void read_vectors(const Input& in, const PCLPointCloud2& cloud, std::array<const char*, 3> names,
+                  std::vector<Vec3>& result) {
+  std::array<const PCLPointField*, 3> fields{};
+  for (std::size_t k = 0; k < 3; ++k) fields[k] = find(cloud, names[k]);
+  if (std::ranges::count(fields, nullptr) > 0) return;
+  result.resize(std::size_t{cloud.width} * cloud.height);
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    const std::uint8_t* point = cloud.data.data() + i * cloud.point_step;
+    for (std::size_t k = 0; k < 3; ++k) result[i][k] = load_value(in, *fields[k], point);
+  }
+}
+
+/// PCL packs colours as 0xAARRGGBB into four bytes, which may be declared a float.
+void read_colors(const PCLPointCloud2& cloud, Geometry& g) {
+  const PCLPointField* field = find(cloud, "rgb") ? find(cloud, "rgb") : find(cloud, "rgba");
+  if (field == nullptr) return;
+  if (pcl::getFieldSize(field->datatype) != 4) {
+    g.warnings.emplace_back("colours are ignored: they are not packed into four bytes");
+    return;
+  }
+  g.colors.resize(g.points.size());
+  for (std::size_t i = 0; i < g.colors.size(); ++i) {
+    std::uint32_t packed = 0;
+    std::memcpy(&packed, cloud.data.data() + i * cloud.point_step + field->offset, sizeof packed);
+    g.colors[i] = {static_cast<std::uint8_t>(packed >> 16), static_cast<std::uint8_t>(packed >> 8),
+                   static_cast<std::uint8_t>(packed)};
+  }
+}
+
+}  // namespace
+
+Geometry read_pcd(const Input& in) {
+  const PcdHeader header = check_pcd(in);
+  Geometry g;
+  g.format = header.data == PcdData::ascii    ? "PCD text"
+             : header.data == PcdData::binary ? "PCD binary"
+                                              : "PCD compressed";
+  if (header.points == 0) return g;
+  const PCLPointCloud2 cloud = read_with_pcl(in, header);
+  check_result(in, header, cloud);
+  read_vectors(in, cloud, {"x", "y", "z"}, g.points);
+  read_vectors(in, cloud, {"normal_x", "normal_y", "normal_z"}, g.normals);
+  read_colors(cloud, g);
+  return g;
+}
+
+}  // namespace ahm::io

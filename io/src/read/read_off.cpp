@@ -1,0 +1,142 @@
+// OFF is read here and not by a library: CGAL's scanner, the one in Debian 12 that keeps doubles and polygons, parses
+// each vertex with the process's global C++ locale ("1.5" becomes 1 where decimals have commas), takes "0 0 1,5" as 0 0
+// 1, cannot read "nan", and believes the counts of the header.
+#include <algorithm>
+#include <utility>
+
+#include "read/readers.hpp"
+#include "read/text.hpp"
+
+namespace ahm::io {
+namespace {
+
+/// Words across lines; comments are skipped.
+class Words {
+ public:
+  Words(const Input& in, std::string_view text) : in_(in), lines_(text) {}
+
+  std::string_view next(const char* expected) {
+    for (std::string_view word = next_word(rest_);; word = next_word(rest_)) {
+      if (!word.empty()) return word;
+      if (!lines_.next_filled('#')) fail_at_line(in_, lines_.number(), std::string("the file ends before ") + expected);
+      rest_ = lines_.line();
+    }
+  }
+
+  /// The words that are left on the line.
+  std::string_view rest_of_line() noexcept { return std::exchange(rest_, {}); }
+  bool at_end() { return rest_.empty() && !lines_.next_filled('#'); }
+  std::int64_t line() const noexcept { return lines_.number(); }
+  std::size_t position() const noexcept { return lines_.position() - rest_.size(); }
+
+ private:
+  const Input& in_;
+  Lines lines_;
+  std::string_view rest_;
+};
+
+struct OffHeader {
+  bool normals = false;
+  std::uint64_t vertices = 0;
+  std::uint64_t faces = 0;
+};
+
+/// Reads the keyword [ST][C][N]OFF. Four and n dimensions and the binary form are refused.
+bool parse_keyword(const Input& in, std::int64_t line, std::string_view word) {
+  const std::string_view prefix = word.substr(0, word.size() - std::min<std::size_t>(word.size(), 3));
+  const bool known = prefix.empty() || prefix == "N" || prefix == "C" || prefix == "CN" || prefix == "NC" ||
+                     prefix == "ST" || prefix == "STN" || prefix == "STC" || prefix == "STCN";
+  if (!word.ends_with("OFF") || !known) {
+    fail_at_line(
+        in, line,
+        "expected 'OFF', 'NOFF' or 'COFF', found " + in_quotes(word) + "; convert the file to three-dimensional OFF");
+  }
+  return prefix.find('N') != std::string_view::npos;
+}
+
+std::uint64_t parse_count(const Input& in, Words& words, const char* what) {
+  const std::string_view word = words.next(what);
+  const std::int64_t count = whole_or_fail(in, words.line(), word);
+  if (count < 0) fail_at_line(in, words.line(), std::string(what) + " is negative: " + std::to_string(count));
+  return static_cast<std::uint64_t>(count);
+}
+
+OffHeader parse_header(const Input& in, Words& words) {
+  OffHeader header;
+  const std::string_view keyword = words.next("the keyword 'OFF'");
+  header.normals = parse_keyword(in, words.line(), keyword);
+  const std::string_view first = words.next("the number of vertices");
+  if (first == "BINARY")
+    fail_at_line(in, words.line(), "binary OFF is not supported; convert the file to text OFF or PLY");
+  const std::int64_t vertices = whole_or_fail(in, words.line(), first);
+  if (vertices < 0) fail_at_line(in, words.line(), "negative number of vertices " + std::to_string(vertices));
+  header.vertices = static_cast<std::uint64_t>(vertices);
+  header.faces = parse_count(in, words, "the number of faces");
+  std::string_view edges = words.rest_of_line();
+  if (const std::string_view word = next_word(edges); !word.empty()) whole_or_fail(in, words.line(), word);
+
+  // A vertex takes at least "0 0 0" and a line end, a face "0" and a line end.
+  const std::uint64_t left = in.bytes.size() - std::min(in.bytes.size(), words.position()) + 1;
+  if (header.vertices > left / 6 || header.faces > left / 2) {
+    fail_at_line(in, words.line(),
+                 std::to_string(header.vertices) + " vertices and " + std::to_string(header.faces) +
+                     " faces do not fit into the " + std::to_string(left - 1) +
+                     " bytes that follow; the file is cut short");
+  }
+  check_vertex_count(in, header.vertices);
+  return header;
+}
+
+/// One line per vertex, so that a missing number cannot shift all the numbers behind it.
+void read_vertices(const Input& in, Words& words, const OffHeader& header, Geometry& g) {
+  g.points.resize(header.vertices);
+  if (header.normals) g.normals.resize(header.vertices);
+  for (std::size_t i = 0; i < header.vertices; ++i) {
+    std::string_view word = words.next("all vertices are read");
+    std::string_view rest = words.rest_of_line();
+    for (std::size_t k = 0; k < (header.normals ? 6 : 3); ++k, word = next_word(rest)) {
+      if (word.empty()) {
+        fail_at_line(in, words.line(),
+                     "vertex " + std::to_string(i) + " of " + std::to_string(header.vertices) + " has only " +
+                         std::to_string(k) + " numbers");
+      }
+      (k < 3 ? g.points[i][k] : g.normals[i][k - 3]) = real_or_fail(in, words.line(), word);
+    }
+  }
+}
+
+void read_faces(const Input& in, Words& words, const OffHeader& header, Geometry& g) {
+  if (header.faces == 0) return;
+  g.face_begin.reserve(header.faces + 1);
+  g.face_begin.push_back(0);
+  for (std::size_t f = 0; f < header.faces; ++f) {
+    const std::uint64_t corners = parse_count(in, words, "the number of corners of a face");
+    for (std::uint64_t k = 0; k < corners; ++k) {
+      const std::string_view word = words.next("all corners of a face are read");
+      const std::int64_t vertex = whole_or_fail(in, words.line(), word);
+      if (vertex < 0 || static_cast<std::uint64_t>(vertex) >= header.vertices) {
+        fail_at_line(in, words.line(),
+                     "face " + std::to_string(f) + " has vertex number " + std::to_string(vertex) + ", but there are " +
+                         std::to_string(header.vertices) + " vertices, counted from 0");
+      }
+      g.face_vertices.push_back(static_cast<Index>(vertex));
+    }
+    g.face_begin.push_back(static_cast<Offset>(g.face_vertices.size()));
+    words.rest_of_line();  // perhaps a colour
+  }
+}
+
+}  // namespace
+
+Geometry read_off(const Input& in) {
+  Words words(in, without_byte_order_mark(in.bytes));
+  Geometry g;
+  g.format = "OFF text";
+  const OffHeader header = parse_header(in, words);
+  read_vertices(in, words, header, g);
+  read_faces(in, words, header, g);
+  if (!words.at_end()) g.warnings.emplace_back("the file goes on behind the last face; the rest is ignored");
+  return g;
+}
+
+}  // namespace ahm::io

@@ -1,0 +1,118 @@
+// STL is a soup of triangles; it is welded here, at exactly equal positions, since a soup has no surface to walk on.
+// Read by our own code like the other mesh formats: Assimp, the library in Debian 12 that reads STL, rounds coordinates
+// to float.
+#include <algorithm>
+#include <bit>
+#include <cstring>
+#include <numeric>
+
+#include "read/readers.hpp"
+#include "read/text.hpp"
+
+namespace ahm::io {
+namespace {
+
+constexpr std::size_t header_bytes = 84;  // 80 of comment, then the number of triangles
+constexpr std::size_t triangle_bytes = 50;
+
+template <class T>
+T little_endian(const std::string& bytes, std::size_t at) {
+  std::array<char, sizeof(T)> raw;
+  std::memcpy(raw.data(), bytes.data() + at, sizeof(T));
+  if constexpr (std::endian::native == std::endian::big) std::reverse(raw.begin(), raw.end());
+  return std::bit_cast<T>(raw);
+}
+
+bool is_binary(const Input& in) {
+  if (in.bytes.size() < header_bytes) return false;
+  // Binary headers may begin with "solid" too, but only theirs tell the size of the file.
+  const std::uint64_t triangles = little_endian<std::uint32_t>(in.bytes, 80);
+  return header_bytes + triangles * triangle_bytes == in.bytes.size() || !in.bytes.starts_with("solid");
+}
+
+std::vector<Vec3> read_binary(const Input& in) {
+  const std::uint64_t triangles = little_endian<std::uint32_t>(in.bytes, 80);
+  if (header_bytes + triangles * triangle_bytes > in.bytes.size())
+    fail_at_byte(in, 80,
+                 std::to_string(triangles) + " triangles do not fit into the " +
+                     std::to_string(in.bytes.size() - header_bytes) + " bytes that follow; the file is cut short");
+  std::vector<Vec3> corners;
+  corners.reserve(3 * triangles);
+  for (std::uint64_t t = 0; t < triangles; ++t)
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      const std::size_t at = header_bytes + t * triangle_bytes + 12 + 12 * corner;
+      corners.push_back({little_endian<float>(in.bytes, at), little_endian<float>(in.bytes, at + 4),
+                         little_endian<float>(in.bytes, at + 8)});
+    }
+  return corners;
+}
+
+/// Every facet must have its three vertices and its end, so that a missing line cannot shift the others.
+std::vector<Vec3> read_text(const Input& in) {
+  std::vector<Vec3> corners;
+  std::vector<std::string_view> words;
+  Lines lines(in.bytes);
+  std::size_t in_facet = 0;
+  bool open = false, ended = false;
+  while (lines.next()) {
+    split_words(lines.line(), words);
+    if (words.empty()) continue;
+    if (words[0] == "facet") {
+      if (open) fail_at_line(in, lines.number(), "a facet begins before the last one has ended");
+      open = true;
+      in_facet = 0;
+    } else if (words[0] == "vertex") {
+      if (!open || words.size() != 4) fail_at_line(in, lines.number(), "expected a facet's 'vertex x y z'");
+      corners.push_back({real_or_fail(in, lines.number(), words[1]), real_or_fail(in, lines.number(), words[2]),
+                         real_or_fail(in, lines.number(), words[3])});
+      ++in_facet;
+    } else if (words[0] == "endfacet") {
+      if (!open || in_facet != 3)
+        fail_at_line(in, lines.number(), "the facet has " + std::to_string(in_facet) + " vertices instead of 3");
+      open = false;
+    } else if (words[0] == "endsolid") {
+      ended = true;
+    } else if (words[0] != "solid" && words[0] != "outer" && words[0] != "endloop") {
+      fail_at_line(in, lines.number(), "unknown word " + in_quotes(words[0]) + " in a text STL file");
+    }
+  }
+  if (open || !ended) fail_at_line(in, lines.number(), "the file ends before 'endsolid'; it is cut short");
+  return corners;
+}
+
+/// Gives equal corners one number.
+void weld(const std::vector<Vec3>& corners, Geometry& g) {
+  std::vector<std::size_t> order(corners.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  // NaN equals nothing, itself included, so such corners stay apart; they are put last to keep the order strict.
+  auto is_number = [&](std::size_t c) { return corners[c] == corners[c]; };
+  const auto numbers = std::stable_partition(order.begin(), order.end(), is_number);
+  std::stable_sort(order.begin(), numbers, [&](std::size_t a, std::size_t b) { return corners[a] < corners[b]; });
+  std::vector<std::size_t> first(corners.size());
+  for (std::size_t k = 0; k < order.size(); ++k)
+    first[order[k]] = k > 0 && corners[order[k]] == corners[order[k - 1]] ? first[order[k - 1]] : order[k];
+  std::vector<Index> number(corners.size());
+  for (std::size_t c = 0; c < corners.size(); ++c) {
+    if (first[c] == c) {
+      number[c] = static_cast<Index>(g.points.size());
+      g.points.push_back(corners[c]);
+    }
+    g.face_vertices.push_back(number[first[c]]);
+  }
+  for (std::size_t f = 0; 3 * f <= corners.size(); ++f) g.face_begin.push_back(static_cast<Offset>(3 * f));
+}
+
+}  // namespace
+
+Geometry read_stl(const Input& in) {
+  Geometry g;
+  const bool binary = is_binary(in);
+  const std::vector<Vec3> corners = binary ? read_binary(in) : read_text(in);
+  g.format = binary ? "STL binary" : "STL text";
+  check_vertex_count(in, corners.size());
+  if (corners.empty()) fail(in, "it holds no triangles");
+  weld(corners, g);
+  return g;
+}
+
+}  // namespace ahm::io

@@ -1,0 +1,107 @@
+#include "read/text.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <system_error>
+
+namespace ahm::io {
+namespace {
+
+constexpr bool is_blank(char c) noexcept { return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
+
+/// from_chars knows no leading plus sign, files do.
+std::string_view without_plus(std::string_view word) noexcept {
+  const bool plus = word.size() > 1 && word[0] == '+' && word[1] != '-' && word[1] != '+';
+  return plus ? word.substr(1) : word;
+}
+
+/// A comment begins a word: the sign within "1.#INF" does not hide that this is no number.
+std::size_t find_comment(std::string_view line, char comment) noexcept {
+  std::size_t at = line.find(comment);
+  while (at != std::string_view::npos && at > 0 && !is_blank(line[at - 1])) at = line.find(comment, at + 1);
+  return at;
+}
+
+/// Whether a number out of range is one too small: a short mantissa with a negative exponent.
+bool is_underflow(std::string_view word) noexcept {
+  const std::size_t exponent = word.find_first_of("eE");
+  return exponent != std::string_view::npos && exponent < 64 && word.substr(exponent + 1).starts_with('-');
+}
+
+}  // namespace
+
+Lines::Lines(std::string_view text, std::int64_t first_number) : text_(text), number_(first_number - 1) {
+  if (text_.find('\n') == std::string_view::npos && text_.find('\r') != std::string_view::npos) end_ = '\r';
+}
+
+bool Lines::next() {
+  if (position_ >= text_.size()) return false;
+  const std::size_t end = text_.find(end_, position_);
+  line_ = text_.substr(position_, end == std::string_view::npos ? end : end - position_);
+  position_ = end == std::string_view::npos ? text_.size() : end + 1;
+  if (line_.ends_with('\r')) line_.remove_suffix(1);
+  ++number_;
+  return true;
+}
+
+bool Lines::next_filled(char comment) {
+  while (next()) {
+    line_ = line_.substr(0, find_comment(line_, comment));
+    if (!std::ranges::all_of(line_, is_blank)) return true;
+  }
+  return false;
+}
+
+std::string_view next_word(std::string_view& rest) noexcept {
+  std::size_t begin = 0;
+  while (begin < rest.size() && is_blank(rest[begin])) ++begin;
+  std::size_t end = begin;
+  while (end < rest.size() && !is_blank(rest[end])) ++end;
+  const std::string_view word = rest.substr(begin, end - begin);
+  rest.remove_prefix(end);
+  return word;
+}
+
+void split_words(std::string_view line, std::vector<std::string_view>& words) {
+  words.clear();
+  for (std::string_view word = next_word(line); !word.empty(); word = next_word(line)) words.push_back(word);
+}
+
+std::string_view without_byte_order_mark(std::string_view text) noexcept {
+  return text.starts_with("\xEF\xBB\xBF") ? text.substr(3) : text;
+}
+
+bool equals_ignoring_case(std::string_view word, std::string_view lower) noexcept {
+  return std::ranges::equal(word, lower, [](char a, char b) { return (a >= 'A' && a <= 'Z' ? char(a + 32) : a) == b; });
+}
+
+std::optional<double> to_real(std::string_view word) noexcept {
+  word = without_plus(word);
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (end != word.data() + word.size()) return std::nullopt;
+  if (error == std::errc{}) return value;
+  if (error == std::errc::result_out_of_range && is_underflow(word)) return word.starts_with('-') ? -0.0 : 0.0;
+  return std::nullopt;
+}
+
+std::optional<std::int64_t> to_whole(std::string_view word) noexcept {
+  word = without_plus(word);
+  std::int64_t value = 0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (error != std::errc{} || end != word.data() + word.size()) return std::nullopt;
+  return value;
+}
+
+double real_or_fail(const Input& in, std::int64_t line, std::string_view word) {
+  if (const std::optional<double> value = to_real(word)) return *value;
+  fail_at_line(in, line,
+               in_quotes(word) + " is not a number in the range of double precision (use a point for decimals)");
+}
+
+std::int64_t whole_or_fail(const Input& in, std::int64_t line, std::string_view word) {
+  if (const std::optional<std::int64_t> value = to_whole(word)) return *value;
+  fail_at_line(in, line, in_quotes(word) + " is not a whole number");
+}
+
+}  // namespace ahm::io

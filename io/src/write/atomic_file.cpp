@@ -1,0 +1,178 @@
+#include "ahm/io/atomic_file.hpp"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <cstring>
+#include <ctime>
+#include <system_error>
+#include <utility>
+
+#include "read/input.hpp"
+#include "write/writers.hpp"
+
+namespace ahm::io {
+namespace {
+
+/// The names of the temporary files that exist. Fixed in size and lock-free, because a signal handler reads it.
+struct Slot {
+  enum State { free, filling, used };
+  std::atomic<int> state{free};
+  std::array<char, 4096> name{};
+};
+static_assert(std::atomic<int>::is_always_lock_free);
+std::array<Slot, 16> unfinished;
+
+/// -1 when all slots are taken: the file is then still removed by the destructor, only not by a signal.
+int remember(const std::filesystem::path& path) {
+  const std::string& name = path.native();
+  for (std::size_t k = 0; k < unfinished.size() && name.size() < unfinished[k].name.size(); ++k) {
+    int expected = Slot::free;
+    if (!unfinished[k].state.compare_exchange_strong(expected, Slot::filling)) continue;
+    std::memcpy(unfinished[k].name.data(), name.c_str(), name.size() + 1);
+    unfinished[k].state.store(Slot::used);
+    return static_cast<int>(k);
+  }
+  return -1;
+}
+
+void forget(int& slot) noexcept {
+  if (slot >= 0) unfinished[slot].state.store(Slot::free);
+  slot = -1;
+}
+
+/// Turns the signal that a write to a closed pipe raises into the error EPIPE, for this thread and while it lives.
+class NoPipeSignal {
+ public:
+  NoPipeSignal() {
+    ::sigemptyset(&pipe_);
+    ::sigaddset(&pipe_, SIGPIPE);
+    sigset_t pending;
+    ::sigpending(&pending);
+    was_pending_ = ::sigismember(&pending, SIGPIPE) == 1;
+    ::pthread_sigmask(SIG_BLOCK, &pipe_, &before_);
+  }
+  ~NoPipeSignal() {
+    const int error = errno;
+    const timespec now{};
+    while (!was_pending_ && ::sigtimedwait(&pipe_, nullptr, &now) == -1 && errno == EINTR) {
+    }
+    ::pthread_sigmask(SIG_SETMASK, &before_, nullptr);
+    errno = error;
+  }
+  NoPipeSignal(const NoPipeSignal&) = delete;
+  NoPipeSignal& operator=(const NoPipeSignal&) = delete;
+
+ private:
+  sigset_t pipe_{};
+  sigset_t before_{};
+  bool was_pending_ = false;
+};
+
+/// A name nobody else uses: process and running number, then a retry should a leftover have it.
+std::filesystem::path temporary_name(const std::filesystem::path& target) {
+  static std::atomic<unsigned> running{0};
+  const std::string name = ".ahm-" + std::to_string(::getpid()) + "-" + std::to_string(running++) + ".tmp";
+  return target.parent_path() / name;
+}
+
+}  // namespace
+
+bool is_stream(const std::filesystem::path& path) {
+  // The process's own output may be redirected to a file, which whoever redirected it holds open.
+  const std::string& name = path.native();
+  if (name == "/dev/stdout" || name == "/dev/stderr" || name.starts_with("/dev/fd/")) return true;
+  struct stat info {};
+  return ::stat(path.c_str(), &info) == 0 && !S_ISREG(info.st_mode) && !S_ISDIR(info.st_mode);
+}
+
+AtomicFile::AtomicFile(const std::filesystem::path& path) : path_(path), target_(path) {
+  std::error_code ignored;
+  if (const auto real = std::filesystem::weakly_canonical(path, ignored); !ignored && !real.empty()) target_ = real;
+  struct stat info {};
+  const bool exists = ::stat(path.c_str(), &info) == 0;
+  if (exists && S_ISDIR(info.st_mode)) fail(EISDIR);
+  if (exists && ::access(path.c_str(), W_OK) != 0) fail(errno);
+  if (is_stream(path)) {
+    // Not through target_: /dev/stdout leads to names that exist only in messages ("pipe:[123]"). Appending, because a
+    // redirected output may hold something already.
+    descriptor_ = ::open(path.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
+    if (descriptor_ < 0) fail(errno);
+    return;
+  }
+  for (int tries = 0; descriptor_ < 0; ++tries) {
+    temporary_ = temporary_name(target_);
+    // The name is registered first: a signal between the two steps finds nothing to delete, which is harmless.
+    slot_ = remember(temporary_);
+    descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (descriptor_ >= 0) break;
+    const int error = errno;
+    temporary_.clear();
+    forget(slot_);
+    if (error != EEXIST || tries == 100) fail(error);
+  }
+  if (exists) ::fchmod(descriptor_, info.st_mode & 0777);
+}
+
+AtomicFile::~AtomicFile() { discard(); }
+
+void AtomicFile::write(std::string_view bytes) {
+  constexpr std::size_t block = std::size_t{1} << 20;
+  while (!bytes.empty()) {
+    const std::size_t part = std::min(bytes.size(), block - std::min(block, buffer_.size()));
+    buffer_.append(bytes.substr(0, part));
+    bytes.remove_prefix(part);
+    if (buffer_.size() >= block) flush();
+  }
+}
+
+void AtomicFile::flush() {
+  if (descriptor_ < 0) fail(EBADF);
+  const NoPipeSignal quiet;
+  for (std::size_t done = 0; done < buffer_.size();) {
+    const ssize_t put = ::write(descriptor_, buffer_.data() + done, buffer_.size() - done);
+    if (put < 0 && errno != EINTR) fail(errno);
+    if (put > 0) done += static_cast<std::size_t>(put);
+  }
+  buffer_.clear();
+}
+
+void AtomicFile::commit() {
+  flush();
+  // A pipe or terminal has nothing to synchronise, and says so with EINVAL.
+  if (!temporary_.empty() && ::fsync(descriptor_) != 0) fail(errno);
+  const int descriptor = std::exchange(descriptor_, -1);
+  if (::close(descriptor) != 0 && errno != EINTR) fail(errno);
+  if (temporary_.empty()) return;
+  if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail(errno);
+  temporary_.clear();
+  forget(slot_);
+}
+
+void AtomicFile::discard() noexcept {
+  if (descriptor_ >= 0) ::close(std::exchange(descriptor_, -1));
+  if (!temporary_.empty()) ::unlink(temporary_.c_str());
+  temporary_.clear();
+  forget(slot_);
+}
+
+void AtomicFile::fail(int error) {
+  discard();
+  throw IoError("cannot write " + quoted_path(path_) + ": " + std::generic_category().message(error));
+}
+
+void remove_unfinished_files() noexcept {
+  const int error = errno;
+  for (Slot& slot : unfinished) {
+    if (slot.state.load() == Slot::used) ::unlink(slot.name.data());
+  }
+  errno = error;
+}
+
+}  // namespace ahm::io

@@ -1,0 +1,87 @@
+/// \file
+/// An atlas: the surface cut into geodesic Voronoi cells, each flattened by the log map of its own source (Fig. 18).
+///
+/// \code
+/// auto sources = ahm::farthest_points(solver, 0, 20);
+/// ahm::Atlas atlas = ahm::make_atlas(solver, sources, {face_begin, face_vertices});
+/// for (ahm::Index f : atlas.charts[3].faces)
+///   for (ahm::Offset c = face_begin[f]; c < face_begin[f + 1]; ++c) use(atlas.corner(c));   // (u, v) of each corner
+/// \endcode
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "ahm/applications/distortion.hpp"
+#include "ahm/maps/log_map_solver.hpp"
+
+namespace ahm {
+
+/// A connected piece of the surface with coordinates from one source.
+struct Chart {
+  Index source;              ///< its number in `Atlas::sources`
+  std::vector<Index> faces;  ///< in ascending order
+};
+
+struct Atlas {
+  std::vector<Index> sources;        ///< their vertices
+  std::vector<Chart> charts;         ///< in the order of their sources
+  std::vector<Index> chart_of_face;  ///< -1: a corner has no coordinates, e.g. in a component without a source
+  /// (u, v) of every corner, outside units, in the frame of the chart's source; corners x 2, NaN without a chart.
+  /// Charts whose source sees the surface from behind are mirrored: v is negated, so that faces given counter-clockwise
+  /// are so.
+  std::vector<double> coordinates;
+
+  std::array<double, 2> corner(Offset c) const { return {coordinates[2 * c], coordinates[2 * c + 1]}; }
+};
+
+/// Cuts the surface into cells and flattens them. A face belongs to the source from which its corners are nearest on
+/// average (Sec. 5 of the paper), among the sources nearest to a corner by heat (`nearest_source`). Corners at a border
+/// have other coordinates in each chart.
+///
+/// Faces cut off from the rest of their cell go to the neighbouring chart with which they share most sides, where its
+/// source knows them, else they are charts of their own. One log map per source, a block of sources at a time: memory
+/// O(n + corners), whatever the number of sources.
+/// @param sources  vertices; their order is that of the charts
+/// @param faces    of the graph's vertices, in any order
+/// @param options  variant, threads, progress; `frames` is not used
+/// @throws InvalidArgument (dimension, sources, faces), as LogMapSolver::solve
+Atlas make_atlas(const LogMapSolver& solver, std::span<const Index> sources, const FaceList& faces,
+                 const MapOptions& options = {});
+
+struct RefineOptions {
+  double max_distortion = 2;       ///< of a good triangle, which is not flipped; > 1
+  double share = 0.01;             ///< of a chart's area that need not be good; in [0, 1)
+  std::size_t max_sources = 1000;  ///< no more are added
+};
+
+/// The same with as many further sources as it takes to make all charts good. They are not where a cell closes around a
+/// handle, a limb or a sharp feature: of every such chart the corner of bad triangles that is farthest from the source
+/// becomes another source, and the surface is cut anew, until nothing is to be added. Components without a source get
+/// one. One log map per source.
+/// @param positions  n, of the graph's vertices, outside units
+Atlas make_atlas(const LogMapSolver& solver, std::span<const Index> sources, const FaceList& faces,
+                 std::span<const Vec3> positions, const RefineOptions& refine, const MapOptions& options = {});
+
+/// Distortion of an atlas, faces cut into fans of triangles.
+struct AtlasDistortion {
+  DistortionSummary all;
+  std::vector<DistortionSummary> charts;
+};
+
+/// @param positions  n, of the graph's vertices, outside units
+/// @throws InvalidArgument (faces and atlas do not fit, indices)
+AtlasDistortion distortion(const Atlas& atlas, const FaceList& faces, std::span<const Vec3> positions);
+
+/// Bounding rectangle of least area of a chart, as axes in its plane: turned by `turn`, the chart fills
+/// [low, high] in both directions.
+struct ChartBox {
+  std::array<double, 2> turn{1, 0};  ///< cosine and sine; x = c u + s v, y = -s u + c v
+  std::array<double, 2> low{}, high{};
+};
+
+/// One per chart; the longer side lies along x.
+std::vector<ChartBox> chart_boxes(const Atlas& atlas, const FaceList& faces);
+
+}  // namespace ahm

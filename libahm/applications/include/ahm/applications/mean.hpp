@@ -1,0 +1,64 @@
+/// \file
+/// Weighted means and medians of points of a surface, found by log maps.
+///
+/// \code
+/// const std::array<ahm::Index, 3> towns{12, 480, 901};
+/// ahm::Center well = ahm::geometric_median(solver, towns);             // least sum of distances
+/// ahm::Center mean = ahm::karcher_mean(solver, towns, std::array{1.0, 2.0, 1.0});
+/// ahm::LogMap map = solver.solve(ahm::source_at(mean));                // the surface seen from there
+/// \endcode
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "ahm/maps/log_map_solver.hpp"
+
+namespace ahm {
+
+struct CenterOptions {
+  /// Where to begin; none: the point of the largest weight, the first of equals. Points spread over more than half of a
+  /// closed surface may have several centers: begin at several vertices and keep the least `spread`.
+  std::optional<Index> start = {};
+  Index max_maps = 50;  ///< each step is one log map
+  MapOptions map = {};  ///< a radius, if any, must reach from the center and the start to every point
+};
+
+/// A point of the surface, given by a vertex near it.
+struct Center {
+  Index vertex = 0;
+  std::vector<double> offset;  ///< log map of the center from the vertex: d numbers in its frame, outside units
+  /// What is least, as a length in outside units. Mean: sqrt(sum w d^2 / sum w); median: sum w d / sum w. The distances
+  /// d from the center are those of the tangent space of `vertex`.
+  double spread = 0;
+  Index maps = 0;          ///< log maps used
+  bool converged = false;  ///< false: `max_maps` ended the search
+};
+
+/// The Riemannian center of mass (Sec. 5; Karcher 1977): where sum_k w_k d(x, p_k)^2 is least, near the start.
+///
+///     x <- exp_x(sum_k w_k log_x(p_k) / sum_k w_k)
+///
+/// exp_x leads to the vertex of the nearest coordinates; what remains at the last vertex is the offset. A step back
+/// to a vertex seen before is halved, and the vertex with the least offset counts. Exact on flat graphs, where it takes
+/// two or three maps; elsewhere the error is that of the log map.
+/// @param vertices  the points p_k
+/// @param weights   w_k >= 0, not all zero; empty: all equal. Points of weight 0 do not count
+/// @throws InvalidArgument (empty, lengths, index, weight, points of different components or out of the map's reach);
+/// as LogMapSolver::solve
+Center karcher_mean(const LogMapSolver& solver, std::span<const Index> vertices, std::span<const double> weights = {},
+                    const CenterOptions& options = {});
+
+/// The geometric median: where sum_k w_k d(x, p_k) is least, near the start (FVJ09).
+///
+///     x <- exp_x(geometric median of log_x(p_k) in the tangent space)
+///
+/// One map per step: Weiszfeld's and Newton's steps run in the tangent space, to rounding. Otherwise as `karcher_mean`.
+Center geometric_median(const LogMapSolver& solver, std::span<const Index> vertices,
+                        std::span<const double> weights = {}, const CenterOptions& options = {});
+
+/// The source at a center; its axes are those of the frame of `center.vertex`.
+Source source_at(const Center& center);
+
+}  // namespace ahm

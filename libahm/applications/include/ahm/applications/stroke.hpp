@@ -1,0 +1,65 @@
+/// \file
+/// Curves as sources: stroke-aligned parameterization (Sec. 5, Fig. 19). Every vertex gets the coordinates of the curve
+/// point nearest to it, moved on by the way from there, in the curve's own frame.
+///
+/// \code
+/// std::vector<ahm::Index> path{4, 5, 6, 7};                               // neighbours in the graph
+/// auto map = solver.solve(ahm::stroke_source(graph, path));              // u: arclength, v: signed distance (left > 0)
+/// auto ring = solver.solve(ahm::stroke_source(graph, loop, {.closed = true, .shape = ahm::StrokeShape::circle}));
+/// // points in faces, at vertices, ..., whose u axes run along the curve, and the way from each to the next
+/// auto drawn = solver.solve(ahm::stroke_source(sources, lengths));
+/// \endcode
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "ahm/graph/tangent_graph.hpp"
+#include "ahm/maps/source.hpp"
+
+namespace ahm {
+
+/// Where a curve goes in the plane of coordinates.
+enum class StrokeShape {
+  line,    ///< (arclength, 0); on a closed curve u jumps by the length at the first vertex
+  circle,  ///< a counter-clockwise circle about the origin that has the curve's length, from its u axis; closed only
+};
+
+struct StrokeOptions {
+  bool closed = false;  ///< the last vertex is joined to the first
+  StrokeShape shape = StrokeShape::line;
+};
+
+/// The source along a path of neighbouring vertices, d = 2: weight, half of the two edges at a vertex; u axis, turned
+/// with the curve; v, left of it as seen in the frame of the first vertex.
+/// @param path  vertex numbers, at least 2, closed: 3
+/// @throws InvalidArgument (d, length, index, vertices that are no neighbours, a path that turns back or closes along a
+/// one-sided band, `circle` on an open path)
+Source stroke_source(const TangentGraph& graph, std::span<const Index> path, const StrokeOptions& options = {});
+
+/// The same with the user's own parameterization.
+/// @param positions  one (u, v) per vertex of the path, outside units; consecutive ones differ
+Source stroke_source(const TangentGraph& graph, std::span<const Index> path,
+                     std::span<const std::array<double, 2>> positions, bool closed = false);
+
+/// A point of a polyline on the surface, wherever the backend can put a source: in a face, on an edge, at a vertex.
+struct StrokePoint {
+  Source point;                    ///< its u axis along the curve; of dimension 2
+  double weight;                   ///< > 0, about half of the lengths of the two adjacent segments
+  std::array<double, 2> position;  ///< coordinates of the point, outside units
+  double angle;                    ///< direction of the curve in the plane of coordinates, radians
+};
+
+/// One source from the points of a polyline. Its spacing should not exceed the edge length by much.
+/// @throws InvalidArgument (no points, a source that is not of dimension 2)
+Source stroke_source(std::span<const StrokePoint> points);
+
+/// The same by arclength: weights, positions and angles follow from the lengths of the segments.
+/// @param points   at least 2, closed: 3; sources whose u axis runs along the curve and whose v axis is left of it
+/// @param lengths  > 0: lengths[k] from point k to the next one, outside units; one fewer than points, closed: as many
+/// @throws InvalidArgument (counts, a length, a source that is not of dimension 2, `circle` on an open curve)
+Source stroke_source(std::span<const Source> points, std::span<const double> lengths,
+                     const StrokeOptions& options = {});
+
+}  // namespace ahm

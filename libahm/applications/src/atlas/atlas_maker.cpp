@@ -1,0 +1,214 @@
+#include "atlas/atlas_maker.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "ahm/applications/cells.hpp"
+#include "ahm/error.hpp"
+
+namespace ahm {
+namespace {
+
+constexpr Index nobody = -1;
+/// Maps kept at the same time.
+constexpr std::size_t block_size = 16;
+
+std::size_t to_size(Offset i) { return static_cast<std::size_t>(i); }
+
+void check(const TangentGraph& graph, const FaceList& faces) {
+  if (graph.dimension() != 2)
+    throw InvalidArgument("make_atlas: the graph has dimension " + std::to_string(graph.dimension()) +
+                          "; an atlas is of a surface, dimension 2");
+  if (faces.begin.empty() || faces.begin.front() != 0 || to_size(faces.begin.back()) != faces.vertices.size() ||
+      !std::is_sorted(faces.begin.begin(), faces.begin.end()))
+    throw InvalidArgument("make_atlas: 'faces.begin' must rise from 0 to the number of corners, " +
+                          std::to_string(faces.vertices.size()));
+  for (std::size_t c = 0; c < faces.vertices.size(); ++c)
+    if (faces.vertices[c] < 0 || faces.vertices[c] >= graph.size())
+      throw InvalidArgument("make_atlas: corner " + std::to_string(c) + " names vertex " +
+                            std::to_string(faces.vertices[c]) + ", outside [0, " + std::to_string(graph.size()) + ")");
+}
+
+/// Sum of the distances of a face's corners from a source; NaN where one is unknown.
+double sum_of_distances(const Regions& regions, Index source, std::span<const Index> face) {
+  double sum = 0;
+  for (Index v : face) {
+    const auto [x, y] = regions.coordinates(source, v);
+    sum += std::hypot(x, y);
+  }
+  return sum;
+}
+
+/// The cell C_i of the paper: the source with the least sum of distances.
+std::vector<Index> nearest_of_faces(const FaceList& faces, std::span<const Index> label, const Regions& regions) {
+  std::vector<Index> result(faces.size(), nobody);
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    double least = std::numeric_limits<double>::infinity();
+    Index before = nobody;
+    for (Index v : faces[f]) {
+      const Index source = label[v];
+      if (source == nobody || source == before) continue;
+      const double sum = sum_of_distances(regions, before = source, faces[f]);
+      if (sum < least || (sum == least && source < result[f])) least = sum, result[f] = source;
+    }
+  }
+  return result;
+}
+
+/// Connected pieces of faces of equal sources.
+class Pieces {
+ public:
+  Pieces(const FaceNeighbors& neighbors, std::span<const Index> source) : of_face(source.size(), nobody) {
+    std::vector<Index> stack;
+    for (std::size_t seed = 0; seed < source.size(); ++seed) {
+      if (source[seed] == nobody || of_face[seed] != nobody) continue;
+      const auto piece = static_cast<Index>(faces.size());
+      faces.emplace_back();
+      of_face[seed] = piece;
+      stack.assign(1, static_cast<Index>(seed));
+      while (!stack.empty()) {
+        const Index f = stack.back();
+        stack.pop_back();
+        faces.back().push_back(f);
+        for (Index g : neighbors.of(f))
+          if (source[g] == source[seed] && of_face[g] == nobody) of_face[g] = piece, stack.push_back(g);
+      }
+    }
+  }
+
+  /// The piece of each source with the most faces; `nobody` where it has none.
+  std::vector<Index> largest(std::span<const Index> source, std::size_t sources) const {
+    std::vector<Index> result(sources, nobody);
+    for (std::size_t p = 0; p < faces.size(); ++p) {
+      Index& best = result[source[faces[p].front()]];
+      if (best == nobody || faces[best].size() < faces[p].size()) best = static_cast<Index>(p);
+    }
+    return result;
+  }
+
+  std::vector<Index> of_face;
+  std::vector<std::vector<Index>> faces;
+};
+
+/// The source of the neighbouring main piece with which `island` shares most sides and which knows it; else `nobody`.
+Index best_neighbor(const std::vector<Index>& island, const FaceNeighbors& neighbors, const FaceList& faces,
+                    std::span<const Index> source, const std::vector<std::uint8_t>& in_main, const Regions& regions) {
+  std::vector<Index> candidates;  // one per shared side
+  for (Index f : island)
+    for (Index g : neighbors.of(f))
+      if (in_main[g] && source[g] != source[f]) candidates.push_back(source[g]);
+  std::sort(candidates.begin(), candidates.end());
+  Index best = nobody;
+  std::ptrdiff_t most = 0;
+  for (auto first = candidates.begin(); first != candidates.end();) {
+    const auto last = std::upper_bound(first, candidates.end(), *first);
+    const bool known = std::all_of(island.begin(), island.end(),
+                                   [&](Index f) { return std::isfinite(sum_of_distances(regions, *first, faces[f])); });
+    if (known && last - first > most) most = last - first, best = *first;
+    first = last;
+  }
+  return best;
+}
+
+/// Gives what is cut off from its cell to a neighbouring chart, as long as that is possible.
+void attach_islands(const FaceNeighbors& neighbors, const FaceList& faces, const Regions& regions, std::size_t sources,
+                    std::vector<Index>& source) {
+  for (bool changed = true; changed;) {
+    changed = false;
+    const Pieces pieces(neighbors, source);
+    const std::vector<Index> main = pieces.largest(source, sources);
+    std::vector<std::uint8_t> in_main(source.size(), 0);
+    for (std::size_t f = 0; f < source.size(); ++f)
+      in_main[f] = source[f] != nobody && main[source[f]] == pieces.of_face[f];
+    for (const auto& piece : pieces.faces) {
+      if (in_main[piece.front()]) continue;
+      const Index better = best_neighbor(piece, neighbors, faces, source, in_main, regions);
+      if (better == nobody) continue;
+      for (Index f : piece) source[f] = better;
+      changed = true;
+    }
+  }
+}
+
+/// Whether the map turns most faces of a chart over; their areas would cancel where it closes around a handle.
+bool is_mirrored(const Atlas& atlas, const FaceList& faces, const Chart& chart) {
+  std::ptrdiff_t balance = 0;
+  for (Index f : chart.faces) {
+    const Offset first = faces.begin[f], last = faces.begin[to_size(f) + 1];
+    double area = 0;
+    const auto [x0, y0] = atlas.corner(first);
+    for (Offset c = first + 1; c + 1 < last; ++c) {
+      const auto [x1, y1] = atlas.corner(c);
+      const auto [x2, y2] = atlas.corner(c + 1);
+      area += (x1 - x0) * (y2 - y0) - (x2 - x0) * (y1 - y0);
+    }
+    balance += (area > 0) - (area < 0);
+  }
+  return balance < 0;
+}
+
+/// The charts of the pieces, in the order of their sources, with the coordinates of their corners.
+Atlas assemble(const FaceNeighbors& neighbors, const FaceList& faces, const Regions& regions,
+               std::span<const Index> source) {
+  Atlas atlas;
+  for (std::vector<Index>& piece : Pieces(neighbors, source).faces) {
+    std::sort(piece.begin(), piece.end());
+    atlas.charts.push_back({source[piece.front()], std::move(piece)});
+  }
+  std::stable_sort(atlas.charts.begin(), atlas.charts.end(), [](const Chart& a, const Chart& b) {
+    return a.source != b.source ? a.source < b.source : a.faces.size() > b.faces.size();
+  });
+  atlas.chart_of_face.assign(faces.size(), nobody);
+  atlas.coordinates.assign(2 * faces.vertices.size(), std::numeric_limits<double>::quiet_NaN());
+  for (std::size_t k = 0; k < atlas.charts.size(); ++k) {
+    const Chart& chart = atlas.charts[k];
+    for (Index f : chart.faces) {
+      atlas.chart_of_face[f] = static_cast<Index>(k);
+      for (Offset c = faces.begin[f]; c < faces.begin[to_size(f) + 1]; ++c) {
+        const auto q = regions.coordinates(chart.source, faces.vertices[c]);
+        std::copy(q.begin(), q.end(), atlas.coordinates.begin() + 2 * c);
+      }
+    }
+    if (!is_mirrored(atlas, faces, chart)) continue;
+    for (Index f : chart.faces)
+      for (Offset c = faces.begin[f]; c < faces.begin[to_size(f) + 1]; ++c) {
+        double& v = atlas.coordinates[2 * c + 1];
+        v = -v;
+      }
+  }
+  return atlas;
+}
+
+}  // namespace
+
+AtlasMaker::AtlasMaker(const LogMapSolver& solver, const FaceList& faces, const MapOptions& options)
+    : solver_(solver),
+      faces_(faces),
+      options_(options),
+      neighbors_((check(solver.graph(), faces), FaceNeighbors(faces))) {
+  options_.frames = false;
+}
+
+Atlas AtlasMaker::make(std::span<const Index> sources) {
+  const std::vector<Index> label = nearest_source(solver_, sources);
+  Regions regions(faces_, label, sources.size());
+  const std::vector<Index> missing = regions.adopt(regions_);
+  for (std::size_t first = 0; first < missing.size(); first += block_size) {
+    const auto block = std::span(missing).subspan(first, std::min(block_size, missing.size() - first));
+    std::vector<Source> starts;
+    for (Index s : block) starts.push_back(Source::at_vertex(sources[s]));
+    const std::vector<LogMap> maps = solver_.solve(starts, options_);
+    for (std::size_t k = 0; k < maps.size(); ++k) regions.keep(to_size(block[k]), maps[k]);
+  }
+  regions_ = std::move(regions);
+  std::vector<Index> source = nearest_of_faces(faces_, label, regions_);
+  attach_islands(neighbors_, faces_, regions_, sources.size(), source);
+  Atlas atlas = assemble(neighbors_, faces_, regions_, source);
+  atlas.sources.assign(sources.begin(), sources.end());
+  return atlas;
+}
+
+}  // namespace ahm

@@ -1,0 +1,30 @@
+/// \file
+/// Atlases of one surface with more and more sources.
+#pragma once
+
+#include <span>
+
+#include "ahm/applications/atlas.hpp"
+#include "atlas/atlas_regions.hpp"
+#include "atlas/face_neighbors.hpp"
+
+namespace ahm {
+
+class AtlasMaker {
+ public:
+  /// @throws as `make_atlas`
+  AtlasMaker(const LogMapSolver& solver, const FaceList& faces, const MapOptions& options);
+
+  /// @param sources  begin with those of the call before: their cells have only shrunk since, so that their maps need
+  /// not be made again
+  Atlas make(std::span<const Index> sources);
+
+ private:
+  const LogMapSolver& solver_;
+  FaceList faces_;
+  MapOptions options_;
+  FaceNeighbors neighbors_;
+  Regions regions_;
+};
+
+}  // namespace ahm

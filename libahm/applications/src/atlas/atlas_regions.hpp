@@ -1,0 +1,98 @@
+/// \file
+/// What an atlas keeps of the maps of its sources.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <span>
+#include <vector>
+
+#include "ahm/applications/atlas.hpp"
+
+namespace ahm {
+
+/// For every source the vertices of all faces that touch its cell, and their coordinates there.
+class Regions {
+ public:
+  Regions() = default;
+  Regions(const FaceList& faces, std::span<const Index> label, std::size_t sources) : begin_(sources + 1, 0) {
+    for_entries(faces, label, [&](Index source, Index) { ++begin_[at(source) + 1]; });
+    std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
+    vertices_.resize(at(begin_.back()));
+    std::vector<Offset> end(begin_.begin(), begin_.end() - 1);
+    for_entries(faces, label, [&](Index source, Index vertex) { vertices_[end[source]++] = vertex; });
+    Offset kept = 0;
+    for (std::size_t s = 0; s < sources; ++s) {
+      const auto first = vertices_.begin() + begin_[s], last = vertices_.begin() + begin_[s + 1];
+      std::sort(first, last);
+      const auto unique = std::unique(first, last);
+      begin_[s] = kept;
+      kept = std::copy(first, unique, vertices_.begin() + kept) - vertices_.begin();
+    }
+    begin_.back() = kept;
+    vertices_.resize(at(kept));
+    coordinates_.resize(2 * at(kept), std::numeric_limits<double>::quiet_NaN());
+  }
+
+  /// Takes over from `before`, whose sources come first here, what it has of them.
+  /// @return the sources of which anything is missing
+  std::vector<Index> adopt(const Regions& before) {
+    std::vector<Index> missing;
+    for (std::size_t s = 0; s + 1 < begin_.size(); ++s) {
+      bool complete = s + 1 < before.begin_.size();
+      for (Offset k = begin_[s]; k < begin_[s + 1] && complete; ++k) {
+        const Offset there = before.find(s, vertices_[k]);
+        complete = there >= 0;
+        for (std::size_t c = 0; c < 2 && complete; ++c)
+          coordinates_[2 * at(k) + c] = before.coordinates_[2 * at(there) + c];
+      }
+      if (!complete) missing.push_back(static_cast<Index>(s));
+    }
+    return missing;
+  }
+
+  void keep(std::size_t source, const LogMap& map) {
+    for (Offset k = begin_[source]; k < begin_[source + 1]; ++k)
+      for (std::size_t c : {0, 1}) coordinates_[2 * at(k) + c] = map.coordinates(vertices_[k])[c];
+  }
+
+  /// NaN where unknown.
+  std::array<double, 2> coordinates(Index source, Index vertex) const {
+    const Offset k = find(at(source), vertex);
+    if (k < 0) return {std::nan(""), std::nan("")};
+    return {coordinates_[2 * at(k)], coordinates_[2 * at(k) + 1]};
+  }
+
+ private:
+  /// -1 where the region does not hold the vertex.
+  Offset find(std::size_t source, Index vertex) const {
+    const auto first = vertices_.begin() + begin_[source], last = vertices_.begin() + begin_[source + 1];
+    const auto found = std::lower_bound(first, last, vertex);
+    return found == last || *found != vertex ? -1 : found - vertices_.begin();
+  }
+
+  static std::size_t at(Offset i) { return static_cast<std::size_t>(i); }
+
+  template <class Visit>
+  static void for_entries(const FaceList& faces, std::span<const Index> label, const Visit& visit) {
+    for (std::size_t f = 0; f < faces.size(); ++f) {
+      const auto face = faces[f];
+      for (std::size_t c = 0; c < face.size(); ++c) {
+        const Index source = label[face[c]];  // -1: none
+        const bool seen = std::any_of(face.begin(), face.begin() + static_cast<std::ptrdiff_t>(c),
+                                      [&](Index v) { return label[v] == source; });
+        if (source < 0 || seen) continue;
+        for (Index v : face) visit(source, v);
+      }
+    }
+  }
+
+  std::vector<Offset> begin_{0};
+  std::vector<Index> vertices_;
+  std::vector<double> coordinates_;
+};
+
+}  // namespace ahm

@@ -1,0 +1,78 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "ahm/applications/atlas.hpp"
+#include "ahm/util/memory.hpp"
+
+namespace ahm {
+namespace {
+
+std::size_t to_size(Offset i) { return static_cast<std::size_t>(i); }
+
+double cross(const Vec2& o, const Vec2& a, const Vec2& b) {
+  return (a[0] - o[0]) * (b[1] - o[1]) - (a[1] - o[1]) * (b[0] - o[0]);
+}
+
+/// Corners of the convex hull, counter-clockwise (Andrew's monotone chains).
+std::vector<Vec2> convex_hull(std::vector<Vec2> points) {
+  std::sort(points.begin(), points.end());
+  points.erase(std::unique(points.begin(), points.end()), points.end());
+  if (points.size() < 3) return points;
+  std::vector<Vec2> hull;
+  for (int chain = 0; chain < 2; ++chain) {
+    const std::size_t start = hull.size();
+    for (const Vec2& p : points) {
+      while (hull.size() >= start + 2 && !(cross(hull[hull.size() - 2], hull.back(), p) > 0)) hull.pop_back();
+      hull.push_back(p);
+    }
+    hull.pop_back();  // the next chain begins with it
+    std::reverse(points.begin(), points.end());
+  }
+  return hull;
+}
+
+ChartBox box_along(const std::vector<Vec2>& hull, double c, double s) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  ChartBox box{{c, s}, {infinity, infinity}, {-infinity, -infinity}};
+  for (const Vec2& p : hull) {
+    const Vec2 q{c * p[0] + s * p[1], c * p[1] - s * p[0]};
+    for (std::size_t k : {0, 1}) box.low[k] = std::min(box.low[k], q[k]), box.high[k] = std::max(box.high[k], q[k]);
+  }
+  return box;
+}
+
+/// One side of the least rectangle lies along a side of the convex hull (Freeman & Shapira 1975).
+ChartBox least_box(const std::vector<Vec2>& hull) {
+  ChartBox best = box_along(hull, 1, 0);
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < hull.size(); ++k) {
+    const Vec2 &a = hull[k], &b = hull[(k + 1) % hull.size()];
+    const double length = std::hypot(b[0] - a[0], b[1] - a[1]);
+    if (!(length > 0)) continue;
+    const ChartBox box = box_along(hull, (b[0] - a[0]) / length, (b[1] - a[1]) / length);
+    const double area = (box.high[0] - box.low[0]) * (box.high[1] - box.low[1]);
+    if (area < least) least = area, best = box;
+  }
+  if (best.high[0] - best.low[0] < best.high[1] - best.low[1])
+    best = box_along(hull, -best.turn[1], best.turn[0]);  // a quarter further
+  return best;
+}
+
+}  // namespace
+
+std::vector<ChartBox> chart_boxes(const Atlas& atlas, const FaceList& faces) {
+  return detail::with_memory_check("bounding charts", [&] {
+    std::vector<ChartBox> boxes;
+    for (const Chart& chart : atlas.charts) {
+      std::vector<Vec2> points;
+      for (Index f : chart.faces)
+        for (Offset c = faces.begin[f]; c < faces.begin[to_size(f) + 1]; ++c) points.push_back(atlas.corner(c));
+      boxes.push_back(least_box(convex_hull(std::move(points))));
+    }
+    return boxes;
+  });
+}
+
+}  // namespace ahm

@@ -1,0 +1,161 @@
+#include "ahm/applications/coverage.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <string>
+
+#include "ahm/error.hpp"
+#include "ahm/util/small_math.hpp"
+
+namespace ahm {
+namespace {
+
+Vec3 minus(const Vec3& a, const Vec3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
+
+/// The part of `v` along the unit vector `axis`.
+void remove(Vec3& v, const Vec3& axis) {
+  const double along = v[0] * axis[0] + v[1] * axis[1] + v[2] * axis[2];
+  for (std::size_t c = 0; c < 3; ++c) v[c] -= along * axis[c];
+}
+
+void check(const CoverageOptions& o) {
+  const auto check_positive = [](const char* name, double value) {
+    if (!(value > 0 && std::isfinite(value)))
+      throw InvalidArgument("coverage_path: " + std::string(name) + " is " + std::to_string(value) +
+                            "; give a finite number > 0");
+  };
+  check_positive("radius", o.radius);
+  check_positive("spacing", o.spacing);
+  if (o.step != 0) check_positive("step", o.step);
+  if (!std::isfinite(o.angle)) throw InvalidArgument("coverage_path: angle is not finite");
+  const double step = o.step > 0 ? o.step : o.spacing / 2;
+  const double points = (o.radius / o.spacing + 1) * (o.radius / step + 1) * std::numbers::pi;
+  if (!(points < 1 << 30))
+    throw InvalidArgument("coverage_path: the pattern has about " + std::to_string(points) +
+                          " points, more than 2^30; enlarge spacing or step, or lower radius");
+}
+
+/// A line of the raster, `across` away from the source, from left to right along (1, 0).
+std::vector<Vec2> raster_line(double across, double radius, double step) {
+  const double half = std::sqrt(std::max(0.0, (radius - across) * (radius + across)));
+  const auto steps = static_cast<std::size_t>(std::ceil(2 * half / step * (1 - 1e-12)));
+  std::vector<Vec2> line{{-half, across}};
+  for (std::size_t k = 1; k <= steps; ++k)
+    line.push_back({2 * half * static_cast<double>(k) / static_cast<double>(steps) - half, across});
+  return line;
+}
+
+/// The Archimedean spiral r = b angle in steps of equal arclength s(angle) = b/2 (angle sqrt(1 + angle^2) + asinh angle).
+std::vector<Vec2> spiral(double spacing, double radius, double step) {
+  const double b = spacing / (2 * std::numbers::pi), last = radius / b;
+  const auto arclength = [&](double angle) { return b / 2 * (angle * std::hypot(1, angle) + std::asinh(angle)); };
+  const auto steps = static_cast<std::size_t>(std::ceil(arclength(last) / step));
+  std::vector<Vec2> line{{0, 0}};
+  double angle = 0;
+  for (std::size_t k = 1; k <= steps; ++k) {
+    const double s = arclength(last) * static_cast<double>(k) / static_cast<double>(steps);
+    for (int newton = 0; newton < 50; ++newton) {  // s is convex: from the second iterate on from above
+      const double change = (arclength(angle) - s) / (b * std::hypot(1, angle));
+      angle -= change;
+      if (std::abs(change) <= 1e-14 * angle) break;
+    }
+    line.push_back({b * angle * std::cos(angle), b * angle * std::sin(angle)});
+  }
+  return line;
+}
+
+/// Carries planar lines to the surface, one after the other.
+class Carrier {
+ public:
+  Carrier(const InverseMap& inverse, const CoverageOptions& options)
+      : inverse_(inverse), spacing_(options.spacing), c_(std::cos(options.angle)), s_(std::sin(options.angle)) {}
+
+  void add(const std::vector<Vec2>& line, Index number) {
+    Vec2 before{};
+    for (std::size_t k = 0; k < line.size(); ++k) {
+      const Vec2 q{c_ * line[k][0] - s_ * line[k][1], s_ * line[k][0] + c_ * line[k][1]};
+      const auto point = inverse_.at(q[0], q[1]);
+      const double step = std::hypot(q[0] - before[0], q[1] - before[1]);
+      if (!point || (size() > 0 && distance(*point) > inverse_.max_stretch() * step)) end_piece();
+      if (point) append(*point, q, number);
+      before = q;
+    }
+    end_piece();
+    path_.planned += static_cast<Offset>(line.size());
+  }
+
+  CoveragePath result() { return std::move(path_); }
+
+ private:
+  std::size_t size() const { return path_.points.size() - begin_; }  // of the current piece
+  double distance(const InversePoint& point) const {
+    return length(minus(point.position, path_.points.back().position));
+  }
+
+  void append(const InversePoint& point, const Vec2& q, Index line) {
+    const double arclength = size() == 0 ? 0.0 : path_.points.back().arclength + distance(point);
+    path_.points.push_back({point.position, point.normal, point.frame().x, q, path_.pieces, line, arclength, 0.0});
+  }
+
+  /// Headings and spacings of the current piece; a point alone has none and is dropped.
+  void end_piece() {
+    const std::size_t count = size();
+    if (count == 1) path_.points.pop_back();
+    for (std::size_t k = 0; k < count && count > 1; ++k) complete(k, count);
+    if (count > 1) ++path_.pieces;
+    begin_ = path_.points.size();
+  }
+
+  /// From the neighbours in the piece.
+  void complete(std::size_t k, std::size_t count) {
+    const CoveragePoint &from = path_.points[begin_ + (k > 0 ? k - 1 : k)],
+                        &to = path_.points[begin_ + std::min(k + 1, count - 1)];
+    CoveragePoint& p = path_.points[begin_ + k];
+    Vec3 chord = minus(to.position, from.position);
+    remove(chord, p.normal);
+    if (const double norm = length(chord); norm > 0)
+      for (std::size_t c = 0; c < 3; ++c) p.heading[c] = chord[c] / norm;
+
+    const Vec2 t{to.coordinates[0] - from.coordinates[0], to.coordinates[1] - from.coordinates[1]};
+    const double norm = length(t);
+    p.spacing = std::numeric_limits<double>::quiet_NaN();
+    for (double side : {spacing_, -spacing_}) {
+      const auto across = inverse_.at(p.coordinates[0] - side * t[1] / norm, p.coordinates[1] + side * t[0] / norm);
+      if (!across) continue;
+      Vec3 way = minus(across->position, p.position);
+      if (length(way) > inverse_.max_stretch() * spacing_) continue;  // another sheet
+      remove(way, p.heading);
+      p.spacing = length(way);
+      break;
+    }
+  }
+
+  const InverseMap& inverse_;
+  double spacing_, c_, s_;
+  CoveragePath path_;
+  std::size_t begin_ = 0;
+};
+
+}  // namespace
+
+CoveragePath coverage_path(const InverseMap& inverse, const CoverageOptions& options) {
+  check(options);
+  const double step = options.step > 0 ? options.step : options.spacing / 2;
+  Carrier carrier(inverse, options);
+  if (options.pattern == CoveragePattern::spiral) {
+    carrier.add(spiral(options.spacing, options.radius, step), 0);
+    return carrier.result();
+  }
+  const auto outermost = static_cast<Index>(options.radius / options.spacing);
+  for (Index k = -outermost; k <= outermost; ++k) {
+    std::vector<Vec2> line = raster_line(k * options.spacing, options.radius, step);
+    if ((k + outermost) % 2 == 1) std::reverse(line.begin(), line.end());
+    carrier.add(line, k + outermost);
+  }
+  return carrier.result();
+}
+
+}  // namespace ahm

@@ -1,0 +1,241 @@
+#include "ahm/applications/decal.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <string>
+
+#include "ahm/error.hpp"
+#include "ahm/util/memory.hpp"
+#include "ahm/util/small_math.hpp"
+#include "ahm/util/text.hpp"
+
+namespace ahm {
+namespace {
+
+using Weights = std::array<double, 3>;
+
+constexpr int circle_corners = 64;
+
+void check(const DecalOptions& o) {
+  const auto check_positive = [](const char* name, double value, bool may_be_infinite) {
+    if (!(value > 0) || (!may_be_infinite && !std::isfinite(value)))
+      throw InvalidArgument("make_decal: " + std::string(name) + " is " + detail::number(value) +
+                            "; give a number > 0");
+  };
+  check_positive("width", o.width, false);
+  check_positive("height", o.height, false);
+  check_positive("radius", o.radius, true);
+  if (!std::isfinite(o.angle)) throw InvalidArgument("make_decal: angle is not finite");
+  if (!std::isfinite(o.lift)) throw InvalidArgument("make_decal: lift is not finite");
+}
+
+/// The image in the plane: places in it, and its borders.
+class Placement {
+ public:
+  explicit Placement(const DecalOptions& options)
+      : options_(options), c_(std::cos(options.angle)), s_(std::sin(options.angle)) {
+    const double far = std::hypot(options.width, options.height) / 2;
+    if (!(options.radius < far)) return;
+    const double apothem = options.radius * std::cos(std::numbers::pi / circle_corners);
+    for (int k = 0; k < circle_corners; ++k) {
+      const double turn = (2 * k + 1) * std::numbers::pi / circle_corners;
+      circle_.push_back({std::cos(turn) / apothem, std::sin(turn) / apothem});
+    }
+  }
+
+  /// (u, v) as a place in the image, [0, 1]^2 inside.
+  Vec2 in_image(const Vec2& q) const {
+    const double x = (c_ * q[0] + s_ * q[1]) / options_.width, y = (c_ * q[1] - s_ * q[0]) / options_.height;
+    return {0.5 + (options_.mirrored ? -x : x), 0.5 + y};
+  }
+
+  std::size_t borders() const { return 4 + circle_.size(); }
+  /// How far (u, v) is inside border `k`: linear in (u, v), 0 on the border.
+  double inside(std::size_t k, const Vec2& q) const {
+    if (k >= 4) return 1 - circle_[k - 4][0] * q[0] - circle_[k - 4][1] * q[1];
+    const double x = in_image(q)[k / 2];
+    return k % 2 == 0 ? x : 1 - x;
+  }
+  bool is_inside(const Vec2& q) const {
+    for (std::size_t k = 0; k < borders(); ++k)
+      if (!(inside(k, q) >= 0)) return false;
+    return true;
+  }
+
+ private:
+  DecalOptions options_;
+  double c_, s_;
+  std::vector<Vec2> circle_;  ///< normals of the sides, divided by their distance
+};
+
+Vec2 combine(const Weights& w, const std::array<Vec2, 3>& q) {
+  return {w[0] * q[0][0] + w[1] * q[1][0] + w[2] * q[2][0], w[0] * q[0][1] + w[1] * q[1][1] + w[2] * q[2][1]};
+}
+
+std::array<Vec2, 3> corners_of(const InverseMap& inverse, const Triangle& t) {
+  return {inverse.coordinates(t[0]), inverse.coordinates(t[1]), inverse.coordinates(t[2])};
+}
+
+/// What is left of a triangle inside the image, as barycentric weights (Sutherland & Hodgman 1974); empty: nothing.
+std::vector<Weights> clipped(const Placement& image, const std::array<Vec2, 3>& q) {
+  std::vector<Weights> polygon{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, kept;
+  std::vector<double> inside;
+  for (std::size_t k = 0; k < image.borders() && !polygon.empty(); ++k) {
+    inside.clear();
+    for (const Weights& w : polygon) inside.push_back(image.inside(k, combine(w, q)));
+    if (*std::min_element(inside.begin(), inside.end()) >= 0) continue;
+    kept.clear();
+    for (std::size_t a = 0; a < polygon.size(); ++a) {
+      const std::size_t b = (a + 1) % polygon.size();
+      if (inside[a] >= 0) kept.push_back(polygon[a]);
+      if ((inside[a] >= 0) == (inside[b] >= 0)) continue;
+      const double t = inside[a] / (inside[a] - inside[b]);
+      Weights& w = kept.emplace_back();
+      for (std::size_t c = 0; c < 3; ++c) w[c] = (1 - t) * polygon[a][c] + t * polygon[b][c];
+    }
+    polygon.swap(kept);
+  }
+  return polygon.size() < 3 ? std::vector<Weights>{} : polygon;
+}
+
+/// Whether the map answers with this sheet at the middle of the polygon.
+bool is_uppermost(const InverseMap& inverse, const Triangle& t, const std::vector<Weights>& polygon) {
+  Weights middle{};
+  for (const Weights& w : polygon)
+    for (std::size_t c = 0; c < 3; ++c) middle[c] += w[c] / static_cast<double>(polygon.size());
+  const Vec2 q = combine(middle, corners_of(inverse, t));
+  const auto answer = inverse.at(q[0], q[1]);
+  if (!answer || answer->vertices == t) return true;
+  double longest = 0;
+  Vec3 away = answer->position;
+  for (std::size_t k = 0; k < 3; ++k) {
+    Vec3 edge;
+    for (std::size_t c = 0; c < 3; ++c) {
+      edge[c] = inverse.position(t[(k + 1) % 3])[c] - inverse.position(t[k])[c];
+      away[c] -= middle[k] * inverse.position(t[k])[c];
+    }
+    longest = std::max(longest, length(edge));
+  }
+  return length(away) <= longest;  // triangles of one sheet may overlap on clouds
+}
+
+/// Of these triangles, in their order, those that hang together with the first one through vertices.
+std::vector<Triangle> joined_to_first(const std::vector<Triangle>& triangles, std::size_t vertices) {
+  std::vector<Index> parent(triangles.empty() ? 0 : vertices);
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto root = [&](Index v) {
+    while (parent[v] != v) v = parent[v] = parent[parent[v]];
+    return v;
+  };
+  for (const Triangle& t : triangles)
+    for (std::size_t k : {1, 2}) parent[root(t[k])] = root(t[0]);
+  std::vector<Triangle> result;
+  for (const Triangle& t : triangles)
+    if (root(t[0]) == root(triangles.front()[0])) result.push_back(t);
+  return result;
+}
+
+/// The triangles that show a part of the image, nearest to the source first.
+struct Shown {
+  std::vector<Triangle> triangles;
+  Index hidden = 0;
+
+  Shown(const InverseMap& inverse, const Placement& image) {
+    Index all = 0;
+    for (const Triangle& t : inverse.triangles()) {
+      const std::vector<Weights> polygon = clipped(image, corners_of(inverse, t));
+      if (polygon.empty()) continue;
+      ++all;
+      if (is_uppermost(inverse, t, polygon)) triangles.push_back(t);
+    }
+    triangles = joined_to_first(triangles, inverse.size());
+    hidden = all - static_cast<Index>(triangles.size());
+  }
+};
+
+/// Collects the pieces; corners of the surface's triangles are shared.
+class Collector {
+ public:
+  Collector(const InverseMap& inverse, const Placement& image, double lift)
+      : inverse_(inverse), image_(image), lift_(lift), number_(inverse.size(), -1) {
+    decal_.face_begin.push_back(0);
+  }
+
+  void add(const Triangle& t, const std::vector<Weights>& polygon) {
+    for (const Weights& w : polygon) decal_.face_vertices.push_back(point(t, w));
+    decal_.face_begin.push_back(static_cast<Offset>(decal_.face_vertices.size()));
+  }
+  Decal take() { return std::move(decal_); }
+
+ private:
+  Index point(const Triangle& t, const Weights& w) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (w[k] != 1) continue;
+      Index& number = number_[t[k]];
+      if (number < 0) number = append(t, w);
+      return number;
+    }
+    return append(t, w);
+  }
+
+  Index append(const Triangle& t, const Weights& w) {
+    Vec3 position{}, normal{};
+    for (std::size_t k = 0; k < 3; ++k)
+      for (std::size_t c = 0; c < 3; ++c) {
+        position[c] += w[k] * inverse_.position(t[k])[c];
+        normal[c] += w[k] * inverse_.normal(t[k])[c];
+      }
+    const double norm = length(normal);
+    for (std::size_t c = 0; c < 3; ++c) {
+      if (norm > 0) normal[c] /= norm;
+      position[c] += lift_ * normal[c];
+    }
+    decal_.points.push_back(position);
+    decal_.normals.push_back(normal);
+    for (double x : image_.in_image(combine(w, corners_of(inverse_, t))))
+      decal_.image_coordinates.push_back(std::clamp(x, 0.0, 1.0));  // rounding at the borders
+    return static_cast<Index>(decal_.points.size()) - 1;
+  }
+
+  const InverseMap& inverse_;
+  const Placement& image_;
+  double lift_;
+  std::vector<Index> number_;
+  Decal decal_;
+};
+
+}  // namespace
+
+Decal make_decal(const InverseMap& inverse, const DecalOptions& options) {
+  check(options);
+  return detail::with_memory_check("making a decal", [&] {
+    const Placement image(options);
+    const Shown shown(inverse, image);
+    Collector collector(inverse, image, options.lift);
+    for (const Triangle& t : shown.triangles) collector.add(t, clipped(image, corners_of(inverse, t)));
+    Decal decal = collector.take();
+    decal.hidden = shown.hidden;
+    return decal;
+  });
+}
+
+std::vector<double> image_coordinates_of_vertices(const InverseMap& inverse, const DecalOptions& options) {
+  check(options);
+  return detail::with_memory_check("making a decal", [&] {
+    const Placement image(options);
+    std::vector<double> result(2 * inverse.size(), std::numeric_limits<double>::quiet_NaN());
+    for (const Triangle& t : Shown(inverse, image).triangles) {
+      const std::array<Vec2, 3> q = corners_of(inverse, t);
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (!image.is_inside(q[k])) continue;
+        const Vec2 place = image.in_image(q[k]);
+        std::copy(place.begin(), place.end(), result.begin() + 2 * t[k]);
+      }
+    }
+    return result;
+  });
+}
+
+}  // namespace ahm

@@ -1,0 +1,173 @@
+#include "ahm/applications/mean.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "ahm/error.hpp"
+#include "ahm/util/small_math.hpp"
+#include "ahm/util/text.hpp"
+#include "flat_center.hpp"
+
+namespace ahm {
+namespace {
+
+/// Weighted vertices, and what is to be least.
+struct Problem {
+  const LogMapSolver& solver;
+  const char* name;  ///< of the function called, for messages
+  std::vector<double> (*flat_center)(const FlatPoints&);
+  std::vector<Index> vertices;
+  std::vector<double> weights;  ///< > 0, the largest 1
+};
+
+void check_vertex(const Problem& problem, Index vertex, const std::string& what) {
+  if (vertex < 0 || vertex >= problem.solver.graph().size())
+    throw InvalidArgument(std::string(problem.name) + ": " + what + ", vertex " + std::to_string(vertex) +
+                          ", is outside [0, " + std::to_string(problem.solver.graph().size()) + ")");
+}
+
+/// Keeps the points of positive weight.
+void set_points(Problem& problem, std::span<const Index> vertices, std::span<const double> weights) {
+  const std::string name = problem.name;
+  if (vertices.empty()) throw InvalidArgument(name + ": 'vertices' is empty");
+  if (!weights.empty() && weights.size() != vertices.size())
+    throw InvalidArgument(name + ": 'weights' has " + std::to_string(weights.size()) + " entries, 'vertices' has " +
+                          std::to_string(vertices.size()));
+  double largest = 0;
+  for (std::size_t k = 0; k < vertices.size(); ++k) {
+    check_vertex(problem, vertices[k], "point " + std::to_string(k));
+    const double w = weights.empty() ? 1.0 : weights[k];
+    if (!(w >= 0) || !std::isfinite(w))
+      throw InvalidArgument(name + ": weight " + std::to_string(k) + ", " + detail::number(w) +
+                            ", must be finite and >= 0");
+    if (w == 0) continue;
+    problem.vertices.push_back(vertices[k]);
+    problem.weights.push_back(w);
+    largest = std::max(largest, w);
+  }
+  if (problem.vertices.empty()) throw InvalidArgument(name + ": all 'weights' are 0");
+  for (double& w : problem.weights) w /= largest;
+}
+
+/// The points seen from a vertex, and their center there; lengths in graph units.
+struct View {
+  LogMap map;
+  FlatPoints points;
+  std::vector<double> center;
+};
+
+View look(const Problem& problem, Index from, const MapOptions& options) {
+  const TangentGraph& graph = problem.solver.graph();
+  View view{problem.solver.solve(Source::at_vertex(from), options), {}, {}};
+  view.points.dimension = static_cast<std::size_t>(graph.dimension());
+  view.points.weights = problem.weights;
+  for (Index vertex : problem.vertices) {
+    if (const Status status = view.map.status(vertex); status != Status::ok) {
+      const char* what = status == Status::component ? "' (take one center per component)"
+                         : status == Status::radius  ? "' (raise map.radius)"
+                                                     : "' (let the solver march: Strategy::automatic)";
+      throw InvalidArgument(std::string(problem.name) + ": seen from vertex " + std::to_string(from) +
+                            ", the point at vertex " + std::to_string(vertex) + " has status '" +
+                            std::string(to_string(status)) + what);
+    }
+    for (double z : view.map.coordinates(vertex)) view.points.coordinates.push_back(z / graph.length_unit());
+  }
+  view.center = problem.flat_center(view.points);
+  return view;
+}
+
+/// exp of `share` times the center: the vertex of the nearest coordinates, found by going from neighbour to neighbour,
+/// since coordinates as short occur beyond the cut locus as well.
+Index follow(const TangentGraph& graph, const View& view, Index from, double share) {
+  const auto away = [&](Index i) {
+    const auto phi = view.map.coordinates(i);
+    double sum = 0;
+    for (std::size_t a = 0; a < phi.size(); ++a) {
+      const double difference = phi[a] / graph.length_unit() - share * view.center[a];
+      sum += difference * difference;
+    }
+    return sum;
+  };
+  Index best = from;
+  double least = away(from);
+  for (Index at = -1; at != best;) {
+    at = best;
+    for (Index j : graph.star(at).neighbors)
+      if (const double r = away(j); r < least) best = j, least = r;  // never so for NaN
+  }
+  return best;
+}
+
+/// Weighted power mean of the distances from the center.
+double spread(const View& view, double power) {
+  const std::vector<double> away = distances(view.points, view.center);
+  double sum = 0, total = 0;
+  for (std::size_t k = 0; k < away.size(); ++k) {
+    sum += view.points.weights[k] * std::pow(away[k], power);
+    total += view.points.weights[k];
+  }
+  return std::pow(sum / total, 1 / power);
+}
+
+Center search(const Problem& problem, double power, const CenterOptions& options) {
+  if (options.max_maps < 1)
+    throw InvalidArgument(std::string(problem.name) + ": 'max_maps' " + std::to_string(options.max_maps) +
+                          " must be at least 1");
+  const TangentGraph& graph = problem.solver.graph();
+  const auto heaviest = std::max_element(problem.weights.begin(), problem.weights.end()) - problem.weights.begin();
+  Index x = options.start.value_or(problem.vertices[heaviest]);
+  check_vertex(problem, x, "'start'");
+
+  Center best;
+  std::vector<Index> visited;
+  double remaining = std::numeric_limits<double>::infinity(), share = 1;
+  for (Index maps = 1; maps <= options.max_maps; ++maps) {
+    const View here = look(problem, x, options.map);
+    visited.push_back(x);
+    if (const double r = length(here.center); r < remaining) {
+      remaining = r;
+      best.vertex = x;
+      best.offset = here.center;
+      best.spread = spread(here, power) * graph.length_unit();
+      for (double& z : best.offset) z *= graph.length_unit();
+    }
+    best.maps = maps;
+    // A vertex seen before would close a cycle: then go half as far.
+    Index next = follow(graph, here, x, share);
+    while (next != x && std::find(visited.begin(), visited.end(), next) != visited.end()) {
+      share /= 2;
+      next = share > 1e-6 ? follow(graph, here, x, share) : x;
+    }
+    best.converged = next == x;
+    if (best.converged) break;
+    x = next;
+  }
+  return best;
+}
+
+}  // namespace
+
+Center karcher_mean(const LogMapSolver& solver, std::span<const Index> vertices, std::span<const double> weights,
+                    const CenterOptions& options) {
+  Problem problem{solver, "karcher_mean", flat_mean, {}, {}};
+  set_points(problem, vertices, weights);
+  return search(problem, 2, options);
+}
+
+Center geometric_median(const LogMapSolver& solver, std::span<const Index> vertices, std::span<const double> weights,
+                        const CenterOptions& options) {
+  Problem problem{solver, "geometric_median", flat_median, {}, {}};
+  set_points(problem, vertices, weights);
+  return search(problem, 1, options);
+}
+
+Source source_at(const Center& center) {
+  const std::size_t d = center.offset.size();
+  std::vector<double> back(center.offset), identity(d * d, 0.0);
+  for (std::size_t a = 0; a < d; ++a) back[a] = -back[a], identity[a * (d + 1)] = 1.0;
+  return Source(static_cast<int>(d)).add(center.vertex, 1.0, back, identity);
+}
+
+}  // namespace ahm

@@ -1,0 +1,212 @@
+#include "ahm/applications/stroke.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <string>
+
+#include "ahm/error.hpp"
+#include "ahm/util/small_math.hpp"
+
+namespace ahm {
+namespace {
+
+/// An edge of the path seen from vertex `from`.
+struct Step {
+  Vec2 log;       ///< in the frame of `from`, outside units
+  bool mirrored;  ///< the two frames are oppositely oriented
+};
+
+Step step(const TangentGraph& graph, Index from, Index to) {
+  const Star star = graph.star(from);
+  const double unit = graph.length_unit();
+  for (std::size_t e = 0; e < star.degree(); ++e) {
+    if (star.neighbors[e] != to) continue;
+    const bool is_block = graph.transport_kind() == TransportKind::block;
+    const auto R = star.transports.subspan(e * (is_block ? 4 : 2), is_block ? 4 : 2);
+    return {{star.log(e)[0] * unit, star.log(e)[1] * unit}, is_block && R[0] * R[3] - R[1] * R[2] < 0};
+  }
+  throw InvalidArgument("stroke_source: vertices " + std::to_string(from) + " and " + std::to_string(to) +
+                        " follow each other in 'path' but are no neighbours in the graph; add the vertices between");
+}
+
+/// Direction that halves the angle between arriving and leaving; either may be zero at an end.
+Vec2 bisector(const Vec2& arriving, const Vec2& leaving, std::size_t k) {
+  Vec2 sum{};
+  for (const Vec2& v : {arriving, leaving})
+    if (const double norm = length(v); norm > 0)
+      for (int a = 0; a < 2; ++a) sum[a] += v[a] / norm;
+  const double norm = length(sum);
+  if (!(norm > 1e-6))
+    throw InvalidArgument("stroke_source: the curve turns back or stands still at position " + std::to_string(k) +
+                          " of 'path'; split it there");
+  return {sum[0] / norm, sum[1] / norm};
+}
+
+/// What the graph knows of the curve at each vertex.
+struct Curve {
+  std::vector<Vec2> tangents;  ///< in the frame of the vertex, unit length
+  std::vector<double> sides;   ///< +1 or -1: whether left is left in the vertex's frame
+  std::vector<double> s;       ///< arclength
+  std::vector<double> weights;
+  double length = 0;
+};
+
+void check_path(const TangentGraph& graph, std::span<const Index> path, bool closed) {
+  if (graph.dimension() != 2)
+    throw InvalidArgument("stroke_source: the graph has dimension " + std::to_string(graph.dimension()) + ", not 2");
+  if (path.size() < (closed ? 3U : 2U))
+    throw InvalidArgument("stroke_source: 'path' has " + std::to_string(path.size()) + " vertices; give at least " +
+                          (closed ? "3" : "2"));
+  for (Index vertex : path)
+    if (vertex < 0 || vertex >= graph.size())
+      throw InvalidArgument("stroke_source: vertex " + std::to_string(vertex) + " of 'path' is outside [0, " +
+                            std::to_string(graph.size()) + ")");
+}
+
+Curve follow(const TangentGraph& graph, std::span<const Index> path, bool closed) {
+  check_path(graph, path, closed);
+  const std::size_t n = path.size();
+  Curve curve{{}, {}, {}, std::vector<double>(n, 0.0), 0};
+  Vec2 arriving{};
+  if (closed) {
+    const Vec2 back = step(graph, path[0], path[n - 1]).log;
+    arriving = {-back[0], -back[1]};
+  }
+  double side = 1;
+  for (std::size_t k = 0; k < n; ++k) {
+    curve.s.push_back(curve.length);
+    curve.sides.push_back(side);
+    if (k + 1 == n && !closed) {
+      curve.tangents.push_back(bisector(arriving, {}, k));
+      break;
+    }
+    const std::size_t next = (k + 1) % n;
+    const Step there = step(graph, path[k], path[next]), back = step(graph, path[next], path[k]);
+    curve.tangents.push_back(bisector(arriving, there.log, k));
+    const double half = (length(there.log) + length(back.log)) / 4;
+    curve.weights[k] += half;
+    curve.weights[next] += half;
+    curve.length += 2 * half;
+    arriving = {-back.log[0], -back.log[1]};
+    if (there.mirrored) side = -side;
+  }
+  if (closed && side < 0)
+    throw InvalidArgument(
+        "stroke_source: the closed 'path' runs along a one-sided band, so it has no left; leave it open");
+  return curve;
+}
+
+/// The u axis is the tangent turned back by the angle that the curve has in the plane of coordinates.
+void add_sample(Source& source, Index vertex, double weight, const Vec2& z, const Vec2& tangent, double side,
+                const Vec2& direction) {
+  const Vec2 left{-side * tangent[1], side * tangent[0]};
+  const double c = direction[0], s = direction[1];
+  const double axes[] = {c * tangent[0] - s * left[0], s * tangent[0] + c * left[0], c * tangent[1] - s * left[1],
+                         s * tangent[1] + c * left[1]};
+  source.add(vertex, weight, z, axes);
+}
+
+void check_shape(const StrokeOptions& options) {
+  if (options.shape == StrokeShape::circle && !options.closed)
+    throw InvalidArgument("stroke_source: shape 'circle' needs a closed curve");
+}
+
+/// Where the point at arclength s lies in the plane of coordinates, and which way the curve runs there.
+struct Place {
+  Vec2 position, direction;
+};
+
+Place place(double s, double length, StrokeShape shape) {
+  if (shape == StrokeShape::line) return {{s, 0}, {1, 0}};
+  const double radius = length / (2 * std::numbers::pi), c = std::cos(s / radius), d = std::sin(s / radius);
+  return {{radius * c, radius * d}, {-d, c}};
+}
+
+void check_points(std::span<const Source> points, std::span<const double> lengths, bool closed) {
+  const std::size_t least = closed ? 3 : 2;
+  if (points.size() < least)
+    throw InvalidArgument("stroke_source: 'points' has " + std::to_string(points.size()) + " entries; give at least " +
+                          std::to_string(least));
+  if (lengths.size() != points.size() - (closed ? 0 : 1))
+    throw InvalidArgument("stroke_source: 'lengths' has " + std::to_string(lengths.size()) + " entries for " +
+                          std::to_string(points.size()) + " points; an open curve has one fewer, a closed one as many");
+  for (std::size_t k = 0; k < lengths.size(); ++k)
+    if (!(lengths[k] > 0) || !std::isfinite(lengths[k]))
+      throw InvalidArgument("stroke_source: 'lengths' [" + std::to_string(k) + "] is " + std::to_string(lengths[k]) +
+                            ", not positive and finite; leave out points that coincide");
+}
+
+}  // namespace
+
+Source stroke_source(const TangentGraph& graph, std::span<const Index> path, const StrokeOptions& options) {
+  check_shape(options);
+  const Curve curve = follow(graph, path, options.closed);
+  Source source(2);
+  for (std::size_t k = 0; k < path.size(); ++k) {
+    const auto [position, direction] = place(curve.s[k], curve.length, options.shape);
+    add_sample(source, path[k], curve.weights[k], position, curve.tangents[k], curve.sides[k], direction);
+  }
+  return source;
+}
+
+Source stroke_source(const TangentGraph& graph, std::span<const Index> path,
+                     std::span<const std::array<double, 2>> positions, bool closed) {
+  if (positions.size() != path.size())
+    throw InvalidArgument("stroke_source: 'positions' has " + std::to_string(positions.size()) +
+                          " entries, 'path' has " + std::to_string(path.size()));
+  for (std::size_t k = 0; k < positions.size(); ++k)
+    if (!all_finite(positions[k]))
+      throw InvalidArgument("stroke_source: entry " + std::to_string(k) + " of 'positions' is not finite");
+  const Curve curve = follow(graph, path, closed);
+  const std::size_t n = path.size();
+  const auto between = [&](std::size_t a, std::size_t b) -> Vec2 {
+    return {positions[b][0] - positions[a][0], positions[b][1] - positions[a][1]};
+  };
+  Source source(2);
+  for (std::size_t k = 0; k < n; ++k) {
+    const Vec2 arriving = k > 0 || closed ? between((k + n - 1) % n, k) : Vec2{};
+    const Vec2 leaving = k + 1 < n || closed ? between(k, (k + 1) % n) : Vec2{};
+    add_sample(source, path[k], curve.weights[k], positions[k], curve.tangents[k], curve.sides[k],
+               bisector(arriving, leaving, k));
+  }
+  return source;
+}
+
+Source stroke_source(std::span<const StrokePoint> points) {
+  if (points.empty()) throw InvalidArgument("stroke_source: 'points' is empty");
+  Source source(2);
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const auto& [point, weight, position, angle] = points[k];
+    if (point.dimension() != 2)
+      throw InvalidArgument("stroke_source: point " + std::to_string(k) + " is a source of dimension " +
+                            std::to_string(point.dimension()) + ", not 2; give its u axis");
+    const double c = std::cos(angle), s = std::sin(angle);
+    for (std::size_t i = 0; i < point.vertices().size(); ++i) {
+      const auto z = point.offsets().subspan(2 * i, 2), U = point.axes().subspan(4 * i, 4);
+      const double offset[] = {position[0] + c * z[0] - s * z[1], position[1] + s * z[0] + c * z[1]};
+      const double axes[] = {c * U[0] - s * U[1], s * U[0] + c * U[1], c * U[2] - s * U[3], s * U[2] + c * U[3]};
+      source.add(point.vertices()[i], weight * point.weights()[i], offset, axes);
+    }
+  }
+  return source;
+}
+
+Source stroke_source(std::span<const Source> points, std::span<const double> lengths, const StrokeOptions& options) {
+  check_shape(options);
+  check_points(points, lengths, options.closed);
+  const double length = std::accumulate(lengths.begin(), lengths.end(), 0.0);
+  std::vector<StrokePoint> stroke;
+  stroke.reserve(points.size());
+  double s = 0;
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const double before = k > 0 ? lengths[k - 1] : options.closed ? lengths.back() : 0;
+    const double after = k < lengths.size() ? lengths[k] : 0;
+    const auto [position, direction] = place(s, length, options.shape);
+    stroke.push_back({points[k], (before + after) / 2, position, std::atan2(direction[1], direction[0])});
+    s += after;
+  }
+  return stroke_source(stroke);
+}
+
+}  // namespace ahm

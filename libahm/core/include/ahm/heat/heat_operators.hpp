@@ -1,0 +1,101 @@
+/// \file
+/// The two operators of the affine heat method, factored once: A = M + tau L (scalar) and B = M + tau L^nabla
+/// (connection Laplacian), symmetric positive definite on a graph with weights >= 0.
+///
+/// Most users want `LogMapSolver`, or the functions in vector_heat.hpp; both stand on this class.
+///
+/// \code
+/// ahm::HeatOperators heat(graph, {.t_coef = 1.0});
+/// std::vector<double> lambda(n, 0.0);
+/// lambda[source] = 1.0;
+/// heat.solve_scalar(lambda, 1);                // lambda = (c A)^-1 delta
+/// \endcode
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+
+#include "ahm/graph/tangent_graph.hpp"
+#include "ahm/progress.hpp"
+
+namespace ahm {
+
+/// Fill-reducing ordering of the factorization.
+enum class Ordering {
+  amd,               ///< approximate minimum degree: cheapest ordering, best for a few maps
+  nested_dissection  ///< METIS: slower to compute, smaller factors, best when the factors serve many maps
+};
+
+struct OperatorOptions {
+  double t_coef = 1.0;  ///< tau = t_coef h^2; > 0
+  Ordering ordering = Ordering::amd;
+  /// Supernodal LL^T (fast; SuiteSparse's GPL module). false: simplicial (LGPL), the only choice in a build with
+  /// AHM_SUPERNODAL=OFF.
+  bool supernodal = true;
+  bool check_graph = true;  ///< run `validate(graph)` first
+  unsigned threads = 0;     ///< 1: factorize A and B one after the other; else concurrently on two threads
+  Progress progress;
+};
+
+/// What the factorization cost.
+struct FactorStatistics {
+  double assemble_seconds = 0;
+  double analyze_seconds = 0;
+  double factor_seconds = 0;
+  Offset nonzeros_A = 0;  ///< entries of the triangular factor of A
+  Offset nonzeros_B = 0;  ///< entries (complex, or real in the block path) of the factor of B
+  std::size_t bytes = 0;  ///< memory of both factors
+};
+
+/// A and B of one graph, factored. Immutable: all member functions may be called from many threads at once.
+class HeatOperators {
+ public:
+  /// Assembles and factorizes A and B.
+  /// @throws InvalidGraph, InvalidArgument (t_coef), NotPositiveDefinite (an operator is not positive definite, or
+  /// fails
+  ///         its residual check), ResourceExhausted (memory), Cancelled
+  HeatOperators(const TangentGraph& graph, const OperatorOptions& options = {});
+  ~HeatOperators();
+  HeatOperators(HeatOperators&&) noexcept;
+  HeatOperators& operator=(HeatOperators&&) noexcept;
+
+  Index size() const noexcept;
+  int dimension() const noexcept;
+  TransportKind transport_kind() const noexcept;
+  double tau() const noexcept;  ///< in squared graph units
+  const FactorStatistics& statistics() const noexcept;
+
+  /// X <- (c A)^-1 X for `columns` right-hand sides, column major n x columns. c is the fixed power of two that brings
+  /// the operators to order one; it is the same for A and B and cancels in every quotient of solutions.
+  /// @throws InvalidArgument when the span's length is not n * columns
+  void solve_scalar(std::span<double> X, Index columns) const;
+  /// X <- (c B)^-1 X for `columns` vector fields, column major: each column holds n vectors of d numbers.
+  /// @throws InvalidArgument when the span's length is not n * d * columns
+  void solve_vector(std::span<double> X, Index columns) const;
+  /// The constant c.
+  double scaling() const noexcept;
+
+  /// Connected component of each vertex, numbered from 0 in order of the first vertex.
+  std::span<const Index> components() const noexcept;
+  Index component_count() const noexcept;
+
+ private:
+  friend class March;
+  /// @param iterative  conjugate gradients instead of factors; block graphs only. Errors are then relative to the largest
+  ///                   value of a solution, which is enough for the thin bands of a march.
+  HeatOperators(const TangentGraph& graph, const OperatorOptions& options, bool iterative);
+
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Which BLAS the process runs on, and which CHOLMOD: for reports.
+struct LinearAlgebraInfo {
+  std::string cholmod;  ///< version
+  std::string blas;     ///< e.g. "OpenBLAS 0.3.21 ..." or the library's file name
+  bool blas_optimized;  ///< false for the reference BLAS, which is several times slower
+};
+LinearAlgebraInfo linear_algebra_info();
+
+}  // namespace ahm

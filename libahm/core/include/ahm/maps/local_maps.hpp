@@ -1,0 +1,69 @@
+/// \file
+/// Many small log maps: around each source, everything within a radius.
+///
+/// \code
+/// // The neighbourhood of every vertex, as learning on surfaces needs it:
+/// ahm::LocalMaps maps = ahm::local_maps(graph, {.radius = 0.05});
+/// for (ahm::Offset e = maps.indptr[i]; e < maps.indptr[i + 1]; ++e)
+///   use(maps.indices[e], &maps.logs[2 * e], maps.distances[e]);
+///
+/// ahm::LocalMaps one = ahm::local_maps(graph, std::array{ahm::Source::at_vertex(7)}, {.radius = 0.05});
+/// \endcode
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "ahm/graph/tangent_graph.hpp"
+#include "ahm/maps/log_map.hpp"
+#include "ahm/maps/source.hpp"
+#include "ahm/progress.hpp"
+
+namespace ahm {
+
+struct LocalMapOptions {
+  double radius = 0;  ///< outside units, > 0, finite
+  Index nearest =
+      0;  ///< keep only so many nearest neighbours within the radius, the source's own vertex included; 0: all
+  Variant variant = Variant::adaptive;
+  double t_coef = 1.0;  ///< tau = t_coef h^2, h that of the whole graph
+  /// How far beyond the radius each patch reaches, in units of sqrt(tau). Flat pieces are exact at any margin; elsewhere
+  /// this is what the difference to the map of the whole graph depends on: about 1e-5 of the radius at 2, and ten times
+  /// less for each further 1 (docs/local_maps.md).
+  double margin = 2;
+  bool check_graph = true;  ///< run `validate(graph)` first: O(n)
+  unsigned threads = 0;     ///< 0: one per core; the result does not depend on it
+  Progress progress;
+};
+
+/// Local maps of many sources in compressed rows: source s has the entries indptr[s] .. indptr[s + 1], nearest first.
+///
+/// An entry is a vertex j within the radius: its coordinates phi_j in the source's frame, |phi_j|, the mass of j as an
+/// integration weight, and the source's axes carried to the frame of j, which turn components in the source's frame into
+/// components in frame j. The vertex a source stands on is its own neighbour, at distance 0.
+struct LocalMaps {
+  int dimension = 2;
+  TransportKind kind = TransportKind::rotation2;
+  std::vector<Offset> indptr;      ///< sources + 1
+  std::vector<Index> indices;      ///< vertices
+  std::vector<double> logs;        ///< d per entry, outside units
+  std::vector<double> distances;   ///< outside units
+  std::vector<double> weights;     ///< masses, outside units to the power d
+  std::vector<double> transports;  ///< 2 numbers (cos, sin) or d x d, row major, per entry
+
+  Index sources() const noexcept { return static_cast<Index>(indptr.size()) - 1; }
+  std::size_t transport_width() const {
+    return kind == TransportKind::rotation2 ? 2 : static_cast<std::size_t>(dimension) * dimension;
+  }
+};
+
+/// The local maps of these sources. Sources close to each other share one small factorization; time and memory depend on
+/// the patches only, however large the graph is.
+/// @throws InvalidArgument (options, source), InvalidGraph, NotPositiveDefinite (of a patch), ResourceExhausted, Cancelled
+LocalMaps local_maps(const TangentGraph& graph, std::span<const Source> sources, const LocalMapOptions& options);
+/// Of these vertices.
+LocalMaps local_maps(const TangentGraph& graph, std::span<const Index> vertices, const LocalMapOptions& options);
+/// Of every vertex.
+LocalMaps local_maps(const TangentGraph& graph, const LocalMapOptions& options);
+
+}  // namespace ahm

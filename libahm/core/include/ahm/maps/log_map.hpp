@@ -1,0 +1,106 @@
+/// \file
+/// The result of a solve: coordinates and a status for every vertex.
+///
+/// \code
+/// ahm::LogMap map = solver.solve(ahm::Source::at_vertex(0));
+/// if (map.status(i) == ahm::Status::ok) std::cout << map.coordinates(i)[0] << ' ' << map.distance(i);
+/// \endcode
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "ahm/maps/source.hpp"
+#include "ahm/types.hpp"
+
+namespace ahm {
+
+/// Alg. 1 or Alg. 2 of Soliman & Sharp 2025.
+enum class Variant { adaptive, localized };
+
+/// How the linear systems are solved (docs/march.md).
+enum class Strategy {
+  automatic,  ///< one of the others, as size, number of maps and memory suggest
+  global,     ///< one factorization of the whole graph, which serves every source; reaches about 700 edges
+  march,      ///< band after band outwards from the source: time and memory linear in n, any distance
+};
+
+/// What a march did.
+struct MarchStatistics {
+  Index bands = 0;         ///< factorizations
+  Index largest_band = 0;  ///< vertices
+  Offset solved = 0;       ///< vertices of all bands
+
+  MarchStatistics& operator+=(const MarchStatistics& other);
+};
+
+/// What a map may hold besides coordinates.
+struct MapExtras {
+  MarchStatistics march;
+  std::vector<double> frames;
+  std::vector<double> error_estimate;
+};
+
+/// Why a vertex has coordinates, or has none.
+enum class Status : std::uint8_t {
+  ok,
+  component,  ///< in a component of the graph without a source
+  radius,     ///< farther from the source than the requested radius
+  /// Strategy::global: so far (about 700 edges at t_coef = 1) that the heat has left the range of double precision. Any
+  /// strategy: the heat cancels (negative weights).
+  unreached,
+  removed,  ///< an input point that is no vertex of the graph (set by backends, never by the solver)
+};
+
+/// The word used in files: "ok", "component", "radius", "unreached", "removed".
+std::string_view to_string(Status status) noexcept;
+std::string_view to_string(Variant variant) noexcept;
+std::string_view to_string(Strategy strategy) noexcept;
+
+/// A logarithmic map: for every vertex i its coordinates phi_i in the source's frame, NaN exactly where the status is
+/// not `ok`.
+class LogMap {
+ public:
+  LogMap(int dimension, Variant variant, Strategy strategy, Source source, std::vector<double> coordinates,
+         std::vector<Status> status, MapExtras extras = {});
+
+  Index size() const noexcept { return static_cast<Index>(status_.size()); }
+  int dimension() const noexcept { return dimension_; }
+  Variant variant() const noexcept { return variant_; }
+  /// How it was solved: `global`, or `march` where any part was marched.
+  Strategy strategy() const noexcept { return strategy_; }
+  /// Zero for a global solve.
+  const MarchStatistics& march() const noexcept { return extras_.march; }
+  /// With MapOptions::frames: the source's axes carried to every vertex (Eq. 11 and 12), n x d x d, row major: column a is
+  /// source axis a in the frame of the vertex. Identity where no heat arrived.
+  std::span<const double> frames() const noexcept { return extras_.frames; }
+  /// With SolverOptions::order = 2: an estimate of |error of phi_i| in outside units, from the disagreement of the
+  /// diffusion times; NaN where not ok. Good to a factor of about three inside the cut locus (docs/accuracy.md).
+  std::span<const double> error_estimate() const noexcept { return extras_.error_estimate; }
+  /// The source whose frame the coordinates refer to.
+  const Source& source() const noexcept { return source_; }
+
+  /// n x d, row major, outside units (graph units times `length_unit`).
+  std::span<const double> coordinates() const noexcept { return coordinates_; }
+  /// phi_i, d numbers.
+  std::span<const double> coordinates(Index vertex) const;
+  std::span<const Status> status() const noexcept { return status_; }
+  Status status(Index vertex) const { return status_[vertex]; }
+  /// |phi_i|: the geodesic distance from the source, NaN where not ok.
+  double distance(Index vertex) const;
+  /// Number of vertices with this status.
+  Index count(Status status) const noexcept;
+
+ private:
+  int dimension_;
+  Variant variant_;
+  Strategy strategy_;
+  Source source_;
+  std::vector<double> coordinates_;
+  std::vector<Status> status_;
+  MapExtras extras_;
+};
+
+}  // namespace ahm

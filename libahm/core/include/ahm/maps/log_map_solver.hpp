@@ -1,0 +1,84 @@
+/// \file
+/// Logarithmic maps by the affine heat method, on any tangent graph.
+///
+/// \code
+/// ahm::LogMapSolver solver(graph);                                  // factors once
+/// ahm::LogMap map = solver.solve(ahm::Source::at_vertex(42));      // then each map costs a few triangular solves
+///
+/// ahm::LogMapSolver once(huge_graph, {}, {.expected_maps = 1});    // nothing is factored: one map by marching
+/// \endcode
+#pragma once
+
+#include <limits>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "ahm/heat/heat_operators.hpp"
+#include "ahm/maps/log_map.hpp"
+#include "ahm/maps/source.hpp"
+
+namespace ahm {
+
+/// How a solver goes about its maps.
+struct SolverOptions {
+  Strategy strategy = Strategy::automatic;
+  /// For `automatic`: the number of maps to be made; 0: many. A single map of a large graph is faster by march.
+  Index expected_maps = 0;
+  /// For `automatic`: bytes that factors may take; 0: half of the machine's memory. A graph whose factors would need more
+  /// is marched.
+  std::size_t memory = 0;
+  /// 1: the method as published. 2: extrapolates from maps of two or three diffusion times (docs/accuracy.md), which take
+  /// as many factorizations and solves; several times more accurate on smooth surfaces, with an error estimate per vertex.
+  int order = 1;
+  /// For marches: the largest difference to a global solve, relative; in [1e-14, 0.1].
+  double accuracy = 1e-9;
+};
+
+struct MapOptions {
+  Variant variant = Variant::adaptive;
+  /// Vertices farther than this from the source get `Status::radius`, and a march ends there. Outside units; > 0.
+  double radius = std::numeric_limits<double>::infinity();
+  /// Threads for a batch; 0: one per core. The result does not depend on it.
+  unsigned threads = 0;
+  bool frames = false;  ///< keep the transported frames, for `map_quality` and transport
+  Progress progress;
+};
+
+/// Solves for log maps on one graph. Immutable: `solve` is const and may be called from many threads at once.
+class LogMapSolver {
+ public:
+  /// Chooses the strategy, and for a global one factors the graph's two operators.
+  /// @param graph  must outlive the solver
+  /// @throws as `HeatOperators`; InvalidArgument (order, accuracy, expected_maps)
+  explicit LogMapSolver(const TangentGraph& graph, const OperatorOptions& options = {},
+                        const SolverOptions& solver = {});
+  explicit LogMapSolver(TangentGraph&&, const OperatorOptions& = {}, const SolverOptions& = {}) = delete;
+  ~LogMapSolver();
+  LogMapSolver(LogMapSolver&&) noexcept;
+  LogMapSolver& operator=(LogMapSolver&&) noexcept;
+
+  /// The log map of one source (Alg. 1 or Alg. 2 with the homogeneous coordinate eliminated, docs/method.md).
+  ///
+  /// Where a global solve leaves vertices beyond its reach, strategy `automatic` marches on from what it has reached.
+  /// @throws InvalidArgument when the source does not fit the graph (index, dimension, a reflection on a `rotation2`
+  /// graph) or an option is out of range; NotPositiveDefinite (of a band), ResourceExhausted, Cancelled
+  LogMap solve(const Source& source, const MapOptions& options = {}) const;
+
+  /// Many sources. Global: as blocks of right-hand sides, the same numbers in the same order as one block at a time on
+  /// one thread. Marched: one after the other on each thread.
+  std::vector<LogMap> solve(std::span<const Source> sources, const MapOptions& options = {}) const;
+
+  const TangentGraph& graph() const noexcept;
+  /// What was chosen: `global` or `march`.
+  Strategy strategy() const noexcept;
+  /// The factored operators of the whole graph (at t_coef, whatever the order). Under strategy `march` the first call factors them.
+  /// @throws as `HeatOperators`; ResourceExhausted where a marching solver's would not fit into memory
+  const HeatOperators& operators() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<const Impl> impl_;
+};
+
+}  // namespace ahm

@@ -1,0 +1,70 @@
+/// \file
+/// Part of a graph as a graph of its own.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "ahm/graph/csr_graph.hpp"
+#include "ahm/util/small_math.hpp"
+
+namespace ahm {
+
+/// Cuts the given vertices out of a graph, with its own mean edge length, so that tau stays the same. Edges to the
+/// outside are dropped, which leaves the natural boundary: affine maps stay exact on flat geometry.
+/// @param local_of    global vertex -> its place in `vertices`, or negative
+/// @param on_outside  called as (place in `vertices`, star, edge) for each dropped edge of weight other than 0; returns
+///                    what it adds to the vertex's mass
+template <class LocalOf, class OnOutside>
+CsrGraph cut_out(const TangentGraph& graph, std::span<const Index> vertices, const LocalOf& local_of,
+                 const OnOutside& on_outside) {
+  const auto d = static_cast<std::size_t>(graph.dimension());
+  const std::size_t r = graph.transport_kind() == TransportKind::rotation2 ? 2 : d * d;
+  CsrGraphData patch;
+  patch.dimension = graph.dimension();
+  patch.kind = graph.transport_kind();
+  patch.length_unit = graph.length_unit();
+  patch.mean_edge_length = graph.mean_edge_length();
+  patch.row_begin.reserve(vertices.size() + 1);
+  patch.masses.reserve(vertices.size());
+  const std::size_t expected =
+      vertices.size() * static_cast<std::size_t>(graph.edge_count() / std::max<Index>(graph.size(), 1) + 1);
+  patch.neighbors.reserve(expected);
+  patch.weights.reserve(expected);
+  patch.logs.reserve(expected * d);
+  patch.transports.reserve(expected * r);
+  patch.row_begin.push_back(0);
+  for (std::size_t k = 0; k < vertices.size(); ++k) {
+    const Star star = graph.star(vertices[k]);
+    double mass = graph.mass(vertices[k]);
+    for (std::size_t e = 0; e < star.degree(); ++e) {
+      const Index j = local_of(star.neighbors[e]);
+      if (j < 0) {
+        if (star.weights[e] != 0) mass += on_outside(k, star, e);
+        continue;
+      }
+      patch.neighbors.push_back(j);
+      patch.weights.push_back(star.weights[e]);
+      patch.logs.insert(patch.logs.end(), star.logs.begin() + static_cast<std::ptrdiff_t>(e * d),
+                        star.logs.begin() + static_cast<std::ptrdiff_t>((e + 1) * d));
+      patch.transports.insert(patch.transports.end(), star.transports.begin() + static_cast<std::ptrdiff_t>(e * r),
+                              star.transports.begin() + static_cast<std::ptrdiff_t>((e + 1) * r));
+    }
+    patch.masses.push_back(mass);
+    patch.row_begin.push_back(static_cast<Offset>(patch.neighbors.size()));
+  }
+  return CsrGraph(std::move(patch));
+}
+
+/// How much of the decay exp(-x) of heat an edge from j to k brings: its length over sqrt(tau), or what the one edge lets
+/// through at the least, where it is far longer than sqrt(tau). An upper bound, for ordering vertices.
+/// @param diagonal  called for the diagonal entry m + tau sum w of A at k, if it is needed
+template <class Diagonal>
+double heat_distance(const Star& star, std::size_t edge, double tau, const Diagonal& diagonal) {
+  const double by_length = length(star.log(edge)) / std::sqrt(tau);
+  if (by_length <= 3 || !(star.weights[edge] > 0)) return by_length;
+  return std::min(by_length, std::log(diagonal() / (tau * star.weights[edge])));
+}
+
+}  // namespace ahm

@@ -1,0 +1,78 @@
+#include "maps/inflow.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "ahm/error.hpp"
+#include "maps/frame_field.hpp"
+
+namespace ahm {
+
+void check_source(const Source& source, const TangentGraph& graph) {
+  const int d = graph.dimension();
+  if (source.dimension() != 0 && source.dimension() != d)
+    throw InvalidArgument("source has dimension " + std::to_string(source.dimension()) + ", the graph has " +
+                          std::to_string(d));
+  for (Index vertex : source.vertices())
+    if (vertex < 0 || vertex >= graph.size())
+      throw InvalidArgument("source vertex " + std::to_string(vertex) + " is outside [0, " +
+                            std::to_string(graph.size()) + ")");
+  const auto weights = source.weights();
+  if (std::none_of(weights.begin(), weights.end(), [](double b) { return b > 0; }))
+    throw InvalidArgument("source has no vertex of positive weight");
+  if (graph.transport_kind() != TransportKind::rotation2) return;
+  for (std::size_t k = 0; k * 4 < source.axes().size(); ++k)
+    if (const auto U = source.axes().subspan(k * 4, 4); U[0] * U[3] - U[1] * U[2] < 0)
+      throw InvalidArgument("source axes at vertex " + std::to_string(source.vertices()[k]) +
+                            " are a reflection; this graph's frames are all oriented alike, so give a rotation");
+}
+
+double solution_unit(const TangentGraph& graph) {
+  return std::ldexp(graph.length_unit(), std::ilogb(graph.mean_edge_length()));
+}
+
+double source_heat(const TangentGraph& graph, const HeatOperators& operators, std::span<const Index> vertices) {
+  double mass = 1;
+  for (Index vertex : vertices) mass = std::min(mass, operators.scaling() * graph.mass(vertex));
+  return std::ldexp(heat_scale, std::max(-900, std::ilogb(mass)));
+}
+
+Inflow inflow_of(const Source& source, const TangentGraph& graph, const HeatOperators& operators) {
+  const auto d = static_cast<std::size_t>(graph.dimension());
+  const bool is_complex = graph.transport_kind() == TransportKind::rotation2;
+  const double largest = *std::max_element(source.weights().begin(), source.weights().end());
+  const double scale = source_heat(graph, operators, source.vertices()), unit = solution_unit(graph);
+  std::vector<double> identity(d * d, 0.0), zero(d, 0.0);
+  for (std::size_t a = 0; a < d; ++a) identity[a * (d + 1)] = 1.0;
+  Inflow in;
+  for (std::size_t k = 0; k < source.vertices().size(); ++k) {
+    if (!(source.weights()[k] > 0)) continue;
+    const double b = source.weights()[k] / largest * scale;
+    const auto z = source.offsets().empty() ? std::span<const double>(zero) : source.offsets().subspan(k * d, d);
+    const auto U = source.axes().empty() ? std::span<const double>(identity) : source.axes().subspan(k * d * d, d * d);
+    in.vertices.push_back(source.vertices()[k]);
+    in.heat.push_back(b);
+    if (is_complex)
+      in.frames.insert(in.frames.end(), {b * U[0], b * U[2]});
+    else
+      for (double entry : U) in.frames.push_back(b * entry);
+    for (std::size_t a = 0; a < d; ++a) in.coordinates.push_back(b * (z[a] / unit));
+    for (std::size_t c = 0; c < d; ++c) {
+      double sum = 0;
+      for (std::size_t a = 0; a < d; ++a) sum += b * U[c * d + a] * (z[a] / unit);
+      in.vectors.push_back(sum);
+    }
+  }
+  in.translations.assign(in.vertices.size() * d, 0.0);
+  return in;
+}
+
+std::vector<Inflow> inflow_of(std::span<const Source> sources, const TangentGraph& graph,
+                              const HeatOperators& operators) {
+  std::vector<Inflow> result;
+  for (const Source& source : sources) result.push_back(inflow_of(source, graph, operators));
+  return result;
+}
+
+}  // namespace ahm

@@ -1,0 +1,42 @@
+/// \file
+/// What enters the systems of the affine heat method, vertex by vertex: a source's samples, or the accepted values behind
+/// the front of a march. Both are right-hand sides of the same solves.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "ahm/graph/tangent_graph.hpp"
+#include "ahm/heat/heat_operators.hpp"
+#include "ahm/maps/source.hpp"
+
+namespace ahm {
+
+/// Right-hand sides at `vertices`; parallel arrays, d the dimension.
+struct Inflow {
+  std::vector<Index> vertices;
+  std::vector<double> heat;    ///< b: enters A lambda
+  std::vector<double> frames;  ///< b U: enters B U~; 2 (complex) or d x d numbers (row major) in the vertex's frame
+  std::vector<double> coordinates;   ///< b z: enters A x; d numbers in the source's frame
+  std::vector<double> vectors;       ///< b U z: enters B Y; d numbers in the vertex's frame
+  std::vector<double> translations;  ///< enters rho, hence both variants; d numbers in the vertex's frame
+};
+
+/// @throws InvalidArgument when the source does not fit the graph
+void check_source(const Source& source, const TangentGraph& graph);
+
+/// The outside length of 1 in x and Y: a power of two near the mean edge length, times the graph's own unit. It keeps x
+/// and Y in the range of lambda, which is used up to both ends.
+double solution_unit(const TangentGraph& graph);
+
+/// The right-hand side that stands for a weight of 1 at these vertices: `heat_scale`, less where a tiny mass would make
+/// the solution overflow.
+double source_heat(const TangentGraph& graph, const HeatOperators& operators, std::span<const Index> vertices);
+
+/// The samples of positive weight of a checked source. The largest b becomes `source_heat`; the factor cancels in every
+/// quotient by lambda.
+Inflow inflow_of(const Source& source, const TangentGraph& graph, const HeatOperators& operators);
+std::vector<Inflow> inflow_of(std::span<const Source> sources, const TangentGraph& graph,
+                              const HeatOperators& operators);
+
+}  // namespace ahm

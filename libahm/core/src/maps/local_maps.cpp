@@ -1,0 +1,329 @@
+#include "ahm/maps/local_maps.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <mutex>
+#include <new>
+#include <numeric>
+#include <queue>
+#include <string>
+
+#include "ahm/error.hpp"
+#include "ahm/graph/validate.hpp"
+#include "ahm/util/memory.hpp"
+#include "ahm/util/parallel.hpp"
+#include "ahm/util/small_math.hpp"
+#include "ahm/util/text.hpp"
+#include "graph/patch.hpp"
+#include "heat/blas_control.hpp"
+#include "heat/check_options.hpp"
+#include "maps/affine_heat.hpp"
+
+namespace ahm {
+namespace {
+
+/// Sources that share a patch. Measured: more make the patch larger, fewer factor more often.
+constexpr std::size_t group_size = 48;
+/// Path lengths along edges exceed distances by up to this factor on good graphs; where it is not enough, a patch grows.
+constexpr double usual_detour = 1.2;
+/// No sensible graph has longer ones. Beyond, it is the map that is short: folded at a cut locus.
+constexpr double largest_detour = 2;
+
+/// n values that are zero until written, of which only those written take memory.
+template <class T>
+class SparseArray {
+ public:
+  explicit SparseArray(std::size_t n) : values_(static_cast<T*>(std::calloc(std::max<std::size_t>(n, 1), sizeof(T)))) {
+    if (!values_) throw std::bad_alloc();
+  }
+  T& operator[](Index i) { return values_.get()[i]; }
+
+ private:
+  struct Free {
+    void operator()(T* p) const { std::free(p); }
+  };
+  std::unique_ptr<T[], Free> values_;
+};
+
+/// Dijkstra's algorithm along edges from many starts, to a limit; leaves no trace behind.
+class Ball {
+ public:
+  explicit Ball(const TangentGraph& graph) : graph_(graph), known_(static_cast<std::size_t>(graph.size())) {}
+
+  /// Calls visit(vertex) in order of distance for all vertices within `limit` (graph units) of the starts, until it
+  /// returns false.
+  template <class Visit>
+  void grow(std::span<const Index> starts, double limit, const Visit& visit) {
+    for (Index start : starts) offer(start, 0);
+    bool more = true;
+    while (!queue_.empty()) {
+      const auto [key, vertex] = queue_.top();
+      queue_.pop();
+      if (!more || key != known_[vertex]) continue;
+      if (!(more = visit(vertex))) continue;
+      const Star star = graph_.star(vertex);
+      for (std::size_t e = 0; e < star.degree(); ++e)
+        if (const double next = key - 1 + length(star.log(e)); star.weights[e] != 0 && next <= limit)
+          offer(star.neighbors[e], next);
+    }
+    for (Index vertex : touched_) known_[vertex] = 0;
+    touched_.clear();
+  }
+
+ private:
+  void offer(Index vertex, double distance) {
+    double& known = known_[vertex];
+    const double offered = 1 + distance;
+    if (known == 0) touched_.push_back(vertex);
+    if (known != 0 && known <= offered) return;
+    queue_.push({known = offered, vertex});
+  }
+
+  using Entry = std::pair<double, Index>;
+  const TangentGraph& graph_;
+  SparseArray<double> known_;  ///< 1 + distance, 0: none
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue_;
+  std::vector<Index> touched_;
+};
+
+void check(const TangentGraph& graph, std::span<const Source> sources, const LocalMapOptions& options) {
+  if (!(options.radius > 0) || !std::isfinite(options.radius))
+    throw InvalidArgument("radius is " + detail::number(options.radius) + "; it must be finite and > 0");
+  if (options.nearest < 0)
+    throw InvalidArgument("nearest is " + std::to_string(options.nearest) + "; it must be >= 0 (0: all)");
+  if (!(options.margin >= 0) || !std::isfinite(options.margin))
+    throw InvalidArgument("margin is " + detail::number(options.margin) + "; it must be finite and >= 0");
+  OperatorOptions operators;
+  operators.t_coef = options.t_coef;
+  operators.check_graph = options.check_graph;
+  check_operator_options(graph, operators);
+  for (const Source& source : sources) check_source(source, graph);
+}
+
+/// Groups of sources near each other: the first that has no group yet, and those around it.
+std::vector<std::vector<Index>> group(const TangentGraph& graph, std::span<const Source> sources, double reach) {
+  const auto n = static_cast<std::size_t>(graph.size());
+  SparseArray<Index> first(n);  // 1 + the first source at a vertex that has no group yet
+  std::vector<Index> after(sources.size(), -1);
+  for (auto s = static_cast<Index>(sources.size()); s-- > 0;) {
+    Index& head = first[sources[s].vertices().front()];
+    after[s] = head - 1;
+    head = s + 1;
+  }
+  std::vector<std::uint8_t> grouped(sources.size(), 0);
+  std::vector<std::vector<Index>> groups;
+  Ball ball(graph);
+  for (std::size_t seed = 0; seed < sources.size(); ++seed) {
+    if (grouped[seed]) continue;
+    std::vector<Index> members;
+    ball.grow(sources[seed].vertices().first(1), reach, [&](Index vertex) {
+      for (Index s = first[vertex] - 1; s >= 0; s = first[vertex] - 1) {
+        if (members.size() == group_size) return false;
+        members.push_back(s);
+        grouped[s] = 1;
+        first[vertex] = after[s] + 1;
+      }
+      return members.size() < group_size;
+    });
+    groups.push_back(std::move(members));
+  }
+  return groups;
+}
+
+/// One source's part of the result.
+struct Entries {
+  std::vector<Index> vertices;
+  std::vector<double> logs, distances, transports;
+};
+
+class Worker {
+ public:
+  Worker(const TangentGraph& graph, std::span<const Source> sources, const LocalMapOptions& options)
+      : graph_(graph),
+        sources_(sources),
+        options_(options),
+        ball_(graph),
+        place_(static_cast<std::size_t>(graph.size())),
+        d_(static_cast<std::size_t>(graph.dimension())) {
+    operators_.t_coef = options.t_coef;
+    operators_.check_graph = false;
+    operators_.threads = 1;
+  }
+
+  /// Solves for the sources of one group on one patch; result[s] for source s.
+  void solve(std::span<const Index> members, std::vector<Entries>& result) {
+    const double unit = graph_.length_unit(), sqrt_tau = std::sqrt(options_.t_coef) * graph_.mean_edge_length();
+    const double reach = options_.radius / unit + options_.margin * sqrt_tau;  // graph units
+    for (double detour = usual_detour; detour < largest_detour; detour *= 1.3)
+      if (solve(members, detour * reach, reach * unit, result)) return;
+    solve(members, largest_detour * reach, 0, result);
+  }
+
+ private:
+  /// Returns false when the patch, all vertices within `limit` along edges, does not hold all within `wanted` of a
+  /// source.
+  bool solve(std::span<const Index> members, double limit, double wanted, std::vector<Entries>& result) {
+    std::vector<Index> starts, vertices, edge;
+    for (Index s : members)
+      for (Index vertex : sources_[s].vertices()) starts.push_back(vertex);
+    ball_.grow(starts, limit, [&](Index vertex) {
+      vertices.push_back(vertex);
+      return true;
+    });
+    // Sorted, so that the patch does not depend on the way it was found, and its matrix is nearly the graph's own.
+    std::sort(vertices.begin(), vertices.end());
+    for (std::size_t k = 0; k < vertices.size(); ++k) place_[vertices[k]] = static_cast<Index>(k) + 1;
+    const CsrGraph patch = cut_out(
+        graph_, vertices, [&](Index j) { return place_[j] - 1; },
+        [&](std::size_t k, const Star&, std::size_t) {
+          if (edge.empty() || edge.back() != static_cast<Index>(k)) edge.push_back(static_cast<Index>(k));
+          return 0.0;
+        });
+    const HeatOperators operators(patch, operators_);
+    std::vector<Inflow> inflows;
+    for (Index s : members) {
+      inflows.push_back(inflow_of(sources_[s], graph_, operators));
+      for (Index& vertex : inflows.back().vertices) vertex = place_[vertex] - 1;
+    }
+    for (Index vertex : vertices) place_[vertex] = 0;
+    AffineHeat heat(patch, operators, std::move(inflows));
+    heat.diffuse();
+    const std::vector<double> solution = heat.solve(options_.variant);
+    const std::size_t size = solution.size() / members.size();
+    for (std::size_t m = 0; m < members.size(); ++m)
+      if (!collect(heat, m, std::span(solution).subspan(m * size, size), vertices, edge, wanted, result[members[m]]))
+        return false;
+    return true;
+  }
+
+  /// The vertices within the radius, nearest first.
+  bool collect(const AffineHeat& heat, std::size_t m, std::span<const double> solution, std::span<const Index> vertices,
+               std::span<const Index> edge, double wanted, Entries& entries) {
+    const std::size_t n = vertices.size();
+    phi_.resize(n * d_);
+    distance_.assign(n, std::numeric_limits<double>::infinity());
+    order_.clear();
+    for (std::size_t k = 0; k < n; ++k) {
+      const auto vertex = static_cast<Index>(k);
+      double* phi = phi_.data() + k * d_;
+      heat.coordinates_at(options_.variant, m, solution, vertex, phi);
+      if (!heat.reached(m, vertex) || !all_finite(std::span(phi, d_))) continue;
+      distance_[k] = length(std::span<const double>(phi, d_));
+      if (distance_[k] <= options_.radius) order_.push_back(vertex);
+    }
+    for (Index k : edge)
+      if (distance_[k] < wanted * (1 - 1e-9)) return false;
+    std::sort(order_.begin(), order_.end(),
+              [&](Index a, Index b) { return distance_[a] != distance_[b] ? distance_[a] < distance_[b] : a < b; });
+    if (options_.nearest > 0 && order_.size() > static_cast<std::size_t>(options_.nearest))
+      order_.resize(static_cast<std::size_t>(options_.nearest));
+
+    entries = {};
+    const std::size_t size = order_.size();
+    entries.vertices.reserve(size);
+    entries.distances.reserve(size);
+    entries.logs.reserve(size * d_);
+    entries.transports.reserve(size * (graph_.transport_kind() == TransportKind::rotation2 ? 2 : d_ * d_));
+    const FrameField frames = heat.frames(m);
+    std::vector<double> axes(d_ * d_);
+    for (Index k : order_) {
+      entries.vertices.push_back(vertices[k]);
+      entries.distances.push_back(distance_[k]);
+      entries.logs.insert(entries.logs.end(), phi_.begin() + static_cast<std::ptrdiff_t>(k * d_),
+                          phi_.begin() + static_cast<std::ptrdiff_t>((k + 1) * d_));
+      frames.axes(k, axes.data());
+      if (graph_.transport_kind() == TransportKind::rotation2)
+        entries.transports.insert(entries.transports.end(), {axes[0], axes[2]});
+      else
+        entries.transports.insert(entries.transports.end(), axes.begin(), axes.end());
+    }
+    return true;
+  }
+
+  const TangentGraph& graph_;
+  std::span<const Source> sources_;
+  const LocalMapOptions& options_;
+  OperatorOptions operators_;
+  Ball ball_;
+  SparseArray<Index> place_;  ///< 1 + place in the patch at hand, 0: outside
+  std::size_t d_;
+  std::vector<double> phi_, distance_;
+  std::vector<Index> order_;
+};
+
+LocalMaps joined(const TangentGraph& graph, std::vector<Entries>& entries) {
+  LocalMaps maps;
+  maps.dimension = graph.dimension();
+  maps.kind = graph.transport_kind();
+  maps.indptr.push_back(0);
+  for (const Entries& e : entries) maps.indptr.push_back(maps.indptr.back() + static_cast<Offset>(e.vertices.size()));
+  const auto total = static_cast<std::size_t>(maps.indptr.back());
+  maps.indices.reserve(total);
+  maps.logs.reserve(total * static_cast<std::size_t>(graph.dimension()));
+  maps.distances.reserve(total);
+  maps.transports.reserve(total * maps.transport_width());
+  maps.weights.reserve(total);
+  for (Entries& e : entries) {
+    maps.indices.insert(maps.indices.end(), e.vertices.begin(), e.vertices.end());
+    maps.logs.insert(maps.logs.end(), e.logs.begin(), e.logs.end());
+    maps.distances.insert(maps.distances.end(), e.distances.begin(), e.distances.end());
+    maps.transports.insert(maps.transports.end(), e.transports.begin(), e.transports.end());
+    e = {};  // so that the peak is little more than the result
+  }
+  const double unit = std::pow(graph.length_unit(), graph.dimension());
+  for (Index vertex : maps.indices) maps.weights.push_back(graph.mass(vertex) * unit);
+  return maps;
+}
+
+}  // namespace
+
+LocalMaps local_maps(const TangentGraph& graph, std::span<const Source> sources, const LocalMapOptions& options) {
+  return detail::with_memory_check("solving for local maps", [&] {
+    check(graph, sources, options);
+    options.progress.step("group", 0.0);
+    // Sources whose patches overlap anyway.
+    const double reach = options.radius / graph.length_unit() +
+                         (options.margin + 4) * std::sqrt(options.t_coef) * graph.mean_edge_length();
+    const auto groups = group(graph, sources, reach);
+    std::vector<Entries> entries(sources.size());
+    const OneBlasThread one_thread;
+    std::mutex mutex;
+    std::vector<std::unique_ptr<Worker>> idle;
+    Offset done = 0;
+    detail::parallel_chunks(static_cast<Offset>(groups.size()), 8, options.threads, [&](Offset begin, Offset end) {
+      std::unique_ptr<Worker> worker;
+      {
+        std::scoped_lock lock(mutex);
+        if (!idle.empty()) worker = std::move(idle.back()), idle.pop_back();
+      }
+      if (!worker) worker = std::make_unique<Worker>(graph, sources, options);
+      without_openmp_regions([&] {
+        for (Offset g = begin; g < end; ++g) worker->solve(groups[g], entries);
+      });
+      std::scoped_lock lock(mutex);
+      idle.push_back(std::move(worker));
+      done += end - begin;
+      options.progress.step("solve", static_cast<double>(done) / static_cast<double>(groups.size()));
+    });
+    return joined(graph, entries);
+  });
+}
+
+LocalMaps local_maps(const TangentGraph& graph, std::span<const Index> vertices, const LocalMapOptions& options) {
+  std::vector<Source> sources;
+  sources.reserve(vertices.size());
+  for (Index vertex : vertices) sources.push_back(Source::at_vertex(vertex));
+  return local_maps(graph, sources, options);
+}
+
+LocalMaps local_maps(const TangentGraph& graph, const LocalMapOptions& options) {
+  std::vector<Index> vertices(static_cast<std::size_t>(graph.size()));
+  std::iota(vertices.begin(), vertices.end(), 0);
+  return local_maps(graph, vertices, options);
+}
+
+}  // namespace ahm

@@ -1,0 +1,283 @@
+#include "ahm/maps/log_map_solver.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+#include <new>
+#include <optional>
+#include <string>
+
+#include "ahm/error.hpp"
+#include "ahm/graph/components.hpp"
+#include "ahm/graph/validate.hpp"
+#include "ahm/maps/cost.hpp"
+#include "ahm/util/memory.hpp"
+#include "ahm/util/parallel.hpp"
+#include "ahm/util/small_math.hpp"
+#include "ahm/util/text.hpp"
+#include "heat/check_options.hpp"
+#include "maps/affine_heat.hpp"
+#include "maps/extrapolate.hpp"
+#include "maps/march.hpp"
+
+namespace ahm {
+namespace {
+
+/// Sources per block of right-hand sides: as many as 2^24 vertices' worth of memory allows, at most 16. It must not
+/// depend on the number of threads, since the block size may change the last bits of a solve.
+std::size_t sources_per_block(Index n) {
+  return static_cast<std::size_t>(std::clamp<Offset>((Offset{1} << 24) / std::max<Index>(n, 1), 1, 16));
+}
+
+void check_options(const MapOptions& options) {
+  if (!(options.radius > 0))
+    throw InvalidArgument("radius is " + detail::number(options.radius) +
+                          "; it must be > 0 (infinity: the whole graph)");
+}
+
+void check_options(const SolverOptions& options) {
+  if (!(options.accuracy >= 1e-14 && options.accuracy <= 0.1))
+    throw InvalidArgument("accuracy is " + detail::number(options.accuracy) + "; it must be in [1e-14, 0.1]");
+  if (options.order != 1 && options.order != 2)
+    throw InvalidArgument("order is " + std::to_string(options.order) + "; it must be 1 or 2");
+  if (options.expected_maps < 0)
+    throw InvalidArgument("expected_maps is " + std::to_string(options.expected_maps) + "; it must be >= 0 (0: many)");
+}
+
+/// Status of a vertex of the source's component, from its coordinates.
+Status status_of(std::span<const double> phi, bool reached, double radius) {
+  if (!reached || !all_finite(phi)) return Status::unreached;
+  return length(phi) > radius ? Status::radius : Status::ok;
+}
+
+/// One diffusion time.
+struct Time {
+  OperatorOptions options;
+  std::once_flag factored;
+  std::optional<HeatOperators> operators;
+};
+
+}  // namespace
+
+struct LogMapSolver::Impl {
+  const TangentGraph& graph;
+  SolverOptions options;
+  double t_coef;
+  Strategy strategy;
+  std::vector<double> factors;  ///< of t_coef, ascending from 1
+  mutable std::vector<Time> times;
+  mutable std::once_flag numbered;
+  mutable Components parts;
+
+  Impl(const TangentGraph& graph, const OperatorOptions& operator_options, const SolverOptions& options);
+
+  const HeatOperators& operators(std::size_t time) const {
+    Time& t = times[time];
+    std::call_once(t.factored, [&] {
+      if (strategy == Strategy::march) check_memory();
+      t.operators.emplace(graph, t.options);
+    });
+    return *t.operators;
+  }
+  void check_memory() const;
+  std::span<const Index> components() const {
+    if (strategy == Strategy::global) return operators(0).components();
+    std::call_once(numbered, [&] { parts = connected_components(graph); });
+    return parts.of_vertex;
+  }
+
+  March front(std::size_t time, const MapOptions& map, unsigned threads) const {
+    return March(graph, times[time].options, map.variant, options.accuracy, map.radius, threads, map.progress);
+  }
+  LogMap map_of(March&& front, const Source& source, const MapOptions& map) const;
+  LogMap map_of(const AffineHeat& heat, std::size_t time, std::size_t s, const Source& source,
+                std::span<const double> solution, const MapOptions& map, unsigned threads) const;
+  std::vector<LogMap> solve_block(std::size_t time, std::span<const Source> sources, const MapOptions& map,
+                                  unsigned threads) const;
+  std::vector<LogMap> solve_block(std::span<const Source> sources, const MapOptions& map, unsigned threads) const;
+};
+
+LogMapSolver::Impl::Impl(const TangentGraph& graph, const OperatorOptions& operator_options,
+                         const SolverOptions& options)
+    : graph(graph),
+      options(options),
+      t_coef(operator_options.t_coef),
+      strategy(choose_strategy({graph.size(), graph.dimension(), graph.transport_kind()}, options)),
+      factors(diffusion_times(options.order, graph)),
+      times(factors.size()) {
+  if (strategy == Strategy::march) check_operator_options(graph, operator_options);
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    times[k].options = operator_options;
+    times[k].options.t_coef *= factors[k];
+    times[k].options.check_graph &= k == 0 && strategy == Strategy::global;  // once is enough
+    if (strategy == Strategy::global) operators(k);
+    times[k].options.progress = {};
+  }
+}
+
+/// The result of a march.
+LogMap LogMapSolver::Impl::map_of(March&& front, const Source& source, const MapOptions& map) const {
+  const auto n = static_cast<std::size_t>(graph.size()), d = static_cast<std::size_t>(graph.dimension());
+  std::vector<double> coordinates = std::move(front.coordinates());
+  std::vector<Status> status(n, Status::ok);
+  std::vector<char> with_source;  // per component; only needed where the march did not come
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::span phi = std::span(coordinates).subspan(i * d, d);
+    if (front.accepted(static_cast<Index>(i))) {
+      status[i] = status_of(phi, true, map.radius);
+    } else {
+      const auto component = components();
+      if (with_source.empty()) {
+        with_source.assign(n, 0);
+        for (Index k : source.vertices()) with_source[component[k]] = 1;
+      }
+      status[i] = !with_source[component[i]] ? Status::component
+                  : std::isinf(map.radius)   ? Status::unreached
+                                             : Status::radius;
+    }
+    if (status[i] != Status::ok) std::fill(phi.begin(), phi.end(), NAN);
+  }
+  MapExtras extras{front.statistics(), {}, {}};
+  if (map.frames) {
+    extras.frames.resize(n * d * d);
+    for (std::size_t i = 0; i < n; ++i) front.axes(static_cast<Index>(i), extras.frames.data() + i * d * d);
+  }
+  return LogMap(static_cast<int>(d), map.variant, Strategy::march, source, std::move(coordinates), std::move(status),
+                std::move(extras));
+}
+
+/// Coordinates and status of one source from its x (adaptive) or Y (localized).
+LogMap LogMapSolver::Impl::map_of(const AffineHeat& heat, std::size_t time, std::size_t s, const Source& source,
+                                  std::span<const double> solution, const MapOptions& map, unsigned threads) const {
+  const auto n = static_cast<std::size_t>(graph.size()), d = static_cast<std::size_t>(graph.dimension());
+  std::vector<double> coordinates(n * d);
+  std::vector<Status> status(n, Status::ok);
+  const std::vector<bool> connected = heat.connected(s);
+  detail::for_each_index(n, threads, [&](std::size_t i) {
+    const auto vertex = static_cast<Index>(i);
+    const std::span phi = std::span(coordinates).subspan(i * d, d);
+    heat.coordinates_at(map.variant, s, solution, vertex, phi.data());
+    status[i] = connected[i] ? status_of(phi, heat.reached(s, vertex), map.radius) : Status::component;
+    if (status[i] != Status::ok) std::fill(phi.begin(), phi.end(), NAN);
+  });
+  if (options.strategy == Strategy::automatic && std::ranges::count(status, Status::unreached) > 0) {
+    March on = front(time, map, threads);
+    on.run_on(heat, s, solution);
+    return map_of(std::move(on), source, map);
+  }
+  MapExtras extras;
+  if (map.frames) {
+    extras.frames.resize(n * d * d);
+    const FrameField U = heat.frames(s);
+    detail::for_each_index(n, threads,
+                           [&](std::size_t i) { U.axes(static_cast<Index>(i), extras.frames.data() + i * d * d); });
+  }
+  return LogMap(static_cast<int>(d), map.variant, Strategy::global, source, std::move(coordinates), std::move(status),
+                std::move(extras));
+}
+
+/// Solves one block of sources at one diffusion time.
+std::vector<LogMap> LogMapSolver::Impl::solve_block(std::size_t time, std::span<const Source> sources,
+                                                    const MapOptions& map, unsigned threads) const {
+  std::vector<LogMap> maps;
+  if (strategy == Strategy::march) {
+    for (const Source& source : sources) {
+      March on = front(time, map, threads);
+      on.run(source);
+      maps.push_back(map_of(std::move(on), source, map));
+    }
+    return maps;
+  }
+  AffineHeat heat(graph, operators(time), inflow_of(sources, graph, operators(time)), threads);
+  heat.diffuse();
+  if (map.progress.stop.stop_requested()) throw Cancelled("cancelled during solve");
+  const std::vector<double> solution = heat.solve(map.variant);
+  const std::size_t size = solution.size() / sources.size();
+  for (std::size_t s = 0; s < sources.size(); ++s)
+    maps.push_back(map_of(heat, time, s, sources[s], std::span(solution).subspan(s * size, size), map, threads));
+  return maps;
+}
+
+/// A marching solver was asked for the factors that it does without: better refused than swapped for.
+void LogMapSolver::Impl::check_memory() const {
+  const double wanted =
+      estimate_cost({graph.size(), graph.dimension(), graph.transport_kind()}, Strategy::global).bytes;
+  const double memory = options.memory > 0 ? static_cast<double>(options.memory) : machine_memory();
+  if (memory > 0 && wanted > memory)
+    throw ResourceExhausted("this needs the factors of all " + std::to_string(graph.size()) + " vertices, about " +
+                            detail::number(std::round(wanted / 1e7) / 100) + " GB of " +
+                            detail::number(std::round(memory / 1e7) / 100) +
+                            " GB; thin the surface or cut out the part that is wanted");
+}
+
+/// The same at all times, extrapolated.
+std::vector<LogMap> LogMapSolver::Impl::solve_block(std::span<const Source> sources, const MapOptions& map,
+                                                    unsigned threads) const {
+  if (factors.size() == 1) return solve_block(0, sources, map, threads);
+  MapOptions wider = map;  // the maps of different times differ a little at the radius
+  wider.radius += 8 * graph.mean_edge_length() * graph.length_unit();
+  std::vector<std::vector<LogMap>> at_times;
+  for (std::size_t time = 0; time < factors.size(); ++time) {
+    wider.frames = map.frames && time + 2 == factors.size();
+    at_times.push_back(solve_block(time, sources, wider, threads));
+  }
+  std::vector<LogMap> result;
+  for (std::size_t s = 0; s < sources.size(); ++s) {
+    std::vector<const LogMap*> maps;
+    for (const auto& at_time : at_times) maps.push_back(&at_time[s]);
+    result.push_back(extrapolate(graph, t_coef, factors, maps, map.radius));
+  }
+  return result;
+}
+
+LogMapSolver::LogMapSolver(const TangentGraph& graph, const OperatorOptions& options, const SolverOptions& solver) {
+  check_options(solver);
+  impl_ = std::make_unique<const Impl>(graph, options, solver);
+}
+
+LogMapSolver::~LogMapSolver() = default;
+LogMapSolver::LogMapSolver(LogMapSolver&&) noexcept = default;
+LogMapSolver& LogMapSolver::operator=(LogMapSolver&&) noexcept = default;
+
+const TangentGraph& LogMapSolver::graph() const noexcept { return impl_->graph; }
+Strategy LogMapSolver::strategy() const noexcept { return impl_->strategy; }
+const HeatOperators& LogMapSolver::operators() const { return impl_->operators(0); }
+
+LogMap LogMapSolver::solve(const Source& source, const MapOptions& options) const {
+  return std::move(solve(std::span(&source, 1), options).front());
+}
+
+std::vector<LogMap> LogMapSolver::solve(std::span<const Source> sources, const MapOptions& options) const {
+  check_options(options);
+  for (const Source& source : sources) check_source(source, impl_->graph);
+  const std::size_t block = impl_->strategy == Strategy::global ? sources_per_block(impl_->graph.size()) : 1;
+  const auto count = static_cast<Offset>(sources.size());
+  // A single block cannot be shared out: its own steps use the threads instead, where that pays.
+  const bool single = sources.size() <= block && impl_->graph.size() > 5000;
+  const unsigned threads_per_block = single ? detail::thread_count(options.threads) : 1;
+
+  return detail::with_memory_check("solving for log maps", [&] {
+    std::vector<std::optional<LogMap>> maps(sources.size());
+    std::mutex report_mutex;
+    Offset done = 0;
+    options.progress.step("solve", 0.0);
+    MapOptions quiet = options;
+    if (count > 1) quiet.progress.report = nullptr;  // the blocks report
+    detail::parallel_chunks(count, static_cast<Offset>(block), options.threads, [&](Offset begin, Offset end) {
+      const auto first = static_cast<std::size_t>(begin);
+      auto solved =
+          impl_->solve_block(sources.subspan(first, static_cast<std::size_t>(end - begin)), quiet, threads_per_block);
+      for (std::size_t s = 0; s < solved.size(); ++s) maps[first + s] = std::move(solved[s]);
+      std::scoped_lock lock(report_mutex);
+      done += end - begin;
+      options.progress.step("solve", static_cast<double>(done) / static_cast<double>(count));
+    });
+
+    std::vector<LogMap> result;
+    result.reserve(maps.size());
+    for (auto& map : maps) result.push_back(std::move(*map));
+    return result;
+  });
+}
+
+}  // namespace ahm

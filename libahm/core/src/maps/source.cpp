@@ -1,0 +1,66 @@
+#include "ahm/maps/source.hpp"
+
+#include <cmath>
+#include <string>
+
+#include "ahm/error.hpp"
+#include "ahm/util/small_math.hpp"
+#include "ahm/util/text.hpp"
+
+namespace ahm {
+namespace {
+
+bool is_orthogonal(std::span<const double> axes, std::size_t d) {
+  for (std::size_t a = 0; a < d; ++a)
+    for (std::size_t b = 0; b < d; ++b) {
+      double sum = a == b ? -1.0 : 0.0;
+      for (std::size_t c = 0; c < d; ++c) sum += axes[c * d + a] * axes[c * d + b];
+      if (!(std::abs(sum) <= 1e-8)) return false;
+    }
+  return true;
+}
+
+}  // namespace
+
+Source::Source(int dimension) : dimension_(dimension) {
+  if (dimension < 1) throw InvalidArgument("Source: dimension " + std::to_string(dimension) + " must be at least 1");
+}
+
+Source Source::at_vertex(Index vertex) {
+  Source source(1);
+  source.dimension_ = 0;
+  source.vertices_ = {vertex};
+  source.weights_ = {1.0};
+  return source;
+}
+
+Source Source::at_vertex(Index vertex, std::span<const double> direction) {
+  const double length = direction.size() == 2 ? std::hypot(direction[0], direction[1]) : 0.0;
+  if (!(length > 0) || !std::isfinite(length))
+    throw InvalidArgument("Source::at_vertex: 'direction' must be 2 finite numbers, not both zero");
+  const double c = direction[0] / length, s = direction[1] / length;
+  const double axes[] = {c, -s, s, c}, offset[] = {0.0, 0.0};
+  Source source(2);
+  source.add(vertex, 1.0, offset, axes);
+  return source;
+}
+
+Source& Source::add(Index vertex, double weight, std::span<const double> offset, std::span<const double> axes) {
+  const auto d = static_cast<std::size_t>(dimension_);
+  const std::string where = "Source::add, vertex " + std::to_string(vertex) + ": ";
+  if (d == 0) throw InvalidArgument(where + "a source made by at_vertex(vertex) takes no further samples");
+  if (!(weight >= 0) || !std::isfinite(weight))
+    throw InvalidArgument(where + "weight " + detail::number(weight) + " must be finite and >= 0");
+  if (offset.size() != d || !all_finite(offset))
+    throw InvalidArgument(where + "'offset' must be " + std::to_string(d) + " finite numbers");
+  if (axes.size() != d * d || !all_finite(axes) || !is_orthogonal(axes, d))
+    throw InvalidArgument(where + "'axes' must be an orthogonal " + std::to_string(d) + " x " + std::to_string(d) +
+                          " matrix");
+  vertices_.push_back(vertex);
+  weights_.push_back(weight);
+  offsets_.insert(offsets_.end(), offset.begin(), offset.end());
+  axes_.insert(axes_.end(), axes.begin(), axes.end());
+  return *this;
+}
+
+}  // namespace ahm

@@ -1,0 +1,75 @@
+/// \file
+/// Polygons glued along their common edges, and oriented alike. Not part of the public interface.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "ahm/surface/mesh_topology.hpp"
+#include "ahm/types.hpp"
+
+namespace ahm::detail {
+
+/// A side of a face: number h of the corners of all faces, from the vertex there to that of the face's next corner.
+using Half = std::int32_t;
+
+/// Sides of the faces as given that lie on each other.
+struct Gluing {
+  std::vector<Half> partner;           ///< per side of the faces as given, -1: none
+  std::vector<std::uint8_t> reversed;  ///< per face: 1 where it must be turned over
+  Index reoriented = 0;
+  bool orientable = true;
+  Index non_manifold_edges = 0;
+};
+
+/// "(3, 4), (5, 6)": the first ten items, and how many more there are.
+class ItemList {
+ public:
+  void add(const std::string& item) {
+    if (count_++ >= 10) return;
+    if (count_ > 1) text_.append(", ");
+    text_.append(item);
+  }
+  Offset count() const { return count_; }
+  std::string text() const { return count_ > 10 ? text_ + " and " + std::to_string(count_ - 10) + " more" : text_; }
+
+ private:
+  Offset count_ = 0;
+  std::string text_;
+};
+
+/// Checks indices, corners, repeated vertices, duplicate faces and edges with more than two faces, and orients every
+/// component like the majority of its faces.
+/// @throws InvalidGeometry
+Gluing glue(Index vertices, const FaceList& faces, NonManifold non_manifold);
+
+/// Sets of numbers joined step by step; a set goes by its smallest member.
+class DisjointSets {
+ public:
+  explicit DisjointSets(std::size_t n) : parent_(n) {
+    for (std::size_t i = 0; i < n; ++i) parent_[i] = static_cast<Index>(i);
+  }
+  Index root(Index v) {
+    while (parent_[v] != v) v = parent_[v] = parent_[parent_[v]];
+    return v;
+  }
+  void join(Index a, Index b) {
+    a = root(a), b = root(b);
+    if (a != b) parent_[a > b ? a : b] = a > b ? b : a;
+  }
+
+ private:
+  std::vector<Index> parent_;
+};
+
+/// @throws InvalidGeometry (more than 2^30 positions, a coordinate that is not finite)
+void check_positions(std::span<const Vec3> positions);
+
+/// Moves the middle of the points' bounding box to the origin and multiplies by the power of two that makes the largest
+/// coordinate of order one.
+/// @return what a length of 1 was before
+double normalize_positions(std::vector<Vec3>& points);
+
+}  // namespace ahm::detail
