@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "ahm/maps/log_map_solver.hpp"
-#include "ahm/pointcloud/point_cloud_graph.hpp"
+#include "ahm/pointcloud/point_cloud_surface.hpp"
 #include "measure.hpp"
 #include "shapes.hpp"
 
@@ -17,18 +17,18 @@ using ahm::bench::median_of_five, ahm::bench::peak_megabytes, ahm::bench::second
 
 void run(ahm::Index n, ahm::Ordering ordering) {
   const auto points = ahm::bench::random_sphere(n);
-  std::optional<ahm::pointcloud::PointCloudGraph> cloud;
+  std::optional<ahm::pointcloud::PointCloudSurface> cloud;
   std::optional<ahm::LogMapSolver> solver;
-  const double build = seconds([&] { cloud.emplace(ahm::pointcloud::PointCloudGraph::build(points)); });
+  const double build = seconds([&] { cloud.emplace(ahm::pointcloud::PointCloudSurface::build(points)); });
   const double factor = seconds([&] { solver.emplace(cloud->graph(), ahm::OperatorOptions{.ordering = ordering}); });
-  const ahm::Source source = cloud->source_at_point(0);
+  const ahm::Source source = cloud->source(ahm::Row(0)).source;
   ahm::Index ok = 0;
   const double first = seconds([&] { ok = solver->solve(source).count(ahm::Status::ok); });
   const double peak = peak_megabytes();
   const double adaptive = median_of_five([&] { solver->solve(source); });
   const double localized = median_of_five([&] { solver->solve(source, {.variant = ahm::Variant::localized}); });
   std::vector<ahm::Source> sources;
-  for (ahm::Index s = 0; s < 64; ++s) sources.push_back(cloud->source_at_point(s * (n / 64)));
+  for (ahm::Index s = 0; s < 64; ++s) sources.push_back(cloud->source(ahm::Row(s * (n / 64))).source);
   const double batch = seconds([&] { solver->solve(sources); });
   const auto& statistics = solver->operators().statistics();
   std::printf("| %d | %s | %.2f | %.2f | %.3f | %.2f | %.3f | %.3f | %.4f | %.0f | %.0f | %.0f | %d |\n", n,

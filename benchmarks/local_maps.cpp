@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "ahm/maps/log_map_solver.hpp"
-#include "ahm/trimesh/triangle_mesh_graph.hpp"
+#include "ahm/trimesh/triangle_mesh_surface.hpp"
 #include "measure.hpp"
 #include "shapes.hpp"
 
@@ -41,7 +41,7 @@ int main(int argc, char** argv) {
 
   std::printf("| margin | adaptive, R = 4 h | R = 10 h | localized, R = 4 h | R = 10 h |\n|---|---|---|---|---|\n");
   const auto small = ahm::bench::torus(10000);
-  const auto coarse = ahm::trimesh::TriangleMeshGraph::build(small.points, small.faces);
+  const auto coarse = ahm::trimesh::TriangleMeshSurface::build(small.points, small.faces);
   const double h = coarse.graph().mean_edge_length() * coarse.graph().length_unit();
   for (double margin : {0.0, 1.0, 2.0, 3.0, 4.0, 6.0, 8.0}) {
     std::printf("| %g |", margin);
@@ -51,7 +51,7 @@ int main(int argc, char** argv) {
   }
 
   const auto shape = ahm::bench::torus(wanted);
-  const auto surface = ahm::trimesh::TriangleMeshGraph::build(shape.points, shape.faces);
+  const auto surface = ahm::trimesh::TriangleMeshSurface::build(shape.points, shape.faces);
   const ahm::CsrGraph& graph = surface.graph();
   const double edge = graph.mean_edge_length() * graph.length_unit();
   std::optional<ahm::LogMapSolver> solver;

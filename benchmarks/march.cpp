@@ -7,8 +7,8 @@
 #include <optional>
 
 #include "ahm/maps/log_map_solver.hpp"
-#include "ahm/pointcloud/point_cloud_graph.hpp"
-#include "ahm/trimesh/triangle_mesh_graph.hpp"
+#include "ahm/pointcloud/point_cloud_surface.hpp"
+#include "ahm/trimesh/triangle_mesh_surface.hpp"
 #include "measure.hpp"
 #include "shapes.hpp"
 
@@ -53,14 +53,14 @@ int main(int argc, char** argv) {
   for (ahm::Index n : sizes) {
     if (mesh) {
       const auto shape = ahm::bench::icosphere(n);
-      std::optional<ahm::trimesh::TriangleMeshGraph> surface;
+      std::optional<ahm::trimesh::TriangleMeshSurface> surface;
       const double build =
-          seconds([&] { surface.emplace(ahm::trimesh::TriangleMeshGraph::build(shape.points, shape.faces)); });
+          seconds([&] { surface.emplace(ahm::trimesh::TriangleMeshSurface::build(shape.points, shape.faces)); });
       run(surface->graph(), how, build);
     } else {
       const auto points = ahm::bench::random_sphere(n);
-      std::optional<ahm::pointcloud::PointCloudGraph> cloud;
-      const double build = seconds([&] { cloud.emplace(ahm::pointcloud::PointCloudGraph::build(points)); });
+      std::optional<ahm::pointcloud::PointCloudSurface> cloud;
+      const double build = seconds([&] { cloud.emplace(ahm::pointcloud::PointCloudSurface::build(points)); });
       run(cloud->graph(), how, build);
     }
   }

@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "ahm/maps/log_map_solver.hpp"
-#include "ahm/trimesh/triangle_mesh_graph.hpp"
+#include "ahm/trimesh/triangle_mesh_surface.hpp"
 #include "measure.hpp"
 #include "shapes.hpp"
 
@@ -16,11 +16,11 @@ namespace {
 void run(ahm::Index n) {
   using namespace ahm::bench;
   const Mesh mesh = icosphere(n);
-  std::optional<ahm::trimesh::TriangleMeshGraph> surface;
+  std::optional<ahm::trimesh::TriangleMeshSurface> surface;
   std::optional<ahm::LogMapSolver> solver;
   const double build =
-      seconds([&] { surface.emplace(ahm::trimesh::TriangleMeshGraph::build(mesh.points, mesh.faces)); });
-  const ahm::Source source = surface->source_at_vertex(0);
+      seconds([&] { surface.emplace(ahm::trimesh::TriangleMeshSurface::build(mesh.points, mesh.faces)); });
+  const ahm::Source source = surface->source(ahm::Row(0)).source;
   const double first = seconds([&] {
     solver.emplace(surface->graph());
     solver->solve(source);
@@ -30,7 +30,7 @@ void run(ahm::Index n) {
   const double localized = median_of_five([&] { solver->solve(source, {.variant = ahm::Variant::localized}); });
   std::vector<ahm::Source> sources;
   for (ahm::Index s = 0; s < 64; ++s)
-    sources.push_back(surface->source_at_vertex(s * static_cast<ahm::Index>(mesh.points.size() / 64)));
+    sources.push_back(surface->source(ahm::Row(s * static_cast<ahm::Index>(mesh.points.size() / 64))).source);
   const double batch = seconds([&] { solver->solve(sources); });
   std::printf("| %zu | %.2f | %.3f | %.4f | %.4f | %.4f | %.0f |\n", mesh.points.size(), build, first, adaptive,
               localized, batch / 64, peak);

@@ -4,8 +4,8 @@
 #include <numbers>
 #include <string>
 
-#include "ahm/pointcloud/point_cloud_graph.hpp"
-#include "ahm/trimesh/triangle_mesh_graph.hpp"
+#include "ahm/pointcloud/point_cloud_surface.hpp"
+#include "ahm/trimesh/triangle_mesh_surface.hpp"
 #include "baselines/signed_heat.hpp"
 #include "measure.hpp"
 #include "shapes.hpp"
@@ -88,7 +88,7 @@ void rows(const char* shape, const ahm::TangentGraph& graph) {
 
 void mesh_rows(const char* shape, Index n) {
   const ahm::bench::Mesh mesh = ahm::bench::icosphere(n);
-  const auto surface = ahm::trimesh::TriangleMeshGraph::build(mesh.points, mesh.faces);
+  const auto surface = ahm::trimesh::TriangleMeshSurface::build(mesh.points, mesh.faces);
   rows(shape, surface.graph());
   row(shape, "HM (faces)", surface.graph(), [&] { return ahm::baselines::heat_distance(surface.mesh()); });
 }
@@ -99,6 +99,6 @@ int main() {
   std::printf("| shape | method | distance | angle | map | s: made / per source |\n|---|---|---|---|---|---|\n");
   mesh_rows("icosphere, 10,242", 10242);
   mesh_rows("icosphere, 40,962", 40962);
-  const auto cloud = ahm::pointcloud::PointCloudGraph::build(ahm::bench::random_sphere(10000));
+  const auto cloud = ahm::pointcloud::PointCloudSurface::build(ahm::bench::random_sphere(10000));
   rows("random cloud, 10,000", cloud.graph());
 }

@@ -13,9 +13,9 @@ namespace ahm::bench {
 
 namespace {
 
-trimesh::TriangleMeshGraph build(const Mesh& mesh, trimesh::MeshOptions options) {
+trimesh::TriangleMeshSurface build(const Mesh& mesh, trimesh::MeshOptions options) {
   options.non_manifold = trimesh::NonManifold::split;
-  return trimesh::TriangleMeshGraph::build(mesh.points, mesh.faces, options);
+  return trimesh::TriangleMeshSurface::build(mesh.points, mesh.faces, options);
 }
 
 }  // namespace

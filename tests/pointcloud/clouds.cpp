@@ -84,9 +84,9 @@ std::array<double, 2> sphere_log(const Vec3& p, const Vec3& x, const Vec3& y, co
   return sine > 0 ? std::array{angle / sine * u, angle / sine * v} : std::array{0.0, 0.0};
 }
 
-SphereError sphere_error(const Cloud& sphere, const pointcloud::PointCloudGraph& graph, const pointcloud::PointMap& map,
+SphereError sphere_error(const Cloud& sphere, const pointcloud::PointCloudSurface& graph, const RowLogMap& map,
                          Index p) {
-  const Frame frame = *graph.graph().frame(graph.vertex_of_point()[p]);
+  const Frame frame = *graph.graph().frame(graph.vertex(Row(p)).index);
   // The axes at the source as the solver has them, made tangent to the true sphere.
   const Vec3& normal = sphere.normals[p];
   auto tangent = [&](const Vec3& axis) {
@@ -116,12 +116,12 @@ SphereError sphere_error(const Cloud& sphere, const pointcloud::PointCloudGraph&
 }
 
 Solved::Solved(const Cloud& cloud, bool with_normals, pointcloud::CloudOptions options)
-    : graph(pointcloud::PointCloudGraph::build(
+    : graph(pointcloud::PointCloudSurface::build(
           cloud.points, with_normals ? std::span<const Vec3>(cloud.normals) : std::span<const Vec3>(), options)),
       solver(graph.graph()) {}
 
-pointcloud::PointMap Solved::map(Index point, Variant variant) const {
-  return graph.on_points(solver.solve(graph.source_at_point(point), {.variant = variant}));
+RowLogMap Solved::map(Index point, Variant variant) const {
+  return graph.on_rows(solver.solve(graph.source(Row(point)).source, {.variant = variant}));
 }
 
 }  // namespace ahm::test

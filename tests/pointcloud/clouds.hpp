@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "ahm/maps/log_map_solver.hpp"
-#include "ahm/pointcloud/point_cloud_graph.hpp"
+#include "ahm/pointcloud/point_cloud_surface.hpp"
 
 namespace ahm::test {
 
@@ -36,14 +36,14 @@ struct SphereError {
   double rms, angle_rms, hemisphere_max;
 };
 /// Errors against the closed form from input point p, over d < 0.9 pi; all points must be ok.
-SphereError sphere_error(const Cloud& sphere, const pointcloud::PointCloudGraph& graph, const pointcloud::PointMap& map,
+SphereError sphere_error(const Cloud& sphere, const pointcloud::PointCloudSurface& graph, const RowLogMap& map,
                          Index p);
 
 /// Builds, factors and solves in one go.
 struct Solved {
   explicit Solved(const Cloud& cloud, bool with_normals = false, pointcloud::CloudOptions options = {});
-  pointcloud::PointMap map(Index point, Variant variant = Variant::adaptive) const;
-  pointcloud::PointCloudGraph graph;
+  RowLogMap map(Index point, Variant variant = Variant::adaptive) const;
+  pointcloud::PointCloudSurface graph;
   LogMapSolver solver;
 };
 

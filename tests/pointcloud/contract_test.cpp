@@ -7,7 +7,7 @@ namespace {
 
 struct CloudGraphs {
   static std::unique_ptr<TangentGraph> make(const Cloud& cloud) {
-    const auto built = pointcloud::PointCloudGraph::build(cloud.points);
+    const auto built = pointcloud::PointCloudSurface::build(cloud.points);
     return std::make_unique<CsrGraph>(built.graph().data());
   }
   static std::unique_ptr<TangentGraph> surface() { return make(random_sphere(300)); }

@@ -60,8 +60,8 @@ TEST_P(Search, BuildsTheSameGraph) {
   const Cloud sphere = random_sphere(3000);
   pointcloud::CloudOptions options;
   options.search = GetParam().make;
-  const auto graph = pointcloud::PointCloudGraph::build(sphere.points, {}, options);
-  const auto expected = pointcloud::PointCloudGraph::build(sphere.points);
+  const auto graph = pointcloud::PointCloudSurface::build(sphere.points, {}, options);
+  const auto expected = pointcloud::PointCloudSurface::build(sphere.points);
   EXPECT_EQ(graph.graph().data().neighbors, expected.graph().data().neighbors);
 }
 

@@ -5,7 +5,7 @@
 
 #include "ahm/error.hpp"
 #include "ahm/graph/validate.hpp"
-#include "ahm/trimesh/triangle_mesh_graph.hpp"
+#include "ahm/trimesh/triangle_mesh_surface.hpp"
 #include "polygons.hpp"
 
 namespace ahm::test {
@@ -23,8 +23,8 @@ void expect_error(const Polygons& mesh, const std::string& text, const PolygonOp
   }
 }
 
-LogMap map_of(const polymesh::PolygonMeshGraph& surface, Index source = 0) {
-  return LogMapSolver(surface.graph()).solve(surface.source_at_vertex(source));
+LogMap map_of(const polymesh::PolygonMeshSurface& surface, Index source = 0) {
+  return LogMapSolver(surface.graph()).solve(surface.source(Row(source)).source);
 }
 
 TEST(PolygonFaults, NothingThere) {
@@ -77,9 +77,9 @@ TEST(PolygonFaults, EdgesOfThreeFacesAndBowTies) {
   fin.add({5, 6, fin.vertices() - 1, fin.vertices() - 2});
   expect_error<InvalidGeometry>(fin, "1 edges have more than two faces: (5, 6) with 3 faces");
   const auto split = fin.graph({.non_manifold = NonManifold::split});
-  EXPECT_EQ(split.report().topology.non_manifold_edges, 1);
+  EXPECT_EQ(split.details().topology.non_manifold_edges, 1);
   EXPECT_NO_THROW(validate(split.graph()));
-  const auto rows = split.on_vertices(map_of(split));
+  const auto rows = split.on_rows(map_of(split));
   EXPECT_EQ(rows.status.size(), fin.positions.size());
 
   const Polygons bow{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {-1, 0, 0}, {-1, -1, 0}, {0, -1, 0}},
@@ -87,7 +87,7 @@ TEST(PolygonFaults, EdgesOfThreeFacesAndBowTies) {
                      {0, 1, 2, 3, 0, 4, 5, 6},
                      {}};
   expect_error<InvalidGeometry>(bow, "1 vertices join several fans of faces (bow ties): 0");
-  EXPECT_EQ(bow.graph({.non_manifold = NonManifold::split}).report().topology.components, 2);
+  EXPECT_EQ(bow.graph({.non_manifold = NonManifold::split}).details().topology.components, 2);
 }
 
 TEST(PolygonFaults, UnreferencedVerticesAndOtherComponentsAreMasked) {
@@ -97,27 +97,27 @@ TEST(PolygonFaults, UnreferencedVerticesAndOtherComponentsAreMasked) {
   for (const Vec3& p : {Vec3{5, 5, 5}, Vec3{6, 5, 5}, Vec3{6, 6, 5}, Vec3{5, 6, 5}}) mesh.positions.push_back(p);
   mesh.add({n + 1, n + 2, n + 3, n + 4});
   const auto surface = mesh.graph();
-  EXPECT_EQ(surface.report().topology.components, 2);
-  EXPECT_EQ(surface.report().topology.unreferenced, 1);
-  const auto rows = surface.on_vertices(map_of(surface));
+  EXPECT_EQ(surface.details().topology.components, 2);
+  EXPECT_EQ(surface.details().topology.unreferenced, 1);
+  const auto rows = surface.on_rows(map_of(surface));
   EXPECT_EQ(rows.status[n], Status::removed);
   EXPECT_EQ(rows.status[n + 1], Status::component);
   for (Index i = 0; i < n; ++i) ASSERT_EQ(rows.status[i], Status::ok);
-  EXPECT_THROW(surface.source_at_vertex(n), InvalidArgument);
+  EXPECT_THROW(surface.source(Row(n)), InvalidArgument);
 }
 
 TEST(PolygonFaults, MoebiusBandsAreSolvedWithReflections) {
   const Polygons mesh = moebius_quads(60, 6);
   const auto surface = mesh.graph();
-  EXPECT_FALSE(surface.report().topology.orientable);
-  EXPECT_EQ(surface.report().topology.boundary_loops, 1);
+  EXPECT_FALSE(surface.details().topology.orientable);
+  EXPECT_EQ(surface.details().topology.boundary_loops, 1);
   EXPECT_EQ(surface.graph().transport_kind(), TransportKind::block);
   EXPECT_NO_THROW(validate(surface.graph()));
   const LogMap map = map_of(surface, 3);
   EXPECT_EQ(map.count(Status::ok), mesh.vertices());
   const auto refined = surface.mesh().refined();
-  const auto triangles = trimesh::TriangleMeshGraph::build(refined.positions, refined.triangles);
-  const LogMap other = LogMapSolver(triangles.graph()).solve(triangles.source_at_vertex(3));
+  const auto triangles = trimesh::TriangleMeshSurface::build(refined.positions, refined.triangles);
+  const LogMap other = LogMapSolver(triangles.graph()).solve(triangles.source(Row(3)).source);
   const double h = surface.graph().mean_edge_length() * surface.graph().length_unit();
   for (Index i = 0; i < mesh.vertices(); ++i)
     if (other.distance(i) < 1.5) EXPECT_NEAR(map.distance(i), other.distance(i), h) << "vertex " << i;
@@ -147,7 +147,7 @@ TEST(PolygonFaults, AnyScaleAndAnyPlace) {
     for (auto& p : other.plane)
       for (double& x : p) x *= scale;
     const auto surface = other.graph();
-    const auto map = surface.on_vertices(map_of(surface, 9));
+    const auto map = surface.on_rows(map_of(surface, 9));
     for (Index i = 0; i < mesh.vertices(); ++i) {
       const double exact = std::hypot(mesh.plane[i][0] - mesh.plane[9][0], mesh.plane[i][1] - mesh.plane[9][1]);
       ASSERT_NEAR(map.distance[i] / scale, exact, 1e-11) << scale;
@@ -156,7 +156,7 @@ TEST(PolygonFaults, AnyScaleAndAnyPlace) {
   Polygons far = mesh;
   for (Vec3& p : far.positions) p[0] += 1e6, p[1] -= 1e6;
   const auto surface = far.graph();
-  const auto map = surface.on_vertices(map_of(surface, 9));
+  const auto map = surface.on_rows(map_of(surface, 9));
   for (Index i = 0; i < mesh.vertices(); ++i) {
     const double exact = std::hypot(mesh.plane[i][0] - mesh.plane[9][0], mesh.plane[i][1] - mesh.plane[9][1]);
     ASSERT_NEAR(map.distance[i], exact, 1e-8);  // the input has ten digits left
@@ -166,16 +166,17 @@ TEST(PolygonFaults, AnyScaleAndAnyPlace) {
 TEST(PolygonFaults, SourcesThatAreNotThere) {
   const Polygons mesh = cube_sphere(3);
   const auto surface = mesh.graph();
-  EXPECT_THROW(surface.source_at_vertex(-1), InvalidArgument);
-  EXPECT_THROW(surface.source_at_vertex(mesh.vertices()), InvalidArgument);
-  EXPECT_THROW(surface.source_at_vertex(0, {0, 0, 0}), InvalidArgument);
-  EXPECT_THROW(surface.source_at_vertex(0, mesh.positions[0]), InvalidArgument);  // along the normal
-  EXPECT_THROW(surface.source_at_face(-1), InvalidArgument);
-  EXPECT_THROW(surface.source_at_face(mesh.faces()), InvalidArgument);
+  EXPECT_THROW(surface.source(Row(-1)), InvalidArgument);
+  EXPECT_THROW(surface.source(Row(mesh.vertices())), InvalidArgument);
+  EXPECT_THROW(surface.source(Row(0), Vec3{0, 0, 0}), InvalidArgument);
+  EXPECT_THROW(surface.source(Row(0), mesh.positions[0]), InvalidArgument);  // along the normal
+  const std::vector<double> mean(4, 0.25);
+  EXPECT_THROW(surface.source(FacePoint{-1, mean}), InvalidArgument);
+  EXPECT_THROW(surface.source(FacePoint{mesh.faces(), mean}), InvalidArgument);
   const std::vector<double> three{0.5, 0.25, 0.25}, more{0.5, 0.5, 0.5, 0}, negative{0.5, 0.7, -0.2, 0},
       bad{NAN, 0.5, 0.5, 0};
   for (const auto& weights : {three, more, negative, bad})
-    EXPECT_THROW(surface.source_at_face(0, weights), InvalidArgument);
+    EXPECT_THROW(surface.source(FacePoint{0, weights}), InvalidArgument);
 }
 
 TEST(PolygonFaults, CanBeStopped) {

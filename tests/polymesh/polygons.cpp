@@ -313,7 +313,7 @@ Polygons moebius_quads(Index around, Index across) {
   return mesh;
 }
 
-double plane_error(const Polygons& mesh, const polymesh::VertexMap& map, const std::array<double, 2>& origin,
+double plane_error(const Polygons& mesh, const RowLogMap& map, const std::array<double, 2>& origin,
                    const std::array<double, 2>& u, bool allowed) {
   double worst = 0;
   for (std::size_t i = 0; i < mesh.plane.size(); ++i) {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "ahm/maps/log_map_solver.hpp"
-#include "ahm/polymesh/polygon_mesh_graph.hpp"
+#include "ahm/polymesh/polygon_mesh_surface.hpp"
 
 namespace ahm::test {
 
@@ -26,8 +26,9 @@ struct Polygons {
   void reverse(Index f);
   double diameter() const;
 
-  polymesh::PolygonMeshGraph graph(const polymesh::PolygonOptions& options = {}) const {
-    return polymesh::PolygonMeshGraph::build(positions, begin, corners, options);
+  polymesh::PolygonMeshSurface graph(polymesh::PolygonOptions options = {}) const {
+    options.discretization = polymesh::Discretization::polygons;
+    return polymesh::PolygonMeshSurface::build(positions, begin, corners, options);
   }
 };
 
@@ -57,7 +58,7 @@ Polygons moebius_quads(Index around, Index across);
 
 /// Largest distance between the map and the plane seen from `origin` with unit axis `u`; all must be ok unless vertices
 /// whose heat has lost its sign are `allowed`.
-double plane_error(const Polygons& mesh, const polymesh::VertexMap& map, const std::array<double, 2>& origin,
+double plane_error(const Polygons& mesh, const RowLogMap& map, const std::array<double, 2>& origin,
                    const std::array<double, 2>& u, bool allowed = false);
 
 }  // namespace ahm::test

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "ahm/trimesh/triangle_mesh_graph.hpp"
+#include "ahm/trimesh/triangle_mesh_surface.hpp"
 #include "polygons.hpp"
 
 namespace ahm::test {
@@ -31,15 +31,15 @@ double sphere_error(const Polygons& mesh, const LogMap& map, const Frame& frame,
 
 double polygon_error(const Polygons& mesh, Variant variant) {
   const auto surface = mesh.graph();
-  const LogMap map = LogMapSolver(surface.graph()).solve(surface.source_at_vertex(11), {.variant = variant});
+  const LogMap map = LogMapSolver(surface.graph()).solve(surface.source(Row(11)).source, {.variant = variant});
   return sphere_error(mesh, map, *surface.graph().frame(11), 11);
 }
 
 double refined_error(const Polygons& mesh, Variant variant) {
   const auto refined = polymesh::PolygonMesh::from_faces(mesh.positions, mesh.begin, mesh.corners).refined();
   EXPECT_TRUE(refined.folded.empty());
-  const auto surface = trimesh::TriangleMeshGraph::build(refined.positions, refined.triangles);
-  const LogMap map = LogMapSolver(surface.graph()).solve(surface.source_at_vertex(11), {.variant = variant});
+  const auto surface = trimesh::TriangleMeshSurface::build(refined.positions, refined.triangles);
+  const LogMap map = LogMapSolver(surface.graph()).solve(surface.source(Row(11)).source, {.variant = variant});
   return sphere_error(mesh, map, *surface.graph().frame(11), 11);
 }
 
@@ -68,10 +68,11 @@ TEST(PolygonSphere, StartsInsideAFaceToo) {
   const auto surface = mesh.graph();
   const Index face = 300;
   const std::vector<double> weights(4, 0.25);
-  const Frame frame = surface.frame_at_face(face, weights);
+  const PlacedSource middle = surface.source(FacePoint{face, weights});
+  const Frame frame = *middle.frame;
   const double length = std::sqrt(dot(frame.origin, frame.origin));
   const Vec3 p{frame.origin[0] / length, frame.origin[1] / length, frame.origin[2] / length};
-  const LogMap map = LogMapSolver(surface.graph()).solve(surface.source_at_face(face));
+  const LogMap map = LogMapSolver(surface.graph()).solve(middle.source);
   const double h = surface.graph().mean_edge_length() * surface.graph().length_unit();
   for (Index i = 0; i < mesh.vertices(); ++i) {
     const double r = std::acos(std::clamp(dot(p, mesh.positions[i]), -1.0, 1.0));
@@ -83,7 +84,7 @@ TEST(PolygonSphere, StretchedCellsStayPositiveAndMapped) {
   Polygons mesh = cube_sphere(20);
   for (Vec3& p : mesh.positions) p[2] *= 20;
   const auto surface = mesh.graph();
-  const LogMap map = LogMapSolver(surface.graph()).solve(surface.source_at_vertex(0));
+  const LogMap map = LogMapSolver(surface.graph()).solve(surface.source(Row(0)).source);
   EXPECT_EQ(map.count(Status::ok), surface.graph().size());
 }
 

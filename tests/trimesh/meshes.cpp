@@ -75,7 +75,7 @@ void keep_faces(Mesh& mesh, const std::vector<bool>& keep) {
 
 double dot(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-std::array<double, 2> Mesh::plane_point(const trimesh::SurfacePoint& point) const {
+std::array<double, 2> Mesh::plane_point(const FacePoint& point) const {
   std::array<double, 2> p{0, 0};
   for (int s = 0; s < 3; ++s)
     for (int a = 0; a < 2; ++a) p[a] += point.barycentric[s] * plane[faces[point.face][s]][a];
@@ -296,13 +296,13 @@ std::array<double, 2> sphere_log(const Vec3& p, const Vec3& x, const Vec3& y, co
 }
 
 SolvedMesh::SolvedMesh(const Mesh& mesh, const trimesh::MeshOptions& options)
-    : surface(trimesh::TriangleMeshGraph::build(mesh.positions, mesh.faces, options)), solver(surface.graph()) {}
+    : surface(trimesh::TriangleMeshSurface::build(mesh.positions, mesh.faces, options)), solver(surface.graph()) {}
 
-trimesh::VertexMap SolvedMesh::map(const Source& source, Variant variant) const {
-  return surface.on_vertices(solver.solve(source, {.variant = variant}));
+RowLogMap SolvedMesh::map(const Source& source, Variant variant) const {
+  return surface.on_rows(solver.solve(source, {.variant = variant}));
 }
 
-double plane_error(const Mesh& mesh, const trimesh::VertexMap& map, const std::array<double, 2>& origin,
+double plane_error(const Mesh& mesh, const RowLogMap& map, const std::array<double, 2>& origin,
                    const std::array<double, 2>& u) {
   double worst = 0;
   Index masked = 0;

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "ahm/maps/log_map_solver.hpp"
-#include "ahm/trimesh/triangle_mesh_graph.hpp"
+#include "ahm/trimesh/triangle_mesh_surface.hpp"
 
 namespace ahm::test {
 
@@ -18,7 +18,7 @@ struct Mesh {
 
   Index vertices() const { return static_cast<Index>(positions.size()); }
   /// Position in the plane of a point of the surface.
-  std::array<double, 2> plane_point(const trimesh::SurfacePoint& point) const;
+  std::array<double, 2> plane_point(const FacePoint& point) const;
   /// Largest extent in the plane.
   double diameter() const;
 };
@@ -63,13 +63,13 @@ double dot(const Vec3& a, const Vec3& b);
 /// Builds, factors and solves in one go.
 struct SolvedMesh {
   explicit SolvedMesh(const Mesh& mesh, const trimesh::MeshOptions& options = {});
-  trimesh::VertexMap map(const Source& source, Variant variant = Variant::adaptive) const;
-  trimesh::TriangleMeshGraph surface;
+  RowLogMap map(const Source& source, Variant variant = Variant::adaptive) const;
+  trimesh::TriangleMeshSurface surface;
   LogMapSolver solver;
 };
 
 /// Largest distance between the map and the plane seen from `origin` with unit axis `u`; all must be ok.
-double plane_error(const Mesh& mesh, const trimesh::VertexMap& map, const std::array<double, 2>& origin,
+double plane_error(const Mesh& mesh, const RowLogMap& map, const std::array<double, 2>& origin,
                    const std::array<double, 2>& u);
 
 }  // namespace ahm::test
