@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <string>
 
@@ -16,6 +17,7 @@ namespace ahm::exact {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double infinity = std::numeric_limits<double>::infinity();
 
 void check(const PolyhedralSurface& surface, std::span<const MeshPoint> sources, const ExactOptions& options) {
   if (sources.empty()) throw InvalidArgument("'sources' is empty; an exact map needs a source");
@@ -62,7 +64,7 @@ class MapBuilder {
 
  private:
   void add(double distance, Index component, double horizon, const Reached& reached) {
-    const bool ok = distance <= horizon;
+    const bool ok = distance <= horizon && distance < infinity;
     map_.status_.push_back(ok ? Status::ok : lit_[component] ? Status::radius : Status::component);
     map_.distance_.push_back(ok ? distance : nan);
     const Index source = ok ? map_.origins_[reached.origin].source : -1;

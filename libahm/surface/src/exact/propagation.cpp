@@ -5,6 +5,8 @@
 #include <limits>
 #include <numbers>
 
+#include "check_point.hpp"
+
 namespace ahm::exact {
 namespace {
 
@@ -41,6 +43,7 @@ void Propagation::place_targets(std::span<const MeshPoint> targets) {
   targets_of_face_.assign(static_cast<std::size_t>(surface_.face_count()) + 1, 0);
   for (const MeshPoint& t : targets) {
     targets_.push_back(surface_.place(t));
+    target_vertex_.push_back(vertex_of(surface_, t));
     ++targets_of_face_[t.face + 1];
   }
   for (std::size_t f = 1; f < targets_of_face_.size(); ++f) targets_of_face_[f] += targets_of_face_[f - 1];
@@ -324,7 +327,7 @@ void Propagation::see_targets(const Window& w, double sigma) {
 
 void Propagation::run() {
   while (!windows_.empty() || !bends_.empty()) {
-    if (windows_.key() > horizon_ || (only_targets_ && targets_final())) return;
+    if (windows_.key() > horizon_ || (only_targets_ && targets_final())) break;
     while (!windows_.bucket_empty() || !bends_.bucket_empty()) {
       while (!bends_.bucket_empty()) bends_.drain_chunk([this](const Bend& b) { bend(b); });
       if (!windows_.bucket_empty()) windows_.drain_chunk([this](const Window& w) { cross_face(w); });
@@ -332,10 +335,21 @@ void Propagation::run() {
     windows_.advance();
     bends_.advance();
   }
+  copy_vertex_targets();
+}
+
+/// A target at a vertex is that vertex.
+void Propagation::copy_vertex_targets() {
+  for (std::size_t k = 0; k < target_vertex_.size(); ++k) {
+    if (target_vertex_[k] < 0) continue;
+    target_distance_[k] = distance_[target_vertex_[k]];
+    reached_[distance_.size() + k] = reached_[target_vertex_[k]];
+  }
 }
 
 /// Whether nothing that waits can reach a target any earlier.
 bool Propagation::targets_final() {
+  copy_vertex_targets();
   double farthest = 0;
   for (double d : target_distance_) farthest = std::max(farthest, d);
   horizon_ = std::min(horizon_, farthest);

@@ -88,6 +88,7 @@ class Propagation {
   void offer(Index vertex, double distance, const Ray& ray, Place at);
   void see_face(const Ray& ray);
   void see_targets(const Window& w, double sigma);
+  void copy_vertex_targets();
   bool targets_final();
 
   const PolyhedralSurface& surface_;
@@ -99,6 +100,7 @@ class Propagation {
   std::vector<Sighting> sighting_;  ///< per half-edge
   std::vector<Origin> origins_;
   std::vector<Vec2> targets_;             ///< in the frame of side 0 of their faces
+  std::vector<Index> target_vertex_;      ///< -1: none
   std::vector<Index> target_order_;       ///< by face
   std::vector<Offset> targets_of_face_;   ///< faces + 1; empty: none
   BucketQueue<Window> windows_;
