@@ -24,7 +24,7 @@ double agreement_around(const TangentGraph& graph, const PrincipalCurvatures& be
   const bool is_block = graph.transport_kind() == TransportKind::block;
   double c = 0, s = 0, count = 0;
   for (std::size_t e = 0; e < star.degree(); ++e) {
-    const auto d = bend.direction(star.neighbors[e]);
+    const auto d = bend.direction(Vertex(star.neighbors[e]));
     if (std::isnan(d[0])) continue;
     const double* R = &star.transports[e * (is_block ? 4 : 2)];
     const double x = is_block ? R[0] * d[0] + R[1] * d[1] : R[0] * d[0] - R[1] * d[1];
@@ -45,12 +45,12 @@ Frame turned(const Frame& frame, const Vec3& direction) {
   return result;
 }
 
-Vec3 bending_direction(const TangentGraph& graph, Index vertex) {
-  const std::optional<Frame> frame = graph.frame(vertex);
+Vec3 bending_direction(const TangentGraph& graph, Vertex vertex) {
+  const std::optional<Frame> frame = graph.frame(vertex.index);
   if (!frame) throw InvalidArgument("--u-axis curvature: the graph has no frames in space");
   const PrincipalCurvatures bend = curvature_directions(graph);
   const auto at = [](Index i) { return 2 * static_cast<std::size_t>(i); };
-  const double first = bend.values[at(vertex)], second = bend.values[at(vertex) + 1];
+  const double first = bend.values[at(vertex.index)], second = bend.values[at(vertex.index) + 1];
   const std::string advice = "; give the axis as X,Y,Z";
   if (std::isnan(first))
     throw InvalidArgument("--u-axis curvature: the source has too few neighbours to tell" + advice);
@@ -61,7 +61,7 @@ Vec3 bending_direction(const TangentGraph& graph, Index vertex) {
     throw InvalidArgument(fmt::format(
         "--u-axis curvature: at the source the surface bends alike in all directions (curvatures {:.3g} and {:.3g}){}",
         first, second, advice));
-  if (const double agreement = agreement_around(graph, bend, vertex); agreement < 0.5)
+  if (const double agreement = agreement_around(graph, bend, vertex.index); agreement < 0.5)
     throw InvalidArgument(fmt::format(
         "--u-axis curvature: the directions around the source contradict each other (agreement {:.2f} of 1), "
         "as on planes and rough scans{}",

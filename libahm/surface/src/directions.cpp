@@ -71,13 +71,13 @@ Eigen::Matrix2d shape_operator(const Frame& frame, std::span<const Vec3> others)
 
 }  // namespace
 
-std::array<double, 2> direction_in_frame(const TangentGraph& graph, Index vertex, const Vec3& vector) {
+std::array<double, 2> direction_in_frame(const TangentGraph& graph, Vertex vertex, const Vec3& vector) {
   const char* name = "direction_in_frame";
   check_dimension(graph, name);
-  if (vertex < 0 || vertex >= graph.size())
-    throw InvalidArgument("direction_in_frame: 'vertex' " + std::to_string(vertex) + " is outside [0, " +
+  if (vertex.index < 0 || vertex.index >= graph.size())
+    throw InvalidArgument("direction_in_frame: 'vertex' " + std::to_string(vertex.index) + " is outside [0, " +
                           std::to_string(graph.size()) + ")");
-  const Frame frame = frame_of(graph, vertex, name);
+  const Frame frame = frame_of(graph, vertex.index, name);
   const double largest = std::max({std::abs(vector[0]), std::abs(vector[1]), std::abs(vector[2])});
   if (!(largest > 0) || !all_finite(vector))
     throw InvalidArgument("direction_in_frame: 'vector' must be finite and not zero");
@@ -85,7 +85,7 @@ std::array<double, 2> direction_in_frame(const TangentGraph& graph, Index vertex
   const double u = dot(frame.x, scaled), v = dot(frame.y, scaled), r = std::hypot(u, v);
   if (!(r > 1e-9))
     throw InvalidArgument("direction_in_frame: 'vector' is perpendicular to the surface at vertex " +
-                          std::to_string(vertex) + "; choose another one");
+                          std::to_string(vertex.index) + "; choose another one");
   return {u / r, v / r};
 }
 
