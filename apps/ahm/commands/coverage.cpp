@@ -113,7 +113,7 @@ double trusted_share(const TangentGraph& graph, const LogMap& map, const Coverag
   const std::vector<double> quality = map_quality(graph, map);
   double all = 0, trusted = 0;
   for (Index i = 0; i < graph.size(); ++i) {
-    if (!(map.distance(i) <= options.path.radius)) continue;
+    if (!(map.distance(Vertex(i)) <= options.path.radius)) continue;
     all += graph.mass(i);
     if (quality[i] >= options.min_quality) trusted += graph.mass(i);
   }

@@ -56,7 +56,8 @@ void comment_on_source(const RunOptions& options, const Model& model, const Reso
 /// What was left out because it is farther than the radius in a straight line already.
 void mark_beyond(const std::vector<Vec3>& points, const Vec3& source, double radius, MapRows& rows) {
   for (std::size_t i = 0; i < points.size(); ++i)
-    if (rows.status[i] == Status::removed && distance(points[i], source) > radius) rows.status[i] = Status::radius;
+    if (rows.status[i] == Status::removed && distance(points[i], source) > radius)
+      rows.status[i] = Status::beyond_radius;
 }
 
 void write_results(const ResolvedSource& source, const MapRows& rows, const std::vector<Vec3>& away, Results& results,

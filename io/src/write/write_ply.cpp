@@ -8,7 +8,7 @@ namespace {
 
 std::string header_of(const Table& table, std::size_t faces, bool many_corners) {
   std::string header = "ply\nformat binary_little_endian 1.0\ncomment logarithmic map by libahm\n";
-  for (Status status : {Status::ok, Status::component, Status::radius, Status::unreached, Status::removed}) {
+  for (Status status : {Status::ok, Status::disconnected, Status::beyond_radius, Status::unreached, Status::removed}) {
     header +=
         "comment status " + std::to_string(static_cast<int>(status)) + " " + std::string(to_string(status)) + "\n";
   }
