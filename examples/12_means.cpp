@@ -31,8 +31,8 @@ int main() {
   std::printf("a town is %.3f away\n", field.distance.values[towns[1]]);
 
   // The surface seen from a town, u running uphill.
-  const ahm::LogMap map =
-      solver.solve(ahm::Source::at_vertex(towns[0], ahm::direction_in_frame(cloud.graph(), towns[0], {0, 0, 1})));
+  const ahm::LogMap map = solver.solve(
+      ahm::Source::at_vertex(towns[0], ahm::direction_in_frame(cloud.graph(), ahm::Vertex(towns[0]), {0, 0, 1})));
   const auto phi = map.coordinates(mean.vertex);
   std::printf("seen from the first town the mean lies %.3f uphill and %.3f aside\n", phi[0], phi[1]);
   return top[2] > 0.99 && median.vertex == towns[0] ? 0 : 1;

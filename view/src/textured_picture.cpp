@@ -77,8 +77,8 @@ class Canvas {
           put(x, y, corner.pixel.z(), corner.normal, color, false);
   }
 
-  io::Image image() const {
-    io::Image result(width_ / samples, height_ / samples);
+  Image image() const {
+    Image result(width_ / samples, height_ / samples);
     for (int y = 0; y < result.height; ++y)
       for (int x = 0; x < result.width; ++x) {
         Eigen::Vector3f sum = Eigen::Vector3f::Zero();

@@ -99,7 +99,7 @@ void comment(const AtlasCommandOptions& options, const Made& made, const Tangent
 }
 
 void write_files(const AtlasCommandOptions& options, const Skin& skin, const Made& made) {
-  const io::Image texture = options.texture.empty() ? io::checkerboard(made.packed) : io::read_image(options.texture);
+  const Image texture = options.texture.empty() ? io::checkerboard(made.packed) : io::read_image(options.texture);
   const auto is_charted = [&](std::size_t f) { return made.atlas.chart_of_face[f] >= 0; };
   const SkinPart charted(skin, is_charted, made.packed.coordinates);
   const SkinPart rest(skin, [&](std::size_t f) { return !is_charted(f); });

@@ -79,7 +79,7 @@ Skin skin_behind(const DecalCommandOptions& options, const Surface& surface, con
 }
 
 void write_mesh(const DecalCommandOptions& options, const Surface& surface, const LogMapSolver& solver,
-                const Decal& decal, const io::Image& image, const Vec3& source) {
+                const Decal& decal, const Image& image, const Vec3& source) {
   const Skin skin = skin_behind(options, surface, solver);
   const SkinPart behind(skin, [](std::size_t) { return true; });
   std::vector<double> corners;
@@ -104,7 +104,7 @@ void write_mesh(const DecalCommandOptions& options, const Surface& surface, cons
 
 /// The colours of the input, light grey where there are none, under the image.
 std::vector<std::array<std::uint8_t, 3>> painted(const Surface& surface, const std::vector<double>& places,
-                                                 const io::Image& image) {
+                                                 const Image& image) {
   std::vector<std::array<std::uint8_t, 3>> colors = surface.input.colors;
   colors.resize(surface.input.points.size(), {200, 200, 200});
   const bool by_row = surface.backend != "pointcloud";
@@ -134,7 +134,7 @@ std::vector<double> disc_radii(const Surface& surface) {
 }
 
 void write_points(const DecalCommandOptions& options, const Surface& surface, const InverseMap& inverse,
-                  const io::Image& image, const Vec3& source) {
+                  const Image& image, const Vec3& source) {
   const auto colors = painted(surface, image_coordinates_of_vertices(inverse, options.decal), image);
   const std::vector<Vec3> normals = surface.model->normals();
   const io::Geometry& input = surface.input;
@@ -175,7 +175,7 @@ void report(const DecalCommandOptions& options, const Surface& surface, const De
 
 void run_decal(DecalCommandOptions options) {
   check_texture_output(options.run, {".obj", ".glb", ".ply"}, {"decal"}, options.image);
-  const io::Image image = io::read_image(options.image);
+  const Image image = io::read_image(options.image);
   const double longer = std::max(image.width, image.height);
   options.decal.width = options.size * image.width / longer;
   options.decal.height = options.size * image.height / longer;

@@ -8,9 +8,9 @@
 
 #include "ahm/error.hpp"
 #include "ahm/polymesh/polygon_mesh_graph.hpp"
+#include "ahm/surface/directions.hpp"
 #include "ahm/trimesh/triangle_mesh_graph.hpp"
 #include "input/backend.hpp"
-#include "input/frames.hpp"
 #include "input/mesh_input.hpp"
 
 namespace ahm::app {

@@ -5,9 +5,9 @@
 #include <nlohmann/json.hpp>
 
 #include "ahm/error.hpp"
+#include "ahm/surface/directions.hpp"
 #include "ahm/trimesh/triangle_mesh_graph.hpp"
 #include "input/backend.hpp"
-#include "input/frames.hpp"
 #include "input/mesh_input.hpp"
 
 namespace ahm::app {

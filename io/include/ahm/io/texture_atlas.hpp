@@ -3,7 +3,7 @@
 ///
 /// \code
 /// ahm::io::TextureAtlas packed = ahm::io::pack(atlas, faces, {.size = 2048, .margin = 4});
-/// ahm::io::Image image = ahm::io::checkerboard(packed);         // something to look at; packed.coordinates are the uv
+/// ahm::Image image = ahm::io::checkerboard(packed);         // something to look at; packed.coordinates are the uv
 /// \endcode
 #pragma once
 
