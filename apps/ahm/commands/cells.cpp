@@ -137,9 +137,9 @@ std::vector<Cell> sizes(const TangentGraph& graph, const std::vector<Index>& lab
 
 void write_results(const CellRows& rows, const std::vector<Vec3>& sources, Results& results, Journal& journal) {
   io::Table table = results.table();
-  table.distance = rows.distance;
-  table.status = rows.status;
-  table.further.push_back({"label", rows.label});
+  table.add("distance", rows.distance);
+  table.add("status", rows.status);
+  table.add("label", rows.label);
   view::Scene scene = results.scene();
   scene.labels = rows.labels;
   scene.distance = rows.distance;

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "ahm/applications/distortion.hpp"
+#include "ahm/io/write.hpp"
 #include "ahm/view/textured_picture.hpp"
 #include "cli/numbers.hpp"
 #include "cli/option_adders.hpp"
@@ -89,7 +90,7 @@ void write_mesh(const DecalCommandOptions& options, const Surface& surface, cons
   io::MeshPart& part = parts.emplace_back();
   part.name = "decal";
   part.points = decal.points, part.normals = decal.normals;
-  part.face_begin = decal.face_begin, part.face_vertices = decal.face_vertices;
+  part.faces = {decal.face_begin, decal.face_vertices};
   part.texture_coordinates = corners;
   part.texture = &image;
   part.transparent = true;
@@ -137,7 +138,12 @@ void write_points(const DecalCommandOptions& options, const Surface& surface, co
   const auto colors = painted(surface, image_coordinates_of_vertices(inverse, options.decal), image);
   const std::vector<Vec3> normals = surface.model->normals();
   const io::Geometry& input = surface.input;
-  io::write_colored_ply(options.run.output, input.points, input.normals, colors, input.face_begin, input.face_vertices);
+  io::Table table{.title = "coloured by libahm"};
+  table.add({"x", "y", "z"}, input.points);
+  if (!input.normals.empty()) table.add({"nx", "ny", "nz"}, input.normals);
+  table.add({"red", "green", "blue"}, colors);
+  table.faces = input.faces();
+  io::write(options.run.output, table);
   if (options.run.view.empty()) return;
   view::TexturedScene scene;
   scene.points = input.points, scene.colors = colors, scene.normals = normals;

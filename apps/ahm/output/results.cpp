@@ -53,11 +53,10 @@ Results::~Results() {
 }
 
 io::Table Results::table() const {
-  io::Table table;
-  table.points = input_.points;
-  table.normals = normals_;
-  table.face_begin = input_.face_begin;
-  table.face_vertices = input_.face_vertices;
+  io::Table table{.title = "logarithmic map by libahm"};
+  table.add({"x", "y", "z"}, input_.points);
+  if (!normals_.empty()) table.add({"nx", "ny", "nz"}, normals_).in_csv = false;
+  table.faces = input_.faces();
   return table;
 }
 
