@@ -98,7 +98,7 @@ float largest_radius(const Drawable& drawable) {
 /// What the viewer needs besides arrays, as JSON.
 std::string describe(const Scene& scene, const Drawable& drawable, const Camera& camera, double ring_width,
                      const PictureOptions& options) {
-  constexpr const char* patterns[] = {"polar", "grid", "cells"};
+  constexpr const char* patterns[] = {"polar", "grid", "cells", "distance", "none"};
   std::string axes;
   if (scene.source_axes)
     for (std::size_t k = 0; k < 2; ++k)
@@ -121,9 +121,9 @@ std::string describe(const Scene& scene, const Drawable& drawable, const Camera&
 
 /// Coordinates with 1e30 for "none": interpolated with anything, it stays beyond any coordinate.
 std::vector<Eigen::Vector2f> coordinates(const Drawable& drawable) {
-  std::vector<Eigen::Vector2f> uv = drawable.uv;
+  std::vector<Eigen::Vector2f> uv(drawable.values.size());
   for (std::size_t i = 0; i < uv.size(); ++i)
-    if (drawable.known[i] == 0) uv[i].setConstant(1e30F);
+    uv[i] = drawable.values[i].head<2>() + Eigen::Vector2f::Constant(drawable.known[i] == 0 ? 1e30F : 0);
   return uv;
 }
 
@@ -167,7 +167,7 @@ void write_html(const std::filesystem::path& path, const Scene& scene, const Pic
   const std::vector<Index> shown = shown_points(scene);
   const Camera camera = choose_camera(scene, shown, options);
   const Paint paint = make_paint(scene, shown, options);
-  const Drawable drawable = make_drawable(scene, shown, camera, paint);
+  const Drawable drawable = make_drawable(scene, shown, camera, paint, options.threads);
 
   const std::string title = escape(scene.title.empty() ? "logarithmic map" : scene.title);
   const std::string meta = describe(scene, drawable, camera, paint.ring_width, options);
