@@ -16,6 +16,13 @@ struct Range {
         last(static_cast<int>(std::clamp(std::floor(to + 0.5F), 0.0F, static_cast<float>(Tiles::side)))) {}
 };
 
+/// The samples of a disc in the row j below its centre.
+Range columns_of(const TileDisc& d, float j) {
+  const float middle = -d.t_ij * j / d.t_ii;
+  const float half = std::sqrt(std::max(0.0F, middle * middle + (1 - d.t_jj * j * j) / d.t_ii));
+  return {d.x + middle - half, d.x + middle + half};
+}
+
 }  // namespace
 
 TileRenderer::TileRenderer(const std::vector<Layer>& layers, const Lens& lens, const Tiles& tiles)
@@ -74,20 +81,22 @@ void TileRenderer::find_nearest(const TileTriangle& t, std::uint32_t id) {
   }
 }
 
-void TileRenderer::find_nearest(const TileDisc& d, std::uint32_t id) {
-  const Range columns(d.x - d.half_width, d.x + d.half_width), rows(d.y - d.half_height, d.y + d.half_height);
+void TileRenderer::find_nearest(const TileDisc& disc, std::uint32_t id) {
+  const TileDisc d = disc;  // a copy, which no buffer overlaps: the inner loops become vector instructions
+  const Range rows(d.y - d.half_height, d.y + d.half_height);
   const float bias = 0.3F * d.thickness;  // a slight bulge: among overlapping discs the nearest centre wins
   for (int row = rows.first; row < rows.last; ++row) {
     const float j = static_cast<float>(row) + 0.5F - d.y;
-    const float t_row = d.t_jj * j * j, near_row = d.nearness + d.near_j * j;
+    const Range columns = columns_of(d, j);
+    const float t_row = d.t_jj * j * j, near_row = d.nearness + d.near_j * j, mixed = 2 * d.t_ij * j;
     float* nearness = &nearness_[row * side];
     std::uint32_t* front = &front_[row * side];
     for (int column = columns.first; column < columns.last; ++column) {
       const float i = static_cast<float>(column) + 0.5F - d.x;
-      const float t = (d.t_ii * i + 2 * d.t_ij * j) * i + t_row, near = near_row + d.near_i * i - bias * t;
-      const bool wins = (t <= 1) & (near > nearness[column]);
-      nearness[column] = wins ? near : nearness[column];
-      front[column] = wins ? id : front[column];
+      const float near = near_row + d.near_i * i - bias * ((d.t_ii * i + mixed) * i + t_row);
+      const std::uint32_t wins = near > nearness[column] ? 0xffffffff : 0;
+      front[column] = (front[column] & ~wins) | (id & wins);
+      nearness[column] = std::max(nearness[column], near);
     }
   }
 }
@@ -125,23 +134,23 @@ void TileRenderer::start_sums() {
   }
 }
 
-void TileRenderer::add(const TileDisc& d) {
-  const Range columns(d.x - d.half_width, d.x + d.half_width), rows(d.y - d.half_height, d.y + d.half_height);
+void TileRenderer::add(const TileDisc& disc) {
+  const TileDisc d = disc;
+  const Range rows(d.y - d.half_height, d.y + d.half_height);
   const float share = d.known ? 1 : 0;
   for (int row = rows.first; row < rows.last; ++row) {
     const float j = static_cast<float>(row) + 0.5F - d.y;
-    const float t_row = d.t_jj * j * j, near_row = d.nearness + d.near_j * j;
+    const Range columns = columns_of(d, j);
+    const float t_row = d.t_jj * j * j, near_row = d.nearness + d.near_j * j, mixed = 2 * d.t_ij * j;
     const float first_row = d.value.x + d.value_j.x * j, second_row = d.value.y + d.value_j.y * j;
-    for (int column = columns.first; column < columns.last; ++column) {
-      const int s = row * side + column;
-      const float i = static_cast<float>(column) + 0.5F - d.x;
-      const float t = (d.t_ii * i + 2 * d.t_ij * j) * i + t_row, near = near_row + d.near_i * i;
-      const bool inside = (t <= 1) & (std::abs(near - nearness_[s]) < d.thickness);
-      const float weight = inside ? (1 - t) * (1 - t) + 1e-4F : 0;
+    for (int s = row * side + columns.first, end = row * side + columns.last; s < end; ++s) {
+      const float i = static_cast<float>(s - row * side) + 0.5F - d.x;
+      const float left = std::max(1 - ((d.t_ii * i + mixed) * i + t_row), 0.0F), near = near_row + d.near_i * i;
+      const bool inside = std::abs(near - nearness_[s]) < d.thickness;
+      const float weight = inside ? left * left + 1e-4F : 0.0F;
       const float first = first_row + d.value_i.x * i, second = second_row + d.value_i.y * i;
-      const bool agrees = (std::abs(first - sums_.front_first[s]) <= d.tolerance) &
-                          (std::abs(second - sums_.front_second[s]) <= d.tolerance);
-      const float known = agrees ? share * weight : 0;
+      const float apart = std::max(std::abs(first - sums_.front_first[s]), std::abs(second - sums_.front_second[s]));
+      const float known = apart <= d.tolerance ? share * weight : 0.0F;
       sums_.weight[s] += weight;
       sums_.nearness[s] += weight * near;
       sums_.normal_x[s] += weight * d.normal_x;
