@@ -1,22 +1,27 @@
 #include "ahm/view/textured_picture.hpp"
 
 #include <Eigen/Geometry>
-#include <algorithm>
-#include <cmath>
 #include <limits>
 #include <vector>
 
 #include "ahm/error.hpp"
-#include "camera.hpp"
+#include "ahm/io/image.hpp"
+#include "check.hpp"
+#include "render.hpp"
 
 namespace ahm::view {
 namespace {
 
-using Eigen::Vector2d;
 using Eigen::Vector3d;
+using Eigen::Vector3f;
 
-constexpr int samples = 2;  ///< per pixel and direction
+Vector3f light_of(const std::array<double, 3>& color) {
+  Vector3f light;
+  for (int c = 0; c < 3; ++c) light[c] = glsl::from_srgb(static_cast<float>(color[c]));
+  return light;
+}
 
+<<<<<<< HEAD
 /// A corner of a triangle on its way to the screen.
 struct Corner {
   Vector3d pixel;  ///< column, row, 1 / depth
@@ -142,11 +147,52 @@ void draw(Canvas& canvas, const io::MeshPart& part) {
         if (!part.normals.empty()) corners[c].normal = as_vector(part.normals[vertex]);
       }
       if (!visible) continue;
+=======
+/// Every corner a vertex, since places on an image belong to corners.
+Painted painted(const io::MeshPart& part, const Camera& camera) {
+  Drawable d;
+  for (std::size_t f = 0; f + 1 < part.face_begin.size(); ++f)
+    for (Offset k = part.face_begin[f] + 1; k + 1 < part.face_begin[f + 1]; ++k) {
+      std::array<Vector3d, 3> x;
+      const std::array<Offset, 3> fan{part.face_begin[f], k, k + 1};
+      for (std::size_t c = 0; c < 3; ++c) x[c] = camera.to_scene(part.points[part.face_vertices[fan[c]]]);
+      if (!(x[0] + x[1] + x[2]).allFinite()) continue;
+>>>>>>> view
       const Vector3d flat = (x[1] - x[0]).cross(x[2] - x[0]).normalized();
-      for (Corner& corner : corners)
-        if (part.normals.empty() || !corner.normal.allFinite()) corner.normal = flat;
-      canvas.triangle(corners, part.transparent, paint);
+      for (std::size_t c = 0; c < 3; ++c) {
+        Vector3d normal = flat;
+        if (!part.normals.empty()) normal = as_vector(part.normals[part.face_vertices[fan[c]]]);
+        d.triangles.push_back(static_cast<std::uint32_t>(d.positions.size()));
+        d.positions.push_back(x[c].cast<float>());
+        d.normals.push_back((normal.allFinite() ? normal : flat).cast<float>());
+        d.values.push_back(light_of(part.color));
+        if (part.texture)
+          d.values.back() = {static_cast<float>(part.texture_coordinates[2 * fan[c]]),
+                             static_cast<float>(part.texture_coordinates[2 * fan[c] + 1]), 0};
+        d.known.push_back(1);
+      }
     }
+  return {std::move(d),
+          {.kind = part.texture ? Material::Kind::texture : Material::Kind::color,
+           .image = part.texture,
+           .transparent = part.transparent && part.texture}};
+}
+
+Painted painted_points(const TexturedScene& scene, const Camera& camera) {
+  Drawable d;
+  for (std::size_t i = 0; i < scene.points.size(); ++i) {
+    const Vector3d x = camera.to_scene(scene.points[i]);
+    if (!x.allFinite()) continue;
+    const Vector3d normal = scene.normals.empty() ? Vector3d::Zero().eval() : as_vector(scene.normals[i]).eval();
+    const auto& c = scene.colors[i];
+    d.positions.push_back(x.cast<float>());
+    d.normals.push_back(normal.allFinite() ? normal.cast<float>().eval() : Vector3f::Zero().eval());
+    d.values.push_back(light_of({c[0] / 255.0, c[1] / 255.0, c[2] / 255.0}));
+    d.known.push_back(1);
+    d.radii.push_back(static_cast<float>(scene.radii[i] / camera.scale));
+  }
+  d.values_per_length = std::numeric_limits<float>::infinity();  // colours blend, however they differ
+  return {std::move(d), {.kind = Material::Kind::color}};
 }
 
 /// All points of the scene, those of textured parts and coloured points as mapped, for the camera.
@@ -188,9 +234,7 @@ class Gathered {
 };
 
 void check(const TexturedScene& scene, const PictureOptions& options) {
-  if (std::min(options.width, options.height) < 16 || std::max(options.width, options.height) > 8192)
-    throw InvalidArgument("options: a picture of " + std::to_string(options.width) + " x " +
-                          std::to_string(options.height) + " pixels; give 16 to 8192 each");
+  check_picture(options);
   if (scene.colors.size() != scene.points.size() || scene.radii.size() != scene.points.size() ||
       (!scene.normals.empty() && scene.normals.size() != scene.points.size()))
     throw InvalidArgument("scene: " + std::to_string(scene.points.size()) + " points, " +
@@ -204,19 +248,10 @@ void write_textured_png(const std::filesystem::path& path, const TexturedScene& 
   check(scene, options);
   const Gathered gathered(scene);
   const Camera camera = choose_camera(gathered.scene, shown_points(gathered.scene), options);
-  Canvas canvas(options.width, options.height, camera);
-  for (std::size_t i = 0; i < scene.points.size(); ++i) {
-    Corner corner;
-    if (!as_vector(scene.points[i]).allFinite() || !canvas.project(scene.points[i], corner)) continue;
-    corner.normal = scene.normals.empty() || !as_vector(scene.normals[i]).allFinite() ? Vector3d::Zero().eval()
-                                                                                      : as_vector(scene.normals[i]);
-    const auto& c = scene.colors[i];
-    canvas.disc(corner, scene.radii[i], {c[0] / 255.0, c[1] / 255.0, c[2] / 255.0, 1});
-  }
-  for (bool transparent : {false, true})
-    for (const io::MeshPart& part : scene.parts)
-      if (part.transparent == transparent) draw(canvas, part);
-  io::write_png(path, canvas.image());
+  std::vector<Painted> things;
+  if (!scene.points.empty()) things.push_back(painted_points(scene, camera));
+  for (const io::MeshPart& part : scene.parts) things.push_back(painted(part, camera));
+  io::write_png(path, develop(render(std::move(things), camera, options), options));
 }
 
 }  // namespace ahm::view

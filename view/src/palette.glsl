@@ -1,4 +1,4 @@
-// The colours of every picture, for GLSL 3.30 and GLSL ES 1.00 alike.
+// The colours of every picture, for GLSL ES 1.00 and, with glsl.hpp, for C++ alike.
 const float pi = 3.14159265;
 
 // OKLCh (Ottosson 2020): hues of equal lightness look equally bright, which HSV's do not. Result: linear RGB.
@@ -11,10 +11,6 @@ vec3 oklch(float lightness, float chroma, float hue) {
   return clamp(vec3(dot(vec3(4.0767416621, -3.3077115913, 0.2309699292), lms),
                     dot(vec3(-1.2684380046, 2.6097574011, -0.3413193965), lms),
                     dot(vec3(-0.0041960863, -0.7034186147, 1.7076147010), lms)), 0.0, 1.0);
-}
-
-vec3 to_srgb(vec3 linear) {
-  return mix(12.92 * linear, 1.055 * pow(max(linear, vec3(0.0)), vec3(1.0 / 2.4)) - 0.055, step(0.0031308, linear));
 }
 
 // Integral of the wave that is +1 on even and -1 on odd unit intervals.
@@ -62,14 +58,42 @@ vec3 cell_colour(vec2 uv, vec2 dx, vec2 dy) {
   return oklch(lightness + 0.035 * ring, 0.115, hue);
 }
 
-// The numbers of ahm::view::Pattern.
-vec3 map_colour(int pattern, vec2 uv, vec2 dx, vec2 dy, float sectors) {
+// Distances from 0 to 1 in colours of evenly rising lightness: violet, blue, green, yellow.
+vec3 distance_colour(float t) {
+  t = clamp(t, 0.0, 1.0);
+  float lightness = 0.28 + 0.62 * t;
+  float chroma = 0.13 + 0.05 * t * t - 0.12 * t * (1.0 - t);
+  return oklch(lightness, chroma, 5.45 - 3.62 * t - 0.06 * sin(2.0 * pi * t));
+}
+
+// Thin dark lines at the rings, so that equal distances can be followed.
+vec3 distance_with_lines(vec2 uv, vec2 dx, vec2 dy, float rings) {
+  float width = max(abs(dx.x) + abs(dy.x), 1e-6);
+  float from_line = abs(uv.x - floor(uv.x + 0.5)) / width;
+  float line = (1.0 - clamp(from_line - 0.4, 0.0, 1.0)) * clamp(0.25 / width - 0.5, 0.0, 1.0);
+  return distance_colour(uv.x / rings) * (1.0 - 0.30 * line);
+}
+
+vec3 plain_colour() { return vec3(0.58, 0.56, 0.53); }
+
+// The numbers of ahm::view::Pattern. `sectors` of the polar pattern; `rings` is what the last colour stands for.
+vec3 map_colour(int pattern, vec2 uv, vec2 dx, vec2 dy, float sectors, float rings) {
   if (pattern == 1) return grid_colour(uv, dx, dy);
   if (pattern == 2) return cell_colour(uv, dx, dy);
+  if (pattern == 3) return distance_with_lines(uv, dx, dy, rings);
+  if (pattern == 4) return plain_colour();
   return polar_colour(uv, dx, dy, sectors);
 }
 
 vec3 unknown_colour() { return vec3(0.42); }
+
+// Where the map is not to be trusted: pale, under dark stripes across the picture. `pixel` in 1200ths of its height.
+vec3 untrusted_colour(vec3 colour, vec2 pixel, float pixel_size) {
+  float grey = 0.45 + 0.35 * dot(colour, vec3(0.3, 0.5, 0.2));
+  float width = 0.1414 * pixel_size;
+  float stripe = 0.5 + 0.5 * square_wave(0.1414 * (pixel.x + pixel.y), 2.0 * width);
+  return mix(vec3(grey), colour, 0.18) * (1.0 - 0.62 * stripe);
+}
 
 // Light from over the viewer's left shoulder, in camera coordinates; the normal looks towards the viewer.
 vec3 lit(vec3 colour, vec3 normal, vec3 to_eye) {
