@@ -23,10 +23,10 @@ double difference(const TangentGraph& graph, double radius, double margin, Varia
   const LocalMaps maps = ahm::local_maps(graph, sources, {.radius = radius, .variant = variant, .margin = margin});
   double worst = 0;
   for (std::size_t s = 0; s < sources.size(); ++s) {
-    const LogMap whole = solver.solve(Source::at_vertex(sources[s]), {.variant = variant});
+    const LogMap whole = solver.solve(Source::at_vertex(Vertex(sources[s])), {.variant = variant});
     for (Offset e = maps.indptr[s]; e < maps.indptr[s + 1]; ++e)
       for (int a = 0; a < 2; ++a)
-        worst = std::max(worst, std::abs(maps.logs[2 * e + a] - whole.coordinates(maps.indices[e])[a]));
+        worst = std::max(worst, std::abs(maps.logs[2 * e + a] - whole.coordinates(Vertex(maps.indices[e]))[a]));
   }
   return worst / radius;
 }
@@ -63,7 +63,7 @@ Table local_maps(const Settings& settings) {
     const double edge = graph.mean_edge_length() * graph.length_unit();
     const LogMapSolver solver(graph, {.check_graph = false}, {.strategy = Strategy::global});
     const double single =
-        median_of_five([&] { solver.solve(Source::at_vertex(n / 2), {.threads = settings.threads}); });
+        median_of_five([&] { solver.solve(Source::at_vertex(Vertex(n / 2)), {.threads = settings.threads}); });
     for (double radius : {5.4, 12.0})
       for (Variant variant : {Variant::adaptive, Variant::localized}) {
         Offset entries = 0;

@@ -21,8 +21,8 @@ std::vector<double> solve(const TangentGraph& graph, Strategy strategy, double b
     solver.emplace(graph, OperatorOptions{.check_graph = false, .threads = settings.threads},
                    SolverOptions{.strategy = strategy});
   });
-  const double first = seconds([&] { map.emplace(solver->solve(Source::at_vertex(0), options)); });
-  const double again = seconds([&] { solver->solve(Source::at_vertex(graph.size() / 2), options); });
+  const double first = seconds([&] { map.emplace(solver->solve(Source::at_vertex(Vertex{0}), options)); });
+  const double again = seconds([&] { solver->solve(Source::at_vertex(Vertex(graph.size() / 2)), options); });
   return {n,
           build,
           build / n * 1e6,

@@ -96,11 +96,11 @@ TEST(SignedHeat, IsPositiveInsideACounterClockwiseLoop) {
 
 TEST(SignedHeat, RefusesWhatIsNoCurve) {
   const CsrGraph sphere(sphere_graph(300)), lattice(bent_lattice(5));
-  EXPECT_THROW(methods::SignedHeat(sphere).signed_distance(Source::at_vertex(3)), InvalidArgument);
-  EXPECT_THROW(methods::SignedHeat(lattice).signed_distance(Source::at_vertex(3)), InvalidArgument);
+  EXPECT_THROW(methods::SignedHeat(sphere).signed_distance(Source::at_vertex(Vertex{3})), InvalidArgument);
+  EXPECT_THROW(methods::SignedHeat(lattice).signed_distance(Source::at_vertex(Vertex{3})), InvalidArgument);
   Source outside(2);
   const double zero[] = {0, 0}, axes[] = {1, 0, 0, 1};
-  outside.add(300000, 1.0, zero, axes);
+  outside.add(Vertex{300000}, 1.0, zero, axes);
   EXPECT_THROW(methods::SignedHeat(sphere).signed_distance(outside), InvalidArgument);
 }
 

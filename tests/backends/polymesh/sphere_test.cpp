@@ -16,8 +16,8 @@ namespace {
 double rms_error(const Polygons& mesh, const LogMap& map, const Frame& frame, Index source) {
   std::vector<double> u, v;
   for (Index i = 0; i < mesh.vertices(); ++i) {
-    u.push_back(map.coordinates(i)[0]);
-    v.push_back(map.coordinates(i)[1]);
+    u.push_back(map.coordinates(Vertex(i))[0]);
+    v.push_back(map.coordinates(Vertex(i))[1]);
   }
   const SphereError error = sphere_error(mesh.positions, u, v, source, frame.x, frame.y, 0.85 * std::numbers::pi);
   EXPECT_EQ(error.missing, 0);
@@ -69,7 +69,7 @@ TEST(PolygonSphere, StartsInsideAFaceToo) {
   const double h = surface.graph().mean_edge_length() * surface.graph().length_unit();
   for (Index i = 0; i < mesh.vertices(); ++i) {
     const double r = sphere_distance(p, mesh.positions[i]);
-    if (r < std::numbers::pi / 2) ASSERT_NEAR(map.distance(i), r, h) << "vertex " << i;
+    if (r < std::numbers::pi / 2) ASSERT_NEAR(map.distance(Vertex(i)), r, h) << "vertex " << i;
   }
 }
 

@@ -1,0 +1,48 @@
+/// \file
+/// Rows of the input and vertices of the graph: which belongs to which.
+///
+/// \code
+/// for (ahm::Vertex v : surface.rows().vertices(ahm::Row{42})) use(v);   // none: the row was removed; several: cut there
+/// \endcode
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "ahm/types.hpp"
+
+namespace ahm {
+
+/// A row and a vertex that belong together.
+struct RowVertex {
+  Row row;
+  Vertex vertex;
+};
+
+/// A relation of rows and vertices. A row has no vertex where it was removed or no face uses it, and several where a mesh
+/// was cut; a vertex has no row inside a refined polygon, and several where equal points share it.
+class RowMap {
+ public:
+  RowMap() = default;
+  /// @param pairs  those of one row in the order of their vertices' preference: the first is `vertex(row)`
+  /// @throws InvalidArgument (a number out of range)
+  RowMap(Index rows, Index vertices, std::span<const RowVertex> pairs);
+
+  Index row_count() const noexcept { return static_cast<Index>(begin_.size()) - 1; }
+  Index vertex_count() const noexcept { return static_cast<Index>(row_of_vertex_.size()); }
+
+  /// The vertices of a row. @throws InvalidArgument (out of range)
+  std::span<const Vertex> vertices(Row row) const;
+  /// The first vertex of a row; none where it was removed. @throws InvalidArgument (out of range)
+  std::optional<Vertex> vertex(Row row) const;
+  /// The first row of a vertex; none for vertices that the input does not have. @throws InvalidArgument (out of range)
+  std::optional<Row> row(Vertex vertex) const;
+
+ private:
+  std::vector<Offset> begin_{0};      ///< rows + 1
+  std::vector<Vertex> vertices_;      ///< row after row
+  std::vector<Index> row_of_vertex_;  ///< -1: none
+};
+
+}  // namespace ahm
