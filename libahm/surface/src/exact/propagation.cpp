@@ -17,11 +17,16 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double slack = 1 + 1e-12;
 /// How far beside a window a point still counts as covered, and how wide a window must be; relative to the side.
 constexpr double margin = 1e-12, least_width = 1e-14;
+/// Rays that meet a side at a smaller angle, or from its other side by rounding, run along it; its ends see them.
+constexpr double least_angle = 1e-15;
 /// Added to both ends of the angles that open behind a vertex.
 constexpr double wedge_margin = 1e-12;
 /// Width of a bucket in mean side lengths, and how many the ring has.
 constexpr double bucket_width = 0.25;
 constexpr std::uint32_t ring = 4096;
+
+/// Whether an origin lies on the line of a side, in its frame.
+bool on_line(Place from, double length) { return !(-from.y > least_angle * (std::abs(from.x) + length)); }
 
 }  // namespace
 
@@ -126,6 +131,7 @@ void Propagation::light_right(const Ray& ray, double begin, double end) {
   const HalfRecord& r = surface_.record(ray.half);
   if (r.beyond_right < 0 || !(end - begin > least_width * r.right)) return;
   Window w = beyond_right(ray, begin, end);
+  if (on_line(w.from, r.right)) return;
   const double sigma = origins_[w.origin()].distance;
   const bool mirror = (r.mirrored & 2) != 0;
   const Index tail = mirror ? r.head : r.apex, head = mirror ? r.apex : r.head;
@@ -245,9 +251,10 @@ void Propagation::cross_face(const Window& w) {
 void Propagation::go_left(const Window& w, const HalfRecord& r, double sigma, double to_apex) {
   const double down = -w.from.y;
   auto hit = [&](double t) { return t * down / (down * r.apex_x + (w.from.x - t) * r.apex_y) * r.left; };
-  const double begin = hit(w.begin), end = to_apex > 0 ? r.left : std::min(r.left, hit(w.end));
+  const double begin = std::max(0.0, hit(w.begin)), end = to_apex > 0 ? r.left : std::min(r.left, hit(w.end));
   if (!(end - begin > least_width * r.left)) return;
   const Place from = beyond_left(r, w.from);
+  if (on_line(from, r.left)) return;
   const double at_begin = sigma + distance(from, {begin, 0});
   const double at_end = to_apex > 0 ? to_apex : sigma + distance(from, {end, 0});
   if (at_end > (distance_[r.tail] + end) * slack || at_begin > (distance_[r.apex] + r.left - begin) * slack) return;
@@ -266,9 +273,10 @@ void Propagation::go_right(const Window& w, const HalfRecord& r, double sigma, d
     const double u = r.length - t;
     return r.right - u * down / (down * base + (x - u) * r.apex_y) * r.right;
   };
-  const double begin = to_apex > 0 ? 0 : std::max(0.0, hit(w.begin)), end = hit(w.end);
+  const double begin = to_apex > 0 ? 0 : std::max(0.0, hit(w.begin)), end = std::min(r.right, hit(w.end));
   if (!(end - begin > least_width * r.right)) return;
   const Place from = exact::beyond_right(r, w.from);
+  if (on_line(from, r.right)) return;
   const double at_begin = to_apex > 0 ? to_apex : sigma + distance(from, {begin, 0});
   const double at_end = sigma + distance(from, {end, 0});
   if (at_end > (distance_[r.apex] + end) * slack || at_begin > (distance_[r.head] + r.right - begin) * slack) return;
