@@ -134,9 +134,10 @@ class Tracer {
     path_.points.push_back(start);
     const bool at_vertex = vertex_of(surface_, start) >= 0;
     for (Exit exit = at_vertex ? leave_corner(line) : leave(surface_, line);;) {
-      if (left_ <= exit.walked) return end(TraceEnd::complete, line, left_, point_of(surface_, line.half, line.at(left_)));
+      if (left_ <= exit.walked)
+        return end(TraceEnd::complete, line, left_, point_of(surface_, line.half, line.at(left_)));
       const double side = surface_.record(exit.side).length;
-      const bool at_tail = exit.along < vertex_margin * side, at_head = exit.along > (1 - vertex_margin) * side;
+      const bool at_tail = exit.along<vertex_margin * side, at_head = exit.along>(1 - vertex_margin) * side;
       if (at_tail || at_head) {
         const Half corner = at_tail ? exit.side : next(exit.side);
         const Index vertex = surface_.record(corner).tail;
@@ -226,8 +227,8 @@ TracedPath trace(const PolyhedralSurface& surface, const MeshPoint& from, double
   double angle = direction / surface.angle_scale(vertex);
   if (!surface.on_boundary(vertex)) angle -= sum * std::floor(angle / sum);
   if (angle < -1e-9 || angle > sum + 1e-9)
-    throw InvalidArgument("'direction' " + detail::number(direction) + " at boundary vertex " +
-                          std::to_string(vertex) + " must be in [0, " + detail::number(sum) + "]");
+    throw InvalidArgument("'direction' " + detail::number(direction) + " at boundary vertex " + std::to_string(vertex) +
+                          " must be in [0, " + detail::number(sum) + "]");
   return Tracer(surface, length).from(surface.vertex_point(vertex), line_from_vertex(surface, vertex, angle));
 }
 

@@ -17,6 +17,8 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double slack = 1 + 1e-12;
 /// How far beside a window a point still counts as covered, and how wide a window must be; relative to the side.
 constexpr double margin = 1e-12, least_width = 1e-14;
+/// Rays to a vertex that cross a side closer than this multiple of it may be one ray, past a vertex they both touch.
+constexpr double same_ray = 1e-10;
 /// Rays that meet a side at a smaller angle, or from its other side by rounding, run along it; its ends see them.
 constexpr double least_angle = 1e-15;
 /// Added to both ends of the angles that open behind a vertex.
@@ -30,7 +32,8 @@ bool on_line(Place from, double length) { return !(-from.y > least_angle * (std:
 
 }  // namespace
 
-Propagation::Propagation(const PolyhedralSurface& surface, double radius, std::span<const MeshPoint> targets, bool only_targets)
+Propagation::Propagation(const PolyhedralSurface& surface, double radius, std::span<const MeshPoint> targets,
+                         bool only_targets)
     : surface_(surface),
       horizon_(radius),
       only_targets_(only_targets),
@@ -107,8 +110,8 @@ void Propagation::add_vertex_source(std::uint32_t origin2, Index vertex) {
 /// The same ray in the frame of the next half-edge of its face.
 Propagation::Ray Propagation::in_next(const Ray& ray) const {
   const double turn = pi - surface_.angle(next(ray.half));
-  return {next(ray.half), exact::in_next(surface_.record(ray.half), ray.from), ray.turn + (ray.origin2 & 1 ? -turn : turn),
-          ray.origin2};
+  return {next(ray.half), exact::in_next(surface_.record(ray.half), ray.from),
+          ray.turn + (ray.origin2 & 1 ? -turn : turn), ray.origin2};
 }
 
 /// A source on the right side of a half-edge lights the face beyond like its own.
@@ -144,15 +147,15 @@ void Propagation::light_right(const Ray& ray, double begin, double end) {
 Window Propagation::beyond_right(const Ray& ray, double begin, double end) const {
   const HalfRecord& r = surface_.record(ray.half);
   const double turn = surface_.angle(next(ray.half));
-  Window w{begin, end, exact::beyond_right(r, ray.from), ray.turn - (ray.origin2 & 1 ? -turn : turn), r.beyond_right,
-           ray.origin2};
+  Window w{begin,          end,        exact::beyond_right(r, ray.from), ray.turn - (ray.origin2 & 1 ? -turn : turn),
+           r.beyond_right, ray.origin2};
   if (r.mirrored & 2) mirror(w, r.right);
   return w;
 }
 
 void Propagation::mirror(Window& w, double length) {
-  w = {length - w.end, length - w.begin, {length - w.from.x, w.from.y}, w.turn + (w.mirrored() ? -pi : pi), w.half,
-       w.origin2 ^ 1};
+  w = {length - w.end, length - w.begin, {length - w.from.x, w.from.y}, w.turn + (w.mirrored() ? -pi : pi),
+       w.half,         w.origin2 ^ 1};
 }
 
 /// Lights the face of a corner from its vertex, between two angles from its half-edge.
@@ -238,7 +241,7 @@ void Propagation::cross_face(const Window& w) {
     Sighting& best = sighting_[w.half];
     if (to_apex < best.distance) {
       best = {to_apex, crossing};
-    } else if (to_apex > best.distance * slack) {
+    } else if (to_apex > best.distance * slack && std::abs(crossing - best.crossing) > same_ray * r.length) {
       (crossing < best.crossing ? right : left) = false;
     }
   }
