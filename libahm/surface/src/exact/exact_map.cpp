@@ -66,7 +66,7 @@ class MapBuilder {
  private:
   void add(double distance, Index component, double horizon, const Reached& reached) {
     const bool ok = distance <= horizon && distance < infinity;
-    map_.status_.push_back(ok ? Status::ok : lit_[component] ? Status::radius : Status::component);
+    map_.status_.push_back(ok ? Status::ok : lit_[component] ? Status::beyond_radius : Status::disconnected);
     map_.distance_.push_back(ok ? distance : nan);
     const Index source = ok ? map_.origins_[reached.origin].source : -1;
     map_.direction_.push_back(ok ? scaled(reached.direction, source) : nan);

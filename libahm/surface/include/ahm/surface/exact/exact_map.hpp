@@ -17,11 +17,11 @@
 namespace ahm::exact {
 
 struct ExactOptions {
-  /// Vertices and targets farther than this get `Status::radius`, and the propagation ends there. World units; > 0.
+  /// Vertices and targets farther than this get `Status::beyond_radius`, and the propagation ends there. World units; > 0.
   double radius = std::numeric_limits<double>::infinity();
   /// Points whose distance and direction are asked for besides those of the vertices.
   std::vector<MeshPoint> targets;
-  /// End when the distances of all targets are final; vertices beyond the farthest of them get `Status::radius`.
+  /// End when the distances of all targets are final; vertices beyond the farthest of them get `Status::beyond_radius`.
   bool only_targets = false;
 };
 
