@@ -21,7 +21,8 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 void check(const PolyhedralSurface& surface, std::span<const MeshPoint> sources, const ExactOptions& options) {
   if (sources.empty()) throw InvalidArgument("'sources' is empty; an exact map needs a source");
-  if (!(options.radius > 0)) throw InvalidArgument("'radius' is " + detail::number(options.radius) + "; it must be > 0");
+  if (!(options.radius > 0))
+    throw InvalidArgument("'radius' is " + detail::number(options.radius) + "; it must be > 0");
   if (options.only_targets && options.targets.empty()) throw InvalidArgument("'only_targets' needs 'targets'");
   for (const MeshPoint& p : sources) checked(surface, p, "source");
 }

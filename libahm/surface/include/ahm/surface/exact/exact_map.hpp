@@ -46,8 +46,8 @@ struct Origin {
 
 /// What the propagation did.
 struct ExactStatistics {
-  Offset windows = 0;    ///< made and queued
-  std::size_t bytes = 0; ///< held at the end, the surface's own tables apart
+  Offset windows = 0;     ///< made and queued
+  std::size_t bytes = 0;  ///< held at the end, the surface's own tables apart
 };
 
 /// Distances and directions from the nearest of several sources, for all vertices and for the targets asked for.
@@ -102,7 +102,8 @@ class ExactMap {
 /// unfolded from face to face [CH90], discarded where a vertex is known to be nearer [XW09], in the order of buckets.
 /// @param sources  one or more points; each keeps its own axes
 /// @throws InvalidArgument (no source, a point outside its face, radius), ResourceExhausted
-ExactMap exact_map(const PolyhedralSurface& surface, std::span<const MeshPoint> sources, const ExactOptions& options = {});
+ExactMap exact_map(const PolyhedralSurface& surface, std::span<const MeshPoint> sources,
+                   const ExactOptions& options = {});
 ExactMap exact_map(const PolyhedralSurface& surface, const MeshPoint& source, const ExactOptions& options = {});
 
 /// One map for each source, on several threads; the result does not depend on their number.
