@@ -55,7 +55,7 @@ void measure_mesh(const char* name, std::span<const Vec3> points, const Surface&
              auto on = surface.on_vertices(map);
              return std::array{std::move(on.u), std::move(on.v)};
            },
-           [&](Index p) { return surface.vertex(p); }},
+           [&](Index p) { return surface.vertex(p).index; }},
           table);
 }
 

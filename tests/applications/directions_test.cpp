@@ -34,11 +34,11 @@ TEST(DirectionInFrame, TurnsTheUAxisAlongAVectorOfSpace) {
     Vec3 along;
     for (int a = 0; a < 3; ++a) along[a] = up[a] - height * frame.normal[a];
     const double r = std::sqrt(dot(along, along));
-    const LogMap map = plane.solver.solve(Source::at_vertex(p, direction_in_frame(graph, p, up)));
+    const LogMap map = plane.solver.solve(Source::at_vertex(Vertex(p), direction_in_frame(graph, Vertex{p}, up)));
     for (Index i = 0; i < graph.size(); ++i) {
       Vec3 away;
       for (int a = 0; a < 3; ++a) away[a] = graph.frame(i)->origin[a] - frame.origin[a];
-      EXPECT_NEAR(map.coordinates(i)[0], dot(away, along) / r, 1e-11);
+      EXPECT_NEAR(map.coordinates(Vertex(i))[0], dot(away, along) / r, 1e-11);
     }
   }
 }
@@ -46,12 +46,12 @@ TEST(DirectionInFrame, TurnsTheUAxisAlongAVectorOfSpace) {
 TEST(DirectionInFrame, RefusesWhatHasNoDirection) {
   const grid::GridGraph grid({.shape = {4, 4}, .spacing = {1, 1}}), space({.shape = {4, 4, 4}, .spacing = {1, 1, 1}});
   const CsrGraph abstract(planar_triangulation(4).data);
-  EXPECT_THROW(direction_in_frame(grid, 0, {0, 0, 1}), InvalidArgument);
-  EXPECT_THROW(direction_in_frame(grid, 0, {0, 0, 0}), InvalidArgument);
-  EXPECT_THROW(direction_in_frame(grid, 0, {0, NAN, 1}), InvalidArgument);
-  EXPECT_THROW(direction_in_frame(grid, 16, {0, 1, 0}), InvalidArgument);
-  EXPECT_THROW(direction_in_frame(space, 0, {0, 1, 0}), InvalidArgument);
-  EXPECT_THROW(direction_in_frame(abstract, 0, {0, 1, 0}), InvalidArgument);
+  EXPECT_THROW(direction_in_frame(grid, Vertex{0}, {0, 0, 1}), InvalidArgument);
+  EXPECT_THROW(direction_in_frame(grid, Vertex{0}, {0, 0, 0}), InvalidArgument);
+  EXPECT_THROW(direction_in_frame(grid, Vertex{0}, {0, NAN, 1}), InvalidArgument);
+  EXPECT_THROW(direction_in_frame(grid, Vertex{16}, {0, 1, 0}), InvalidArgument);
+  EXPECT_THROW(direction_in_frame(space, Vertex{0}, {0, 1, 0}), InvalidArgument);
+  EXPECT_THROW(direction_in_frame(abstract, Vertex{0}, {0, 1, 0}), InvalidArgument);
   EXPECT_THROW(curvature_directions(space), InvalidArgument);
   EXPECT_THROW(curvature_directions(abstract), InvalidArgument);
 }
@@ -87,10 +87,10 @@ TEST(Curvature, OfACylinderRunsRoundIt) {
       const auto& p = mesh.plane[i];
       const bool border = std::min({p[0], p[1], 1 - p[0], 1 - p[1]}) < 2.5 / side;
       const double tolerance = border ? reach : reach * reach / 4;
-      const Index v = surface.vertex(i);
+      const Index v = surface.vertex(i).index;
       EXPECT_NEAR(std::abs(bend.values[2 * v]) * radius, 1, tolerance) << i;
       EXPECT_NEAR(bend.values[2 * v + 1] * radius, 0, tolerance) << i;
-      EXPECT_NEAR(in_space(*graph.frame(v), bend.direction(v))[0], 0, tolerance) << i;
+      EXPECT_NEAR(in_space(*graph.frame(v), bend.direction(Vertex(v)))[0], 0, tolerance) << i;
     }
   }
 }
@@ -118,7 +118,7 @@ TEST(Curvature, OfAnEllipsoidIsThatOfItsEquation) {
       double worst = 0, mixed = 0;
       for (Index i = 0; i < graph->size(); ++i) {
         const Frame frame = *graph->frame(i);
-        const auto d = bend.direction(i);
+        const auto d = bend.direction(Vertex(i));
         const Vec3 u = in_space(frame, d), v = in_space(frame, std::array{-d[1], d[0]});
         const double outwards = dot(frame.normal, frame.origin) > 0 ? 1 : -1;
         const double uu = ellipsoid_curvature(axes, frame.origin, u, u),
@@ -146,8 +146,8 @@ TEST(Curvature, DoesNotDependOnTheSizeOfOtherPieces) {
   const PrincipalCurvatures bend = curvature_directions(surface.graph());
   for (Index i = 0; i < sphere.vertices(); ++i)
     for (int k : {0, 1})  // positions of the small one are rounded to 1e-10 of it
-      EXPECT_NEAR(1e-6 * bend.values[2 * surface.vertex(i + sphere.vertices()) + k],
-                  bend.values[2 * surface.vertex(i) + k], 1e-7);
+      EXPECT_NEAR(1e-6 * bend.values[2 * surface.vertex(i + sphere.vertices()).index + k],
+                  bend.values[2 * surface.vertex(i).index + k], 1e-7);
 }
 
 TEST(Curvature, ChangesSignWithTheNormalAndScalesWithLength) {
@@ -160,11 +160,11 @@ TEST(Curvature, ChangesSignWithTheNormalAndScalesWithLength) {
   const auto other = TriangleMeshGraph::build(mesh.positions, mesh.faces);
   const PrincipalCurvatures a = curvature_directions(surface.graph()), b = curvature_directions(other.graph());
   for (Index i = 0; i < mesh.vertices(); ++i) {
-    const Index v = surface.vertex(i), w = other.vertex(i);
+    const Index v = surface.vertex(i).index, w = other.vertex(i).index;
     for (int k : {0, 1}) EXPECT_NEAR(b.values[2 * w + k] * 1e100, -a.values[2 * v + k], 1e-9);
     if (std::abs(a.values[2 * v] - a.values[2 * v + 1]) < 0.1) continue;
-    const Vec3 along = in_space(*surface.graph().frame(v), a.direction(v)),
-               same = in_space(*other.graph().frame(w), b.direction(w));
+    const Vec3 along = in_space(*surface.graph().frame(v), a.direction(Vertex(v))),
+               same = in_space(*other.graph().frame(w), b.direction(Vertex(w)));
     EXPECT_NEAR(std::abs(dot(along, same)), 1, 1e-9);
   }
 }

@@ -62,7 +62,7 @@ SphereErrors sphere_errors(Index parts, Variant variant) {
   double area = 0;
   for (Index source : {0, parts * parts / 3}) {
     const VertexMap map = solved.map(solved.surface.source_at_vertex(source), variant);
-    const Frame frame = *graph.frame(solved.surface.vertex(source));
+    const Frame frame = *graph.frame(solved.surface.vertex(source).index);
     for (Index i = 0; i < mesh.vertices(); ++i) {
       const auto exact = sphere_log(mesh.positions[source], frame.x, frame.y, mesh.positions[i]);
       const double d = std::hypot(exact[0], exact[1]), off = std::hypot(map.u[i] - exact[0], map.v[i] - exact[1]);

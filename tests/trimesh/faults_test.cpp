@@ -97,7 +97,7 @@ TEST(MeshFaults, OtherComponentsAreMasked) {
   const VertexMap map = solved.map(solved.surface.source_at_vertex(3));
   expect_nan_exactly_where_not_ok(map);
   for (Index i = 0; i < both.vertices(); ++i)
-    ASSERT_EQ(map.status[i], i < one.vertices() ? Status::ok : Status::component);
+    ASSERT_EQ(map.status[i], i < one.vertices() ? Status::ok : Status::disconnected);
 }
 
 TEST(MeshFaults, EdgesOfThreeFaces) {
@@ -115,7 +115,7 @@ TEST(MeshFaults, EdgesOfThreeFaces) {
   EXPECT_FALSE(solved.surface.report().warnings.empty());
   const VertexMap map = solved.map(solved.surface.source_at_vertex(0));
   expect_nan_exactly_where_not_ok(map);
-  EXPECT_EQ(map.status[fin], Status::component);
+  EXPECT_EQ(map.status[fin], Status::disconnected);
   EXPECT_EQ(map.status[a], Status::ok);  // the copy on the source's sheet
 }
 
@@ -131,7 +131,7 @@ TEST(MeshFaults, BowTies) {
   EXPECT_EQ(solved.surface.report().topology.non_manifold_vertices, 1);
   const VertexMap map = solved.map(solved.surface.source_at_vertex(cut + 7));
   EXPECT_EQ(map.status[5], Status::ok);
-  EXPECT_EQ(map.status[6], Status::component);
+  EXPECT_EQ(map.status[6], Status::disconnected);
   EXPECT_EQ(map.status[cut], Status::removed);
 }
 

@@ -67,7 +67,7 @@ TEST(MeshPlane, PutsTheFrameWhereItSays) {
     const SolvedMesh solved(mesh);
     for (Index source : {0, mesh.vertices() / 2}) {
       const VertexMap map = solved.map(solved.surface.source_at_vertex(source));
-      const Frame frame = *solved.surface.graph().frame(solved.surface.vertex(source));
+      const Frame frame = *solved.surface.graph().frame(solved.surface.vertex(source).index);
       for (Index i = 0; i < mesh.vertices(); ++i) {
         const Vec3& p = mesh.positions[i];
         const Vec3 offset{p[0] - frame.origin[0], p[1] - frame.origin[1], p[2] - frame.origin[2]};

@@ -75,7 +75,7 @@ TEST(MeshSource, FramesAreRightHandedAndTangent) {
     EXPECT_NEAR(dot(f.x, f.x), 1, 1e-14);
     EXPECT_GT(dot(f.normal, f.origin), 0.99);
     EXPECT_NEAR(f.x[1] * f.y[2] - f.x[2] * f.y[1], f.normal[0], 1e-14);
-    const auto u = surface.direction_in_frame(v, f.y);
+    const auto u = surface.direction_in_frame(Vertex(v), f.y);
     EXPECT_NEAR(u[0], 0, 1e-14);
     EXPECT_NEAR(u[1], 1, 1e-14);
   }

@@ -123,7 +123,7 @@ TEST(MeshSymmetry, RepeatsBitForBitOnAnyNumberOfThreads) {
 TEST(MeshSymmetry, TheUDirectionTurnsTheMap) {
   const SolvedMesh solved(bumpy());
   const VertexMap a = solved.map(solved.surface.source_at_vertex(100));
-  const Frame frame = *solved.surface.graph().frame(solved.surface.vertex(100));
+  const Frame frame = *solved.surface.graph().frame(solved.surface.vertex(100).index);
   const VertexMap b = solved.map(solved.surface.source_at_vertex(100, frame.y));
   for (std::size_t i = 0; i < a.u.size(); ++i) {
     ASSERT_NEAR(a.u[i], -b.v[i], 1e-11);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "ahm/io/formats.hpp"
 #include "cli/numbers.hpp"
 #include "input/backend.hpp"
 
@@ -54,7 +55,9 @@ CLI::Option* add_min_quality(CLI::App& app, double& min_quality) {
 }
 
 void add_input(CLI::App& app, InputOptions& o) {
-  app.add_option("INPUT", o.path, "File to read: .ply .pcd .xyz .txt .csv .off .obj .stl")->required()->type_name("");
+  app.add_option("INPUT", o.path, fmt::format("File to read: {}", fmt::join(io::extensions(io::Use::read), " ")))
+      ->required()
+      ->type_name("");
 }
 
 CLI::Option* add_backend(CLI::App& app, InputOptions& o) {

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "ahm/applications/distortion.hpp"
+#include "ahm/io/write.hpp"
 #include "ahm/view/textured_picture.hpp"
 #include "cli/numbers.hpp"
 #include "cli/option_adders.hpp"
@@ -82,7 +83,7 @@ Skin skin_behind(const DecalCommandOptions& options, const Input& input, const L
 }
 
 void write_mesh(const DecalCommandOptions& options, const Input& input, const LogMapSolver& solver, const Decal& decal,
-                const io::Image& image, const Vec3& source) {
+                const Image& image, const Vec3& source) {
   const Skin skin = skin_behind(options, input, solver);
   const SkinPart behind(skin, [](std::size_t) { return true; });
   std::vector<double> corners;
@@ -93,7 +94,7 @@ void write_mesh(const DecalCommandOptions& options, const Input& input, const Lo
   io::MeshPart& part = parts.emplace_back();
   part.name = "decal";
   part.points = decal.points, part.normals = decal.normals;
-  part.face_begin = decal.face_begin, part.face_vertices = decal.face_vertices;
+  part.faces = {decal.face_begin, decal.face_vertices};
   part.texture_coordinates = corners;
   part.texture = &image;
   part.transparent = true;
@@ -107,7 +108,7 @@ void write_mesh(const DecalCommandOptions& options, const Input& input, const Lo
 
 /// The colours of the input, light grey where there are none, under the image.
 std::vector<std::array<std::uint8_t, 3>> painted(const Input& input, const std::vector<double>& places,
-                                                 const io::Image& image) {
+                                                 const Image& image) {
   std::vector<std::array<std::uint8_t, 3>> colors = input.geometry.colors;
   colors.resize(input.rows(), {200, 200, 200});
   const bool by_row = input.backend->has_faces;
@@ -136,12 +137,17 @@ std::vector<double> disc_radii(const Input& input) {
   return radii;
 }
 
-void write_points(const DecalCommandOptions& options, const Input& input, const InverseMap& inverse,
-                  const io::Image& image, const Vec3& source) {
+void write_points(const DecalCommandOptions& options, const Input& input, const InverseMap& inverse, const Image& image,
+                  const Vec3& source) {
   const auto colors = painted(input, image_coordinates_of_vertices(inverse, options.decal), image);
   const std::vector<Vec3> normals = input.surface->normals();
   const io::Geometry& given = input.geometry;
-  io::write_colored_ply(options.output.output, given.points, normals, colors, given.face_begin, given.face_vertices);
+  io::Table table{.title = "coloured by libahm"};
+  table.add({"x", "y", "z"}, given.points);
+  if (!given.normals.empty()) table.add({"nx", "ny", "nz"}, given.normals);
+  table.add({"red", "green", "blue"}, colors);
+  table.faces = given.faces();
+  io::write(options.output.output, table);
   if (options.output.view.empty()) return;
   view::TexturedScene scene;
   scene.points = given.points, scene.colors = colors, scene.normals = normals;
@@ -174,7 +180,7 @@ void report(const DecalCommandOptions& options, const Input& input, const Decal&
 void run(const DecalCommandOptions& given) {
   DecalCommandOptions options = given;
   check_texture_output(options.input.path, options.output, {".obj", ".glb", ".ply"}, {"decal"}, options.image);
-  const io::Image image = io::read_image(options.image);
+  const Image image = io::read_image(options.image);
   const double longer = std::max(image.width, image.height);
   options.decal.width = options.size * image.width / longer;
   options.decal.height = options.size * image.height / longer;

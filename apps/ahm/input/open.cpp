@@ -7,8 +7,8 @@
 #include "ahm/error.hpp"
 #include "ahm/heat/heat_operators.hpp"
 #include "ahm/io/read.hpp"
+#include "ahm/surface/directions.hpp"
 #include "cli/source_list.hpp"
-#include "input/frames.hpp"
 
 namespace ahm::app {
 namespace {
@@ -58,18 +58,23 @@ ResolvedSource resolve(const SourceOptions& options, const Input& input) {
   const Source plain = model.source(options.spec, std::nullopt).source;
   // In a face: at the corner that has most of the source.
   const auto most = std::max_element(plain.weights().begin(), plain.weights().end()) - plain.weights().begin();
-  return model.source(options.spec, bending_direction(model.graph(), plain.vertices()[most]));
+  try {
+    return model.source(options.spec, bending_direction(model.graph(), plain.vertices()[most]));
+  } catch (const InvalidArgument& e) {
+    if (e.fault() != "no_bending_direction") throw;
+    throw InvalidArgument(fmt::format("--u-axis curvature: {}; give the axis as X,Y,Z", e.problem()));
+  }
 }
 
-Index vertex_at(const Input& input, const SourceSpec& spec, const std::string& option) {
+Vertex vertex_at(const Input& input, const SourceSpec& spec, const std::string& option) {
   position_in(input.geometry, spec, option);
   if (std::holds_alternative<SourceFace>(spec))
     throw InvalidArgument(fmt::format("{} {}: must be a vertex; write its number or x,y,z", option, to_string(spec)));
   return resolve(*input.surface, spec, std::nullopt, option).source.vertices().front();
 }
 
-std::vector<Index> vertices_at(const Input& input, const std::vector<SourceSpec>& specs, const std::string& option) {
-  std::vector<Index> result;
+std::vector<Vertex> vertices_at(const Input& input, const std::vector<SourceSpec>& specs, const std::string& option) {
+  std::vector<Vertex> result;
   for (const SourceSpec& spec : specs) result.push_back(vertex_at(input, spec, option));
   return result;
 }

@@ -39,7 +39,7 @@ ResolvedSource resolve(const SourceOptions& options, const Input& input);
 
 /// The vertex of the graph at a row of the input or nearest to a position.
 /// @throws InvalidArgument, also for a point in a face
-Index vertex_at(const Input& input, const SourceSpec& spec, const std::string& option);
-std::vector<Index> vertices_at(const Input& input, const std::vector<SourceSpec>& specs, const std::string& option);
+Vertex vertex_at(const Input& input, const SourceSpec& spec, const std::string& option);
+std::vector<Vertex> vertices_at(const Input& input, const std::vector<SourceSpec>& specs, const std::string& option);
 
 }  // namespace ahm::app

@@ -7,10 +7,10 @@
 
 #include "ahm/error.hpp"
 #include "ahm/pointcloud/point_cloud_graph.hpp"
+#include "ahm/surface/directions.hpp"
 #include "cli/source_list.hpp"
 #include "input/backend.hpp"
 #include "input/cloud_preparation.hpp"
-#include "input/frames.hpp"
 #ifdef AHM_WITH_PCL
 #include "ahm/pcl/search.hpp"
 #endif

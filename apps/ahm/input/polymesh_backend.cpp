@@ -8,9 +8,9 @@
 
 #include "ahm/error.hpp"
 #include "ahm/polymesh/polygon_mesh_graph.hpp"
+#include "ahm/surface/directions.hpp"
 #include "ahm/trimesh/triangle_mesh_graph.hpp"
 #include "input/backend.hpp"
-#include "input/frames.hpp"
 #include "input/mesh_input.hpp"
 
 namespace ahm::app {
@@ -79,7 +79,8 @@ class PolymeshModel final : public Model {
     const Index vertex = mesh_.vertex_of_input()[row];
     if (vertex < 0) throw InvalidArgument(fmt::format("vertex {} is used by no face; choose another", row));
     const Frame frame = *graph().frame(vertex);
-    ResolvedSource result{Source::at_vertex(vertex), row, input_.points[row], u_axis ? turned(frame, *u_axis) : frame};
+    ResolvedSource result{Source::at_vertex(Vertex(vertex)), row, input_.points[row],
+                          u_axis ? turned(frame, *u_axis) : frame};
     if (u_axis)
       result.source =
           triangles_ ? triangles_->source_at_vertex(vertex, *u_axis) : polygons_->source_at_vertex(row, *u_axis);

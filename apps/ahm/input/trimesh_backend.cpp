@@ -5,9 +5,9 @@
 #include <nlohmann/json.hpp>
 
 #include "ahm/error.hpp"
+#include "ahm/surface/directions.hpp"
 #include "ahm/trimesh/triangle_mesh_graph.hpp"
 #include "input/backend.hpp"
-#include "input/frames.hpp"
 #include "input/mesh_input.hpp"
 
 namespace ahm::app {
@@ -57,7 +57,7 @@ class TrimeshModel final : public Model {
     const auto* position = std::get_if<SourcePosition>(&spec);
     const Index row = position ? nearest_row(points_, mesh_.mesh().vertex_of_input(), position->position)
                                : std::get<SourceVertex>(spec).index;
-    const Frame frame = *mesh_.graph().frame(mesh_.vertex(row));
+    const Frame frame = *mesh_.graph().frame(mesh_.vertex(row).index);
     return {u_axis ? mesh_.source_at_vertex(row, *u_axis) : mesh_.source_at_vertex(row), row, points_[row],
             u_axis ? turned(frame, *u_axis) : frame};
   } catch (const InvalidArgument& e) {

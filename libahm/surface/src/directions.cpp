@@ -3,17 +3,17 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <string>
 
 #include "ahm/error.hpp"
 #include "ahm/util/parallel.hpp"
 #include "ahm/util/small_math.hpp"
+#include "ahm/util/vec.hpp"
 
 namespace ahm {
 namespace {
-
-double dot(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 void check_dimension(const TangentGraph& graph, const char* name) {
   if (graph.dimension() != 2)
@@ -43,18 +43,16 @@ void collect_two_rings(const TangentGraph& graph, Index vertex, std::vector<Inde
   std::erase(both, vertex);
 }
 
-Vec3 between(const Vec3& from, const Vec3& to) { return {to[0] - from[0], to[1] - from[1], to[2] - from[2]}; }
-
 /// The shape operator of a vertex from the heights of others over its tangent plane; NaN where these do not tell.
 Eigen::Matrix2d shape_operator(const Frame& frame, std::span<const Vec3> others) {
   double reach = 0;  // the unit of length here
-  for (const Vec3& p : others) reach = std::max(reach, length(between(frame.origin, p)));
+  for (const Vec3& p : others) reach = std::max(reach, length(p - frame.origin));
   // z = t . (x, y) + (a x^2 + 2 b x y + c y^2) / 2, each row over |(x, y)|^2: normal equations in (t, a, b, c).
   using Row = Eigen::Matrix<double, 5, 1>;
   Eigen::Matrix<double, 5, 5> normal = Eigen::Matrix<double, 5, 5>::Zero();
   Row right = Row::Zero();
   for (const Vec3& p : others) {
-    const Vec3 away = between(frame.origin, p);
+    const Vec3 away = p - frame.origin;
     const double x = dot(away, frame.x) / reach, y = dot(away, frame.y) / reach, r = std::hypot(x, y);
     if (!(r > 0)) continue;
     const double c = x / r, s = y / r;
@@ -69,24 +67,68 @@ Eigen::Matrix2d shape_operator(const Frame& frame, std::span<const Vec3> others)
   return (Eigen::Matrix2d() << fit[2], fit[3], fit[3], fit[4]).finished() / -reach;
 }
 
+/// Length of the mean of the neighbours' directions carried to the vertex, as axes (angles count twice): 1 where all are
+/// parallel to each other, near 0 where they are random.
+double agreement_around(const TangentGraph& graph, const PrincipalCurvatures& bend, Index vertex) {
+  const Star star = graph.star(vertex);
+  const bool is_block = graph.transport_kind() == TransportKind::block;
+  double c = 0, s = 0, count = 0;
+  for (std::size_t e = 0; e < star.degree(); ++e) {
+    const auto d = bend.direction(Vertex(star.neighbors[e]));
+    if (std::isnan(d[0])) continue;
+    const double* R = &star.transports[e * (is_block ? 4 : 2)];
+    const double x = is_block ? R[0] * d[0] + R[1] * d[1] : R[0] * d[0] - R[1] * d[1];
+    const double y = is_block ? R[2] * d[0] + R[3] * d[1] : R[1] * d[0] + R[0] * d[1];
+    c += x * x - y * y, s += 2 * x * y, count += 1;
+  }
+  return count > 0 ? std::hypot(c, s) / count : 0;
+}
+
+/// With a few digits, for messages.
+std::string shortly(const char* format, double value) {
+  char buffer[32];
+  std::snprintf(buffer, sizeof buffer, format, value);
+  return buffer;
+}
+
 }  // namespace
 
-std::array<double, 2> direction_in_frame(const TangentGraph& graph, Index vertex, const Vec3& vector) {
+Vec2 projected(const Vec3& x, const Vec3& y, const Vec3& vector, const std::string& where) {
+  const double largest = std::max({std::abs(vector[0]), std::abs(vector[1]), std::abs(vector[2])});
+  if (!(largest > 0) || !is_finite(vector))
+    throw InvalidArgument("a direction " + where + " must be finite and not zero");
+  const double scale = std::scalbn(1.0, -std::ilogb(largest));  // a power of two: no bit of the result changes
+  const Vec3 scaled = scale * vector;
+  const Vec2 result{dot(x, scaled), dot(y, scaled)};
+  if (!(length(result) > 1e-9))
+    throw InvalidArgument("axis_along_normal", "a direction is perpendicular to the surface " + where,
+                          "choose another one");
+  return result;
+}
+
+Vec2 projected(const TangentGraph& graph, Vertex vertex, const Vec3& vector) {
   const char* name = "direction_in_frame";
   check_dimension(graph, name);
-  if (vertex < 0 || vertex >= graph.size())
-    throw InvalidArgument("direction_in_frame: 'vertex' " + std::to_string(vertex) + " is outside [0, " +
+  if (vertex.index < 0 || vertex.index >= graph.size())
+    throw InvalidArgument("direction_in_frame: 'vertex' " + std::to_string(vertex.index) + " is outside [0, " +
                           std::to_string(graph.size()) + ")");
-  const Frame frame = frame_of(graph, vertex, name);
-  const double largest = std::max({std::abs(vector[0]), std::abs(vector[1]), std::abs(vector[2])});
-  if (!(largest > 0) || !all_finite(vector))
-    throw InvalidArgument("direction_in_frame: 'vector' must be finite and not zero");
-  const Vec3 scaled{vector[0] / largest, vector[1] / largest, vector[2] / largest};
-  const double u = dot(frame.x, scaled), v = dot(frame.y, scaled), r = std::hypot(u, v);
-  if (!(r > 1e-9))
-    throw InvalidArgument("direction_in_frame: 'vector' is perpendicular to the surface at vertex " +
-                          std::to_string(vertex) + "; choose another one");
-  return {u / r, v / r};
+  const Frame frame = frame_of(graph, vertex.index, name);
+  return projected(frame.x, frame.y, vector, "at vertex " + std::to_string(vertex.index));
+}
+
+Vec2 direction_in_frame(const TangentGraph& graph, Vertex vertex, const Vec3& vector) {
+  const Vec2 p = projected(graph, vertex, vector);
+  const double r = length(p);
+  return {p[0] / r, p[1] / r};
+}
+
+Frame turned(const Frame& frame, const Vec3& direction) {
+  const double a = dot(direction, frame.x), b = dot(direction, frame.y);
+  const double r = std::hypot(a, b);
+  Frame result = frame;
+  for (std::size_t c = 0; c < 3; ++c) result.x[c] = (a * frame.x[c] + b * frame.y[c]) / r;
+  result.y = cross(frame.normal, result.x);
+  return result;
 }
 
 PrincipalCurvatures curvature_directions(const TangentGraph& graph) {
@@ -115,6 +157,27 @@ PrincipalCurvatures curvature_directions(const TangentGraph& graph) {
     }
   });
   return result;
+}
+
+Vec3 bending_direction(const TangentGraph& graph, Vertex vertex) {
+  const Frame frame = frame_of(graph, vertex.index, "bending_direction");
+  const PrincipalCurvatures bend = curvature_directions(graph);
+  const double first = bend.values[2 * static_cast<std::size_t>(vertex.index)],
+               second = bend.values[2 * static_cast<std::size_t>(vertex.index) + 1];
+  const auto refuse = [](const std::string& problem) {
+    throw InvalidArgument("no_bending_direction", problem, "give a direction");
+  };
+  if (std::isnan(first)) refuse("the source has too few neighbours to tell");
+  const double edge = graph.mean_edge_length() * graph.length_unit();
+  if (!(std::abs(first) * edge > 1e-6)) refuse("the surface is flat at the source");
+  if (!(std::abs(first - second) > 0.1 * std::abs(first)))
+    refuse("at the source the surface bends alike in all directions (curvatures " + shortly("%.3g", first) + " and " +
+           shortly("%.3g", second) + ")");
+  if (const double agreement = agreement_around(graph, bend, vertex.index); agreement < 0.5)
+    refuse("the directions around the source contradict each other (agreement " + shortly("%.2f", agreement) +
+           " of 1), as on planes and rough scans");
+  const auto d = bend.direction(vertex);
+  return d[0] * frame.x + d[1] * frame.y;
 }
 
 }  // namespace ahm

@@ -4,14 +4,17 @@
 ///
 /// \code
 /// try {
-///   auto map = solver.solve(ahm::Source::at_vertex(42));
+///   auto map = solver.solve(ahm::Source::at_vertex(ahm::Vertex{42}));
 /// } catch (const ahm::InvalidArgument& e) {
 ///   std::cerr << e.what() << '\n';
 /// }
 /// \endcode
 #pragma once
 
+#include <cstddef>
 #include <stdexcept>
+#include <string>
+#include <string_view>
 
 namespace ahm {
 
@@ -19,6 +22,19 @@ namespace ahm {
 class Error : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
+  /// What went wrong, and what to do about it in terms of this library: what() is "problem; remedy".
+  /// @param fault  snake_case, static storage: for programs that name another remedy, their own
+  Error(std::string_view fault, const std::string& problem, const std::string& remedy)
+      : runtime_error(problem + "; " + remedy), fault_(fault), problem_(problem.size()) {}
+
+  /// Empty where the error has no name of its own.
+  std::string_view fault() const noexcept { return fault_; }
+  /// what() without the remedy of a named fault.
+  std::string_view problem() const noexcept { return fault_.empty() ? what() : std::string_view(what(), problem_); }
+
+ private:
+  std::string_view fault_;
+  std::size_t problem_ = 0;
 };
 
 /// A graph breaks one of its laws (see `validate`).

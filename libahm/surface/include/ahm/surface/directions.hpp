@@ -2,14 +2,15 @@
 /// Directions for the u axis of a log map: along a vector of space, or along the surface's principal curvature.
 ///
 /// \code
-/// auto up = ahm::Source::at_vertex(7, ahm::direction_in_frame(graph, 7, {0, 0, 1}));   // u runs upwards
-/// ahm::PrincipalCurvatures bend = ahm::curvature_directions(graph);
-/// auto along = ahm::Source::at_vertex(7, bend.direction(7));                           // u: where it bends most
+/// auto up = surface.source(ahm::Row{7}, ahm::Vec3{0, 0, 1});               // u runs upwards
+/// ahm::Vec3 bend = ahm::bending_direction(surface.graph(), surface.vertex(ahm::Row{7}));
+/// auto along = surface.source(ahm::Row{7}, bend);                          // u: where the surface bends most
+/// ahm::PrincipalCurvatures all = ahm::curvature_directions(surface.graph());
 /// \endcode
 #pragma once
 
-#include <array>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "ahm/graph/tangent_graph.hpp"
@@ -18,27 +19,44 @@ namespace ahm {
 
 /// A vector of space projected to the tangent plane of a vertex: unit length, in the frame of the vertex. For graphs
 /// with d = 2 and frames in space.
-/// @throws InvalidArgument (d, index, no frames, a vector that is zero, not finite or perpendicular to the plane)
-std::array<double, 2> direction_in_frame(const TangentGraph& graph, Index vertex, const Vec3& vector);
+/// @throws InvalidArgument (d, index, no frames, a vector that is zero, not finite or, fault "axis_along_normal",
+/// perpendicular to the plane)
+Vec2 direction_in_frame(const TangentGraph& graph, Vertex vertex, const Vec3& vector);
+
+/// The same, of any length > 0: for `Source::at_vertex`, which needs no more.
+Vec2 projected(const TangentGraph& graph, Vertex vertex, const Vec3& vector);
+
+/// The components of a vector along the axes of a frame, of any length > 0; `where` ends a message, as "in face 7".
+/// @throws InvalidArgument (a vector that is zero, not finite or, fault "axis_along_normal", perpendicular to both)
+Vec2 projected(const Vec3& x, const Vec3& y, const Vec3& vector, const std::string& where);
+
+/// A frame turned about its normal until its x axis is `direction`, projected.
+Frame turned(const Frame& frame, const Vec3& direction);
 
 /// Principal curvatures, n rows; NaN at vertices with too few neighbours to tell.
 struct PrincipalCurvatures {
-  /// n x 2: kappa_1, kappa_2 with |kappa_1| >= |kappa_2|, in 1 / outside units; positive where the surface bends away
+  /// n x 2: kappa_1, kappa_2 with |kappa_1| >= |kappa_2|, in 1 / world units; positive where the surface bends away
   /// from its normal, as a sphere does with normals outwards.
   std::vector<double> values;
   /// n x 2: unit vector in the frame of the vertex along which the curvature is kappa_1, up to its sign. Across it the
   /// curvature is kappa_2. Arbitrary where the two are equal.
   std::vector<double> directions;
 
-  std::span<const double> direction(Index vertex) const {
-    return std::span(directions).subspan(2 * static_cast<std::size_t>(vertex), 2);
+  std::span<const double> direction(Vertex vertex) const {
+    return std::span(directions).subspan(2 * static_cast<std::size_t>(vertex.index), 2);
   }
 };
 
 /// Eigenvalues and eigenvectors of the shape operator S of a paraboloid fitted to each vertex, its neighbours and
 /// theirs: over the tangent plane of the vertex heights are z = t . x - (x . S x) / 2, in the sense of least squares of
-/// z / |x|^2 (CP05). First order in h on smooth surfaces; noise of the positions grows by 1 / h^2.
+/// z / |x|^2 [CP05]. First order in h on smooth surfaces; noise of the positions grows by 1 / h^2.
 /// @throws InvalidArgument (d is not 2, no frames)
 PrincipalCurvatures curvature_directions(const TangentGraph& graph);
+
+/// Unit vector of space along which the surface bends most at a vertex, up to its sign.
+/// @throws InvalidArgument (as `curvature_directions`; fault "no_bending_direction" where there are too few neighbours to
+/// tell, where the surface is flat or bends alike in all directions, and where the neighbours' directions contradict each
+/// other)
+Vec3 bending_direction(const TangentGraph& graph, Vertex vertex);
 
 }  // namespace ahm

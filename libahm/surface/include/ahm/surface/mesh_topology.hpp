@@ -2,6 +2,9 @@
 /// What the backends for meshes check, and what they tell about it.
 #pragma once
 
+#include <vector>
+
+#include "ahm/report.hpp"
 #include "ahm/types.hpp"
 
 namespace ahm {
@@ -27,5 +30,14 @@ struct TopologyReport {
   Index non_manifold_edges = 0;     ///< cut (NonManifold::split)
   Index non_manifold_vertices = 0;  ///< split into several (NonManifold::split)
 };
+
+/// components, boundary_loops, orientable, reoriented, unreferenced, non_manifold_edges, non_manifold_vertices: the figures
+/// of a mesh's report that are about its topology.
+Report figures(const TopologyReport& topology);
+
+/// What a user should know about a checked mesh. Ids, each with the count of `TopologyReport` as its number: unreferenced,
+/// reoriented, non_manifold_edges (cut), non_manifold_vertices (split), not_orientable (no number), components (of more
+/// than one).
+std::vector<Warning> warnings(const TopologyReport& topology);
 
 }  // namespace ahm

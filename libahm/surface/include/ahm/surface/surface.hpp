@@ -9,6 +9,7 @@
 /// \endcode
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -26,56 +27,104 @@ namespace ahm {
 /// A source and where it lies in space.
 struct PlacedSource {
   Source source;
-  Vec3 position{};             ///< world units
-  std::optional<Frame> frame;  ///< u axis, v axis and normal in space; none without positions
+  Vec3 position{};             ///< world units; zero without positions
+  std::optional<Frame> frame;  ///< u axis, v axis and normal in space; none without positions or area
   std::optional<Row> row;      ///< where the source is a row
+};
+
+/// What reading an input and building its surface takes, per row, on one core of a 3 GHz machine.
+struct BuildCost {
+  double bytes, seconds;
 };
 
 /// What every discretized surface (d = 2) offers beyond its graph. Immutable; all members may be called from many threads
 /// at once. Rows are those of the input as given: of a mesh its vertices, of a cloud its points.
+///
+/// A new one has to tell its graph, rows, positions and, if it has any, faces; a mesh also how a source lies in a face.
+/// What these return stays where it is when the surface is moved.
 class Surface {
  public:
-  virtual ~Surface() = default;
+  virtual ~Surface();
+  Surface(Surface&&) noexcept;
+  Surface& operator=(Surface&&) noexcept;
 
-  /// Stays where it is when the surface is moved.
-  virtual const TangentGraph& graph() const = 0;
+  virtual const TangentGraph& graph() const& = 0;
+  void graph() && = delete;
   virtual const RowMap& rows() const = 0;
-
   /// One per row, as given, world units; empty for a surface given by lengths alone.
   virtual std::span<const Vec3> positions() const = 0;
   /// Unit normal per row, as the graph uses it (orientation included); NaN where there is none.
-  virtual std::vector<Vec3> normals() const;
+  std::vector<Vec3> normals() const;
   /// Faces of the input, as given, of rows; empty for clouds.
   virtual FaceList faces() const { return {}; }
-  /// The vertex at every corner of `faces()`, faces turned over (but in their place) so that neighbours agree where that is
-  /// possible: face f has the corners faces().begin[f] .. faces().begin[f + 1]. Empty for clouds.
+  /// The vertex at every corner of `faces()`, faces turned over (but in their place, the first corner staying first) so
+  /// that neighbours agree where that is possible: face f has the corners faces().begin[f] .. faces().begin[f + 1]. Empty
+  /// for clouds.
   virtual std::span<const Index> corner_vertices() const { return {}; }
 
   /// The first vertex of a row.
-  /// @throws InvalidArgument (row out of range; a row without a vertex, saying why)
+  /// @throws InvalidArgument (row out of range, fault "row_out_of_range"; a row without a vertex, by the fault that
+  /// `why_without_vertex` names)
   Vertex vertex(Row row) const;
   /// The row with a vertex that is nearest to a position in space. @throws InvalidArgument (no positions; not finite)
-  virtual Row nearest_row(const Vec3& position) const;
-  /// The nearest point of the faces, or of a cloud the nearest row's tangent plane.
-  /// @throws InvalidArgument (no positions; not finite)
-  virtual ClosestPoint closest_point(const Vec3& position) const = 0;
+  Row nearest_row(const Vec3& position) const;
+  /// The nearest point of the faces (polygons as fans from their first corner); without faces, of the tangent plane of the
+  /// nearest row. The first call makes a tree over the faces. @throws InvalidArgument (no positions; not finite)
+  ClosestPoint closest_point(const Vec3& position) const;
+  /// Where a point lies, world units. @throws InvalidArgument (a point that this surface does not have; no positions)
+  Vec3 position(const SurfacePoint& point) const;
 
-  /// A source at a point, u along an axis that the backend documents; or along a vector of space projected to the surface.
-  /// @throws InvalidArgument (a point that this surface does not have; an axis along the normal)
-  virtual PlacedSource source(const SurfacePoint& point, const std::optional<Vec3>& u_axis = {}) const = 0;
+  /// A source at a point. Its u axis lies along a vector of space projected to the surface, or else: at rows along the x
+  /// axis of the vertex's frame, on edges from `from` to `to`, in faces along the first side.
+  /// @throws InvalidArgument (a point that this surface does not have, faults as `vertex`; an axis that is not finite, zero
+  /// or along the normal: fault "axis_along_normal")
+  PlacedSource source(const SurfacePoint& point, const std::optional<Vec3>& u_axis = {}) const;
 
   /// A map on the rows: of several vertices of a row the one nearest to the source counts.
   /// @throws InvalidArgument (another graph's map)
   RowLogMap on_rows(const LogMap& map) const;
-  /// (u, v) at every corner of `faces()`, as given; NaN where the map is not ok. Triangle meshes cut it open along the cut
-  /// locus; other surfaces give the corner's vertex.
+  /// (u, v) at every corner of `faces()`, as given; NaN where the map is not ok. Here, of the corner's vertex; triangle
+  /// meshes cut the map open along its cut locus. @throws InvalidArgument (another graph's map)
   virtual std::vector<Vec2> on_corners(const LogMap& map) const;
-  /// The map at a point: linear in the face that holds it, or near the row moved on by the offset.
-  /// @throws InvalidArgument as `source`
-  virtual Sample at(const LogMap& map, const SurfacePoint& point) const = 0;
+  /// The map at a point: at a row as `on_rows`, linear in a face and on an edge; in a tangent plane moved on from the row
+  /// by the offset, which takes a map with frames. @throws InvalidArgument as `source`; another graph's map
+  Sample at(const LogMap& map, const SurfacePoint& point) const;
 
+  /// What was found and done on the way. Ids are listed in the header of the surface's class.
   virtual Report report() const = 0;
   virtual std::vector<Warning> warnings() const = 0;
+
+ protected:
+  Surface();
+  /// Why a row has no vertex: fault and the end of a sentence that begins with "row 7".
+  struct Reason {
+    std::string_view fault, text;
+  };
+  virtual Reason why_without_vertex(Row) const { return {"row_unused", "is used by no face"}; }
+  /// @param point  of a face that exists, with as many weights as corners: >= 0 with sum 1 (to 1e-9)
+  /// The base has no faces. @throws InvalidArgument as `source`
+  virtual PlacedSource source_in_face(const FacePoint& point, const std::optional<Vec3>& u_axis) const;
+  /// @param t  in [0, 1]. Here, of a point in a face with this edge. @throws InvalidArgument (no such edge), as `source`
+  virtual PlacedSource source_on_edge(const EdgePoint& point, const std::optional<Vec3>& u_axis) const;
+  /// @param point  as for `source_in_face`. Here, linear between the vertices at the corners
+  virtual Sample sample_in_face(const LogMap& map, const FacePoint& point) const;
+  /// A point of a face that has this edge. @throws InvalidArgument (no such edge)
+  virtual FacePoint face_point(const EdgePoint& point) const;
+
+  /// The vertex at a corner of a face, the corner counted as given.
+  Index corner_vertex(Index face, std::size_t corner) const;
+  /// @throws InvalidArgument (another graph's map)
+  void check_map(const LogMap& map) const;
+  /// @throws InvalidArgument (face, weights)
+  void check(const FacePoint& point) const;
+
+ private:
+  PlacedSource source_at_row(Row row, const std::optional<Vec3>& u_axis) const;
+  PlacedSource source_near_row(const TangentPoint& point, const std::optional<Vec3>& u_axis) const;
+  void check(const EdgePoint& point) const;
+
+  struct Lazy;  ///< the tree of `closest_point`
+  std::unique_ptr<Lazy> lazy_;
 };
 
 }  // namespace ahm

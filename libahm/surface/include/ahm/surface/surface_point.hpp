@@ -2,7 +2,7 @@
 /// A point of a surface, as a user names it: in terms of the input, never of the graph.
 ///
 /// \code
-/// ahm::SurfacePoint vertex = ahm::Row{42};                                 // row 42 of the input
+/// ahm::SurfacePoint at_row = ahm::Row{42};                                 // row 42 of the input
 /// ahm::SurfacePoint middle = ahm::EdgePoint{ahm::Row{3}, ahm::Row{4}, 0.5};
 /// ahm::SurfacePoint inside = ahm::FacePoint{7, {0.2, 0.3, 0.5}};
 /// ahm::SurfacePoint picked = surface.closest_point({0.1, 0.2, 1.4}).point;
@@ -32,7 +32,7 @@ struct FacePoint {
 /// A point of the tangent plane of a row, near it: where a surface has no faces.
 struct TangentPoint {
   Row row;
-  Vec3 position{};  ///< world units; what lies off the plane does not count
+  Vec3 position{};  ///< world units; its part along the normal does not count
 };
 
 using SurfacePoint = std::variant<Row, EdgePoint, FacePoint, TangentPoint>;

@@ -1,0 +1,134 @@
+#include "ahm/surface/face_tree.hpp"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include "ahm/error.hpp"
+#include "ahm/util/vec.hpp"
+
+namespace ahm {
+namespace {
+
+constexpr std::size_t leaf = 8;  // triangles
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// Where on the segment from a to b the point nearest to p lies, in [0, 1].
+double along(const Vec3& p, const Vec3& a, const Vec3& b) {
+  const Vec3 d = b - a;
+  const double squared = dot(d, d);
+  return squared > 0 ? std::clamp(dot(p - a, d) / squared, 0.0, 1.0) : 0.0;
+}
+
+Vec3 combined(const std::array<Vec3, 3>& t, const std::array<double, 3>& weights) {
+  Vec3 result{};
+  for (std::size_t k = 0; k < 3; ++k)
+    for (std::size_t a = 0; a < 3; ++a) result[a] += weights[k] * t[k][a];
+  return result;
+}
+
+/// Barycentric coordinates of the point of a triangle nearest to p: its projection, or the nearest on an edge.
+std::array<double, 3> nearest_in(const std::array<Vec3, 3>& t, const Vec3& p) {
+  const Vec3 u = t[1] - t[0], v = t[2] - t[0], w = p - t[0];
+  const double uu = dot(u, u), uv = dot(u, v), vv = dot(v, v), area = uu * vv - uv * uv;
+  const double second = (vv * dot(w, u) - uv * dot(w, v)) / area, third = (uu * dot(w, v) - uv * dot(w, u)) / area;
+  if (second >= 0 && third >= 0 && second + third <= 1) return {1 - second - third, second, third};
+  std::array<double, 3> best{};
+  double least = infinity;
+  for (std::size_t k = 0; k < 3; ++k) {
+    std::array<double, 3> weights{};
+    weights[(k + 1) % 3] = along(p, t[k], t[(k + 1) % 3]);
+    weights[k] = 1 - weights[(k + 1) % 3];
+    const Vec3 d = combined(t, weights) - p;
+    if (!(dot(d, d) < least)) continue;
+    least = dot(d, d);
+    best = weights;
+  }
+  return best;
+}
+
+double squared_distance(const Vec3& p, const Vec3& low, const Vec3& high) {
+  double sum = 0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const double d = std::max({low[a] - p[a], 0.0, p[a] - high[a]});
+    sum += d * d;
+  }
+  return sum;
+}
+
+}  // namespace
+
+FaceTree::FaceTree(std::span<const Vec3> positions, const FaceList& faces) : positions_(positions), faces_(faces) {
+  for (std::size_t f = 0; f < faces.size(); ++f)
+    for (std::size_t c = 1; c + 1 < faces[f].size(); ++c) {
+      const Piece piece{static_cast<Index>(f), static_cast<Index>(c)};
+      if (is_finite(corner(piece, 0)) && is_finite(corner(piece, 1)) && is_finite(corner(piece, 2)))
+        pieces_.push_back(piece);
+    }
+  if (pieces_.empty()) throw InvalidGeometry("the mesh has no face with finite corners");
+  build(0, pieces_.size());
+}
+
+const Vec3& FaceTree::corner(const Piece& piece, int k) const {
+  const Index c = k == 0 ? 0 : piece.corner + k - 1;
+  return positions_[faces_[static_cast<std::size_t>(piece.face)][c]];
+}
+
+void FaceTree::build(std::size_t begin, std::size_t end) {
+  Box box{{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}, begin, end, 0};
+  for (std::size_t t = begin; t < end; ++t)
+    for (int k = 0; k < 3; ++k) {
+      const Vec3& p = corner(pieces_[t], k);
+      for (std::size_t a = 0; a < 3; ++a)
+        box.low[a] = std::min(box.low[a], p[a]), box.high[a] = std::max(box.high[a], p[a]);
+    }
+  const std::size_t number = boxes_.size();
+  boxes_.push_back(box);
+  if (end - begin <= leaf) return;
+  const Vec3 sides = box.high - box.low;
+  const auto axis = static_cast<std::size_t>(std::max_element(sides.begin(), sides.end()) - sides.begin());
+  const auto middle_of = [&](const Piece& t) {
+    return corner(t, 0)[axis] / 3 + corner(t, 1)[axis] / 3 + corner(t, 2)[axis] / 3;
+  };
+  const std::size_t half = begin + (end - begin) / 2;
+  const auto at = [&](std::size_t t) { return pieces_.begin() + static_cast<std::ptrdiff_t>(t); };
+  std::nth_element(at(begin), at(half), at(end),
+                   [&](const Piece& a, const Piece& b) { return middle_of(a) < middle_of(b); });
+  build(begin, half);
+  boxes_[number].second = boxes_.size();
+  build(half, end);
+}
+
+FaceTree::Hit FaceTree::nearest(const Vec3& position) const {
+  Hit best{{0, {}}, position, infinity};
+  search(0, position, best);
+  return best;
+}
+
+void FaceTree::search(std::size_t number, const Vec3& position, Hit& best) const {
+  const Box& box = boxes_[number];
+  if (box.second == 0) {
+    for (std::size_t t = box.begin; t < box.end; ++t) look_at(pieces_[t], position, best);
+    return;
+  }
+  const auto away = [&](std::size_t b) { return std::sqrt(squared_distance(position, boxes_[b].low, boxes_[b].high)); };
+  std::size_t near = number + 1, far = box.second;
+  if (away(far) < away(near)) std::swap(near, far);
+  if (away(near) < best.distance) search(near, position, best);
+  if (away(far) < best.distance) search(far, position, best);
+}
+
+void FaceTree::look_at(const Piece& piece, const Vec3& position, Hit& best) const {
+  const std::array<Vec3, 3> t{corner(piece, 0), corner(piece, 1), corner(piece, 2)};
+  const std::array<double, 3> weights = nearest_in(t, position);
+  const Vec3 found = combined(t, weights);
+  const double distance = norm(found - position);
+  if (!(distance < best.distance)) return;
+  std::vector<double> of_corners(faces_[static_cast<std::size_t>(piece.face)].size(), 0.0);
+  of_corners[0] = weights[0];
+  of_corners[piece.corner] = weights[1];
+  of_corners[static_cast<std::size_t>(piece.corner) + 1] = weights[2];
+  best = {{piece.face, std::move(of_corners)}, found, distance};
+}
+
+}  // namespace ahm

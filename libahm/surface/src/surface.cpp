@@ -1,0 +1,327 @@
+#include "ahm/surface/surface.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <mutex>
+#include <string>
+#include <utility>
+
+#include "ahm/error.hpp"
+#include "ahm/surface/directions.hpp"
+#include "ahm/surface/face_tree.hpp"
+#include "ahm/util/text.hpp"
+#include "ahm/util/vec.hpp"
+
+namespace ahm {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+template <class... Visits>
+struct Overloaded : Visits... {
+  using Visits::operator()...;
+};
+template <class... Visits>
+Overloaded(Visits...) -> Overloaded<Visits...>;
+
+void check_finite(const Vec3& position) {
+  if (!is_finite(position)) throw InvalidArgument("a position is not finite");
+}
+
+void check_finite(const TangentPoint& point) { check_finite(point.position); }
+
+/// Of the vertices of a row the one with coordinates nearest to the source; nothing where there is none.
+struct Best {
+  std::optional<Vertex> vertex;
+  Status status = Status::removed;
+
+  Best(const LogMap& map, std::span<const Vertex> vertices) {
+    for (Vertex v : vertices) {
+      if (map.status(v) != Status::ok) {
+        if (status != Status::ok) status = map.status(v);
+      } else if (!vertex || map.distance(v) < map.distance(*vertex)) {
+        vertex = v;
+        status = Status::ok;
+      }
+    }
+  }
+};
+
+}  // namespace
+
+struct Surface::Lazy {
+  std::once_flag once;
+  std::optional<FaceTree> tree;
+};
+
+Surface::Surface() : lazy_(std::make_unique<Lazy>()) {}
+Surface::~Surface() = default;
+Surface::Surface(Surface&&) noexcept = default;
+Surface& Surface::operator=(Surface&&) noexcept = default;
+
+std::vector<Vec3> Surface::normals() const {
+  std::vector<Vec3> result(static_cast<std::size_t>(rows().row_count()), Vec3{nan, nan, nan});
+  for (std::size_t r = 0; r < result.size(); ++r)
+    if (const auto vertex = rows().vertex(Row(static_cast<Index>(r))))
+      if (const auto frame = graph().frame(vertex->index)) result[r] = frame->normal;
+  return result;
+}
+
+Vertex Surface::vertex(Row row) const {
+  if (const auto vertex = rows().vertex(row)) return *vertex;
+  const auto [fault, text] = why_without_vertex(row);
+  throw InvalidArgument(fault, "row " + std::to_string(row.index) + " " + std::string(text), "choose another one");
+}
+
+Row Surface::nearest_row(const Vec3& position) const {
+  check_finite(position);
+  const std::span<const Vec3> points = positions();
+  if (points.empty()) throw InvalidArgument("the surface has no positions, so no row is nearest to one");
+  Row best;
+  double least = std::numeric_limits<double>::infinity();
+  for (Index v = 0; v < graph().size(); ++v) {
+    const std::optional<Row> row = rows().row(Vertex(v));
+    if (!row) continue;
+    const double away = distance(points[row->index], position);
+    if (!(away < least)) continue;
+    least = away;
+    best = *row;
+  }
+  return best;
+}
+
+ClosestPoint Surface::closest_point(const Vec3& position) const {
+  check_finite(position);
+  if (faces().size() > 0 && !positions().empty()) {
+    std::call_once(lazy_->once, [&] { lazy_->tree.emplace(positions(), faces()); });
+    FaceTree::Hit hit = lazy_->tree->nearest(position);
+    return {std::move(hit.point), hit.position, hit.distance};
+  }
+  const Row row = nearest_row(position);
+  const std::optional<Frame> frame = graph().frame(vertex(row).index);
+  if (!frame) throw InvalidArgument("the graph has no frames in space, so no point of its tangent planes is nearest");
+  const double height = dot(position - positions()[row.index], frame->normal);
+  const Vec3 projected = position - height * frame->normal;
+  return {TangentPoint{row, projected}, projected, distance(position, projected)};
+}
+
+Vec3 Surface::position(const SurfacePoint& point) const {
+  const std::span<const Vec3> points = positions();
+  if (points.empty()) throw InvalidArgument("the surface has no positions");
+  const auto visit =
+      Overloaded{[&](Row row) {
+                   rows().vertices(row);  // checks
+                   return points[row.index];
+                 },
+                 [&](const EdgePoint& edge) {
+                   check(edge);
+                   return (1 - edge.t) * points[edge.from.index] + edge.t * points[edge.to.index];
+                 },
+                 [&](const FacePoint& inside) {
+                   check(inside);
+                   Vec3 sum{};
+                   const auto corners = faces()[static_cast<std::size_t>(inside.face)];
+                   for (std::size_t c = 0; c < corners.size(); ++c)
+                     sum = sum + inside.barycentric[c] * points[corners[c]];
+                   return sum;
+                 },
+                 [&](const TangentPoint& near) {
+                   check_finite(near);
+                   const std::optional<Frame> frame = graph().frame(vertex(near.row).index);
+                   if (!frame) throw InvalidArgument("the graph has no frames in space");
+                   return near.position - dot(near.position - points[near.row.index], frame->normal) * frame->normal;
+                 }};
+  return std::visit(visit, point);
+}
+
+PlacedSource Surface::source(const SurfacePoint& point, const std::optional<Vec3>& u_axis) const {
+  const auto visit = Overloaded{[&](Row row) { return source_at_row(row, u_axis); },
+                                [&](const EdgePoint& edge) {
+                                  check(edge);
+                                  return source_on_edge(edge, u_axis);
+                                },
+                                [&](const FacePoint& inside) {
+                                  check(inside);
+                                  return source_in_face(inside, u_axis);
+                                },
+                                [&](const TangentPoint& near) { return source_near_row(near, u_axis); }};
+  return std::visit(visit, point);
+}
+
+PlacedSource Surface::source_at_row(Row row, const std::optional<Vec3>& u_axis) const {
+  const Vertex v = vertex(row);
+  PlacedSource result{Source::at_vertex(v), {}, graph().frame(v.index), row};
+  if (!positions().empty()) result.position = positions()[row.index];
+  if (!u_axis) return result;
+  result.source = Source::at_vertex(v, projected(graph(), v, *u_axis));
+  result.frame = turned(*result.frame, *u_axis);
+  return result;
+}
+
+PlacedSource Surface::source_near_row(const TangentPoint& point, const std::optional<Vec3>& u_axis) const {
+  PlacedSource result = source_at_row(point.row, u_axis);
+  const Vec3 place = position(point);
+  const Vec3 back = result.position - point.position;
+  const double offset[] = {dot(back, result.frame->x), dot(back, result.frame->y)}, identity[] = {1, 0, 0, 1};
+  Source source(2);
+  source.add(result.source.vertices()[0], 1.0, offset,
+             result.source.axes().empty() ? std::span<const double>(identity) : result.source.axes());
+  return {std::move(source), place, result.frame, std::nullopt};
+}
+
+PlacedSource Surface::source_in_face(const FacePoint&, const std::optional<Vec3>&) const {
+  throw InvalidArgument("this surface takes no sources in faces");
+}
+
+PlacedSource Surface::source_on_edge(const EdgePoint& point, const std::optional<Vec3>& u_axis) const {
+  const FacePoint inside = face_point(point);
+  if (u_axis) return source_in_face(inside, u_axis);
+  if (positions().empty()) throw InvalidArgument("the surface has no positions; give a u axis");
+  return source_in_face(inside, positions()[point.to.index] - positions()[point.from.index]);
+}
+
+FacePoint Surface::face_point(const EdgePoint& point) const {
+  const FaceList all = faces();
+  for (std::size_t f = 0; f < all.size(); ++f) {
+    const auto face = all[f];
+    for (std::size_t c = 0; c < face.size(); ++c) {
+      const std::size_t d = (c + 1) % face.size();
+      const bool forward = face[c] == point.from.index && face[d] == point.to.index;
+      if (!forward && !(face[c] == point.to.index && face[d] == point.from.index)) continue;
+      FacePoint result{static_cast<Index>(f), std::vector<double>(face.size(), 0.0)};
+      result.barycentric[c] = forward ? 1 - point.t : point.t;
+      result.barycentric[d] = forward ? point.t : 1 - point.t;
+      return result;
+    }
+  }
+  throw InvalidArgument("rows " + std::to_string(point.from.index) + " and " + std::to_string(point.to.index) +
+                        " are not joined by an edge");
+}
+
+RowLogMap Surface::on_rows(const LogMap& map) const {
+  check_map(map);
+  const auto n = static_cast<std::size_t>(rows().row_count());
+  const std::vector<double> none(n, nan);
+  RowLogMap result{none, none, none, none, {}, std::vector<Status>(n, Status::removed), {}};
+  result.vertex.resize(n);
+  const std::span<const double> error = map.error_estimate();
+  if (!error.empty()) result.error_estimate = none;
+  for (std::size_t r = 0; r < n; ++r) {
+    const Best best(map, rows().vertices(Row(static_cast<Index>(r))));
+    result.status[r] = best.status;
+    if (!best.vertex) continue;
+    const Vertex v = *best.vertex;
+    const auto phi = map.coordinates(v);
+    result.u[r] = phi[0];
+    result.v[r] = phi[1];
+    result.distance[r] = map.distance(v);
+    result.angle[r] = std::atan2(phi[1], phi[0]);
+    if (!error.empty()) result.error_estimate[r] = error[v.index];
+    result.vertex[r] = best.vertex;
+  }
+  return result;
+}
+
+std::vector<Vec2> Surface::on_corners(const LogMap& map) const {
+  check_map(map);
+  const FaceList all = faces();
+  std::vector<Vec2> result(all.vertices.size(), Vec2{nan, nan});
+  for (std::size_t f = 0; f < all.size(); ++f)
+    for (std::size_t c = 0; c < all[f].size(); ++c) {
+      const Vertex v{corner_vertex(static_cast<Index>(f), c)};
+      if (map.status(v) != Status::ok) continue;
+      const auto phi = map.coordinates(v);
+      result[static_cast<std::size_t>(all.begin[f]) + c] = {phi[0], phi[1]};
+    }
+  return result;
+}
+
+Sample Surface::at(const LogMap& map, const SurfacePoint& point) const {
+  check_map(map);
+  const auto at_row = [&](Row row) -> std::pair<Sample, Index> {
+    const Best best(map, rows().vertices(row));
+    if (!best.vertex) return {{nan, nan, best.status}, -1};
+    const auto phi = map.coordinates(*best.vertex);
+    return {{phi[0], phi[1], Status::ok}, best.vertex->index};
+  };
+  const auto visit = Overloaded{[&](Row row) { return at_row(row).first; },
+                                [&](const EdgePoint& edge) {
+                                  check(edge);
+                                  return sample_in_face(map, face_point(edge));
+                                },
+                                [&](const FacePoint& inside) {
+                                  check(inside);
+                                  return sample_in_face(map, inside);
+                                },
+                                [&](const TangentPoint& near) {
+                                  check_finite(near);
+                                  if (map.frames().empty())
+                                    throw InvalidArgument("the map has no frames; solve with MapOptions::frames");
+                                  auto [sample, v] = at_row(near.row);
+                                  const auto frame = v < 0 ? std::nullopt : graph().frame(v);
+                                  if (!frame) return sample;
+                                  const Vec3 way = near.position - frame->origin;
+                                  const double x = dot(way, frame->x), y = dot(way, frame->y);
+                                  const auto U = map.frames().subspan(4 * static_cast<std::size_t>(v), 4);
+                                  sample.u += U[0] * x + U[2] * y;
+                                  sample.v += U[1] * x + U[3] * y;
+                                  return sample;
+                                }};
+  return std::visit(visit, point);
+}
+
+Sample Surface::sample_in_face(const LogMap& map, const FacePoint& point) const {
+  Sample sum{0, 0, Status::ok};
+  for (std::size_t c = 0; c < point.barycentric.size(); ++c) {
+    const Vertex v{corner_vertex(point.face, c)};
+    if (map.status(v) != Status::ok) return {nan, nan, map.status(v)};
+    const auto phi = map.coordinates(v);
+    sum.u += point.barycentric[c] * phi[0];
+    sum.v += point.barycentric[c] * phi[1];
+  }
+  return sum;
+}
+
+Index Surface::corner_vertex(Index face, std::size_t corner) const {
+  const FaceList all = faces();
+  const auto given = all[static_cast<std::size_t>(face)];
+  const auto stored = corner_vertices().subspan(static_cast<std::size_t>(all.begin[face]), given.size());
+  const std::optional<Row> second = rows().row(Vertex(stored[1]));
+  const bool reversed = !second || second->index != given[1];
+  return stored[reversed ? (given.size() - corner) % given.size() : corner];
+}
+
+void Surface::check_map(const LogMap& map) const {
+  if (map.size() != graph().size() || map.dimension() != 2)
+    throw InvalidArgument("the map has " + std::to_string(map.size()) + " vertices in dimension " +
+                          std::to_string(map.dimension()) + ", this surface's graph has " +
+                          std::to_string(graph().size()) + " in dimension 2: it belongs to another graph");
+}
+
+void Surface::check(const FacePoint& point) const {
+  const FaceList all = faces();
+  if (point.face < 0 || static_cast<std::size_t>(point.face) >= all.size())
+    throw InvalidArgument("face " + std::to_string(point.face) + " is outside [0, " + std::to_string(all.size()) + ")");
+  const std::size_t m = all[static_cast<std::size_t>(point.face)].size();
+  const std::string where = "face " + std::to_string(point.face);
+  if (point.barycentric.size() != m)
+    throw InvalidArgument(where + " has " + std::to_string(m) + " corners, but there are " +
+                          std::to_string(point.barycentric.size()) + " barycentric coordinates");
+  double sum = 0;
+  for (double w : point.barycentric) {
+    if (!(w >= -1e-9) || !std::isfinite(w))
+      throw InvalidArgument("a barycentric coordinate in " + where + " is " + detail::number(w) +
+                            "; they must be finite and >= 0");
+    sum += w;
+  }
+  if (!(std::abs(sum - 1) <= 1e-9))
+    throw InvalidArgument("the barycentric coordinates in " + where + " have sum " + detail::number(sum) + ", not 1");
+}
+
+void Surface::check(const EdgePoint& point) const {
+  vertex(point.from), vertex(point.to);
+  if (!(point.t >= 0 && point.t <= 1))
+    throw InvalidArgument("t is " + detail::number(point.t) + " on an edge; it must be in [0, 1]");
+}
+
+}  // namespace ahm
