@@ -228,7 +228,7 @@ std::vector<Vec2> Surface::on_corners(const LogMap& map) const {
   std::vector<Vec2> result(all.vertices.size(), Vec2{nan, nan});
   for (std::size_t f = 0; f < all.size(); ++f)
     for (std::size_t c = 0; c < all[f].size(); ++c) {
-      const Vertex v(corner_vertex(static_cast<Index>(f), c));
+      const Vertex v{corner_vertex(static_cast<Index>(f), c)};
       if (map.status(v) != Status::ok) continue;
       const auto phi = map.coordinates(v);
       result[static_cast<std::size_t>(all.begin[f]) + c] = {phi[0], phi[1]};
@@ -273,7 +273,7 @@ Sample Surface::at(const LogMap& map, const SurfacePoint& point) const {
 Sample Surface::sample_in_face(const LogMap& map, const FacePoint& point) const {
   Sample sum{0, 0, Status::ok};
   for (std::size_t c = 0; c < point.barycentric.size(); ++c) {
-    const Vertex v(corner_vertex(point.face, c));
+    const Vertex v{corner_vertex(point.face, c)};
     if (map.status(v) != Status::ok) return {nan, nan, map.status(v)};
     const auto phi = map.coordinates(v);
     sum.u += point.barycentric[c] * phi[0];
