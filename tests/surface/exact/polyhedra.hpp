@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "ahm/surface/exact/geodesic_path.hpp"
-#include "meshes.hpp"
+#include "ahm/testing/triangle_meshes.hpp"
 
 namespace ahm::test {
 
