@@ -55,8 +55,8 @@ TEST(ExactMap, GoesThroughTheTwistOfAPaperBand) {
 struct OneTriangle {
   explicit OneTriangle(double angle)
       : angle(angle),
-        surface(PolyhedralSurface::from_lengths({tails, twins},
-                                                std::array{std::array{1.0, 2 * std::sin(angle / 2), 1.0}})) {}
+        lengths{{1.0, 2 * std::sin(angle / 2), 1.0}},
+        surface(PolyhedralSurface::from_lengths({tails, twins}, lengths)) {}
   Vec2 place(const MeshPoint& p) const {
     return {p.barycentric[1] + p.barycentric[2] * std::cos(angle), p.barycentric[2] * std::sin(angle)};
   }
@@ -74,6 +74,7 @@ struct OneTriangle {
   static constexpr std::array<Index, 3> tails{0, 1, 1};
   static constexpr std::array<exact::Half, 3> twins{2, -1, 0};
   double angle;
+  std::array<std::array<double, 3>, 1> lengths;
   PolyhedralSurface surface;
 };
 
