@@ -17,7 +17,7 @@ struct Result {
   std::vector<double> v = {-0.0, 2e-17, nan, nan};
   std::vector<double> distance = {0.1, 1.0 / 3.0, nan, nan};
   std::vector<double> angle = {0, 3.14159, nan, nan};
-  std::vector<Status> status = {Status::ok, Status::ok, Status::removed, Status::component};
+  std::vector<Status> status = {Status::ok, Status::ok, Status::removed, Status::disconnected};
   std::vector<Offset> face_begin = {0, 3, 7};
   std::vector<Index> face_vertices = {0, 1, 2, 3, 2, 1, 0};
 

@@ -190,12 +190,12 @@ Source PointCloudGraph::source_at_point(Index point) const {
   if (vertex < 0)
     throw InvalidArgument("source point " + std::to_string(point) +
                           " was removed (not finite, or without a tangent plane); choose another");
-  return Source::at_vertex(vertex);
+  return Source::at_vertex(Vertex(vertex));
 }
 
 Source PointCloudGraph::source_at_point(Index point, const Vec3& u_direction) const {
-  const Index vertex = source_at_point(point).vertices()[0];
-  const Frame frame = *graph_->frame(vertex);
+  const Vertex vertex = source_at_point(point).vertices()[0];
+  const Frame frame = *graph_->frame(vertex.index);
   const double direction[] = {dot(frame.x, u_direction), dot(frame.y, u_direction)};
   if (!(std::hypot(direction[0], direction[1]) > 1e-9 * norm(u_direction)))
     throw InvalidArgument("the u direction is zero or perpendicular to the tangent plane at point " +
@@ -230,9 +230,9 @@ PointMap PointCloudGraph::on_points(const LogMap& map) const {
   for (std::size_t i = 0; i < n; ++i) {
     const Index vertex = vertex_of_point_[i];
     if (vertex < 0) continue;
-    result.status[i] = map.status(vertex);
+    result.status[i] = map.status(Vertex(vertex));
     if (result.status[i] != Status::ok) continue;
-    const auto phi = map.coordinates(vertex);
+    const auto phi = map.coordinates(Vertex(vertex));
     result.u[i] = phi[0];
     result.v[i] = phi[1];
     result.distance[i] = std::hypot(phi[0], phi[1]);

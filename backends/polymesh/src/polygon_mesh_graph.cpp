@@ -118,7 +118,7 @@ Source PolygonMeshGraph::Impl::source(Index face, std::span<const double> stored
       return std::conj(frames.turn[corner]) * (mesh.mirrored(static_cast<Offset>(corner)) ? std::conj(w) : w);
     };
     const Complex x = carried(u), y = carried(u * Complex(0, 1));
-    source.add(v, stored_weights[c], std::array{z.real(), z.imag()},
+    source.add(Vertex(v), stored_weights[c], std::array{z.real(), z.imag()},
                std::array{x.real(), y.real(), x.imag(), y.imag()});
   }
   return source;
@@ -167,21 +167,22 @@ PolygonMeshGraph PolygonMeshGraph::build(std::span<const Vec3> positions, std::s
   });
 }
 
-Index PolygonMeshGraph::vertex(Index input_vertex) const {
+Vertex PolygonMeshGraph::vertex(Index input_vertex) const {
   const auto map = impl_->mesh.vertex_of_input();
   if (input_vertex < 0 || static_cast<std::size_t>(input_vertex) >= map.size())
     throw InvalidArgument("source vertex " + std::to_string(input_vertex) + " is outside [0, " +
                           std::to_string(map.size()) + ")");
   if (map[input_vertex] < 0)
     throw InvalidArgument("source vertex " + std::to_string(input_vertex) + " is used by no face; choose another");
-  return map[input_vertex];
+  return Vertex(map[input_vertex]);
 }
 
 Source PolygonMeshGraph::source_at_vertex(Index input_vertex) const { return Source::at_vertex(vertex(input_vertex)); }
 
 Source PolygonMeshGraph::source_at_vertex(Index input_vertex, const Vec3& u_direction) const {
-  const Index v = vertex(input_vertex);
-  const Complex u = direction_in(impl_->frames.vertex[v], u_direction, "at vertex " + std::to_string(input_vertex));
+  const Vertex v = vertex(input_vertex);
+  const Complex u =
+      direction_in(impl_->frames.vertex[v.index], u_direction, "at vertex " + std::to_string(input_vertex));
   return Source::at_vertex(v, std::array{u.real(), u.imag()});
 }
 
@@ -222,15 +223,15 @@ VertexMap PolygonMeshGraph::on_vertices(const LogMap& map) const {
   VertexMap result{none, none, none, none, std::vector<Status>(n, Status::removed)};
   for (Index v = 0; v < impl_->graph.size(); ++v) {
     const Index i = impl_->mesh.input_of_vertex()[v];
-    const Status status = map.status(v);
+    const Status status = map.status(Vertex(v));
     if (status != Status::ok) {
       if (result.status[i] != Status::ok) result.status[i] = status;
       continue;
     }
-    const double distance = map.distance(v);
+    const double distance = map.distance(Vertex(v));
     if (result.status[i] == Status::ok && result.distance[i] <= distance) continue;  // another copy is nearer
-    result.u[i] = map.coordinates(v)[0];
-    result.v[i] = map.coordinates(v)[1];
+    result.u[i] = map.coordinates(Vertex(v))[0];
+    result.v[i] = map.coordinates(Vertex(v))[1];
     result.distance[i] = distance;
     result.angle[i] = std::atan2(result.v[i], result.u[i]);
     result.status[i] = Status::ok;

@@ -19,13 +19,13 @@ void check_map(const LogMap& map, const CsrGraph& graph) {
 }
 
 Vec2 coordinates(const LogMap& map, Index vertex) {
-  const auto phi = map.coordinates(vertex);
+  const auto phi = map.coordinates(Vertex(vertex));
   return {phi[0], phi[1]};
 }
 
 /// A face laid out in the plane, with the map at its corners.
 struct MappedFace {
-  Vec2 side[3];  ///< in outside units
+  Vec2 side[3];  ///< in world units
   Vec2 phi[3];
 
   MappedFace(const TriangleMesh& mesh, const Vec2* sides) {
@@ -61,7 +61,7 @@ class Unfolding {
       bool ok = true;
       for (int s = 0; s < 3; ++s) {
         const Index v = edges_.tail[3 * f + s];
-        ok = ok && map.status(v) == Status::ok;
+        ok = ok && map.status(Vertex(v)) == Status::ok;
         if (ok) phi_[3 * f + s] = face.phi[s] = coordinates(map, v);
       }
       if (!ok) {
@@ -118,7 +118,7 @@ VertexMap TriangleMeshGraph::on_vertices(const LogMap& map) const {
                    std::vector<double>(n, nan), std::vector<Status>(n, Status::removed)};
   for (Index v = 0; v < impl_->graph.size(); ++v) {
     const Index i = impl_->mesh.input_of_vertex()[v];
-    const Status status = map.status(v);
+    const Status status = map.status(Vertex(v));
     if (status != Status::ok) {
       if (result.status[i] != Status::ok) result.status[i] = status;
       continue;
@@ -157,7 +157,7 @@ Sample TriangleMeshGraph::at(const LogMap& map, const SurfacePoint& point) const
   MappedFace face(impl_->mesh, impl_->triangulation.sides(p.face));
   for (int s = 0; s < 3; ++s) {
     const Index v = tail[3 * p.face + s];
-    if (map.status(v) != Status::ok) return {nan, nan, map.status(v)};
+    if (map.status(Vertex(v)) != Status::ok) return {nan, nan, map.status(Vertex(v))};
     face.phi[s] = coordinates(map, v);
   }
   const bool orientable = impl_->mesh.report().orientable;

@@ -77,36 +77,36 @@ Source TriangleMeshGraph::Impl::source(const SurfacePoint& point, Vec2 u) const 
     // v is u turned left in the source's layout; every change of orientation on the way turns it right.
     const bool reflects = p.map.mirrored == forward;
     const double axes[] = {axis.x, reflects ? axis.y : -axis.y, axis.y, reflects ? -axis.x : axis.x};
-    source.add(k, p.weight[s], position, axes);
+    source.add(Vertex(k), p.weight[s], position, axes);
   }
   return source;
 }
 
-Index TriangleMeshGraph::vertex(Index input_vertex) const {
+Vertex TriangleMeshGraph::vertex(Index input_vertex) const {
   const auto map = impl_->mesh.vertex_of_input();
   if (input_vertex < 0 || static_cast<std::size_t>(input_vertex) >= map.size())
     throw InvalidArgument("source vertex " + std::to_string(input_vertex) + " is outside [0, " +
                           std::to_string(map.size()) + ")");
   if (map[input_vertex] < 0)
     throw InvalidArgument("source vertex " + std::to_string(input_vertex) + " is used by no face; choose another");
-  return map[input_vertex];
+  return Vertex(map[input_vertex]);
 }
 
-std::array<double, 2> TriangleMeshGraph::direction_in_frame(Index vertex, const Vec3& direction) const {
-  if (vertex < 0 || vertex >= impl_->graph.size())
-    throw InvalidArgument("vertex " + std::to_string(vertex) + " is outside [0, " +
+std::array<double, 2> TriangleMeshGraph::direction_in_frame(Vertex vertex, const Vec3& direction) const {
+  if (vertex.index < 0 || vertex.index >= impl_->graph.size())
+    throw InvalidArgument("vertex " + std::to_string(vertex.index) + " is outside [0, " +
                           std::to_string(impl_->graph.size()) + ")");
-  const auto frame = impl_->graph.frame(vertex);
+  const auto frame = impl_->graph.frame(vertex.index);
   if (!frame) throw InvalidArgument("the mesh was given by edge lengths, so a direction in space has no meaning");
-  const Vec2 u =
-      project(frame->x, frame->y, direction, "at vertex " + std::to_string(impl_->mesh.input_of_vertex()[vertex]));
+  const Vec2 u = project(frame->x, frame->y, direction,
+                         "at vertex " + std::to_string(impl_->mesh.input_of_vertex()[vertex.index]));
   return {u.x, u.y};
 }
 
 Source TriangleMeshGraph::source_at_vertex(Index input_vertex) const { return Source::at_vertex(vertex(input_vertex)); }
 
 Source TriangleMeshGraph::source_at_vertex(Index input_vertex, const Vec3& u_direction) const {
-  const Index v = vertex(input_vertex);
+  const Vertex v = vertex(input_vertex);
   return Source::at_vertex(v, direction_in_frame(v, u_direction));
 }
 

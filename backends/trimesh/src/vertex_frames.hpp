@@ -28,7 +28,7 @@ VertexFrames find_frames(const TriangleMesh& mesh, const IntrinsicTriangulation&
 
 /// Frames in space: the normal is the mean of the face normals weighted by angle; x and y are turned in that plane so
 /// that the projected edges lie as close as possible to their angles in the tangent space. Empty when the mesh has no
-/// positions. Origins in outside units.
+/// positions. Origins in world units.
 std::vector<Frame> frames_in_space(const TriangleMesh& mesh, unsigned threads);
 
 }  // namespace ahm::trimesh

@@ -53,7 +53,7 @@ std::size_t Column::rows() const {
 
 void Table::add(std::string name, std::span<const Status> values) {
   CodedWords words{{reinterpret_cast<const std::uint8_t*>(values.data()), values.size()}, {}};
-  for (Status status : {Status::ok, Status::component, Status::radius, Status::unreached, Status::removed})
+  for (Status status : {Status::ok, Status::disconnected, Status::beyond_radius, Status::unreached, Status::removed})
     words.words.emplace_back(to_string(status));
   columns.push_back({{std::move(name)}, std::move(words)});
 }

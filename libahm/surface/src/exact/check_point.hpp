@@ -29,4 +29,16 @@ inline MeshPoint checked(const PolyhedralSurface& surface, MeshPoint point, cons
   return point;
 }
 
+/// The vertex of a checked point with two zero weights; else -1.
+inline Index vertex_of(const PolyhedralSurface& surface, const MeshPoint& point) {
+  Index vertex = -1;
+  for (int s = 0; s < 3; ++s) {
+    if (!(point.barycentric[s] > 0)) continue;
+    if (vertex >= 0) return -1;
+    vertex = surface.record(3 * point.face + s).tail;
+    if (point.barycentric[s] < 1) return -1;
+  }
+  return vertex;
+}
+
 }  // namespace ahm::exact

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <string>
 
@@ -16,10 +17,12 @@ namespace ahm::exact {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double infinity = std::numeric_limits<double>::infinity();
 
 void check(const PolyhedralSurface& surface, std::span<const MeshPoint> sources, const ExactOptions& options) {
   if (sources.empty()) throw InvalidArgument("'sources' is empty; an exact map needs a source");
-  if (!(options.radius > 0)) throw InvalidArgument("'radius' is " + detail::number(options.radius) + "; it must be > 0");
+  if (!(options.radius > 0))
+    throw InvalidArgument("'radius' is " + detail::number(options.radius) + "; it must be > 0");
   if (options.only_targets && options.targets.empty()) throw InvalidArgument("'only_targets' needs 'targets'");
   for (const MeshPoint& p : sources) checked(surface, p, "source");
 }
@@ -62,8 +65,8 @@ class MapBuilder {
 
  private:
   void add(double distance, Index component, double horizon, const Reached& reached) {
-    const bool ok = distance <= horizon;
-    map_.status_.push_back(ok ? Status::ok : lit_[component] ? Status::radius : Status::component);
+    const bool ok = distance <= horizon && distance < infinity;
+    map_.status_.push_back(ok ? Status::ok : lit_[component] ? Status::beyond_radius : Status::disconnected);
     map_.distance_.push_back(ok ? distance : nan);
     const Index source = ok ? map_.origins_[reached.origin].source : -1;
     map_.direction_.push_back(ok ? scaled(reached.direction, source) : nan);

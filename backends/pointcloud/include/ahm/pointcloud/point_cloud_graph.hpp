@@ -67,7 +67,7 @@ struct CloudReport {
   Offset reflections = 0;        ///< edges between oppositely oriented frames
   Index turned = 0;              ///< given normals that pointed to the other side than the majority around them
   bool oriented = false;         ///< given normals fix which side is up, everywhere
-  double mollification = 0;      ///< length added to every edge of the tufted cover, outside units
+  double mollification = 0;      ///< length added to every edge of the tufted cover, world units
   double seconds_normals = 0;    ///< neighbours and tangent planes
   double seconds_delaunay = 0;   ///< local triangulations
   double seconds_laplacian = 0;  ///< tufted cover, flips, weights

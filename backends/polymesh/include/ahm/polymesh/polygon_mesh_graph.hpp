@@ -45,7 +45,7 @@ struct PolygonReport {
   Index degenerate_faces = 0;   ///< almost no area (below 1e-10 of the squared perimeter)
   Offset negative_weights = 0;  ///< edges; set to 0 with `clamp_weights`
   Offset capped_weights = 0;    ///< weights above 1e4 set to 1e4
-  double shortest_edge = 0;     ///< side of a face, outside units
+  double shortest_edge = 0;     ///< side of a face, world units
   double longest_edge = 0;
   double seconds_checks = 0;  ///< topology (when built from arrays)
   double seconds_graph = 0;   ///< frames, weights, logs, transports
@@ -86,7 +86,7 @@ class PolygonMeshGraph {
 
   /// Vertex of the graph for an input vertex (its first copy where it was split).
   /// @throws InvalidArgument when the index is out of range or no face uses the vertex
-  Index vertex(Index input_vertex) const;
+  Vertex vertex(Index input_vertex) const;
 
   /// The source at an input vertex; u and v are the axes of `graph().frame(vertex(input_vertex))`.
   Source source_at_vertex(Index input_vertex) const;

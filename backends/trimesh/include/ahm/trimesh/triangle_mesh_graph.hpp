@@ -45,12 +45,12 @@ struct MeshReport {
   Offset flips = 0;
   Offset history_bytes = 0;  ///< memory of the record of flips
   double mollification =
-      0;  ///< length added to every edge because of degenerate faces, outside units; 0: none was needed
+      0;  ///< length added to every edge because of degenerate faces, world units; 0: none was needed
   Index degenerate_faces = 0;  ///< input faces of almost no area (height below 1e-10 of the longest side)
   Offset closed_edges = 0;     ///< intrinsic edges from a vertex to itself; left out
   Offset clamped_weights = 0;  ///< negative weights set to 0
   Offset capped_weights = 0;   ///< weights above 1e4 set to 1e4
-  double shortest_edge = 0;    ///< of the input, outside units
+  double shortest_edge = 0;    ///< of the input, world units
   double longest_edge = 0;
   double seconds_checks = 0;    ///< topology (when built from arrays)
   double seconds_delaunay = 0;  ///< layouts and flips
@@ -101,11 +101,11 @@ class TriangleMeshGraph {
 
   /// Vertex of the graph for an input vertex (its first copy where it was split).
   /// @throws InvalidArgument when the index is out of range or no face uses the vertex
-  Index vertex(Index input_vertex) const;
+  Vertex vertex(Index input_vertex) const;
 
   /// Components in the frame of a graph vertex of a vector of space, projected to the tangent plane.
   /// @throws InvalidArgument when the mesh has no positions or the projection vanishes
-  std::array<double, 2> direction_in_frame(Index vertex, const Vec3& direction) const;
+  std::array<double, 2> direction_in_frame(Vertex vertex, const Vec3& direction) const;
 
   /// The source at an input vertex; u and v are the tangent axes of `graph().frame(vertex(input_vertex))`. In the
   /// tangent space u points along the boundary edge that leaves the vertex with the surface on its left, or along one

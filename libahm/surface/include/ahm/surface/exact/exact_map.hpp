@@ -17,11 +17,11 @@
 namespace ahm::exact {
 
 struct ExactOptions {
-  /// Vertices and targets farther than this get `Status::radius`, and the propagation ends there. World units; > 0.
+  /// Vertices and targets farther than this get `Status::beyond_radius`, and the propagation ends there. World units; > 0.
   double radius = std::numeric_limits<double>::infinity();
   /// Points whose distance and direction are asked for besides those of the vertices.
   std::vector<MeshPoint> targets;
-  /// End when the distances of all targets are final; vertices beyond the farthest of them get `Status::radius`.
+  /// End when the distances of all targets are final; vertices beyond the farthest of them get `Status::beyond_radius`.
   bool only_targets = false;
 };
 
@@ -46,8 +46,8 @@ struct Origin {
 
 /// What the propagation did.
 struct ExactStatistics {
-  Offset windows = 0;    ///< made and queued
-  std::size_t bytes = 0; ///< held at the end, the surface's own tables apart
+  Offset windows = 0;     ///< made and queued
+  std::size_t bytes = 0;  ///< held at the end, the surface's own tables apart
 };
 
 /// Distances and directions from the nearest of several sources, for all vertices and for the targets asked for.
@@ -102,7 +102,8 @@ class ExactMap {
 /// unfolded from face to face [CH90], discarded where a vertex is known to be nearer [XW09], in the order of buckets.
 /// @param sources  one or more points; each keeps its own axes
 /// @throws InvalidArgument (no source, a point outside its face, radius), ResourceExhausted
-ExactMap exact_map(const PolyhedralSurface& surface, std::span<const MeshPoint> sources, const ExactOptions& options = {});
+ExactMap exact_map(const PolyhedralSurface& surface, std::span<const MeshPoint> sources,
+                   const ExactOptions& options = {});
 ExactMap exact_map(const PolyhedralSurface& surface, const MeshPoint& source, const ExactOptions& options = {});
 
 /// One map for each source, on several threads; the result does not depend on their number.

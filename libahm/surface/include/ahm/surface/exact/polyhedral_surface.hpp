@@ -42,10 +42,10 @@ struct MeshPoint {
 /// its head at (length, 0) and the third corner of its face, the apex, above.
 struct alignas(64) HalfRecord {
   double length, apex_x, apex_y;
-  double left, right;            ///< lengths of the sides tail - apex and head - apex
+  double left, right;  ///< lengths of the sides tail - apex and head - apex
   Index tail, head, apex;
   Half beyond_left, beyond_right;  ///< half-edges of the faces beyond these sides, negative on the boundary
-  std::uint8_t mirrored;           ///< bit 0: the face beyond the left side is oppositely oriented, bit 1: the right one
+  std::uint8_t mirrored;  ///< bit 0: the face beyond the left side is oppositely oriented, bit 1: the right one
 };
 
 /// A corner met while turning about its vertex. `half` starts at the vertex; `forward`: its face is oriented like the

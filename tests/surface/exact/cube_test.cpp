@@ -1,0 +1,137 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+#include "polyhedra.hpp"
+
+namespace ahm::test {
+namespace {
+
+/// The unit cube, every side cut into parts x parts squares of two triangles.
+Mesh cube(Index parts) {
+  Mesh mesh;
+  std::map<std::array<Index, 3>, Index> number;
+  auto vertex = [&](std::array<Index, 3> p) {
+    const auto [at, fresh] = number.try_emplace(p, static_cast<Index>(mesh.positions.size()));
+    if (fresh)
+      mesh.positions.push_back(
+          {p[0] / static_cast<double>(parts), p[1] / static_cast<double>(parts), p[2] / static_cast<double>(parts)});
+    return at->second;
+  };
+  for (int axis = 0; axis < 3; ++axis)
+    for (Index side : {0, parts})
+      for (Index i = 0; i < parts; ++i)
+        for (Index j = 0; j < parts; ++j) {
+          auto corner = [&](Index a, Index b) {
+            std::array<Index, 3> p;
+            p[axis] = side, p[(axis + 1) % 3] = i + a, p[(axis + 2) % 3] = j + b;
+            return vertex(p);
+          };
+          const Index a = corner(0, 0), b = corner(1, 0), c = corner(1, 1), d = corner(0, 1);
+          mesh.faces.push_back(side > 0 ? Triangle{a, b, c} : Triangle{a, c, b});
+          mesh.faces.push_back(side > 0 ? Triangle{a, c, d} : Triangle{a, d, c});
+        }
+  return mesh;
+}
+
+double dot3(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+Vec3 axis_vector(int axis, double sign) {
+  Vec3 v{0, 0, 0};
+  v[axis] = sign;
+  return v;
+}
+
+/// Distance on the cube by rolling it over its edges without touching a side twice; side 2 k + s is x_k = s.
+class RollingCube {
+ public:
+  double distance(const Vec3& from, const Vec3& to) {
+    best_ = 1e300;
+    to_ = to;
+    for (int side = 0; side < 6; ++side)
+      if (from[side / 2] == side % 2) {
+        const Vec3 x = axis_vector((side / 2 + 1) % 3, 1), y = axis_vector((side / 2 + 2) % 3, 1);
+        roll(side, 1u << side, from, x, y, {dot3(from, x), dot3(from, y)}, {});
+      }
+    return best_;
+  }
+
+ private:
+  struct Gate {
+    Vec2 a, b;
+  };
+  /// The side lies in the plane: a point p of it at place + ((p - origin) . x, (p - origin) . y).
+  void roll(int side, unsigned seen, const Vec3& origin, const Vec3& x, const Vec3& y, const Vec2& place,
+            std::vector<Gate> gates) {
+    auto flat = [&](const Vec3& p) {
+      const Vec3 d{p[0] - origin[0], p[1] - origin[1], p[2] - origin[2]};
+      return Vec2{place[0] + dot3(d, x), place[1] + dot3(d, y)};
+    };
+    if (gates.empty()) start_ = place;
+    if (to_[side / 2] == side % 2) {
+      const Vec2 end = flat(to_);
+      if (passes(end, gates)) best_ = std::min(best_, std::hypot(end[0] - start_[0], end[1] - start_[1]));
+    }
+    for (int other = 0; other < 6; ++other) {
+      if ((seen >> other & 1u) != 0 || other / 2 == side / 2) continue;
+      Vec3 a{0, 0, 0}, b{0, 0, 0};
+      const int along = 3 - side / 2 - other / 2;
+      a[side / 2] = b[side / 2] = side % 2;
+      a[other / 2] = b[other / 2] = other % 2;
+      b[along] = 1;
+      const Vec2 a2 = flat(a), b2 = flat(b);
+      // Outwards over the edge in this side becomes inwards in the other: the direction in which x_(side) leaves.
+      const Vec3 outwards = axis_vector(other / 2, other % 2 ? 1 : -1),
+                 inwards = axis_vector(side / 2, side % 2 ? -1 : 1);
+      const Vec2 out{dot3(outwards, x), dot3(outwards, y)}, run{b2[0] - a2[0], b2[1] - a2[1]};
+      Vec3 new_x, new_y;
+      for (int k = 0; k < 3; ++k) {
+        const double t = k == along ? 1 : 0;
+        new_x[k] = run[0] * t + out[0] * inwards[k];
+        new_y[k] = run[1] * t + out[1] * inwards[k];
+      }
+      auto further = gates;
+      further.push_back({a2, b2});
+      roll(other, seen | 1u << other, a, new_x, new_y, a2, further);
+    }
+  }
+  bool passes(const Vec2& end, const std::vector<Gate>& gates) const {
+    auto side_of = [&](const Vec2& p) {
+      return (end[0] - start_[0]) * (p[1] - start_[1]) - (end[1] - start_[1]) * (p[0] - start_[0]);
+    };
+    return std::all_of(gates.begin(), gates.end(), [&](const Gate& g) {
+      const double a = side_of(g.a), b = side_of(g.b);
+      return std::min(a, b) <= 1e-12 && std::max(a, b) >= -1e-12;
+    });
+  }
+
+  double best_ = 0;
+  Vec3 to_{};
+  Vec2 start_{};
+};
+
+TEST(ExactMap, AgreesWithTheRolledCube) {
+  const Mesh mesh = cube(5);
+  const Polyhedron solid(mesh);
+  const double unit = solid.mesh.length_unit();
+  RollingCube rolling;
+  for (Index source : {0, 3, 17, 40, 88}) {
+    const exact::ExactMap map = exact::exact_map(solid.surface, solid.surface.vertex_point(source));
+    for (Index v = 0; v < map.size(); ++v)
+      EXPECT_NEAR(map.distance(v) * unit, rolling.distance(mesh.positions[source], mesh.positions[v]), 1e-12)
+          << source << ' ' << v;
+  }
+}
+
+TEST(ExactMap, ReachesTheOppositeCornerOfACubeLast) {
+  const Polyhedron solid(cube(4));
+  const exact::ExactMap map = exact::exact_map(solid.surface, solid.surface.vertex_point(0));
+  double farthest = 0;
+  for (Index v = 0; v < map.size(); ++v) farthest = std::max(farthest, map.distance(v) * solid.mesh.length_unit());
+  EXPECT_NEAR(farthest, std::sqrt(5.0), 1e-13);
+}
+
+}  // namespace
+}  // namespace ahm::test
