@@ -24,16 +24,16 @@ Vector3f light_of(const std::array<double, 3>& color) {
 /// Every corner a vertex, since places on an image belong to corners.
 Painted painted(const io::MeshPart& part, const Camera& camera) {
   Drawable d;
-  for (std::size_t f = 0; f + 1 < part.face_begin.size(); ++f)
-    for (Offset k = part.face_begin[f] + 1; k + 1 < part.face_begin[f + 1]; ++k) {
+  for (std::size_t f = 0; f < part.faces.size(); ++f)
+    for (Offset k = part.faces.begin[f] + 1; k + 1 < part.faces.begin[f + 1]; ++k) {
       std::array<Vector3d, 3> x;
-      const std::array<Offset, 3> fan{part.face_begin[f], k, k + 1};
-      for (std::size_t c = 0; c < 3; ++c) x[c] = camera.to_scene(part.points[part.face_vertices[fan[c]]]);
+      const std::array<Offset, 3> fan{part.faces.begin[f], k, k + 1};
+      for (std::size_t c = 0; c < 3; ++c) x[c] = camera.to_scene(part.points[part.faces.vertices[fan[c]]]);
       if (!(x[0] + x[1] + x[2]).allFinite()) continue;
       const Vector3d flat = (x[1] - x[0]).cross(x[2] - x[0]).normalized();
       for (std::size_t c = 0; c < 3; ++c) {
         Vector3d normal = flat;
-        if (!part.normals.empty()) normal = as_vector(part.normals[part.face_vertices[fan[c]]]);
+        if (!part.normals.empty()) normal = as_vector(part.normals[part.faces.vertices[fan[c]]]);
         d.triangles.push_back(static_cast<std::uint32_t>(d.positions.size()));
         d.positions.push_back(x[c].cast<float>());
         d.normals.push_back((normal.allFinite() ? normal : flat).cast<float>());
@@ -76,9 +76,9 @@ class Gathered {
       add(part.points, part.normals);
       known_.insert(known_.end(), part.points.size(), part.texture ? 0.0 : std::numeric_limits<double>::quiet_NaN());
       if (faces_.empty()) faces_.push_back(0);
-      for (std::size_t f = 0; f + 1 < part.face_begin.size(); ++f) {
-        for (Offset c = part.face_begin[f]; c < part.face_begin[f + 1]; ++c)
-          vertices_.push_back(first + part.face_vertices[c]);
+      for (std::size_t f = 0; f < part.faces.size(); ++f) {
+        for (Offset c = part.faces.begin[f]; c < part.faces.begin[f + 1]; ++c)
+          vertices_.push_back(first + part.faces.vertices[c]);
         faces_.push_back(static_cast<Offset>(vertices_.size()));
       }
     }
