@@ -118,18 +118,19 @@ TEST(ExactMap, AgreesWithTheRolledCube) {
   const double unit = solid.mesh.length_unit();
   RollingCube rolling;
   for (Index source : {0, 3, 17, 40, 88}) {
-    const exact::ExactMap map = exact::exact_map(solid.surface, solid.surface.vertex_point(source));
+    const exact::ExactMap map = exact::exact_map(solid.surface, solid.surface.vertex_point(Vertex(source)));
     for (Index v = 0; v < map.size(); ++v)
-      EXPECT_NEAR(map.distance(v) * unit, rolling.distance(mesh.positions[source], mesh.positions[v]), 1e-12)
+      EXPECT_NEAR(map.distance(Vertex(v)) * unit, rolling.distance(mesh.positions[source], mesh.positions[v]), 1e-12)
           << source << ' ' << v;
   }
 }
 
 TEST(ExactMap, ReachesTheOppositeCornerOfACubeLast) {
   const Polyhedron solid(cube(4));
-  const exact::ExactMap map = exact::exact_map(solid.surface, solid.surface.vertex_point(0));
+  const exact::ExactMap map = exact::exact_map(solid.surface, solid.surface.vertex_point(Vertex(0)));
   double farthest = 0;
-  for (Index v = 0; v < map.size(); ++v) farthest = std::max(farthest, map.distance(v) * solid.mesh.length_unit());
+  for (Index v = 0; v < map.size(); ++v)
+    farthest = std::max(farthest, map.distance(Vertex(v)) * solid.mesh.length_unit());
   EXPECT_NEAR(farthest, std::sqrt(5.0), 1e-13);
 }
 
