@@ -6,7 +6,8 @@
 #include <vector>
 
 #include "ahm/surface/exact/geodesic_path.hpp"
-#include "meshes.hpp"
+#include "ahm/testing/triangle_meshes.hpp"
+#include "ahm/trimesh/triangle_mesh.hpp"
 
 namespace ahm::test {
 
