@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "ahm/testing/paper_band.hpp"
 #include "polyhedra.hpp"
 
 namespace ahm::test {

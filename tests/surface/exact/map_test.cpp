@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "ahm/trimesh/triangle_mesh_graph.hpp"
 #include "polyhedra.hpp"
 
 namespace ahm::test {
