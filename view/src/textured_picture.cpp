@@ -24,16 +24,16 @@ Vector3f light_of(const std::array<double, 3>& color) {
 /// Every corner a vertex, since places on an image belong to corners.
 Painted painted(const io::MeshPart& part, const Camera& camera) {
   Drawable d;
-  for (std::size_t f = 0; f + 1 < part.face_begin.size(); ++f)
-    for (Offset k = part.face_begin[f] + 1; k + 1 < part.face_begin[f + 1]; ++k) {
+  for (std::size_t f = 0; f < part.faces.size(); ++f)
+    for (Offset k = part.faces.begin[f] + 1; k + 1 < part.faces.begin[f + 1]; ++k) {
       std::array<Vector3d, 3> x;
-      const std::array<Offset, 3> fan{part.face_begin[f], k, k + 1};
-      for (std::size_t c = 0; c < 3; ++c) x[c] = camera.to_scene(part.points[part.face_vertices[fan[c]]]);
+      const std::array<Offset, 3> fan{part.faces.begin[f], k, k + 1};
+      for (std::size_t c = 0; c < 3; ++c) x[c] = camera.to_scene(part.points[part.faces.vertices[fan[c]]]);
       if (!(x[0] + x[1] + x[2]).allFinite()) continue;
       const Vector3d flat = (x[1] - x[0]).cross(x[2] - x[0]).normalized();
       for (std::size_t c = 0; c < 3; ++c) {
         Vector3d normal = flat;
-        if (!part.normals.empty()) normal = as_vector(part.normals[part.face_vertices[fan[c]]]);
+        if (!part.normals.empty()) normal = as_vector(part.normals[part.faces.vertices[fan[c]]]);
         d.triangles.push_back(static_cast<std::uint32_t>(d.positions.size()));
         d.positions.push_back(x[c].cast<float>());
         d.normals.push_back((normal.allFinite() ? normal : flat).cast<float>());
@@ -50,18 +50,18 @@ Painted painted(const io::MeshPart& part, const Camera& camera) {
            .transparent = part.transparent && part.texture}};
 }
 
-Painted painted_points(const TexturedScene& scene, const Camera& camera) {
-  Drawable d;
-  for (std::size_t i = 0; i < scene.points.size(); ++i) {
-    const Vector3d x = camera.to_scene(scene.points[i]);
-    if (!x.allFinite()) continue;
-    const Vector3d normal = scene.normals.empty() ? Vector3d::Zero().eval() : as_vector(scene.normals[i]).eval();
-    const auto& c = scene.colors[i];
-    d.positions.push_back(x.cast<float>());
-    d.normals.push_back(normal.allFinite() ? normal.cast<float>().eval() : Vector3f::Zero().eval());
-    d.values.push_back(light_of({c[0] / 255.0, c[1] / 255.0, c[2] / 255.0}));
-    d.known.push_back(1);
-    d.radii.push_back(static_cast<float>(scene.radii[i] / camera.scale));
+Painted painted_points(const TexturedScene& scene, const Camera& camera, unsigned threads) {
+  Scene cloud;
+  cloud.points = scene.points, cloud.normals = scene.normals;
+  PictureOptions plain;
+  plain.pattern = Pattern::none;
+  const std::vector<Index> shown = shown_points(cloud);
+  Drawable d = make_splats(cloud, shown, camera, make_paint(cloud, shown, plain), threads);
+  for (std::size_t k = 0; k < shown.size(); ++k) {
+    const auto& c = scene.colors[shown[k]];
+    d.values[k] = light_of({c[0] / 255.0, c[1] / 255.0, c[2] / 255.0});
+    d.known[k] = 1;
+    if (!scene.radii.empty()) d.radii[k] = static_cast<float>(scene.radii[shown[k]] / camera.scale);
   }
   d.values_per_length = std::numeric_limits<float>::infinity();  // colours blend, however they differ
   return {std::move(d), {.kind = Material::Kind::color}};
@@ -76,9 +76,9 @@ class Gathered {
       add(part.points, part.normals);
       known_.insert(known_.end(), part.points.size(), part.texture ? 0.0 : std::numeric_limits<double>::quiet_NaN());
       if (faces_.empty()) faces_.push_back(0);
-      for (std::size_t f = 0; f + 1 < part.face_begin.size(); ++f) {
-        for (Offset c = part.face_begin[f]; c < part.face_begin[f + 1]; ++c)
-          vertices_.push_back(first + part.face_vertices[c]);
+      for (std::size_t f = 0; f < part.faces.size(); ++f) {
+        for (Offset c = part.faces.begin[f]; c < part.faces.begin[f + 1]; ++c)
+          vertices_.push_back(first + part.faces.vertices[c]);
         faces_.push_back(static_cast<Offset>(vertices_.size()));
       }
     }
@@ -107,7 +107,8 @@ class Gathered {
 
 void check(const TexturedScene& scene, const PictureOptions& options) {
   check_picture(options);
-  if (scene.colors.size() != scene.points.size() || scene.radii.size() != scene.points.size() ||
+  if (scene.colors.size() != scene.points.size() ||
+      (!scene.radii.empty() && scene.radii.size() != scene.points.size()) ||
       (!scene.normals.empty() && scene.normals.size() != scene.points.size()))
     throw InvalidArgument("scene: " + std::to_string(scene.points.size()) + " points, " +
                           std::to_string(scene.colors.size()) + " colors, " + std::to_string(scene.radii.size()) +
@@ -121,7 +122,7 @@ void write_textured_png(const std::filesystem::path& path, const TexturedScene& 
   const Gathered gathered(scene);
   const Camera camera = choose_camera(gathered.scene, shown_points(gathered.scene), options);
   std::vector<Painted> things;
-  if (!scene.points.empty()) things.push_back(painted_points(scene, camera));
+  if (!scene.points.empty()) things.push_back(painted_points(scene, camera, options.threads));
   for (const io::MeshPart& part : scene.parts) things.push_back(painted(part, camera));
   io::write_png(path, develop(render(std::move(things), camera, options), options));
 }
