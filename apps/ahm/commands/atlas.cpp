@@ -5,9 +5,9 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "ahm/applications/atlas/texture_atlas.hpp"
 #include "ahm/applications/cells.hpp"
 #include "ahm/graph/components.hpp"
-#include "ahm/io/texture_atlas.hpp"
 #include "ahm/view/textured_picture.hpp"
 #include "cli/numbers.hpp"
 #include "cli/option_adders.hpp"
@@ -44,7 +44,7 @@ struct AtlasCommandOptions {
   std::vector<SourceSpec> sources;
   Index charts = 20;
   std::optional<double> max_distortion;
-  io::PackOptions pack;
+  PackOptions pack;
   std::string texture;
 };
 
@@ -61,15 +61,15 @@ std::vector<Vertex> choose_sources(const AtlasCommandOptions& options, const Inp
 struct Made {
   Atlas atlas;
   AtlasDistortion distortion;
-  io::TextureAtlas packed;
+  TextureAtlas packed;
   std::size_t faces = 0, uncharted = 0;
   std::vector<Vec3> sources;
 
   Made(Atlas made, const Skin& skin, const TangentGraph& graph, const std::vector<Vec3>& positions,
-       const io::PackOptions& options)
+       const PackOptions& options)
       : atlas(std::move(made)),
         distortion(ahm::distortion(atlas, skin.faces(), positions)),
-        packed(io::pack(atlas, skin.faces(), options)),
+        packed(ahm::pack(atlas, skin.faces(), options)),
         faces(atlas.chart_of_face.size()),
         uncharted(static_cast<std::size_t>(std::count(atlas.chart_of_face.begin(), atlas.chart_of_face.end(), -1))) {
     for (Vertex vertex : atlas.sources) sources.push_back(graph.frame(vertex.index)->origin);
@@ -103,7 +103,7 @@ void comment(const AtlasCommandOptions& options, const Made& made, const Tangent
 }
 
 void write_files(const AtlasCommandOptions& options, const Skin& skin, const Made& made) {
-  const Image texture = options.texture.empty() ? io::checkerboard(made.packed) : io::read_image(options.texture);
+  const Image texture = options.texture.empty() ? checkerboard(made.packed) : io::read_image(options.texture);
   const auto is_charted = [&](std::size_t f) { return made.atlas.chart_of_face[f] >= 0; };
   const SkinPart charted(skin, is_charted, made.packed.coordinates);
   const SkinPart rest(skin, [&](std::size_t f) { return !is_charted(f); });
@@ -135,7 +135,7 @@ void report(const AtlasCommandOptions& options, const Input& input, const Made& 
     chart["distortion"] = as_json(made.distortion.charts[k]);
     j["charts"].push_back(chart);
   }
-  const io::TextureAtlas& packed = made.packed;
+  const TextureAtlas& packed = made.packed;
   j["texture"] = {
       {"size", packed.size}, {"margin", packed.margin}, {"texels_per_unit", packed.scale}, {"filled", packed.filled}};
   const DistortionSummary& d = made.distortion.all;

@@ -7,6 +7,7 @@
 
 #include "ahm/surface/exact/geodesic_path.hpp"
 #include "ahm/testing/triangle_meshes.hpp"
+#include "ahm/trimesh/triangle_mesh.hpp"
 
 namespace ahm::test {
 

@@ -5,7 +5,7 @@
 #include <limits>
 #include <optional>
 
-#include "ahm/io/texture_atlas.hpp"
+#include "ahm/applications/atlas/texture_atlas.hpp"
 
 #define STB_RECT_PACK_IMPLEMENTATION
 #define STBRP_STATIC
@@ -18,10 +18,8 @@
 #pragma GCC diagnostic pop
 #endif
 
-namespace ahm::io {
+namespace ahm {
 namespace {
-
-std::size_t at(Offset i) { return static_cast<std::size_t>(i); }
 
 double side(const ChartBox& box, std::size_t axis) { return box.high[axis] - box.low[axis]; }
 
@@ -43,7 +41,7 @@ std::optional<std::vector<TextureBox>> place(const std::vector<ChartBox>& boxes,
   }
   // Each rectangle has its margin on the right and above; the square gives the others.
   const int room = size - margin;
-  std::vector<stbrp_node> nodes(at(room));
+  std::vector<stbrp_node> nodes(static_cast<std::size_t>(room));
   stbrp_context context;
   stbrp_init_target(&context, room, room, nodes.data(), room);
   stbrp_setup_heuristic(&context, STBRP_HEURISTIC_Skyline_BF_sortHeight);
@@ -74,6 +72,8 @@ double largest_scale(const std::vector<ChartBox>& boxes, const PackOptions& opti
 
 }  // namespace
 
+bool can_pack() noexcept { return true; }
+
 TextureAtlas pack(const Atlas& atlas, const FaceList& faces, const PackOptions& options) {
   if (options.size < 16 || options.size > 32768)
     throw InvalidArgument("pack: size is " + std::to_string(options.size) + "; it must be 16 to 32768");
@@ -98,11 +98,11 @@ TextureAtlas pack(const Atlas& atlas, const FaceList& faces, const PackOptions& 
     const auto [c, s] = boxes[k].turn;
     result.filled += static_cast<double>(target.width) * target.height;
     for (Index f : atlas.charts[k].faces)
-      for (Offset corner = faces.begin[f]; corner < faces.begin[at(f) + 1]; ++corner) {
+      for (Offset corner = faces.begin[f]; corner < faces.begin[Offset{f} + 1]; ++corner) {
         const auto [u, v] = atlas.corner(corner);
         const double turned[] = {c * u + s * v, c * v - s * u};
         for (std::size_t a : {0, 1})
-          result.coordinates[2 * at(corner) + a] =
+          result.coordinates[2 * corner + static_cast<Offset>(a)] =
               (origin[a] + result.scale * (turned[a] - boxes[k].low[a])) / options.size;
       }
   }
@@ -110,4 +110,4 @@ TextureAtlas pack(const Atlas& atlas, const FaceList& faces, const PackOptions& 
   return result;
 }
 
-}  // namespace ahm::io
+}  // namespace ahm

@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ahm/io/texture_atlas.hpp"
+#include "ahm/applications/atlas/texture_atlas.hpp"
 
-namespace ahm::io {
+namespace ahm {
 
 Image checkerboard(const TextureAtlas& atlas, int square) {
   if (square <= 0) square = std::max(1, atlas.size / 64);
@@ -30,4 +30,4 @@ Image checkerboard(const TextureAtlas& atlas, int square) {
   return image;
 }
 
-}  // namespace ahm::io
+}  // namespace ahm

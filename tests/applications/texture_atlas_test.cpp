@@ -1,4 +1,4 @@
-#include "ahm/io/texture_atlas.hpp"
+#include "ahm/applications/atlas/texture_atlas.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 
 #include "ahm/error.hpp"
 
-namespace ahm::io::test {
+namespace ahm::test {
 namespace {
 
 /// Charts of one turned rectangle each, as two triangles, all sizes from 0.02 to 1.
@@ -45,7 +45,7 @@ struct Charts {
 class Packed : public ::testing::TestWithParam<int> {
  protected:
   void SetUp() override {
-    if (!has_images()) GTEST_SKIP() << "this build has no stb";
+    if (!can_pack()) GTEST_SKIP() << "this build has no stb";
   }
 };
 
@@ -128,4 +128,4 @@ TEST_F(Packed, RefusesWhatDoesNotFit) {
 }
 
 }  // namespace
-}  // namespace ahm::io::test
+}  // namespace ahm::test
