@@ -25,10 +25,10 @@ double difference(const ahm::TangentGraph& graph, double radius, double margin, 
   const LocalMaps maps = ahm::local_maps(graph, sources, {.radius = radius, .variant = variant, .margin = margin});
   double worst = 0;
   for (std::size_t s = 0; s < sources.size(); ++s) {
-    const ahm::LogMap whole = solver.solve(ahm::Source::at_vertex(sources[s]), {.variant = variant});
+    const ahm::LogMap whole = solver.solve(ahm::Source::at_vertex(ahm::Vertex(sources[s])), {.variant = variant});
     for (Offset e = maps.indptr[s]; e < maps.indptr[s + 1]; ++e)
       for (int a = 0; a < 2; ++a)
-        worst = std::max(worst, std::abs(maps.logs[2 * e + a] - whole.coordinates(maps.indices[e])[a]));
+        worst = std::max(worst, std::abs(maps.logs[2 * e + a] - whole.coordinates(ahm::Vertex(maps.indices[e]))[a]));
   }
   return worst / radius;
 }
@@ -57,7 +57,7 @@ int main(int argc, char** argv) {
   std::optional<ahm::LogMapSolver> solver;
   const double factor = seconds([&] { solver.emplace(graph, ahm::OperatorOptions{.check_graph = false}); });
   std::vector<ahm::Source> some;
-  for (Index s = 0; s < 64; ++s) some.push_back(ahm::Source::at_vertex(s * (graph.size() / 64)));
+  for (Index s = 0; s < 64; ++s) some.push_back(ahm::Source::at_vertex(ahm::Vertex(s * (graph.size() / 64))));
   double batch = seconds([&] { solver->solve(some, {.threads = threads}); }) / 64;
   double single = seconds([&] {
                     for (const auto& source : some) solver->solve(source, {.threads = threads});

@@ -23,8 +23,8 @@ void solve(const ahm::TangentGraph& graph, Strategy strategy, double build) {
   const double prepare = seconds([&] {
     solver.emplace(graph, ahm::OperatorOptions{.check_graph = false}, ahm::SolverOptions{.strategy = strategy});
   });
-  const double first = seconds([&] { map.emplace(solver->solve(ahm::Source::at_vertex(0))); });
-  const double again = seconds([&] { solver->solve(ahm::Source::at_vertex(graph.size() / 2)); });
+  const double first = seconds([&] { map.emplace(solver->solve(ahm::Source::at_vertex(ahm::Vertex{0}))); });
+  const double again = seconds([&] { solver->solve(ahm::Source::at_vertex(ahm::Vertex(graph.size() / 2))); });
   std::printf("| %d | %s | %.2f | %.2f | %.2f | %.2f | %.2f | %.2f | %d | %d | %.0f | %.0f | %d |\n", graph.size(),
               std::string(to_string(strategy)).c_str(), build, build / n * 1e6, prepare + first,
               (prepare + first) / n * 1e6, again, static_cast<double>(map->march().solved) / n, map->march().bands,

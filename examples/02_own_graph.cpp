@@ -27,7 +27,8 @@ int main() {
 
   const ahm::CsrGraph graph(std::move(helix));
   ahm::validate(graph);  // names the first law that is broken, if any
-  const ahm::LogMap map = ahm::LogMapSolver(graph).solve(ahm::Source::at_vertex(50));
-  std::printf("the ends lie at %.3f and %.3f\n", map.coordinates(0)[0], map.coordinates(n - 1)[0]);
-  return std::abs(map.coordinates(0)[0] + 5.0) < 1e-9 ? 0 : 1;
+  const ahm::LogMap map = ahm::LogMapSolver(graph).solve(ahm::Source::at_vertex(ahm::Vertex{50}));
+  std::printf("the ends lie at %.3f and %.3f\n", map.coordinates(ahm::Vertex{0})[0],
+              map.coordinates(ahm::Vertex(n - 1))[0]);
+  return std::abs(map.coordinates(ahm::Vertex{0})[0] + 5.0) < 1e-9 ? 0 : 1;
 }

@@ -12,8 +12,8 @@ int main() {
   const auto cloud = ahm::pointcloud::PointCloudSurface::build(grid);
   const ahm::LogMapSolver solver(cloud.graph());
 
-  const ahm::Index corner = cloud.vertex(ahm::Row{0}).index, opposite = cloud.vertex(ahm::Row{2499}).index;
-  const std::array<ahm::Index, 2> known{corner, opposite};
+  const ahm::Vertex corner = cloud.vertex(ahm::Row{0}), opposite = cloud.vertex(ahm::Row{2499});
+  const std::array known{corner, opposite};
 
   // One number known at each of two corners: every point takes that of the nearer one.
   const ahm::VertexField label = ahm::extend_scalar(solver, known, std::array{1.0, 2.0});
@@ -21,7 +21,7 @@ int main() {
 
   // One vector, carried along shortest paths to the opposite corner.
   const ahm::VertexField field = ahm::transport_vectors(solver, std::span(known).first(1), std::array{0.6, 0.8});
-  const double* there = field.values.data() + 2 * opposite;
+  const double* there = field.values.data() + 2 * opposite.index;
   std::printf("carried to the opposite corner: (%.3f, %.3f), length %.3f\n", there[0], there[1],
               std::hypot(there[0], there[1]));
 }

@@ -15,7 +15,7 @@ int main() {
   const auto at = [&](ahm::Index x, ahm::Index y) { return plan.vertex(std::array{x, y}); };
   const std::array beacons{at(2, 5), at(38, 3), at(20, 18)};
   const auto nearest = ahm::extend_scalar(plan_solver, beacons, std::array{0.0, 1.0, 2.0});
-  const double here = nearest.values[at(2, 15)];
+  const double here = nearest.values[at(2, 15).index];
   std::printf("just behind the wall from beacon 0, the nearest on foot is beacon %.0f\n", here);
 
   // Space: the log map is the position seen from the source, here from inside a cell.

@@ -13,7 +13,7 @@ int main() {
   const auto at = [&](ahm::Index x, ahm::Index y) { return plate.vertex(std::array{x, y}); };
 
   // u: arclength along the stroke, v: signed distance, positive on its left.
-  std::vector<ahm::Index> path;
+  std::vector<ahm::Vertex> path;
   for (ahm::Index x = 5; x <= 35; ++x) path.push_back(at(x, 10));
   const ahm::LogMap map = solver.solve(ahm::stroke_source(plate, path));
   const auto phi = map.coordinates(at(20, 14));
@@ -21,6 +21,6 @@ int main() {
 
   const auto seeds = ahm::farthest_points(solver, at(0, 0), 4);
   const auto cell = ahm::nearest_source(solver, seeds);
-  std::printf("vertex (35, 3) belongs to cell %d of %zu\n", static_cast<int>(cell[at(35, 3)]), seeds.size());
-  return std::hypot(phi[0] - 1.5, phi[1] - 0.4) < 1e-9 && cell[seeds[2]] == 2 ? 0 : 1;
+  std::printf("vertex (35, 3) belongs to cell %d of %zu\n", static_cast<int>(cell[at(35, 3).index]), seeds.size());
+  return std::hypot(phi[0] - 1.5, phi[1] - 0.4) < 1e-9 && cell[seeds[2].index] == 2 ? 0 : 1;
 }

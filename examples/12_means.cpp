@@ -16,19 +16,20 @@ int main() {
   }
   const auto cloud = ahm::pointcloud::PointCloudSurface::build(dome);
   const ahm::LogMapSolver solver(cloud.graph());
-  const auto near = [&](ahm::Vec3 p) { return cloud.vertex(cloud.nearest_row(p)).index; };
+  const auto near = [&](ahm::Vec3 p) { return cloud.vertex(cloud.nearest_row(p)); };
 
-  const std::array<ahm::Index, 3> towns{near({0.8, 0, 0.6}), near({-0.4, 0.69, 0.6}), near({-0.4, -0.69, 0.6})};
+  const std::array towns{near({0.8, 0, 0.6}), near({-0.4, 0.69, 0.6}), near({-0.4, -0.69, 0.6})};
   const ahm::Center mean = ahm::karcher_mean(solver, towns);
   const ahm::Center median = ahm::geometric_median(solver, towns, std::array{3.0, 1.0, 1.0});
-  const ahm::Vec3 top = cloud.graph().frame(mean.vertex)->origin;
-  std::printf("mean: vertex %d at height %.3f, rms distance %.3f, %d maps\n", static_cast<int>(mean.vertex), top[2],
-              mean.spread, static_cast<int>(mean.maps));
-  std::printf("median: the heaviest town, %d (%d)\n", static_cast<int>(median.vertex), static_cast<int>(towns[0]));
+  const ahm::Vec3 top = cloud.graph().frame(mean.vertex.index)->origin;
+  std::printf("mean: vertex %d at height %.3f, rms distance %.3f, %d maps\n", static_cast<int>(mean.vertex.index),
+              top[2], mean.spread, static_cast<int>(mean.maps));
+  std::printf("median: the heaviest town, %d (%d)\n", static_cast<int>(median.vertex.index),
+              static_cast<int>(towns[0].index));
 
   // How far is each point from the mean, and which way leads away from it?
   const ahm::DistanceField field = ahm::distance_and_gradient(solver, ahm::source_at(mean));
-  std::printf("a town is %.3f away\n", field.distance.values[towns[1]]);
+  std::printf("a town is %.3f away\n", field.distance.values[towns[1].index]);
 
   // The surface seen from a town, u running uphill.
   const ahm::LogMap map = solver.solve(

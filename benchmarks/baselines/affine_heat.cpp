@@ -15,9 +15,9 @@ class AffineHeat final : public Baseline {
 
   Result solve(Index source) const override {
     check_source(source, solver_.graph().size());
-    const LogMap map = solver_.solve(Source::at_vertex(source), {.variant = variant_});
+    const LogMap map = solver_.solve(Source::at_vertex(Vertex(source)), {.variant = variant_});
     Result result{{map.coordinates().begin(), map.coordinates().end()}, {}};
-    for (Index i = 0; i < map.size(); ++i) result.distance.push_back(map.distance(i));
+    for (Index i = 0; i < map.size(); ++i) result.distance.push_back(map.distance(Vertex(i)));
     return result;
   }
 

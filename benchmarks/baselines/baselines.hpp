@@ -24,8 +24,8 @@ namespace ahm::baselines {
 
 /// What a method says about every vertex; NaN where it says nothing (no path or heat from the source).
 struct Result {
-  std::vector<double> coordinates;  ///< n x d, outside units, in the frame of the source; empty for distances alone
-  std::vector<double> distance;     ///< n, outside units
+  std::vector<double> coordinates;  ///< n x d, world units, in the frame of the source; empty for distances alone
+  std::vector<double> distance;     ///< n, world units
 };
 
 /// A method made ready for one graph or mesh: its constructor holds all that can be computed before the source is known.

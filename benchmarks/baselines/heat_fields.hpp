@@ -59,7 +59,7 @@ class StarGradient {
   Eigen::LDLT<Eigen::MatrixXd> factors_;
 };
 
-/// Distances f - f[source] in outside units, NaN where `reached` is false.
+/// Distances f - f[source] in world units, NaN where `reached` is false.
 template <class Reached>
 std::vector<double> distances_from(std::vector<double> f, Index source, double length_unit, const Reached& reached) {
   const double zero = f[source];

@@ -13,7 +13,7 @@ namespace {
 void check_curve(const Source& curve, const TangentGraph& graph) {
   if (graph.dimension() != 2 || curve.dimension() != 2 || curve.vertices().empty())
     throw InvalidArgument("'curve' must be samples with axes on a graph of dimension 2; make it with stroke_source");
-  for (Index i : curve.vertices())
+  for (const auto [i] : curve.vertices())
     if (i < 0 || i >= graph.size())
       throw InvalidArgument("'curve': vertex " + std::to_string(i) + " must be in [0, " + std::to_string(graph.size()) +
                             ")");
@@ -53,7 +53,7 @@ std::vector<double> SignedHeat::signed_distance(const Source& curve) const {
   if (!(most > 0)) throw InvalidArgument("'curve': every weight is 0; give one sample a positive weight at the least");
   for (std::size_t k = 0; k < curve.vertices().size(); ++k)
     for (std::size_t a : {0, 1})
-      X[static_cast<std::size_t>(curve.vertices()[k]) * 2 + a] +=
+      X[static_cast<std::size_t>(curve.vertices()[k].index) * 2 + a] +=
           source_heat * (curve.weights()[k] / most) * curve.axes()[4 * k + 2 * a + 1];
   heat_.solve_vector(X, 1);
   // II.
@@ -62,7 +62,7 @@ std::vector<double> SignedHeat::signed_distance(const Source& curve) const {
   std::vector<double> f = integration_.integrate(X);
   double mean = 0, weights = 0;
   for (std::size_t k = 0; k < curve.vertices().size(); ++k) {
-    mean += curve.weights()[k] / most * f[curve.vertices()[k]];
+    mean += curve.weights()[k] / most * f[curve.vertices()[k].index];
     weights += curve.weights()[k] / most;
   }
   mean /= weights;

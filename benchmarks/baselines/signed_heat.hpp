@@ -27,7 +27,7 @@ class SignedHeat final : public Baseline {
   /// Signed distance to a curve, d = 2.
   /// @param curve  samples with quadrature weights whose u axes run along the curve, as `stroke_source` makes them;
   ///               several strokes added to one source are one broken curve
-  /// @return n numbers, outside units, > 0 on the side of the v axes; zero on average over the curve
+  /// @return n numbers, world units, > 0 on the side of the v axes; zero on average over the curve
   /// @throws InvalidArgument when the source is not a curve in d = 2 or does not fit the graph
   std::vector<double> signed_distance(const Source& curve) const;
 

@@ -13,7 +13,7 @@ class StarHeat {
  public:
   explicit StarHeat(const TangentGraph& graph);
 
-  /// Distances in outside units from the heat of a vertex; NaN where there is none.
+  /// Distances in world units from the heat of a vertex; NaN where there is none.
   std::vector<double> from_heat(std::vector<double> lambda, Index source) const;
 
  private:

@@ -15,7 +15,7 @@ matplotlib.rcParams.update({"svg.fonttype": "none", "svg.hashsalt": "ahm", "font
                             "axes.spines.top": False, "axes.spines.right": False})
 import matplotlib.pyplot as plt
 
-# Okabe and Ito's colours, and a marker each, so that nothing hangs on colour alone.
+# Okabe and Ito's colors, and a marker each, so that nothing hangs on color alone.
 LOOKS = {"AHM_a": ("#0072B2", "o"), "AHM_l": ("#56B4E9", "s"), "AHM_a, order 2": ("#000000", "D"),
          "VHM_log": ("#D55E00", "^"), "SEM": ("#CC79A7", "v"), "DEM": ("#E69F00", "P"), "HM": ("#009E73", "X"),
          "HM (graph)": ("#009E73", "x"), "SHM": ("#E69F00", "d"), "DEM, along the path": ("#D55E00", ">"),
@@ -45,9 +45,9 @@ def values(rows, column):
 
 
 def look(name, place=0):
-    colour, marker = LOOKS.get(name, SPARE[place % len(SPARE)])
+    color, marker = LOOKS.get(name, SPARE[place % len(SPARE)])
     line = "--" if "(graph)" in name or "refined" in name else "-"
-    return {"color": colour, "marker": marker, "markersize": 4, "linewidth": 1.3, "linestyle": line}
+    return {"color": color, "marker": marker, "markersize": 4, "linewidth": 1.3, "linestyle": line}
 
 
 def numbers(rows, x, y):

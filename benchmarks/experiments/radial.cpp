@@ -49,7 +49,7 @@ void measure(const char* name, double stretch, const Mesh& mesh, Radial radial, 
     std::vector<double> affine, vector;
     for (int s = 0; s < source_count; ++s) {
       const Index source = surface.size() / 11 + s * (surface.size() / source_count);
-      add_angles(surface, source, radial, radial_field(solver, Source::at_vertex(source)).values, affine);
+      add_angles(surface, source, radial, radial_field(solver, Source::at_vertex(Vertex(source))).values, affine);
       std::vector<double> circle(static_cast<std::size_t>(2 * surface.size()), 0.0);
       baselines::add_outward_circle(surface.graph(), source, circle);
       solver.operators().solve_vector(circle, 1);

@@ -24,12 +24,13 @@ void measure(const std::string& name, const Mesh& mesh, unsigned threads, Table&
   });
   const Index source = graph.size() / 2;
   auto further = [&](Variant variant) {
-    return least_seconds([&] { solver->solve(Source::at_vertex(source), {.variant = variant, .threads = threads}); });
+    return least_seconds(
+        [&] { solver->solve(Source::at_vertex(Vertex(source)), {.variant = variant, .threads = threads}); });
   };
   const double adaptive = further(Variant::adaptive), localized = further(Variant::localized);
   std::vector<Source> sources;
   for (Index s = 0; s < 32; ++s)
-    sources.push_back(Source::at_vertex(static_cast<Index>(static_cast<Offset>(s) * graph.size() / 32)));
+    sources.push_back(Source::at_vertex(Vertex(static_cast<Offset>(s) * graph.size() / 32)));
   const double batch = least_seconds([&] { solver->solve(sources, {.threads = threads}); }) / 32;
   solver.reset();
   const double vector_factor = least_seconds([&] { vector_heat.emplace(baselines::vector_heat_log(graph)); });

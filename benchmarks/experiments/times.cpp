@@ -50,8 +50,8 @@ Table times(const Settings& settings) {
 #endif
   const test::Mesh square = test::flat_square(settings.toy ? 21 : 101);
   const Surface plane("plane", {square.positions, square.faces});
-  const Index centre = test::nearest(square, 0.5, 0.5);
-  measure_known(plane, centre, plane.plane_log(centre), 1.0, table);
+  const Index center = test::nearest(square, 0.5, 0.5);
+  measure_known(plane, center, plane.plane_log(center), 1.0, table);
   auto worst = [&](const char* method) {
     return table.where("method", method).where("shape", "sphere").largest("rms");
   };

@@ -15,19 +15,20 @@ constexpr int ring_count = 10;
 void measure(const Surface& surface, Table& table) {
   const Index source = surface.size() / 2;
   const LogMapSolver solver(surface.graph());
-  const LogMap adaptive = solver.solve(Source::at_vertex(source), {.frames = true}),
-               localized = solver.solve(Source::at_vertex(source), {.variant = Variant::localized});
+  const LogMap adaptive = solver.solve(Source::at_vertex(Vertex(source)), {.frames = true}),
+               localized = solver.solve(Source::at_vertex(Vertex(source)), {.variant = Variant::localized});
   const std::vector<double> quality = map_quality(surface.graph(), adaptive), paths = surface.path_lengths(source);
   const std::vector<int> ring_of = rings(paths, ring_count);
   double longest = 0;
   for (Index i = 0; i < adaptive.size(); ++i)
-    if (adaptive.status(i) == Status::ok) longest = std::max(longest, adaptive.distance(i));
+    if (adaptive.status(Vertex(i)) == Status::ok) longest = std::max(longest, adaptive.distance(Vertex(i)));
   for (int ring = 0; ring < ring_count; ++ring) {
     std::vector<double> all, trusted;
     for (Index i = 0; i < adaptive.size(); ++i) {
       const auto k = static_cast<std::size_t>(i);
-      if (ring_of[k] != ring || adaptive.status(i) != Status::ok || localized.status(i) != Status::ok) continue;
-      const auto a = adaptive.coordinates(i), l = localized.coordinates(i);
+      if (ring_of[k] != ring || adaptive.status(Vertex(i)) != Status::ok || localized.status(Vertex(i)) != Status::ok)
+        continue;
+      const auto a = adaptive.coordinates(Vertex(i)), l = localized.coordinates(Vertex(i));
       all.push_back(std::hypot(a[0] - l[0], a[1] - l[1]) / longest);
       if (quality[k] >= trusted_quality) trusted.push_back(all.back());
     }

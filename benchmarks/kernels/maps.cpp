@@ -48,7 +48,7 @@ void solves_alone(const ahm::HeatOperators& heat, Variant variant, std::vector<d
 void map(benchmark::State& state, Shape shape, Variant variant) {
   const ahm::CsrGraph& graph = graph_for(state, shape);
   const ahm::LogMapSolver& solver = solver_of(graph);
-  const ahm::Source source = ahm::Source::at_vertex(graph.size() / 2);
+  const ahm::Source source = ahm::Source::at_vertex(ahm::Vertex(graph.size() / 2));
   for (auto _ : state) benchmark::DoNotOptimize(solver.solve(source, {.variant = variant, .threads = 1}));
   std::vector<double> X(2 * static_cast<std::size_t>(graph.size()));
   const double whole = median_cpu_seconds([&] { solver.solve(source, {.variant = variant, .threads = 1}); });
@@ -61,7 +61,7 @@ void map(benchmark::State& state, Shape shape, Variant variant) {
 void march(benchmark::State& state, Shape shape) {
   const ahm::CsrGraph& graph = graph_for(state, shape);
   const ahm::LogMapSolver solver(graph, {.check_graph = false, .threads = 1}, {.strategy = ahm::Strategy::march});
-  const ahm::Source source = ahm::Source::at_vertex(graph.size() / 2);
+  const ahm::Source source = ahm::Source::at_vertex(ahm::Vertex(graph.size() / 2));
   ahm::MarchStatistics statistics;
   for (auto _ : state) statistics = solver.solve(source, {.threads = 1}).march();
   state.counters["bands"] = statistics.bands;
@@ -74,7 +74,7 @@ void march(benchmark::State& state, Shape shape) {
 void quality(benchmark::State& state, Shape shape) {
   const ahm::CsrGraph& graph = graph_for(state, shape);
   const ahm::LogMap map =
-      solver_of(graph).solve(ahm::Source::at_vertex(graph.size() / 2), {.threads = 1, .frames = true});
+      solver_of(graph).solve(ahm::Source::at_vertex(ahm::Vertex(graph.size() / 2)), {.threads = 1, .frames = true});
   const double seconds = run(state, [&] { benchmark::DoNotOptimize(ahm::map_quality(graph, map)); });
   state.SetItemsProcessed(state.iterations() * graph.size());
   report_bandwidth(state, (20.0 + 17.0) * static_cast<double>(graph.edge_count()) + 64.0 * graph.size(), seconds);

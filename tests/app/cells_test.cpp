@@ -102,7 +102,7 @@ TEST(CellsCommand, PartsWithoutASourceHaveNoCell) {
       run({"cells", folder.write("planes.xyz", xyz(points)), "--sources", "0 5", "-o", out, "--json", "-"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   for (NumberRow p : read_numbers(out)) EXPECT_EQ(std::isnan(p["label"]), p["x"] > 5);
-  EXPECT_NE(read_text(out).find(",component,nan"), std::string::npos);
+  EXPECT_NE(read_text(out).find(",disconnected,nan"), std::string::npos);
   EXPECT_NE(outcome.err.find("50 % of the vertices are not connected"), std::string::npos) << outcome.err;
 }
 

@@ -96,10 +96,10 @@ TEST(CloudFaults, AnotherClusterIsMarked) {
   const auto one = plane(20);
   const auto result = map_cloud(xyz(joined(one, moved(plane(20), {50, 0, 0}))));
   for (std::size_t i = 0; i < result.rows.size(); ++i) {
-    EXPECT_EQ(result.rows[i].status, i < one.size() ? "ok" : "component") << i;
+    EXPECT_EQ(result.rows[i].status, i < one.size() ? "ok" : "disconnected") << i;
     EXPECT_EQ(std::isnan(result.rows[i].u), i >= one.size());
   }
-  EXPECT_EQ(result.json.at("status").at("component"), one.size());
+  EXPECT_EQ(result.json.at("status").at("disconnected"), one.size());
 }
 
 TEST(CloudFaults, AStrayPointIsMarked) {
@@ -171,7 +171,7 @@ TEST(CloudFaults, TwoSheetsOfAThinWallStayApart) {
   for (std::size_t i = 0; i < front.size(); ++i) {
     EXPECT_EQ(result.rows[i].status, "ok");
     EXPECT_NEAR(result.rows[i].distance, std::hypot(front[i][0] - front[0][0], front[i][1] - front[0][1]), 1e-9);
-    EXPECT_EQ(result.rows[i + front.size()].status, "component");
+    EXPECT_EQ(result.rows[i + front.size()].status, "disconnected");
   }
 }
 

@@ -27,7 +27,7 @@ std::string plate() {
 
 /// Red on the left, blue on the right, opaque but for its upper half.
 std::string half_and_half(const Folder& folder) {
-  io::Image image(40, 20);
+  Image image(40, 20);
   for (int y = 0; y < 20; ++y)
     for (int x = 0; x < 40; ++x) {
       std::uint8_t* p = image.pixel(x, y);

@@ -109,7 +109,7 @@ TEST(Logmap, MarksWhatLiesBeyondTheRadius) {
     ASSERT_EQ(run(words).status, 0);
     for (const Row& row : read_csv(folder / "map.csv")) {
       const double exact = std::hypot(row.position[0] - points[0][0], row.position[1] - points[0][1]);
-      EXPECT_EQ(row.status, exact > 0.3 ? "radius" : "ok");
+      EXPECT_EQ(row.status, exact > 0.3 ? "beyond_radius" : "ok");
       EXPECT_EQ(std::isnan(row.u), exact > 0.3);
       EXPECT_TRUE(row.status != "ok" || std::abs(row.distance - exact) < 1e-10);
     }
@@ -164,7 +164,7 @@ TEST(Json, TellsWhatWasDone) {
   EXPECT_EQ(json.at("strategy"), "global");
   EXPECT_GT(json.at("mean_edge_length").get<double>(), 0.0);
   EXPECT_LT(json.at("mean_edge_length").get<double>(), 0.5);
-  for (const char* status : {"ok", "component", "radius", "unreached", "removed"})
+  for (const char* status : {"ok", "disconnected", "beyond_radius", "unreached", "removed"})
     EXPECT_TRUE(json.at("status").contains(status));
   EXPECT_EQ(json.at("status").at("ok"), 1000);
   EXPECT_TRUE(json.at("warnings").is_array());

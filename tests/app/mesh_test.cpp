@@ -88,7 +88,7 @@ TEST(Mesh, MasksOtherComponentsAndUnusedVertices) {
   const auto rows = map(mesh, "3");
   EXPECT_EQ(rows[3].status, "ok");
   EXPECT_EQ(rows[64].status, "removed");
-  EXPECT_EQ(rows[66].status, "component");
+  EXPECT_EQ(rows[66].status, "disconnected");
   EXPECT_TRUE(std::isnan(rows[66].u));
 }
 

@@ -92,7 +92,8 @@ void expect_partition(const Atlas& atlas, const FaceList& faces) {
 TEST(Atlas, OfAPlaneIsIsometricWhateverTheTriangles) {
   const Surface surface(sliver_square(500));
   for (Index count : {1, 7}) {
-    const Atlas atlas = make_atlas(surface.solver(), farthest_points(surface.solver(), 3, count), surface.faces());
+    const Atlas atlas =
+        make_atlas(surface.solver(), farthest_points(surface.solver(), Vertex{3}, count), surface.faces());
     expect_partition(atlas, surface.faces());
     EXPECT_EQ(std::count(atlas.chart_of_face.begin(), atlas.chart_of_face.end(), -1), 0);
     const AtlasDistortion d = distortion(atlas, surface.faces(), surface.positions);
@@ -103,27 +104,28 @@ TEST(Atlas, OfAPlaneIsIsometricWhateverTheTriangles) {
 
 TEST(Atlas, CoordinatesAreTheLogMapsOfTheirSources) {
   const Surface surface(icosphere(12));
-  const auto sources = farthest_points(surface.solver(), 0, 9);
+  const auto sources = farthest_points(surface.solver(), Vertex{0}, 9);
   const Atlas atlas = make_atlas(surface.solver(), sources, surface.faces());
   expect_partition(atlas, surface.faces());
   EXPECT_EQ(atlas.sources, sources);
   for (const Chart& chart : atlas.charts) {
-    const LogMap map = surface.solver().solve(Source::at_vertex(sources[chart.source]));
+    const LogMap map = surface.solver().solve(Source::at_vertex(Vertex(sources[chart.source])));
     for (Index f : chart.faces)
       for (Offset c = surface.begin[f]; c < surface.begin[to_size(f) + 1]; ++c)
-        for (std::size_t a : {0, 1}) EXPECT_NEAR(atlas.corner(c)[a], map.coordinates(surface.vertices[c])[a], 1e-9);
+        for (std::size_t a : {0, 1})
+          EXPECT_NEAR(atlas.corner(c)[a], map.coordinates(Vertex(surface.vertices[c]))[a], 1e-9);
   }
 }
 
 TEST(Atlas, GivesFacesToTheSourceNearestToTheirMiddle) {
   const Surface surface(icosphere(16));
-  const auto sources = farthest_points(surface.solver(), 5, 12);
+  const auto sources = farthest_points(surface.solver(), Vertex{5}, 12);
   const Atlas atlas = make_atlas(surface.solver(), sources, surface.faces());
   std::vector<LogMap> maps;
-  for (Index s : sources) maps.push_back(surface.solver().solve(Source::at_vertex(s)));
+  for (Index s : sources) maps.push_back(surface.solver().solve(Source::at_vertex(Vertex(s))));
   const auto sum = [&](std::size_t source, std::size_t f) {
     double total = 0;
-    for (Index v : surface.faces()[f]) total += maps[source].distance(v);
+    for (Index v : surface.faces()[f]) total += maps[source].distance(Vertex(v));
     return total;
   };
   const double h = surface.solver().graph().mean_edge_length() * surface.solver().graph().length_unit();
@@ -143,7 +145,7 @@ TEST(Atlas, OfASphereIsAsGoodAsItsCellsAreSmall) {
   const Surface surface(icosphere(20));
   double before = std::numeric_limits<double>::infinity();
   for (Index count : {4, 12, 40}) {
-    const auto sources = farthest_points(surface.solver(), 0, count);
+    const auto sources = farthest_points(surface.solver(), Vertex{0}, count);
     const Atlas atlas = make_atlas(surface.solver(), sources, surface.faces());
     double radius = 0;
     for (std::size_t c = 0; c < surface.vertices.size(); ++c)
@@ -161,7 +163,7 @@ TEST(Atlas, ChartsAreCounterClockwiseAlsoWhereFramesAreMirrored) {
   const FlatGraph flat = planar_triangulation(20, TransportKind::block, true);
   const CsrGraph graph(flat.data);
   const LogMapSolver solver(graph);
-  const LogMap map = solver.solve(Source::at_vertex(0), {.frames = true});
+  const LogMap map = solver.solve(Source::at_vertex(Vertex{0}), {.frames = true});
   std::vector<Offset> begin{0};
   std::vector<Index> vertices;
   for (const Triangle& t : star_triangles(graph, map)) {
@@ -171,7 +173,7 @@ TEST(Atlas, ChartsAreCounterClockwiseAlsoWhereFramesAreMirrored) {
   std::vector<Vec3> positions;
   for (std::size_t i = 0; i < to_size(graph.size()); ++i)
     positions.push_back({flat.positions[2 * i], flat.positions[2 * i + 1], 0});
-  const auto sources = farthest_points(solver, 0, 10);
+  const auto sources = farthest_points(solver, Vertex{0}, 10);
   const Atlas atlas = make_atlas(solver, sources, {begin, vertices});
   expect_partition(atlas, {begin, vertices});
   const AtlasDistortion d = distortion(atlas, {begin, vertices}, positions);
@@ -195,7 +197,7 @@ TEST(Atlas, OfPolygonsKeepsThemWhole) {
   const auto mesh = polymesh::PolygonMeshSurface::build(positions, begin, vertices,
                                                         {.discretization = polymesh::Discretization::polygons});
   const LogMapSolver solver(mesh.graph());
-  const Atlas atlas = make_atlas(solver, farthest_points(solver, 0, 6), {begin, vertices});
+  const Atlas atlas = make_atlas(solver, farthest_points(solver, Vertex{0}, 6), {begin, vertices});
   expect_partition(atlas, {begin, vertices});
   const AtlasDistortion d = distortion(atlas, {begin, vertices}, positions);
   EXPECT_NEAR(d.all.largest, 1, 1e-9);
@@ -212,20 +214,20 @@ TEST(Atlas, LeavesOutComponentsWithoutASource) {
   }
   for (const Triangle& t : faces) two.faces.push_back({t[0] + n, t[1] + n, t[2] + n});
   const Surface surface(two);
-  const Atlas atlas = make_atlas(surface.solver(), std::array<Index, 2>{0, 7}, surface.faces());
+  const Atlas atlas = make_atlas(surface.solver(), std::array{Vertex{0}, Vertex{7}}, surface.faces());
   expect_partition(atlas, surface.faces());
   for (std::size_t f = 0; f < two.faces.size(); ++f) EXPECT_EQ(atlas.chart_of_face[f] >= 0, f < faces.size());
   EXPECT_EQ(distortion(atlas, surface.faces(), surface.positions).all.unmeasured, static_cast<Offset>(faces.size()));
   // Refinement gives them sources.
-  const Atlas whole =
-      make_atlas(surface.solver(), std::array<Index, 2>{0, 7}, surface.faces(), surface.positions, RefineOptions{});
+  const Atlas whole = make_atlas(surface.solver(), std::array{Vertex{0}, Vertex{7}}, surface.faces(), surface.positions,
+                                 RefineOptions{});
   expect_partition(whole, surface.faces());
   EXPECT_EQ(std::count(whole.chart_of_face.begin(), whole.chart_of_face.end(), -1), 0);
 }
 
 TEST(AtlasRefinement, OpensATubeAndKeepsTheSourcesGiven) {
   const Surface surface(tube_mesh(60, 24));
-  const std::array<Index, 1> source{24 * 30};
+  const std::array source{Vertex{24 * 30}};
   const Atlas closed = make_atlas(surface.solver(), source, surface.faces());
   const AtlasDistortion bad = distortion(closed, surface.faces(), surface.positions);
   EXPECT_GT(bad.all.flipped, 0);  // behind the source the map closes around the tube
@@ -247,18 +249,18 @@ TEST(AtlasRefinement, OpensATubeAndKeepsTheSourcesGiven) {
 
 TEST(AtlasRefinement, AddsNothingToAGoodAtlasAndNoMoreThanAllowed) {
   const Surface plane(sliver_square(300)), tube(tube_mesh(60, 24));
-  EXPECT_EQ(make_atlas(plane.solver(), std::array<Index, 1>{4}, plane.faces(), plane.positions, RefineOptions{})
-                .sources.size(),
-            1U);
   EXPECT_EQ(
-      make_atlas(tube.solver(), std::array<Index, 1>{4}, tube.faces(), tube.positions, RefineOptions{.max_sources = 3})
+      make_atlas(plane.solver(), std::array{Vertex{4}}, plane.faces(), plane.positions, RefineOptions{}).sources.size(),
+      1U);
+  EXPECT_EQ(
+      make_atlas(tube.solver(), std::array{Vertex{4}}, tube.faces(), tube.positions, RefineOptions{.max_sources = 3})
           .sources.size(),
       3U);
 }
 
 TEST(ChartBoxes, AreTheLeastOfAllTurns) {
   const Surface surface(icosphere(10));
-  const Atlas atlas = make_atlas(surface.solver(), farthest_points(surface.solver(), 0, 8), surface.faces());
+  const Atlas atlas = make_atlas(surface.solver(), farthest_points(surface.solver(), Vertex{0}, 8), surface.faces());
   const auto boxes = chart_boxes(atlas, surface.faces());
   ASSERT_EQ(boxes.size(), atlas.charts.size());
   for (std::size_t k = 0; k < boxes.size(); ++k) {
@@ -287,8 +289,8 @@ TEST(ChartBoxes, AreTheLeastOfAllTurns) {
 
 TEST(Atlas, RefusesBadArguments) {
   const Surface surface(icosphere(2));
-  const std::array<Index, 1> source{0}, outside{1000};
-  const auto refuse = [&](std::span<const Index> sources, const FaceList& faces) {
+  const std::array source{Vertex{0}}, outside{Vertex{1000}};
+  const auto refuse = [&](std::span<const Vertex> sources, const FaceList& faces) {
     EXPECT_THROW(make_atlas(surface.solver(), sources, faces), InvalidArgument);
   };
   refuse({}, surface.faces());

@@ -15,9 +15,9 @@ namespace ahm::test {
 namespace {
 
 /// Heat from each source alone: n x k.
-std::vector<std::vector<double>> separate_heats(const LogMapSolver& solver, const std::vector<Index>& sources) {
+std::vector<std::vector<double>> separate_heats(const LogMapSolver& solver, const std::vector<Vertex>& sources) {
   std::vector<std::vector<double>> heats;
-  for (Index source : sources) {
+  for (const auto [source] : sources) {
     std::vector<double> heat(static_cast<std::size_t>(solver.graph().size()), 0.0);
     heat[source] = 1;
     solver.operators().solve_scalar(heat, 1);
@@ -29,7 +29,7 @@ std::vector<std::vector<double>> separate_heats(const LogMapSolver& solver, cons
 TEST(Cells, AreThoseOfSeparateHeatsWhereverOneHasTheMajority) {
   const CsrGraph graph(sphere_graph(3000));
   const LogMapSolver solver(graph);
-  const std::vector<Index> sources = farthest_points(solver, 0, 23);
+  const std::vector<Vertex> sources = farthest_points(solver, Vertex{0}, 23);
   const auto label = nearest_source(solver, sources);
   const auto heats = separate_heats(solver, sources);
   Index doubtful = 0, differ = 0;
@@ -59,19 +59,19 @@ TEST(Cells, HaveTheirDistancesUpToTheBorder) {
   const CsrGraph graph(flat.data);
   const LogMapSolver solver(graph);
   for (const Index count : {1, 2, 5, 40}) {
-    const std::vector<Index> sources = farthest_points(solver, 17, count);
+    const std::vector<Vertex> sources = farthest_points(solver, Vertex{17}, count);
     const auto labels = nearest_source(solver, sources);
     const VertexField away = distance_in_cells(solver, sources, labels);
     const std::vector<LogMap> separate = solver.solve([&] {
       std::vector<Source> all;
-      for (Index vertex : sources) all.push_back(Source::at_vertex(vertex));
+      for (Vertex vertex : sources) all.push_back(Source::at_vertex(vertex));
       return all;
     }());
     for (Index i = 0; i < graph.size(); ++i) {
       const auto own = static_cast<std::size_t>(labels[i]);
       // Few cells all touch or nearly so, and each is solved for alone: exact. Of many, sources of a group are a cell of
       // several edges farther away than the own one, and add a little of their heat.
-      const double exact = separate[own].distance(i);
+      const double exact = separate[own].distance(Vertex(i));
       EXPECT_NEAR(away.values[i], exact, count <= 5 ? 1e-11 : graph.mean_edge_length() / 4);
       EXPECT_EQ(away.status[i], Status::ok);
     }
@@ -81,7 +81,7 @@ TEST(Cells, HaveTheirDistancesUpToTheBorder) {
 TEST(Cells, DistancesNeedLabelsThatFit) {
   const CsrGraph graph(planar_triangulation(8).data);
   const LogMapSolver solver(graph);
-  const std::vector<Index> sources{3, 40};
+  const std::vector sources{Vertex{3}, Vertex{40}};
   std::vector<Index> labels = nearest_source(solver, sources);
   EXPECT_THROW(distance_in_cells(solver, std::span(sources).first(0), labels), InvalidArgument);
   EXPECT_THROW(distance_in_cells(solver, sources, std::span(labels).first(5)), InvalidArgument);
@@ -89,19 +89,19 @@ TEST(Cells, DistancesNeedLabelsThatFit) {
   EXPECT_THROW(distance_in_cells(solver, sources, labels), InvalidArgument);
   labels[0] = -1;
   const VertexField away = distance_in_cells(solver, sources, labels);
-  EXPECT_EQ(away.status[0], Status::component);
+  EXPECT_EQ(away.status[0], Status::disconnected);
   EXPECT_TRUE(std::isnan(away.values[0]));
 }
 
 TEST(Cells, ContainTheirSourcesAndAreConnected) {
   const CsrGraph graph(planar_triangulation(30).data);
   const LogMapSolver solver(graph);
-  const std::vector<Index> sources = farthest_points(solver, 17, 12);
+  const std::vector<Vertex> sources = farthest_points(solver, Vertex{17}, 12);
   const auto label = nearest_source(solver, sources);
   for (std::size_t k = 0; k < sources.size(); ++k) {
-    std::vector<Index> stack{sources[k]};
+    std::vector<Index> stack{sources[k].index};
     std::vector<bool> seen(label.size(), false);
-    seen[sources[k]] = true;
+    seen[sources[k].index] = true;
     std::ptrdiff_t size = 0;
     while (!stack.empty()) {
       const Index i = stack.back();
@@ -109,7 +109,7 @@ TEST(Cells, ContainTheirSourcesAndAreConnected) {
       for (Index j : graph.star(i).neighbors)
         if (!seen[j] && label[j] == static_cast<Index>(k)) seen[j] = true, stack.push_back(j);
     }
-    EXPECT_EQ(label[sources[k]], static_cast<Index>(k));
+    EXPECT_EQ(label[sources[k].index], static_cast<Index>(k));
     EXPECT_EQ(size, std::count(label.begin(), label.end(), static_cast<Index>(k)));
   }
 }
@@ -117,14 +117,14 @@ TEST(Cells, ContainTheirSourcesAndAreConnected) {
 TEST(Cells, LeaveComponentsWithoutASourceUnlabelled) {
   const FlatGraph flat = planar_triangulation(8);
   const CsrGraph graph(doubled(flat.data));
-  const auto label = nearest_source(LogMapSolver(graph), std::array<Index, 1>{3});
+  const auto label = nearest_source(LogMapSolver(graph), std::array{Vertex{3}});
   for (Index i = 0; i < graph.size(); ++i) EXPECT_EQ(label[i], i < flat.size() ? 0 : -1);
 }
 
 TEST(Cells, OfALineOfAnyLengthMeetHalfWay) {
   const Index n = 6001;  // farther than heat reaches
   const CsrGraph graph(line_graph(n).data);
-  const auto label = nearest_source(LogMapSolver(graph), std::array<Index, 2>{0, n - 1});
+  const auto label = nearest_source(LogMapSolver(graph), std::array{Vertex{0}, Vertex(n - 1)});
   for (Index i = 0; i < n; ++i)
     if (i != n / 2) EXPECT_EQ(label[i], i < n / 2 ? 0 : 1);
 }
@@ -133,29 +133,29 @@ TEST(FarthestPoints, AreSpreadAsAGreedyCoverOfThePlane) {
   const FlatGraph flat = planar_triangulation(24);
   const CsrGraph graph(flat.data);
   const LogMapSolver solver(graph);
-  const auto points = farthest_points(solver, 5, 20);
+  const auto points = farthest_points(solver, Vertex{5}, 20);
   const auto between = [&](Index a, Index b) { return std::hypot(flat.exact(a, b)[0], flat.exact(a, b)[1]); };
   std::vector<double> away(static_cast<std::size_t>(flat.size()), 1e300);
   for (std::size_t k = 0; k + 1 < points.size(); ++k) {
-    for (Index i = 0; i < flat.size(); ++i) away[i] = std::min(away[i], between(points[k], i));
-    EXPECT_NEAR(away[points[k + 1]], *std::max_element(away.begin(), away.end()), 1e-10);
+    for (Index i = 0; i < flat.size(); ++i) away[i] = std::min(away[i], between(points[k].index, i));
+    EXPECT_NEAR(away[points[k + 1].index], *std::max_element(away.begin(), away.end()), 1e-10);
   }
 }
 
 TEST(FarthestPoints, VisitEveryComponentFirst) {
   const FlatGraph flat = planar_triangulation(6);
   const CsrGraph graph(doubled(flat.data));
-  EXPECT_GE(farthest_points(LogMapSolver(graph), 0, 2)[1], flat.size());
+  EXPECT_GE(farthest_points(LogMapSolver(graph), Vertex{0}, 2)[1], Vertex{flat.size()});
 }
 
 TEST(Cells, RefuseBadArguments) {
   const CsrGraph graph(planar_triangulation(5).data);
   const LogMapSolver solver(graph);
   EXPECT_THROW(nearest_source(solver, {}), InvalidArgument);
-  EXPECT_THROW(nearest_source(solver, std::array<Index, 2>{1, 1}), InvalidArgument);
-  EXPECT_THROW(nearest_source(solver, std::array<Index, 1>{25}), InvalidArgument);
-  EXPECT_THROW(farthest_points(solver, -1, 2), InvalidArgument);
-  EXPECT_THROW(farthest_points(solver, 0, 26), InvalidArgument);
+  EXPECT_THROW(nearest_source(solver, std::array{Vertex{1}, Vertex{1}}), InvalidArgument);
+  EXPECT_THROW(nearest_source(solver, std::array{Vertex{25}}), InvalidArgument);
+  EXPECT_THROW(farthest_points(solver, Vertex{-1}, 2), InvalidArgument);
+  EXPECT_THROW(farthest_points(solver, Vertex{0}, 26), InvalidArgument);
 }
 
 }  // namespace

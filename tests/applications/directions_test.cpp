@@ -34,11 +34,11 @@ TEST(DirectionInFrame, TurnsTheUAxisAlongAVectorOfSpace) {
     Vec3 along;
     for (int a = 0; a < 3; ++a) along[a] = up[a] - height * frame.normal[a];
     const double r = std::sqrt(dot(along, along));
-    const LogMap map = plane.solver.solve(Source::at_vertex(p, direction_in_frame(graph, Vertex(p), up)));
+    const LogMap map = plane.solver.solve(Source::at_vertex(Vertex(p), direction_in_frame(graph, Vertex{p}, up)));
     for (Index i = 0; i < graph.size(); ++i) {
       Vec3 away;
       for (int a = 0; a < 3; ++a) away[a] = graph.frame(i)->origin[a] - frame.origin[a];
-      EXPECT_NEAR(map.coordinates(i)[0], dot(away, along) / r, 1e-11);
+      EXPECT_NEAR(map.coordinates(Vertex(i))[0], dot(away, along) / r, 1e-11);
     }
   }
 }
@@ -46,12 +46,12 @@ TEST(DirectionInFrame, TurnsTheUAxisAlongAVectorOfSpace) {
 TEST(DirectionInFrame, RefusesWhatHasNoDirection) {
   const grid::GridGraph grid({.shape = {4, 4}, .spacing = {1, 1}}), space({.shape = {4, 4, 4}, .spacing = {1, 1, 1}});
   const CsrGraph abstract(planar_triangulation(4).data);
-  EXPECT_THROW(direction_in_frame(grid, Vertex(0), {0, 0, 1}), InvalidArgument);
-  EXPECT_THROW(direction_in_frame(grid, Vertex(0), {0, 0, 0}), InvalidArgument);
-  EXPECT_THROW(direction_in_frame(grid, Vertex(0), {0, NAN, 1}), InvalidArgument);
-  EXPECT_THROW(direction_in_frame(grid, Vertex(16), {0, 1, 0}), InvalidArgument);
-  EXPECT_THROW(direction_in_frame(space, Vertex(0), {0, 1, 0}), InvalidArgument);
-  EXPECT_THROW(direction_in_frame(abstract, Vertex(0), {0, 1, 0}), InvalidArgument);
+  EXPECT_THROW(direction_in_frame(grid, Vertex{0}, {0, 0, 1}), InvalidArgument);
+  EXPECT_THROW(direction_in_frame(grid, Vertex{0}, {0, 0, 0}), InvalidArgument);
+  EXPECT_THROW(direction_in_frame(grid, Vertex{0}, {0, NAN, 1}), InvalidArgument);
+  EXPECT_THROW(direction_in_frame(grid, Vertex{16}, {0, 1, 0}), InvalidArgument);
+  EXPECT_THROW(direction_in_frame(space, Vertex{0}, {0, 1, 0}), InvalidArgument);
+  EXPECT_THROW(direction_in_frame(abstract, Vertex{0}, {0, 1, 0}), InvalidArgument);
   EXPECT_THROW(curvature_directions(space), InvalidArgument);
   EXPECT_THROW(curvature_directions(abstract), InvalidArgument);
 }

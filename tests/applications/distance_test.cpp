@@ -20,7 +20,7 @@ TEST(DistanceGradient, IsExactOnFlatGraphsOfAnyDimension) {
        {planar_triangulation(14), planar_triangulation(14, TransportKind::block, true), lattice3(6), line_graph(40)}) {
     const CsrGraph graph(flat.data);
     const Index p = flat.size() / 2;
-    const DistanceField field = distance_and_gradient(LogMapSolver(graph), Source::at_vertex(p));
+    const DistanceField field = distance_and_gradient(LogMapSolver(graph), Source::at_vertex(Vertex(p)));
     const int d = flat.dimension;
     for (Index i = 0; i < flat.size(); ++i) {
       const auto back = flat.exact(i, p);
@@ -41,7 +41,7 @@ TEST(DistanceGradient, AgreesWithDifferencesAlongEdgesToSecondOrder) {
     const CsrGraph& graph = sphere.surface.graph();
     const double h = sphere.surface.details().longest_edge;
     for (Index p : {0, graph.size() / 3}) {
-      const DistanceField field = distance_and_gradient(sphere.solver, Source::at_vertex(p));
+      const DistanceField field = distance_and_gradient(sphere.solver, Source::at_vertex(Vertex(p)));
       double worst = 0;
       for (Index i = 0; i < graph.size(); ++i) {
         const double r = std::acos(std::clamp(dot(graph.frame(i)->origin, graph.frame(p)->origin), -1.0, 1.0));
@@ -88,12 +88,12 @@ TEST(DistanceGradient, PointsAwayFromTheSourceOnTheSphere) {
 
 TEST(DistanceGradient, OfASetIsThatOfItsNearestPoint) {
   const grid::GridGraph plane({.shape = {61, 31}, .spacing = {0.1, 0.1}});
-  const std::array<Index, 2> points{plane.vertex(std::array{8, 15}), plane.vertex(std::array{50, 11})};
+  const std::array points{plane.vertex(std::array{8, 15}), plane.vertex(std::array{50, 11})};
   Source set(2);
-  for (Index i : points) set.add(i, 1.0, std::array{0.0, 0.0}, std::array{1.0, 0.0, 0.0, 1.0});
+  for (Vertex i : points) set.add(i, 1.0, std::array{0.0, 0.0}, std::array{1.0, 0.0, 0.0, 1.0});
   const DistanceField field = distance_and_gradient(LogMapSolver(plane), set);
   for (Index i = 0; i < plane.size(); ++i) {
-    const Vec3 q = plane.position(i);
+    const Vec3 q = plane.position(Vertex(i));
     std::array<Vec3, 2> away;
     for (int k : {0, 1})
       for (int a = 0; a < 3; ++a) away[k][a] = q[a] - plane.position(points[k])[a];
@@ -109,15 +109,15 @@ TEST(DistanceGradient, OfASetIsThatOfItsNearestPoint) {
 TEST(DistanceGradient, IsMaskedWhereDistanceIs) {
   const FlatGraph flat = planar_triangulation(6);
   const CsrGraph two(doubled(flat.data));
-  const DistanceField field = distance_and_gradient(LogMapSolver(two), Source::at_vertex(0));
+  const DistanceField field = distance_and_gradient(LogMapSolver(two), Source::at_vertex(Vertex{0}));
   for (Index i = 0; i < two.size(); ++i) {
     const bool known = i < flat.size();
-    EXPECT_EQ(field.distance.status[i], known ? Status::ok : Status::component);
+    EXPECT_EQ(field.distance.status[i], known ? Status::ok : Status::disconnected);
     EXPECT_EQ(field.gradient.status[i], field.distance.status[i]);
     EXPECT_EQ(std::isnan(field.distance.values[i]), !known);
     EXPECT_EQ(std::isnan(field.gradient.values[2 * i]), !known);
   }
-  EXPECT_THROW(distance_and_gradient(LogMapSolver(two), Source::at_vertex(72)), InvalidArgument);
+  EXPECT_THROW(distance_and_gradient(LogMapSolver(two), Source::at_vertex(Vertex{72})), InvalidArgument);
 }
 
 }  // namespace

@@ -175,7 +175,7 @@ TEST(InverseMap, OfAnyFlatGraphIsThePlaneOnTheSourcesSide) {
           planar_triangulation(20, reflections ? TransportKind::block : TransportKind::rotation2, reflections);
       const CsrGraph graph(with_frames(flat_graph));
       const Frame from = *graph.frame(source);
-      const LogMap map = LogMapSolver(graph).solve(Source::at_vertex(source), {.frames = true});
+      const LogMap map = LogMapSolver(graph).solve(Source::at_vertex(Vertex(source)), {.frames = true});
       const InverseMap inverse = inverse_map(graph, map);
       int answered = 0;
       for (const auto& [u, v] : points_in_disc(0.4, 500)) {
@@ -198,7 +198,7 @@ TEST(StarTriangles, OfATriangulationAreItsTriangles) {
   // A triangulated square: the area of its triangles is its own, and no triangle bridges a dent of the border.
   const FlatGraph flat_graph = planar_triangulation(25);
   const CsrGraph graph(flat_graph.data);
-  const LogMap map = LogMapSolver(graph).solve(Source::at_vertex(0), {.frames = true});
+  const LogMap map = LogMapSolver(graph).solve(Source::at_vertex(Vertex{0}), {.frames = true});
   const auto triangles = star_triangles(graph, map);
   EXPECT_EQ(triangles.size(), 2U * 24 * 24);
   for (const Triangle& t : triangles) {
@@ -217,7 +217,7 @@ TEST(StarTriangles, CoverTheCellsOfAGridAndSpareItsHoles) {
   for (int y = 4; y < 8; ++y)
     for (int x = 4; x < 8; ++x) shape.blocked[20 * y + x] = 1;
   const grid::GridGraph graph(shape);
-  const LogMap map = LogMapSolver(graph).solve(Source::at_vertex(220), {.frames = true});
+  const LogMap map = LogMapSolver(graph).solve(Source::at_vertex(Vertex{220}), {.frames = true});
   const InverseMap inverse = inverse_map(graph, map);
   for (const auto& [u, v] : points_in_disc(0.99, 1000)) {
     const bool hole = u > -0.6 && u < -0.2 && v > -0.6 && v < -0.2;
@@ -285,8 +285,8 @@ TEST(InverseMap, RefusesBadArguments) {
   EXPECT_THROW(InverseMap(plane.surface(), {.max_stretch = 1}), InvalidArgument);
   const CsrGraph graph(planar_triangulation(5).data);  // knows no frames in space
   const LogMapSolver solver(graph);
-  EXPECT_THROW(inverse_map(graph, solver.solve(Source::at_vertex(0), {.frames = true})), InvalidArgument);
-  EXPECT_THROW(star_triangles(graph, solver.solve(Source::at_vertex(0))), InvalidArgument);
+  EXPECT_THROW(inverse_map(graph, solver.solve(Source::at_vertex(Vertex{0}), {.frames = true})), InvalidArgument);
+  EXPECT_THROW(star_triangles(graph, solver.solve(Source::at_vertex(Vertex{0}))), InvalidArgument);
   EXPECT_FALSE(InverseMap(MappedSurface{}).at(0, 0));
 }
 

@@ -20,7 +20,7 @@ namespace ahm::test {
 namespace {
 
 struct Points {
-  std::vector<Index> vertices;
+  std::vector<Vertex> vertices;
   std::vector<double> weights;
   double total() const { return std::accumulate(weights.begin(), weights.end(), 0.0); }
 };
@@ -30,7 +30,7 @@ Points random_points(Index n, std::size_t count, unsigned seed) {
   std::uniform_real_distribution<double> weight(0.1, 3.0);
   Points points;
   for (std::size_t k = 0; k < count; ++k) {
-    points.vertices.push_back(static_cast<Index>(random() % static_cast<std::uint64_t>(n)));
+    points.vertices.emplace_back(static_cast<Index>(random() % static_cast<std::uint64_t>(n)));
     points.weights.push_back(weight(random));
   }
   return points;
@@ -40,7 +40,7 @@ Points random_points(Index n, std::size_t count, unsigned seed) {
 std::vector<double> imbalance(const FlatGraph& flat, const Points& points, const Center& center, int power) {
   std::vector<double> sum(center.offset.size(), 0.0);
   for (std::size_t k = 0; k < points.vertices.size(); ++k) {
-    std::vector<double> z = flat.exact(center.vertex, points.vertices[k]);
+    std::vector<double> z = flat.exact(center.vertex.index, points.vertices[k].index);
     double r = 0;
     for (std::size_t a = 0; a < z.size(); ++a) r = std::hypot(r, z[a] -= center.offset[a]);
     if (power < 0 && r < 1e-12) continue;
@@ -84,7 +84,7 @@ TEST(GeometricMedian, BalancesTheUnitVectorsOnFlatGraphsOfAnyDimension) {
       // Either no point is there and all is balanced, or the points there hold it.
       double holding = 0, nearest = 1e300;
       for (std::size_t k = 0; k < points.vertices.size(); ++k) {
-        std::vector<double> z = flat.exact(median.vertex, points.vertices[k]);
+        std::vector<double> z = flat.exact(median.vertex.index, points.vertices[k].index);
         for (std::size_t a = 0; a < z.size(); ++a) z[a] -= median.offset[a];
         const double r = norm(z);
         r < 1e-12 ? holding += points.weights[k] : nearest = std::min(nearest, r);
@@ -99,10 +99,11 @@ TEST(GeometricMedian, BalancesTheUnitVectorsOnFlatGraphsOfAnyDimension) {
 TEST(GeometricMedian, OfAQuadrilateralIsWhereItsDiagonalsCross) {
   const FlatGraph flat = planar_triangulation(15);
   const CsrGraph graph(flat.data);
-  const std::array<Index, 4> corners{17, 27, 15 * 12 + 11, 15 * 9 + 2};  // in order round it
+  const std::array corners{Vertex{17}, Vertex{27}, Vertex{15 * 12 + 11}, Vertex{15 * 9 + 2}};  // in order round it
   const Center median = geometric_median(LogMapSolver(graph), corners);
   for (int pair : {0, 1}) {
-    const auto a = flat.exact(median.vertex, corners[pair]), b = flat.exact(median.vertex, corners[pair + 2]);
+    const auto a = flat.exact(median.vertex.index, corners[pair].index),
+               b = flat.exact(median.vertex.index, corners[pair + 2].index);
     const double off = (b[0] - a[0]) * (median.offset[1] - a[1]) - (b[1] - a[1]) * (median.offset[0] - a[0]);
     EXPECT_NEAR(off, 0, 1e-11);
   }
@@ -111,19 +112,20 @@ TEST(GeometricMedian, OfAQuadrilateralIsWhereItsDiagonalsCross) {
 TEST(GeometricMedian, IsThePointThatOutweighsTheRest) {
   const CsrGraph graph(sphere_graph(600));
   const LogMapSolver solver(graph);
-  const std::array<Index, 4> points{10, 200, 333, 451};
-  const Center median = geometric_median(solver, points, std::array{1.0, 1.0, 3.1, 1.0}, {.start = 10});
-  EXPECT_EQ(median.vertex, 333);
+  const std::array points{Vertex{10}, Vertex{200}, Vertex{333}, Vertex{451}};
+  const Center median = geometric_median(solver, points, std::array{1.0, 1.0, 3.1, 1.0}, {.start = Vertex{10}});
+  EXPECT_EQ(median.vertex, Vertex{333});
   // What is left is where the map of a vertex puts that vertex itself.
-  const auto self = solver.solve(Source::at_vertex(333)).coordinates(333);
+  const auto self = solver.solve(Source::at_vertex(Vertex{333})).coordinates(Vertex{333});
   EXPECT_NEAR(std::hypot(median.offset[0] - self[0], median.offset[1] - self[1]), 0, 1e-14);
 }
 
 TEST(GeometricMedian, OfPointsOnALineIsTheirMedian) {
   const FlatGraph flat = line_graph(60);
   const CsrGraph graph(flat.data);
-  const Center median = geometric_median(LogMapSolver(graph), std::array<Index, 5>{3, 7, 20, 50, 58});
-  EXPECT_EQ(median.vertex, 20);
+  const Center median =
+      geometric_median(LogMapSolver(graph), std::array{Vertex{3}, Vertex{7}, Vertex{20}, Vertex{50}, Vertex{58}});
+  EXPECT_EQ(median.vertex, Vertex{20});
   EXPECT_NEAR(median.offset[0], 0, 1e-11);
   EXPECT_NEAR(median.spread, (17 + 13 + 0 + 30 + 38) / 5.0, 1e-10);
 }
@@ -144,13 +146,13 @@ void expect_exact_mean(const TangentGraph& flat, double size) {
   Vec3 expected{};
   for (std::size_t k = 0; k < points.vertices.size(); ++k)
     for (int a = 0; a < 3; ++a)
-      expected[a] += points.weights[k] / points.total() * flat.frame(points.vertices[k])->origin[a];
+      expected[a] += points.weights[k] / points.total() * flat.frame(points.vertices[k].index)->origin[a];
   const Center mean = karcher_mean(solver, points.vertices, points.weights);
   EXPECT_LT(apart(in_space(flat, mean), expected), 1e-11 * size);
   // The surface seen from the mean.
   const LogMap map = solver.solve(source_at(mean));
   for (Index i = 0; i < flat.size(); ++i)
-    EXPECT_NEAR(map.distance(i), apart(flat.frame(i)->origin, expected), 1e-11 * size);
+    EXPECT_NEAR(map.distance(Vertex(i)), apart(flat.frame(i)->origin, expected), 1e-11 * size);
 }
 
 TEST(KarcherMean, IsExactOnFlatGeometryOfEveryBackend) {
@@ -195,11 +197,11 @@ Vec3 sphere_center(const std::vector<Vec3>& points, Vec3 x, bool median) {
   return x;
 }
 
-using FindCenter = std::function<Center(const LogMapSolver&, std::span<const Index>, const CenterOptions&)>;
-const FindCenter find_mean = [](const LogMapSolver& solver, std::span<const Index> points, const CenterOptions& o) {
+using FindCenter = std::function<Center(const LogMapSolver&, std::span<const Vertex>, const CenterOptions&)>;
+const FindCenter find_mean = [](const LogMapSolver& solver, std::span<const Vertex> points, const CenterOptions& o) {
   return karcher_mean(solver, points, {}, o);
 };
-const FindCenter find_median = [](const LogMapSolver& solver, std::span<const Index> points, const CenterOptions& o) {
+const FindCenter find_median = [](const LogMapSolver& solver, std::span<const Vertex> points, const CenterOptions& o) {
   return geometric_median(solver, points, {}, o);
 };
 
@@ -239,17 +241,17 @@ TEST(Center, IsThatOfTheExactLogarithmsOnTheSphereFromAnyStart) {
   for (int trial = 0; trial < 4; ++trial) {
     // Points within a quarter of pi of one of them: all of them within the convex ball of that one.
     const auto middle = mesh.positions[random() % mesh.positions.size()];
-    std::vector<Index> points;
+    std::vector<Vertex> points;
     std::vector<Vec3> positions;
     while (points.size() < 6) {
       const auto i = static_cast<Index>(random() % mesh.positions.size());
       if (dot(mesh.positions[i], middle) < std::sqrt(0.5)) continue;
-      points.push_back(i);
+      points.emplace_back(i);
       positions.push_back(mesh.positions[i]);
     }
     for (const bool median : {false, true}) {
       const Vec3 exact = sphere_center(positions, middle, median);
-      for (Index start : {points[0], points[5]}) {
+      for (Vertex start : {points[0], points[5]}) {
         const Center center = (median ? find_median : find_mean)(sphere.solver, points, {.start = start});
         EXPECT_TRUE(center.converged);
         EXPECT_LT(apart(in_space(graph, center), exact), h) << (median ? "median " : "mean ") << trial;
@@ -263,12 +265,12 @@ TEST(Center, TurnsWithTheFrames) {
   const Turned turned = with_frames_turned(data);
   const CsrGraph graph(data), other(turned.data);
   const LogMapSolver solver(graph), other_solver(other);
-  const std::array<Index, 4> points{10, 40, 90, 133};
+  const std::array points{Vertex{10}, Vertex{40}, Vertex{90}, Vertex{133}};
   for (const FindCenter& find : {find_mean, find_median}) {
     const Center a = find(solver, points, {}), b = find(other_solver, points, {});
     ASSERT_EQ(a.vertex, b.vertex);
     EXPECT_NEAR(a.spread, b.spread, 1e-11);
-    const double* Q = turned.turns.data() + 4 * a.vertex;
+    const double* Q = turned.turns.data() + 4 * a.vertex.index;
     EXPECT_NEAR(b.offset[0], Q[0] * a.offset[0] + Q[1] * a.offset[1], 1e-11);
     EXPECT_NEAR(b.offset[1], Q[2] * a.offset[0] + Q[3] * a.offset[1], 1e-11);
   }
@@ -280,7 +282,7 @@ TEST(Center, ScalesWithTheSurfaceAndNotWithTheWeights) {
   CsrGraphData unit = data;
   unit.length_unit = std::ldexp(1.0, 900);  // squares overflow outside
   const CsrGraph huge(unit);
-  const std::array<Index, 4> points{10, 40, 90, 133};
+  const std::array points{Vertex{10}, Vertex{40}, Vertex{90}, Vertex{133}};
   const std::array weights{1.0, 2.0, 3.0, 4.0}, many{1e300, 2e300, 3e300, 4e300};
   for (auto find : {karcher_mean, geometric_median}) {
     const Center a = find(LogMapSolver(graph), points, weights, {});
@@ -303,7 +305,7 @@ TEST(Center, IsFoundInFewMapsFromEveryStart) {
   for (Index start = 0; start < graph.size(); start += 7) {
     const Points points = random_points(graph.size(), 5, static_cast<unsigned>(start));
     for (const FindCenter& find : {find_mean, find_median}) {
-      const Center center = find(solver, points.vertices, {.start = start});
+      const Center center = find(solver, points.vertices, {.start = Vertex{start}});
       EXPECT_TRUE(center.converged) << "start " << start;
       EXPECT_LE(center.maps, 30) << "start " << start;
     }
@@ -314,9 +316,9 @@ TEST(Center, IgnoresPointsOfWeightZero) {
   const FlatGraph flat = planar_triangulation(8);
   const CsrGraph two(doubled(flat.data));
   const LogMapSolver solver(two);
-  const std::array<Index, 3> points{3, 40, flat.size() + 5};
+  const std::array points{Vertex{3}, Vertex{40}, Vertex{flat.size() + 5}};
   const Center mean = karcher_mean(solver, points, std::array{1.0, 3.0, 0.0});
-  const auto a = flat.exact(mean.vertex, 3), b = flat.exact(mean.vertex, 40);
+  const auto a = flat.exact(mean.vertex.index, 3), b = flat.exact(mean.vertex.index, 40);
   for (int axis : {0, 1}) EXPECT_NEAR(mean.offset[axis], (a[axis] + 3 * b[axis]) / 4, 1e-11);
 }
 
@@ -324,17 +326,17 @@ TEST(Center, RefusesWhatHasNone) {
   const FlatGraph flat = planar_triangulation(8);
   const CsrGraph two(doubled(flat.data));
   const LogMapSolver solver(two);
-  const std::array<Index, 2> separate{3, flat.size() + 3}, pair{3, 60};
+  const std::array separate{Vertex{3}, Vertex{flat.size() + 3}}, pair{Vertex{3}, Vertex{60}};
   const std::array<double, 2> weights{1, 1}, negative{1, -1}, zero{0, 0};
   EXPECT_THROW(karcher_mean(solver, separate), InvalidArgument);
   EXPECT_THROW(geometric_median(solver, separate), InvalidArgument);
   EXPECT_THROW(karcher_mean(solver, {}), InvalidArgument);
-  EXPECT_THROW(karcher_mean(solver, std::array<Index, 1>{two.size()}), InvalidArgument);
+  EXPECT_THROW(karcher_mean(solver, std::array{Vertex(two.size())}), InvalidArgument);
   EXPECT_THROW(karcher_mean(solver, pair, std::span(weights).first(1)), InvalidArgument);
   EXPECT_THROW(karcher_mean(solver, pair, negative), InvalidArgument);
   EXPECT_THROW(karcher_mean(solver, pair, zero), InvalidArgument);
-  EXPECT_THROW(karcher_mean(solver, pair, weights, {.start = -1}), InvalidArgument);
-  EXPECT_THROW(karcher_mean(solver, pair, weights, {.start = flat.size()}), InvalidArgument);
+  EXPECT_THROW(karcher_mean(solver, pair, weights, {.start = Vertex{-1}}), InvalidArgument);
+  EXPECT_THROW(karcher_mean(solver, pair, weights, {.start = Vertex{flat.size()}}), InvalidArgument);
   EXPECT_THROW(karcher_mean(solver, pair, weights, {.max_maps = 0}), InvalidArgument);
   EXPECT_THROW(karcher_mean(solver, pair, weights, {.map = {.radius = 0.01}}), InvalidArgument);
 }

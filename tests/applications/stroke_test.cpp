@@ -20,9 +20,9 @@ Vec2 position(const FlatGraph& flat, Index i) {
 }
 
 /// The row of a `planar_triangulation` through its middle, from left to right.
-std::vector<Index> middle_row(Index side) {
-  std::vector<Index> path;
-  for (Index x = 2; x < side - 2; ++x) path.push_back(side / 2 * side + x);
+std::vector<Vertex> middle_row(Index side) {
+  std::vector<Vertex> path;
+  for (Index x = 2; x < side - 2; ++x) path.emplace_back(side / 2 * side + x);
   return path;
 }
 
@@ -47,9 +47,9 @@ TEST(Stroke, GivesThePlaneBackFromAnyCurveWithItsOwnPositions) {
         planar_triangulation(20, mirrored ? TransportKind::block : TransportKind::rotation2, mirrored);
     const CsrGraph graph(flat.data);
     const LogMapSolver solver(graph);
-    const std::vector<Index> path = middle_row(20);
+    const std::vector<Vertex> path = middle_row(20);
     std::vector<Vec2> positions;
-    for (Index i : path) positions.push_back(position(flat, i));
+    for (const auto [i] : path) positions.push_back(position(flat, i));
     // On mirrored frames left may be right: then the map of the mirrored plane.
     const Source source = stroke_source(graph, path, positions);
     if (mirrored) {
@@ -63,8 +63,8 @@ TEST(Stroke, GivesThePlaneBackFromAnyCurveWithItsOwnPositions) {
         for (Index i = 0; i < flat.size(); ++i) {
           const Vec2 exact = position(flat, i);
           const double v = which == 1 && mirrored ? -exact[1] : exact[1];
-          worst[which] =
-              std::max(worst[which], std::hypot(map.coordinates(i)[0] - exact[0], map.coordinates(i)[1] - v));
+          worst[which] = std::max(
+              worst[which], std::hypot(map.coordinates(Vertex(i))[0] - exact[0], map.coordinates(Vertex(i))[1] - v));
         }
       }
       EXPECT_LT(std::min(worst[0], worst[1]), 1e-11);
@@ -76,15 +76,16 @@ TEST(Stroke, AStraightLineGivesArclengthAndSignedDistance) {
   const FlatGraph flat = strip(30);
   const CsrGraph graph(flat.data);
   // A straight row: the vertices whose second coordinate is the first one's, by their first coordinate.
-  std::vector<Index> path;
+  std::vector<Vertex> path;
   for (Index i = 0; i < flat.size(); ++i)
-    if (position(flat, i)[1] == position(flat, 0)[1]) path.push_back(i);
-  std::sort(path.begin(), path.end(), [&](Index a, Index b) { return position(flat, a)[0] < position(flat, b)[0]; });
+    if (position(flat, i)[1] == position(flat, 0)[1]) path.emplace_back(i);
+  std::sort(path.begin(), path.end(),
+            [&](Vertex a, Vertex b) { return position(flat, a.index)[0] < position(flat, b.index)[0]; });
   const LogMap map = LogMapSolver(graph).solve(stroke_source(graph, path));
-  const Vec2 start = position(flat, path[0]);
+  const Vec2 start = position(flat, path[0].index);
   for (Index i = 0; i < flat.size(); ++i) {
-    EXPECT_NEAR(map.coordinates(i)[0], position(flat, i)[0] - start[0], 1e-11 * flat.diameter());
-    EXPECT_NEAR(map.coordinates(i)[1], position(flat, i)[1] - start[1], 1e-11 * flat.diameter());
+    EXPECT_NEAR(map.coordinates(Vertex(i))[0], position(flat, i)[0] - start[0], 1e-11 * flat.diameter());
+    EXPECT_NEAR(map.coordinates(Vertex(i))[1], position(flat, i)[1] - start[1], 1e-11 * flat.diameter());
   }
 }
 
@@ -93,15 +94,16 @@ TEST(Stroke, ACircleInThePlaneGivesThePlane) {
   const double spacing = 2 * std::numbers::pi / around;
   const FlatGraph flat = rings(around, count, spacing);
   const CsrGraph graph(flat.data);
-  std::vector<Index> path;
-  for (Index a = 0; a < around; ++a) path.push_back(count / 2 * around + a);
+  std::vector<Vertex> path;
+  for (Index a = 0; a < around; ++a) path.emplace_back(count / 2 * around + a);
   const Source source = stroke_source(graph, path, {.closed = true, .shape = StrokeShape::circle});
   const LogMap map = LogMapSolver(graph).solve(source);
   // The circle has the length of the polygon: smaller than the circle through its corners by a share of pi^2 / 6 n^2.
   const double share = std::pow(std::numbers::pi / around, 2) / 6, radius = 1 + count / 2 * spacing;
   for (Index i = 0; i < flat.size(); ++i) {
     const Vec2 exact = position(flat, i);
-    EXPECT_LT(std::hypot(map.coordinates(i)[0] - exact[0], map.coordinates(i)[1] - exact[1]), 1.01 * share * radius);
+    EXPECT_LT(std::hypot(map.coordinates(Vertex(i))[0] - exact[0], map.coordinates(Vertex(i))[1] - exact[1]),
+              1.01 * share * radius);
   }
 }
 
@@ -128,14 +130,14 @@ TEST(Stroke, ACircleUnrolledGivesArclengthAndSignedDistance) {
     const double spacing = 2 * std::numbers::pi / around;
     const FlatGraph flat = even_rings(around, count, spacing);
     const CsrGraph graph(flat.data);
-    std::vector<Index> path;
+    std::vector<Vertex> path;
     const double R = 1 + count / 2 * spacing;
-    for (Index a = 0; a < around; ++a) path.push_back(count / 2 * around + a);
+    for (Index a = 0; a < around; ++a) path.emplace_back(count / 2 * around + a);
     const LogMap map = LogMapSolver(graph).solve(stroke_source(graph, path, {.closed = true}));
     const double root_tau = graph.mean_edge_length() * graph.length_unit();
     for (Index r = 0; r < count; ++r)
       for (Index a = around / 4; a < 3 * around / 4; ++a) {  // away from the seam
-        const auto phi = map.coordinates(r * around + a);
+        const auto phi = map.coordinates(Vertex(r * around + a));
         const double rho = 1 + r * spacing, s = 2 * std::numbers::pi * R * a / around, left = R - rho;
         // Heat comes from a piece of the circle of variance sqrt(tau) / (1/d - 1/R), whose points see the vertex at
         // (s - rho sin(s/R), R - rho cos(s/R)): second order in the width of the piece. The discrete heat of a vertex on
@@ -150,12 +152,12 @@ TEST(Stroke, ACircleUnrolledGivesArclengthAndSignedDistance) {
 TEST(Stroke, RingsOfATubeBecomeParallelLines) {
   const Index around = 24;
   const CsrGraph graph(tube(21, around));
-  std::vector<Index> path;
-  for (Index a = 0; a < around; ++a) path.push_back(10 * around + a);
+  std::vector<Vertex> path;
+  for (Index a = 0; a < around; ++a) path.emplace_back(10 * around + a);
   const LogMap map = LogMapSolver(graph).solve(stroke_source(graph, path, {.closed = true}));
   for (Index r = 0; r < 21; ++r)
     for (Index a = 0; a < around; ++a)
-      EXPECT_NEAR(std::abs(map.coordinates(r * around + a)[1]), std::abs(r - 10), 1e-10);
+      EXPECT_NEAR(std::abs(map.coordinates(Vertex(r * around + a))[1]), std::abs(r - 10), 1e-10);
 }
 
 TEST(Stroke, OfPointsIsTheStrokeOfTheirVertices) {
@@ -201,27 +203,28 @@ TEST(Stroke, OfPointsBesideVerticesIsExactInThePlane) {
     const double axes[] = {-F[0] * s + F[1] * c, -F[0] * c - F[1] * s, -F[2] * s + F[3] * c, -F[2] * c - F[3] * s};
     const Vec2 d{a[0] - p[0], a[1] - p[1]};
     const double offset[] = {-s * d[0] + c * d[1], -c * d[0] - s * d[1]};
-    points.push_back(Source(2).add(nearest, 1, offset, axes));
+    points.push_back(Source(2).add(Vertex(nearest), 1, offset, axes));
   }
   const std::vector<double> lengths(n, 2 * std::numbers::pi * radius / n);
   const LogMap map =
       LogMapSolver(graph).solve(stroke_source(points, lengths, {.closed = true, .shape = StrokeShape::circle}));
   for (Index i = 0; i < flat.size(); ++i)
-    for (int a : {0, 1}) EXPECT_NEAR(map.coordinates(i)[a], position(flat, i)[a] - middle[a], 1e-11 * flat.diameter());
+    for (int a : {0, 1})
+      EXPECT_NEAR(map.coordinates(Vertex(i))[a], position(flat, i)[a] - middle[a], 1e-11 * flat.diameter());
 }
 
 TEST(Stroke, RefusesWhatIsNoCurve) {
   const CsrGraph graph(planar_triangulation(6).data);
-  const std::array<Index, 2> jump{0, 35}, outside{0, 36};
-  const std::array<Index, 3> back{0, 1, 0};
+  const std::array jump{Vertex{0}, Vertex{35}}, outside{Vertex{0}, Vertex{36}};
+  const std::array back{Vertex{0}, Vertex{1}, Vertex{0}};
   EXPECT_THROW(stroke_source(graph, jump), InvalidArgument);
   EXPECT_THROW(stroke_source(graph, outside), InvalidArgument);
   EXPECT_THROW(stroke_source(graph, back), InvalidArgument);
   EXPECT_THROW(stroke_source(graph, std::span(jump).first(1)), InvalidArgument);
-  EXPECT_THROW(stroke_source(graph, std::array<Index, 2>{0, 1}, {.shape = StrokeShape::circle}), InvalidArgument);
+  EXPECT_THROW(stroke_source(graph, std::array{Vertex{0}, Vertex{1}}, {.shape = StrokeShape::circle}), InvalidArgument);
   const double along[] = {1, 0};
-  const std::vector<Source> points(3, Source::at_vertex(0, along));
-  const std::vector<Source> unturned(3, Source::at_vertex(0));
+  const std::vector<Source> points(3, Source::at_vertex(Vertex{0}, along));
+  const std::vector<Source> unturned(3, Source::at_vertex(Vertex{0}));
   const std::array<double, 3> lengths{1, 1, 1}, still{1, 0, 1};
   EXPECT_NO_THROW(stroke_source(points, lengths, {.closed = true}));
   EXPECT_THROW(stroke_source(points, lengths), InvalidArgument);

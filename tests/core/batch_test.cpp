@@ -14,7 +14,7 @@ namespace {
 class Batch : public testing::Test {
  protected:
   Batch() : graph(sphere_graph(600)), solver(graph) {
-    for (Index p = 0; p < 37; ++p) sources.push_back(Source::at_vertex(p * 16));
+    for (Index p = 0; p < 37; ++p) sources.push_back(Source::at_vertex(Vertex(p * 16)));
   }
   CsrGraph graph;
   LogMapSolver solver;

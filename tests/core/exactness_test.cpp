@@ -12,10 +12,11 @@ constexpr double gate = 1e-11;  // of the diameter
 
 void expect_identity(const FlatGraph& flat, const LogMap& map, Index p) {
   for (Index i = 0; i < flat.size(); ++i) {
-    ASSERT_EQ(map.status(i), Status::ok);
+    ASSERT_EQ(map.status(Vertex(i)), Status::ok);
     const auto exact = flat.exact(p, i);
     for (int a = 0; a < flat.dimension; ++a)
-      ASSERT_NEAR(map.coordinates(i)[a], exact[a], gate * flat.diameter()) << "vertex " << i << ", source " << p;
+      ASSERT_NEAR(map.coordinates(Vertex(i))[a], exact[a], gate * flat.diameter())
+          << "vertex " << i << ", source " << p;
   }
 }
 
@@ -24,7 +25,7 @@ void expect_identity_from_everywhere(const FlatGraph& flat, double t_coef) {
   const LogMapSolver solver(graph, {.t_coef = t_coef});
   for (Variant variant : {Variant::adaptive, Variant::localized})
     for (Index p : {Index{0}, flat.size() / 2, flat.size() / 3, flat.size() - 1})
-      expect_identity(flat, solver.solve(Source::at_vertex(p), {.variant = variant}), p);
+      expect_identity(flat, solver.solve(Source::at_vertex(Vertex(p)), {.variant = variant}), p);
 }
 
 TEST(LogMap, IsExactOnAnyPlanarTriangulation) {
@@ -74,13 +75,13 @@ TEST(LogMap, IsExactFromASourceBetweenVertices) {
     Source source(2);
     for (int k = 0; k < 3; ++k) {
       const double offset[] = {flat.positions[corners[k] * 2] - p[0], flat.positions[corners[k] * 2 + 1] - p[1]};
-      source.add(corners[k], weights[k], offset, std::span(flat.frames).subspan(corners[k] * 4, 4));
+      source.add(Vertex(corners[k]), weights[k], offset, std::span(flat.frames).subspan(corners[k] * 4, 4));
     }
     for (Variant variant : {Variant::adaptive, Variant::localized}) {
       const LogMap map = solver.solve(source, {.variant = variant});
       for (Index i = 0; i < flat.size(); ++i)
         for (int a = 0; a < 2; ++a)
-          ASSERT_NEAR(map.coordinates(i)[a], flat.positions[i * 2 + a] - p[a], gate * flat.diameter());
+          ASSERT_NEAR(map.coordinates(Vertex(i))[a], flat.positions[i * 2 + a] - p[a], gate * flat.diameter());
     }
   }
 }
@@ -91,12 +92,14 @@ TEST(LogMap, IsExactFromAStraightCurve) {
   const CsrGraph graph(flat.data);
   Source curve(2);
   for (Index k = 60; k < 72; ++k)
-    curve.add(k, 1.0 + 0.1 * k, std::span(flat.positions).subspan(2 * k, 2), std::span(flat.frames).subspan(4 * k, 4));
+    curve.add(Vertex(k), 1.0 + 0.1 * k, std::span(flat.positions).subspan(2 * k, 2),
+              std::span(flat.frames).subspan(4 * k, 4));
   const LogMapSolver solver(graph);
   for (Variant variant : {Variant::adaptive, Variant::localized}) {
     const LogMap map = solver.solve(curve, {.variant = variant});
     for (Index i = 0; i < flat.size(); ++i)
-      for (int a = 0; a < 2; ++a) ASSERT_NEAR(map.coordinates(i)[a], flat.positions[i * 2 + a], gate * flat.diameter());
+      for (int a = 0; a < 2; ++a)
+        ASSERT_NEAR(map.coordinates(Vertex(i))[a], flat.positions[i * 2 + a], gate * flat.diameter());
   }
 }
 

@@ -19,10 +19,10 @@ constexpr SolverOptions global{.strategy = Strategy::global, .order = 2},
 double difference(const LogMap& a, const LogMap& b) {
   double largest = 0;
   for (Index i = 0; i < a.size(); ++i) {
-    EXPECT_EQ(a.status(i), b.status(i)) << "vertex " << i;
-    if (a.status(i) != Status::ok || b.status(i) != Status::ok) continue;
+    EXPECT_EQ(a.status(Vertex(i)), b.status(Vertex(i))) << "vertex " << i;
+    if (a.status(Vertex(i)) != Status::ok || b.status(Vertex(i)) != Status::ok) continue;
     for (int c = 0; c < a.dimension(); ++c)
-      largest = std::max(largest, std::abs(a.coordinates(i)[c] - b.coordinates(i)[c]));
+      largest = std::max(largest, std::abs(a.coordinates(Vertex(i))[c] - b.coordinates(Vertex(i))[c]));
   }
   return largest;
 }
@@ -34,10 +34,10 @@ TEST(SecondOrder, IsExactOnThePlaneAndKnowsIt) {
       const FlatGraph flat = planar_triangulation(side);
       const CsrGraph graph(flat.data);
       for (Variant variant : {Variant::adaptive, Variant::localized}) {
-        const LogMap map = LogMapSolver(graph, {}, options).solve(Source::at_vertex(77), {.variant = variant});
+        const LogMap map = LogMapSolver(graph, {}, options).solve(Source::at_vertex(Vertex{77}), {.variant = variant});
         for (Index i = 0; i < flat.size(); ++i) {
           for (int a = 0; a < 2; ++a)
-            ASSERT_NEAR(map.coordinates(i)[a], flat.exact(77, i)[a], 1e-10 * flat.diameter()) << "vertex " << i;
+            ASSERT_NEAR(map.coordinates(Vertex(i))[a], flat.exact(77, i)[a], 1e-10 * flat.diameter()) << "vertex " << i;
           ASSERT_LT(map.error_estimate()[i], 1e-10 * flat.diameter());
         }
       }
@@ -47,16 +47,17 @@ TEST(SecondOrder, IsExactOnThePlaneAndKnowsIt) {
 TEST(SecondOrder, IsExactInSpace) {
   const FlatGraph flat = lattice3(9);
   const CsrGraph graph(flat.data);
-  const LogMap map = LogMapSolver(graph, {}, global).solve(Source::at_vertex(100));
+  const LogMap map = LogMapSolver(graph, {}, global).solve(Source::at_vertex(Vertex{100}));
   for (Index i = 0; i < flat.size(); ++i)
-    for (int a = 0; a < 3; ++a) ASSERT_NEAR(map.coordinates(i)[a], flat.exact(100, i)[a], 1e-10 * flat.diameter());
+    for (int a = 0; a < 3; ++a)
+      ASSERT_NEAR(map.coordinates(Vertex(i))[a], flat.exact(100, i)[a], 1e-10 * flat.diameter());
 }
 
 TEST(SecondOrder, MarchesToTheSameMap) {
   for (const CsrGraphData& data : {sphere_graph(12000), as_blocks(sphere_graph(3000))}) {
     const CsrGraph graph(data);
-    const LogMap expected = LogMapSolver(graph, {}, global).solve(Source::at_vertex(5));
-    const LogMap map = LogMapSolver(graph, {}, marching).solve(Source::at_vertex(5));
+    const LogMap expected = LogMapSolver(graph, {}, global).solve(Source::at_vertex(Vertex{5}));
+    const LogMap map = LogMapSolver(graph, {}, marching).solve(Source::at_vertex(Vertex{5}));
     EXPECT_EQ(map.strategy(), Strategy::march);
     EXPECT_GT(map.march().bands, 0);
     EXPECT_LT(difference(expected, map), 1e-8);
@@ -65,21 +66,22 @@ TEST(SecondOrder, MarchesToTheSameMap) {
 
 TEST(SecondOrder, ExtrapolatesTwoMapsOfTheFirst) {
   const CsrGraph graph(sphere_graph(3000));
-  const LogMap one = LogMapSolver(graph, {.t_coef = 1}).solve(Source::at_vertex(5));
-  const LogMap two = LogMapSolver(graph, {.t_coef = 2}).solve(Source::at_vertex(5));
-  const LogMap map = LogMapSolver(graph, {}, global).solve(Source::at_vertex(5));
+  const LogMap one = LogMapSolver(graph, {.t_coef = 1}).solve(Source::at_vertex(Vertex{5}));
+  const LogMap two = LogMapSolver(graph, {.t_coef = 2}).solve(Source::at_vertex(Vertex{5}));
+  const LogMap map = LogMapSolver(graph, {}, global).solve(Source::at_vertex(Vertex{5}));
   const double h = graph.mean_edge_length(), step = (std::sqrt(2.0) - 1) * h;
   Index smooth = 0, kept = 0;
   for (Index i = 0; i < map.size(); ++i) {
-    const double change =
-        std::hypot(two.coordinates(i)[0] - one.coordinates(i)[0], two.coordinates(i)[1] - one.coordinates(i)[1]) / step;
+    const double change = std::hypot(two.coordinates(Vertex(i))[0] - one.coordinates(Vertex(i))[0],
+                                     two.coordinates(Vertex(i))[1] - one.coordinates(Vertex(i))[1]) /
+                          step;
     for (int a = 0; a < 2; ++a) {
-      const double p = one.coordinates(i)[a], q = two.coordinates(i)[a];
+      const double p = one.coordinates(Vertex(i))[a], q = two.coordinates(Vertex(i))[a];
       if (change <= 3) {
-        ASSERT_NEAR(map.coordinates(i)[a], p + (p - q) / (std::sqrt(2.0) - 1), 1e-12) << "vertex " << i;
+        ASSERT_NEAR(map.coordinates(Vertex(i))[a], p + (p - q) / (std::sqrt(2.0) - 1), 1e-12) << "vertex " << i;
         ++smooth;
       } else if (change >= 5) {
-        ASSERT_NEAR(map.coordinates(i)[a], p, 1e-12) << "vertex " << i;  // near the antipode
+        ASSERT_NEAR(map.coordinates(Vertex(i))[a], p, 1e-12) << "vertex " << i;  // near the antipode
         ++kept;
       }
     }
@@ -91,23 +93,24 @@ TEST(SecondOrder, ExtrapolatesTwoMapsOfTheFirst) {
 TEST(SecondOrder, DoesNotDependOnUnitsOrOnTheBatch) {
   const CsrGraph graph(sphere_graph(3000)), large(scaled(sphere_graph(3000), 1024));
   const LogMapSolver solver(graph, {}, global);
-  const std::vector<Source> sources{Source::at_vertex(5), Source::at_vertex(99), Source::at_vertex(1234)};
+  const std::vector<Source> sources{Source::at_vertex(Vertex{5}), Source::at_vertex(Vertex{99}),
+                                    Source::at_vertex(Vertex{1234})};
   const std::vector<LogMap> batch = solver.solve(sources);
   for (std::size_t s = 0; s < sources.size(); ++s) EXPECT_LT(difference(batch[s], solver.solve(sources[s])), 1e-11);
   const LogMap scaled_map = LogMapSolver(large, {}, global).solve(sources[0]);
   for (Index i = 0; i < graph.size(); ++i)
-    ASSERT_NEAR(scaled_map.distance(i), 1024 * batch[0].distance(i), 1e-9 * 1024);
+    ASSERT_NEAR(scaled_map.distance(Vertex(i)), 1024 * batch[0].distance(Vertex(i)), 1e-9 * 1024);
 }
 
 TEST(SecondOrder, EndsAtTheRadius) {
   const FlatGraph flat = planar_triangulation(120);
   const CsrGraph graph(flat.data);
   for (const SolverOptions& options : {global, marching}) {
-    const LogMap map = LogMapSolver(graph, {}, options).solve(Source::at_vertex(7300), {.radius = 0.2});
+    const LogMap map = LogMapSolver(graph, {}, options).solve(Source::at_vertex(Vertex{7300}), {.radius = 0.2});
     for (Index i = 0; i < flat.size(); ++i) {
       const double distance = std::hypot(flat.exact(7300, i)[0], flat.exact(7300, i)[1]);
       if (std::abs(distance - 0.2) < 1e-9) continue;
-      ASSERT_EQ(map.status(i), distance < 0.2 ? Status::ok : Status::radius) << "vertex " << i;
+      ASSERT_EQ(map.status(Vertex(i)), distance < 0.2 ? Status::ok : Status::beyond_radius) << "vertex " << i;
       ASSERT_EQ(std::isnan(map.error_estimate()[i]), distance > 0.2);
     }
   }
@@ -116,7 +119,7 @@ TEST(SecondOrder, EndsAtTheRadius) {
 TEST(SecondOrder, IsOneOfTwo) {
   const CsrGraph graph(sphere_graph(100));
   for (int order : {0, 3, -1}) EXPECT_THROW(LogMapSolver(graph, {}, {.order = order}), InvalidArgument);
-  EXPECT_TRUE(LogMapSolver(graph).solve(Source::at_vertex(0)).error_estimate().empty());
+  EXPECT_TRUE(LogMapSolver(graph).solve(Source::at_vertex(Vertex{0})).error_estimate().empty());
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ namespace {
 
 std::vector<double> solve(const CsrGraphData& data, Index p, Variant variant, OperatorOptions options = {}) {
   const CsrGraph graph(data);
-  const LogMap map = LogMapSolver(graph, options).solve(Source::at_vertex(p), {.variant = variant});
+  const LogMap map = LogMapSolver(graph, options).solve(Source::at_vertex(Vertex(p)), {.variant = variant});
   return {map.coordinates().begin(), map.coordinates().end()};
 }
 
@@ -62,12 +62,12 @@ TEST_P(Symmetry, RotatesWithTheSourceFrame) {
   const CsrGraph graph(sphere);
   const LogMapSolver solver(graph);
   const double angle = 0.7, direction[] = {3 * std::cos(angle), 3 * std::sin(angle)};
-  const LogMap map = solver.solve(Source::at_vertex(9), {.variant = GetParam()});
-  const LogMap turned = solver.solve(Source::at_vertex(9, direction), {.variant = GetParam()});
+  const LogMap map = solver.solve(Source::at_vertex(Vertex{9}), {.variant = GetParam()});
+  const LogMap turned = solver.solve(Source::at_vertex(Vertex{9}, direction), {.variant = GetParam()});
   for (Index i = 0; i < graph.size(); ++i) {
-    const double x = map.coordinates(i)[0], y = map.coordinates(i)[1];
-    ASSERT_NEAR(turned.coordinates(i)[0], std::cos(angle) * x + std::sin(angle) * y, 1e-11);
-    ASSERT_NEAR(turned.coordinates(i)[1], std::cos(angle) * y - std::sin(angle) * x, 1e-11);
+    const double x = map.coordinates(Vertex(i))[0], y = map.coordinates(Vertex(i))[1];
+    ASSERT_NEAR(turned.coordinates(Vertex(i))[0], std::cos(angle) * x + std::sin(angle) * y, 1e-11);
+    ASSERT_NEAR(turned.coordinates(Vertex(i))[1], std::cos(angle) * y - std::sin(angle) * x, 1e-11);
   }
 }
 

@@ -28,7 +28,7 @@ class GridMap : public testing::TestWithParam<Grid> {
     for (int a = 0; a < d; ++a) diameter += std::pow(at(grid.size() - 1)[a] / unit - at(0)[a] / unit, 2);
     diameter = std::sqrt(diameter) * unit;
   }
-  Vec3 at(Index i) const { return grid.position(i); }
+  Vec3 at(Index i) const { return grid.position(Vertex(i)); }
   /// A point of the box, each coordinate at its share of the way through.
   std::vector<double> point(double x, double y, double z) const {
     std::vector<double> p;
@@ -39,9 +39,9 @@ class GridMap : public testing::TestWithParam<Grid> {
   template <class Point>
   void expect_identity(const LogMap& map, const Point& source) const {
     for (Index i = 0; i < grid.size(); ++i) {
-      ASSERT_EQ(map.status(i), Status::ok);
+      ASSERT_EQ(map.status(Vertex(i)), Status::ok);
       for (int a = 0; a < d; ++a)
-        ASSERT_NEAR(map.coordinates(i)[a], at(i)[a] - source[a], 1e-11 * diameter) << "vertex " << i;
+        ASSERT_NEAR(map.coordinates(Vertex(i))[a], at(i)[a] - source[a], 1e-11 * diameter) << "vertex " << i;
     }
   }
   GridGraph grid;
@@ -69,17 +69,17 @@ TEST_P(GridMap, TurnsWithTheSourceFrame) {
   axes[d] = 1, axes[1] = -1;
   if (d == 3) axes[8] = 1;
   const Index p = grid.size() / 3;
-  const LogMap map = solver.solve(Source(d).add(p, 1.0, zero, axes));
+  const LogMap map = solver.solve(Source(d).add(Vertex(p), 1.0, zero, axes));
   for (Index i = 0; i < grid.size(); ++i) {
-    ASSERT_NEAR(map.coordinates(i)[0], at(i)[1] - at(p)[1], 1e-11 * diameter);
-    ASSERT_NEAR(map.coordinates(i)[1], at(p)[0] - at(i)[0], 1e-11 * diameter);
+    ASSERT_NEAR(map.coordinates(Vertex(i))[0], at(i)[1] - at(p)[1], 1e-11 * diameter);
+    ASSERT_NEAR(map.coordinates(Vertex(i))[1], at(p)[0] - at(i)[0], 1e-11 * diameter);
   }
 }
 
 TEST_P(GridMap, SolvesManySourcesAtOnce) {
   std::vector<Source> sources;
   for (double x : {0.1, 0.4, 0.7, 0.9}) sources.push_back(grid.source_at(point(x, 1 - x, x * x)));
-  for (Index p = 0; p < 20; ++p) sources.push_back(Source::at_vertex(p));
+  for (Index p = 0; p < 20; ++p) sources.push_back(Source::at_vertex(Vertex(p)));
   const auto maps = solver.solve(sources, {.threads = 3});
   for (std::size_t s = 0; s < 4; ++s) {
     const double x = std::array{0.1, 0.4, 0.7, 0.9}[s];
@@ -90,7 +90,7 @@ TEST_P(GridMap, SolvesManySourcesAtOnce) {
 
 TEST_P(GridMap, TransportsVectorsWithoutChange) {
   const std::vector<double> vector{2.0, -1.5, 0.25};
-  const auto field = transport_vectors(solver, std::array<Index, 1>{3}, std::span(vector).first(d));
+  const auto field = transport_vectors(solver, std::array{Vertex{3}}, std::span(vector).first(d));
   for (Index i = 0; i < grid.size(); ++i)
     for (int a = 0; a < d; ++a) ASSERT_NEAR(field.values[i * d + a], vector[a], 1e-11);
   const auto frame = parallel_transport(solver, grid.source_at(point(0.4, 0.6, 0.1)));
@@ -99,7 +99,7 @@ TEST_P(GridMap, TransportsVectorsWithoutChange) {
 }
 
 TEST_P(GridMap, HasTheRadialFieldOfFlatSpace) {
-  const auto field = radial_field(solver, Source::at_vertex(3));
+  const auto field = radial_field(solver, Source::at_vertex(Vertex{3}));
   for (Index i = 0; i < grid.size(); ++i)
     for (int a = 0; a < d; ++a) ASSERT_NEAR(field.values[i * d + a], at(i)[a] - at(3)[a], 1e-11 * diameter);
 }
@@ -107,14 +107,15 @@ TEST_P(GridMap, HasTheRadialFieldOfFlatSpace) {
 // Bands of volumes are solved by conjugate gradients.
 TEST(GridMarch, IsTheIdentityInSpace) {
   const GridGraph grid({.shape = {34, 28, 30}, .spacing = {1, 1.3, 0.8}});
-  const Index p = grid.vertex(std::array<Index, 3>{3, 14, 11});
+  const Vertex p = grid.vertex(std::array<Index, 3>{3, 14, 11});
   const LogMapSolver solver(grid, {}, {.strategy = Strategy::march});
   for (Variant variant : {Variant::adaptive, Variant::localized}) {
     const LogMap map = solver.solve(Source::at_vertex(p), {.variant = variant});
     EXPECT_GT(map.march().bands, 3);
     for (Index i = 0; i < grid.size(); ++i)
       for (int a = 0; a < 3; ++a)
-        ASSERT_NEAR(map.coordinates(i)[a], grid.position(i)[a] - grid.position(p)[a], 1e-11 * 50) << "vertex " << i;
+        ASSERT_NEAR(map.coordinates(Vertex(i))[a], grid.position(Vertex(i))[a] - grid.position(p)[a], 1e-11 * 50)
+            << "vertex " << i;
   }
 }
 

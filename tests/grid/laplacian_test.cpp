@@ -11,13 +11,13 @@ namespace {
 
 using grid::GridGraph;
 
-/// -(Laplacian of f) at vertex i in outside units: sum_j w_ij (f_i - f_j) / m_i.
+/// -(Laplacian of f) at vertex i in world units: sum_j w_ij (f_i - f_j) / m_i.
 template <class Function>
 double laplacian(const GridGraph& grid, Index i, const Function& f) {
   const Star star = grid.star(i);
   double sum = 0;
   for (std::size_t e = 0; e < star.degree(); ++e)
-    sum += star.weights[e] * (f(grid.position(i)) - f(grid.position(star.neighbors[e])));
+    sum += star.weights[e] * (f(grid.position(Vertex(i))) - f(grid.position(Vertex(star.neighbors[e]))));
   const double unit = grid.length_unit();
   return sum / grid.mass(i) / (unit * unit);
 }
@@ -42,7 +42,7 @@ TEST(GridLaplacian, HasTheVolumeOfTheFreeCellsAsItsMass) {
 
 TEST(GridLaplacian, DifferentiatesQuadraticsExactlyInside) {
   const GridGraph grid({.shape = {6, 7, 8}, .spacing = {0.3, 0.7, 0.2}});
-  const Index inside = grid.vertex(std::array<Index, 3>{2, 3, 4});
+  const Index inside = grid.vertex(std::array<Index, 3>{2, 3, 4}).index;
   EXPECT_NEAR(laplacian(grid, inside, [](const Vec3& p) { return p[0] * p[0] + 3 * p[1] * p[1] - p[2] * p[2]; }), -6.0,
               1e-11);
 }
@@ -63,7 +63,7 @@ TEST(GridLaplacian, HasTheEigenfunctionsOfABoxWithInsulatedWalls) {
       return product;
     };
     for (Index i = 0; i < grid.size(); ++i)
-      ASSERT_NEAR(laplacian(grid, i, wave), eigenvalue * wave(grid.position(i)), 1e-10 * eigenvalue);
+      ASSERT_NEAR(laplacian(grid, i, wave), eigenvalue * wave(grid.position(Vertex(i))), 1e-10 * eigenvalue);
   }
 }
 

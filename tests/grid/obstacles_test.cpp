@@ -53,14 +53,15 @@ TEST(GridObstacles, LeaveTheIdentityInAMaze) {
     for (Variant variant : {Variant::adaptive, Variant::localized}) {
       const LogMap map = solver.solve(grid.source_at(p), {.variant = variant});
       EXPECT_EQ(connected_components(grid).count,
-                1 + map.count(Status::component));  // vertices inside walls stand alone
+                1 + map.count(Status::disconnected));  // vertices inside walls stand alone
       for (Index i = 0; i < grid.size(); ++i) {
-        if (map.status(i) == Status::component) {
+        if (map.status(Vertex(i)) == Status::disconnected) {
           EXPECT_EQ(grid.star(i).degree(), 0u);
           continue;
         }
-        ASSERT_EQ(map.status(i), Status::ok);
-        for (int a = 0; a < 2; ++a) ASSERT_NEAR(map.coordinates(i)[a], grid.position(i)[a] - p[a], 1e-11 * diameter);
+        ASSERT_EQ(map.status(Vertex(i)), Status::ok);
+        for (int a = 0; a < 2; ++a)
+          ASSERT_NEAR(map.coordinates(Vertex(i))[a], grid.position(Vertex(i))[a] - p[a], 1e-11 * diameter);
       }
     }
   }
@@ -76,11 +77,11 @@ TEST(GridObstacles, MaskRoomsWithoutADoor) {
         box.blocked.push_back(depth == 2);
       }
   const GridGraph grid(box);
-  const LogMap map = LogMapSolver(grid).solve(Source::at_vertex(0));
+  const LogMap map = LogMapSolver(grid).solve(Source::at_vertex(Vertex{0}));
   for (Index i = 0; i < grid.size(); ++i) {
-    const Vec3 p = grid.position(i);
-    const double from_centre = std::max({std::abs(p[0] - 4), std::abs(p[1] - 4), std::abs(p[2] - 4)});
-    EXPECT_EQ(map.status(i), from_centre <= 1 ? Status::component : Status::ok) << "vertex " << i;
+    const Vec3 p = grid.position(Vertex(i));
+    const double from_center = std::max({std::abs(p[0] - 4), std::abs(p[1] - 4), std::abs(p[2] - 4)});
+    EXPECT_EQ(map.status(Vertex(i)), from_center <= 1 ? Status::disconnected : Status::ok) << "vertex " << i;
   }
 }
 
@@ -92,10 +93,10 @@ TEST(GridObstacles, AreGoneRoundByHeat) {
   for (std::size_t x = 0; x < 37; ++x) rooms.blocked[10 * 40 + x] = 1;
   const GridGraph grid(rooms);
   const LogMapSolver solver(grid);
-  const Index below = grid.vertex(std::array<Index, 2>{2, 5}), above = grid.vertex(std::array<Index, 2>{25, 16}),
-              here = grid.vertex(std::array<Index, 2>{2, 14});
+  const Vertex below = grid.vertex(std::array<Index, 2>{2, 5}), above = grid.vertex(std::array<Index, 2>{25, 16}),
+               here = grid.vertex(std::array<Index, 2>{2, 14});
   const auto field = extend_scalar(solver, std::array{below, above}, std::array{0.0, 1.0});
-  EXPECT_GT(field.values[here], 0.99);
+  EXPECT_GT(field.values[here.index], 0.99);
 }
 
 TEST(GridObstacles, EqualASmallerGridWhereTheyFillTheRest) {
@@ -105,7 +106,7 @@ TEST(GridObstacles, EqualASmallerGridWhereTheyFillTheRest) {
   const GridGraph grid(box), half({.shape = {11, 9}, .spacing = {0.2, 0.3}});
   for (Index y = 0; y < 9; ++y)
     for (Index x = 0; x < 11; ++x) {
-      const Index i = grid.vertex(std::array{x, y}), k = half.vertex(std::array{x, y});
+      const Index i = grid.vertex(std::array{x, y}).index, k = half.vertex(std::array{x, y}).index;
       ASSERT_EQ(grid.mass(i), half.mass(k));
       const Star a = half.star(k);
       const std::vector<double> weights(a.weights.begin(), a.weights.end()), logs(a.logs.begin(), a.logs.end());

@@ -3,6 +3,7 @@
 #include <clocale>
 #include <locale>
 
+#include "ahm/io/formats.hpp"
 #include "files.hpp"
 
 namespace ahm::io::test {
@@ -24,7 +25,8 @@ TEST_F(ReadFile, RefusesEmptyFilesOfEveryType) {
 }
 
 TEST_F(ReadFile, ListsTheKnownTypes) {
-  expect_refused("a.3ds", "solid", {"'.3ds'", ".stl", ".ply", ".off", ".obj", ".pcd", ".xyz"});
+  expect_refused("a.3ds", "solid", extensions(Use::read));
+  expect_refused("a.3ds", "solid", {"'.3ds'", ".stl", ".ply", ".off", ".obj", ".pcd", ".xyz", ".txt", ".csv"});
   expect_refused("a", "1 2 3\n", {".ply"});
 }
 

@@ -24,8 +24,7 @@ struct Shape {
     return {.name = "shape",
             .points = points,
             .normals = normals,
-            .face_begin = begin,
-            .face_vertices = vertices,
+            .faces = {begin, vertices},
             .texture_coordinates = uv,
             .texture = image};
   }
@@ -182,22 +181,6 @@ TEST_F(Textured, GlbReadsBackFarFromTheOriginToo) {
     make("inside.png", glb.bytes.substr(view["byteOffset"], view["byteLength"]));
     EXPECT_EQ(read_image(path("inside.png")).rgba, image.rgba);
   }
-}
-
-TEST_F(Textured, ColoredPlyReadsBack) {
-  const Shape shape;
-  std::vector<std::array<std::uint8_t, 3>> colors;
-  for (std::size_t i = 0; i < shape.points.size(); ++i)
-    colors.push_back({static_cast<std::uint8_t>(i), 100, static_cast<std::uint8_t>(255 - i)});
-  write_colored_ply(path("out.ply"), shape.points, shape.normals, colors, shape.begin, shape.vertices);
-  const Geometry back = read(path("out.ply"));
-  EXPECT_EQ(back.points, shape.points);
-  EXPECT_EQ(back.normals, shape.normals);
-  EXPECT_EQ(back.colors, colors);
-  EXPECT_EQ(back.face_vertices, shape.vertices);
-  EXPECT_EQ(back.face_begin, shape.begin);
-  colors.pop_back();
-  EXPECT_THROW(write_colored_ply(path("out.ply"), shape.points, {}, colors), InvalidArgument);
 }
 
 TEST_F(Textured, RefusesWhatDoesNotFitAndLeavesNothingBehind) {

@@ -129,7 +129,7 @@ TEST(CloudFaults, SeparateClustersAreMasked) {
   const RowLogMap map = solved.map(3);
   expect_nan_exactly_where_not_ok(map);
   for (std::size_t i = 0; i < cloud.points.size(); ++i)
-    ASSERT_EQ(map.status[i], i < first ? Status::ok : Status::component);
+    ASSERT_EQ(map.status[i], i < first ? Status::ok : Status::disconnected);
 }
 
 TEST(CloudFaults, IsolatedOutliersDoNotBendTheMap) {

@@ -130,7 +130,7 @@ TEST(Normals, OfTwoSheetsOfAThinWallKeepThemApart) {
   EXPECT_EQ(solved.graph.details().components, 2);
   const RowLogMap map = solved.map(0);
   for (std::size_t i = 0; i < wall.points.size(); ++i) {
-    ASSERT_EQ(map.status[i], i % 2 ? Status::component : Status::ok);
+    ASSERT_EQ(map.status[i], i % 2 ? Status::disconnected : Status::ok);
     if (i % 2 == 0)
       ASSERT_NEAR(map.distance[i],
                   std::hypot(wall.points[i][0] - wall.points[0][0], wall.points[i][1] - wall.points[0][1]), 1e-11);

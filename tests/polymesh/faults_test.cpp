@@ -101,7 +101,7 @@ TEST(PolygonFaults, UnreferencedVerticesAndOtherComponentsAreMasked) {
   EXPECT_EQ(surface.details().topology.unreferenced, 1);
   const auto rows = surface.on_rows(map_of(surface));
   EXPECT_EQ(rows.status[n], Status::removed);
-  EXPECT_EQ(rows.status[n + 1], Status::component);
+  EXPECT_EQ(rows.status[n + 1], Status::disconnected);
   for (Index i = 0; i < n; ++i) ASSERT_EQ(rows.status[i], Status::ok);
   EXPECT_THROW(surface.source(Row(n)), InvalidArgument);
 }
@@ -120,7 +120,8 @@ TEST(PolygonFaults, MoebiusBandsAreSolvedWithReflections) {
   const LogMap other = LogMapSolver(triangles.graph()).solve(triangles.source(Row(3)).source);
   const double h = surface.graph().mean_edge_length() * surface.graph().length_unit();
   for (Index i = 0; i < mesh.vertices(); ++i)
-    if (other.distance(i) < 1.5) EXPECT_NEAR(map.distance(i), other.distance(i), h) << "vertex " << i;
+    if (other.distance(Vertex(i)) < 1.5)
+      EXPECT_NEAR(map.distance(Vertex(i)), other.distance(Vertex(i)), h) << "vertex " << i;
 }
 
 TEST(PolygonFaults, FacesWithoutAreaAreMapped) {
@@ -131,7 +132,7 @@ TEST(PolygonFaults, FacesWithoutAreaAreMapped) {
   const auto surface = mesh.graph();
   EXPECT_NO_THROW(validate(surface.graph()));
   const LogMap map = map_of(surface);
-  EXPECT_EQ(map.count(Status::ok) + map.count(Status::component), surface.graph().size());
+  EXPECT_EQ(map.count(Status::ok) + map.count(Status::disconnected), surface.graph().size());
   EXPECT_GT(map.count(Status::ok), mesh.vertices() - 5);
   Polygons point = quad_grid(2);
   for (Vec3& p : point.positions) p = {1, 2, 3};

@@ -88,7 +88,7 @@ TEST(PolygonLaplacian, GivesTheMapOfTheTriangleBackendOnThePlane) {
   const LogMap a = LogMapSolver(surface.graph()).solve(surface.source(Row(200), u).source);
   const LogMap b = LogMapSolver(other.graph()).solve(other.source(Row(200), u).source);
   for (Index i = 0; i < mesh.vertices(); ++i)
-    for (int c : {0, 1}) ASSERT_NEAR(a.coordinates(i)[c], b.coordinates(i)[c], 1e-11);
+    for (int c : {0, 1}) ASSERT_NEAR(a.coordinates(Vertex(i))[c], b.coordinates(Vertex(i))[c], 1e-11);
 }
 
 TEST(PolygonRefinement, KeepsTrianglesAndFlatness) {
@@ -108,7 +108,7 @@ TEST(PolygonRefinement, KeepsTrianglesAndFlatness) {
   const LogMap map = LogMapSolver(surface.graph()).solve(surface.source(Row(7)).source);
   for (Index i = 0; i < cells.vertices(); ++i) {
     const double exact = std::hypot(cells.plane[i][0] - cells.plane[7][0], cells.plane[i][1] - cells.plane[7][1]);
-    ASSERT_NEAR(map.distance(i), exact, 1e-11);
+    ASSERT_NEAR(map.distance(Vertex(i)), exact, 1e-11);
   }
 }
 
@@ -121,7 +121,7 @@ TEST(PolygonRefinement, CutsFacesThatHideASideAlongDiagonals) {
   const LogMap map = LogMapSolver(surface.graph()).solve(surface.source(Row(7)).source);
   for (Index i = 0; i < mesh.vertices(); ++i) {
     const double exact = std::hypot(mesh.plane[i][0] - mesh.plane[7][0], mesh.plane[i][1] - mesh.plane[7][1]);
-    ASSERT_NEAR(map.distance(i), exact, 1e-11);
+    ASSERT_NEAR(map.distance(Vertex(i)), exact, 1e-11);
   }
 }
 

@@ -22,8 +22,8 @@ double sphere_error(const Polygons& mesh, const LogMap& map, const Frame& frame,
     if (r > 0.85 * std::numbers::pi || i == source) continue;
     const Vec3 t{q[0] - c * p[0], q[1] - c * p[1], q[2] - c * p[2]};
     const double scale = r / std::sqrt(dot(t, t));
-    sum += std::pow(map.coordinates(i)[0] - scale * dot(t, frame.x), 2) +
-           std::pow(map.coordinates(i)[1] - scale * dot(t, frame.y), 2);
+    sum += std::pow(map.coordinates(Vertex(i))[0] - scale * dot(t, frame.x), 2) +
+           std::pow(map.coordinates(Vertex(i))[1] - scale * dot(t, frame.y), 2);
     count += 1;
   }
   return std::sqrt(sum / count);
@@ -76,7 +76,7 @@ TEST(PolygonSphere, StartsInsideAFaceToo) {
   const double h = surface.graph().mean_edge_length() * surface.graph().length_unit();
   for (Index i = 0; i < mesh.vertices(); ++i) {
     const double r = std::acos(std::clamp(dot(p, mesh.positions[i]), -1.0, 1.0));
-    if (r < std::numbers::pi / 2) ASSERT_NEAR(map.distance(i), r, h) << "vertex " << i;
+    if (r < std::numbers::pi / 2) ASSERT_NEAR(map.distance(Vertex(i)), r, h) << "vertex " << i;
   }
 }
 

@@ -65,7 +65,7 @@ inline std::vector<double> transport_block(const TangentGraph& graph, const Star
 /// A point beside vertex p: p and its neighbours, with unequal weights and the frame of p carried along the edges.
 struct PointBeside {
   Source source;
-  std::vector<double> offset;  ///< of the point from p, in the frame of p, outside units
+  std::vector<double> offset;  ///< of the point from p, in the frame of p, world units
 };
 
 inline PointBeside point_beside(const TangentGraph& graph, Index p) {
@@ -77,14 +77,14 @@ inline PointBeside point_beside(const TangentGraph& graph, Index p) {
     for (std::size_t a = 0; a < d; ++a) point.offset[a] += (e + 1) / total * star.log(e)[a] * graph.length_unit();
   std::vector<double> z(d), identity(d * d, 0.0), axes(d * d);
   for (std::size_t a = 0; a < d; ++a) z[a] = -point.offset[a], identity[a * d + a] = 1;
-  point.source.add(p, 1 / total, z, identity);
+  point.source.add(Vertex(p), 1 / total, z, identity);
   for (std::size_t e = 0; e < star.degree(); ++e) {
     const std::vector<double> R = transport_block(graph, star, e);
     for (std::size_t a = 0; a < d; ++a) {
       z[a] = star.log(e)[a] * graph.length_unit() - point.offset[a];
       for (std::size_t b = 0; b < d; ++b) axes[a * d + b] = R[b * d + a];  // U_k = R_pk, the inverse of R_kp
     }
-    point.source.add(star.neighbors[e], (e + 1) / total, z, axes);
+    point.source.add(Vertex(star.neighbors[e]), (e + 1) / total, z, axes);
   }
   return point;
 }
@@ -120,15 +120,15 @@ TYPED_TEST_P(GraphContract, ClosesEveryLoopWhereItIsFlat) {
   LogMapSolver solver(*graph);
   const Index source = graph->size() / 2;
   for (Variant variant : {Variant::adaptive, Variant::localized}) {
-    const LogMap map = solver.solve(Source::at_vertex(source), {.variant = variant});
+    const LogMap map = solver.solve(Source::at_vertex(Vertex(source)), {.variant = variant});
     double diameter = 0;
-    for (Index i = 0; i < graph->size(); ++i) diameter = std::max(diameter, map.distance(i));
+    for (Index i = 0; i < graph->size(); ++i) diameter = std::max(diameter, map.distance(Vertex(i)));
     for (Index i = 0; i < graph->size(); ++i) {
       const Star star = graph->star(i);
       for (std::size_t e = 0; e < star.degree(); ++e) {
         double difference = 0, log = 0;
         for (int a = 0; a < graph->dimension(); ++a) {
-          const double step = map.coordinates(star.neighbors[e])[a] - map.coordinates(i)[a];
+          const double step = map.coordinates(Vertex(star.neighbors[e]))[a] - map.coordinates(Vertex(i))[a];
           difference += step * step;
           log += star.log(e)[a] * star.log(e)[a];
         }
@@ -143,7 +143,7 @@ TYPED_TEST_P(GraphContract, CarriesOneFrameWhereItIsFlat) {
   const auto graph = TypeParam::flat();
   const auto d = static_cast<std::size_t>(graph->dimension());
   const LogMapSolver solver(*graph);
-  const Source source = Source::at_vertex(graph->size() / 3);
+  const Source source = Source::at_vertex(Vertex(graph->size() / 3));
   const VertexField U = parallel_transport(solver, source);
   const LogMap map = solver.solve(source);
   const double size = largest(map.coordinates());
@@ -154,7 +154,8 @@ TYPED_TEST_P(GraphContract, CarriesOneFrameWhereItIsFlat) {
       const Index j = star.neighbors[e];
       const std::vector<double> R = transport_block(*graph, star, e), log = times(frame(i), star.log(e), true);
       for (std::size_t a = 0; a < d; ++a) {
-        ASSERT_NEAR(map.coordinates(j)[a] - map.coordinates(i)[a], log[a] * graph->length_unit(), 1e-11 * size);
+        ASSERT_NEAR(map.coordinates(Vertex(j))[a] - map.coordinates(Vertex(i))[a], log[a] * graph->length_unit(),
+                    1e-11 * size);
         std::vector<double> axis(d);
         for (std::size_t c = 0; c < d; ++c) axis[c] = frame(j)[c * d + a];
         const std::vector<double> carried = times(R, axis, false);
@@ -170,11 +171,11 @@ TYPED_TEST_P(GraphContract, StartsBetweenVerticesExactlyWhereItIsFlat) {
   const Index p = graph->size() / 3;
   const PointBeside point = point_beside(*graph, p);
   for (Variant variant : {Variant::adaptive, Variant::localized}) {
-    const LogMap from_vertex = solver.solve(Source::at_vertex(p), {.variant = variant}),
+    const LogMap from_vertex = solver.solve(Source::at_vertex(Vertex(p)), {.variant = variant}),
                  map = solver.solve(point.source, {.variant = variant});
     for (Index i = 0; i < graph->size(); ++i)
       for (int a = 0; a < graph->dimension(); ++a)
-        ASSERT_NEAR(map.coordinates(i)[a], from_vertex.coordinates(i)[a] - point.offset[a],
+        ASSERT_NEAR(map.coordinates(Vertex(i))[a], from_vertex.coordinates(Vertex(i))[a] - point.offset[a],
                     1e-11 * largest(from_vertex.coordinates()));
   }
 }
@@ -183,7 +184,7 @@ TYPED_TEST_P(GraphContract, AgreesWithThePapersFullOperator) {
   const auto graph = TypeParam::surface();
   LogMapSolver solver(*graph);
   for (Variant variant : {Variant::adaptive, Variant::localized}) {
-    const LogMap map = solver.solve(Source::at_vertex(3), {.variant = variant});
+    const LogMap map = solver.solve(Source::at_vertex(Vertex{3}), {.variant = variant});
     const std::vector<double> reference = reference_log_map(*graph, 3, variant);
     double largest = 0;
     for (double x : reference) largest = std::max(largest, std::abs(x));
@@ -199,12 +200,12 @@ TYPED_TEST_P(GraphContract, DoesNotDependOnTheFrames) {
   const Index p = graph.size() / 3;
   const auto Q_p = std::span(turned.turns).subspan(static_cast<std::size_t>(p) * d * d, d * d);
   for (Variant variant : {Variant::adaptive, Variant::localized}) {
-    const LogMap map = map_of(graph, Source::at_vertex(p), variant),
-                 same = map_of(other, Source::at_vertex(p), variant);
+    const LogMap map = map_of(graph, Source::at_vertex(Vertex(p)), variant),
+                 same = map_of(other, Source::at_vertex(Vertex(p)), variant);
     for (Index i = 0; i < graph.size(); ++i) {
-      const std::vector<double> expected = times(Q_p, map.coordinates(i), false);
+      const std::vector<double> expected = times(Q_p, map.coordinates(Vertex(i)), false);
       for (std::size_t a = 0; a < d; ++a)
-        ASSERT_NEAR(same.coordinates(i)[a], expected[a], 1e-11 * largest(map.coordinates()));
+        ASSERT_NEAR(same.coordinates(Vertex(i))[a], expected[a], 1e-11 * largest(map.coordinates()));
     }
   }
 }
@@ -216,21 +217,22 @@ TYPED_TEST_P(GraphContract, DoesNotDependOnTheNumbering) {
   std::shuffle(order.begin(), order.end(), std::mt19937(3));
   const CsrGraph graph(data), other(relabelled(data, order));
   for (Variant variant : {Variant::adaptive, Variant::localized}) {
-    const LogMap map = map_of(graph, Source::at_vertex(3), variant),
-                 same = map_of(other, Source::at_vertex(order[3]), variant);
+    const LogMap map = map_of(graph, Source::at_vertex(Vertex{3}), variant),
+                 same = map_of(other, Source::at_vertex(Vertex(order[3])), variant);
     for (Index i = 0; i < graph.size(); ++i)
       for (int a = 0; a < graph.dimension(); ++a)
-        ASSERT_NEAR(same.coordinates(order[i])[a], map.coordinates(i)[a], 1e-11 * largest(map.coordinates()));
+        ASSERT_NEAR(same.coordinates(Vertex(order[i]))[a], map.coordinates(Vertex(i))[a],
+                    1e-11 * largest(map.coordinates()));
   }
 }
 
 TYPED_TEST_P(GraphContract, ScalesWithItsLengths) {
   const CsrGraphData data = stored(*TypeParam::surface());
-  const LogMap map = map_of(CsrGraph(data), Source::at_vertex(3));
+  const LogMap map = map_of(CsrGraph(data), Source::at_vertex(Vertex{3}));
   for (double factor : {0x1p-40, 0x1p50, 1e-12, 1e12}) {
     int exponent;
     const double gate = std::frexp(factor, &exponent) == 0.5 ? 0.0 : 1e-12;  // powers of two: the same bits
-    const LogMap other = map_of(CsrGraph(scaled(data, factor)), Source::at_vertex(3));
+    const LogMap other = map_of(CsrGraph(scaled(data, factor)), Source::at_vertex(Vertex{3}));
     for (std::size_t k = 0; k < map.coordinates().size(); ++k)
       ASSERT_NEAR(other.coordinates()[k], map.coordinates()[k] * factor, gate * factor * largest(map.coordinates()));
   }
@@ -239,14 +241,15 @@ TYPED_TEST_P(GraphContract, ScalesWithItsLengths) {
 TYPED_TEST_P(GraphContract, MasksWhatIsNotConnected) {
   const auto graph = TypeParam::surface();
   const CsrGraph two(doubled(stored(*graph)));
-  const LogMap map = map_of(two, Source::at_vertex(3)), single = map_of(*graph, Source::at_vertex(3));
-  EXPECT_EQ(map.count(Status::component), graph->size());
+  const LogMap map = map_of(two, Source::at_vertex(Vertex{3})), single = map_of(*graph, Source::at_vertex(Vertex{3}));
+  EXPECT_EQ(map.count(Status::disconnected), graph->size());
   for (Index i = 0; i < graph->size(); ++i) {
-    ASSERT_EQ(map.status(i), Status::ok);
-    ASSERT_EQ(map.status(i + graph->size()), Status::component);
+    ASSERT_EQ(map.status(Vertex(i)), Status::ok);
+    ASSERT_EQ(map.status(Vertex(i + graph->size())), Status::disconnected);
     for (int a = 0; a < graph->dimension(); ++a) {
-      ASSERT_NEAR(map.coordinates(i)[a], single.coordinates(i)[a], 1e-11 * largest(single.coordinates()));
-      ASSERT_TRUE(std::isnan(map.coordinates(i + graph->size())[a]));
+      ASSERT_NEAR(map.coordinates(Vertex(i))[a], single.coordinates(Vertex(i))[a],
+                  1e-11 * largest(single.coordinates()));
+      ASSERT_TRUE(std::isnan(map.coordinates(Vertex(i + graph->size()))[a]));
     }
   }
 }
@@ -255,7 +258,7 @@ TYPED_TEST_P(GraphContract, SolvesBatchesOnAnyNumberOfThreads) {
   const auto graph = TypeParam::surface();
   const LogMapSolver solver(*graph);
   std::vector<Source> sources;
-  for (Index p = 0; p < 35; ++p) sources.push_back(Source::at_vertex(p));
+  for (Index p = 0; p < 35; ++p) sources.push_back(Source::at_vertex(Vertex(p)));
   for (Variant variant : {Variant::adaptive, Variant::localized}) {
     const auto one = solver.solve(sources, {.variant = variant, .threads = 1}),
                many = solver.solve(sources, {.variant = variant, .threads = 4});

@@ -96,7 +96,7 @@ TEST(MeshFaults, OtherComponentsAreMasked) {
   const RowLogMap map = solved.map(solved.surface.source(Row(3)).source);
   expect_nan_exactly_where_not_ok(map);
   for (Index i = 0; i < both.vertices(); ++i)
-    ASSERT_EQ(map.status[i], i < one.vertices() ? Status::ok : Status::component);
+    ASSERT_EQ(map.status[i], i < one.vertices() ? Status::ok : Status::disconnected);
 }
 
 TEST(MeshFaults, EdgesOfThreeFaces) {
@@ -114,7 +114,7 @@ TEST(MeshFaults, EdgesOfThreeFaces) {
   EXPECT_FALSE(solved.surface.warnings().empty());
   const RowLogMap map = solved.map(solved.surface.source(Row(0)).source);
   expect_nan_exactly_where_not_ok(map);
-  EXPECT_EQ(map.status[fin], Status::component);
+  EXPECT_EQ(map.status[fin], Status::disconnected);
   EXPECT_EQ(map.status[a], Status::ok);  // the copy on the source's sheet
 }
 
@@ -130,7 +130,7 @@ TEST(MeshFaults, BowTies) {
   EXPECT_EQ(solved.surface.details().topology.non_manifold_vertices, 1);
   const RowLogMap map = solved.map(solved.surface.source(Row(cut + 7)).source);
   EXPECT_EQ(map.status[5], Status::ok);
-  EXPECT_EQ(map.status[6], Status::component);
+  EXPECT_EQ(map.status[6], Status::disconnected);
   EXPECT_EQ(map.status[cut], Status::removed);
 }
 

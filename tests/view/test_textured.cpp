@@ -19,7 +19,7 @@ struct Square {
   std::vector<double> places{0, 0, 1, 0, 1, 1, 0, 1};
 
   explicit Square(double height) : points{{-1, -1, height}, {1, -1, height}, {1, 1, height}, {-1, 1, height}} {}
-  io::MeshPart part(const io::Image* image) const {
+  io::MeshPart part(const Image* image) const {
     io::MeshPart part;
     part.name = "square";
     part.points = points;
@@ -31,8 +31,8 @@ struct Square {
 };
 
 /// `color(column, row)`: red, green, blue, opacity.
-io::Image painted(int size, const std::function<std::array<int, 4>(int, int)>& color) {
-  io::Image image(size, size);
+Image painted(int size, const std::function<std::array<int, 4>(int, int)>& color) {
+  Image image(size, size);
   for (int y = 0; y < size; ++y)
     for (int x = 0; x < size; ++x)
       for (std::size_t c = 0; c < 4; ++c) image.pixel(x, y)[c] = static_cast<std::uint8_t>(color(x, y)[c]);
@@ -47,7 +47,7 @@ class TexturedPicture : public ::testing::Test {
   void TearDown() override { std::filesystem::remove(path_); }
 
   /// Seen from +z, y upwards; the square fills the middle of the picture.
-  io::Image picture(const TexturedScene& scene) const {
+  Image picture(const TexturedScene& scene) const {
     PictureOptions options;
     options.width = options.height = 200;
     options.view_direction = Vec3{0, 0, 1};
@@ -62,13 +62,13 @@ class TexturedPicture : public ::testing::Test {
 };
 
 TEST_F(TexturedPicture, ShowsTheImageTheRightWayUp) {
-  const io::Image image = painted(8, [](int x, int y) {  // red left, green right; dark below
+  const Image image = painted(8, [](int x, int y) {  // red left, green right; dark below
     const int light = y < 4 ? 250 : 120;
     return std::array{x < 4 ? light : 0, x < 4 ? 0 : light, 0, 255};
   });
   const Square square(0);
   const std::array parts{square.part(&image)};
-  const io::Image shown = picture({.parts = parts});
+  const Image shown = picture({.parts = parts});
   const auto at = [&](int x, int y, int c) { return static_cast<int>(shown.pixel(x, y)[c]); };
   EXPECT_GT(at(60, 60, 0), 2 * at(60, 60, 1) + 50);
   EXPECT_GT(at(140, 60, 1), 2 * at(140, 60, 0) + 50);
@@ -77,14 +77,14 @@ TEST_F(TexturedPicture, ShowsTheImageTheRightWayUp) {
 }
 
 TEST_F(TexturedPicture, LaysTransparentPartsOverWhatLiesBehind) {
-  const io::Image image = painted(8, [](int x, int) { return std::array{0, 0, 255, x < 4 ? 0 : 255}; });
+  const Image image = painted(8, [](int x, int) { return std::array{0, 0, 255, x < 4 ? 0 : 255}; });
   const Square behind(0), before(0.01), covered(-0.01);
   io::MeshPart base = behind.part(nullptr), decal = before.part(&image), under = covered.part(&image);
   base.color = {1, 0, 0};
   decal.transparent = under.transparent = true;
   for (const bool above : {true, false}) {
     const std::array parts{above ? decal : under, base};  // whatever the order
-    const io::Image shown = picture({.parts = parts});
+    const Image shown = picture({.parts = parts});
     EXPECT_GT(shown.pixel(60, 100)[0], 100);
     EXPECT_EQ(shown.pixel(60, 100)[2], 0);
     EXPECT_EQ(shown.pixel(140, 100)[above ? 0 : 2], 0);
@@ -96,7 +96,7 @@ TEST_F(TexturedPicture, ShowsPointsAsDiscsInTheirColours) {
   const std::vector<Vec3> points{{-1, 0, 0}, {1, 0, 0}, {1, 0, -1}};  // the last lies behind the second
   const std::vector<std::array<std::uint8_t, 3>> colors{{200, 0, 0}, {0, 200, 0}, {0, 0, 200}};
   const std::vector<double> radii{0.3, 0.3, 0.3};
-  const io::Image shown = picture({.points = points, .colors = colors, .radii = radii});
+  const Image shown = picture({.points = points, .colors = colors, .radii = radii});
   int red = 0, green = 0, blue = 0, left_of_green = 0;
   for (int y = 0; y < 200; ++y)
     for (int x = 0; x < 200; ++x) {

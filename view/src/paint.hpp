@@ -7,7 +7,7 @@ namespace ahm::view {
 
 struct Paint {
   Pattern pattern = Pattern::polar;
-  double ring_width = 1;            ///< outside units
+  double ring_width = 1;            ///< world units
   std::vector<Eigen::Vector2d> uv;  ///< per point of the scene, in ring widths; cells: number of the colour, distance
   std::vector<float> known;         ///< 1, or 0 where there is nothing to paint by; uv is then 0
 };

@@ -161,7 +161,8 @@ Image reduce(const std::vector<std::uint8_t>& rgba, int width, int height, int f
   Image image(width, height);
   const auto stride = 4 * static_cast<std::size_t>(width) * static_cast<std::size_t>(factor);
   for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x)
+    for (int x = 0; x < width; ++x) {
+      image.pixel(x, y)[3] = 255;
       for (std::size_t channel = 0; channel < 3; ++channel) {
         float sum = 0;
         for (int j = 0; j < factor; ++j)
@@ -175,6 +176,7 @@ Image reduce(const std::vector<std::uint8_t>& rgba, int width, int height, int f
         if (above != light.begin() && mean - above[-1] < above[0] - mean) --above;
         image.pixel(x, y)[channel] = static_cast<std::uint8_t>(above - light.begin());
       }
+    }
   return image;
 }
 
@@ -183,9 +185,9 @@ Image reduce(const std::vector<std::uint8_t>& rgba, int width, int height, int f
 bool Rendering::shows(const Camera& camera, const Eigen::Vector3d& position, double tolerance) const {
   const double depth = -camera.to_view(position).z();
   if (depth < camera.near_plane) return false;
-  const Eigen::Vector3d pixel = camera.to_pixels(position, image.width(), image.height());
+  const Eigen::Vector3d pixel = camera.to_pixels(position, image.width, image.height);
   const int x = static_cast<int>(std::floor(pixel.x() * factor)), y = static_cast<int>(std::floor(pixel.y() * factor));
-  const int width = factor * image.width(), height = factor * image.height();
+  const int width = factor * image.width, height = factor * image.height;
   if (x < 0 || y < 0 || x >= width || y >= height) return false;
   return depth < tolerance + static_cast<double>(
                                  depths[static_cast<std::size_t>(height - 1 - y) * static_cast<std::size_t>(width) +

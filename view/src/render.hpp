@@ -1,8 +1,8 @@
 // The three-dimensional part of a PNG.
 #pragma once
 
+#include "ahm/image.hpp"
 #include "drawable.hpp"
-#include "image.hpp"
 
 namespace ahm::view {
 

@@ -77,8 +77,8 @@ class Canvas {
           put(x, y, corner.pixel.z(), corner.normal, color, false);
   }
 
-  io::Image image() const {
-    io::Image result(width_ / samples, height_ / samples);
+  Image image() const {
+    Image result(width_ / samples, height_ / samples);
     for (int y = 0; y < result.height; ++y)
       for (int x = 0; x < result.width; ++x) {
         Eigen::Vector3f sum = Eigen::Vector3f::Zero();
@@ -126,15 +126,15 @@ void draw(Canvas& canvas, const io::MeshPart& part) {
     if (!part.texture) return {part.color[0], part.color[1], part.color[2], 1};
     return part.texture->sample(place.x(), place.y());
   };
-  for (std::size_t f = 0; f + 1 < part.face_begin.size(); ++f)
-    for (Offset k = part.face_begin[f] + 1; k + 1 < part.face_begin[f + 1]; ++k) {
-      const std::array<Offset, 3> fan{part.face_begin[f], k, k + 1};
+  for (std::size_t f = 0; f < part.faces.size(); ++f)
+    for (Offset k = part.faces.begin[f] + 1; k + 1 < part.faces.begin[f + 1]; ++k) {
+      const std::array<Offset, 3> fan{part.faces.begin[f], k, k + 1};
       std::array<Corner, 3> corners;
       std::array<Vector3d, 3> x;
       bool visible = true;
       for (std::size_t c = 0; c < 3; ++c) {
         const auto corner = static_cast<std::size_t>(fan[c]);
-        const auto vertex = static_cast<std::size_t>(part.face_vertices[corner]);
+        const auto vertex = static_cast<std::size_t>(part.faces.vertices[corner]);
         x[c] = as_vector(part.points[vertex]);
         visible = visible && canvas.project(part.points[vertex], corners[c]);
         if (!part.texture_coordinates.empty())
@@ -158,9 +158,9 @@ class Gathered {
       add(part.points, part.normals);
       known_.insert(known_.end(), part.points.size(), part.texture ? 0.0 : std::numeric_limits<double>::quiet_NaN());
       if (faces_.empty()) faces_.push_back(0);
-      for (std::size_t f = 0; f + 1 < part.face_begin.size(); ++f) {
-        for (Offset c = part.face_begin[f]; c < part.face_begin[f + 1]; ++c)
-          vertices_.push_back(first + part.face_vertices[c]);
+      for (std::size_t f = 0; f < part.faces.size(); ++f) {
+        for (Offset c = part.faces.begin[f]; c < part.faces.begin[f + 1]; ++c)
+          vertices_.push_back(first + part.faces.vertices[c]);
         faces_.push_back(static_cast<Offset>(vertices_.size()));
       }
     }

@@ -9,21 +9,10 @@
 #include <algorithm>
 #include <charconv>
 
-#include "ahm/io/atomic_file.hpp"
+#include "ahm/io/image.hpp"
 #include "check.hpp"
+#include "pen.hpp"
 #include "render.hpp"
-
-#define STB_IMAGE_WRITE_IMPLEMENTATION
-#define STB_IMAGE_WRITE_STATIC
-#if defined(__GNUC__)
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wunused-function"
-#pragma GCC diagnostic ignored "-Wmissing-field-initializers"
-#endif
-#include <stb_image_write.h>
-#if defined(__GNUC__)
-#pragma GCC diagnostic pop
-#endif
 
 namespace ahm::view {
 namespace {
@@ -44,39 +33,40 @@ struct Arrow {
   Vector2d from, to;
   double width;
 
-  void draw(Image& image, double grow, Colour colour) const {
+  void draw(Pen& pen, double grow, Colour colour) const {
     const Vector2d d = to - from;
     const double length = d.norm();
     if (length < 3 * width) return;  // seen end on
     const Vector2d along = d / length, across(-along.y(), along.x());
     const double head = std::min(4.5 * width, 0.6 * length);
     const Vector2d neck = to - head * along;
-    image.line(from, neck, width + 2 * grow, colour);
-    image.triangle(to, neck + 0.42 * head * across, neck - 0.42 * head * across, grow, colour);
+    pen.line(from, neck, width + 2 * grow, colour);
+    pen.triangle(to, neck + 0.42 * head * across, neck - 0.42 * head * across, grow, colour);
   }
 };
 
 /// Arrows first in white and wider, then in ink: they stay visible on any colour.
-void draw_arrows(Image& image, const std::vector<Arrow>& arrows, double unit) {
-  for (const Arrow& arrow : arrows) arrow.draw(image, 1.6 * unit, white);
-  for (const Arrow& arrow : arrows) arrow.draw(image, 0, ink);
+void draw_arrows(Pen& pen, const std::vector<Arrow>& arrows, double unit) {
+  for (const Arrow& arrow : arrows) arrow.draw(pen, 1.6 * unit, white);
+  for (const Arrow& arrow : arrows) arrow.draw(pen, 0, ink);
 }
 
 /// Words likewise.
-void draw_text(Image& image, const Vector2d& at, double height, double unit, std::string_view text) {
-  image.text(at, height, 5 * unit, text, white);
-  image.text(at, height, 2 * unit, text, ink);
+void draw_text(Pen& pen, const Vector2d& at, double height, double unit, std::string_view text) {
+  pen.text(at, height, 5 * unit, text, white);
+  pen.text(at, height, 2 * unit, text, ink);
 }
 
-void draw_letter(Image& image, const Arrow& arrow, double unit, std::string_view letter) {
+void draw_letter(Pen& pen, const Arrow& arrow, double unit, std::string_view letter) {
   const Vector2d d = arrow.to - arrow.from;
   if (d.norm() < 6 * unit) return;
   const Vector2d at = arrow.to + 11 * unit * d.normalized() + Vector2d(-4 * unit, 4 * unit);
-  draw_text(image, at, 12 * unit, unit, letter);
+  draw_text(pen, at, 12 * unit, unit, letter);
 }
 
 /// What nothing hides of the curve and of the dots, in red on white.
 void draw_marks(Rendering& rendering, const Scene& scene, const Camera& camera, double unit) {
+  Pen pen(rendering.image);
   std::vector<Vector2d> pixels;  // two per visible piece
   for (std::size_t k = 0; k + 1 < scene.curve.size(); ++k) {
     if (std::binary_search(scene.curve_pieces.begin(), scene.curve_pieces.end(), static_cast<Index>(k + 1))) continue;
@@ -86,62 +76,59 @@ void draw_marks(Rendering& rendering, const Scene& scene, const Camera& camera, 
       const Vector3d from = a + p * (b - a) / pieces, to = a + (p + 1) * (b - a) / pieces;
       if (!rendering.shows(camera, (from + to) / 2, mark_tolerance)) continue;
       for (const Vector3d& end : {from, to})
-        pixels.push_back(camera.to_pixels(end, rendering.image.width(), rendering.image.height()).head<2>());
+        pixels.push_back(camera.to_pixels(end, rendering.image.width, rendering.image.height).head<2>());
     }
   }
   for (const auto& [width, colour] : {std::pair{8 * unit, white}, std::pair{5 * unit, red}})
-    for (std::size_t k = 0; k < pixels.size(); k += 2) rendering.image.line(pixels[k], pixels[k + 1], width, colour);
+    for (std::size_t k = 0; k < pixels.size(); k += 2) pen.line(pixels[k], pixels[k + 1], width, colour);
   for (const Vec3& dot : scene.dots) {
     const Vector3d place = camera.to_scene(dot);
     if (!rendering.shows(camera, place, mark_tolerance)) continue;
-    const Vector2d pixel = camera.to_pixels(place, rendering.image.width(), rendering.image.height()).head<2>();
-    rendering.image.disc(pixel, 8 * unit, white);
-    rendering.image.disc(pixel, 6 * unit, red);
+    const Vector2d pixel = camera.to_pixels(place, rendering.image.width, rendering.image.height).head<2>();
+    pen.disc(pixel, 8 * unit, white);
+    pen.disc(pixel, 6 * unit, red);
   }
 }
 
 void draw_source(Image& image, const Scene& scene, const Camera& camera, double unit) {
   const Vector3d source = camera.to_scene(scene.source);
   if (camera.to_view(source).z() > -camera.near_plane) return;  // behind the camera
-  const Vector3d centre = camera.to_pixels(source, image.width(), image.height());
+  const Vector3d centre = camera.to_pixels(source, image.width, image.height);
+  Pen pen(image);
   std::vector<Arrow> arrows;
   if (scene.source_axes) {
     const double length = 70 * unit / centre.z();
     for (std::size_t k = 0; k < 2; ++k) {
       const Vector3d tip = source + length * as_vector((*scene.source_axes)[k]).normalized();
-      arrows.push_back({centre.head<2>(), camera.to_pixels(tip, image.width(), image.height()).head<2>(), 3 * unit});
+      arrows.push_back({centre.head<2>(), camera.to_pixels(tip, image.width, image.height).head<2>(), 3 * unit});
     }
-    draw_arrows(image, arrows, unit);
-    for (std::size_t k = 0; k < 2; ++k) draw_letter(image, arrows[k], unit, k == 0 ? "u" : "v");
+    draw_arrows(pen, arrows, unit);
+    for (std::size_t k = 0; k < 2; ++k) draw_letter(pen, arrows[k], unit, k == 0 ? "u" : "v");
   }
-  image.disc(centre.head<2>(), 10.5 * unit, white);
-  image.disc(centre.head<2>(), 8 * unit, red);
+  pen.disc(centre.head<2>(), 10.5 * unit, white);
+  pen.disc(centre.head<2>(), 8 * unit, red);
 }
 
 /// The width of one ring below the legend's wheel: |--| 0.05
-void draw_scale(Image& image, const Legend& legend, double ring_width, double unit) {
+void draw_scale(Pen& pen, const Legend& legend, double ring_width, double unit) {
   const double ring = legend.radius / legend.rings, y = legend.y + legend.radius + 16 * unit;
   const double left = legend.x - legend.radius, right = left + ring, tick = 5 * unit;
   for (const auto& [width, colour] : {std::pair{5 * unit, white}, std::pair{2 * unit, ink}}) {
-    image.line({left, y}, {right, y}, width, colour);
-    for (const double x : {left, right}) image.line({x, y - tick}, {x, y + tick}, width, colour);
+    pen.line({left, y}, {right, y}, width, colour);
+    for (const double x : {left, right}) pen.line({x, y - tick}, {x, y + tick}, width, colour);
   }
-  draw_text(image, {right + 9 * unit, y + 6.5 * unit}, 13 * unit, unit, shortest(ring_width));
+  draw_text(pen, {right + 9 * unit, y + 6.5 * unit}, 13 * unit, unit, shortest(ring_width));
 }
 
-void draw_legend_axes(Image& image, const Legend& legend, double unit) {
+void draw_legend_axes(Pen& pen, const Legend& legend, double unit) {
   const Vector2d centre(legend.x, legend.y);
   const double length = 0.72 * legend.radius;
   const Arrow u{centre, centre + Vector2d(length, 0), 2 * unit}, v{centre, centre + Vector2d(0, -length), 2 * unit};
-  draw_arrows(image, {u, v}, unit);
-  draw_text(image, u.to + Vector2d(0.28 * legend.radius + 12 * unit, 4 * unit), 12 * unit, unit, "u");
-  draw_text(image, v.to + Vector2d(-4 * unit, -0.28 * legend.radius - 12 * unit), 12 * unit, unit, "v");
-  image.disc(centre, 4 * unit, white);
-  image.disc(centre, 3 * unit, red);
-}
-
-void append(void* context, void* data, int size) {
-  static_cast<std::string*>(context)->append(static_cast<const char*>(data), static_cast<std::size_t>(size));
+  draw_arrows(pen, {u, v}, unit);
+  draw_text(pen, u.to + Vector2d(0.28 * legend.radius + 12 * unit, 4 * unit), 12 * unit, unit, "u");
+  draw_text(pen, v.to + Vector2d(-4 * unit, -0.28 * legend.radius - 12 * unit), 12 * unit, unit, "v");
+  pen.disc(centre, 4 * unit, white);
+  pen.disc(centre, 3 * unit, red);
 }
 
 }  // namespace
@@ -165,9 +152,10 @@ void write_png(const std::filesystem::path& path, const Scene& scene, const Pict
   }
   Rendering rendering = render(make_drawable(scene, shown, camera, paint), camera, paint.ring_width, options, legend);
   Image& image = rendering.image;
+  Pen pen(image);
   if (legend.radius > 0) {
-    draw_scale(image, legend, paint.ring_width, unit);
-    draw_legend_axes(image, legend, unit);
+    draw_scale(pen, legend, paint.ring_width, unit);
+    draw_legend_axes(pen, legend, unit);
   }
   draw_marks(rendering, scene, camera, std::max(unit, 0.35));
   // Of a curve or of many sources only what can be seen; a single source is what the picture is about.
@@ -175,12 +163,7 @@ void write_png(const std::filesystem::path& path, const Scene& scene, const Pict
   if (is_single || rendering.shows(camera, camera.to_scene(scene.source), mark_tolerance))
     draw_source(image, scene, camera, std::max(unit, 0.35));
 
-  std::string png;
-  if (stbi_write_png_to_func(append, &png, image.width(), image.height(), 3, image.data(), 3 * image.width()) == 0)
-    throw IoError("cannot encode " + path.string() + " as PNG");
-  io::AtomicFile file(path);
-  file.write(png);
-  file.commit();
+  io::write_png(path, image);
 }
 
 }  // namespace ahm::view

@@ -73,13 +73,4 @@ Vec3 parse_direction(std::string_view text) {
   return v;
 }
 
-void append_number(std::string& row, char separator, double value) {
-  char text[32];
-  row += separator;
-  if (std::isnan(value))
-    row += "nan";
-  else
-    row.append(text, std::to_chars(text, text + sizeof text, value).ptr);
-}
-
 }  // namespace ahm::app

@@ -1,6 +1,5 @@
 /// \file
-/// Numbers as text, with a point whatever the locale. As people type them they are parsed strictly: the whole text,
-/// finite, in range.
+/// Numbers as people type them, with a point whatever the locale, parsed strictly: the whole text, finite, in range.
 #pragma once
 
 #include <cstdint>
@@ -41,8 +40,5 @@ Vec3 parse_triple(std::string_view text);
 /// Three finite numbers separated by commas, not all zero.
 /// @throws std::invalid_argument
 Vec3 parse_direction(std::string_view text);
-
-/// Appends the separator and the shortest decimals that read back to the same double, or nan.
-void append_number(std::string& row, char separator, double value);
 
 }  // namespace ahm::app

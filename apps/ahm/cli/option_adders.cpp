@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "ahm/io/formats.hpp"
 #include "cli/numbers.hpp"
 
 namespace ahm::app {
@@ -27,7 +28,9 @@ std::string non_empty(const std::string& text) {
 }
 
 void add_input(CLI::App& app, std::string& input) {
-  app.add_option("INPUT", input, "File to read: .ply .pcd .xyz .txt .csv .off .obj .stl")->required()->type_name("");
+  app.add_option("INPUT", input, fmt::format("File to read: {}", fmt::join(io::extensions(io::Use::read), " ")))
+      ->required()
+      ->type_name("");
 }
 
 CLI::Option* add_source(CLI::App& app, RunOptions& o, const std::string& help) {

@@ -45,10 +45,11 @@ struct AtlasCommandOptions {
   std::string texture;
 };
 
-std::vector<Index> choose_sources(const AtlasCommandOptions& options, const Surface& surface,
-                                  const LogMapSolver& solver, const MapOptions& map) {
-  if (options.sources.empty()) return farthest_points(solver, 0, std::min(options.charts, solver.graph().size()), map);
-  std::vector<Index> result;
+std::vector<Vertex> choose_sources(const AtlasCommandOptions& options, const Surface& surface,
+                                   const LogMapSolver& solver, const MapOptions& map) {
+  if (options.sources.empty())
+    return farthest_points(solver, Vertex{0}, std::min(options.charts, solver.graph().size()), map);
+  std::vector<Vertex> result;
   for (const SourceSpec& spec : options.sources) result.push_back(vertex_at(surface, spec, "--sources"));
   return result;
 }
@@ -68,7 +69,7 @@ struct Made {
         packed(io::pack(atlas, skin.faces(), options)),
         faces(atlas.chart_of_face.size()),
         uncharted(static_cast<std::size_t>(std::count(atlas.chart_of_face.begin(), atlas.chart_of_face.end(), -1))) {
-    for (Index vertex : atlas.sources) sources.push_back(graph.frame(vertex)->origin);
+    for (Vertex vertex : atlas.sources) sources.push_back(graph.frame(vertex.index)->origin);
   }
 };
 
@@ -99,7 +100,7 @@ void comment(const AtlasCommandOptions& options, const Made& made, const Tangent
 }
 
 void write_files(const AtlasCommandOptions& options, const Skin& skin, const Made& made) {
-  const io::Image texture = options.texture.empty() ? io::checkerboard(made.packed) : io::read_image(options.texture);
+  const Image texture = options.texture.empty() ? io::checkerboard(made.packed) : io::read_image(options.texture);
   const auto is_charted = [&](std::size_t f) { return made.atlas.chart_of_face[f] >= 0; };
   const SkinPart charted(skin, is_charted, made.packed.coordinates);
   const SkinPart rest(skin, [&](std::size_t f) { return !is_charted(f); });
@@ -157,7 +158,7 @@ void run_atlas(const AtlasCommandOptions& options) {
   MapOptions map;
   map.variant = options.run.variant;
   map.threads = options.run.threads;
-  const std::vector<Index> sources = choose_sources(options, surface, solver, map);
+  const std::vector<Vertex> sources = choose_sources(options, surface, solver, map);
   const Skin skin = skin_of(surface, solver, sources);
   const std::vector<Vec3> positions = positions_of(skin, graph.size());
   journal.start("charts");

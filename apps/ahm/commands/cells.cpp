@@ -39,10 +39,10 @@ struct CellsOptions {
 };
 
 /// Sources as vertices of the graph.
-std::vector<Index> vertices_of(const Surface& surface, const std::vector<SourceSpec>& specs) {
-  std::vector<Index> result;
+std::vector<Vertex> vertices_of(const Surface& surface, const std::vector<SourceSpec>& specs) {
+  std::vector<Vertex> result;
   for (const SourceSpec& spec : specs) {
-    const Index vertex = vertex_at(surface, spec, "--sources");
+    const Vertex vertex = vertex_at(surface, spec, "--sources");
     if (std::find(result.begin(), result.end(), vertex) != result.end())
       throw InvalidArgument(
           fmt::format("--sources {}: this is the vertex of an entry before; give every source once", to_string(spec)));
@@ -58,8 +58,8 @@ std::vector<Index> rows_of_vertices(const Surface& surface) {
 }
 
 /// A vertex that is none of the input's (inside a polygon) gives way to its nearest neighbour that is one and is free.
-void move_to_rows(const TangentGraph& graph, const std::vector<Index>& row_of_vertex, std::vector<Index>& vertices) {
-  for (Index& vertex : vertices) {
+void move_to_rows(const TangentGraph& graph, const std::vector<Index>& row_of_vertex, std::vector<Vertex>& vertices) {
+  for (auto& [vertex] : vertices) {
     if (row_of_vertex[vertex] >= 0) continue;
     const Star star = graph.star(vertex);
     double least = std::numeric_limits<double>::infinity();
@@ -68,7 +68,7 @@ void move_to_rows(const TangentGraph& graph, const std::vector<Index>& row_of_ve
       const Index j = star.neighbors[e];
       const double away = std::hypot(star.log(e)[0], star.log(e)[1]);
       if (row_of_vertex[j] < 0 || !(away < least)) continue;
-      if (std::find(vertices.begin(), vertices.end(), j) != vertices.end()) continue;
+      if (std::find(vertices.begin(), vertices.end(), Vertex(j)) != vertices.end()) continue;
       least = away;
       nearest = j;
     }
@@ -76,17 +76,17 @@ void move_to_rows(const TangentGraph& graph, const std::vector<Index>& row_of_ve
   }
 }
 
-std::vector<Index> spread(const CellsOptions& options, const Surface& surface, const LogMapSolver& solver,
-                          Journal& journal) {
+std::vector<Vertex> spread(const CellsOptions& options, const Surface& surface, const LogMapSolver& solver,
+                           Journal& journal) {
   journal.start("spread");
   const TangentGraph& graph = surface.model->graph();
   if (options.count > graph.size())
     throw InvalidArgument(fmt::format("--count {}: the graph has {} vertices only", options.count, graph.size()));
-  const Index first = options.start ? vertex_at(surface, *options.start, "--start") : 0;
+  const Vertex first = options.start ? vertex_at(surface, *options.start, "--start") : Vertex{0};
   MapOptions map;
   map.variant = options.run.variant;
   map.threads = options.run.threads;
-  std::vector<Index> result = farthest_points(solver, first, options.count, map);
+  std::vector<Vertex> result = farthest_points(solver, first, options.count, map);
   move_to_rows(graph, rows_of_vertices(surface), result);
   return result;
 }
@@ -107,7 +107,7 @@ CellRows rows_of(const Surface& surface, const std::vector<Index>& labels, const
     const auto r = static_cast<std::size_t>(row), v = static_cast<std::size_t>(vertex);
     if (rows.status[r] == Status::ok && !(distance[v] < rows.distance[r])) continue;
     if (labels[v] < 0) {
-      rows.status[r] = Status::component;
+      rows.status[r] = Status::disconnected;
       continue;
     }
     rows.status[r] = Status::ok;
@@ -137,9 +137,9 @@ std::vector<Cell> sizes(const TangentGraph& graph, const std::vector<Index>& lab
 
 void write_results(const CellRows& rows, const std::vector<Vec3>& sources, Results& results, Journal& journal) {
   io::Table table = results.table();
-  table.distance = rows.distance;
-  table.status = rows.status;
-  table.further.push_back({"label", rows.label});
+  table.add("distance", rows.distance);
+  table.add("status", rows.status);
+  table.add("label", rows.label);
   view::Scene scene = results.scene();
   scene.labels = rows.labels;
   scene.distance = rows.distance;
@@ -178,7 +178,7 @@ void run_cells(const CellsOptions& options) {
   Journal journal(options.run.verbose);
   const Surface surface = open_surface(options.run, journal);
   const TangentGraph& graph = surface.model->graph();
-  std::vector<Index> sources = vertices_of(surface, options.sources);
+  std::vector<Vertex> sources = vertices_of(surface, options.sources);
   const LogMapSolver solver = make_solver(options.run, *surface.model, journal, 0);
   if (options.count > 0) sources = spread(options, surface, solver, journal);
 
@@ -196,7 +196,7 @@ void run_cells(const CellsOptions& options) {
   const std::vector<Index> row_of_vertex = rows_of_vertices(surface);
   std::vector<Index> source_rows;
   std::vector<Vec3> positions;
-  for (Index vertex : sources) {
+  for (const auto [vertex] : sources) {
     source_rows.push_back(row_of_vertex[vertex]);
     positions.push_back(graph.frame(vertex)->origin);
   }

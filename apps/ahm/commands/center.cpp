@@ -37,7 +37,7 @@ struct CenterCommandOptions {
 
 Center find_center(const CenterCommandOptions& options, const Surface& surface, const LogMapSolver& solver,
                    Journal& journal) {
-  std::vector<Index> vertices;
+  std::vector<Vertex> vertices;
   for (const SourceSpec& spec : options.points) vertices.push_back(vertex_at(surface, spec, "--points"));
   if (!options.weights.empty() && options.weights.size() != vertices.size())
     throw InvalidArgument(fmt::format("--weights: {} numbers for {} points", options.weights.size(), vertices.size()));
@@ -52,12 +52,12 @@ Center find_center(const CenterCommandOptions& options, const Surface& surface, 
 }
 
 void report(const CenterCommandOptions& options, const Surface& surface, const Center& center, const Journal& journal) {
-  const Frame frame = *surface.model->graph().frame(center.vertex);
+  const Frame frame = *surface.model->graph().frame(center.vertex.index);
   Vec3 position = frame.origin;
   for (std::size_t a = 0; a < 3; ++a) position[a] += center.offset[0] * frame.x[a] + center.offset[1] * frame.y[a];
   Index row = -1;
   for (const RowVertex& entry : surface.model->row_vertices())
-    if (entry.vertex == center.vertex) row = entry.row;
+    if (entry.vertex == center.vertex.index) row = entry.row;
   const char* name = options.median ? "median" : "mean";
   nlohmann::ordered_json j = summary("ahm center", options.run, surface);
   j.erase("output");

@@ -7,7 +7,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "ahm/io/atomic_file.hpp"
+#include "ahm/io/write.hpp"
 #include "cli/numbers.hpp"
 #include "cli/option_adders.hpp"
 #include "commands/commands.hpp"
@@ -36,8 +36,6 @@ struct CoverageCommandOptions {
   double min_quality = trusted_quality;
 };
 
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
-
 void check_options(const CoverageCommandOptions& options) {
   const RunOptions& o = options.run;
   check_results(o);
@@ -46,45 +44,27 @@ void check_options(const CoverageCommandOptions& options) {
     throw InvalidArgument(fmt::format("--output {}: the name must end in .csv or .ply", o.output));
 }
 
-constexpr const char* columns[] = {"x", "y", "z", "nx", "ny", "nz", "hx", "hy", "hz", "u", "v", "arclength", "spacing"};
-
-/// The numbers of a row, each after the separator.
-void append_numbers(std::string& row, const CoveragePoint& p, char separator) {
-  for (const Vec3& vector : {p.position, p.normal, p.heading})
-    for (double x : vector) append_number(row, separator, x);
-  for (double x : {p.coordinates[0], p.coordinates[1], p.arclength, p.spacing}) append_number(row, separator, x);
-}
-
-void write_csv(const std::string& name, const CoveragePath& path) {
-  io::AtomicFile file(name);
-  std::string row = "index,piece,line";
-  for (const char* column : columns) row += std::string(",") + column;
-  file.write(row + "\n");
-  for (std::size_t i = 0; i < path.points.size(); ++i) {
-    row = fmt::format("{},{},{}", i, path.points[i].piece, path.points[i].line);
-    append_numbers(row, path.points[i], ',');
-    file.write(row + "\n");
-  }
-  file.commit();
-}
-
 /// Text, with an edge between consecutive points of a piece.
-void write_ply(const std::string& name, const CoveragePath& path) {
-  io::AtomicFile file(name);
-  std::string row =
-      fmt::format("ply\nformat ascii 1.0\ncomment coverage path by libahm\nelement vertex {}\n", path.points.size());
-  row += "property int piece\nproperty int line\n";
-  for (const char* column : columns) row += fmt::format("property double {}\n", column);
-  row += fmt::format("element edge {}\n", path.points.size() - at(path.pieces));
-  file.write(row + "property int vertex1\nproperty int vertex2\nend_header\n");
-  for (const CoveragePoint& point : path.points) {
-    row = fmt::format("{} {}", point.piece, point.line);
-    append_numbers(row, point, ' ');
-    file.write(row + "\n");
+void write_path(const std::string& name, const CoveragePath& path) {
+  std::vector<Index> piece, line;
+  std::vector<Vec3> position, normal, heading;
+  std::vector<double> u, v, arclength, spacing;
+  io::Table table{.title = "coverage path by libahm", .text = true};
+  for (const CoveragePoint& p : path.points) {
+    const auto row = static_cast<Index>(piece.size());
+    if (row > 0 && p.piece == piece.back()) table.edges.push_back({row - 1, row});
+    piece.push_back(p.piece), line.push_back(p.line);
+    position.push_back(p.position), normal.push_back(p.normal), heading.push_back(p.heading);
+    u.push_back(p.coordinates[0]), v.push_back(p.coordinates[1]);
+    arclength.push_back(p.arclength), spacing.push_back(p.spacing);
   }
-  for (std::size_t i = 1; i < path.points.size(); ++i)
-    if (path.points[i].piece == path.points[i - 1].piece) file.write(fmt::format("{} {}\n", i - 1, i));
-  file.commit();
+  table.add("piece", piece), table.add("line", line);
+  table.add({"x", "y", "z"}, position);
+  table.add({"nx", "ny", "nz"}, normal);
+  table.add({"hx", "hy", "hz"}, heading);
+  table.add("u", u), table.add("v", v);
+  table.add("arclength", arclength), table.add("spacing", spacing);
+  io::write(name, table);
 }
 
 /// The path on the map, as a picture.
@@ -113,7 +93,7 @@ double trusted_share(const TangentGraph& graph, const LogMap& map, const Coverag
   const std::vector<double> quality = map_quality(graph, map);
   double all = 0, trusted = 0;
   for (Index i = 0; i < graph.size(); ++i) {
-    if (!(map.distance(i) <= options.path.radius)) continue;
+    if (!(map.distance(Vertex(i)) <= options.path.radius)) continue;
     all += graph.mass(i);
     if (quality[i] >= options.min_quality) trusted += graph.mass(i);
   }
@@ -189,8 +169,7 @@ void run_coverage(const CoverageCommandOptions& options) {
   Results results(options.run, surface);
   write_view(surface, source, map, path, results, journal);
   journal.start("write");
-  extension_of(options.run.output) == ".ply" ? write_ply(options.run.output, path)
-                                             : write_csv(options.run.output, path);
+  write_path(options.run.output, path);
   journal.finish();
   journal.clear_display();
   report(options, surface, source, path, trusted_share(model->graph(), map, options), amount, journal);

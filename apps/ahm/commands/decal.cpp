@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "ahm/applications/distortion.hpp"
+#include "ahm/io/write.hpp"
 #include "ahm/view/textured_picture.hpp"
 #include "cli/numbers.hpp"
 #include "cli/option_adders.hpp"
@@ -78,7 +79,7 @@ Skin skin_behind(const DecalCommandOptions& options, const Surface& surface, con
 }
 
 void write_mesh(const DecalCommandOptions& options, const Surface& surface, const LogMapSolver& solver,
-                const Decal& decal, const io::Image& image, const Vec3& source) {
+                const Decal& decal, const Image& image, const Vec3& source) {
   const Skin skin = skin_behind(options, surface, solver);
   const SkinPart behind(skin, [](std::size_t) { return true; });
   std::vector<double> corners;
@@ -89,7 +90,7 @@ void write_mesh(const DecalCommandOptions& options, const Surface& surface, cons
   io::MeshPart& part = parts.emplace_back();
   part.name = "decal";
   part.points = decal.points, part.normals = decal.normals;
-  part.face_begin = decal.face_begin, part.face_vertices = decal.face_vertices;
+  part.faces = {decal.face_begin, decal.face_vertices};
   part.texture_coordinates = corners;
   part.texture = &image;
   part.transparent = true;
@@ -103,7 +104,7 @@ void write_mesh(const DecalCommandOptions& options, const Surface& surface, cons
 
 /// The colours of the input, light grey where there are none, under the image.
 std::vector<std::array<std::uint8_t, 3>> painted(const Surface& surface, const std::vector<double>& places,
-                                                 const io::Image& image) {
+                                                 const Image& image) {
   std::vector<std::array<std::uint8_t, 3>> colors = surface.input.colors;
   colors.resize(surface.input.points.size(), {200, 200, 200});
   const bool by_row = surface.backend != "pointcloud";
@@ -133,11 +134,16 @@ std::vector<double> disc_radii(const Surface& surface) {
 }
 
 void write_points(const DecalCommandOptions& options, const Surface& surface, const InverseMap& inverse,
-                  const io::Image& image, const Vec3& source) {
+                  const Image& image, const Vec3& source) {
   const auto colors = painted(surface, image_coordinates_of_vertices(inverse, options.decal), image);
   const std::vector<Vec3> normals = surface.model->normals();
   const io::Geometry& input = surface.input;
-  io::write_colored_ply(options.run.output, input.points, input.normals, colors, input.face_begin, input.face_vertices);
+  io::Table table{.title = "coloured by libahm"};
+  table.add({"x", "y", "z"}, input.points);
+  if (!input.normals.empty()) table.add({"nx", "ny", "nz"}, input.normals);
+  table.add({"red", "green", "blue"}, colors);
+  table.faces = input.faces();
+  io::write(options.run.output, table);
   if (options.run.view.empty()) return;
   view::TexturedScene scene;
   scene.points = input.points, scene.colors = colors, scene.normals = normals;
@@ -169,7 +175,7 @@ void report(const DecalCommandOptions& options, const Surface& surface, const De
 
 void run_decal(DecalCommandOptions options) {
   check_texture_output(options.run, {".obj", ".glb", ".ply"}, {"decal"}, options.image);
-  const io::Image image = io::read_image(options.image);
+  const Image image = io::read_image(options.image);
   const double longer = std::max(image.width, image.height);
   options.decal.width = options.size * image.width / longer;
   options.decal.height = options.size * image.height / longer;

@@ -4,7 +4,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "ahm/io/atomic_file.hpp"
+#include "ahm/io/write.hpp"
 #include "cli/numbers.hpp"
 #include "cli/option_adders.hpp"
 #include "cli/source_list.hpp"
@@ -40,22 +40,24 @@ void check_options(const RunOptions& o) {
 
 /// Returns how many of the points the surface has.
 std::size_t write(const InverseCommandOptions& options, const InverseMap& inverse) {
-  io::AtomicFile file(options.run.output);
-  file.write("index,u,v,x,y,z,nx,ny,nz,hx,hy,hz\n");
+  std::vector<double> us, vs;
+  const Vec3 none{NAN, NAN, NAN};
+  std::vector<Vec3> positions(options.points.size(), none), normals = positions, headings = positions;
   std::size_t found = 0;
   for (std::size_t i = 0; i < options.points.size(); ++i) {
     const auto& [u, v] = options.points[i];
+    us.push_back(u), vs.push_back(v);
     const std::optional<InversePoint> point = inverse.at(u, v);
-    const Vec3 none{NAN, NAN, NAN};
-    std::string row = fmt::format("{}", i);
-    for (double x : options.points[i]) append_number(row, ',', x);
-    for (const Vec3& vector :
-         {point ? point->position : none, point ? point->normal : none, point ? point->frame().x : none})
-      for (double x : vector) append_number(row, ',', x);
-    file.write(row + "\n");
-    found += point ? 1 : 0;
+    if (!point) continue;
+    positions[i] = point->position, normals[i] = point->normal, headings[i] = point->frame().x;
+    ++found;
   }
-  file.commit();
+  io::Table table;
+  table.add("u", us), table.add("v", vs);
+  table.add({"x", "y", "z"}, positions);
+  table.add({"nx", "ny", "nz"}, normals);
+  table.add({"hx", "hy", "hz"}, headings);
+  io::write(options.run.output, table);
   return found;
 }
 

@@ -137,7 +137,7 @@ std::vector<T> padded(const LocalMaps& maps, const std::vector<T>& values, std::
 }
 
 void write(const LocalMapsOptions& options, const LocalMaps& maps, const std::vector<Index>& rows, const Model& model,
-           const std::vector<Index>& vertices) {
+           const std::vector<Vertex>& vertices) {
   const std::size_t sources = rows.size(), entries = maps.indices.size();
   const auto k = static_cast<std::size_t>(options.nearest);
   const auto real = options.float32 ? io::NpyType::float32 : io::NpyType::float64;
@@ -146,7 +146,7 @@ void write(const LocalMapsOptions& options, const LocalMaps& maps, const std::ve
   io::NpzFile file(options.run.output);
   file.add("sources", {sources}, std::span<const Index>(rows));
   std::vector<double> frames;
-  for (Index vertex : vertices) {
+  for (const auto [vertex] : vertices) {
     const Frame frame = *model.graph().frame(vertex);
     for (const Vec3& axis : {frame.x, frame.y, frame.normal}) frames.insert(frames.end(), axis.begin(), axis.end());
   }
@@ -183,8 +183,8 @@ void run_local_maps(const LocalMapsOptions& options) {
   const auto& [input, backend, model] = surface;
   const Rows rows(*model, input.points.size());
   const std::vector<Index> wanted = wanted_rows(options, rows);
-  std::vector<Index> vertices;
-  for (Index row : wanted) vertices.push_back(rows.vertex_of_row[row]);
+  std::vector<Vertex> vertices;
+  for (Index row : wanted) vertices.emplace_back(rows.vertex_of_row[row]);
 
   journal.start("solve");
   LocalMapOptions map_options;

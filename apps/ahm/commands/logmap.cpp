@@ -56,25 +56,21 @@ void comment_on_source(const RunOptions& options, const Model& model, const Reso
 /// What was left out because it is farther than the radius in a straight line already.
 void mark_beyond(const std::vector<Vec3>& points, const Vec3& source, double radius, MapRows& rows) {
   for (std::size_t i = 0; i < points.size(); ++i)
-    if (rows.status[i] == Status::removed && distance(points[i], source) > radius) rows.status[i] = Status::radius;
+    if (rows.status[i] == Status::removed && distance(points[i], source) > radius)
+      rows.status[i] = Status::beyond_radius;
 }
 
 void write_results(const ResolvedSource& source, const MapRows& rows, const std::vector<Vec3>& away, Results& results,
                    Journal& journal) {
   io::Table table = results.table();
-  table.u = rows.u;
-  table.v = rows.v;
-  table.distance = rows.distance;
-  table.angle = rows.angle;
-  table.status = rows.status;
-  table.further.push_back({"quality", rows.quality});
-  if (!rows.error_estimate.empty()) table.further.push_back({"error_estimate", rows.error_estimate});
-  std::array<std::vector<double>, 3> components;
-  constexpr const char* names[] = {"gx", "gy", "gz"};
-  for (std::size_t k = 0; k < 3 && !away.empty(); ++k) {
-    for (const Vec3& vector : away) components[k].push_back(vector[k]);
-    table.further.push_back({names[k], components[k]});
-  }
+  table.add("u", rows.u);
+  table.add("v", rows.v);
+  table.add("distance", rows.distance);
+  table.add("angle", rows.angle);
+  table.add("status", rows.status);
+  table.add("quality", rows.quality);
+  if (!rows.error_estimate.empty()) table.add("error_estimate", rows.error_estimate);
+  if (!away.empty()) table.add({"gx", "gy", "gz"}, away);
   view::Scene scene = results.scene();
   scene.u = rows.u;
   scene.v = rows.v;

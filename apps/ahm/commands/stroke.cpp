@@ -60,10 +60,10 @@ void comment_on_curve(const Curve& curve, double edge, Journal& journal) {
 void write_results(const Curve& curve, const StrokeOptions& shape, const MapRows& rows,
                    const std::vector<double>& distance, Results& results, Journal& journal) {
   io::Table table = results.table();
-  table.u = rows.u;
-  table.v = rows.v;
-  table.distance = distance;
-  table.status = rows.status;
+  table.add("u", rows.u);
+  table.add("v", rows.v);
+  table.add("distance", distance);
+  table.add("status", rows.status);
   std::vector<Vec3> line = curve.points;
   if (shape.closed) line.push_back(line.front());
   view::Scene scene = results.scene();

@@ -63,13 +63,13 @@ Skin skin_of_mesh(const Surface& surface) {
   return skin;
 }
 
-Skin skin_of_cloud(const TangentGraph& graph, const LogMapSolver& solver, std::span<const Index> sources) {
+Skin skin_of_cloud(const TangentGraph& graph, const LogMapSolver& solver, std::span<const Vertex> sources) {
   const Components components = connected_components(graph);
   std::vector<bool> has_source(at(components.count), false);
   Source source(2);
   constexpr double offset[] = {0, 0}, axes[] = {1, 0, 0, 1};
-  for (Index vertex : sources) {
-    const std::size_t component = at(components.of_vertex[vertex]);
+  for (Vertex vertex : sources) {
+    const std::size_t component = at(components.of_vertex[vertex.index]);
     if (!has_source[component]) source.add(vertex, 1, offset, axes);
     has_source[component] = true;
   }
@@ -89,7 +89,7 @@ Skin skin_of_cloud(const TangentGraph& graph, const LogMapSolver& solver, std::s
 
 }  // namespace
 
-Skin skin_of(const Surface& surface, const LogMapSolver& solver, std::span<const Index> sources) {
+Skin skin_of(const Surface& surface, const LogMapSolver& solver, std::span<const Vertex> sources) {
   return is_cloud(surface) ? skin_of_cloud(surface.model->graph(), solver, sources) : skin_of_mesh(surface);
 }
 
@@ -101,7 +101,8 @@ InverseMap inverse_of(const Surface& surface, const LogMap& map, double min_qual
   const std::vector<double> quality = map_quality(graph, map);
   std::vector<Index> nearest(rows, -1);
   for (const auto& [row, vertex] : surface.model->row_vertices())
-    if (map.status(vertex) == Status::ok && (nearest[row] < 0 || map.distance(vertex) < map.distance(nearest[row])))
+    if (map.status(Vertex(vertex)) == Status::ok &&
+        (nearest[row] < 0 || map.distance(Vertex(vertex)) < map.distance(Vertex(nearest[row]))))
       nearest[row] = vertex;
   std::vector<Vec3> normals(rows);
   std::vector<double> coordinates(2 * rows);
@@ -109,7 +110,8 @@ InverseMap inverse_of(const Surface& surface, const LogMap& map, double min_qual
   for (std::size_t r = 0; r < rows; ++r) {
     if (nearest[r] < 0) continue;
     normals[r] = graph_normals[nearest[r]];
-    std::copy_n(map.coordinates(nearest[r]).begin(), 2, coordinates.begin() + static_cast<std::ptrdiff_t>(2 * r));
+    std::copy_n(map.coordinates(Vertex(nearest[r])).begin(), 2,
+                coordinates.begin() + static_cast<std::ptrdiff_t>(2 * r));
     valid[r] = quality[nearest[r]] >= min_quality;
   }
   return InverseMap(

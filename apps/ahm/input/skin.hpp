@@ -22,7 +22,7 @@ struct Skin {
 
 /// The faces of the input; for clouds the triangles of `star_triangles`, as a map from the sources finds them.
 /// @param sources  vertices, at most one per component counts
-Skin skin_of(const Surface& surface, const LogMapSolver& solver, std::span<const Index> sources);
+Skin skin_of(const Surface& surface, const LogMapSolver& solver, std::span<const Vertex> sources);
 
 /// The inverse of a map with frames: for meshes on the rows and faces of the input, so that points lie on them whatever
 /// the graph looks like (of several vertices of a row the one nearest to the source counts), for clouds on the graph.

@@ -68,7 +68,7 @@ ResolvedSource resolve(const Model& model, const SourceSpec& spec, const std::op
   throw InvalidArgument(message);
 }
 
-Index vertex_at(const Surface& surface, const SourceSpec& spec, const std::string& option) {
+Vertex vertex_at(const Surface& surface, const SourceSpec& spec, const std::string& option) {
   position_in(surface.input, spec, option);
   if (std::holds_alternative<SourceFace>(spec))
     throw InvalidArgument(fmt::format("{} {}: must be a vertex; write its number or x,y,z", option, to_string(spec)));
@@ -82,9 +82,9 @@ ResolvedSource resolve(const RunOptions& options, const Model& model) {
   const Source plain = model.source(options.source, std::nullopt).source;
   // In a face: at the corner that has most of the source.
   const auto most = std::max_element(plain.weights().begin(), plain.weights().end()) - plain.weights().begin();
-  const Index vertex = plain.vertices()[most];
+  const Vertex vertex = plain.vertices()[most];
   try {
-    return model.source(options.source, bending_direction(model.graph(), Vertex(vertex)));
+    return model.source(options.source, bending_direction(model.graph(), vertex));
   } catch (const InvalidArgument& e) {
     if (e.fault() != "no_bending_direction") throw;
     throw InvalidArgument(fmt::format("--u-axis curvature: {}; give the axis as X,Y,Z", e.problem()));

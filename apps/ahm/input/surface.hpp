@@ -31,7 +31,7 @@ ResolvedSource resolve(const Model& model, const SourceSpec& spec, const std::op
 
 /// The vertex of the graph at a row of the input or nearest to a position.
 /// @throws InvalidArgument, also for a point in a face
-Index vertex_at(const Surface& surface, const SourceSpec& spec, const std::string& option);
+Vertex vertex_at(const Surface& surface, const SourceSpec& spec, const std::string& option);
 
 /// The source of --source and --u-axis.
 /// @throws InvalidArgument, also where the surface bends alike in all directions, or its directions are noise

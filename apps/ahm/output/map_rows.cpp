@@ -16,16 +16,16 @@ MapRows rows_of(const LogMap& map, const Model& model, std::size_t rows) {
   const std::vector<double> quality = map_quality(model.graph(), map);
   for (const auto& [row, vertex] : model.row_vertices()) {
     const auto r = static_cast<std::size_t>(row), k = static_cast<std::size_t>(vertex);
-    const Status status = map.status(vertex);
+    const Status status = map.status(Vertex(vertex));
     if (status != Status::ok) {
       if (result.status[r] != Status::ok) result.status[r] = status;
       continue;
     }
-    if (result.status[r] == Status::ok && result.distance[r] <= map.distance(vertex)) continue;
-    const auto phi = map.coordinates(vertex);
+    if (result.status[r] == Status::ok && result.distance[r] <= map.distance(Vertex(vertex))) continue;
+    const auto phi = map.coordinates(Vertex(vertex));
     result.u[r] = phi[0];
     result.v[r] = phi[1];
-    result.distance[r] = map.distance(vertex);
+    result.distance[r] = map.distance(Vertex(vertex));
     result.angle[r] = std::atan2(phi[1], phi[0]);
     result.quality[r] = quality[k];
     if (!error.empty()) result.error_estimate[r] = error[k];

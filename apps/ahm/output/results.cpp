@@ -32,7 +32,7 @@ void check_results(const RunOptions& options) {
 void comment_on_statuses(const std::vector<Status>& status, const std::string& input, Journal& journal) {
   const auto count = [&](Status s) { return std::count(status.begin(), status.end(), s); };
   const auto total = static_cast<double>(status.size());
-  if (const auto apart = count(Status::component); static_cast<double>(apart) > 0.1 * total)
+  if (const auto apart = count(Status::disconnected); static_cast<double>(apart) > 0.1 * total)
     journal.add_warning(
         fmt::format("{:.0f} % of the vertices are not connected to the source; 'ahm info {}' tells about components",
                     100.0 * static_cast<double>(apart) / total, input));
@@ -53,11 +53,10 @@ Results::~Results() {
 }
 
 io::Table Results::table() const {
-  io::Table table;
-  table.points = input_.points;
-  table.normals = normals_;
-  table.face_begin = input_.face_begin;
-  table.face_vertices = input_.face_vertices;
+  io::Table table{.title = "logarithmic map by libahm"};
+  table.add({"x", "y", "z"}, input_.points);
+  if (!normals_.empty()) table.add({"nx", "ny", "nz"}, normals_).in_csv = false;
+  table.faces = input_.faces();
   return table;
 }
 

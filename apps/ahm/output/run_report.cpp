@@ -15,7 +15,8 @@
 namespace ahm::app {
 namespace {
 
-constexpr std::array all_statuses = {Status::ok, Status::component, Status::radius, Status::unreached, Status::removed};
+constexpr std::array all_statuses = {Status::ok, Status::disconnected, Status::beyond_radius, Status::unreached,
+                                     Status::removed};
 
 std::size_t count(const MapRows& rows, Status status) {
   return static_cast<std::size_t>(std::count(rows.status.begin(), rows.status.end(), status));

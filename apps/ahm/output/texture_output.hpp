@@ -39,7 +39,7 @@ class SkinPart {
     io::MeshPart part;
     part.name = name;
     part.points = skin_.points, part.normals = skin_.normals;
-    part.face_begin = begin_, part.face_vertices = vertices_;
+    part.faces = {begin_, vertices_};
     part.texture_coordinates = coordinates_;
     return part;
   }

@@ -44,19 +44,15 @@ constexpr Sentence sentences[] = {
     {"cloud_components", "the cloud falls into {0:.0f} components; a map covers those that hold its source"},
 };
 
-/// An empty problem stands for the library's.
 struct Advice {
-  std::string_view fault, problem, remedy;
+  std::string_view fault, remedy;
 };
 
 constexpr Advice advices[] = {
-    {"non_manifold_edges", "", "repair them, or cut the mesh there with --non-manifold split"},
-    {"non_manifold_vertices", "", "repair them, or split them with --non-manifold split"},
-    {"twisted_faces", "", "use --discretization polygons"},
-    {"row_unused", "this vertex is used by no face", "choose another one"},
-    {"row_left_out", "the point was left out (--voxel, --outliers, --drop-nan, --local)",
-     "choose another one, or write x,y,z"},
-    {"row_removed", "this point was removed, it has no tangent plane or no neighbours", "choose another one"},
+    {"non_manifold_edges", "repair them, or cut the mesh there with --non-manifold split"},
+    {"non_manifold_vertices", "repair them, or split them with --non-manifold split"},
+    {"twisted_faces", "use --discretization polygons"},
+    {"row_left_out", "--voxel, --outliers, --drop-nan or --local removed it; choose another one, or write x,y,z"},
 };
 
 std::string list(const Warning& warning) {
@@ -78,8 +74,8 @@ std::string worded(const Warning& warning) {
 }
 
 std::string worded(const Error& error) {
-  for (const auto& [fault, problem, remedy] : advices)
-    if (error.fault() == fault) return fmt::format("{}; {}", problem.empty() ? error.problem() : problem, remedy);
+  for (const auto& [fault, remedy] : advices)
+    if (error.fault() == fault) return fmt::format("{}; {}", error.problem(), remedy);
   return error.what();
 }
 

@@ -125,10 +125,10 @@ Star GridGraph::star(Index vertex) const {
 }
 
 std::optional<Frame> GridGraph::frame(Index vertex) const {
-  return Frame{position(vertex), {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  return Frame{position(Vertex(vertex)), {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
 }
 
-Index GridGraph::vertex(std::span<const Index> steps) const {
+Vertex GridGraph::vertex(std::span<const Index> steps) const {
   if (steps.size() != grid_.shape.size())
     throw InvalidArgument("'steps' must be " + std::to_string(dimension_) + " numbers");
   Index number = 0;
@@ -138,11 +138,11 @@ Index GridGraph::vertex(std::span<const Index> steps) const {
                             " is outside [0, " + std::to_string(grid_.shape[a]) + ")");
     number = number * grid_.shape[a] + steps[a];
   }
-  return number;
+  return Vertex(number);
 }
 
-Vec3 GridGraph::position(Index vertex) const {
-  const Steps at = steps(vertex);
+Vec3 GridGraph::position(Vertex vertex) const {
+  const Steps at = steps(vertex.index);
   Vec3 position{};
   for (int a = 0; a < dimension_; ++a) position[a] = grid_.origin[a] + at[a] * grid_.spacing[a];
   return position;
@@ -191,7 +191,7 @@ Source GridGraph::source_in_cell(const Steps& cell, const Vec3& share, std::span
       corner[a] += upper;
       weight *= upper ? share[a] : 1 - share[a];
     }
-    const Index k = vertex(std::span(corner).first(d));
+    const Vertex k = vertex(std::span(corner).first(d));
     Vec3 offset = position(k);
     for (std::size_t a = 0; a < d; ++a) offset[a] -= point[a];
     source.add(k, weight, std::span(offset).first(d), std::span(d == 2 ? identity2 : identity3).first(d * d));

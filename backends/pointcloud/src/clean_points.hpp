@@ -12,7 +12,7 @@
 namespace ahm::pointcloud {
 
 struct CleanPoints {
-  std::vector<Vec3> points;           ///< distinct, along a Morton curve, (input - centre) / unit
+  std::vector<Vec3> points;           ///< distinct, along a Morton curve, (input - center) / unit
   std::vector<Index> input;           ///< first input point at each
   std::vector<Index> clean_of_input;  ///< -1: dropped
   double unit = 1.0;                  ///< power of two

@@ -20,7 +20,7 @@ constexpr double least_projection = 1e-6;
 
 struct Inverted {
   double x, y;
-  Index vertex;  ///< -1: the centre of inversion itself
+  Index vertex;  ///< -1: the center of inversion itself
 };
 
 double turn(const Inverted& a, const Inverted& b, const Inverted& c) {

@@ -198,8 +198,9 @@ PointCloudSurface PointCloudSurface::build(std::span<const Vec3> input, std::spa
 
 Surface::Reason PointCloudSurface::why_without_vertex(Row row) const {
   if (kept_ && !std::binary_search(kept_->begin(), kept_->end(), row.index))
-    return {"row_left_out", "was left out (CloudOptions::rows)"};
-  return {"row_removed", "was removed: it is not finite, or has no tangent plane or no neighbours"};
+    return {"row_left_out", "was left out", "it is not among CloudOptions::rows"};
+  return {"row_removed", "was removed: it is not finite, or has no tangent plane or no neighbours",
+          "choose another one"};
 }
 
 Report PointCloudSurface::report() const {
@@ -235,7 +236,8 @@ std::vector<Warning> PointCloudSurface::warnings() const {
   if (d.flips_stopped) result.push_back({"cover_not_delaunay", {}, {}});
   warn("degenerate", d.degenerate, d.first_degenerate);
   warn("normals_turned", d.turned);
-  if (d.k < d.k_asked) result.push_back(
+  if (d.k < d.k_asked)
+    result.push_back(
         {"k_reduced", {static_cast<double>(d.k_asked), static_cast<double>(d.k), static_cast<double>(d.k + 1)}, {}});
   warn("non_finite", d.non_finite);
   warn("duplicates", d.duplicates);

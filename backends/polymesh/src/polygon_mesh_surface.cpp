@@ -175,7 +175,7 @@ Source PolygonMeshSurface::Impl::source(Index face, std::span<const double> stor
       return std::conj(frames.turn[corner]) * (mesh.mirrored(static_cast<Offset>(corner)) ? std::conj(w) : w);
     };
     const Complex x = carried(u), y = carried(u * Complex(0, 1));
-    source.add(v, stored_weights[c], std::array{z.real(), z.imag()},
+    source.add(Vertex(v), stored_weights[c], std::array{z.real(), z.imag()},
                std::array{x.real(), y.real(), x.imag(), y.imag()});
   }
   return source;

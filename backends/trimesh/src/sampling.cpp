@@ -10,7 +10,7 @@ namespace {
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 Vec2 coordinates(const LogMap& map, Index vertex) {
-  const auto phi = map.coordinates(vertex);
+  const auto phi = map.coordinates(Vertex(vertex));
   return {phi[0], phi[1]};
 }
 
@@ -52,7 +52,7 @@ class Unfolding {
       bool ok = true;
       for (int s = 0; s < 3; ++s) {
         const Index v = edges_.tail[3 * f + s];
-        ok = ok && map.status(v) == Status::ok;
+        ok = ok && map.status(Vertex(v)) == Status::ok;
         if (ok) phi_[3 * f + s] = face.phi[s] = coordinates(map, v);
       }
       if (!ok) {
@@ -123,7 +123,7 @@ Sample TriangleMeshSurface::sample_in_face(const LogMap& map, const FacePoint& p
   MappedFace face(impl_->mesh, impl_->triangulation.sides(p.face));
   for (int s = 0; s < 3; ++s) {
     const Index v = tail[3 * p.face + s];
-    if (map.status(v) != Status::ok) return {nan, nan, map.status(v)};
+    if (map.status(Vertex(v)) != Status::ok) return {nan, nan, map.status(Vertex(v))};
     face.phi[s] = coordinates(map, v);
   }
   const bool orientable = impl_->mesh.report().orientable;

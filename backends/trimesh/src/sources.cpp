@@ -53,7 +53,7 @@ Source TriangleMeshSurface::Impl::source(const FacePoint& point, Vec2 u) const {
     // v is u turned left in the source's layout; every change of orientation on the way turns it right.
     const bool reflects = p.map.mirrored == forward;
     const double axes[] = {axis.x, reflects ? axis.y : -axis.y, axis.y, reflects ? -axis.x : axis.x};
-    source.add(k, p.weight[s], position, axes);
+    source.add(Vertex(k), p.weight[s], position, axes);
   }
   return source;
 }

@@ -163,14 +163,14 @@ double lattice_error(const grid::GridGraph& lattice, const std::function<Method(
     middle.push_back(lattice.grid().shape[a] / 2);
     reach = std::min(reach, 0.5 * middle[a] * lattice.grid().spacing[a]);
   }
-  const Index source = lattice.vertex(middle);
+  const Vertex source = lattice.vertex(middle);
   const Vec3 p = lattice.position(source);
-  const Result result = make(lattice)->solve(source);
+  const Result result = make(lattice)->solve(source.index);
   double worst = 0;
   for (Index i = 0; i < lattice.size(); ++i) {
-    const Vec3 q = lattice.position(i), exact{q[0] - p[0], q[1] - p[1], q[2] - p[2]};
+    const Vec3 q = lattice.position(Vertex(i)), exact{q[0] - p[0], q[1] - p[1], q[2] - p[2]};
     const double length = std::sqrt(dot(exact, exact)), found = result.distance[i];
-    if (i == source || length > reach) continue;
+    if (Vertex(i) == source || length > reach) continue;
     double square = 0;
     for (int a = 0; a < d; ++a) square += std::pow(result.coordinates[i * d + a] / found - exact[a] / length, 2);
     worst = std::max(worst, std::sqrt(square));

@@ -6,9 +6,11 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <limits>
 #include <system_error>
 
 #include "ahm/error.hpp"
+#include "ahm/types.hpp"
 
 namespace ahm::io {
 namespace {
@@ -68,6 +70,12 @@ void fail_at_line(const Input& in, std::int64_t line, const std::string& what) {
 
 void fail_at_byte(const Input& in, std::size_t byte, const std::string& what) {
   throw IoError("cannot read " + quoted_path(in.path) + ", byte " + std::to_string(byte) + ": " + what);
+}
+
+void check_vertex_count(const Input& in, std::uint64_t count) {
+  if (count > static_cast<std::uint64_t>(std::numeric_limits<Index>::max())) {
+    fail(in, std::to_string(count) + " vertices are more than 2147483647, the most this library can number");
+  }
 }
 
 std::string in_quotes(std::string_view text) {

@@ -25,6 +25,9 @@ Input load(const std::filesystem::path& path);
 /// Throws IoError "cannot read 'path', byte 345: what".
 [[noreturn]] void fail_at_byte(const Input& in, std::size_t byte, const std::string& what);
 
+/// @throws IoError when `count` vertices cannot be numbered with `Index`
+void check_vertex_count(const Input& in, std::uint64_t count);
+
 /// The text in quotes, shortened and with unprintable bytes shown as '?', fit for a message.
 std::string in_quotes(std::string_view text);
 /// The path in quotes, fit for a message.

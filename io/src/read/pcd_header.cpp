@@ -5,7 +5,6 @@
 #include <cstring>
 #include <optional>
 
-#include "read/readers.hpp"
 #include "read/text.hpp"
 
 namespace ahm::io {

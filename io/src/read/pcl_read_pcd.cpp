@@ -1,6 +1,8 @@
 // PCL reads PCD: its format. PCL trusts the header and reads "1,5" as 1, so check_pcd goes first; PCL then works on the
 // same bytes in memory, never on the file again. This file must not be compiled with -march flags: PCL's Eigen types
 // cross the border.
+#include "read/pcl_read_pcd.hpp"
+
 #include <pcl/PCLPointCloud2.h>
 #include <pcl/io/pcd_io.h>
 
@@ -10,7 +12,6 @@
 
 #include "read/pcd_header.hpp"
 #include "read/pcl_quiet.hpp"
-#include "read/readers.hpp"
 
 namespace ahm::io {
 namespace {

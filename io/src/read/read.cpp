@@ -1,27 +1,26 @@
 #include "ahm/io/read.hpp"
 
-#include <limits>
 #include <new>
 
-#include "read/readers.hpp"
+#include "ahm/io/formats.hpp"
+#include "formats/format.hpp"
 
 namespace ahm::io {
 namespace {
 
 Geometry read_by_extension(const std::filesystem::path& path) {
   const std::string extension = lower_extension(path);
-  if (extension == ".ply") return read_ply(load(path));
-  if (extension == ".off") return read_off(load(path));
-  if (extension == ".obj") return read_obj(load(path));
-  if (extension == ".stl") return read_stl(load(path));
-  if (extension == ".pcd") return read_pcd(load(path));
-  if (extension == ".xyz" || extension == ".txt") return read_xyz(load(path));
-  if (extension == ".csv") return read_csv(load(path));
+  if (const Format* format = find_format(extension)) {
+    if (format->read != nullptr) return format->read(load(path));
+    if (!format->missing.empty())
+      throw IoError("cannot read " + quoted_path(path) + ": this build has no " + format->missing + ", which reads " +
+                    extension + " files; convert it to .ply or .xyz");
+  }
   if (extension == ".gz" || extension == ".zip" || extension == ".xz" || extension == ".bz2") {
     throw IoError("cannot read " + quoted_path(path) + ": compressed files are not read; unpack it first");
   }
-  throw IoError("cannot read " + quoted_path(path) + ": unknown file type " + in_quotes(extension) +
-                "; known are .ply, .off, .obj, .stl, .pcd, .xyz, .txt and .csv");
+  throw IoError("cannot read " + quoted_path(path) + ": unknown file type " + in_quotes(extension) + "; known are " +
+                list_of(extensions(Use::read)));
 }
 
 /// The one law every format shares: a face names vertices that exist.
@@ -37,12 +36,6 @@ void check_faces(const std::filesystem::path& path, const Geometry& g) {
 }
 
 }  // namespace
-
-void check_vertex_count(const Input& in, std::uint64_t count) {
-  if (count > static_cast<std::uint64_t>(std::numeric_limits<Index>::max())) {
-    fail(in, std::to_string(count) + " vertices are more than 2147483647, the most this library can number");
-  }
-}
 
 Geometry read(const std::filesystem::path& path) {
   try {

@@ -5,13 +5,12 @@
 #include <cmath>
 #include <utility>
 
-#include "little_endian.hpp"
-#include "write/mesh_part.hpp"
+#include "ahm/io/formats.hpp"
+#include "formats/format.hpp"
+#include "write/parts.hpp"
 
 namespace ahm::io {
 namespace {
-
-std::size_t at(Offset i) { return static_cast<std::size_t>(i); }
 
 [[noreturn]] void fail(const MeshPart& part, const std::string& what) {
   throw InvalidArgument("mesh part '" + part.name + "': " + what);
@@ -26,17 +25,17 @@ void check(const MeshPart& part) {
                                         [](unsigned char c) { return c == '_' || (c < 128 && std::isalnum(c)); }))
     fail(part, "its name must be letters, digits and _");
   if (!part.normals.empty()) check_length("normals", part.normals.size(), part.points.size());
-  if (part.face_begin.empty() || part.face_begin.front() != 0 ||
-      !std::is_sorted(part.face_begin.begin(), part.face_begin.end()))
-    fail(part, "face_begin must rise from 0");
-  check_length("face_vertices", part.face_vertices.size(), at(part.face_begin.back()));
-  if (part.texture && part.texture_coordinates.empty() && !part.face_vertices.empty())
+  const auto& [begin, vertices] = part.faces;
+  if (begin.empty() || begin.front() != 0 || !std::is_sorted(begin.begin(), begin.end()))
+    fail(part, "faces.begin must rise from 0");
+  check_length("faces.vertices", vertices.size(), static_cast<std::size_t>(begin.back()));
+  if (part.texture && part.texture_coordinates.empty() && !vertices.empty())
     fail(part, "a texture needs texture_coordinates");
   if (!part.texture_coordinates.empty())
-    check_length("texture_coordinates", part.texture_coordinates.size(), 2 * part.face_vertices.size());
-  for (std::size_t c = 0; c < part.face_vertices.size(); ++c) {
-    const Index v = part.face_vertices[c];
-    if (v < 0 || at(v) >= part.points.size())
+    check_length("texture_coordinates", part.texture_coordinates.size(), 2 * vertices.size());
+  for (std::size_t c = 0; c < vertices.size(); ++c) {
+    const Index v = vertices[c];
+    if (v < 0 || static_cast<std::size_t>(v) >= part.points.size())
       fail(part, "corner " + std::to_string(c) + " names vertex " + std::to_string(v) + ", outside [0, " +
                      std::to_string(part.points.size()) + ")");
     for (double x : part.points[v])
@@ -52,20 +51,20 @@ void check(const MeshPart& part) {
 PartVertices vertices_of(const MeshPart& part) {
   PartVertices result;
   std::vector<Index> number(part.points.size(), -1);
-  for (Index v : part.face_vertices) number[v] = 0;
+  for (Index v : part.faces.vertices) number[v] = 0;
   for (std::size_t v = 0; v < number.size(); ++v)
     if (number[v] == 0) {
       number[v] = static_cast<Index>(result.points.size());
       result.points.push_back(static_cast<Index>(v));
     }
-  for (Index v : part.face_vertices) result.point.push_back(number[v]);
+  for (Index v : part.faces.vertices) result.point.push_back(number[v]);
   if (part.texture_coordinates.empty()) return result;
 
   std::vector<Index> first(result.points.size(), -1), next;  // the pairs of a point, linked
   for (std::size_t c = 0; c < result.point.size(); ++c) {
     const double u = part.texture_coordinates[2 * c], v = part.texture_coordinates[2 * c + 1];
     Index pair = first[result.point[c]];
-    while (pair >= 0 && (result.textures[2 * at(pair)] != u || result.textures[2 * at(pair) + 1] != v))
+    while (pair >= 0 && (result.textures[2 * Offset{pair}] != u || result.textures[2 * Offset{pair} + 1] != v))
       pair = next[pair];
     if (pair < 0) {
       pair = static_cast<Index>(result.texture_point.size());
@@ -80,45 +79,10 @@ PartVertices vertices_of(const MeshPart& part) {
 
 void write_textured(const std::filesystem::path& path, std::span<const MeshPart> parts) {
   for (const MeshPart& part : parts) check(part);
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  if (extension == ".obj") return write_textured_obj(path, parts);
-  if (extension == ".glb") return write_glb(path, parts);
-  throw IoError(path.string() + ": textured meshes are written as .obj or .glb");
-}
-
-void write_colored_ply(const std::filesystem::path& path, std::span<const Vec3> points, std::span<const Vec3> normals,
-                       std::span<const std::array<std::uint8_t, 3>> colors, std::span<const Offset> face_begin,
-                       std::span<const Index> face_vertices) {
-  if (colors.size() != points.size() || (!normals.empty() && normals.size() != points.size()))
-    throw InvalidArgument("write_colored_ply: " + std::to_string(points.size()) + " points, " +
-                          std::to_string(colors.size()) + " colours and " + std::to_string(normals.size()) +
-                          " normals do not fit together");
-  const std::size_t faces = face_begin.empty() ? 0 : face_begin.size() - 1;
-  AtomicFile file(path);
-  std::string row = "ply\nformat binary_little_endian 1.0\ncomment coloured by libahm\nelement vertex " +
-                    std::to_string(points.size()) + "\n";
-  for (const char* name : {"x", "y", "z"}) row += std::string("property double ") + name + "\n";
-  for (const char* name : {"nx", "ny", "nz"})
-    if (!normals.empty()) row += std::string("property double ") + name + "\n";
-  for (const char* name : {"red", "green", "blue"}) row += std::string("property uchar ") + name + "\n";
-  if (faces > 0) row += "element face " + std::to_string(faces) + "\nproperty list int int vertex_indices\n";
-  file.write(row + "end_header\n");
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    row.clear();
-    for (double x : points[i]) append(row, x);
-    for (std::size_t c = 0; c < 3 && !normals.empty(); ++c) append(row, normals[i][c]);
-    for (std::uint8_t c : colors[i]) append(row, c);
-    file.write(row);
-  }
-  for (std::size_t f = 0; f < faces; ++f) {
-    row.clear();
-    append(row, static_cast<std::int32_t>(face_begin[f + 1] - face_begin[f]));
-    for (Offset c = face_begin[f]; c < face_begin[f + 1]; ++c) append(row, face_vertices[c]);
-    file.write(row);
-  }
-  file.commit();
+  const Format* format = find_format(lower_extension(path));
+  if (format == nullptr || format->write_textured == nullptr)
+    throw IoError(path.string() + ": textured meshes are written as " + list_of(extensions(Use::write_textured), "or"));
+  format->write_textured(path, parts);
 }
 
 }  // namespace ahm::io

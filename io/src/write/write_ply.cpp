@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <string>
 
 #include "little_endian.hpp"
@@ -6,59 +7,77 @@
 namespace ahm::io {
 namespace {
 
-std::string header_of(const Table& table, std::size_t faces, bool many_corners) {
-  std::string header = "ply\nformat binary_little_endian 1.0\ncomment logarithmic map by libahm\n";
-  for (Status status : {Status::ok, Status::component, Status::radius, Status::unreached, Status::removed}) {
-    header +=
-        "comment status " + std::to_string(static_cast<int>(status)) + " " + std::string(to_string(status)) + "\n";
-  }
-  header += "element vertex " + std::to_string(table.points.size()) + "\n";
-  for (const char* name : {"x", "y", "z"}) header += std::string("property double ") + name + "\n";
-  if (!table.normals.empty()) header += "property double nx\nproperty double ny\nproperty double nz\n";
-  for (const Column& column : map_columns(table)) header += "property double " + column.name + "\n";
-  header += "property uchar status\n";
-  for (const Column& column : table.further) header += "property double " + column.name + "\n";
-  if (faces > 0) {
-    header += "element face " + std::to_string(faces) + "\n";
+const char* type_of(const Column& column) {
+  if (std::holds_alternative<std::span<const double>>(column.values)) return "double";
+  return std::holds_alternative<std::span<const Index>>(column.values) ? "int" : "uchar";
+}
+
+std::string header_of(const Table& table, bool many_corners) {
+  std::string header = std::string("ply\nformat ") + (table.text ? "ascii" : "binary_little_endian") + " 1.0\n";
+  if (!table.title.empty()) header += "comment " + table.title + "\n";
+  for (const Column& column : table.columns)
+    if (const auto* words = std::get_if<CodedWords>(&column.values))
+      for (std::size_t code = 0; code < words->words.size(); ++code)
+        header += "comment " + column.names.front() + " " + std::to_string(code) + " " + words->words[code] + "\n";
+  header += "element vertex " + std::to_string(table.rows()) + "\n";
+  for (const Column& column : table.columns)
+    for (const std::string& name : column.names)
+      header += std::string("property ") + type_of(column) + " " + name + "\n";
+  if (table.faces.size() > 0) {
+    header += "element face " + std::to_string(table.faces.size()) + "\n";
     header += std::string("property list ") + (many_corners ? "int" : "uchar") + " int vertex_indices\n";
   }
+  if (!table.edges.empty())
+    header += "element edge " + std::to_string(table.edges.size()) + "\nproperty int vertex1\nproperty int vertex2\n";
   return header + "end_header\n";
 }
+
+/// One element of the body, as bytes or as a line of text.
+class Item {
+ public:
+  explicit Item(bool text) : text_(text) {}
+
+  template <class T>
+  void add(T value) {
+    if (!text_) return append(bytes_, value);
+    if (!bytes_.empty()) bytes_ += ' ';
+    if constexpr (std::is_same_v<T, double>)
+      append_decimals(bytes_, value);
+    else
+      bytes_ += std::to_string(value);
+  }
+  void write(AtomicFile& file) {
+    if (text_) bytes_ += '\n';
+    file.write(bytes_);
+    bytes_.clear();
+  }
+
+ private:
+  bool text_;
+  std::string bytes_;
+};
 
 }  // namespace
 
 void write_ply(AtomicFile& file, const Table& table) {
-  const std::size_t faces = table.face_begin.empty() ? 0 : table.face_begin.size() - 1;
   bool many_corners = false;
-  for (std::size_t f = 0; f < faces; ++f)
-    many_corners = many_corners || table.face_begin[f + 1] - table.face_begin[f] > 255;
-  file.write(header_of(table, faces, many_corners));
+  for (std::size_t f = 0; f < table.faces.size(); ++f) many_corners = many_corners || table.faces[f].size() > 255;
+  file.write(header_of(table, many_corners));
 
-  const std::vector<Column> columns = map_columns(table);
-  std::string row;
-  for (std::size_t i = 0; i < table.points.size(); ++i) {
-    row.clear();
-    for (double coordinate : table.points[i]) append(row, coordinate);
-    if (!table.normals.empty()) {
-      for (double coordinate : table.normals[i]) append(row, coordinate);
-    }
-    for (const Column& column : columns) append(row, value_of(table, column, i));
-    append(row, static_cast<std::uint8_t>(table.status[i]));
-    for (const Column& column : table.further) append(row, value_of(table, column, i));
-    file.write(row);
+  Item item(table.text);
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    for (const Column& column : table.columns) visit_row(column, row, [&](auto value) { item.add(value); });
+    item.write(file);
   }
-  for (std::size_t f = 0; f < faces; ++f) {
-    row.clear();
-    const auto corners = static_cast<std::int32_t>(table.face_begin[f + 1] - table.face_begin[f]);
-    if (many_corners) {
-      append(row, corners);
-    } else {
-      append(row, static_cast<std::uint8_t>(corners));
-    }
-    for (Offset k = table.face_begin[f]; k < table.face_begin[f + 1]; ++k) {
-      append(row, table.face_vertices[k]);
-    }
-    file.write(row);
+  for (std::size_t f = 0; f < table.faces.size(); ++f) {
+    const std::span<const Index> face = table.faces[f];
+    many_corners ? item.add(static_cast<std::int32_t>(face.size())) : item.add(static_cast<std::uint8_t>(face.size()));
+    for (Index corner : face) item.add(corner);
+    item.write(file);
+  }
+  for (const auto& edge : table.edges) {
+    for (Index end : edge) item.add(end);
+    item.write(file);
   }
 }
 

@@ -1,20 +1,17 @@
-#include <charconv>
 #include <vector>
 
-#include "write/mesh_part.hpp"
+#include "write/parts.hpp"
+#include "write/writers.hpp"
 
 namespace ahm::io {
 namespace {
-
-std::size_t at(Offset i) { return static_cast<std::size_t>(i); }
 
 /// " 0.1 2e-300 ...": the shortest decimals that read back to the same double.
 std::string as_words(std::span<const double> values) {
   std::string words;
   for (double value : values) {
-    char text[32];
     words += ' ';
-    words.append(text, std::to_chars(text, text + sizeof text, value).ptr);
+    append_decimals(words, value);
   }
   return words;
 }
@@ -30,7 +27,7 @@ std::string material_of(const MeshPart& part, const std::string& texture) {
 
 /// How many of each kind came before, since OBJ counts over the whole file.
 struct Counts {
-  std::size_t points = 0, textures = 0, normals = 0;
+  Offset points = 0, textures = 0, normals = 0;
 };
 
 void write_part(AtomicFile& file, const MeshPart& part, Counts& counts) {
@@ -43,20 +40,21 @@ void write_part(AtomicFile& file, const MeshPart& part, Counts& counts) {
     if (!part.normals.empty()) file.write("vn" + as_words(part.normals[v]) + "\n");
   file.write("usemtl " + part.name + "\n");
   std::string row;
-  for (std::size_t f = 0; f + 1 < part.face_begin.size(); ++f) {
+  for (std::size_t f = 0; f < part.faces.size(); ++f) {
     row = "f";
-    for (Offset c = part.face_begin[f]; c < part.face_begin[f + 1]; ++c) {
-      const std::size_t point = at(vertices.point[c]) + 1;
+    for (Offset c = part.faces.begin[f]; c < part.faces.begin[f + 1]; ++c) {
+      const Offset point = vertices.point[c] + Offset{1};
       row += " " + std::to_string(counts.points + point);
-      if (!vertices.textures.empty()) row += "/" + std::to_string(counts.textures + at(vertices.texture[c]) + 1);
+      if (!vertices.textures.empty()) row += "/" + std::to_string(counts.textures + vertices.texture[c] + 1);
       if (!part.normals.empty())
         row += (vertices.textures.empty() ? "//" : "/") + std::to_string(counts.normals + point);
     }
     file.write(row + "\n");
   }
-  counts.points += vertices.points.size();
-  counts.textures += vertices.textures.size() / 2;
-  counts.normals += part.normals.empty() ? 0 : vertices.points.size();
+  const auto points = static_cast<Offset>(vertices.points.size());
+  counts.points += points;
+  counts.textures += static_cast<Offset>(vertices.textures.size() / 2);
+  counts.normals += part.normals.empty() ? 0 : points;
 }
 
 }  // namespace

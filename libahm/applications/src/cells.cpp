@@ -18,10 +18,10 @@ namespace {
 
 constexpr Index nobody = -1;
 
-void check_vertices(const TangentGraph& graph, std::span<const Index> vertices) {
+void check_vertices(const TangentGraph& graph, std::span<const Vertex> vertices) {
   if (vertices.empty()) throw InvalidArgument("nearest_source: 'vertices' is empty");
   std::vector<bool> taken(static_cast<std::size_t>(graph.size()), false);
-  for (Index vertex : vertices) {
+  for (const auto [vertex] : vertices) {
     if (vertex < 0 || vertex >= graph.size())
       throw InvalidArgument("nearest_source: vertex " + std::to_string(vertex) + " is outside [0, " +
                             std::to_string(graph.size()) + ")");
@@ -31,16 +31,16 @@ void check_vertices(const TangentGraph& graph, std::span<const Index> vertices) 
 }
 
 /// Heat of those sources whose number has `bit` set (of all of them: bit < 0).
-std::vector<double> heat_of(const LogMapSolver& solver, std::span<const Index> vertices, int bit, double b) {
+std::vector<double> heat_of(const LogMapSolver& solver, std::span<const Vertex> vertices, int bit, double b) {
   std::vector<double> heat(static_cast<std::size_t>(solver.graph().size()), 0.0);
   for (std::size_t k = 0; k < vertices.size(); ++k)
-    if (bit < 0 || ((k >> bit) & 1U) != 0) heat[vertices[k]] = b;
+    if (bit < 0 || ((k >> bit) & 1U) != 0) heat[vertices[k].index] = b;
   solver.operators().solve_scalar(heat, 1);
   return heat;
 }
 
 /// The number that most of the heat spells, bit by bit; `nobody` where there is no heat or no such source.
-std::vector<Index> spell(const LogMapSolver& solver, std::span<const Index> vertices) {
+std::vector<Index> spell(const LogMapSolver& solver, std::span<const Vertex> vertices) {
   const double b = source_heat(solver.graph(), solver.operators(), vertices);
   const std::vector<double> all = heat_of(solver, vertices, -1, b);
   std::vector<Index> label(all.size(), 0);
@@ -58,14 +58,14 @@ std::vector<Index> spell(const LogMapSolver& solver, std::span<const Index> vert
 /// Cells that grow by edge lengths (Dijkstra), each only over vertices spelled as its own or not at all.
 class Growth {
  public:
-  Growth(const TangentGraph& graph, std::span<const Index> vertices, std::vector<Index> spelled)
+  Growth(const TangentGraph& graph, std::span<const Vertex> vertices, std::vector<Index> spelled)
       : graph_(graph),
         spelled_(std::move(spelled)),
         label_(spelled_.size(), nobody),
         away_(spelled_.size(), std::numeric_limits<double>::infinity()) {
     for (std::size_t k = 0; k < vertices.size(); ++k) {
-      label_[vertices[k]] = static_cast<Index>(k);
-      away_[vertices[k]] = 0;
+      label_[vertices[k].index] = static_cast<Index>(k);
+      away_[vertices[k].index] = 0;
     }
   }
 
@@ -110,7 +110,7 @@ class Growth {
 
 }  // namespace
 
-std::vector<Index> nearest_source(const LogMapSolver& solver, std::span<const Index> vertices) {
+std::vector<Index> nearest_source(const LogMapSolver& solver, std::span<const Vertex> vertices) {
   return detail::with_memory_check("labelling by the nearest source", [&] {
     check_vertices(solver.graph(), vertices);
     Growth cells(solver.graph(), vertices, spell(solver, vertices));
@@ -123,7 +123,7 @@ std::vector<Index> nearest_source(const LogMapSolver& solver, std::span<const In
 
 namespace {
 
-void check_labels(const TangentGraph& graph, std::span<const Index> vertices, std::span<const Index> labels) {
+void check_labels(const TangentGraph& graph, std::span<const Vertex> vertices, std::span<const Index> labels) {
   check_vertices(graph, vertices);
   if (labels.size() != static_cast<std::size_t>(graph.size()))
     throw InvalidArgument("distance_in_cells: 'labels' has " + std::to_string(labels.size()) + " entries for " +
@@ -171,26 +171,26 @@ std::vector<Index> groups_apart(const std::vector<std::vector<Index>>& touching)
 }
 
 /// A source everywhere at these vertices: nothing is measured from one to the other.
-Source all_of(int dimension, std::span<const Index> vertices) {
+Source all_of(int dimension, std::span<const Vertex> vertices) {
   const auto d = static_cast<std::size_t>(dimension);
   std::vector<double> offset(d, 0.0), axes(d * d, 0.0);
   for (std::size_t a = 0; a < d; ++a) axes[a * d + a] = 1;
   Source source(dimension);
-  for (Index vertex : vertices) source.add(vertex, 1, offset, axes);
+  for (Vertex vertex : vertices) source.add(vertex, 1, offset, axes);
   return source;
 }
 
 }  // namespace
 
-VertexField distance_in_cells(const LogMapSolver& solver, std::span<const Index> vertices,
+VertexField distance_in_cells(const LogMapSolver& solver, std::span<const Vertex> vertices,
                               std::span<const Index> labels) {
   const TangentGraph& graph = solver.graph();
   check_labels(graph, vertices, labels);
   const std::vector<Index> group = groups_apart(touching_cells(graph, labels, vertices.size()));
   VertexField result{1, std::vector<double>(labels.size(), std::numeric_limits<double>::quiet_NaN()),
-                     std::vector<Status>(labels.size(), Status::component)};
+                     std::vector<Status>(labels.size(), Status::disconnected)};
   for (Index g = 0; g <= *std::max_element(group.begin(), group.end()); ++g) {
-    std::vector<Index> sources;
+    std::vector<Vertex> sources;
     for (std::size_t k = 0; k < group.size(); ++k)
       if (group[k] == g) sources.push_back(vertices[k]);
     const DistanceField field = distance_and_gradient(solver, all_of(graph.dimension(), sources));
@@ -203,25 +203,25 @@ VertexField distance_in_cells(const LogMapSolver& solver, std::span<const Index>
   return result;
 }
 
-std::vector<Index> farthest_points(const LogMapSolver& solver, Index first, Index count, const MapOptions& options) {
+std::vector<Vertex> farthest_points(const LogMapSolver& solver, Vertex first, Index count, const MapOptions& options) {
   const Index n = solver.graph().size();
-  if (first < 0 || first >= n)
-    throw InvalidArgument("farthest_points: 'first' " + std::to_string(first) + " is outside [0, " + std::to_string(n) +
-                          ")");
+  if (first.index < 0 || first.index >= n)
+    throw InvalidArgument("farthest_points: 'first' " + std::to_string(first.index) + " is outside [0, " +
+                          std::to_string(n) + ")");
   if (count < 1 || count > n)
     throw InvalidArgument("farthest_points: 'count' " + std::to_string(count) + " must be in [1, " + std::to_string(n) +
                           "]");
-  std::vector<Index> points{first};
+  std::vector<Vertex> points{first};
   std::vector<double> away(static_cast<std::size_t>(n), std::numeric_limits<double>::infinity());
   while (points.size() < static_cast<std::size_t>(count)) {
     const LogMap map = solver.solve(Source::at_vertex(points.back()), options);
     for (Index i = 0; i < n; ++i)
-      if (map.status(i) == Status::ok) {
+      if (map.status(Vertex(i)) == Status::ok) {
         double& d = away[i];
-        d = std::min(d, map.distance(i));
+        d = std::min(d, map.distance(Vertex(i)));
       }
-    for (Index point : points) away[point] = -1;
-    points.push_back(static_cast<Index>(std::max_element(away.begin(), away.end()) - away.begin()));
+    for (Vertex point : points) away[point.index] = -1;
+    points.push_back(Vertex(static_cast<Index>(std::max_element(away.begin(), away.end()) - away.begin())));
   }
   return points;
 }

@@ -248,11 +248,13 @@ InverseMap inverse_map(const TangentGraph& graph, const LogMap& map, const Inver
   std::vector<std::uint8_t> valid(n);
   const std::vector<double> quality = options.min_quality > 0 ? map_quality(graph, map) : std::vector<double>{};
   for (Index i = 0; i < graph.size(); ++i) {
-    if (map.status(i) != Status::ok) continue;
+    if (map.status(Vertex(i)) != Status::ok) continue;
     positions[i] = graph.frame(i)->origin;
     valid[i] = quality.empty() || quality[i] >= options.min_quality;
   }
-  return InverseMap({positions, normals, map.coordinates(), valid, triangles, map.source().vertices()}, options);
+  std::vector<Index> sources;
+  for (Vertex vertex : map.source().vertices()) sources.push_back(vertex.index);
+  return InverseMap({positions, normals, map.coordinates(), valid, triangles, sources}, options);
 }
 
 }  // namespace ahm

@@ -18,18 +18,18 @@ struct Problem {
   const LogMapSolver& solver;
   const char* name;  ///< of the function called, for messages
   std::vector<double> (*flat_center)(const FlatPoints&);
-  std::vector<Index> vertices;
+  std::vector<Vertex> vertices;
   std::vector<double> weights;  ///< > 0, the largest 1
 };
 
-void check_vertex(const Problem& problem, Index vertex, const std::string& what) {
-  if (vertex < 0 || vertex >= problem.solver.graph().size())
-    throw InvalidArgument(std::string(problem.name) + ": " + what + ", vertex " + std::to_string(vertex) +
+void check_vertex(const Problem& problem, Vertex vertex, const std::string& what) {
+  if (vertex.index < 0 || vertex.index >= problem.solver.graph().size())
+    throw InvalidArgument(std::string(problem.name) + ": " + what + ", vertex " + std::to_string(vertex.index) +
                           ", is outside [0, " + std::to_string(problem.solver.graph().size()) + ")");
 }
 
 /// Keeps the points of positive weight.
-void set_points(Problem& problem, std::span<const Index> vertices, std::span<const double> weights) {
+void set_points(Problem& problem, std::span<const Vertex> vertices, std::span<const double> weights) {
   const std::string name = problem.name;
   if (vertices.empty()) throw InvalidArgument(name + ": 'vertices' is empty");
   if (!weights.empty() && weights.size() != vertices.size())
@@ -58,18 +58,18 @@ struct View {
   std::vector<double> center;
 };
 
-View look(const Problem& problem, Index from, const MapOptions& options) {
+View look(const Problem& problem, Vertex from, const MapOptions& options) {
   const TangentGraph& graph = problem.solver.graph();
   View view{problem.solver.solve(Source::at_vertex(from), options), {}, {}};
   view.points.dimension = static_cast<std::size_t>(graph.dimension());
   view.points.weights = problem.weights;
-  for (Index vertex : problem.vertices) {
+  for (Vertex vertex : problem.vertices) {
     if (const Status status = view.map.status(vertex); status != Status::ok) {
-      const char* what = status == Status::component ? "' (take one center per component)"
-                         : status == Status::radius  ? "' (raise map.radius)"
-                                                     : "' (let the solver march: Strategy::automatic)";
-      throw InvalidArgument(std::string(problem.name) + ": seen from vertex " + std::to_string(from) +
-                            ", the point at vertex " + std::to_string(vertex) + " has status '" +
+      const char* what = status == Status::disconnected    ? "' (take one center per component)"
+                         : status == Status::beyond_radius ? "' (raise map.radius)"
+                                                           : "' (let the solver march: Strategy::automatic)";
+      throw InvalidArgument(std::string(problem.name) + ": seen from vertex " + std::to_string(from.index) +
+                            ", the point at vertex " + std::to_string(vertex.index) + " has status '" +
                             std::string(to_string(status)) + what);
     }
     for (double z : view.map.coordinates(vertex)) view.points.coordinates.push_back(z / graph.length_unit());
@@ -80,9 +80,9 @@ View look(const Problem& problem, Index from, const MapOptions& options) {
 
 /// exp of `share` times the center: the vertex of the nearest coordinates, found by going from neighbour to neighbour,
 /// since coordinates as short occur beyond the cut locus as well.
-Index follow(const TangentGraph& graph, const View& view, Index from, double share) {
+Vertex follow(const TangentGraph& graph, const View& view, Vertex from, double share) {
   const auto away = [&](Index i) {
-    const auto phi = view.map.coordinates(i);
+    const auto phi = view.map.coordinates(Vertex(i));
     double sum = 0;
     for (std::size_t a = 0; a < phi.size(); ++a) {
       const double difference = phi[a] / graph.length_unit() - share * view.center[a];
@@ -90,14 +90,14 @@ Index follow(const TangentGraph& graph, const View& view, Index from, double sha
     }
     return sum;
   };
-  Index best = from;
-  double least = away(from);
+  Index best = from.index;
+  double least = away(best);
   for (Index at = -1; at != best;) {
     at = best;
     for (Index j : graph.star(at).neighbors)
       if (const double r = away(j); r < least) best = j, least = r;  // never so for NaN
   }
-  return best;
+  return Vertex(best);
 }
 
 /// Weighted power mean of the distances from the center.
@@ -117,11 +117,11 @@ Center search(const Problem& problem, double power, const CenterOptions& options
                           " must be at least 1");
   const TangentGraph& graph = problem.solver.graph();
   const auto heaviest = std::max_element(problem.weights.begin(), problem.weights.end()) - problem.weights.begin();
-  Index x = options.start.value_or(problem.vertices[heaviest]);
+  Vertex x = options.start.value_or(problem.vertices[heaviest]);
   check_vertex(problem, x, "'start'");
 
   Center best;
-  std::vector<Index> visited;
+  std::vector<Vertex> visited;
   double remaining = std::numeric_limits<double>::infinity(), share = 1;
   for (Index maps = 1; maps <= options.max_maps; ++maps) {
     const View here = look(problem, x, options.map);
@@ -135,7 +135,7 @@ Center search(const Problem& problem, double power, const CenterOptions& options
     }
     best.maps = maps;
     // A vertex seen before would close a cycle: then go half as far.
-    Index next = follow(graph, here, x, share);
+    Vertex next = follow(graph, here, x, share);
     while (next != x && std::find(visited.begin(), visited.end(), next) != visited.end()) {
       share /= 2;
       next = share > 1e-6 ? follow(graph, here, x, share) : x;
@@ -149,14 +149,14 @@ Center search(const Problem& problem, double power, const CenterOptions& options
 
 }  // namespace
 
-Center karcher_mean(const LogMapSolver& solver, std::span<const Index> vertices, std::span<const double> weights,
+Center karcher_mean(const LogMapSolver& solver, std::span<const Vertex> vertices, std::span<const double> weights,
                     const CenterOptions& options) {
   Problem problem{solver, "karcher_mean", flat_mean, {}, {}};
   set_points(problem, vertices, weights);
   return search(problem, 2, options);
 }
 
-Center geometric_median(const LogMapSolver& solver, std::span<const Index> vertices, std::span<const double> weights,
+Center geometric_median(const LogMapSolver& solver, std::span<const Vertex> vertices, std::span<const double> weights,
                         const CenterOptions& options) {
   Problem problem{solver, "geometric_median", flat_median, {}, {}};
   set_points(problem, vertices, weights);

@@ -13,20 +13,20 @@ namespace {
 
 /// An edge of the path seen from vertex `from`.
 struct Step {
-  Vec2 log;       ///< in the frame of `from`, outside units
+  Vec2 log;       ///< in the frame of `from`, world units
   bool mirrored;  ///< the two frames are oppositely oriented
 };
 
-Step step(const TangentGraph& graph, Index from, Index to) {
-  const Star star = graph.star(from);
+Step step(const TangentGraph& graph, Vertex from, Vertex to) {
+  const Star star = graph.star(from.index);
   const double unit = graph.length_unit();
   for (std::size_t e = 0; e < star.degree(); ++e) {
-    if (star.neighbors[e] != to) continue;
+    if (star.neighbors[e] != to.index) continue;
     const bool is_block = graph.transport_kind() == TransportKind::block;
     const auto R = star.transports.subspan(e * (is_block ? 4 : 2), is_block ? 4 : 2);
     return {{star.log(e)[0] * unit, star.log(e)[1] * unit}, is_block && R[0] * R[3] - R[1] * R[2] < 0};
   }
-  throw InvalidArgument("stroke_source: vertices " + std::to_string(from) + " and " + std::to_string(to) +
+  throw InvalidArgument("stroke_source: vertices " + std::to_string(from.index) + " and " + std::to_string(to.index) +
                         " follow each other in 'path' but are no neighbours in the graph; add the vertices between");
 }
 
@@ -52,19 +52,19 @@ struct Curve {
   double length = 0;
 };
 
-void check_path(const TangentGraph& graph, std::span<const Index> path, bool closed) {
+void check_path(const TangentGraph& graph, std::span<const Vertex> path, bool closed) {
   if (graph.dimension() != 2)
     throw InvalidArgument("stroke_source: the graph has dimension " + std::to_string(graph.dimension()) + ", not 2");
   if (path.size() < (closed ? 3U : 2U))
     throw InvalidArgument("stroke_source: 'path' has " + std::to_string(path.size()) + " vertices; give at least " +
                           (closed ? "3" : "2"));
-  for (Index vertex : path)
+  for (const auto [vertex] : path)
     if (vertex < 0 || vertex >= graph.size())
       throw InvalidArgument("stroke_source: vertex " + std::to_string(vertex) + " of 'path' is outside [0, " +
                             std::to_string(graph.size()) + ")");
 }
 
-Curve follow(const TangentGraph& graph, std::span<const Index> path, bool closed) {
+Curve follow(const TangentGraph& graph, std::span<const Vertex> path, bool closed) {
   check_path(graph, path, closed);
   const std::size_t n = path.size();
   Curve curve{{}, {}, {}, std::vector<double>(n, 0.0), 0};
@@ -98,7 +98,7 @@ Curve follow(const TangentGraph& graph, std::span<const Index> path, bool closed
 }
 
 /// The u axis is the tangent turned back by the angle that the curve has in the plane of coordinates.
-void add_sample(Source& source, Index vertex, double weight, const Vec2& z, const Vec2& tangent, double side,
+void add_sample(Source& source, Vertex vertex, double weight, const Vec2& z, const Vec2& tangent, double side,
                 const Vec2& direction) {
   const Vec2 left{-side * tangent[1], side * tangent[0]};
   const double c = direction[0], s = direction[1];
@@ -139,7 +139,7 @@ void check_points(std::span<const Source> points, std::span<const double> length
 
 }  // namespace
 
-Source stroke_source(const TangentGraph& graph, std::span<const Index> path, const StrokeOptions& options) {
+Source stroke_source(const TangentGraph& graph, std::span<const Vertex> path, const StrokeOptions& options) {
   check_shape(options);
   const Curve curve = follow(graph, path, options.closed);
   Source source(2);
@@ -150,7 +150,7 @@ Source stroke_source(const TangentGraph& graph, std::span<const Index> path, con
   return source;
 }
 
-Source stroke_source(const TangentGraph& graph, std::span<const Index> path,
+Source stroke_source(const TangentGraph& graph, std::span<const Vertex> path,
                      std::span<const std::array<double, 2>> positions, bool closed) {
   if (positions.size() != path.size())
     throw InvalidArgument("stroke_source: 'positions' has " + std::to_string(positions.size()) +

@@ -37,9 +37,9 @@ struct Neighbors {
   Neighbors(const TangentGraph& graph, const LogMap& map) {
     for (Index i = 0; i < graph.size(); ++i) {
       const auto first = static_cast<std::ptrdiff_t>(all.size());
-      if (map.status(i) == Status::ok)
+      if (map.status(Vertex(i)) == Status::ok)
         for (Index j : graph.star(i).neighbors)
-          if (map.status(j) == Status::ok) all.push_back(j);
+          if (map.status(Vertex(j)) == Status::ok) all.push_back(j);
       std::sort(all.begin() + first, all.end());
       all.erase(std::unique(all.begin() + first, all.end()), all.end());
       begin.push_back(static_cast<Offset>(all.size()));
@@ -68,7 +68,7 @@ void sort_spokes(const Star& star, const LogMap& map, std::vector<Spoke>& spokes
   spokes.clear();
   for (std::size_t e = 0; e < star.degree(); ++e) {
     const auto log = star.log(e);
-    if (map.status(star.neighbors[e]) == Status::ok && (log[0] != 0 || log[1] != 0))
+    if (map.status(Vertex(star.neighbors[e])) == Status::ok && (log[0] != 0 || log[1] != 0))
       spokes.push_back({std::atan2(log[1], log[0]), star.neighbors[e], {log[0], log[1]}});
   }
   std::sort(spokes.begin(), spokes.end(), [](const Spoke& a, const Spoke& b) {
@@ -105,7 +105,7 @@ std::vector<Triangle> star_triangles(const TangentGraph& graph, const LogMap& ma
   std::vector<Triangle> result;
   std::vector<Spoke> spokes;
   for (Index i = 0; i < graph.size(); ++i) {
-    if (map.status(i) != Status::ok) continue;
+    if (map.status(Vertex(i)) != Status::ok) continue;
     sort_spokes(graph.star(i), map, spokes);
     for (std::size_t s = 0; s < spokes.size(); ++s) {
       const Spoke &a = spokes[s], &b = spokes[(s + 1) % spokes.size()];
@@ -129,7 +129,7 @@ std::vector<Vec3> source_side_normals(const TangentGraph& graph, const LogMap& m
   const double nan = std::numeric_limits<double>::quiet_NaN();
   std::vector<Vec3> normals(at(graph.size()), Vec3{nan, nan, nan});
   for (Index i = 0; i < graph.size(); ++i) {
-    if (map.status(i) != Status::ok) continue;
+    if (map.status(Vertex(i)) != Status::ok) continue;
     const auto frame = graph.frame(i);
     if (!frame)
       throw InvalidArgument("source_side_normals: vertex " + std::to_string(i) +

@@ -28,11 +28,10 @@ struct Geometry {
   std::string format;                 ///< for messages, e.g. "PLY binary little endian"
   std::vector<std::string> warnings;  ///< what was ignored, in words
 
-  std::size_t face_count() const noexcept { return face_begin.empty() ? 0 : face_begin.size() - 1; }
+  std::size_t face_count() const noexcept { return faces().size(); }
+  FaceList faces() const noexcept { return {face_begin, face_vertices}; }
   /// The vertex numbers of polygon `face` < face_count().
-  std::span<const Index> face(std::size_t face) const noexcept {
-    return {face_vertices.data() + face_begin[face], static_cast<std::size_t>(face_begin[face + 1] - face_begin[face])};
-  }
+  std::span<const Index> face(std::size_t face) const noexcept { return faces()[face]; }
 };
 
 }  // namespace ahm::io

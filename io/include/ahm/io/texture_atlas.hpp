@@ -3,7 +3,7 @@
 ///
 /// \code
 /// ahm::io::TextureAtlas packed = ahm::io::pack(atlas, faces, {.size = 2048, .margin = 4});
-/// ahm::io::Image image = ahm::io::checkerboard(packed);         // something to look at; packed.coordinates are the uv
+/// ahm::Image image = ahm::io::checkerboard(packed);         // something to look at; packed.coordinates are the uv
 /// \endcode
 #pragma once
 
@@ -27,7 +27,7 @@ struct TextureBox {
 
 struct TextureAtlas {
   int size = 0, margin = 0;
-  double scale = 0;                 ///< texels per outside unit, the same for all charts
+  double scale = 0;                 ///< texels per world unit, the same for all charts
   double filled = 0;                ///< share of the square that the boxes of the charts take
   std::vector<TextureBox> boxes;    ///< one per chart; they do not touch, nor do their margins overlap
   std::vector<double> coordinates;  ///< corners x 2 in [0, 1], (0, 0) the lower left corner; NaN without a chart

@@ -2,7 +2,7 @@
 /// Meshes with textures and colours to files.
 ///
 /// \code
-/// ahm::io::MeshPart part{.name = "atlas", .points = points, .face_begin = begin, .face_vertices = vertices};
+/// ahm::io::MeshPart part{.name = "atlas", .points = points, .faces = geometry.faces()};
 /// part.texture_coordinates = uv;                       // two per corner
 /// part.texture = &image;
 /// ahm::io::write_textured("bunny.glb", std::array{part});
@@ -10,7 +10,6 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
 #include <filesystem>
 #include <span>
 #include <string>
@@ -26,8 +25,7 @@ struct MeshPart {
   std::string name;                                  ///< of the object and its material; letters, digits and _
   std::span<const Vec3> points;                      ///< those that no face uses are not written
   std::span<const Vec3> normals = {};                ///< empty or one per point
-  std::span<const Offset> face_begin;                ///< faces + 1
-  std::span<const Index> face_vertices;              ///< one per corner, polygons
+  FaceList faces;                                    ///< polygons of points
   std::span<const double> texture_coordinates = {};  ///< empty or corners x 2; (0, 0) is the image's lower left corner
   const Image* texture = nullptr;                    ///< needs texture coordinates
   std::array<double, 3> color{0.75, 0.75, 0.75};     ///< without a texture; red, green, blue in [0, 1]
@@ -42,12 +40,5 @@ struct MeshPart {
 ///   so that models far from the origin keep their shape.
 /// @throws InvalidArgument (lengths, indices, a point or texture coordinate in use that is not finite), IoError
 void write_textured(const std::filesystem::path& path, std::span<const MeshPart> parts);
-
-/// Writes points with colours, and faces if any, as binary little endian PLY: double x y z, double nx ny nz when given,
-/// uchar red green blue.
-/// @throws InvalidArgument (lengths), IoError
-void write_colored_ply(const std::filesystem::path& path, std::span<const Vec3> points, std::span<const Vec3> normals,
-                       std::span<const std::array<std::uint8_t, 3>> colors, std::span<const Offset> face_begin = {},
-                       std::span<const Index> face_vertices = {});
 
 }  // namespace ahm::io

@@ -64,18 +64,18 @@ Index vertex_to_add(const Atlas& atlas, const FaceList& faces, std::span<const V
 }
 
 /// The sources and, of each component of faces without one, a vertex.
-std::vector<Index> one_per_component(const TangentGraph& graph, std::span<const Index> sources, const FaceList& faces,
-                                     std::size_t most) {
-  std::vector<Index> result(sources.begin(), sources.end());
+std::vector<Vertex> one_per_component(const TangentGraph& graph, std::span<const Vertex> sources, const FaceList& faces,
+                                      std::size_t most) {
+  std::vector<Vertex> result(sources.begin(), sources.end());
   const Components components = connected_components(graph);
   std::vector<bool> has_source(to_size(components.count), false);
   const auto component = [&](Index vertex) { return to_size(components.of_vertex[vertex]); };
-  for (Index vertex : sources)
+  for (const auto [vertex] : sources)
     if (vertex >= 0 && vertex < graph.size()) has_source[component(vertex)] = true;
   for (Index vertex : faces.vertices) {
     if (result.size() >= most || has_source[component(vertex)]) continue;
     has_source[component(vertex)] = true;
-    result.push_back(vertex);
+    result.push_back(Vertex(vertex));
   }
   return result;
 }
@@ -102,12 +102,12 @@ AtlasDistortion distortion(const Atlas& atlas, const FaceList& faces, std::span<
   });
 }
 
-Atlas make_atlas(const LogMapSolver& solver, std::span<const Index> sources, const FaceList& faces,
+Atlas make_atlas(const LogMapSolver& solver, std::span<const Vertex> sources, const FaceList& faces,
                  const MapOptions& options) {
   return detail::with_memory_check("making an atlas", [&] { return AtlasMaker(solver, faces, options).make(sources); });
 }
 
-Atlas make_atlas(const LogMapSolver& solver, std::span<const Index> sources, const FaceList& faces,
+Atlas make_atlas(const LogMapSolver& solver, std::span<const Vertex> sources, const FaceList& faces,
                  std::span<const Vec3> positions, const RefineOptions& refine, const MapOptions& options) {
   if (!(refine.max_distortion > 1))
     throw InvalidArgument("make_atlas: max_distortion is " + detail::number(refine.max_distortion) +
@@ -121,15 +121,15 @@ Atlas make_atlas(const LogMapSolver& solver, std::span<const Index> sources, con
     AtlasMaker maker(solver, faces, options);
     Atlas atlas = maker.make(one_per_component(solver.graph(), sources, faces, refine.max_sources));
     std::vector<bool> is_source(positions.size(), false);
-    for (Index vertex : atlas.sources) is_source[vertex] = true;
+    for (Vertex vertex : atlas.sources) is_source[vertex.index] = true;
     while (true) {
-      std::vector<Index> more = atlas.sources;
+      std::vector<Vertex> more = atlas.sources;
       for (const Chart& chart : atlas.charts) {
         if (more.size() >= refine.max_sources) break;
         const Index vertex = vertex_to_add(atlas, faces, positions, chart, is_source, refine);
         if (vertex < 0 || is_source[vertex]) continue;  // two charts may want the same corner
         is_source[vertex] = true;
-        more.push_back(vertex);
+        more.push_back(Vertex(vertex));
       }
       if (more.size() == atlas.sources.size()) return atlas;
       atlas = maker.make(more);

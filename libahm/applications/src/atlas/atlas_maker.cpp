@@ -192,7 +192,7 @@ AtlasMaker::AtlasMaker(const LogMapSolver& solver, const FaceList& faces, const 
   options_.frames = false;
 }
 
-Atlas AtlasMaker::make(std::span<const Index> sources) {
+Atlas AtlasMaker::make(std::span<const Vertex> sources) {
   const std::vector<Index> label = nearest_source(solver_, sources);
   Regions regions(faces_, label, sources.size());
   const std::vector<Index> missing = regions.adopt(regions_);

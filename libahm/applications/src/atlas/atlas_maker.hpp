@@ -17,7 +17,7 @@ class AtlasMaker {
 
   /// @param sources  begin with those of the call before: their cells have only shrunk since, so that their maps need
   /// not be made again
-  Atlas make(std::span<const Index> sources);
+  Atlas make(std::span<const Vertex> sources);
 
  private:
   const LogMapSolver& solver_;

@@ -56,7 +56,7 @@ class Regions {
 
   void keep(std::size_t source, const LogMap& map) {
     for (Offset k = begin_[source]; k < begin_[source + 1]; ++k)
-      for (std::size_t c : {0, 1}) coordinates_[2 * at(k) + c] = map.coordinates(vertices_[k])[c];
+      for (std::size_t c : {0, 1}) coordinates_[2 * at(k) + c] = map.coordinates(Vertex(vertices_[k]))[c];
   }
 
   /// NaN where unknown.

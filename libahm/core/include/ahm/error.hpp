@@ -4,7 +4,7 @@
 ///
 /// \code
 /// try {
-///   auto map = solver.solve(ahm::Source::at_vertex(42));
+///   auto map = solver.solve(ahm::Source::at_vertex(ahm::Vertex{42}));
 /// } catch (const ahm::InvalidArgument& e) {
 ///   std::cerr << e.what() << '\n';
 /// }

@@ -16,12 +16,12 @@ namespace {
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// A source of unit weights at the given vertices, for its checks, components and scale.
-Source plain_source(const LogMapSolver& solver, std::span<const Index> vertices) {
+Source plain_source(const LogMapSolver& solver, std::span<const Vertex> vertices) {
   const auto d = static_cast<std::size_t>(solver.graph().dimension());
   Source source(static_cast<int>(d));
   std::vector<double> zero(d, 0.0), identity(d * d, 0.0);
   for (std::size_t a = 0; a < d; ++a) identity[a * (d + 1)] = 1.0;
-  for (Index vertex : vertices) source.add(vertex, 1.0, zero, identity);
+  for (Vertex vertex : vertices) source.add(vertex, 1.0, zero, identity);
   check_source(source, solver.graph());
   return source;
 }
@@ -40,7 +40,7 @@ void finish(VertexField& field, const AffineHeat& heat, const Reached& reached) 
   for (std::size_t i = 0; i < connected.size(); ++i) {
     const std::span value = std::span(field.values).subspan(i * width, width);
     if (!connected[i])
-      field.status[i] = Status::component;
+      field.status[i] = Status::disconnected;
     else if (!reached(i) || !all_finite(value))
       field.status[i] = Status::unreached;
     if (field.status[i] != Status::ok) std::fill(value.begin(), value.end(), nan);
@@ -61,7 +61,7 @@ struct Blend {
   bool reached(std::size_t i) const { return heat[i] >= least; }
 };
 
-Blend blend_scalars(const LogMapSolver& solver, std::span<const Index> vertices, std::span<const double> values) {
+Blend blend_scalars(const LogMapSolver& solver, std::span<const Vertex> vertices, std::span<const double> values) {
   const auto n = static_cast<std::size_t>(solver.graph().size());
   double largest = 0;
   for (double v : values) largest = std::max(largest, std::abs(v));
@@ -69,8 +69,8 @@ Blend blend_scalars(const LogMapSolver& solver, std::span<const Index> vertices,
   const double b = source_heat(solver.graph(), solver.operators(), vertices);
   std::vector<double> columns(2 * n, 0.0);
   for (std::size_t k = 0; k < vertices.size(); ++k) {
-    columns[vertices[k]] += b * (values[k] * unit);
-    columns[n + static_cast<std::size_t>(vertices[k])] += b;
+    columns[vertices[k].index] += b * (values[k] * unit);
+    columns[n + static_cast<std::size_t>(vertices[k].index)] += b;
   }
   solver.operators().solve_scalar(columns, 2);
   Blend blend;
@@ -84,7 +84,8 @@ Blend blend_scalars(const LogMapSolver& solver, std::span<const Index> vertices,
 
 }  // namespace
 
-VertexField extend_scalar(const LogMapSolver& solver, std::span<const Index> vertices, std::span<const double> values) {
+VertexField extend_scalar(const LogMapSolver& solver, std::span<const Vertex> vertices,
+                          std::span<const double> values) {
   return detail::with_memory_check("extending scalars", [&] {
     check_values(values, vertices.size(), "values");
     const Source source = plain_source(solver, vertices);
@@ -96,7 +97,7 @@ VertexField extend_scalar(const LogMapSolver& solver, std::span<const Index> ver
   });
 }
 
-VertexField transport_vectors(const LogMapSolver& solver, std::span<const Index> vertices,
+VertexField transport_vectors(const LogMapSolver& solver, std::span<const Vertex> vertices,
                               std::span<const double> vectors) {
   return detail::with_memory_check("transporting vectors", [&] {
     const auto n = static_cast<std::size_t>(solver.graph().size()),
@@ -116,7 +117,7 @@ VertexField transport_vectors(const LogMapSolver& solver, std::span<const Index>
     VertexField field{static_cast<int>(d), std::vector<double>(n * d, 0.0), {}};
     for (std::size_t k = 0; k < vertices.size() && longest > 0; ++k)
       for (std::size_t a = 0; a < d; ++a)
-        field.values[static_cast<std::size_t>(vertices[k]) * d + a] += b * (vectors[k * d + a] / longest);
+        field.values[static_cast<std::size_t>(vertices[k].index) * d + a] += b * (vectors[k * d + a] / longest);
     solver.operators().solve_vector(field.values, 1);
     std::vector<char> reached(n);
     for (std::size_t i = 0; i < n; ++i) {
@@ -166,7 +167,7 @@ VertexField radial_field(const LogMapSolver& solver, const Source& source) {
 VertexField distance(const LogMap& map) {
   VertexField field{
       1, std::vector<double>(static_cast<std::size_t>(map.size())), {map.status().begin(), map.status().end()}};
-  for (Index i = 0; i < map.size(); ++i) field.values[i] = map.distance(i);
+  for (Index i = 0; i < map.size(); ++i) field.values[i] = map.distance(Vertex(i));
   return field;
 }
 

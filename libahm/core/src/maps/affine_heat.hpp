@@ -1,5 +1,5 @@
 /// \file
-/// The affine heat method for a block of inflows: METHOD steps between sources and coordinates, once for every caller.
+/// The affine heat method for a block of inflows: the steps between sources and coordinates, once for every caller.
 ///
 /// The paper's 3n x 3n systems are block triangular in the homogeneous coordinate lambda; eliminating it leaves solves
 /// with the two fixed operators A and B (docs/method.md):
@@ -40,7 +40,7 @@ class AffineHeat {
   std::vector<double> solve(Variant variant) const { return variant == Variant::adaptive ? adaptive() : localized(); }
   /// x_i or Y_i of one source, from its part of `solve`.
   void solution_at(Variant variant, std::span<const double> solution, Index vertex, double* out) const;
-  /// phi_i of one source in outside units, from its part of `solve`: x / lambda, or (Y / lambda) / U.
+  /// phi_i of one source in world units, from its part of `solve`: x / lambda, or (Y / lambda) / U.
   void coordinates_at(Variant variant, std::size_t source, std::span<const double> solution, Index vertex,
                       double* phi) const;
 

@@ -23,7 +23,7 @@ LogMap extrapolate(const TangentGraph& graph, double t_coef, const std::vector<d
   std::vector<double> coordinates(n * d, NAN), error(n, NAN), difference(d);
   std::vector<Status> status(n, Status::ok);
   for (std::size_t i = 0; i < n; ++i) {
-    const auto vertex = static_cast<Index>(i);
+    const auto vertex = Vertex(i);
     for (const LogMap* map : maps)
       if (status[i] == Status::ok) status[i] = map->status(vertex);
     if (status[i] != Status::ok) continue;
@@ -44,7 +44,7 @@ LogMap extrapolate(const TangentGraph& graph, double t_coef, const std::vector<d
     if (!all_finite(phi))
       status[i] = Status::unreached;
     else if (length(phi) > radius)
-      status[i] = Status::radius;
+      status[i] = Status::beyond_radius;
     if (status[i] == Status::ok) continue;
     std::fill(phi.begin(), phi.end(), NAN);
     error[i] = NAN;

@@ -14,9 +14,9 @@ void check_source(const Source& source, const TangentGraph& graph) {
   if (source.dimension() != 0 && source.dimension() != d)
     throw InvalidArgument("source has dimension " + std::to_string(source.dimension()) + ", the graph has " +
                           std::to_string(d));
-  for (Index vertex : source.vertices())
-    if (vertex < 0 || vertex >= graph.size())
-      throw InvalidArgument("source vertex " + std::to_string(vertex) + " is outside [0, " +
+  for (Vertex vertex : source.vertices())
+    if (vertex.index < 0 || vertex.index >= graph.size())
+      throw InvalidArgument("source vertex " + std::to_string(vertex.index) + " is outside [0, " +
                             std::to_string(graph.size()) + ")");
   const auto weights = source.weights();
   if (std::none_of(weights.begin(), weights.end(), [](double b) { return b > 0; }))
@@ -24,7 +24,7 @@ void check_source(const Source& source, const TangentGraph& graph) {
   if (graph.transport_kind() != TransportKind::rotation2) return;
   for (std::size_t k = 0; k * 4 < source.axes().size(); ++k)
     if (const auto U = source.axes().subspan(k * 4, 4); U[0] * U[3] - U[1] * U[2] < 0)
-      throw InvalidArgument("source axes at vertex " + std::to_string(source.vertices()[k]) +
+      throw InvalidArgument("source axes at vertex " + std::to_string(source.vertices()[k].index) +
                             " are a reflection; this graph's frames are all oriented alike, so give a rotation");
 }
 
@@ -32,9 +32,9 @@ double solution_unit(const TangentGraph& graph) {
   return std::ldexp(graph.length_unit(), std::ilogb(graph.mean_edge_length()));
 }
 
-double source_heat(const TangentGraph& graph, const HeatOperators& operators, std::span<const Index> vertices) {
+double source_heat(const TangentGraph& graph, const HeatOperators& operators, std::span<const Vertex> vertices) {
   double mass = 1;
-  for (Index vertex : vertices) mass = std::min(mass, operators.scaling() * graph.mass(vertex));
+  for (Vertex vertex : vertices) mass = std::min(mass, operators.scaling() * graph.mass(vertex.index));
   return std::ldexp(heat_scale, std::max(-900, std::ilogb(mass)));
 }
 
@@ -51,7 +51,7 @@ Inflow inflow_of(const Source& source, const TangentGraph& graph, const HeatOper
     const double b = source.weights()[k] / largest * scale;
     const auto z = source.offsets().empty() ? std::span<const double>(zero) : source.offsets().subspan(k * d, d);
     const auto U = source.axes().empty() ? std::span<const double>(identity) : source.axes().subspan(k * d * d, d * d);
-    in.vertices.push_back(source.vertices()[k]);
+    in.vertices.push_back(source.vertices()[k].index);
     in.heat.push_back(b);
     if (is_complex)
       in.frames.insert(in.frames.end(), {b * U[0], b * U[2]});

@@ -31,7 +31,7 @@ double solution_unit(const TangentGraph& graph);
 
 /// The right-hand side that stands for a weight of 1 at these vertices: `heat_scale`, less where a tiny mass would make
 /// the solution overflow.
-double source_heat(const TangentGraph& graph, const HeatOperators& operators, std::span<const Index> vertices);
+double source_heat(const TangentGraph& graph, const HeatOperators& operators, std::span<const Vertex> vertices);
 
 /// The samples of positive weight of a checked source. The largest b becomes `source_heat`; the factor cancels in every
 /// quotient by lambda.

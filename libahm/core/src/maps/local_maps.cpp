@@ -57,8 +57,8 @@ class Ball {
   /// Calls visit(vertex) in order of distance for all vertices within `limit` (graph units) of the starts, until it
   /// returns false.
   template <class Visit>
-  void grow(std::span<const Index> starts, double limit, const Visit& visit) {
-    for (Index start : starts) offer(start, 0);
+  void grow(std::span<const Vertex> starts, double limit, const Visit& visit) {
+    for (Vertex start : starts) offer(start.index, 0);
     bool more = true;
     while (!queue_.empty()) {
       const auto [key, vertex] = queue_.top();
@@ -110,7 +110,7 @@ std::vector<std::vector<Index>> group(const TangentGraph& graph, std::span<const
   SparseArray<Index> first(n);  // 1 + the first source at a vertex that has no group yet
   std::vector<Index> after(sources.size(), -1);
   for (auto s = static_cast<Index>(sources.size()); s-- > 0;) {
-    Index& head = first[sources[s].vertices().front()];
+    Index& head = first[sources[s].vertices().front().index];
     after[s] = head - 1;
     head = s + 1;
   }
@@ -167,9 +167,12 @@ class Worker {
   /// Returns false when the patch, all vertices within `limit` along edges, does not hold all within `wanted` of a
   /// source.
   bool solve(std::span<const Index> members, double limit, double wanted, std::vector<Entries>& result) {
-    std::vector<Index> starts, vertices, edge;
-    for (Index s : members)
-      for (Index vertex : sources_[s].vertices()) starts.push_back(vertex);
+    std::vector<Vertex> starts;
+    std::vector<Index> vertices, edge;
+    for (Index s : members) {
+      const auto samples = sources_[s].vertices();
+      starts.insert(starts.end(), samples.begin(), samples.end());
+    }
     ball_.grow(starts, limit, [&](Index vertex) {
       vertices.push_back(vertex);
       return true;
@@ -313,16 +316,16 @@ LocalMaps local_maps(const TangentGraph& graph, std::span<const Source> sources,
   });
 }
 
-LocalMaps local_maps(const TangentGraph& graph, std::span<const Index> vertices, const LocalMapOptions& options) {
+LocalMaps local_maps(const TangentGraph& graph, std::span<const Vertex> vertices, const LocalMapOptions& options) {
   std::vector<Source> sources;
   sources.reserve(vertices.size());
-  for (Index vertex : vertices) sources.push_back(Source::at_vertex(vertex));
+  for (Vertex vertex : vertices) sources.push_back(Source::at_vertex(vertex));
   return local_maps(graph, sources, options);
 }
 
 LocalMaps local_maps(const TangentGraph& graph, const LocalMapOptions& options) {
-  std::vector<Index> vertices(static_cast<std::size_t>(graph.size()));
-  std::iota(vertices.begin(), vertices.end(), 0);
+  std::vector<Vertex> vertices;
+  for (Index i = 0; i < graph.size(); ++i) vertices.push_back(Vertex(i));
   return local_maps(graph, vertices, options);
 }
 

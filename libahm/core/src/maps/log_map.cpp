@@ -11,10 +11,10 @@ std::string_view to_string(Status status) noexcept {
   switch (status) {
     case Status::ok:
       return "ok";
-    case Status::component:
-      return "component";
-    case Status::radius:
-      return "radius";
+    case Status::disconnected:
+      return "disconnected";
+    case Status::beyond_radius:
+      return "beyond_radius";
     case Status::unreached:
       return "unreached";
     case Status::removed:
@@ -54,12 +54,12 @@ LogMap::LogMap(int dimension, Variant variant, Strategy strategy, Source source,
       status_(std::move(status)),
       extras_(std::move(extras)) {}
 
-std::span<const double> LogMap::coordinates(Index vertex) const {
+std::span<const double> LogMap::coordinates(Vertex vertex) const {
   const auto d = static_cast<std::size_t>(dimension_);
-  return std::span<const double>(coordinates_).subspan(static_cast<std::size_t>(vertex) * d, d);
+  return std::span<const double>(coordinates_).subspan(static_cast<std::size_t>(vertex.index) * d, d);
 }
 
-double LogMap::distance(Index vertex) const { return length(coordinates(vertex)); }
+double LogMap::distance(Vertex vertex) const { return length(coordinates(vertex)); }
 
 Index LogMap::count(Status status) const noexcept {
   return static_cast<Index>(std::count(status_.begin(), status_.end(), status));

@@ -47,7 +47,7 @@ void check_options(const SolverOptions& options) {
 /// Status of a vertex of the source's component, from its coordinates.
 Status status_of(std::span<const double> phi, bool reached, double radius) {
   if (!reached || !all_finite(phi)) return Status::unreached;
-  return length(phi) > radius ? Status::radius : Status::ok;
+  return length(phi) > radius ? Status::beyond_radius : Status::ok;
 }
 
 /// One diffusion time.
@@ -129,11 +129,11 @@ LogMap LogMapSolver::Impl::map_of(March&& front, const Source& source, const Map
       const auto component = components();
       if (with_source.empty()) {
         with_source.assign(n, 0);
-        for (Index k : source.vertices()) with_source[component[k]] = 1;
+        for (Vertex k : source.vertices()) with_source[component[k.index]] = 1;
       }
-      status[i] = !with_source[component[i]] ? Status::component
+      status[i] = !with_source[component[i]] ? Status::disconnected
                   : std::isinf(map.radius)   ? Status::unreached
-                                             : Status::radius;
+                                             : Status::beyond_radius;
     }
     if (status[i] != Status::ok) std::fill(phi.begin(), phi.end(), NAN);
   }
@@ -157,7 +157,7 @@ LogMap LogMapSolver::Impl::map_of(const AffineHeat& heat, std::size_t time, std:
     const auto vertex = static_cast<Index>(i);
     const std::span phi = std::span(coordinates).subspan(i * d, d);
     heat.coordinates_at(map.variant, s, solution, vertex, phi.data());
-    status[i] = connected[i] ? status_of(phi, heat.reached(s, vertex), map.radius) : Status::component;
+    status[i] = connected[i] ? status_of(phi, heat.reached(s, vertex), map.radius) : Status::disconnected;
     if (status[i] != Status::ok) std::fill(phi.begin(), phi.end(), NAN);
   });
   if (options.strategy == Strategy::automatic && std::ranges::count(status, Status::unreached) > 0) {

@@ -162,7 +162,7 @@ March::Band March::find_band(const Source* source, double depth) {
   };
   if (source) {
     for (std::size_t k = 0; k < source->vertices().size(); ++k)
-      if (source->weights()[k] > 0) offer(source->vertices()[k], 0);
+      if (source->weights()[k] > 0) offer(source->vertices()[k].index, 0);
   } else {
     double base = std::numeric_limits<double>::infinity();
     for (Index vertex : front_) base = std::min(base, level(vertex));

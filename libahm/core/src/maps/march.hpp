@@ -1,5 +1,5 @@
 /// \file
-/// The banded march: the affine heat method by thin bands in the order of heat distance, so that time and memory grow
+/// The march, a banded solve: the affine heat method by thin bands in the order of heat distance, so that time and memory grow
 /// linearly and nothing underflows at any distance (docs/march.md).
 ///
 /// A band is the part of the graph just ahead of the front. It is cut out with its natural boundary and solved by the same
@@ -26,7 +26,7 @@ class March {
   /// Marches on from where a solve on the whole graph ended, source number `s` of `heat`.
   void run_on(const AffineHeat& heat, std::size_t s, std::span<const double> solution);
 
-  /// Coordinates, n x d in outside units; NaN where `accepted` is false or too little heat arrived.
+  /// Coordinates, n x d in world units; NaN where `accepted` is false or too little heat arrived.
   std::vector<double>& coordinates() { return coordinates_; }
   /// Whether the march came to the vertex.
   bool accepted(Index vertex) const { return accepted_[vertex] != 0; }

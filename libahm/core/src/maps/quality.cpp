@@ -15,7 +15,7 @@ namespace {
 /// g_i: how far the edges of vertex i are from the Gauss lemma. Edges to vertices without coordinates do not count.
 double gauss_residual(const TangentGraph& graph, const LogMap& map, Index i) {
   const auto d = static_cast<std::size_t>(graph.dimension());
-  const auto phi = map.coordinates(i), U = map.frames().subspan(static_cast<std::size_t>(i) * d * d, d * d);
+  const auto phi = map.coordinates(Vertex(i)), U = map.frames().subspan(static_cast<std::size_t>(i) * d * d, d * d);
   const double unit = graph.length_unit(), r = length(phi);
   const Star star = graph.star(i);
   double sum = 0;
@@ -23,12 +23,12 @@ double gauss_residual(const TangentGraph& graph, const LogMap& map, Index i) {
   for (std::size_t e = 0; e < star.degree(); ++e) {
     const Index j = star.neighbors[e];
     const double edge = length(star.log(e)) * unit;
-    if (map.status(j) != Status::ok || !(edge > 0)) continue;
+    if (map.status(Vertex(j)) != Status::ok || !(edge > 0)) continue;
     double along = 0;  // e_ij . (U_i phi_i)
     for (std::size_t c = 0; c < d; ++c)
       for (std::size_t a = 0; a < d; ++a) along += star.logs[e * d + c] * unit * U[c * d + a] * phi[a];
     // In units of the larger length, so that nothing overflows.
-    const double scale = std::max(r, edge), s = map.distance(j);
+    const double scale = std::max(r, edge), s = map.distance(Vertex(j));
     const double residual = ((s / scale - r / scale) * (s + r) / 2 - along / scale - edge * (edge / scale) / 2) / edge;
     sum += residual * residual;
     ++count;
@@ -48,7 +48,7 @@ std::vector<double> map_quality(const TangentGraph& graph, const LogMap& map) {
   std::vector<double> quality(n, std::numeric_limits<double>::quiet_NaN());
   detail::for_each_index(n, 0, [&](std::size_t k) {
     const auto i = static_cast<Index>(k);
-    if (map.status(i) != Status::ok) return;
+    if (map.status(Vertex(i)) != Status::ok) return;
     const double g = gauss_residual(graph, map, i) / 0.4;
     quality[k] = 1 / (1 + g * g);
   });

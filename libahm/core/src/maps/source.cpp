@@ -26,7 +26,7 @@ Source::Source(int dimension) : dimension_(dimension) {
   if (dimension < 1) throw InvalidArgument("Source: dimension " + std::to_string(dimension) + " must be at least 1");
 }
 
-Source Source::at_vertex(Index vertex) {
+Source Source::at_vertex(Vertex vertex) {
   Source source(1);
   source.dimension_ = 0;
   source.vertices_ = {vertex};
@@ -34,7 +34,7 @@ Source Source::at_vertex(Index vertex) {
   return source;
 }
 
-Source Source::at_vertex(Index vertex, std::span<const double> direction) {
+Source Source::at_vertex(Vertex vertex, std::span<const double> direction) {
   const double length = direction.size() == 2 ? std::hypot(direction[0], direction[1]) : 0.0;
   if (!(length > 0) || !std::isfinite(length))
     throw InvalidArgument("Source::at_vertex: 'direction' must be 2 finite numbers, not both zero");
@@ -45,9 +45,9 @@ Source Source::at_vertex(Index vertex, std::span<const double> direction) {
   return source;
 }
 
-Source& Source::add(Index vertex, double weight, std::span<const double> offset, std::span<const double> axes) {
+Source& Source::add(Vertex vertex, double weight, std::span<const double> offset, std::span<const double> axes) {
   const auto d = static_cast<std::size_t>(dimension_);
-  const std::string where = "Source::add, vertex " + std::to_string(vertex) + ": ";
+  const std::string where = "Source::add, vertex " + std::to_string(vertex.index) + ": ";
   if (d == 0) throw InvalidArgument(where + "a source made by at_vertex(vertex) takes no further samples");
   if (!(weight >= 0) || !std::isfinite(weight))
     throw InvalidArgument(where + "weight " + detail::number(weight) + " must be finite and >= 0");

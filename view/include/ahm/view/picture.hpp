@@ -30,7 +30,7 @@ enum class Pattern {
 
 /// What is shown. The spans are only read, and only during the call.
 struct Scene {
-  /// Positions, outside units. Points that are not finite are left out.
+  /// Positions, world units. Points that are not finite are left out.
   std::span<const Vec3> points;
   /// One per point, any length, either sign; NaN or zero where unknown. Empty: estimated.
   std::span<const Vec3> normals;
@@ -38,9 +38,9 @@ struct Scene {
   /// cloud.
   std::span<const Offset> face_begin;
   std::span<const Index> face_vertices;
-  /// The map, one number per point in outside units; NaN where there is no coordinate (painted grey). Empty for cells.
+  /// The map, one number per point in world units; NaN where there is no coordinate (painted grey). Empty for cells.
   std::span<const double> u, v;
-  /// For cells only: the number of each point's cell, and the distance from the cell's source in outside units. Points
+  /// For cells only: the number of each point's cell, and the distance from the cell's source in world units. Points
   /// are grey where the one is negative or the other is not finite.
   std::span<const Index> labels;
   std::span<const double> distance;
@@ -61,7 +61,7 @@ struct PictureOptions {
   Pattern pattern = Pattern::polar;
   /// Pixels of a PNG, 16 to 8192 each. An HTML page fills its window.
   int width = 1600, height = 1200;
-  /// Width of a distance ring, or of a square, in outside units. Default: the round number that gives about 12 rings, 24
+  /// Width of a distance ring, or of a square, in world units. Default: the round number that gives about 12 rings, 24
   /// squares along the curve, or 4 rings per cell.
   std::optional<double> ring_width;
   /// Number of angle sectors; even and positive, so that the checkerboard closes.

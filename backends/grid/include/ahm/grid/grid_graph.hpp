@@ -37,7 +37,7 @@ struct Grid {
 /// No star is stored: the graph takes one byte per cell where there are obstacles, and nothing otherwise.
 /// The span `neighbors` of a star holds until the next call of `star` on the same thread on this or another grid.
 ///
-/// **Obstacles.** Vertices inside an obstacle have no edges and get `Status::component`, like rooms without a door. Cells
+/// **Obstacles.** Vertices inside an obstacle have no edges and get `Status::disconnected`, like rooms without a door. Cells
 /// that touch in a corner are joined there. Transport along a way round an obstacle is the identity as everywhere on a
 /// flat domain, so the log map stays the identity, `position - source`: where a vertex lies as the crow flies, not the
 /// way to walk there. `LogMap::distance` is the straight distance, also through walls.
@@ -62,10 +62,10 @@ class GridGraph final : public TangentGraph {
 
   /// Number of the vertex at these d steps along the axes.
   /// @throws InvalidArgument when a step is outside the grid
-  Index vertex(std::span<const Index> steps) const;
-  /// Position of a vertex in outside units; the third number is 0 for d = 2.
-  Vec3 position(Index vertex) const;
-  /// The source at a point of the domain (d numbers, outside units), its axes those of the grid: the corners of its cell
+  Vertex vertex(std::span<const Index> steps) const;
+  /// Position of a vertex in world units; the third number is 0 for d = 2.
+  Vec3 position(Vertex vertex) const;
+  /// The source at a point of the domain (d numbers, world units), its axes those of the grid: the corners of its cell
   /// with multilinear weights.
   /// @throws InvalidArgument when the point is outside the grid or inside an obstacle
   Source source_at(std::span<const double> point) const;

@@ -2,7 +2,7 @@
 /// An atlas: the surface cut into geodesic Voronoi cells, each flattened by the log map of its own source (Fig. 18).
 ///
 /// \code
-/// auto sources = ahm::farthest_points(solver, 0, 20);
+/// auto sources = ahm::farthest_points(solver, ahm::Vertex{0}, 20);
 /// ahm::Atlas atlas = ahm::make_atlas(solver, sources, {face_begin, face_vertices});
 /// for (ahm::Index f : atlas.charts[3].faces)
 ///   for (ahm::Offset c = face_begin[f]; c < face_begin[f + 1]; ++c) use(atlas.corner(c));   // (u, v) of each corner
@@ -25,10 +25,10 @@ struct Chart {
 };
 
 struct Atlas {
-  std::vector<Index> sources;        ///< their vertices
+  std::vector<Vertex> sources;       ///< where the charts were seen from
   std::vector<Chart> charts;         ///< in the order of their sources
   std::vector<Index> chart_of_face;  ///< -1: a corner has no coordinates, e.g. in a component without a source
-  /// (u, v) of every corner, outside units, in the frame of the chart's source; corners x 2, NaN without a chart.
+  /// (u, v) of every corner, world units, in the frame of the chart's source; corners x 2, NaN without a chart.
   /// Charts whose source sees the surface from behind are mirrored: v is negated, so that faces given counter-clockwise
   /// are so.
   std::vector<double> coordinates;
@@ -47,7 +47,7 @@ struct Atlas {
 /// @param faces    of the graph's vertices, in any order
 /// @param options  variant, threads, progress; `frames` is not used
 /// @throws InvalidArgument (dimension, sources, faces), as LogMapSolver::solve
-Atlas make_atlas(const LogMapSolver& solver, std::span<const Index> sources, const FaceList& faces,
+Atlas make_atlas(const LogMapSolver& solver, std::span<const Vertex> sources, const FaceList& faces,
                  const MapOptions& options = {});
 
 struct RefineOptions {
@@ -60,8 +60,8 @@ struct RefineOptions {
 /// handle, a limb or a sharp feature: of every such chart the corner of bad triangles that is farthest from the source
 /// becomes another source, and the surface is cut anew, until nothing is to be added. Components without a source get
 /// one. One log map per source.
-/// @param positions  n, of the graph's vertices, outside units
-Atlas make_atlas(const LogMapSolver& solver, std::span<const Index> sources, const FaceList& faces,
+/// @param positions  n, of the graph's vertices, world units
+Atlas make_atlas(const LogMapSolver& solver, std::span<const Vertex> sources, const FaceList& faces,
                  std::span<const Vec3> positions, const RefineOptions& refine, const MapOptions& options = {});
 
 /// Distortion of an atlas, faces cut into fans of triangles.
@@ -70,7 +70,7 @@ struct AtlasDistortion {
   std::vector<DistortionSummary> charts;
 };
 
-/// @param positions  n, of the graph's vertices, outside units
+/// @param positions  n, of the graph's vertices, world units
 /// @throws InvalidArgument (faces and atlas do not fit, indices)
 AtlasDistortion distortion(const Atlas& atlas, const FaceList& faces, std::span<const Vec3> positions);
 

@@ -20,8 +20,8 @@ enum class CoveragePattern {
 };
 
 struct CoverageOptions {
-  double radius = 0;   ///< of the disc about the source that is to be covered; outside units, > 0
-  double spacing = 0;  ///< between lines, or turns of the spiral; outside units, > 0
+  double radius = 0;   ///< of the disc about the source that is to be covered; world units, > 0
+  double spacing = 0;  ///< between lines, or turns of the spiral; world units, > 0
   CoveragePattern pattern = CoveragePattern::raster;
   double step = 0;   ///< longest distance between points along the path in the plane; 0: half of the spacing
   double angle = 0;  ///< radians from the u axis: direction of the first line, or of the spiral's first ray

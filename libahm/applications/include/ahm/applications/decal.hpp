@@ -17,13 +17,13 @@ namespace ahm {
 
 /// Where an image lies in the (u, v) plane: its middle at the source.
 struct DecalOptions {
-  double width = 0;       ///< outside units, > 0
-  double height = 0;      ///< outside units, > 0
+  double width = 0;       ///< world units, > 0
+  double height = 0;      ///< world units, > 0
   double angle = 0;       ///< radians from the u axis, counter-clockwise, to the image's direction from left to right
   bool mirrored = false;  ///< left and right exchanged
-  /// What is farther from the source is cut off, along a polygon of 64 corners on the circle; outside units, > 0.
+  /// What is farther from the source is cut off, along a polygon of 64 corners on the circle; world units, > 0.
   double radius = std::numeric_limits<double>::infinity();
-  double lift = 0;  ///< along the normals, so that the decal lies above the surface; outside units
+  double lift = 0;  ///< along the normals, so that the decal lies above the surface; world units
 };
 
 /// A piece of the surface under an image.

@@ -22,7 +22,7 @@ struct TriangleDistortion {
   /// most stretched direction. NaN where a corner has no coordinates or no position, or the triangle no area.
   double sigma1 = std::numeric_limits<double>::quiet_NaN();
   double sigma2 = std::numeric_limits<double>::quiet_NaN();
-  double area = 0;       ///< in space, outside units squared
+  double area = 0;       ///< in space, world units squared
   bool flipped = false;  ///< clockwise in the plane
 
   /// D = max(1/sigma1, sigma2): 1 for an isometry, infinite where the triangle collapses, NaN as above (Eq. 18).
@@ -30,9 +30,9 @@ struct TriangleDistortion {
 };
 
 /// Of a map given per vertex.
-/// @param positions    n, outside units
+/// @param positions    n, world units
 /// @param triangles    of these vertices, counter-clockwise as seen from the side that the map sees
-/// @param coordinates  n x 2, row major, outside units; NaN where unknown, as in `LogMap::coordinates`
+/// @param coordinates  n x 2, row major, world units; NaN where unknown, as in `LogMap::coordinates`
 /// @return one per triangle
 /// @throws InvalidArgument (lengths, indices)
 std::vector<TriangleDistortion> distortion(std::span<const Vec3> positions,

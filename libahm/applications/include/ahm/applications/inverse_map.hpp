@@ -25,7 +25,7 @@ namespace ahm {
 struct MappedSurface {
   std::span<const Vec3> positions;      ///< n
   std::span<const Vec3> normals;        ///< n, unit, on one side of the surface
-  std::span<const double> coordinates;  ///< n x 2, row major, outside units
+  std::span<const double> coordinates;  ///< n x 2, row major, world units
   std::span<const std::uint8_t> valid;  ///< n; 0: the vertex is not to be trusted
   std::span<const Triangle> triangles;  ///< counter-clockwise as seen from the side of the normals; may overlap
   std::span<const Index> sources = {};  ///< where the map starts; empty: the valid vertex of least |phi|
@@ -41,7 +41,7 @@ struct InverseMapOptions {
 
 /// A point of the surface and the map's derivatives there.
 struct InversePoint {
-  Vec3 position;                  ///< on the flat triangle; outside units
+  Vec3 position;                  ///< on the flat triangle; world units
   Vec3 normal;                    ///< unit: those of the corners, interpolated
   Vec3 du, dv;                    ///< derivatives of the position, constant on a triangle
   Triangle vertices;              ///< the triangle's corners
@@ -63,7 +63,7 @@ class InverseMap {
   /// @throws InvalidArgument (lengths, indices, max_stretch)
   explicit InverseMap(const MappedSurface& surface, const InverseMapOptions& options = {});
 
-  /// What lies at (u, v), outside units; nothing outside the valid region. Thread-safe.
+  /// What lies at (u, v), world units; nothing outside the valid region. Thread-safe.
   std::optional<InversePoint> at(double u, double v) const;
 
   /// The triangles that answer, nearest to the source first.

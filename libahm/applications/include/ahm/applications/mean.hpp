@@ -2,7 +2,7 @@
 /// Weighted means and medians of points of a surface, found by log maps.
 ///
 /// \code
-/// const std::array<ahm::Index, 3> towns{12, 480, 901};
+/// const std::array towns{ahm::Vertex{12}, ahm::Vertex{480}, ahm::Vertex{901}};
 /// ahm::Center well = ahm::geometric_median(solver, towns);             // least sum of distances
 /// ahm::Center mean = ahm::karcher_mean(solver, towns, std::array{1.0, 2.0, 1.0});
 /// ahm::LogMap map = solver.solve(ahm::source_at(mean));                // the surface seen from there
@@ -20,23 +20,23 @@ namespace ahm {
 struct CenterOptions {
   /// Where to begin; none: the point of the largest weight, the first of equals. Points spread over more than half of a
   /// closed surface may have several centers: begin at several vertices and keep the least `spread`.
-  std::optional<Index> start = {};
+  std::optional<Vertex> start = {};
   Index max_maps = 50;  ///< each step is one log map
   MapOptions map = {};  ///< a radius, if any, must reach from the center and the start to every point
 };
 
 /// A point of the surface, given by a vertex near it.
 struct Center {
-  Index vertex = 0;
-  std::vector<double> offset;  ///< log map of the center from the vertex: d numbers in its frame, outside units
-  /// What is least, as a length in outside units. Mean: sqrt(sum w d^2 / sum w); median: sum w d / sum w. The distances
+  Vertex vertex;
+  std::vector<double> offset;  ///< log map of the center from the vertex: d numbers in its frame, world units
+  /// What is least, as a length in world units. Mean: sqrt(sum w d^2 / sum w); median: sum w d / sum w. The distances
   /// d from the center are those of the tangent space of `vertex`.
   double spread = 0;
   Index maps = 0;          ///< log maps used
   bool converged = false;  ///< false: `max_maps` ended the search
 };
 
-/// The Riemannian center of mass (Sec. 5; Karcher 1977): where sum_k w_k d(x, p_k)^2 is least, near the start.
+/// The Riemannian center of mass ([SS25] Sec. 5; [Kar77]): where sum_k w_k d(x, p_k)^2 is least, near the start.
 ///
 ///     x <- exp_x(sum_k w_k log_x(p_k) / sum_k w_k)
 ///
@@ -47,15 +47,15 @@ struct Center {
 /// @param weights   w_k >= 0, not all zero; empty: all equal. Points of weight 0 do not count
 /// @throws InvalidArgument (empty, lengths, index, weight, points of different components or out of the map's reach);
 /// as LogMapSolver::solve
-Center karcher_mean(const LogMapSolver& solver, std::span<const Index> vertices, std::span<const double> weights = {},
+Center karcher_mean(const LogMapSolver& solver, std::span<const Vertex> vertices, std::span<const double> weights = {},
                     const CenterOptions& options = {});
 
-/// The geometric median: where sum_k w_k d(x, p_k) is least, near the start (FVJ09).
+/// The geometric median: where sum_k w_k d(x, p_k) is least, near the start [FVJ09].
 ///
 ///     x <- exp_x(geometric median of log_x(p_k) in the tangent space)
 ///
 /// One map per step: Weiszfeld's and Newton's steps run in the tangent space, to rounding. Otherwise as `karcher_mean`.
-Center geometric_median(const LogMapSolver& solver, std::span<const Index> vertices,
+Center geometric_median(const LogMapSolver& solver, std::span<const Vertex> vertices,
                         std::span<const double> weights = {}, const CenterOptions& options = {});
 
 /// The source at a center; its axes are those of the frame of `center.vertex`.

@@ -3,7 +3,7 @@
 /// point nearest to it, moved on by the way from there, in the curve's own frame.
 ///
 /// \code
-/// std::vector<ahm::Index> path{4, 5, 6, 7};                               // neighbours in the graph
+/// std::vector path{ahm::Vertex{4}, ahm::Vertex{5}, ahm::Vertex{6}};         // neighbours in the graph
 /// auto map = solver.solve(ahm::stroke_source(graph, path));              // u: arclength, v: signed distance (left > 0)
 /// auto ring = solver.solve(ahm::stroke_source(graph, loop, {.closed = true, .shape = ahm::StrokeShape::circle}));
 /// // points in faces, at vertices, ..., whose u axes run along the curve, and the way from each to the next
@@ -36,18 +36,18 @@ struct StrokeOptions {
 /// @param path  vertex numbers, at least 2, closed: 3
 /// @throws InvalidArgument (d, length, index, vertices that are no neighbours, a path that turns back or closes along a
 /// one-sided band, `circle` on an open path)
-Source stroke_source(const TangentGraph& graph, std::span<const Index> path, const StrokeOptions& options = {});
+Source stroke_source(const TangentGraph& graph, std::span<const Vertex> path, const StrokeOptions& options = {});
 
 /// The same with the user's own parameterization.
-/// @param positions  one (u, v) per vertex of the path, outside units; consecutive ones differ
-Source stroke_source(const TangentGraph& graph, std::span<const Index> path,
+/// @param positions  one (u, v) per vertex of the path, world units; consecutive ones differ
+Source stroke_source(const TangentGraph& graph, std::span<const Vertex> path,
                      std::span<const std::array<double, 2>> positions, bool closed = false);
 
 /// A point of a polyline on the surface, wherever the backend can put a source: in a face, on an edge, at a vertex.
 struct StrokePoint {
   Source point;                    ///< its u axis along the curve; of dimension 2
   double weight;                   ///< > 0, about half of the lengths of the two adjacent segments
-  std::array<double, 2> position;  ///< coordinates of the point, outside units
+  std::array<double, 2> position;  ///< coordinates of the point, world units
   double angle;                    ///< direction of the curve in the plane of coordinates, radians
 };
 
@@ -57,7 +57,7 @@ Source stroke_source(std::span<const StrokePoint> points);
 
 /// The same by arclength: weights, positions and angles follow from the lengths of the segments.
 /// @param points   at least 2, closed: 3; sources whose u axis runs along the curve and whose v axis is left of it
-/// @param lengths  > 0: lengths[k] from point k to the next one, outside units; one fewer than points, closed: as many
+/// @param lengths  > 0: lengths[k] from point k to the next one, world units; one fewer than points, closed: as many
 /// @throws InvalidArgument (counts, a length, a source that is not of dimension 2, `circle` on an open curve)
 Source stroke_source(std::span<const Source> points, std::span<const double> lengths,
                      const StrokeOptions& options = {});

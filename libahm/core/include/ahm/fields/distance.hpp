@@ -2,7 +2,7 @@
 /// Geodesic distance and its gradient (Sec. 5, Figs. 20 and 21).
 ///
 /// \code
-/// ahm::DistanceField field = ahm::distance_and_gradient(solver, ahm::Source::at_vertex(3));
+/// ahm::DistanceField field = ahm::distance_and_gradient(solver, ahm::Source::at_vertex(ahm::Vertex{3}));
 /// const double* away = &field.gradient.values[2 * i];                  // unit vector in frame i, away from vertex 3
 /// \endcode
 #pragma once
@@ -12,7 +12,7 @@
 namespace ahm {
 
 struct DistanceField {
-  VertexField distance;  ///< width 1, outside units
+  VertexField distance;  ///< width 1, world units
   /// Width d, in the frame of each vertex: the unit vector away from the source; 0 where the radial field is,
   /// i.e. at the source itself and where opposite ways to it cancel.
   VertexField gradient;

@@ -1,9 +1,9 @@
 /// \file
-/// What the two factored operators give besides log maps (the vector heat method, SSC19), on every backend.
+/// What the two factored operators give besides log maps (the vector heat method [SSC19]), on every backend.
 ///
 /// \code
-/// auto frame = ahm::parallel_transport(solver, ahm::Source::at_vertex(3));  // frame of 3, carried everywhere
-/// auto blend = ahm::extend_scalar(solver, std::array{3, 9}, std::array{0.0, 1.0});
+/// auto frame = ahm::parallel_transport(solver, ahm::Source::at_vertex(ahm::Vertex{3}));  // frame of 3, carried everywhere
+/// auto blend = ahm::extend_scalar(solver, std::array{ahm::Vertex{3}, ahm::Vertex{9}}, std::array{0.0, 1.0});
 /// \endcode
 #pragma once
 
@@ -21,16 +21,16 @@ struct VertexField {
   std::vector<Status> status;
 };
 
-/// Extends scalars given at vertices to all others: each takes the value of the nearest one, blended at ties (SSC19
+/// Extends scalars given at vertices to all others: each takes the value of the nearest one, blended at ties ([SSC19]
 /// Sec. 4).
 /// @throws InvalidArgument (empty, lengths, index, value not finite)
-VertexField extend_scalar(const LogMapSolver& solver, std::span<const Index> vertices, std::span<const double> values);
+VertexField extend_scalar(const LogMapSolver& solver, std::span<const Vertex> vertices, std::span<const double> values);
 
-/// Carries one vector per given vertex along shortest geodesics to all others (SSC19 Alg. 1): direction by B, length by
+/// Carries one vector per given vertex along shortest geodesics to all others ([SSC19] Alg. 1): direction by B, length by
 /// A.
 /// @param vectors  one per vertex, d numbers in its frame
 /// @return width d, components in the frame of each vertex
-VertexField transport_vectors(const LogMapSolver& solver, std::span<const Index> vertices,
+VertexField transport_vectors(const LogMapSolver& solver, std::span<const Vertex> vertices,
                               std::span<const double> vectors);
 
 /// The source's orthonormal frame carried to every vertex (Eq. 11 and 12). Width d x d, row major: column a is source
@@ -38,7 +38,7 @@ VertexField transport_vectors(const LogMapSolver& solver, std::span<const Index>
 VertexField parallel_transport(const LogMapSolver& solver, const Source& source);
 
 /// Y / lambda of Alg. 1: half the gradient of the squared distance, i.e. minus the log map of the source seen from each
-/// vertex (Lemma 1). Width d, components in the frame of each vertex, outside units.
+/// vertex (Lemma 1). Width d, components in the frame of each vertex, world units.
 VertexField radial_field(const LogMapSolver& solver, const Source& source);
 
 /// |phi_i| for every vertex. Width 1.

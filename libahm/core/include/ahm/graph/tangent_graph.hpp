@@ -45,7 +45,7 @@ struct Frame {
   Vec3 normal;  ///< x cross y
 };
 
-/// An immutable graph on n vertices whose tangent spaces are R^d (METHOD: docs/graph_contract.md).
+/// An immutable graph on n vertices whose tangent spaces are R^d (docs/graph_contract.md).
 ///
 /// Lengths (edge logs, square root of masses in d = 2, mean edge length) are in units of `length_unit()`.
 /// `validate` lists the laws and checks them.
@@ -70,7 +70,7 @@ class TangentGraph {
   /// What a length of 1 in this graph means outside. Backends store geometry divided by a power of two, so that models
   /// at any scale from 1e-300 to 1e300 are solved alike; results are multiplied by it again.
   virtual double length_unit() const noexcept { return 1.0; }
-  /// Tangent axes in ambient space, in outside units, where the backend knows them.
+  /// Tangent axes in ambient space, in world units, where the backend knows them.
   virtual std::optional<Frame> frame(Index) const { return std::nullopt; }
 };
 

@@ -7,7 +7,7 @@
 /// for (ahm::Offset e = maps.indptr[i]; e < maps.indptr[i + 1]; ++e)
 ///   use(maps.indices[e], &maps.logs[2 * e], maps.distances[e]);
 ///
-/// ahm::LocalMaps one = ahm::local_maps(graph, std::array{ahm::Source::at_vertex(7)}, {.radius = 0.05});
+/// ahm::LocalMaps one = ahm::local_maps(graph, std::array{ahm::Source::at_vertex(ahm::Vertex{7})}, {.radius = 0.05});
 /// \endcode
 #pragma once
 
@@ -22,7 +22,7 @@
 namespace ahm {
 
 struct LocalMapOptions {
-  double radius = 0;  ///< outside units, > 0, finite
+  double radius = 0;  ///< world units, > 0, finite
   Index nearest =
       0;  ///< keep only so many nearest neighbours within the radius, the source's own vertex included; 0: all
   Variant variant = Variant::adaptive;
@@ -46,9 +46,9 @@ struct LocalMaps {
   TransportKind kind = TransportKind::rotation2;
   std::vector<Offset> indptr;      ///< sources + 1
   std::vector<Index> indices;      ///< vertices
-  std::vector<double> logs;        ///< d per entry, outside units
-  std::vector<double> distances;   ///< outside units
-  std::vector<double> weights;     ///< masses, outside units to the power d
+  std::vector<double> logs;        ///< d per entry, world units
+  std::vector<double> distances;   ///< world units
+  std::vector<double> weights;     ///< masses, world units to the power d
   std::vector<double> transports;  ///< 2 numbers (cos, sin) or d x d, row major, per entry
 
   Index sources() const noexcept { return static_cast<Index>(indptr.size()) - 1; }
@@ -62,7 +62,7 @@ struct LocalMaps {
 /// @throws InvalidArgument (options, source), InvalidGraph, NotPositiveDefinite (of a patch), ResourceExhausted, Cancelled
 LocalMaps local_maps(const TangentGraph& graph, std::span<const Source> sources, const LocalMapOptions& options);
 /// Of these vertices.
-LocalMaps local_maps(const TangentGraph& graph, std::span<const Index> vertices, const LocalMapOptions& options);
+LocalMaps local_maps(const TangentGraph& graph, std::span<const Vertex> vertices, const LocalMapOptions& options);
 /// Of every vertex.
 LocalMaps local_maps(const TangentGraph& graph, const LocalMapOptions& options);
 

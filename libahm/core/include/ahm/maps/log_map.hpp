@@ -2,8 +2,8 @@
 /// The result of a solve: coordinates and a status for every vertex.
 ///
 /// \code
-/// ahm::LogMap map = solver.solve(ahm::Source::at_vertex(0));
-/// if (map.status(i) == ahm::Status::ok) std::cout << map.coordinates(i)[0] << ' ' << map.distance(i);
+/// ahm::LogMap map = solver.solve(ahm::Source::at_vertex(ahm::Vertex{0}));
+/// if (map.status(v) == ahm::Status::ok) std::cout << map.coordinates(v)[0] << ' ' << map.distance(v);   // ahm::Vertex v
 /// \endcode
 #pragma once
 
@@ -17,14 +17,14 @@
 
 namespace ahm {
 
-/// Alg. 1 or Alg. 2 of Soliman & Sharp 2025.
+/// Alg. 2 (adaptive) or Alg. 1 (localized) of [SS25].
 enum class Variant { adaptive, localized };
 
 /// How the linear systems are solved (docs/march.md).
 enum class Strategy {
   automatic,  ///< one of the others, as size, number of maps and memory suggest
   global,     ///< one factorization of the whole graph, which serves every source; reaches about 700 edges
-  march,      ///< band after band outwards from the source: time and memory linear in n, any distance
+  march,      ///< a banded solve, outwards from the source: time and memory linear in n, any distance
 };
 
 /// What a march did.
@@ -46,15 +46,15 @@ struct MapExtras {
 /// Why a vertex has coordinates, or has none.
 enum class Status : std::uint8_t {
   ok,
-  component,  ///< in a component of the graph without a source
-  radius,     ///< farther from the source than the requested radius
+  disconnected,   ///< in a component of the graph without a source
+  beyond_radius,  ///< farther from the source than the requested radius
   /// Strategy::global: so far (about 700 edges at t_coef = 1) that the heat has left the range of double precision. Any
   /// strategy: the heat cancels (negative weights).
   unreached,
   removed,  ///< an input point that is no vertex of the graph (set by backends, never by the solver)
 };
 
-/// The word used in files: "ok", "component", "radius", "unreached", "removed".
+/// The word used in files: "ok", "disconnected", "beyond_radius", "unreached", "removed".
 std::string_view to_string(Status status) noexcept;
 std::string_view to_string(Variant variant) noexcept;
 std::string_view to_string(Strategy strategy) noexcept;
@@ -76,20 +76,20 @@ class LogMap {
   /// With MapOptions::frames: the source's axes carried to every vertex (Eq. 11 and 12), n x d x d, row major: column a is
   /// source axis a in the frame of the vertex. Identity where no heat arrived.
   std::span<const double> frames() const noexcept { return extras_.frames; }
-  /// With SolverOptions::order = 2: an estimate of |error of phi_i| in outside units, from the disagreement of the
+  /// With SolverOptions::order = 2: an estimate of |error of phi_i| in world units, from the disagreement of the
   /// diffusion times; NaN where not ok. Good to a factor of about three inside the cut locus (docs/accuracy.md).
   std::span<const double> error_estimate() const noexcept { return extras_.error_estimate; }
   /// The source whose frame the coordinates refer to.
   const Source& source() const noexcept { return source_; }
 
-  /// n x d, row major, outside units (graph units times `length_unit`).
+  /// n x d, row major, world units (graph units times `length_unit`).
   std::span<const double> coordinates() const noexcept { return coordinates_; }
   /// phi_i, d numbers.
-  std::span<const double> coordinates(Index vertex) const;
+  std::span<const double> coordinates(Vertex vertex) const;
   std::span<const Status> status() const noexcept { return status_; }
-  Status status(Index vertex) const { return status_[vertex]; }
+  Status status(Vertex vertex) const { return status_[vertex.index]; }
   /// |phi_i|: the geodesic distance from the source, NaN where not ok.
-  double distance(Index vertex) const;
+  double distance(Vertex vertex) const;
   /// Number of vertices with this status.
   Index count(Status status) const noexcept;
 

@@ -3,7 +3,7 @@
 ///
 /// \code
 /// ahm::LogMapSolver solver(graph);                                  // factors once
-/// ahm::LogMap map = solver.solve(ahm::Source::at_vertex(42));      // then each map costs a few triangular solves
+/// ahm::LogMap map = solver.solve(ahm::Source::at_vertex(ahm::Vertex{42}));      // then each map costs a few triangular solves
 ///
 /// ahm::LogMapSolver once(huge_graph, {}, {.expected_maps = 1});    // nothing is factored: one map by marching
 /// \endcode
@@ -37,7 +37,7 @@ struct SolverOptions {
 
 struct MapOptions {
   Variant variant = Variant::adaptive;
-  /// Vertices farther than this from the source get `Status::radius`, and a march ends there. Outside units; > 0.
+  /// Vertices farther than this from the source get `Status::beyond_radius`, and a march ends there. World units; > 0.
   double radius = std::numeric_limits<double>::infinity();
   /// Threads for a batch; 0: one per core. The result does not depend on it.
   unsigned threads = 0;

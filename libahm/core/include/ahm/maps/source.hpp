@@ -3,11 +3,11 @@
 /// curve are one and the same thing to the solver.
 ///
 /// \code
-/// auto vertex = ahm::Source::at_vertex(7);                        // u axis = first axis of frame 7
-/// auto turned = ahm::Source::at_vertex(7, std::array{0.0, 1.0});  // u axis = second axis of frame 7
+/// auto vertex = ahm::Source::at_vertex(ahm::Vertex{7});                        // u axis = first axis of frame 7
+/// auto turned = ahm::Source::at_vertex(ahm::Vertex{7}, std::array{0.0, 1.0});  // u axis = second axis of frame 7
 /// ahm::Source between(2);  // half way between vertices 3 and 4, one apart
-/// between.add(3, 0.5, std::array{-0.5, 0.0}, axes_in_frame_3);
-/// between.add(4, 0.5, std::array{+0.5, 0.0}, axes_in_frame_4);
+/// between.add(ahm::Vertex{3}, 0.5, std::array{-0.5, 0.0}, axes_in_frame_3);
+/// between.add(ahm::Vertex{4}, 0.5, std::array{+0.5, 0.0}, axes_in_frame_4);
 /// \endcode
 #pragma once
 
@@ -26,22 +26,22 @@ class Source {
   explicit Source(int dimension);
 
   /// The vertex itself; the source's axes are those of the vertex's frame, in any dimension.
-  static Source at_vertex(Index vertex);
+  static Source at_vertex(Vertex vertex);
   /// d = 2: the vertex itself; the u axis points along `direction` (2 numbers, frame of the vertex, any length > 0), v
   /// is u turned by +90 degrees.
   /// @throws InvalidArgument when the direction is zero or not finite
-  static Source at_vertex(Index vertex, std::span<const double> direction);
+  static Source at_vertex(Vertex vertex, std::span<const double> direction);
 
   /// Adds a sample.
   /// @param weight  b_k >= 0, finite: barycentric or quadrature weight
-  /// @param offset  z_k, d numbers in outside units: where the vertex lies in the source's frame
+  /// @param offset  z_k, d numbers in world units: where the vertex lies in the source's frame
   /// @param axes    U_k, d x d orthogonal, row major: column a is source axis a in the frame of `vertex`
   /// @throws InvalidArgument
-  Source& add(Index vertex, double weight, std::span<const double> offset, std::span<const double> axes);
+  Source& add(Vertex vertex, double weight, std::span<const double> offset, std::span<const double> axes);
 
   /// 0 for `at_vertex(vertex)`, which fits every dimension.
   int dimension() const noexcept { return dimension_; }
-  std::span<const Index> vertices() const noexcept { return vertices_; }
+  std::span<const Vertex> vertices() const noexcept { return vertices_; }
   std::span<const double> weights() const noexcept { return weights_; }
   /// z_k; empty for `at_vertex`: all zero.
   std::span<const double> offsets() const noexcept { return offsets_; }
@@ -50,7 +50,7 @@ class Source {
 
  private:
   int dimension_ = 0;
-  std::vector<Index> vertices_;
+  std::vector<Vertex> vertices_;
   std::vector<double> weights_;
   std::vector<double> offsets_;
   std::vector<double> axes_;

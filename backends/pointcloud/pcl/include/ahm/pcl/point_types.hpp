@@ -23,7 +23,8 @@ struct EIGEN_ALIGN16 PointLogMap {
   float v;
   float distance;
   float angle;
-  std::uint32_t status;  ///< the number of the `ahm::Status`: 0 ok, 1 component, 2 radius, 3 unreached, 4 removed
+  std::uint32_t
+      status;  ///< the number of the `ahm::Status`: 0 ok, 1 disconnected, 2 beyond_radius, 3 unreached, 4 removed
   PCL_MAKE_ALIGNED_OPERATOR_NEW
 };
 

@@ -9,8 +9,8 @@
 #include <cstring>
 #include <limits>
 
+#include "formats/format.hpp"
 #include "read/ply_header.hpp"
-#include "read/readers.hpp"
 #include "read/text.hpp"
 
 namespace ahm::io {
@@ -267,9 +267,7 @@ void read_items(const Input& in, const PlyElement& element, Body& body, Geometry
   }
 }
 
-}  // namespace
-
-Geometry read_ply(const Input& in) {
+Geometry read(const Input& in) {
   const PlyHeader header = parse_ply_header(in);
   if (std::ranges::find(header.elements, "vertex", &PlyElement::name) == header.elements.end()) {
     fail(in, "the PLY header has no element 'vertex'");
@@ -288,5 +286,9 @@ Geometry read_ply(const Input& in) {
   if (!body.at_end()) g.warnings.emplace_back("the file goes on behind the last element; the rest is ignored");
   return g;
 }
+
+}  // namespace
+
+Format ply_format() { return {.extensions = {".ply"}, .read = read, .write = write_ply}; }
 
 }  // namespace ahm::io

@@ -1,10 +1,11 @@
 // Plain columns of numbers have no standard and no library; every line must have as many columns as the first one.
+#include "read/columns.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
 
-#include "read/readers.hpp"
 #include "read/text.hpp"
 
 namespace ahm::io {
@@ -118,7 +119,7 @@ std::optional<Columns> named_columns(const Input& in, std::int64_t line, const W
 
 }  // namespace
 
-Geometry read_xyz(const Input& in) {
+Geometry read_blank_separated(const Input& in) {
   Lines lines(without_byte_order_mark(in.bytes));
   if (!lines.next_filled('#')) fail(in, "the file holds no point");
   Geometry g;
@@ -126,7 +127,7 @@ Geometry read_xyz(const Input& in) {
   return read_rows(in, lines, ' ', {}, std::move(g));
 }
 
-Geometry read_csv(const Input& in) {
+Geometry read_delimited(const Input& in) {
   Lines lines(without_byte_order_mark(in.bytes));
   if (!lines.next_filled('#')) fail(in, "the file holds no point");
   Geometry g;

@@ -1,4 +1,4 @@
-#include "image.hpp"
+#include "pen.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -41,37 +41,32 @@ constexpr std::array<std::string_view, letters.size()> strokes = {
 
 }  // namespace
 
-Image::Image(int width, int height)
-    : width_(width),
-      height_(height),
-      pixels_(3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 255) {}
-
 /// Paints where the signed distance is negative, with half a pixel of soft edge.
 template <class Distance>
-void Image::fill(Vector2d low, Vector2d high, Colour colour, const Distance& distance) {
+void Pen::fill(Vector2d low, Vector2d high, Colour colour, const Distance& distance) {
   const auto clip = [](double x, int size) { return static_cast<int>(std::clamp(x, 0.0, static_cast<double>(size))); };
-  for (int y = clip(low.y() - 1, height_); y < clip(high.y() + 2, height_); ++y)
-    for (int x = clip(low.x() - 1, width_); x < clip(high.x() + 2, width_); ++x) {
+  for (int y = clip(low.y() - 1, image_.height); y < clip(high.y() + 2, image_.height); ++y)
+    for (int x = clip(low.x() - 1, image_.width); x < clip(high.x() + 2, image_.width); ++x) {
       const double cover = std::clamp(0.5 - distance(Vector2d(x + 0.5, y + 0.5)), 0.0, 1.0);
       if (cover <= 0) continue;
-      std::uint8_t* p = pixel(x, y);
+      std::uint8_t* p = image_.pixel(x, y);
       for (std::size_t k = 0; k < 3; ++k)
         p[k] = static_cast<std::uint8_t>(std::lround(p[k] + cover * (static_cast<double>(colour[k]) - p[k])));
     }
 }
 
-void Image::disc(Vector2d centre, double radius, Colour colour) {
+void Pen::disc(Vector2d centre, double radius, Colour colour) {
   const Vector2d r(radius, radius);
   fill(centre - r, centre + r, colour, [&](const Vector2d& p) { return (p - centre).norm() - radius; });
 }
 
-void Image::line(Vector2d from, Vector2d to, double width, Colour colour) {
+void Pen::line(Vector2d from, Vector2d to, double width, Colour colour) {
   const Vector2d r(width, width);
   fill(from.cwiseMin(to) - r, from.cwiseMax(to) + r, colour,
        [&](const Vector2d& p) { return distance_to_line(p, from, to) - width / 2; });
 }
 
-void Image::triangle(Vector2d a, Vector2d b, Vector2d c, double rounding, Colour colour) {
+void Pen::triangle(Vector2d a, Vector2d b, Vector2d c, double rounding, Colour colour) {
   const Vector2d r(rounding, rounding);
   fill(a.cwiseMin(b).cwiseMin(c) - r, a.cwiseMax(b).cwiseMax(c) + r, colour, [&](const Vector2d& p) {
     const double edge = std::min({distance_to_line(p, a, b), distance_to_line(p, b, c), distance_to_line(p, c, a)});
@@ -80,7 +75,7 @@ void Image::triangle(Vector2d a, Vector2d b, Vector2d c, double rounding, Colour
   });
 }
 
-double Image::text(Vector2d at, double height, double stroke, std::string_view text, Colour colour) {
+double Pen::text(Vector2d at, double height, double stroke, std::string_view text, Colour colour) {
   const double unit = height / 6;
   double x = 0;
   for (const char character : text) {

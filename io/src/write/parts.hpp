@@ -21,7 +21,4 @@ struct PartVertices {
 
 PartVertices vertices_of(const MeshPart& part);
 
-void write_textured_obj(const std::filesystem::path& path, std::span<const MeshPart> parts);
-void write_glb(const std::filesystem::path& path, std::span<const MeshPart> parts);
-
 }  // namespace ahm::io

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "read/readers.hpp"
+#include "formats/format.hpp"
 #include "read/text.hpp"
 
 namespace ahm::io {
@@ -126,9 +126,7 @@ void read_faces(const Input& in, Words& words, const OffHeader& header, Geometry
   }
 }
 
-}  // namespace
-
-Geometry read_off(const Input& in) {
+Geometry read(const Input& in) {
   Words words(in, without_byte_order_mark(in.bytes));
   Geometry g;
   g.format = "OFF text";
@@ -138,5 +136,9 @@ Geometry read_off(const Input& in) {
   if (!words.at_end()) g.warnings.emplace_back("the file goes on behind the last face; the rest is ignored");
   return g;
 }
+
+}  // namespace
+
+Format off_format() { return {.extensions = {".off"}, .read = read}; }
 
 }  // namespace ahm::io

@@ -1,26 +1,21 @@
-// A picture in memory and the few flat shapes drawn on it.
+// The few flat shapes drawn on a picture.
 #pragma once
 
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
 #include <string_view>
-#include <vector>
+
+#include "ahm/image.hpp"
 
 namespace ahm::view {
 
 using Colour = std::array<std::uint8_t, 3>;  // sRGB
 
-/// Rows from top to bottom, three bytes per pixel. Positions in pixels, x right, y down, pixel centres at .5.
-class Image {
+/// Draws on an opaque image. Positions in pixels, x right, y down, pixel centres at .5.
+class Pen {
  public:
-  Image(int width, int height);
-  int width() const { return width_; }
-  int height() const { return height_; }
-  const std::uint8_t* data() const { return pixels_.data(); }
-  std::uint8_t* pixel(int x, int y) {
-    return &pixels_[3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x))];
-  }
+  explicit Pen(Image& image) : image_(image) {}
 
   void disc(Eigen::Vector2d centre, double radius, Colour colour);
   /// A line with round ends.
@@ -33,8 +28,7 @@ class Image {
   template <class Distance>
   void fill(Eigen::Vector2d low, Eigen::Vector2d high, Colour colour, const Distance& distance);
 
-  int width_, height_;
-  std::vector<std::uint8_t> pixels_;
+  Image& image_;
 };
 
 }  // namespace ahm::view

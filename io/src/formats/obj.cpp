@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-#include "read/readers.hpp"
+#include "formats/format.hpp"
 #include "read/text.hpp"
 
 namespace ahm::io {
@@ -174,8 +174,10 @@ class ObjReader {
   std::int64_t largest_line_ = 0;
 };
 
+Geometry read(const Input& in) { return ObjReader(in).read(); }
+
 }  // namespace
 
-Geometry read_obj(const Input& in) { return ObjReader(in).read(); }
+Format obj_format() { return {.extensions = {".obj"}, .read = read, .write_textured = write_textured_obj}; }
 
 }  // namespace ahm::io

@@ -3,8 +3,9 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "formats/format.hpp"
 #include "little_endian.hpp"
-#include "write/mesh_part.hpp"
+#include "write/parts.hpp"
 
 namespace ahm::io {
 namespace {
@@ -19,7 +20,7 @@ Vec3 middle_of(std::span<const MeshPart> parts) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   Vec3 low{infinity, infinity, infinity}, high{-infinity, -infinity, -infinity};
   for (const MeshPart& part : parts)
-    for (Index v : part.face_vertices)
+    for (Index v : part.faces.vertices)
       for (std::size_t c = 0; c < 3; ++c) {
         low[c] = std::min(low[c], part.points[v][c]);
         high[c] = std::max(high[c], part.points[v][c]);
@@ -46,9 +47,9 @@ class GlbFile {
       for (std::size_t k = 0; k < own.size(); ++k) point_of.push_back(static_cast<Index>(k));
     const std::vector<Index>& corner = has_texture ? vertices.texture : vertices.point;
     std::vector<Index> triangles;
-    for (std::size_t f = 0; f + 1 < part.face_begin.size(); ++f)
-      for (Offset c = part.face_begin[f] + 1; c + 1 < part.face_begin[f + 1]; ++c)
-        for (Offset k : {part.face_begin[f], c, c + 1}) triangles.push_back(corner[k]);
+    for (std::size_t f = 0; f < part.faces.size(); ++f)
+      for (Offset c = part.faces.begin[f] + 1; c + 1 < part.faces.begin[f + 1]; ++c)
+        for (Offset k : {part.faces.begin[f], c, c + 1}) triangles.push_back(corner[k]);
     if (triangles.empty()) return;
 
     Json attributes;
@@ -155,14 +156,16 @@ class GlbFile {
   std::string bytes_;
 };
 
-}  // namespace
-
-void write_glb(const std::filesystem::path& path, std::span<const MeshPart> parts) {
+void write(const std::filesystem::path& path, std::span<const MeshPart> parts) {
   GlbFile glb(middle_of(parts));
   for (const MeshPart& part : parts) glb.add(part);
   AtomicFile file(path);
   glb.write(file);
   file.commit();
 }
+
+}  // namespace
+
+Format glb_format() { return {.extensions = {".glb"}, .write_textured = write}; }
 
 }  // namespace ahm::io

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <numeric>
 
-#include "read/readers.hpp"
+#include "formats/format.hpp"
 #include "read/text.hpp"
 
 namespace ahm::io {
@@ -102,9 +102,7 @@ void weld(const std::vector<Vec3>& corners, Geometry& g) {
   for (std::size_t f = 0; 3 * f <= corners.size(); ++f) g.face_begin.push_back(static_cast<Offset>(3 * f));
 }
 
-}  // namespace
-
-Geometry read_stl(const Input& in) {
+Geometry read(const Input& in) {
   Geometry g;
   const bool binary = is_binary(in);
   const std::vector<Vec3> corners = binary ? read_binary(in) : read_text(in);
@@ -114,5 +112,9 @@ Geometry read_stl(const Input& in) {
   weld(corners, g);
   return g;
 }
+
+}  // namespace
+
+Format stl_format() { return {.extensions = {".stl"}, .read = read}; }
 
 }  // namespace ahm::io

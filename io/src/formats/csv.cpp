@@ -1,0 +1,43 @@
+#include <string>
+
+#include "formats/format.hpp"
+#include "read/columns.hpp"
+
+namespace ahm::io {
+namespace {
+
+void append_row(std::string& text, const Column& column, std::size_t row) {
+  if (const auto* words = std::get_if<CodedWords>(&column.values)) {
+    text += ',';
+    text += words->words[words->codes[row]];
+    return;
+  }
+  visit_row(column, row, [&](auto value) {
+    text += ',';
+    if constexpr (std::is_same_v<decltype(value), double>)
+      append_decimals(text, value);
+    else
+      text += std::to_string(value);
+  });
+}
+
+void write(AtomicFile& file, const Table& table) {
+  std::string text = "index";
+  for (const Column& column : table.columns)
+    for (const std::string& name : column.names)
+      if (column.in_csv) text += "," + name;
+  file.write(text + "\n");
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    text = std::to_string(row);
+    for (const Column& column : table.columns)
+      if (column.in_csv) append_row(text, column, row);
+    text += '\n';
+    file.write(text);
+  }
+}
+
+}  // namespace
+
+Format csv_format() { return {.extensions = {".csv"}, .read = read_delimited, .write = write}; }
+
+}  // namespace ahm::io

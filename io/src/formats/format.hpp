@@ -1,0 +1,33 @@
+/// \file
+/// A file format: its extensions, and who reads and writes it.
+///
+/// A format NAME is a file src/formats/NAME.cpp that defines `Format NAME_format()`, and a word in the list of formats
+/// in io/CMakeLists.txt. `read`, `write`, `check_writable`, `write_textured`, `extensions` and their messages follow.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "ahm/io/geometry.hpp"
+#include "read/input.hpp"
+#include "write/writers.hpp"
+
+namespace ahm::io {
+
+/// What cannot be done with a format stays null.
+struct Format {
+  std::vector<std::string> extensions;  ///< lower case, with their dot
+  Geometry (*read)(const Input& in) = nullptr;
+  void (*write)(AtomicFile& file, const Table& table) = nullptr;
+  void (*write_textured)(const std::filesystem::path& path, std::span<const MeshPart> parts) = nullptr;
+  std::string missing = {};  ///< a library this build is without, and the functions above therefore null
+};
+
+/// All formats, in the order in which people should see them.
+const std::vector<Format>& formats();
+/// The format of an extension; null when there is none.
+const Format* find_format(const std::string& extension);
+/// ".off, .obj and .stl"
+std::string list_of(const std::vector<std::string>& extensions, const std::string& last = "and");
+
+}  // namespace ahm::io

@@ -1,0 +1,61 @@
+/// \file
+/// Geodesics as curves: shortest paths to where an exact map reaches, and straightest geodesics from a point.
+///
+/// \code
+/// ahm::exact::GeodesicPath path = ahm::exact::geodesic_path(surface, from, to);
+/// ahm::exact::TracedPath ray = ahm::exact::trace(surface, from, path.start_direction, path.length);   // ends at `to`
+/// \endcode
+#pragma once
+
+#include <vector>
+
+#include "ahm/surface/exact/exact_map.hpp"
+
+namespace ahm::exact {
+
+/// A shortest path. Between neighbouring points it is straight inside one face.
+struct GeodesicPath {
+  Status status = Status::ok;  ///< of the point it leads to; without points where not ok
+  /// From the source: where the path starts, crosses a side, bends at or passes a vertex, and ends.
+  std::vector<MeshPoint> points;
+  double length = 0;  ///< world units
+  /// The directions in which it leaves its two ends, so that a path turned round has them swapped; as
+  /// `ExactMap::direction`, about the end as about the start.
+  double start_direction = 0, end_direction = 0;
+  Index source = -1;  ///< number of the source it comes from
+};
+
+/// The path that an exact map found, by unfolding the faces between the points where it bends. Linear in its points.
+/// @param surface  the map's own
+/// @throws InvalidArgument (vertex or target out of range)
+GeodesicPath path_to_vertex(const PolyhedralSurface& surface, const ExactMap& map, Index vertex);
+GeodesicPath path_to_target(const PolyhedralSurface& surface, const ExactMap& map, std::size_t target);
+
+/// A shortest path between two points; of several of one length the same one each time. The propagation ends where it
+/// has reached the farther point.
+/// @throws as `exact_map`
+GeodesicPath geodesic_path(const PolyhedralSurface& surface, const MeshPoint& from, const MeshPoint& to);
+
+/// How a straightest geodesic ended.
+enum class TraceEnd {
+  complete,  ///< at its full length
+  boundary,  ///< at the boundary, before that
+};
+
+/// A straightest geodesic [PS98].
+struct TracedPath {
+  TraceEnd end = TraceEnd::complete;
+  std::vector<MeshPoint> points;  ///< as `GeodesicPath::points`
+  double length = 0;              ///< as far as it came
+  /// The direction it would go on in, from side 0 of the face of its last point.
+  double direction = 0;
+};
+
+/// The straightest geodesic from a point: straight through faces, through vertices with equal angles on both sides. The
+/// exponential map: where a path leaves a point in this direction, with no vertex on its way, the trace follows it.
+/// @param direction  as `ExactMap::direction`: at a vertex scaled by `angle_scale`, elsewhere from side 0 of the face
+/// @param length     world units, >= 0
+/// @throws InvalidArgument (a point outside its face, direction or length)
+TracedPath trace(const PolyhedralSurface& surface, const MeshPoint& from, double direction, double length);
+
+}  // namespace ahm::exact

@@ -1,0 +1,119 @@
+/// \file
+/// Flat triangles glued along their sides: all that exact geodesics need to know of a surface.
+///
+/// \code
+/// ahm::exact::PolyhedralSurface surface({mesh.tails(), mesh.twins(), mesh.mirrored(), mesh.corners()}, layouts);
+/// ahm::exact::ExactMap map = ahm::exact::exact_map(surface, {surface.vertex_point(42)});
+/// \endcode
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "ahm/types.hpp"
+
+namespace ahm::exact {
+
+/// A half-edge: 3 f + s is side s of face f, from its corner s to its corner s + 1 (mod 3).
+using Half = std::int32_t;
+
+/// Triangles in half-edge arrays. Views only.
+struct Connectivity {
+  std::span<const Index> tails;              ///< 3 per face: the vertex each half-edge starts at
+  std::span<const Half> twins;               ///< the half-edge on the other side, negative on the boundary
+  std::span<const std::uint8_t> mirrored{};  ///< 1 where the two faces are oppositely oriented; empty: nowhere
+  /// One half-edge that starts at each vertex, which is oriented like its face; empty: the lowest. In both cases every
+  /// vertex has one fan of faces.
+  std::span<const Half> corners{};
+};
+
+/// The three sides of a face laid out in the plane, counter-clockwise, as vectors; they sum to zero. Any turn will do.
+using FaceSides = std::array<Vec2, 3>;
+
+/// A point of a face by the weights of its corners as stored; one zero weight puts it on a side, two at a vertex.
+struct MeshPoint {
+  Index face = 0;
+  std::array<double, 3> barycentric{1, 0, 0};
+};
+
+/// What crossing the face of a half-edge takes, in one cache line. The frame of a half-edge has its tail at the origin,
+/// its head at (length, 0) and the third corner of its face, the apex, above.
+struct alignas(64) HalfRecord {
+  double length, apex_x, apex_y;
+  double left, right;            ///< lengths of the sides tail - apex and head - apex
+  Index tail, head, apex;
+  Half beyond_left, beyond_right;  ///< half-edges of the faces beyond these sides, negative on the boundary
+  std::uint8_t mirrored;           ///< bit 0: the face beyond the left side is oppositely oriented, bit 1: the right one
+};
+
+/// A corner met while turning about its vertex. `half` starts at the vertex; `forward`: its face is oriented like the
+/// vertex, as always on an orientable surface.
+struct Corner {
+  Half half = -1;
+  bool forward = true;
+  bool operator==(const Corner&) const = default;
+};
+
+/// An immutable polyhedral surface with or without boundary, of any number of components, orientable or not. Sides of
+/// the same face may be glued to each other.
+class PolyhedralSurface {
+ public:
+  /// @param sides  one per face; both faces of an edge give it the same length to 1e-9
+  /// @throws InvalidGeometry naming the face or half-edge: a side that is not finite or zero, a triangle flatter than
+  ///         1e-13 of its longest side, sides that do not close, lengths that differ, twins that are not mutual or join
+  ///         other vertices, a vertex with several fans or none
+  PolyhedralSurface(const Connectivity& connectivity, std::span<const FaceSides> sides);
+  /// By lengths alone: length s of a face is that of its side s. Flat caps are known only to 1e-8 this way.
+  /// @throws InvalidGeometry as above
+  static PolyhedralSurface from_lengths(const Connectivity& connectivity,
+                                        std::span<const std::array<double, 3>> lengths);
+
+  Index vertex_count() const noexcept { return static_cast<Index>(corner_.size()); }
+  Index face_count() const noexcept { return static_cast<Index>(record_.size() / 3); }
+
+  const HalfRecord& record(Half h) const { return record_[h]; }
+  /// Angle of the face at the tail of a half-edge.
+  double angle(Half h) const { return angle_[h]; }
+  /// Sum of the angles about a vertex.
+  double angle_sum(Index vertex) const { return angle_sum_[vertex]; }
+  bool on_boundary(Index vertex) const { return on_boundary_[vertex] != 0; }
+  /// Whether shortest paths may bend at a vertex: on the boundary, or about more than 2 pi.
+  bool bends_paths(Index vertex) const;
+  /// Where angles about a vertex are counted from: its rightmost corner on the boundary, or the one given.
+  Corner first_corner(Index vertex) const { return corner_[vertex]; }
+  /// 2 pi / angle sum at interior vertices, 1 on the boundary: from angles of the surface to those of the tangent space,
+  /// as the frames of the triangle backend have it.
+  double angle_scale(Index vertex) const;
+  Index component(Index vertex) const { return component_[vertex]; }
+  /// Mean length of the sides of all faces.
+  double mean_length() const noexcept { return mean_length_; }
+
+  /// The corner beyond the side met last (left) or first (right) when turning counter-clockwise; half < 0: boundary.
+  Corner turn_left(Corner c) const;
+  Corner turn_right(Corner c) const;
+  /// The angle at a vertex from its first corner's right side to the right side of this corner.
+  double turned(Corner corner) const;
+
+  MeshPoint vertex_point(Index vertex) const;
+  /// The point's place in the frame of side 0 of its face.
+  Vec2 place(const MeshPoint& point) const;
+
+ private:
+  void set_records(const Connectivity& connectivity, std::span<const FaceSides> sides);
+  void set_fans(const Connectivity& connectivity);
+
+  std::vector<HalfRecord> record_;
+  std::vector<double> angle_;
+  std::vector<double> angle_sum_;
+  std::vector<std::uint8_t> on_boundary_;
+  std::vector<Corner> corner_;
+  std::vector<Index> component_;
+  double mean_length_ = 0;
+};
+
+inline Half next(Half h) { return h % 3 == 2 ? h - 2 : h + 1; }
+inline Half previous(Half h) { return h % 3 == 0 ? h + 2 : h - 1; }
+
+}  // namespace ahm::exact

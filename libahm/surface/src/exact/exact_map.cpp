@@ -1,0 +1,121 @@
+#include "ahm/surface/exact/exact_map.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+
+#include "ahm/error.hpp"
+#include "ahm/util/memory.hpp"
+#include "ahm/util/parallel.hpp"
+#include "ahm/util/text.hpp"
+#include "check_point.hpp"
+#include "propagation.hpp"
+
+namespace ahm::exact {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+void check(const PolyhedralSurface& surface, std::span<const MeshPoint> sources, const ExactOptions& options) {
+  if (sources.empty()) throw InvalidArgument("'sources' is empty; an exact map needs a source");
+  if (!(options.radius > 0)) throw InvalidArgument("'radius' is " + detail::number(options.radius) + "; it must be > 0");
+  if (options.only_targets && options.targets.empty()) throw InvalidArgument("'only_targets' needs 'targets'");
+  for (const MeshPoint& p : sources) checked(surface, p, "source");
+}
+
+/// The vertex of a face with the given number, which stands for its component.
+Index component_of(const PolyhedralSurface& surface, const MeshPoint& point) {
+  return surface.component(surface.record(3 * point.face).tail);
+}
+
+}  // namespace
+
+/// Turns what a propagation found into a map.
+class MapBuilder {
+ public:
+  MapBuilder(const PolyhedralSurface& surface, std::vector<MeshPoint> sources, std::vector<MeshPoint> targets)
+      : surface_(surface) {
+    map_.sources_ = std::move(sources);
+    map_.targets_ = std::move(targets);
+    map_.vertices_ = static_cast<std::size_t>(surface.vertex_count());
+    lit_.assign(map_.vertices_, 0);
+    for (const MeshPoint& p : map_.sources_) lit_[component_of(surface, p)] = 1;
+  }
+
+  ExactMap build(const Propagation& done) {
+    map_.origins_.assign(done.origins().begin(), done.origins().end());
+    map_.statistics_ = {done.windows(), done.bytes()};
+    const std::size_t rows = map_.vertices_ + map_.targets_.size();
+    map_.distance_.reserve(rows);
+    map_.direction_.reserve(rows);
+    map_.status_.reserve(rows);
+    map_.arrival_.reserve(rows);
+    for (std::size_t v = 0; v < map_.vertices_; ++v)
+      add(done.distances()[v], surface_.component(static_cast<Index>(v)), done.horizon(), done.reached()[v]);
+    for (std::size_t k = 0; k < map_.targets_.size(); ++k)
+      add(done.target_distances()[k], component_of(surface_, map_.targets_[k]), done.horizon(),
+          done.reached()[map_.vertices_ + k]);
+    for (Origin& origin : map_.origins_) origin.direction = scaled(origin.direction, origin.source);
+    return std::move(map_);
+  }
+
+ private:
+  void add(double distance, Index component, double horizon, const Reached& reached) {
+    const bool ok = distance <= horizon && distance < infinity;
+    map_.status_.push_back(ok ? Status::ok : lit_[component] ? Status::beyond_radius : Status::disconnected);
+    map_.distance_.push_back(ok ? distance : nan);
+    const Index source = ok ? map_.origins_[reached.origin].source : -1;
+    map_.direction_.push_back(ok ? scaled(reached.direction, source) : nan);
+    map_.arrival_.push_back(ok ? Arrival{reached.half, reached.origin, {reached.from.x, reached.from.y}} : Arrival{});
+  }
+  double scaled(double direction, Index source) const {
+    const Index vertex = map_.origins_[source].vertex;
+    if (vertex >= 0) return direction * surface_.angle_scale(vertex);
+    constexpr double turn = 2 * std::numbers::pi;
+    return direction - turn * std::floor(direction / turn);
+  }
+
+  const PolyhedralSurface& surface_;
+  std::vector<std::uint8_t> lit_;  ///< per component: whether it holds a source
+  ExactMap map_;
+};
+
+Vec2 ExactMap::coordinates(Index row) const {
+  return {distance_[row] * std::cos(direction_[row]), distance_[row] * std::sin(direction_[row])};
+}
+
+Index ExactMap::source(Index vertex) const {
+  const Index origin = arrival_[vertex].origin;
+  return origin < 0 ? -1 : origins_[origin].source;
+}
+
+ExactMap exact_map(const PolyhedralSurface& surface, std::span<const MeshPoint> sources, const ExactOptions& options) {
+  check(surface, sources, options);
+  return detail::with_memory_check("tracing windows", [&] {
+    std::vector<MeshPoint> from, to;
+    for (const MeshPoint& p : sources) from.push_back(checked(surface, p, "source"));
+    for (const MeshPoint& p : options.targets) to.push_back(checked(surface, p, "target"));
+    Propagation propagation(surface, options.radius, to, options.only_targets);
+    for (const MeshPoint& p : from) propagation.add_source(p);
+    propagation.run();
+    return MapBuilder(surface, std::move(from), std::move(to)).build(propagation);
+  });
+}
+
+ExactMap exact_map(const PolyhedralSurface& surface, const MeshPoint& source, const ExactOptions& options) {
+  return exact_map(surface, std::span(&source, 1), options);
+}
+
+std::vector<ExactMap> exact_maps(const PolyhedralSurface& surface, std::span<const MeshPoint> sources,
+                                 const ExactOptions& options, unsigned threads) {
+  std::vector<ExactMap> maps(sources.size());
+  detail::parallel_chunks(static_cast<Offset>(sources.size()), 1, threads, [&](Offset begin, Offset) {
+    maps[static_cast<std::size_t>(begin)] = exact_map(surface, sources[static_cast<std::size_t>(begin)], options);
+  });
+  return maps;
+}
+
+}  // namespace ahm::exact

@@ -1,0 +1,238 @@
+#include "ahm/surface/exact/geodesic_path.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "ahm/error.hpp"
+#include "ahm/util/text.hpp"
+#include "check_point.hpp"
+#include "walk.hpp"
+
+namespace ahm::exact {
+namespace {
+
+using std::numbers::pi;
+
+/// Crossings closer than this multiple of its length to an end of a straight piece are that end.
+constexpr double end_margin = 1e-11;
+/// A line that leaves a face closer than this multiple of the side to a corner goes through the vertex.
+constexpr double vertex_margin = 1e-12;
+
+/// The side to take where a line grazes the boundary at a corner: the other one there.
+Exit other_side(const PolyhedralSurface& surface, const Exit& exit) {
+  if (exit.along > 0.5 * surface.record(exit.side).length) return {exit.walked, next(exit.side), 0.0};
+  return {exit.walked, previous(exit.side), surface.record(previous(exit.side)).length};
+}
+
+/// Adds the crossings of a straight piece of the given length, ends excluded. Where it meets a vertex, the surface is
+/// flat there (else the piece would end), and any face will do to go on in.
+void follow(const PolyhedralSurface& surface, Line line, Exit exit, double length, std::vector<MeshPoint>& points) {
+  const double first = end_margin * length, last = (1 - end_margin) * length;
+  const std::size_t most = points.size() + 3 * static_cast<std::size_t>(surface.face_count()) + 3;
+  for (; exit.walked < last; exit = leave_upwards(surface, line)) {
+    Line beyond = cross(surface, line, exit);
+    if (beyond.half < 0) beyond = cross(surface, line, exit = other_side(surface, exit));
+    if (beyond.half < 0 || points.size() > most)
+      throw Error("a path of length " + detail::number(length) + " was lost in face " + std::to_string(line.half / 3));
+    if (exit.walked > first) points.push_back(point_on(surface, exit.side, exit.along));
+    line = beyond;
+  }
+}
+
+double positive_angle(double angle) { return angle < 0 ? angle + 2 * pi : angle; }
+
+/// The angle at which a line leaves a vertex, which it starts at in the frame of a corner's half-edge, or that of its
+/// continuation backwards, from the right side of the first corner. True, not scaled.
+double angle_at_vertex(const PolyhedralSurface& surface, Half corner, Place towards) {
+  const double width = surface.angle(corner), within = std::clamp(std::atan2(towards.y, towards.x), 0.0, width);
+  double turned = 0;
+  for (Corner c = surface.first_corner(surface.record(corner).tail);; c = surface.turn_left(c)) {
+    if (c.half == corner) return turned + (c.forward ? within : width - within);
+    turned += surface.angle(c.half);
+  }
+}
+
+/// Collects a path from its end to its source.
+class Backwards {
+ public:
+  Backwards(const PolyhedralSurface& surface, const ExactMap& map) : surface_(surface), map_(map) {}
+
+  GeodesicPath to_vertex(Index vertex) {
+    const Arrival& in = map_.arrival(vertex);
+    path_.points.push_back(surface_.vertex_point(vertex));
+    if (in.half >= 0) {
+      const Half corner = previous(in.half);
+      path_.end_direction =
+          angle_at_vertex(surface_, corner, in_previous(surface_.record(in.half), {in.from[0], in.from[1]})) *
+          surface_.angle_scale(vertex);
+      pieces_from(vertex);
+    }
+    return finish(in.origin, map_.distance(vertex), map_.direction(vertex));
+  }
+
+  GeodesicPath to_target(std::size_t k) {
+    const MeshPoint& target = map_.target(k);
+    const Arrival& in = map_.target_arrival(k);
+    const Vec2 place = surface_.place(target);
+    path_.points.push_back(target);
+    path_.end_direction = positive_angle(std::atan2(in.from[1] - place[1], in.from[0] - place[0]));
+    piece(in, {place[0], place[1]}, false);
+    const Index bend = map_.origins()[in.origin].vertex;
+    if (bend >= 0 && map_.arrival(bend).half >= 0) {
+      path_.points.push_back(surface_.vertex_point(bend));
+      pieces_from(bend);
+    }
+    return finish(in.origin, map_.target_distance(k), map_.target_direction(k));
+  }
+
+ private:
+  /// From a vertex, which is added already, back to the source, which is not.
+  void pieces_from(Index vertex) {
+    for (;;) {
+      const Arrival& in = map_.arrival(vertex);
+      piece(in, apex(surface_.record(in.half)), true);
+      vertex = map_.origins()[in.origin].vertex;
+      if (vertex < 0 || map_.arrival(vertex).half < 0) return;
+      path_.points.push_back(surface_.vertex_point(vertex));
+    }
+  }
+
+  /// The crossings of the straight piece that comes in at a place of its last face, or at its apex.
+  void piece(const Arrival& in, Place end, bool at_apex) {
+    const Place back{in.from[0] - end.x, in.from[1] - end.y};
+    const double length = distance(back, {});
+    if (!(length > 0)) return;
+    const Line line{in.half, end, {back.x / length, back.y / length}};
+    follow(surface_, line, at_apex ? leave_through(surface_, line, in.half) : leave(surface_, line), length,
+           path_.points);
+  }
+
+  GeodesicPath finish(Index origin, double distance, double direction) {
+    path_.length = distance;
+    path_.start_direction = direction;
+    path_.source = map_.origins()[origin].source;
+    if (distance > 0) path_.points.push_back(map_.sources()[path_.source]);
+    std::reverse(path_.points.begin(), path_.points.end());
+    return std::move(path_);
+  }
+
+  const PolyhedralSurface& surface_;
+  const ExactMap& map_;
+  GeodesicPath path_;
+};
+
+GeodesicPath without_points(Status status) {
+  GeodesicPath path;
+  path.status = status;
+  return path;
+}
+
+/// Follows a straightest geodesic.
+class Tracer {
+ public:
+  Tracer(const PolyhedralSurface& surface, double length) : surface_(surface), left_(length) {}
+
+  TracedPath from(const MeshPoint& start, Line line) {
+    path_.points.push_back(start);
+    const bool at_vertex = vertex_of(surface_, start) >= 0;
+    for (Exit exit = at_vertex ? leave_corner(line) : leave(surface_, line);;) {
+      if (left_ <= exit.walked) return end(TraceEnd::complete, line, left_, point_of(surface_, line.half, line.at(left_)));
+      const double side = surface_.record(exit.side).length;
+      const bool at_tail = exit.along < vertex_margin * side, at_head = exit.along > (1 - vertex_margin) * side;
+      if (at_tail || at_head) {
+        const Half corner = at_tail ? exit.side : next(exit.side);
+        const Index vertex = surface_.record(corner).tail;
+        if (surface_.on_boundary(vertex))
+          return end(TraceEnd::boundary, line, exit.walked, surface_.vertex_point(vertex));
+        line = through_vertex(line, corner, exit.walked);
+        exit = leave_corner(line);
+        continue;
+      }
+      const Line beyond = cross(surface_, line, exit);
+      const MeshPoint crossed = point_on(surface_, exit.side, exit.along);
+      if (beyond.half < 0) return end(TraceEnd::boundary, line, exit.walked, crossed);
+      path_.points.push_back(crossed);
+      line = beyond;
+      exit = leave_upwards(surface_, line);
+    }
+  }
+
+ private:
+  TracedPath end(TraceEnd how, const Line& line, double walked, const MeshPoint& point) {
+    path_.end = how;
+    path_.length = done_ + walked;
+    path_.direction = positive_angle(angle_in_face(surface_, line));
+    path_.points.push_back(point);
+    return std::move(path_);
+  }
+
+  /// Leaves the face opposite to the corner that the line starts in.
+  Exit leave_corner(const Line& line) const { return leave_through(surface_, line, next(line.half)); }
+
+  /// Half of the vertex's angle lies on either side.
+  Line through_vertex(const Line& line, Half corner, double walked) {
+    const Index vertex = surface_.record(corner).tail;
+    const Line seen = in_frame_of(surface_, line, corner);
+    const double sum = surface_.angle_sum(vertex);
+    const double in = angle_at_vertex(surface_, corner, {-seen.direction.x, -seen.direction.y});
+    done_ += walked;
+    left_ -= walked;
+    path_.points.push_back(surface_.vertex_point(vertex));
+    return line_from_vertex(surface_, vertex, in < sum / 2 ? in + sum / 2 : in - sum / 2);
+  }
+
+  const PolyhedralSurface& surface_;
+  double left_;      ///< to go from the start of the current line
+  double done_ = 0;  ///< up to there
+  TracedPath path_;
+};
+
+}  // namespace
+
+GeodesicPath path_to_vertex(const PolyhedralSurface& surface, const ExactMap& map, Index vertex) {
+  if (vertex < 0 || vertex >= map.size() || map.size() != surface.vertex_count())
+    throw InvalidArgument("vertex " + std::to_string(vertex) + " is outside [0, " + std::to_string(map.size()) +
+                          "), or the map is of another surface");
+  if (map.status(vertex) != Status::ok) return without_points(map.status(vertex));
+  return Backwards(surface, map).to_vertex(vertex);
+}
+
+GeodesicPath path_to_target(const PolyhedralSurface& surface, const ExactMap& map, std::size_t target) {
+  if (target >= map.targets() || map.size() != surface.vertex_count())
+    throw InvalidArgument("target " + std::to_string(target) + " is outside [0, " + std::to_string(map.targets()) +
+                          "), or the map is of another surface");
+  if (map.target_status(target) != Status::ok) return without_points(map.target_status(target));
+  if (const Index vertex = vertex_of(surface, map.target(target)); vertex >= 0)
+    return Backwards(surface, map).to_vertex(vertex);
+  return Backwards(surface, map).to_target(target);
+}
+
+GeodesicPath geodesic_path(const PolyhedralSurface& surface, const MeshPoint& from, const MeshPoint& to) {
+  ExactOptions options;
+  options.targets.push_back(to);
+  options.only_targets = true;
+  return path_to_target(surface, exact_map(surface, from, options), 0);
+}
+
+TracedPath trace(const PolyhedralSurface& surface, const MeshPoint& from, double direction, double length) {
+  const MeshPoint start = checked(surface, from, "from");
+  if (!std::isfinite(direction)) throw InvalidArgument("'direction' is not finite");
+  if (!(length >= 0) || !std::isfinite(length))
+    throw InvalidArgument("'length' is " + detail::number(length) + "; it must be finite and >= 0");
+  const Index vertex = vertex_of(surface, start);
+  if (vertex < 0) {
+    const Vec2 place = surface.place(start);
+    return Tracer(surface, length).from(start, line_from(3 * start.face, {place[0], place[1]}, direction));
+  }
+  const double sum = surface.angle_sum(vertex);
+  double angle = direction / surface.angle_scale(vertex);
+  if (!surface.on_boundary(vertex)) angle -= sum * std::floor(angle / sum);
+  if (angle < -1e-9 || angle > sum + 1e-9)
+    throw InvalidArgument("'direction' " + detail::number(direction) + " at boundary vertex " +
+                          std::to_string(vertex) + " must be in [0, " + detail::number(sum) + "]");
+  return Tracer(surface, length).from(surface.vertex_point(vertex), line_from_vertex(surface, vertex, angle));
+}
+
+}  // namespace ahm::exact

@@ -1,0 +1,205 @@
+#include "ahm/surface/exact/polyhedral_surface.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "ahm/error.hpp"
+#include "ahm/surface/gluing.hpp"
+#include "ahm/util/text.hpp"
+
+namespace ahm::exact {
+namespace {
+
+using std::numbers::pi;
+
+/// Faces flatter than this multiple of their longest side are refused.
+constexpr double least_height = 1e-13;
+/// Angle sums closer to 2 pi than this are flat.
+constexpr double flat_excess = 1e-13;
+
+double cross(const Vec2& a, const Vec2& b) { return a[0] * b[1] - a[1] * b[0]; }
+double dot(const Vec2& a, const Vec2& b) { return a[0] * b[0] + a[1] * b[1]; }
+
+[[noreturn]] void refuse(Index face, const std::string& reason) {
+  throw InvalidGeometry("face " + std::to_string(face) + " " + reason);
+}
+
+/// Twice the area, from the two shorter sides, which is the most accurate.
+double double_area(const FaceSides& sides, const std::array<double, 3>& length) {
+  const auto longest = static_cast<int>(std::max_element(length.begin(), length.end()) - length.begin());
+  return cross(sides[(longest + 1) % 3], sides[(longest + 2) % 3]);
+}
+
+void check_face(Index face, const FaceSides& sides, const std::array<double, 3>& length, double area) {
+  const double longest = std::max({length[0], length[1], length[2]});
+  for (int s = 0; s < 3; ++s) {
+    if (!std::isfinite(length[s])) refuse(face, "has a side that is not finite");
+    if (!(length[s] > 0)) refuse(face, "has a side of length 0; merge its ends");
+  }
+  for (int k : {0, 1})
+    if (std::abs(sides[0][k] + sides[1][k] + sides[2][k]) > 1e-9 * longest) refuse(face, "has sides that do not close");
+  if (!(area > least_height * longest * longest))
+    refuse(face, "is degenerate: height over the longest side is " + detail::number(area / longest / longest) +
+                     " of that side; remove it or move its corners");
+}
+
+/// The layout of a triangle by lengths, by Kahan's stable form of 16 area^2.
+FaceSides lay_out(Index face, const std::array<double, 3>& l) {
+  std::array<double, 3> s = l;
+  std::sort(s.begin(), s.end(), std::greater<>());
+  if (!std::isfinite(s[0] + s[1] + s[2]) || !(s[2] > 0)) refuse(face, "has a side whose length is not positive and finite");
+  if (s[0] > (s[1] + s[2]) * (1 + 1e-9)) refuse(face, "breaks the triangle inequality");
+  const double area = 0.5 * std::sqrt(std::max(0.0, (s[0] + (s[1] + s[2])) * (s[2] - (s[0] - s[1])) *
+                                                        (s[2] + (s[0] - s[1])) * (s[0] + (s[1] - s[2]))));
+  const double c = 0.5 * (l[0] + (l[2] - l[1]) * ((l[2] + l[1]) / l[0]));
+  return {Vec2{l[0], 0}, Vec2{c - l[0], area / l[0]}, Vec2{-c, -area / l[0]}};
+}
+
+bool is_mirrored(const Connectivity& c, Half h) { return !c.mirrored.empty() && c.mirrored[h] != 0; }
+
+void check_twin(const Connectivity& c, Half h) {
+  const Half t = c.twins[h], halves = static_cast<Half>(c.tails.size());
+  if (t < 0) return;
+  const std::string where = "half-edge " + std::to_string(h) + " of face " + std::to_string(h / 3);
+  if (t >= halves || t == h || c.twins[t] != h) throw InvalidGeometry(where + " and its twin are not mutual");
+  const bool mirrored = is_mirrored(c, h);
+  if (mirrored != is_mirrored(c, t)) throw InvalidGeometry(where + " is mirrored, its twin is not");
+  if (c.tails[mirrored ? next(t) : t] != c.tails[next(h)] || c.tails[mirrored ? t : next(t)] != c.tails[h])
+    throw InvalidGeometry(where + " is glued to a side between other vertices");
+}
+
+}  // namespace
+
+PolyhedralSurface::PolyhedralSurface(const Connectivity& connectivity, std::span<const FaceSides> sides) {
+  if (sides.empty() || connectivity.tails.size() != 3 * sides.size() ||
+      connectivity.twins.size() != 3 * sides.size() ||
+      (!connectivity.mirrored.empty() && connectivity.mirrored.size() != 3 * sides.size()))
+    throw InvalidGeometry("a surface needs faces, and three tails and twins for each of them");
+  if (*std::min_element(connectivity.tails.begin(), connectivity.tails.end()) < 0)
+    throw InvalidGeometry("a tail is negative");
+  set_records(connectivity, sides);
+  set_fans(connectivity);
+}
+
+PolyhedralSurface PolyhedralSurface::from_lengths(const Connectivity& connectivity,
+                                                  std::span<const std::array<double, 3>> lengths) {
+  std::vector<FaceSides> sides(lengths.size());
+  for (std::size_t f = 0; f < sides.size(); ++f) sides[f] = lay_out(static_cast<Index>(f), lengths[f]);
+  return {connectivity, sides};
+}
+
+void PolyhedralSurface::set_records(const Connectivity& c, std::span<const FaceSides> sides) {
+  record_.resize(c.tails.size());
+  angle_.resize(c.tails.size());
+  double sum = 0;
+  for (std::size_t f = 0; f < sides.size(); ++f) {
+    std::array<double, 3> length;
+    for (int s = 0; s < 3; ++s) length[s] = std::hypot(sides[f][s][0], sides[f][s][1]);
+    const double area = double_area(sides[f], length);
+    check_face(static_cast<Index>(f), sides[f], length, area);
+    for (int s = 0; s < 3; ++s) {
+      const auto h = static_cast<Half>(3 * f + s);
+      const Vec2 &side = sides[f][s], &last = sides[f][(s + 2) % 3];
+      check_twin(c, h);
+      HalfRecord& r = record_[h];
+      r.length = length[s];
+      r.left = length[(s + 2) % 3];
+      r.right = length[(s + 1) % 3];
+      r.apex_x = -dot(side, last) / length[s];
+      r.apex_y = area / length[s];
+      r.tail = c.tails[h];
+      r.head = c.tails[next(h)];
+      r.apex = c.tails[previous(h)];
+      r.beyond_left = std::max(c.twins[previous(h)], -1);
+      r.beyond_right = std::max(c.twins[next(h)], -1);
+      r.mirrored = static_cast<std::uint8_t>(is_mirrored(c, previous(h)) + 2 * is_mirrored(c, next(h)));
+      angle_[h] = std::atan2(area, -dot(side, last));
+      sum += length[s];
+    }
+  }
+  mean_length_ = sum / static_cast<double>(record_.size());
+  for (std::size_t h = 0; h < record_.size(); ++h) {
+    const Half t = c.twins[h];
+    if (t >= 0 && std::abs(record_[h].length - record_[t].length) > 1e-9 * record_[h].length)
+      throw InvalidGeometry("faces " + std::to_string(h / 3) + " and " + std::to_string(t / 3) +
+                            " give their common side lengths " + detail::number(record_[h].length) + " and " +
+                            detail::number(record_[t].length));
+  }
+}
+
+void PolyhedralSurface::set_fans(const Connectivity& c) {
+  const Index vertices = *std::max_element(c.tails.begin(), c.tails.end()) + 1;
+  std::vector<Index> corners_at(static_cast<std::size_t>(vertices), 0);
+  corner_.resize(corners_at.size());
+  for (std::size_t h = c.tails.size(); h-- > 0;) {
+    ++corners_at[c.tails[h]];
+    corner_[c.tails[h]] = {static_cast<Half>(h), true};
+  }
+  detail::DisjointSets parts(corner_.size());
+  angle_sum_.resize(corner_.size());
+  on_boundary_.resize(corner_.size());
+  for (Index v = 0; v < vertices; ++v) {
+    if (!c.corners.empty()) corner_[v].half = c.corners[v];
+    if (corner_[v].half < 0 || c.tails[corner_[v].half] != v)
+      throw InvalidGeometry("vertex " + std::to_string(v) + " has no face, or a corner of another vertex");
+    const Corner given = corner_[v];
+    for (Corner right = turn_right(given); right.half >= 0 && right != given; right = turn_right(right))
+      corner_[v] = right;
+    on_boundary_[v] = turn_right(corner_[v]).half < 0;
+    if (!on_boundary_[v]) corner_[v] = given;
+    Index met = 0;
+    Corner at = corner_[v];
+    do {
+      angle_sum_[v] += angle_[at.half];
+      parts.join(v, record_[at.half].head);
+      parts.join(v, record_[at.half].apex);
+      at = turn_left(at);
+    } while (++met < corners_at[v] && at.half >= 0 && at != corner_[v]);
+    if (met != corners_at[v])
+      throw InvalidGeometry("vertex " + std::to_string(v) + " joins several fans of faces; split it");
+  }
+  component_.resize(corner_.size());
+  for (Index v = 0; v < vertices; ++v) component_[v] = parts.root(v);
+}
+
+bool PolyhedralSurface::bends_paths(Index v) const { return on_boundary(v) || angle_sum_[v] > 2 * pi + flat_excess; }
+
+double PolyhedralSurface::angle_scale(Index v) const { return on_boundary(v) ? 1.0 : 2 * pi / angle_sum_[v]; }
+
+// The side met last is previous(c.half) where the corner is forward, else c.half: what lies left of the half after it.
+Corner PolyhedralSurface::turn_left(Corner c) const {
+  const HalfRecord& r = record_[c.forward ? c.half : next(c.half)];
+  const Half t = r.beyond_left;
+  const bool mirrored = (r.mirrored & 1) != 0;
+  if (t < 0) return {};
+  if (c.forward) return {mirrored ? next(t) : t, !mirrored};
+  return {mirrored ? t : next(t), mirrored};
+}
+
+Corner PolyhedralSurface::turn_right(Corner c) const {
+  const Corner turned = turn_left({c.half, !c.forward});
+  return {turned.half, !turned.forward};
+}
+
+double PolyhedralSurface::turned(Corner corner) const {
+  double sum = 0;
+  for (Corner c = first_corner(record_[corner.half].tail); c.half != corner.half; c = turn_left(c)) sum += angle_[c.half];
+  return sum;
+}
+
+MeshPoint PolyhedralSurface::vertex_point(Index v) const {
+  const Half h = corner_.at(static_cast<std::size_t>(v)).half;
+  MeshPoint point{h / 3, {0, 0, 0}};
+  point.barycentric[h % 3] = 1;
+  return point;
+}
+
+Vec2 PolyhedralSurface::place(const MeshPoint& point) const {
+  const HalfRecord& r = record_[3 * static_cast<std::size_t>(point.face)];
+  const auto& b = point.barycentric;
+  return {b[1] * r.length + b[2] * r.apex_x, b[2] * r.apex_y};
+}
+
+}  // namespace ahm::exact

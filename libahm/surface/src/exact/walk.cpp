@@ -1,0 +1,121 @@
+#include "walk.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace ahm::exact {
+namespace {
+
+double cross(Place a, Place b) { return a.x * b.y - a.y * b.x; }
+double dot(Place a, Place b) { return a.x * b.x + a.y * b.y; }
+Place minus(Place a, Place b) { return {a.x - b.x, a.y - b.y}; }
+
+/// The line in a frame to which `place` takes points.
+template <class Map>
+Line mapped(const Line& line, Half half, const Map& place) {
+  const Place start = place(line.start), ahead = place({0, 0});
+  const Place tip = minus(place(line.direction), ahead);
+  return {half, start, tip, line.walked};
+}
+
+/// Where the line crosses the side from a to b, which is `length` long; ends count as part of the side.
+Exit crossing(const Line& line, Half side, Place a, Place b, double length) {
+  const Place run = minus(b, a);
+  const double across = cross(line.direction, run);
+  const double part = across != 0 ? std::clamp(cross(line.direction, minus(line.start, a)) / across, 0.0, 1.0) : 0.0;
+  const Place hit{a.x + part * run.x, a.y + part * run.y};
+  return {dot(minus(hit, line.start), line.direction), side, part * length};
+}
+
+}  // namespace
+
+Line in_frame_of(const PolyhedralSurface& surface, Line line, Half half) {
+  while (line.half != half) {
+    const HalfRecord& r = surface.record(line.half);
+    line = mapped(line, next(line.half), [&](Place p) { return in_next(r, p); });
+  }
+  return line;
+}
+
+Exit leave_through(const PolyhedralSurface& surface, const Line& line, Half side) {
+  const HalfRecord& r = surface.record(line.half);
+  if (side == line.half) return crossing(line, side, {0, 0}, {r.length, 0}, r.length);
+  return side == next(line.half) ? crossing(line, side, {r.length, 0}, apex(r), r.right)
+                                 : crossing(line, side, apex(r), {0, 0}, r.left);
+}
+
+Exit leave_upwards(const PolyhedralSurface& surface, const Line& line) {
+  const bool left = cross(minus(apex(surface.record(line.half)), line.start), line.direction) > 0;
+  return leave_through(surface, line, left ? previous(line.half) : next(line.half));
+}
+
+Exit leave(const PolyhedralSurface& surface, const Line& line) {
+  const HalfRecord& r = surface.record(line.half);
+  const Place corner[] = {{0, 0}, {r.length, 0}, apex(r)};
+  const Half side[] = {line.half, next(line.half), previous(line.half)};
+  double soonest = std::numeric_limits<double>::infinity();
+  int through = 0;
+  for (int s = 0; s < 3; ++s) {
+    const Place a = corner[s], run = minus(corner[(s + 1) % 3], a);
+    const double outwards = cross(line.direction, run);
+    if (outwards <= 1e-14 * std::sqrt(dot(run, run))) continue;
+    const double walked = cross(minus(a, line.start), run) / outwards;
+    if (walked >= soonest) continue;
+    soonest = walked;
+    through = s;
+  }
+  return leave_through(surface, line, side[through]);
+}
+
+Line cross(const PolyhedralSurface& surface, const Line& line, const Exit& exit) {
+  // In the frame whose left side is the exit.
+  const Line seen = in_frame_of(surface, line, next(exit.side));
+  const HalfRecord& r = surface.record(seen.half);
+  Line beyond = mapped(seen, r.beyond_left, [&](Place p) {
+    const Place q = beyond_left(r, p);
+    return r.mirrored & 1 ? Place{r.left - q.x, q.y} : q;
+  });
+  beyond.walked = exit.walked;
+  return beyond;
+}
+
+MeshPoint point_of(const PolyhedralSurface& surface, Half half, Place place) {
+  const HalfRecord& r = surface.record(half);
+  const double up = std::clamp(place.y / r.apex_y, 0.0, 1.0);
+  const double ahead = std::clamp((place.x - up * r.apex_x) / r.length, 0.0, 1.0 - up);
+  MeshPoint point{half / 3, {}};
+  point.barycentric[half % 3] = std::max(0.0, 1 - up - ahead);
+  point.barycentric[next(half) % 3] = ahead;
+  point.barycentric[previous(half) % 3] = up;
+  return point;
+}
+
+MeshPoint point_on(const PolyhedralSurface& surface, Half side, double along) {
+  const double part = std::clamp(along / surface.record(side).length, 0.0, 1.0);
+  MeshPoint point{side / 3, {0, 0, 0}};
+  point.barycentric[side % 3] = 1 - part;
+  point.barycentric[next(side) % 3] = part;
+  return point;
+}
+
+Line line_from(Half half, Place place, double angle) { return {half, place, {std::cos(angle), std::sin(angle)}, 0}; }
+
+Line line_from_vertex(const PolyhedralSurface& surface, Index vertex, double angle) {
+  Corner c = surface.first_corner(vertex);
+  for (;;) {
+    const double width = surface.angle(c.half);
+    const Corner left = surface.turn_left(c);
+    if (angle <= width || left.half < 0 || left == surface.first_corner(vertex))
+      return line_from(c.half, {0, 0}, std::clamp(c.forward ? angle : width - angle, 0.0, width));
+    angle -= width;
+    c = left;
+  }
+}
+
+double angle_in_face(const PolyhedralSurface& surface, const Line& line) {
+  const Line seen = in_frame_of(surface, line, 3 * (line.half / 3));
+  return std::atan2(seen.direction.y, seen.direction.x);
+}
+
+}  // namespace ahm::exact
