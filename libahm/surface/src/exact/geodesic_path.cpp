@@ -22,8 +22,8 @@ constexpr double vertex_margin = 1e-12, graze_margin = 1e-10;
 
 double positive_angle(double angle) { return angle < 0 ? angle + 2 * pi : angle; }
 
-/// The angle at which a line leaves a vertex, which it starts at in the frame of a corner's half-edge, or that of its
-/// continuation backwards, from the right side of the first corner. True, not scaled.
+/// The true angle, from the right side of the first corner, at which a vertex sees a place in one of its faces.
+/// @param corner   the half-edge of the face that starts at the vertex; the place is in its frame
 double angle_at_vertex(const PolyhedralSurface& surface, Half corner, Place towards) {
   const double width = surface.angle(corner), within = std::clamp(std::atan2(towards.y, towards.x), 0.0, width);
   double turned = 0;
