@@ -213,6 +213,21 @@ GeodesicPath geodesic_path(const PolyhedralSurface& surface, const MeshPoint& fr
   return path_to_target(surface, exact_map(surface, from, options), 0);
 }
 
+GeodesicPath geodesic_path(const PolyhedralSurface& surface, std::span<const MeshPoint> stops, bool closed) {
+  if (stops.size() < 2)
+    throw InvalidArgument("'stops' has " + std::to_string(stops.size()) + " points; a path needs 2");
+  GeodesicPath path = geodesic_path(surface, stops[0], stops[1]);
+  const std::size_t legs = stops.size() - (closed ? 0 : 1);
+  for (std::size_t k = 1; k < legs && path.status == Status::ok; ++k) {
+    const GeodesicPath leg = geodesic_path(surface, stops[k], stops[(k + 1) % stops.size()]);
+    if (leg.status != Status::ok) return without_points(leg.status);
+    path.points.insert(path.points.end(), leg.points.begin() + 1, leg.points.end());
+    path.length += leg.length;
+    path.end_direction = leg.end_direction;
+  }
+  return path;
+}
+
 TracedPath trace(const PolyhedralSurface& surface, const MeshPoint& from, double direction, double length) {
   const MeshPoint start = checked(surface, from, "from");
   if (!std::isfinite(direction)) throw InvalidArgument("'direction' is not finite");
