@@ -8,6 +8,7 @@
 
 #include "ahm/error.hpp"
 #include "ahm/pointcloud/surroundings.hpp"
+#include "cli/source_list.hpp"
 #ifdef AHM_WITH_PCL
 #include "ahm/pcl/filters.hpp"
 #endif
@@ -25,7 +26,7 @@ std::string list_first(const std::vector<Index>& indices) {
 
 double distance(const Vec3& a, const Vec3& b) { return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]); }
 
-PreparedCloud finite_points(const io::Geometry& input, const RunOptions& options) {
+PreparedCloud finite_points(const io::Geometry& input, const InputOptions& options) {
   PreparedCloud cloud;
   std::vector<Index> bad;
   for (std::size_t i = 0; i < input.points.size(); ++i)
@@ -33,30 +34,25 @@ PreparedCloud finite_points(const io::Geometry& input, const RunOptions& options
   if (!bad.empty() && !options.drop_nan)
     throw InvalidGeometry(fmt::format(
         "{}: {} of {} points have a coordinate that is nan or infinite (points {}); --drop-nan leaves them out",
-        options.input, bad.size(), input.points.size(), list_first(bad)));
+        options.path, bad.size(), input.points.size(), list_first(bad)));
   cloud.non_finite = static_cast<Index>(bad.size());
   return cloud;
 }
 
-void require_normals(const io::Geometry& input, const RunOptions& options) {
+void require_normals(const io::Geometry& input, const InputOptions& options) {
   if (input.normals.empty() && (options.normals == "oriented" || options.normals == "unoriented"))
     throw InvalidArgument(fmt::format("--normals {}: {} has no normals; leave the option out to estimate them",
-                                      options.normals, options.input));
+                                      options.normals, options.path));
 }
 
 /// Keeps what lies within one and a half radii of the source, or of the point nearest to it.
-void keep_surroundings(PreparedCloud& cloud, const io::Geometry& input, const RunOptions& options,
-                       std::optional<Index> source) {
-  if (!options.radius) throw InvalidArgument("--local needs --radius");
-  Vec3 center{};
-  if (source) {
-    center = input.points[*source];
-  } else if (const auto* wanted = std::get_if<SourcePosition>(&options.source); wanted && !cloud.rows.empty()) {
+void keep_surroundings(PreparedCloud& cloud, const io::Geometry& input, double radius, const SourceSpec& source) {
+  Vec3 center = position_in(input, source, "--source");
+  if (std::holds_alternative<SourcePosition>(source) && !cloud.rows.empty())
     center = input.points[*std::min_element(cloud.rows.begin(), cloud.rows.end(), [&](Index a, Index b) {
-      return distance(input.points[a], wanted->position) < distance(input.points[b], wanted->position);
+      return distance(input.points[a], center) < distance(input.points[b], center);
     })];
-  }
-  std::vector<Index> near = pointcloud::surroundings(input.points, center, 1.5 * *options.radius);
+  std::vector<Index> near = pointcloud::surroundings(input.points, center, 1.5 * radius);
   cloud.beyond = static_cast<Index>(cloud.rows.size() - near.size());
   cloud.rows = std::move(near);
 }
@@ -69,7 +65,7 @@ std::vector<Vec3> taken(const std::vector<Vec3>& all, const std::vector<Index>& 
   return result;
 }
 
-void apply_voxel_grid(PreparedCloud& cloud, const io::Geometry& input, const RunOptions& options,
+void apply_voxel_grid(PreparedCloud& cloud, const io::Geometry& input, const InputOptions& options,
                       std::optional<Index> source) try {
   const bool with_normals = !input.normals.empty() && options.normals != "estimate";
   const pcl_bridge::ReducedCloud reduced =
@@ -101,18 +97,20 @@ void apply_outlier_removal(PreparedCloud& cloud, const io::Geometry& input, std:
 
 }  // namespace
 
-PreparedCloud prepare_cloud(const io::Geometry& input, const RunOptions& options,
-                            [[maybe_unused]] std::optional<Index> source) {
+PreparedCloud prepare_cloud(const io::Geometry& input, const InputOptions& options,
+                            const std::optional<SourceSpec>& source) {
   const auto begin = std::chrono::steady_clock::now();
 #ifndef AHM_WITH_PCL
   if (options.voxel || options.outliers) throw InvalidArgument("--voxel and --outliers: this build of ahm has no PCL");
 #endif
   PreparedCloud cloud = finite_points(input, options);
   require_normals(input, options);
-  if (options.local) keep_surroundings(cloud, input, options, source);
+  if (options.local && source) keep_surroundings(cloud, input, *options.local, *source);
 #ifdef AHM_WITH_PCL
-  if (options.voxel) apply_voxel_grid(cloud, input, options, source);
-  if (options.outliers) apply_outlier_removal(cloud, input, source);
+  const auto* vertex = source ? std::get_if<SourceVertex>(&*source) : nullptr;
+  const std::optional<Index> row = vertex ? std::optional(vertex->index) : std::nullopt;
+  if (options.voxel) apply_voxel_grid(cloud, input, options, row);
+  if (options.outliers) apply_outlier_removal(cloud, input, row);
 #endif
   cloud.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return cloud;

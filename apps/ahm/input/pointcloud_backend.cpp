@@ -21,14 +21,13 @@ using pointcloud::NormalSigns;
 using pointcloud::PointCloudSurface;
 
 /// The cheap checks: everything about the source that needs no graph.
-std::optional<Index> checked_source_row(const SourceSpec& spec, const io::Geometry& input) {
-  if (const auto* face = std::get_if<SourceFace>(&spec))
+const std::optional<SourceSpec>& checked_source(const std::optional<SourceSpec>& source, const io::Geometry& input) {
+  if (!source) return source;
+  if (const auto* face = std::get_if<SourceFace>(&*source))
     throw InvalidArgument(fmt::format(
         "--source {}: a cloud has no faces (backend pointcloud); write a vertex index or x,y,z", to_string(*face)));
-  const auto* vertex = std::get_if<SourceVertex>(&spec);
-  if (vertex == nullptr) return std::nullopt;
-  position_in(input, spec, "--source");
-  return vertex->index;
+  position_in(input, *source, "--source");
+  return source;
 }
 
 pointcloud::NeighborSearchFactory search_factory(const std::string& name) {
@@ -41,7 +40,7 @@ pointcloud::NeighborSearchFactory search_factory(const std::string& name) {
 #endif
 }
 
-CloudOptions cloud_options(const RunOptions& options, const Progress& progress) {
+CloudOptions cloud_options(const InputOptions& options, const Progress& progress) {
   CloudOptions result;
   result.k = options.k;
   result.search = search_factory(options.knn);
@@ -95,9 +94,9 @@ std::vector<std::string> PointcloudModel::warnings() const {
 
 }  // namespace
 
-std::unique_ptr<Model> build_pointcloud(const io::Geometry& input, const RunOptions& options,
-                                        const Progress& progress) {
-  PreparedCloud prepared = prepare_cloud(input, options, checked_source_row(options.source, input));
+std::unique_ptr<Model> build_pointcloud(const io::Geometry& input, const InputOptions& options,
+                                        const std::optional<SourceSpec>& source, const Progress& progress) {
+  PreparedCloud prepared = prepare_cloud(input, options, checked_source(source, input));
   CloudOptions cloud = cloud_options(options, progress);
   cloud.rows = prepared.rows;
   const std::span<const Vec3> normals = options.normals == "estimate" ? std::span<const Vec3>() : input.normals;

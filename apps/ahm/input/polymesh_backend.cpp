@@ -11,7 +11,7 @@ namespace {
 using polymesh::Discretization;
 using polymesh::PolygonMeshSurface;
 
-polymesh::PolygonOptions polygon_options(const RunOptions& options, const Progress& progress) {
+polymesh::PolygonOptions polygon_options(const InputOptions& options, const Progress& progress) {
   polymesh::PolygonOptions result;
   if (options.discretization == "polygons") result.discretization = Discretization::polygons;
   if (options.discretization == "refined") result.discretization = Discretization::refined;
@@ -24,9 +24,9 @@ polymesh::PolygonOptions polygon_options(const RunOptions& options, const Progre
 
 }  // namespace
 
-std::unique_ptr<Model> build_polymesh(const io::Geometry& input, const RunOptions& options,
-                                      const Progress& progress) try {
-  check_mesh_input("polymesh", input, options);
+std::unique_ptr<Model> build_polymesh(const io::Geometry& input, const InputOptions& options,
+                                      const std::optional<SourceSpec>& source, const Progress& progress) try {
+  check_mesh_input("polymesh", input, options, source);
   return std::make_unique<SurfaceModel>(std::make_unique<PolygonMeshSurface>(PolygonMeshSurface::build(
       input.points, input.face_begin, input.face_vertices, polygon_options(options, progress))));
 } catch (const InvalidGeometry& e) {

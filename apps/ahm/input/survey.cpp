@@ -92,7 +92,7 @@ Connectivity find_connectivity(const io::Geometry& input, const std::vector<Inde
 
 }  // namespace
 
-Survey survey(const io::Geometry& input, const InfoOptions& options, const Progress& progress) {
+Survey survey(const io::Geometry& input, const InputOptions& options, const Progress& progress) {
   Survey s;
   s.points = input.points.size();
   s.faces = input.face_count();

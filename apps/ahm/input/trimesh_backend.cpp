@@ -26,7 +26,7 @@ std::vector<Triangle> triangles(const io::Geometry& input) {
   return result;
 }
 
-MeshOptions mesh_options(const RunOptions& options, const Progress& progress) {
+MeshOptions mesh_options(const InputOptions& options, const Progress& progress) {
   MeshOptions result;
   result.intrinsic_delaunay = options.flips;
   result.non_manifold = options.non_manifold == "split" ? NonManifold::split : NonManifold::error;
@@ -37,9 +37,9 @@ MeshOptions mesh_options(const RunOptions& options, const Progress& progress) {
 
 }  // namespace
 
-std::unique_ptr<Model> build_trimesh(const io::Geometry& input, const RunOptions& options,
-                                     const Progress& progress) try {
-  check_mesh_input("trimesh", input, options);
+std::unique_ptr<Model> build_trimesh(const io::Geometry& input, const InputOptions& options,
+                                     const std::optional<SourceSpec>& source, const Progress& progress) try {
+  check_mesh_input("trimesh", input, options, source);
   return std::make_unique<SurfaceModel>(std::make_unique<TriangleMeshSurface>(
       TriangleMeshSurface::build(input.points, triangles(input), mesh_options(options, progress))));
 } catch (const InvalidGeometry& e) {

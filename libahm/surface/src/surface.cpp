@@ -210,13 +210,13 @@ RowLogMap Surface::on_rows(const LogMap& map) const {
     const Best best(map, rows().vertices(Row(static_cast<Index>(r))));
     result.status[r] = best.status;
     if (!best.vertex) continue;
-    const Index v = best.vertex->index;
-    const auto phi = map.coordinates(*best.vertex);
+    const Vertex v = *best.vertex;
+    const auto phi = map.coordinates(v);
     result.u[r] = phi[0];
     result.v[r] = phi[1];
-    result.distance[r] = map.distance(*best.vertex);
+    result.distance[r] = map.distance(v);
     result.angle[r] = std::atan2(phi[1], phi[0]);
-    if (!error.empty()) result.error_estimate[r] = error[v];
+    if (!error.empty()) result.error_estimate[r] = error[v.index];
     result.vertex[r] = best.vertex;
   }
   return result;
