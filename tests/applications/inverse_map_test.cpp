@@ -275,6 +275,40 @@ TEST(InverseMap, OnAMeshHasNoHoles) {
   }
 }
 
+TEST(InverseMap, OfASurfaceIsThatOfItsGraphByRows) {
+  std::vector<Vec3> points = sphere_points(1500);
+  points.push_back(points[3]);  // two rows of one vertex
+  const auto cloud = pointcloud::PointCloudSurface::build(points);
+  const LogMap map = LogMapSolver(cloud.graph()).solve(cloud.source(Row(700)).source, {.frames = true});
+  const InverseMap by_rows = inverse_map(cloud, map), by_vertices = inverse_map(cloud.graph(), map);
+  EXPECT_EQ(by_rows.size(), points.size());
+  int answered = 0;
+  for (const auto& [u, v] : points_in_disc(2, 500)) {
+    const auto a = by_rows.at(u, v), b = by_vertices.at(u, v);
+    ASSERT_EQ(a.has_value(), b.has_value());
+    if (!a) continue;
+    ++answered;
+    EXPECT_EQ(a->position, b->position);
+    for (int k = 0; k < 3; ++k) EXPECT_EQ(cloud.vertex(Row(a->vertices[k])), Vertex(b->vertices[k]));
+  }
+  EXPECT_GT(answered, 450);
+}
+
+TEST(InverseMap, OfAMeshAnswersOnItsFaces) {
+  Patch cap = patch(31, 1.1, on_sphere);
+  for (std::size_t t = 0; t < cap.triangles.size(); t += 4) std::swap(cap.triangles[t][1], cap.triangles[t][2]);
+  const auto mesh = trimesh::TriangleMeshSurface::build(cap.positions, cap.triangles);
+  const LogMap map = LogMapSolver(mesh.graph()).solve(mesh.source(Row(15 * 31 + 15)).source, {.frames = true});
+  const InverseMap inverse = inverse_map(mesh, map);
+  for (const auto& [u, v] : points_in_disc(1, 300)) {
+    const auto point = inverse.at(u, v);
+    ASSERT_TRUE(point) << u << ' ' << v;
+    EXPECT_LT(mesh.closest_point(point->position).distance, 1e-12);
+    const Vec2 corner = inverse.coordinates(point->vertices[0]);
+    EXPECT_LT(std::hypot(corner[0] - u, corner[1] - v), 2 * cap.longest_edge);
+  }
+}
+
 TEST(InverseMap, RefusesBadArguments) {
   const Patch plane = patch(5, 1, flat);
   Patch broken = plane;

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "ahm/util/parallel.hpp"
-#include "vec3.hpp"
+#include "plane_axes.hpp"
 
 namespace ahm::pointcloud {
 namespace {

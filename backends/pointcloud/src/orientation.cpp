@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "vec3.hpp"
+#include "ahm/util/vec.hpp"
 
 namespace ahm::pointcloud {
 namespace {

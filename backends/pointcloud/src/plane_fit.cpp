@@ -2,7 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "vec3.hpp"
+#include "ahm/util/vec.hpp"
 
 namespace ahm::pointcloud {
 namespace {
@@ -29,7 +29,7 @@ PlaneFit fit_plane(std::span<const Vec3> points, Index i, std::span<const Index>
   const double ratio = variance[2] > 0 ? variance[1] / variance[2] : 0.0;
   if (!(ratio > collinear_ratio)) return {};
   const Eigen::Vector3d n = eigen.eigenvectors().col(0);
-  return {normalized({n[0], n[1], n[2]}), ratio};
+  return {normalized(Vec3{n[0], n[1], n[2]}), ratio};
 }
 
 }  // namespace ahm::pointcloud

@@ -14,10 +14,10 @@
 #include "clean_points.hpp"
 #include "local_delaunay.hpp"
 #include "orientation.hpp"
+#include "plane_axes.hpp"
 #include "tangent_edges.hpp"
 #include "tangent_planes.hpp"
 #include "tufted_cover.hpp"
-#include "vec3.hpp"
 
 namespace ahm::pointcloud {
 namespace {

@@ -9,7 +9,7 @@
 #include "ahm/error.hpp"
 #include "ahm/pointcloud/plane_fit.hpp"
 #include "ahm/util/parallel.hpp"
-#include "vec3.hpp"
+#include "ahm/util/vec.hpp"
 
 namespace ahm::pointcloud {
 namespace {

@@ -3,16 +3,18 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
-#include "vec3.hpp"
+#include "ahm/surface/half_edges.hpp"
+#include "ahm/util/vec.hpp"
 
 namespace ahm::pointcloud {
 namespace {
 
 using Half = std::int64_t;  ///< half-edge 3 f + s: side s of cover face f
 
-Half next(Half h) { return h % 3 == 2 ? h - 2 : h + 1; }
-Half previous(Half h) { return h % 3 == 0 ? h + 2 : h - 1; }
+using detail::next;
+using detail::previous;
 
 /// 16 times the squared area of a triangle with these side lengths, by Kahan's stable formula.
 double sixteen_squared_areas(double a, double b, double c) {
@@ -67,16 +69,9 @@ class TuftedCover {
     for (Half h = 0; h < static_cast<Half>(tail_.size()); ++h)
       if (h < twin_[h] && !is_delaunay(h)) stack.push_back(h);
     Offset flips = 0;
-    // Delaunay flipping ends by itself; the cap only guards against rounding on degenerate input.
-    const Offset cap = 4 * static_cast<Offset>(tail_.size()) + 1024;
-    while (!stack.empty() && flips < cap) {
-      const Half h = stack.back();
-      stack.pop_back();
-      if (is_delaunay(h)) continue;
-      flip(h);
-      ++flips;
-      for (Half side : {next(h), previous(h), next(twin_[h]), previous(twin_[h])}) stack.push_back(side);
-    }
+    detail::flip_to_delaunay(
+        std::move(stack), 4 * tail_.size() + 1024, [&](Half h) { return twin_[h]; },
+        [&](Half h) { return is_delaunay(h); }, [&](Half h) { flip(h), ++flips; });
     return flips;
   }
 
@@ -117,7 +112,8 @@ void TuftedCover::flip(Half h) {
   const double m_x = (l * l + l_im * l_im - l_mj * l_mj) / (2 * l), m_y = 2 * triangle_area(l, l_im, l_mj) / l;
   const double diagonal = std::hypot(k_x - m_x, k_y + m_y);
   const Index i = tail_[h], j = tail_[t];
-  const Half twin_jk = twin_[jk], twin_ki = twin_[ki], twin_im = twin_[im], twin_mj = twin_[mj];
+  std::vector<std::uint8_t> nowhere;
+  detail::relink<Half>({ki, im, mj, jk}, {jk, ki, im, mj}, twin_, nowhere);
 
   auto set = [this](Half half, Index tail, double length) {
     tail_[half] = tail;
@@ -130,16 +126,6 @@ void TuftedCover::flip(Half h) {
   set(t, k, diagonal);
   set(im, m, l_mj);
   set(mj, j, l_jk);
-  // The outer sides moved to other half-edges; a side may be glued to another outer side of the same pair of faces.
-  const Half old_side[4] = {ki, im, mj, jk}, new_side[4] = {jk, ki, im, mj};
-  const Half outer[4] = {twin_ki, twin_im, twin_mj, twin_jk};
-  for (int s = 0; s < 4; ++s) {
-    Half partner = outer[s];
-    for (int q = 0; q < 4; ++q)
-      if (outer[s] == old_side[q]) partner = new_side[q];
-    twin_[new_side[s]] = partner;
-    twin_[partner] = new_side[s];
-  }
 }
 
 /// Around every edge the faces are put in a cyclic order, and the front of each is glued to the back of the next. Sides

@@ -77,13 +77,9 @@ struct PolygonMeshSurface::Impl {
   Refinement refinement;                       ///< refined
   std::optional<TriangleMeshSurface> refined;  ///< or this
 
-  explicit Impl(PolygonMesh given) : mesh(std::move(given)), face_rows(mesh.corners().size()) {
-    for (Index f = 0; f < mesh.face_count(); ++f) {
-      const auto begin = mesh.face_begin()[f], m = mesh.face_begin()[f + 1] - begin;
-      for (Offset c = 0; c < m; ++c)
-        face_rows[begin + c] = mesh.input_of_vertex()[mesh.corners()[begin + (mesh.reversed(f) ? (m - c) % m : c)]];
-      details.largest_face = std::max(details.largest_face, static_cast<Index>(m));
-    }
+  explicit Impl(PolygonMesh given) : mesh(std::move(given)), face_rows(mesh.topology().given_corners()) {
+    for (Index f = 0; f < mesh.face_count(); ++f)
+      details.largest_face = std::max(details.largest_face, static_cast<Index>(mesh.face(f).size()));
     details.topology = mesh.report();
     details.vertices = mesh.vertex_count();
   }
@@ -139,7 +135,8 @@ std::vector<double> PolygonMeshSurface::Impl::stored_weights(const FacePoint& po
   for (double w : point.barycentric) sum += std::max(w, 0.0);
   std::vector<double> stored(m);
   for (std::size_t c = 0; c < m; ++c)
-    stored[mesh.reversed(point.face) ? (m - c) % m : c] = std::max(point.barycentric[c], 0.0) / sum;
+    stored[mesh.topology().stored_corner(point.face, static_cast<Index>(c))] =
+        std::max(point.barycentric[c], 0.0) / sum;
   return stored;
 }
 

@@ -14,10 +14,16 @@
 #include <cstdint>
 #include <vector>
 
-#include "half_edges.hpp"
+#include "ahm/surface/half_edges.hpp"
+#include "ahm/trimesh/triangle_mesh.hpp"
 #include "vec.hpp"
 
 namespace ahm::trimesh {
+
+using detail::Corner;
+using detail::HalfEdges;
+using detail::next;
+using detail::previous;
 
 /// Faces (i, j, k) and (j, i, m) on both sides of edge ij, replaced by (m, k, i) and (k, m, j).
 ///

@@ -15,8 +15,7 @@ struct TriangleMeshSurface::Impl {
   CsrGraph graph;
   MeshDetails details;
   RowMap rows;
-  std::vector<Offset> face_begin;  ///< of the faces as given
-  std::vector<Index> face_rows;
+  std::vector<Index> face_rows;  ///< at the corners of the faces as given
 
   /// A point of the input mesh in the intrinsic triangulation. Weights are those of the corners of `face` as stored.
   FlipHistory::Point locate(const FacePoint& point) const;

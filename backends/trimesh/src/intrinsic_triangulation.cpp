@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "ahm/util/parallel.hpp"
 #include "face_layout.hpp"
@@ -82,18 +83,15 @@ bool IntrinsicTriangulation::flip_to_delaunay(const Progress& progress) {
   std::vector<Half> stack;
   for (Half h = static_cast<Half>(twin_.size()) - 1; h >= 0; --h)
     if (h < twin_[h] && !is_delaunay(h)) stack.push_back(h);
-  // Delaunay flipping ends by itself; the cap only guards against rounding on degenerate input.
-  const std::size_t cap = 64 * tail_.size() + 1024;
-  while (!stack.empty() && history_.size() < cap) {
-    const Half h = stack.back();
-    stack.pop_back();
-    if (is_delaunay(h)) continue;
-    flip(h);
-    for (Half side : {next(h), previous(h), next(twin_[h]), previous(twin_[h])}) stack.push_back(side);
-    if ((history_.size() & 0xffff) == 0) progress.step("flips", 0.5);
-  }
+  const bool done = detail::flip_to_delaunay(
+      std::move(stack), 64 * tail_.size() + 1024, [&](Half h) { return twin_[h]; },
+      [&](Half h) { return is_delaunay(h); },
+      [&](Half h) {
+        flip(h);
+        if ((history_.size() & 0xffff) == 0) progress.step("flips", 0.5);
+      });
   history_.finish();
-  return stack.empty();
+  return done;
 }
 
 /// Turns the face of h over: corners (a, b, c) become (a, c, b), side s becomes side 2 - s, the layout is mirrored.
@@ -153,7 +151,7 @@ void IntrinsicTriangulation::flip(Half h) {
                 q.mk});
   const Half jk = next(h), ki = previous(h), im = next(t), mj = previous(t);
   const Index i = tail_[h], j = tail_[t], k = tail_[ki], m = tail_[mj];
-  relink({ki, im, mj, jk}, {jk, ki, im, mj});
+  detail::relink<Half>({ki, im, mj, jk}, {jk, ki, im, mj}, twin_, mirrored_);
   auto set = [this](Half half, Index tail, Vec2 side) {
     tail_[half] = tail;
     side_[half] = side;
@@ -165,26 +163,6 @@ void IntrinsicTriangulation::flip(Half h) {
   set(im, m, q.mj);
   set(mj, j, q.jk);
   if (!mirrored_.empty()) mirrored_[h] = mirrored_[t] = 0;
-}
-
-/// Moves the outer sides of two faces to other half-edges. A side may be glued to another one of the four.
-void IntrinsicTriangulation::relink(const std::array<Half, 4>& from, const std::array<Half, 4>& to) {
-  Half outer[4];
-  std::uint8_t mirrored[4] = {};
-  for (int s = 0; s < 4; ++s) {
-    outer[s] = twin_[from[s]];
-    if (!mirrored_.empty()) mirrored[s] = mirrored_[from[s]];
-  }
-  for (int s = 0; s < 4; ++s) {
-    Half partner = outer[s];
-    for (int q = 0; q < 4; ++q)
-      if (outer[s] == from[q]) partner = to[q];
-    twin_[to[s]] = partner;
-    if (partner >= 0) twin_[partner] = to[s];
-    if (mirrored_.empty()) continue;
-    mirrored_[to[s]] = mirrored[s];
-    if (partner >= 0) mirrored_[partner] = mirrored[s];
-  }
 }
 
 Index IntrinsicTriangulation::count_degenerate() const {

@@ -7,7 +7,6 @@
 
 #include "ahm/progress.hpp"
 #include "flip_history.hpp"
-#include "half_edges.hpp"
 #include "vec.hpp"
 
 namespace ahm::trimesh {
@@ -55,7 +54,6 @@ class IntrinsicTriangulation {
   Half turn_over(Half h);
   Quadrilateral unfold(Half h, Half t) const;
   void flip(Half h);
-  void relink(const std::array<Half, 4>& from, const std::array<Half, 4>& to);
 
   std::vector<Index> tail_;
   std::vector<Half> twin_;

@@ -44,9 +44,9 @@ class Rows {
   void for_each(std::size_t vertex, const Visit& visit) const {
     const Corner start = frames_.start[vertex];
     for (Corner c = start;;) {
-      if (is_edge(c.right())) visit(c.right(), c.forward, c.forward);
+      if (is_edge(edges_.right(c))) visit(edges_.right(c), c.forward, c.forward);
       const Corner left = edges_.turn_left(c);
-      if (left.half < 0 && is_edge(c.left())) visit(c.left(), !c.forward, c.forward);
+      if (left.half < 0 && is_edge(edges_.left(c))) visit(edges_.left(c), !c.forward, c.forward);
       if (left.half < 0 || left == start) return;
       c = left;
     }

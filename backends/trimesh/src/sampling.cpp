@@ -45,7 +45,10 @@ struct MappedFace {
 class Unfolding {
  public:
   Unfolding(const TriangleMesh& mesh, const LogMap& map)
-      : mesh_(mesh), edges_(mesh), phi_(mesh.tails().size()), done_(static_cast<std::size_t>(mesh.face_count()), no) {
+      : mesh_(mesh),
+        edges_(mesh.topology().half_edges()),
+        phi_(mesh.tails().size()),
+        done_(static_cast<std::size_t>(mesh.face_count()), no) {
     std::vector<Index> front;
     for (Index f = 0; f < mesh.face_count(); ++f) {
       MappedFace face = mapped(f);

@@ -108,7 +108,7 @@ PlacedSource TriangleMeshSurface::source_on_edge(const EdgePoint& edge, const st
 /// Looks through the fans of all copies of `from`; only a split mesh has more than one.
 FacePoint TriangleMeshSurface::face_point(const EdgePoint& edge) const {
   const TriangleMesh& mesh = impl_->mesh;
-  const HalfEdges edges(mesh);
+  const HalfEdges edges = mesh.topology().half_edges();
   for (Vertex v : rows().vertices(edge.from)) {
     const Corner start = edges.rightmost({mesh.corners()[v.index], true});
     for (Corner c = start; c.half >= 0;) {

@@ -63,7 +63,7 @@ TriangleMeshSurface& TriangleMeshSurface::operator=(TriangleMeshSurface&&) noexc
 const CsrGraph& TriangleMeshSurface::graph() const& { return impl_->graph; }
 const RowMap& TriangleMeshSurface::rows() const { return impl_->rows; }
 std::span<const Vec3> TriangleMeshSurface::positions() const { return impl_->mesh.input_positions(); }
-FaceList TriangleMeshSurface::faces() const { return {impl_->face_begin, impl_->face_rows}; }
+FaceList TriangleMeshSurface::faces() const { return {impl_->mesh.topology().face_begin(), impl_->face_rows}; }
 std::span<const Index> TriangleMeshSurface::corner_vertices() const { return impl_->mesh.tails(); }
 const MeshDetails& TriangleMeshSurface::details() const noexcept { return impl_->details; }
 const TriangleMesh& TriangleMeshSurface::mesh() const noexcept { return impl_->mesh; }
@@ -112,16 +112,10 @@ TriangleMeshSurface TriangleMeshSurface::build(TriangleMesh mesh, const MeshOpti
   options.progress.step("graph", 1.0);
   details.seconds_graph = stopwatch.lap();
   RowMap rows = rows_of(mesh);
-  std::vector<Offset> face_begin(static_cast<std::size_t>(mesh.face_count()) + 1);
-  std::vector<Index> face_rows(mesh.tails().size());
-  for (Index f = 0; f < mesh.face_count(); ++f) {
-    face_begin[f + 1] = 3 * (f + 1);
-    for (int c = 0; c < 3; ++c)
-      face_rows[3 * f + c] = mesh.input_of_vertex()[mesh.tails()[3 * f + mesh.stored_corner(f, c)]];
-  }
+  std::vector<Index> face_rows = mesh.topology().given_corners();
   return TriangleMeshSurface(std::make_unique<const Impl>(
       Impl{std::move(mesh), std::move(triangulation), std::move(frames), CsrGraph(std::move(data)), std::move(details),
-           std::move(rows), std::move(face_begin), std::move(face_rows)}));
+           std::move(rows), std::move(face_rows)}));
 }
 
 TriangleMeshSurface TriangleMeshSurface::build(TriangleMesh mesh, const MeshOptions& options) try {

@@ -2,21 +2,19 @@
 /// Vectors of space and of the plane.
 #pragma once
 
-#include <array>
 #include <cmath>
 
-#include "ahm/types.hpp"
+#include "ahm/util/vec.hpp"
 
 namespace ahm::trimesh {
 
-inline Vec3 operator-(const Vec3& a, const Vec3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-inline Vec3 operator+(const Vec3& a, const Vec3& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
-inline Vec3 operator*(double s, const Vec3& a) { return {s * a[0], s * a[1], s * a[2]}; }
-inline double dot(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-inline Vec3 cross(const Vec3& a, const Vec3& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-inline double norm(const Vec3& a) { return std::sqrt(dot(a, a)); }
+using ahm::operator+;
+using ahm::operator-;
+using ahm::operator*;
+using ahm::cross;
+using ahm::dot;
+using ahm::norm;
+using ahm::normalized;
 
 /// A vector of the plane, or a complex number.
 struct Vec2 {

@@ -25,11 +25,11 @@ Reference find_reference(const TriangleMesh& mesh, const HalfEdges& input, const
                          Index v) {
   const Corner corner = reference_corner(mesh, input, v);
   const auto layout = mesh.layout(corner.half / 3);
-  const auto& side = layout[corner.right() % 3];
+  const auto& side = layout[input.right(corner) % 3];
   const Vec2 out = corner.forward ? Vec2{side[0], side[1]} : Vec2{-side[0], -side[1]};
   const auto found = triangulation.history().locate(corner.half, out);
   const Corner at{found.corner, corner.forward != found.mirrored};
-  const Vec2 right = at.forward ? triangulation.side(at.half) : -triangulation.side(at.right());
+  const Vec2 right = at.forward ? triangulation.side(at.half) : -triangulation.side(input.right(at));
   const double turned = angle_between(right, found.direction);
   return {at, std::clamp(at.forward ? turned : -turned, 0.0, triangulation.angle(at.half))};
 }
@@ -54,10 +54,10 @@ void set_angles(const HalfEdges& edges, const IntrinsicTriangulation& triangulat
   };
   double angle = closed ? -reference.angle * scale : 0.0;
   for (Corner c = start;;) {
-    store(c.right(), c.forward, angle, c.forward);
+    store(edges.right(c), c.forward, angle, c.forward);
     angle += scale * triangulation.angle(c.half);
     const Corner left = edges.turn_left(c);
-    if (left.half < 0) store(c.left(), !c.forward, angle, c.forward);
+    if (left.half < 0) store(edges.left(c), !c.forward, angle, c.forward);
     if (left.half < 0 || left == start) return;
     c = left;
   }
@@ -144,7 +144,7 @@ bool VertexFrames::forward(const HalfEdges& edges, Half side, bool from_tail) co
 }
 
 VertexFrames find_frames(const TriangleMesh& mesh, const IntrinsicTriangulation& triangulation, unsigned threads) {
-  const HalfEdges input(mesh), edges = triangulation.half_edges();
+  const HalfEdges input = mesh.topology().half_edges(), edges = triangulation.half_edges();
   const auto n = static_cast<std::size_t>(mesh.vertex_count());
   const auto directed = static_cast<std::size_t>(edges.size() + mesh.report().boundary_edges);
   VertexFrames frames;
@@ -162,7 +162,7 @@ std::vector<Frame> frames_in_space(const TriangleMesh& mesh, unsigned threads) {
   std::vector<Frame> frames;
   if (!mesh.has_positions()) return frames;
   frames.resize(static_cast<std::size_t>(mesh.vertex_count()));
-  const HalfEdges edges(mesh);
+  const HalfEdges edges = mesh.topology().half_edges();
   detail::for_each_index(frames.size(), threads,
                          [&](std::size_t v) { frames[v] = frame_in_space(mesh, edges, static_cast<Index>(v)); });
   return frames;

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "ahm/error.hpp"
+#include "ahm/surface/surface_faces.hpp"
 #include "ahm/util/small_math.hpp"
 
 namespace ahm {
@@ -255,6 +256,34 @@ InverseMap inverse_map(const TangentGraph& graph, const LogMap& map, const Inver
   std::vector<Index> sources;
   for (Vertex vertex : map.source().vertices()) sources.push_back(vertex.index);
   return InverseMap({positions, normals, map.coordinates(), valid, triangles, sources}, options);
+}
+
+InverseMap inverse_map(const Surface& surface, const LogMap& map, const InverseMapOptions& options) {
+  const TangentGraph& graph = surface.graph();
+  const std::vector<Vec3> graph_normals = source_side_normals(graph, map);
+  const RowLogMap rows = surface.on_rows(map);
+  const std::size_t n = rows.vertex.size();
+  const std::vector<double> quality = options.min_quality > 0 ? map_quality(graph, map) : std::vector<double>{};
+  std::vector<Vec3> normals(n);
+  std::vector<double> coordinates(2 * n);
+  std::vector<std::uint8_t> valid(n);
+  for (std::size_t r = 0; r < n; ++r) {
+    if (!rows.vertex[r]) continue;
+    const Index v = rows.vertex[r]->index;
+    normals[r] = graph_normals[v];
+    coordinates[2 * r] = rows.u[r], coordinates[2 * r + 1] = rows.v[r];
+    valid[r] = quality.empty() || quality[v] >= options.min_quality;
+  }
+  if (surface.faces().size() > 0)
+    return InverseMap({surface.positions(), normals, coordinates, valid, turned_triangles(surface, normals)}, options);
+  const auto row = [&](Index vertex) { return surface.rows().row(Vertex(vertex)); };
+  std::vector<Triangle> triangles;
+  for (const auto& [a, b, c] : star_triangles(graph, map))
+    if (row(a) && row(b) && row(c)) triangles.push_back({row(a)->index, row(b)->index, row(c)->index});
+  std::vector<Index> sources;
+  for (Vertex v : map.source().vertices())
+    if (row(v.index)) sources.push_back(row(v.index)->index);
+  return InverseMap({surface.positions(), normals, coordinates, valid, triangles, sources}, options);
 }
 
 }  // namespace ahm

@@ -24,36 +24,13 @@ bool repeats_a_vertex(std::span<const Index> face, std::vector<Index>& sorted) {
   return std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end();
 }
 
-void check_faces(Index vertices, const FaceList& faces) {
-  if (vertices < 1) throw InvalidGeometry("the mesh has no vertices");
-  if (faces.begin.size() < 2) throw InvalidGeometry("the mesh has no faces");
-  if (faces.begin.front() != 0 || faces.begin.back() != static_cast<Offset>(faces.vertices.size()) ||
-      !std::is_sorted(faces.begin.begin(), faces.begin.end()))
-    throw InvalidGeometry("'face_begin' must rise from 0 to the number of corners, " +
-                          std::to_string(faces.vertices.size()));
-  if (faces.vertices.size() > static_cast<std::size_t>(std::numeric_limits<Half>::max() - 1))
-    throw InvalidGeometry("the mesh has " + std::to_string(faces.vertices.size()) +
-                          " corners; at most 2^31 - 2 are supported");
-  ItemList outside, repeated, small;
-  std::vector<Index> sorted;
-  for (Index f = 0; f < static_cast<Index>(faces.size()); ++f) {
-    const auto face = faces[f];
-    if (std::any_of(face.begin(), face.end(), [&](Index v) { return v < 0 || v >= vertices; }))
-      outside.add(name(f, face));
-    else if (face.size() < 3)
-      small.add(name(f, face));
-    else if (repeats_a_vertex(face, sorted))
-      repeated.add(name(f, face));
-  }
-  if (outside.count() > 0)
-    throw InvalidGeometry(std::to_string(outside.count()) + " faces have a vertex outside [0, " +
-                          std::to_string(vertices) + "): " + outside.text());
-  if (small.count() > 0)
-    throw InvalidGeometry(std::to_string(small.count()) + " faces have fewer than 3 corners: " + small.text() +
-                          "; remove them");
-  if (repeated.count() > 0)
-    throw InvalidGeometry(std::to_string(repeated.count()) + " faces use a vertex twice: " + repeated.text() +
-                          "; remove them");
+/// Refuses faces with a fault. @param what  "3 faces" have or do
+void refuse(const std::vector<Index>& wrong, const FaceList& faces, const std::string& what,
+            const std::string& advice) {
+  if (wrong.empty()) return;
+  ItemList list;
+  for (Index f : wrong) list.add(name(f, faces[static_cast<std::size_t>(f)]));
+  throw InvalidGeometry(std::to_string(wrong.size()) + " faces " + what + ": " + list.text() + advice);
 }
 
 /// A side of a face, filed under the smaller of its two vertices.
@@ -72,7 +49,7 @@ class Gluer {
   }
 
   /// Finds the sides on each edge.
-  void pair_sides(NonManifold non_manifold) {
+  void pair_sides() {
     fill_buckets();
     for (std::size_t v = 0; v + 1 < begin_.size(); ++v) {
       const auto first = sides_.begin() + begin_[v], last = sides_.begin() + begin_[v + 1];
@@ -86,9 +63,21 @@ class Gluer {
       }
     }
     sides_ = {};
-    refuse_duplicates();
+    std::sort(duplicates_.begin(), duplicates_.end());  // they meet at every one of their edges
+    duplicates_.erase(std::unique(duplicates_.begin(), duplicates_.end()), duplicates_.end());
     result_.non_manifold_edges = static_cast<Index>(crowded_.count());
-    if (crowded_.count() > 0 && non_manifold == NonManifold::error)
+  }
+
+  void refuse_duplicates() const {
+    if (duplicates_.empty()) return;
+    ItemList list;
+    for (const auto& [later, earlier] : duplicates_)
+      list.add("face " + std::to_string(later) + " repeats face " + std::to_string(earlier));
+    throw InvalidGeometry(std::to_string(list.count()) + " faces are duplicates: " + list.text() + "; remove them");
+  }
+
+  void refuse_crowded_edges() const {
+    if (crowded_.count() > 0)
       throw InvalidGeometry("non_manifold_edges",
                             std::to_string(crowded_.count()) + " edges have more than two faces: " + crowded_.text(),
                             "repair them, or cut the mesh there with NonManifold::split");
@@ -118,6 +107,7 @@ class Gluer {
   }
 
   Gluing take() { return std::move(result_); }
+  const std::vector<std::pair<Index, Index>>& duplicates() const { return duplicates_; }
 
  private:
   Half next(Half h) const {
@@ -172,17 +162,6 @@ class Gluer {
                    std::to_string(group.size()) + " faces");
   }
 
-  /// Duplicates meet at every one of their edges.
-  void refuse_duplicates() {
-    if (duplicates_.empty()) return;
-    std::sort(duplicates_.begin(), duplicates_.end());
-    duplicates_.erase(std::unique(duplicates_.begin(), duplicates_.end()), duplicates_.end());
-    ItemList list;
-    for (const auto& [later, earlier] : duplicates_)
-      list.add("face " + std::to_string(later) + " repeats face " + std::to_string(earlier));
-    throw InvalidGeometry(std::to_string(list.count()) + " faces are duplicates: " + list.text() + "; remove them");
-  }
-
   void visit_across(Half h, std::vector<Index>& component) {
     const Half t = result_.partner[h];
     if (t < 0) return;
@@ -228,10 +207,46 @@ void center(std::vector<Vec3>& points) {
 
 }  // namespace
 
-Gluing glue(Index vertices, const FaceList& faces, NonManifold non_manifold) {
-  check_faces(vertices, faces);
+FaceFaults find_faults(Index vertices, const FaceList& faces) {
+  if (vertices < 1) throw InvalidGeometry("the mesh has no vertices");
+  if (faces.begin.size() < 2) throw InvalidGeometry("the mesh has no faces");
+  if (faces.begin.front() != 0 || faces.begin.back() != static_cast<Offset>(faces.vertices.size()) ||
+      !std::is_sorted(faces.begin.begin(), faces.begin.end()))
+    throw InvalidGeometry("'face_begin' must rise from 0 to the number of corners, " +
+                          std::to_string(faces.vertices.size()));
+  if (faces.vertices.size() > static_cast<std::size_t>(std::numeric_limits<Half>::max() - 1))
+    throw InvalidGeometry("the mesh has " + std::to_string(faces.vertices.size()) +
+                          " corners; at most 2^31 - 2 are supported");
+  FaceFaults faults;
+  std::vector<Index> sorted;
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    const auto face = faces[f];
+    const auto number = static_cast<Index>(f);
+    if (std::any_of(face.begin(), face.end(), [&](Index v) { return v < 0 || v >= vertices; }))
+      faults.outside.push_back(number);
+    else if (face.size() < 3)
+      faults.small.push_back(number);
+    else if (repeats_a_vertex(face, sorted))
+      faults.repeating.push_back(number);
+  }
+  return faults;
+}
+
+std::vector<std::pair<Index, Index>> find_duplicates(Index vertices, const FaceList& faces) {
   Gluer gluer(vertices, faces);
-  gluer.pair_sides(non_manifold);
+  gluer.pair_sides();
+  return gluer.duplicates();
+}
+
+Gluing glue(Index vertices, const FaceList& faces, NonManifold non_manifold) {
+  const FaceFaults faults = find_faults(vertices, faces);
+  refuse(faults.outside, faces, "have a vertex outside [0, " + std::to_string(vertices) + ")", "");
+  refuse(faults.small, faces, "have fewer than 3 corners", "; remove them");
+  refuse(faults.repeating, faces, "use a vertex twice", "; remove them");
+  Gluer gluer(vertices, faces);
+  gluer.pair_sides();
+  gluer.refuse_duplicates();
+  if (non_manifold == NonManifold::error) gluer.refuse_crowded_edges();
   gluer.orient();
   return gluer.take();
 }

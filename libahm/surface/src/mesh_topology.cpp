@@ -1,6 +1,51 @@
 #include "ahm/surface/mesh_topology.hpp"
 
+#include "ahm/surface/glued_mesh.hpp"
+#include "ahm/surface/gluing.hpp"
+
 namespace ahm {
+namespace {
+
+/// Some faces of a mesh, and their numbers there.
+struct Remaining {
+  std::vector<Offset> begin{0};
+  std::vector<Index> vertices, number;
+
+  FaceList faces() const { return {begin, vertices}; }
+};
+
+/// The faces without those that are listed.
+Remaining without(const FaceList& faces, const std::vector<bool>& left_out) {
+  Remaining result;
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    if (left_out[f]) continue;
+    result.vertices.insert(result.vertices.end(), faces[f].begin(), faces[f].end());
+    result.begin.push_back(static_cast<Offset>(result.vertices.size()));
+    result.number.push_back(static_cast<Index>(f));
+  }
+  return result;
+}
+
+}  // namespace
+
+MeshInspection inspect_mesh(Index vertices, const FaceList& faces) {
+  MeshInspection result;
+  result.topology.vertices = vertices;
+  if (vertices < 1 || faces.size() == 0) return result;
+  detail::FaceFaults faults = detail::find_faults(vertices, faces);
+  std::vector<bool> left_out(faces.size(), false);
+  for (const auto* wrong : {&faults.outside, &faults.small, &faults.repeating})
+    for (Index f : *wrong) left_out[f] = true;
+  result.outside = std::move(faults.outside);
+  result.small = std::move(faults.small);
+  result.repeating = std::move(faults.repeating);
+  Remaining rest = without(faces, left_out);
+  for (const auto& [later, earlier] : detail::find_duplicates(vertices, rest.faces()))
+    if (const Index f = rest.number[later]; !left_out[f]) left_out[f] = true, result.duplicates.push_back(f);
+  if (!result.duplicates.empty()) rest = without(faces, left_out);
+  if (!rest.number.empty()) result.topology = detail::GluedMesh(vertices, rest.faces(), NonManifold::split).report();
+  return result;
+}
 
 Report figures(const TopologyReport& t) {
   return {{"components", t.components},

@@ -324,4 +324,22 @@ void Surface::check(const EdgePoint& point) const {
     throw InvalidArgument("t is " + detail::number(point.t) + " on an edge; it must be in [0, 1]");
 }
 
+std::vector<Vec3> distance_gradients(const Surface& surface, const LogMap& map, const RowLogMap& rows) {
+  const TangentGraph& graph = surface.graph();
+  if (map.size() != graph.size() || map.frames().empty())
+    throw InvalidArgument("distance_gradients: the map has no frames, or belongs to another graph");
+  const double at_source = 1e-8 * graph.mean_edge_length() * graph.length_unit();
+  std::vector<Vec3> result(rows.vertex.size(), Vec3{nan, nan, nan});
+  for (std::size_t r = 0; r < result.size(); ++r) {
+    if (!rows.vertex[r]) continue;
+    const std::optional<Frame> frame = graph.frame(rows.vertex[r]->index);
+    if (!frame) continue;
+    const auto U = map.frames().subspan(4 * static_cast<std::size_t>(rows.vertex[r]->index), 4);
+    const double scale = rows.distance[r] > at_source ? 1 / rows.distance[r] : 0;
+    const double a = scale * (U[0] * rows.u[r] + U[1] * rows.v[r]), b = scale * (U[2] * rows.u[r] + U[3] * rows.v[r]);
+    result[r] = a * frame->x + b * frame->y;
+  }
+  return result;
+}
+
 }  // namespace ahm

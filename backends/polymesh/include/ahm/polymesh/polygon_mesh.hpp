@@ -12,9 +12,10 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
-#include "ahm/surface/mesh_topology.hpp"
+#include "ahm/surface/glued_mesh.hpp"
 #include "ahm/types.hpp"
 
 namespace ahm::polymesh {
@@ -45,18 +46,15 @@ class PolygonMesh {
   static PolygonMesh from_faces(std::span<const Vec3> positions, std::span<const Offset> face_begin,
                                 std::span<const Index> face_vertices, NonManifold non_manifold = NonManifold::error);
 
-  Index vertex_count() const noexcept { return static_cast<Index>(input_of_vertex_.size()); }
-  Index face_count() const noexcept { return static_cast<Index>(face_begin_.size()) - 1; }
-  const TopologyReport& report() const noexcept { return report_; }
+  Index vertex_count() const noexcept { return topology_.vertex_count(); }
+  Index face_count() const noexcept { return topology_.face_count(); }
+  const TopologyReport& report() const noexcept { return topology_.report(); }
+  const detail::GluedMesh& topology() const noexcept { return topology_; }
 
-  std::span<const Offset> face_begin() const noexcept { return face_begin_; }
+  std::span<const Offset> face_begin() const noexcept { return topology_.face_begin(); }
   /// Vertices of all corners, oriented.
-  std::span<const Index> corners() const noexcept { return corner_; }
-  std::span<const Index> face(Index f) const {
-    const auto first = static_cast<std::size_t>(face_begin_[f]);
-    return std::span(corner_).subspan(first,
-                                      static_cast<std::size_t>(face_begin_[static_cast<std::size_t>(f) + 1]) - first);
-  }
+  std::span<const Index> corners() const noexcept { return topology_.half_edges().tail; }
+  std::span<const Index> face(Index f) const { return FaceList{face_begin(), corners()}[static_cast<std::size_t>(f)]; }
   /// Faces at a vertex: numbers of its corners, the first oriented like the vertex.
   std::span<const Offset> corners_at(Index vertex) const {
     const auto first = static_cast<std::size_t>(at_begin_[vertex]);
@@ -64,21 +62,21 @@ class PolygonMesh {
                                   static_cast<std::size_t>(at_begin_[static_cast<std::size_t>(vertex) + 1]) - first);
   }
   /// Face of a corner.
-  Index face_of(Offset corner) const { return face_of_[corner]; }
+  Index face_of(Offset corner) const { return topology_.face_of(corner); }
   /// Whether the face of a corner is oriented against the vertex there; never on an orientable mesh.
   bool mirrored(Offset corner) const { return !mirrored_.empty() && mirrored_[corner] != 0; }
   /// Whether a face was turned over.
-  bool reversed(Index f) const { return reversed_[f] != 0; }
+  bool reversed(Index f) const { return topology_.reversed()[f] != 0; }
 
   /// First vertex of each input vertex, -1 where no face uses it.
-  std::span<const Index> vertex_of_input() const noexcept { return vertex_of_input_; }
+  std::span<const Index> vertex_of_input() const noexcept { return topology_.vertex_of_input(); }
   /// Input vertex of each vertex.
-  std::span<const Index> input_of_vertex() const noexcept { return input_of_vertex_; }
+  std::span<const Index> input_of_vertex() const noexcept { return topology_.input_of_vertex(); }
 
   /// Position of a vertex in units of `length_unit()` about the middle of the bounding box.
   const Vec3& position(Index vertex) const { return position_[vertex]; }
   /// Position of a vertex as given.
-  const Vec3& original_position(Index vertex) const { return input_[input_of_vertex_[vertex]]; }
+  const Vec3& original_position(Index vertex) const { return input_[input_of_vertex()[vertex]]; }
   /// Positions of all input vertices as given.
   std::span<const Vec3> input_positions() const noexcept { return input_; }
   /// A power of two near the size of the mesh.
@@ -88,22 +86,13 @@ class PolygonMesh {
   Refinement refined() const;
 
  private:
-  PolygonMesh() = default;
-  struct Sides;
-  void number_vertices(const Sides& sides, NonManifold non_manifold);
+  explicit PolygonMesh(detail::GluedMesh topology) : topology_(std::move(topology)) {}
   void collect_corners();
-  void orient_vertices(const Sides& sides);
-  void count_parts(const Sides& sides);
+  void orient_vertices();
 
-  TopologyReport report_;
-  std::vector<Offset> face_begin_;
-  std::vector<Index> corner_;
-  std::vector<Index> face_of_;
-  std::vector<std::uint8_t> mirrored_;
-  std::vector<std::uint8_t> reversed_;
+  detail::GluedMesh topology_;
   std::vector<Offset> at_begin_, at_;
-  std::vector<Index> vertex_of_input_;
-  std::vector<Index> input_of_vertex_;
+  std::vector<std::uint8_t> mirrored_;
   std::vector<Vec3> position_;
   std::vector<Vec3> input_;
   double length_unit_ = 1.0;

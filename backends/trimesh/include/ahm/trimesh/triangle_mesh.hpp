@@ -13,13 +13,13 @@
 #include <span>
 #include <vector>
 
-#include "ahm/surface/mesh_topology.hpp"
+#include "ahm/surface/glued_mesh.hpp"
 #include "ahm/types.hpp"
 
 namespace ahm::trimesh {
 
 /// A half-edge of a mesh: 3 f + s is side s of face f, from its corner s to its corner s + 1 (mod 3).
-using Half = std::int32_t;
+using detail::Half;
 
 using ahm::NonManifold;
 using ahm::TopologyReport;
@@ -44,31 +44,32 @@ class TriangleMesh {
                                         std::span<const std::array<double, 3>> lengths,
                                         NonManifold non_manifold = NonManifold::error);
 
-  Index vertex_count() const noexcept { return static_cast<Index>(input_of_vertex_.size()); }
-  Index face_count() const noexcept { return static_cast<Index>(tail_.size() / 3); }
-  const TopologyReport& report() const noexcept { return report_; }
+  Index vertex_count() const noexcept { return topology_.vertex_count(); }
+  Index face_count() const noexcept { return topology_.face_count(); }
+  const TopologyReport& report() const noexcept { return topology_.report(); }
+  const detail::GluedMesh& topology() const noexcept { return topology_; }
 
   /// Vertex at the start of each half-edge.
-  std::span<const Index> tails() const noexcept { return tail_; }
+  std::span<const Index> tails() const noexcept { return topology_.half_edges().tail; }
   /// Opposite half-edge; negative, -1 minus the number of the boundary edge, on the boundary.
-  std::span<const Half> twins() const noexcept { return twin_; }
+  std::span<const Half> twins() const noexcept { return topology_.half_edges().twin; }
   /// 1 where the two faces at a half-edge are oppositely oriented; empty on an orientable mesh.
-  std::span<const std::uint8_t> mirrored() const noexcept { return mirrored_; }
+  std::span<const std::uint8_t> mirrored() const noexcept { return topology_.half_edges().mirrored; }
   /// 1 where a face was turned over.
-  std::span<const std::uint8_t> reversed() const noexcept { return reversed_; }
+  std::span<const std::uint8_t> reversed() const noexcept { return topology_.reversed(); }
   /// One half-edge that starts at each vertex; the vertex is oriented like its face.
-  std::span<const Half> corners() const noexcept { return corner_; }
+  std::span<const Half> corners() const noexcept { return topology_.corners(); }
 
   /// First vertex of each input vertex, -1 where no face uses it.
-  std::span<const Index> vertex_of_input() const noexcept { return vertex_of_input_; }
+  std::span<const Index> vertex_of_input() const noexcept { return topology_.vertex_of_input(); }
   /// Input vertex of each vertex.
-  std::span<const Index> input_of_vertex() const noexcept { return input_of_vertex_; }
+  std::span<const Index> input_of_vertex() const noexcept { return topology_.input_of_vertex(); }
 
   bool has_positions() const noexcept { return !position_.empty(); }
   /// Position of a vertex in units of `length_unit()` about the middle of the bounding box.
   const Vec3& position(Index vertex) const { return position_[vertex]; }
   /// Position of a vertex as given.
-  const Vec3& original_position(Index vertex) const { return input_[input_of_vertex_[vertex]]; }
+  const Vec3& original_position(Index vertex) const { return input_[input_of_vertex()[vertex]]; }
   /// Positions of all input vertices as given; empty without positions.
   std::span<const Vec3> input_positions() const noexcept { return input_; }
   /// A power of two near the size of the mesh.
@@ -78,22 +79,12 @@ class TriangleMesh {
   std::array<std::array<double, 2>, 3> layout(Index face) const;
 
   /// Corner of the face as stored, for a corner of the face as given, and the other way round.
-  int stored_corner(Index face, int corner) const { return reversed_[face] ? (3 - corner) % 3 : corner; }
+  int stored_corner(Index face, int corner) const { return topology_.stored_corner(face, corner); }
 
  private:
   TriangleMesh(Index vertices, std::span<const Triangle> faces, NonManifold non_manifold);
-  void build_half_edges(Index vertices, std::span<const Triangle> faces, NonManifold non_manifold);
-  void number_vertices(NonManifold non_manifold);
-  void count_parts();
 
-  TopologyReport report_;
-  std::vector<Index> tail_;
-  std::vector<Half> twin_;
-  std::vector<std::uint8_t> mirrored_;
-  std::vector<std::uint8_t> reversed_;
-  std::vector<Half> corner_;
-  std::vector<Index> vertex_of_input_;
-  std::vector<Index> input_of_vertex_;
+  detail::GluedMesh topology_;
   std::vector<Vec3> position_;  ///< per vertex, or empty
   std::vector<Vec3> input_;     ///< per input vertex, or empty
   std::vector<double> length_;  ///< per half-edge, or empty

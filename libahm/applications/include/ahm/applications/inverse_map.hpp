@@ -3,7 +3,7 @@
 ///
 /// \code
 /// ahm::LogMap map = solver.solve(source, {.frames = true});
-/// ahm::InverseMap inverse = ahm::inverse_map(graph, map);            // any backend that knows frames
+/// ahm::InverseMap inverse = ahm::inverse_map(surface, map);          // or of a graph that knows frames
 /// if (auto point = inverse.at(0.3, -0.1)) use(point->position, point->normal, point->frame().x);
 /// \endcode
 #pragma once
@@ -18,6 +18,7 @@
 #include "ahm/maps/log_map.hpp"
 #include "ahm/maps/quality.hpp"
 #include "ahm/surface/star_triangles.hpp"
+#include "ahm/surface/surface.hpp"
 
 namespace ahm {
 
@@ -100,5 +101,12 @@ class InverseMap {
 /// @param map  with frames, of this graph, of dimension 2
 /// @throws InvalidArgument
 InverseMap inverse_map(const TangentGraph& graph, const LogMap& map, const InverseMapOptions& options = {});
+
+/// The inverse of a map on a surface, by rows: vertices of the inverse are rows of the input. Where there are faces, it
+/// answers with points on them, whatever the graph looks like (of several vertices of a row the one nearest to the source
+/// counts); else with the triangles of the graph, of rows that are the first ones of their vertices.
+/// @param map  with frames, of the surface's graph
+/// @throws InvalidArgument
+InverseMap inverse_map(const Surface& surface, const LogMap& map, const InverseMapOptions& options = {});
 
 }  // namespace ahm

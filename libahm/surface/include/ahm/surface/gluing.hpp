@@ -5,15 +5,14 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "ahm/surface/half_edges.hpp"
 #include "ahm/surface/mesh_topology.hpp"
 #include "ahm/types.hpp"
 
 namespace ahm::detail {
-
-/// A side of a face: number h of the corners of all faces, from the vertex there to that of the face's next corner.
-using Half = std::int32_t;
 
 /// Sides of the faces as given that lie on each other.
 struct Gluing {
@@ -39,6 +38,17 @@ class ItemList {
   Offset count_ = 0;
   std::string text_;
 };
+
+/// Faces that cannot be glued to others, in ascending order.
+struct FaceFaults {
+  std::vector<Index> outside, small, repeating;  ///< as of `MeshInspection`
+};
+
+/// @throws InvalidGeometry (no vertices, no faces, offsets, more than 2^31 - 2 corners)
+FaceFaults find_faults(Index vertices, const FaceList& faces);
+
+/// Pairs of equal faces, the later one first, among faces without other faults; sorted.
+std::vector<std::pair<Index, Index>> find_duplicates(Index vertices, const FaceList& faces);
 
 /// Checks indices, corners, repeated vertices, duplicate faces and edges with more than two faces, and orients every
 /// component like the majority of its faces.

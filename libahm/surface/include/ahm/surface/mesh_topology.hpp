@@ -2,6 +2,7 @@
 /// What the backends for meshes check, and what they tell about it.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "ahm/report.hpp"
@@ -29,7 +30,29 @@ struct TopologyReport {
   Index boundary_loops = 0;
   Index non_manifold_edges = 0;     ///< cut (NonManifold::split)
   Index non_manifold_vertices = 0;  ///< split into several (NonManifold::split)
+  /// Of the mesh as it is built (after splitting, without unreferenced vertices).
+  Offset edges = 0;
+  Offset euler_characteristic = 0;  ///< vertices - edges + faces
+
+  /// Handles of all components together; none where the mesh is not orientable.
+  std::optional<Offset> genus() const {
+    if (!orientable) return std::nullopt;
+    return (2 * Offset{components} - euler_characteristic - boundary_loops) / 2;
+  }
 };
+
+/// What is wrong with the faces of a mesh, and the topology of the others.
+struct MeshInspection {
+  std::vector<Index> outside;     ///< faces with a vertex that there is not
+  std::vector<Index> small;       ///< of fewer than three corners
+  std::vector<Index> repeating;   ///< that use a vertex twice
+  std::vector<Index> duplicates;  ///< of faces with smaller numbers
+  TopologyReport topology;        ///< of what is left, cut where it is no manifold; zeros where nothing is left
+};
+
+/// Looks at any mesh, also at one that cannot be built. `face.begin` must rise from 0 to the number of corners.
+/// @throws InvalidGeometry (offsets)
+MeshInspection inspect_mesh(Index vertices, const FaceList& faces);
 
 /// components, boundary_loops, orientable, reoriented, unreferenced, non_manifold_edges, non_manifold_vertices: the figures
 /// of a mesh's report that are about its topology.

@@ -127,4 +127,11 @@ class Surface {
   std::unique_ptr<Lazy> lazy_;
 };
 
+/// Unit vectors of space that point away from the source along the surface, one per row: the map's own direction, carried
+/// to the vertex by its frame. Zero at the source, NaN where the status is not ok.
+/// @param map   with frames, of the surface's graph
+/// @param rows  `surface.on_rows(map)`
+/// @throws InvalidArgument (another graph's map, no frames)
+std::vector<Vec3> distance_gradients(const Surface& surface, const LogMap& map, const RowLogMap& rows);
+
 }  // namespace ahm

@@ -1,0 +1,151 @@
+#include "ahm/applications/surface_curve.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "ahm/error.hpp"
+#include "ahm/util/text.hpp"
+#include "ahm/util/vec.hpp"
+
+namespace ahm {
+namespace {
+
+constexpr double most_points = 1e6;
+
+/// A point of the curve: how the surface finds it, and where it is.
+struct CurveSample {
+  SurfacePoint point;
+  Vec3 position;
+};
+
+double length_of(const std::vector<Vec3>& corners) {
+  double length = 0;
+  for (std::size_t k = 0; k + 1 < corners.size(); ++k) length += distance(corners[k], corners[k + 1]);
+  return length;
+}
+
+/// The given points as corners, and points on the straight lines between them; the largest distance of these from the
+/// surface.
+std::vector<CurveSample> sample(const Surface& surface, std::span<const CurvePoint> given, bool closed, double step,
+                                double& gap) {
+  std::vector<Vec3> corners;
+  corners.reserve(given.size() + 1);
+  for (const CurvePoint& point : given) {
+    const auto* in_space = std::get_if<Vec3>(&point);
+    corners.push_back(in_space ? *in_space : surface.position(std::get<SurfacePoint>(point)));
+  }
+  if (closed && !corners.empty()) corners.push_back(corners.front());
+  if (const double length = length_of(corners); !(length / step < most_points))
+    throw InvalidArgument("curve_too_long",
+                          "the curve is " + detail::number(length) + " long, more than " + detail::number(most_points) +
+                              " times half the mean edge length of " + detail::number(2 * step),
+                          "is it in the units of the surface?");
+
+  std::vector<CurveSample> samples;
+  const auto project = [&](const Vec3& p) {
+    ClosestPoint closest = surface.closest_point(p);
+    samples.push_back({std::move(closest.point), closest.position});
+    gap = std::max(gap, distance(closest.position, p));
+  };
+  for (std::size_t k = 0; k < corners.size(); ++k) {
+    if (k + 1 == corners.size() && closed) break;
+    if (const auto* on_surface = std::get_if<SurfacePoint>(&given[k]))
+      samples.push_back({*on_surface, corners[k]});
+    else
+      project(corners[k]);
+    if (k + 1 == corners.size()) break;
+    const int pieces = static_cast<int>(std::ceil(distance(corners[k], corners[k + 1]) / step));
+    for (int p = 1; p < pieces; ++p)
+      project(corners[k] + static_cast<double>(p) / pieces * (corners[k + 1] - corners[k]));
+  }
+  return samples;
+}
+
+/// Leaves out points that coincide with the one before.
+void thin(std::vector<CurveSample>& samples, bool closed, double least) {
+  const auto close = [&](const CurveSample& a, const CurveSample& b) {
+    return distance(a.position, b.position) < least;
+  };
+  samples.erase(std::unique(samples.begin(), samples.end(), close), samples.end());
+  while (closed && samples.size() > 1 && close(samples.front(), samples.back())) samples.pop_back();
+  const std::size_t needed = closed ? 3 : 2;
+  if (samples.size() < needed)
+    throw InvalidArgument("curve_too_short",
+                          "the curve has " + std::to_string(samples.size()) + " different points on the surface",
+                          "give at least " + std::to_string(needed) + (closed ? " for a closed curve" : ""));
+}
+
+/// Direction that halves the angle between arriving at point k and leaving it.
+Vec3 tangent(const std::vector<CurveSample>& samples, std::size_t k, bool closed) {
+  const std::size_t n = samples.size();
+  Vec3 sum{};
+  const auto add = [&](std::size_t from, std::size_t to) {
+    const double length = distance(samples[from].position, samples[to].position);
+    for (std::size_t a = 0; a < 3; ++a) sum[a] += (samples[to].position[a] - samples[from].position[a]) / length;
+  };
+  if (k > 0 || closed) add((k + n - 1) % n, k);
+  if (k + 1 < n || closed) add(k, (k + 1) % n);
+  if (!(dot(sum, sum) > 1e-6)) {
+    const Vec3& p = samples[k].position;
+    throw InvalidArgument(
+        "curve_turns_back",
+        "the curve turns back at " + detail::number(p[0]) + " " + detail::number(p[1]) + " " + detail::number(p[2]),
+        "split it there");
+  }
+  return sum;
+}
+
+/// The source seen from the other side of the surface.
+Source mirrored(const Source& source) {
+  Source result(2);
+  for (std::size_t k = 0; k < source.vertices().size(); ++k) {
+    std::vector<double> offset(source.offsets().begin() + static_cast<std::ptrdiff_t>(2 * k),
+                               source.offsets().begin() + static_cast<std::ptrdiff_t>(2 * k + 2)),
+        axes(source.axes().begin() + static_cast<std::ptrdiff_t>(4 * k),
+             source.axes().begin() + static_cast<std::ptrdiff_t>(4 * k + 4));
+    offset[1] = -offset[1], axes[1] = -axes[1], axes[3] = -axes[3];
+    result.add(source.vertices()[k], source.weights()[k], offset, axes);
+  }
+  return result;
+}
+
+}  // namespace
+
+SurfaceCurve draw_curve(const Surface& surface, std::span<const CurvePoint> given, const StrokeOptions& options) {
+  const TangentGraph& graph = surface.graph();
+  const double edge = graph.mean_edge_length() * graph.length_unit();
+  SurfaceCurve curve;
+  std::vector<CurveSample> samples = sample(surface, given, options.closed, edge / 2, curve.gap);
+  thin(samples, options.closed, 1e-6 * edge);
+
+  const bool may_mirror = graph.transport_kind() == TransportKind::block;
+  const std::size_t n = samples.size();
+  std::vector<Source> sources;
+  std::vector<double> lengths;
+  Vec3 normal{};
+  double side = 1;
+  // Frames that look to different sides of the surface have different left sides.
+  const auto turn_over = [&](const std::optional<Frame>& frame) {
+    if (may_mirror && frame && dot(frame->normal, normal) < 0) side = -side;
+    if (frame) normal = frame->normal;
+  };
+  for (std::size_t k = 0; k < n; ++k) {
+    const PlacedSource point = surface.source(samples[k].point, tangent(samples, k, options.closed));
+    if (k == 0) curve.first = point.frame;
+    turn_over(point.frame);
+    sources.push_back(side < 0 ? mirrored(point.source) : point.source);
+    curve.points.push_back(samples[k].position);
+    if (k + 1 < n || options.closed) lengths.push_back(distance(samples[k].position, samples[(k + 1) % n].position));
+  }
+  if (options.closed) turn_over(curve.first);
+  if (side < 0 && options.closed)
+    throw InvalidArgument("curve_one_sided", "the curve runs along a one-sided band, so it has no left",
+                          "leave it open");
+  for (double length : lengths) curve.length += length, curve.jump = std::max(curve.jump, length);
+  curve.source = stroke_source(sources, lengths, options);
+  return curve;
+}
+
+}  // namespace ahm

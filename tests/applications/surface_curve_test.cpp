@@ -1,0 +1,112 @@
+// Curves drawn on surfaces: on flat ones, arclength and signed distance exactly.
+#include "ahm/applications/surface_curve.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <string>
+
+#include "ahm/error.hpp"
+#include "ahm/maps/log_map_solver.hpp"
+#include "ahm/pointcloud/point_cloud_surface.hpp"
+#include "ahm/polymesh/polygon_mesh_surface.hpp"
+#include "ahm/testing/triangle_meshes.hpp"
+#include "ahm/trimesh/triangle_mesh_surface.hpp"
+
+namespace ahm::test {
+namespace {
+
+constexpr Index side = 16;
+
+/// The unit square in z = 0, points of its inside moved a little.
+std::vector<Vec3> square_points() {
+  std::vector<Vec3> points;
+  for (Index y = 0; y < side; ++y)
+    for (Index x = 0; x < side; ++x) {
+      const bool inside = x > 0 && y > 0 && x + 1 < side && y + 1 < side;
+      points.push_back({(x + (inside ? 0.2 * std::sin(7.0 * y) : 0)) / (side - 1),
+                        (y + (inside ? 0.2 * std::cos(5.0 * x) : 0)) / (side - 1), 0});
+    }
+  return points;
+}
+
+/// Calls visit(surface) for the square as triangles, as quadrilaterals and as points.
+void for_each_square(const std::function<void(const Surface&)>& visit) {
+  const std::vector<Vec3> points = square_points();
+  std::vector<Triangle> triangles;
+  std::vector<Offset> begin{0};
+  std::vector<Index> corners;
+  for (Index y = 0; y + 1 < side; ++y)
+    for (Index x = 0; x + 1 < side; ++x) {
+      const Index i = y * side + x;
+      triangles.insert(triangles.end(), {{i, i + 1, i + side + 1}, {i, i + side + 1, i + side}});
+      corners.insert(corners.end(), {i, i + 1, i + side + 1, i + side});
+      begin.push_back(static_cast<Offset>(corners.size()));
+    }
+  visit(trimesh::TriangleMeshSurface::build(points, triangles));
+  visit(polymesh::PolygonMeshSurface::build(points, begin, corners,
+                                            {.discretization = polymesh::Discretization::polygons}));
+  visit(polymesh::PolygonMeshSurface::build(points, begin, corners));
+  visit(pointcloud::PointCloudSurface::build(points));
+}
+
+TEST(SurfaceCurve, AStraightLineInSpaceGivesArclengthAndSignedDistanceBelow) {
+  for_each_square([](const Surface& surface) {
+    const Vec3 from{0.2, 0.3, 0.01}, to{0.8, 0.5, 0.01};
+    const double length = std::hypot(0.6, 0.2), c = 0.6 / length, s = 0.2 / length;
+    const CurvePoint given[] = {from, Vec3{0.5, 0.4, 0.01}, to};
+    const SurfaceCurve curve = draw_curve(surface, given);
+    EXPECT_NEAR(curve.length, length, 1e-12);
+    EXPECT_NEAR(curve.gap, 0.01, 1e-12);
+    const TangentGraph& graph = surface.graph();
+    EXPECT_LE(curve.jump, 0.5 * graph.mean_edge_length() * graph.length_unit() + 1e-12);
+    ASSERT_TRUE(curve.first);
+    EXPECT_NEAR(curve.first->x[0], c, 1e-12);
+    const double left = curve.first->normal[2];  // 1 or -1
+    const RowLogMap map = surface.on_rows(LogMapSolver(graph).solve(curve.source));
+    for (std::size_t r = 0; r < map.u.size(); ++r) {
+      const double x = surface.positions()[r][0] - from[0], y = surface.positions()[r][1] - from[1];
+      ASSERT_NEAR(map.u[r], c * x + s * y, 1e-9);
+      ASSERT_NEAR(map.v[r], left * (c * y - s * x), 1e-9);
+    }
+  });
+}
+
+TEST(SurfaceCurve, GoesThroughRowsThatAreGiven) {
+  for_each_square([](const Surface& surface) {
+    const CurvePoint given[] = {SurfacePoint(Row(5 * side + 3)), Vec3{0.7, 0.8, 0}, SurfacePoint(Row(9 * side + 12))};
+    const SurfaceCurve curve = draw_curve(surface, given);
+    EXPECT_EQ(curve.points.front(), surface.positions()[5 * side + 3]);
+    EXPECT_EQ(curve.points.back(), surface.positions()[9 * side + 12]);
+    EXPECT_LT(curve.gap, 1e-12);
+  });
+}
+
+TEST(SurfaceCurve, SaysWhatIsWrongWithACurve) {
+  const Mesh band = moebius_mesh(80, 6);
+  const auto surface = trimesh::TriangleMeshSurface::build(band.positions, band.faces);
+  const auto fault = [&](const std::vector<CurvePoint>& given, bool closed) -> std::string {
+    try {
+      draw_curve(surface, given, {.closed = closed});
+    } catch (const InvalidArgument& e) {
+      return std::string(e.fault());
+    }
+    return "none";
+  };
+  std::vector<CurvePoint> round;
+  for (int k = 0; k < 40; ++k) {
+    const double angle = 2 * std::numbers::pi * k / 40;
+    round.push_back(Vec3{std::cos(angle), std::sin(angle), 0});
+  }
+  EXPECT_EQ(fault(round, false), "none");
+  EXPECT_EQ(fault(round, true), "curve_one_sided");
+  EXPECT_EQ(fault({round[0], round[0]}, false), "curve_too_short");
+  EXPECT_EQ(fault({round[0], round[1], round[0]}, false), "curve_turns_back");
+  EXPECT_EQ(fault({Vec3{0, 0, 0}, Vec3{1e7, 0, 0}}, false), "curve_too_long");
+  EXPECT_EQ(fault({}, false), "curve_too_short");
+}
+
+}  // namespace
+}  // namespace ahm::test
