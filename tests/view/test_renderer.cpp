@@ -83,6 +83,21 @@ TEST(Renderer, HidesDotsSourceAndCurveBehindTheSurface) {
   EXPECT_GT(Pixels(draw_picture(scene, options)).count(is_source_red), 20);
 }
 
+TEST(Renderer, LooksAtTheSourceThroughAGap) {
+  // A shell with a hole at one side, seen from the source inside of it: nothing but the hole shows it.
+  Sphere shell(6000);
+  std::vector<Vec3> points;
+  for (const Vec3& p : shell.points)
+    if (p[0] + 0.4 * p[1] < 0.75) points.push_back(p);
+  points.push_back({-0.5, 0, 0});
+  const std::vector<double> zero(points.size(), 0.0);
+  Scene scene;
+  scene.points = points, scene.u = scene.v = zero;
+  scene.source = points.back();
+  scene.source_axes = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  EXPECT_GT(Pixels(draw_picture(scene)).count(is_source_red), 50);
+}
+
 TEST(Renderer, ADotOnThinGroundIsSeenFromAboveAlone) {
   for (const bool is_mesh : {true, false}) {
     const Patch patch(60, is_mesh);
