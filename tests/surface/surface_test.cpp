@@ -11,7 +11,7 @@
 #include "ahm/maps/log_map_solver.hpp"
 #include "ahm/pointcloud/point_cloud_surface.hpp"
 #include "ahm/polymesh/polygon_mesh_surface.hpp"
-#include "trimesh/meshes.hpp"
+#include "ahm/testing/triangle_meshes.hpp"
 
 namespace ahm::test {
 namespace {
