@@ -28,7 +28,8 @@ vec3 shade(const Material& material, Fragment& f) {
               glsl::from_srgb(static_cast<float>(blue))};
     f.opacity = material.transparent ? static_cast<float>(opacity) : 1;
   }
-  return glsl::clamp(glsl::lit(colour, f.normal, vec3(0, 0, 1)), 0, 1);
+  const bool glossy = material.kind == Material::Kind::pattern;  // images keep their hues
+  return glsl::clamp(glossy ? glsl::lit(colour, f.normal, vec3(0, 0, 1)) : glsl::matte(colour, f.normal), 0, 1);
 }
 
 }  // namespace ahm::view

@@ -96,10 +96,14 @@ vec3 untrusted_colour(vec3 colour, vec2 pixel, float pixel_size) {
 }
 
 // Light from over the viewer's left shoulder, in camera coordinates; the normal looks towards the viewer.
-vec3 lit(vec3 colour, vec3 normal, vec3 to_eye) {
+vec3 matte(vec3 colour, vec3 normal) {
   vec3 key = normalize(vec3(-0.35, 0.55, 0.85));
   float diffuse = max(0.0, 0.75 * dot(normal, key) + 0.25);
   float sky = 0.5 + 0.5 * normal.y;
-  float gloss = pow(max(0.0, dot(normal, normalize(key + to_eye))), 60.0);
-  return colour * (0.20 + 0.12 * sky + 0.86 * diffuse) + vec3(0.03 * gloss);
+  return colour * (0.20 + 0.12 * sky + 0.86 * diffuse);
+}
+
+vec3 lit(vec3 colour, vec3 normal, vec3 to_eye) {
+  vec3 half_way = normalize(normalize(vec3(-0.35, 0.55, 0.85)) + to_eye);
+  return matte(colour, normal) + vec3(0.03 * pow(max(0.0, dot(normal, half_way)), 60.0));
 }

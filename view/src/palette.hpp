@@ -12,6 +12,7 @@ vec3 distance_colour(float t);
 vec3 plain_colour();
 vec3 unknown_colour();
 vec3 untrusted_colour(vec3 colour, vec2 pixel, float pixel_size);
+vec3 matte(vec3 colour, vec3 normal);
 vec3 lit(vec3 colour, vec3 normal, vec3 to_eye);
 
 /// Light of a number of an sRGB picture, and the number of a light in 65535ths.

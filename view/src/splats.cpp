@@ -1,4 +1,3 @@
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
@@ -6,6 +5,7 @@
 #include <span>
 
 #include "ahm/pointcloud/neighbor_search.hpp"
+#include "ahm/pointcloud/plane_fit.hpp"
 #include "ahm/util/parallel.hpp"
 #include "drawable.hpp"
 
@@ -22,18 +22,6 @@ struct Local {
   float radius = 0;
   std::array<std::uint32_t, ring_size> ring{};
 };
-
-/// The direction in which these points are thinnest.
-Vector3f thinnest_direction(const std::vector<Vec3>& points, std::span<const Index> index) {
-  if (index.size() < 3) return Vector3f::Zero();
-  Vector3d mean = Vector3d::Zero();
-  for (const Index k : index) mean += as_vector(points[k]) / static_cast<double>(index.size());
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-  for (const Index k : index) covariance += (as_vector(points[k]) - mean) * (as_vector(points[k]) - mean).transpose();
-  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
-  solver.computeDirect(covariance);
-  return solver.eigenvectors().col(0).cast<float>();
-}
 
 /// Radii within bounds: no blob for a floater (its neighbours lie closer to each other than to it), no pinhole for a
 /// doubled point, nothing far from the median.
@@ -96,8 +84,13 @@ class Splatter {
     const std::size_t wanted = estimate ? neighbours_for_normal : ring_size + 1;
     const auto found = static_cast<std::size_t>(
         search.nearest(points_[k], std::span(index).first(wanted), std::span(squared).first(wanted)));
-    out_.normals[k] =
-        estimate ? thinnest_direction(points_, std::span(index).first(found)) : given.normalized().cast<float>().eval();
+    if (estimate && found > 0) {
+      const Vec3 normal =
+          pointcloud::fit_plane(points_, static_cast<Index>(k), std::span(index).subspan(1, found - 1)).normal;
+      out_.normals[k] = as_vector(normal).cast<float>();
+    } else {
+      out_.normals[k] = given.normalized().cast<float>();
+    }
     // The first one found is the point itself, or its double.
     const std::size_t used = std::min(found, ring_size + 1);
     Local local;

@@ -50,18 +50,18 @@ Painted painted(const io::MeshPart& part, const Camera& camera) {
            .transparent = part.transparent && part.texture}};
 }
 
-Painted painted_points(const TexturedScene& scene, const Camera& camera) {
-  Drawable d;
-  for (std::size_t i = 0; i < scene.points.size(); ++i) {
-    const Vector3d x = camera.to_scene(scene.points[i]);
-    if (!x.allFinite()) continue;
-    const Vector3d normal = scene.normals.empty() ? Vector3d::Zero().eval() : as_vector(scene.normals[i]).eval();
-    const auto& c = scene.colors[i];
-    d.positions.push_back(x.cast<float>());
-    d.normals.push_back(normal.allFinite() ? normal.cast<float>().eval() : Vector3f::Zero().eval());
-    d.values.push_back(light_of({c[0] / 255.0, c[1] / 255.0, c[2] / 255.0}));
-    d.known.push_back(1);
-    d.radii.push_back(static_cast<float>(scene.radii[i] / camera.scale));
+Painted painted_points(const TexturedScene& scene, const Camera& camera, unsigned threads) {
+  Scene cloud;
+  cloud.points = scene.points, cloud.normals = scene.normals;
+  PictureOptions plain;
+  plain.pattern = Pattern::none;
+  const std::vector<Index> shown = shown_points(cloud);
+  Drawable d = make_splats(cloud, shown, camera, make_paint(cloud, shown, plain), threads);
+  for (std::size_t k = 0; k < shown.size(); ++k) {
+    const auto& c = scene.colors[shown[k]];
+    d.values[k] = light_of({c[0] / 255.0, c[1] / 255.0, c[2] / 255.0});
+    d.known[k] = 1;
+    if (!scene.radii.empty()) d.radii[k] = static_cast<float>(scene.radii[shown[k]] / camera.scale);
   }
   d.values_per_length = std::numeric_limits<float>::infinity();  // colours blend, however they differ
   return {std::move(d), {.kind = Material::Kind::color}};
@@ -107,7 +107,8 @@ class Gathered {
 
 void check(const TexturedScene& scene, const PictureOptions& options) {
   check_picture(options);
-  if (scene.colors.size() != scene.points.size() || scene.radii.size() != scene.points.size() ||
+  if (scene.colors.size() != scene.points.size() ||
+      (!scene.radii.empty() && scene.radii.size() != scene.points.size()) ||
       (!scene.normals.empty() && scene.normals.size() != scene.points.size()))
     throw InvalidArgument("scene: " + std::to_string(scene.points.size()) + " points, " +
                           std::to_string(scene.colors.size()) + " colors, " + std::to_string(scene.radii.size()) +
@@ -121,7 +122,7 @@ void write_textured_png(const std::filesystem::path& path, const TexturedScene& 
   const Gathered gathered(scene);
   const Camera camera = choose_camera(gathered.scene, shown_points(gathered.scene), options);
   std::vector<Painted> things;
-  if (!scene.points.empty()) things.push_back(painted_points(scene, camera));
+  if (!scene.points.empty()) things.push_back(painted_points(scene, camera, options.threads));
   for (const io::MeshPart& part : scene.parts) things.push_back(painted(part, camera));
   io::write_png(path, develop(render(std::move(things), camera, options), options));
 }

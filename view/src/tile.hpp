@@ -22,9 +22,9 @@ class TileRenderer {
 
   /// Weighted sums over the discs at a sample.
   struct Sums {
-    std::array<float, samples> weight, nearness, normal_x, normal_y;   ///< of all in the front layer
-    std::array<float, samples> known, first, second, third;  ///< of those whose values agree
-    std::array<float, samples> front_first, front_second;    ///< the nearest disc's values
+    std::array<float, samples> weight, nearness, normal_x, normal_y;  ///< of all in the front layer
+    std::array<float, samples> known, first, second, third;           ///< of those whose values agree
+    std::array<float, samples> front_first, front_second;             ///< the nearest disc's values
   };
 
   void collect(int tile);

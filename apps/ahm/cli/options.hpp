@@ -8,6 +8,7 @@
 #include "ahm/heat/heat_operators.hpp"
 #include "ahm/maps/log_map_solver.hpp"
 #include "cli/source_spec.hpp"
+#include "output/picture_options.hpp"
 
 namespace ahm::app {
 
@@ -61,6 +62,7 @@ struct OutputOptions {
   std::string output;
   std::string json;  ///< "-": standard output
   std::string view;
+  PictureChoice picture;
   bool verbose = false;
 };
 

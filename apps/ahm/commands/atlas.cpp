@@ -115,7 +115,7 @@ void write_files(const AtlasCommandOptions& options, const Skin& skin, const Mad
   view::TexturedScene scene;
   scene.parts = parts;
   scene.towards = made.sources.front();
-  view::write_textured_png(options.output.view, scene);
+  view::write_textured_png(options.output.view, scene, picture_options(options.output.picture));
 }
 
 nlohmann::ordered_json as_json(const DistortionSummary& s) {
@@ -198,6 +198,7 @@ void offer(CLI::App& app, AtlasCommandOptions& o) {
   add_graph_options(app, o.input, o.solve);
   add_json(app, o.output);
   add_view(app, o.output)->description("Draw the result: .png");
+  add_texture_picture(app, o.output.picture);
   add_verbose(app, o.output);
 }
 

@@ -224,6 +224,7 @@ void offer(CLI::App& app, CellsOptions& o) {
   add_graph_options(app, o.input, o.solve);
   add_json(app, o.output);
   add_view(app, o.output);
+  add_map_picture(app, o.output.picture);
   add_verbose(app, o.output);
 }
 

@@ -77,6 +77,7 @@ void write_view(const Input& input, const ResolvedSource& source, const LogMap& 
   view::Scene scene = results.scene();
   scene.u = rows.u;
   scene.v = rows.v;
+  scene.quality = rows.quality;
   scene.source = source.position;
   if (source.frame) scene.source_axes = {source.frame->x, source.frame->y, source.frame->normal};
   scene.curve = curve;
@@ -188,6 +189,7 @@ void offer(CLI::App& app, CoverageCommandOptions& o) {
   add_graph_options(app, o.input, o.solve);
   add_json(app, o.output);
   add_view(app, o.output);
+  add_map_picture(app, o.output.picture);
   add_verbose(app, o.output);
 }
 

@@ -103,7 +103,7 @@ void write_mesh(const DecalCommandOptions& options, const Input& input, const Lo
   view::TexturedScene scene;
   scene.parts = parts;
   scene.towards = source;
-  view::write_textured_png(options.output.view, scene);
+  view::write_textured_png(options.output.view, scene, picture_options(options.output.picture));
 }
 
 /// The colours of the input, light grey where there are none, under the image.
@@ -124,19 +124,6 @@ std::vector<std::array<std::uint8_t, 3>> painted(const Input& input, const std::
   return colors;
 }
 
-/// For a picture of the rows: two thirds of the way to a neighbour.
-std::vector<double> disc_radii(const Input& input) {
-  const TangentGraph& graph = input.graph();
-  std::vector<double> radii(input.rows(), 0.0);
-  for (const auto& [row, vertex] : input.surface->row_vertices()) {
-    const Star star = graph.star(vertex);
-    double sum = 0;
-    for (std::size_t e = 0; e < star.degree(); ++e) sum += std::hypot(star.log(e)[0], star.log(e)[1]);
-    if (star.degree() > 0) radii[row] = graph.length_unit() * sum / static_cast<double>(star.degree()) / 1.5;
-  }
-  return radii;
-}
-
 void write_points(const DecalCommandOptions& options, const Input& input, const InverseMap& inverse, const Image& image,
                   const Vec3& source) {
   const auto colors = painted(input, image_coordinates_of_vertices(inverse, options.decal), image);
@@ -151,10 +138,8 @@ void write_points(const DecalCommandOptions& options, const Input& input, const 
   if (options.output.view.empty()) return;
   view::TexturedScene scene;
   scene.points = given.points, scene.colors = colors, scene.normals = normals;
-  const std::vector<double> radii = disc_radii(input);
-  scene.radii = radii;
   scene.towards = source;
-  view::write_textured_png(options.output.view, scene);
+  view::write_textured_png(options.output.view, scene, picture_options(options.output.picture));
 }
 
 void report(const DecalCommandOptions& options, const Input& input, const Decal& decal, const Amount& amount,
@@ -230,6 +215,7 @@ void offer(CLI::App& app, DecalCommandOptions& o) {
   add_graph_options(app, o.input, o.solve);
   add_json(app, o.output);
   add_view(app, o.output)->description("Draw the result: .png");
+  add_texture_picture(app, o.output.picture);
   add_verbose(app, o.output);
 }
 

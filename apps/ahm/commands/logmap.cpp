@@ -88,6 +88,7 @@ void write_results(const ResolvedSource& source, const MapRows& rows, const std:
   view::Scene scene = results.scene();
   scene.u = rows.u;
   scene.v = rows.v;
+  scene.quality = rows.quality;
   scene.source = source.position;
   if (source.frame) scene.source_axes = {source.frame->x, source.frame->y, source.frame->normal};
   results.write(table, scene, journal);
@@ -108,6 +109,7 @@ void run(const LogmapOptions& options) {
   MapRows rows = rows_of(map, *input.surface, input.rows());
   if (opened.local) mark_beyond(input.geometry.points, source.position, *opened.local, rows);
   comment_on_statuses(rows.status, options.input.path, journal);
+  comment_on_quality(rows.quality, journal);
 
   Results results(options.output, input, options.input.path);
   const std::vector<Vec3> away = options.gradient ? gradients(map, *input.surface, rows) : std::vector<Vec3>();
@@ -149,6 +151,7 @@ void offer_reports(CLI::App& app, OutputOptions& o) {
   const char* group = "Reports";
   add_json(app, o)->group(group);
   add_view(app, o)->group(group);
+  add_map_picture(app, o.picture);
   add_verbose(app, o)->group(group);
 }
 

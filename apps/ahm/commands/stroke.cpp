@@ -72,6 +72,7 @@ void write_results(const Curve& curve, const StrokeOptions& shape, const MapRows
   view::Scene scene = results.scene();
   scene.u = rows.u;
   scene.v = rows.v;
+  scene.distance = distance;
   scene.curve = line;
   scene.source = line.front();
   if (curve.first) scene.source_axes = {curve.first->x, curve.first->y, curve.first->normal};
@@ -135,6 +136,7 @@ void offer(CLI::App& app, StrokeCommandOptions& o) {
   add_graph_options(app, o.input, o.solve);
   add_json(app, o.output);
   add_view(app, o.output);
+  add_map_picture(app, o.output.picture);
   add_verbose(app, o.output);
 }
 

@@ -78,7 +78,7 @@ view::Scene Results::scene() const {
 void Results::write_view(const view::Scene& scene, Journal& journal, const view::PictureOptions& picture) {
   if (output_.view.empty()) return;
   journal.start("view");
-  view::write_picture(output_.view, scene, picture);
+  draw(output_.view, scene, picture.pattern, output_.picture);
   written_.push_back(output_.view);
 }
 

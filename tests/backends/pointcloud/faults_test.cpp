@@ -195,13 +195,13 @@ TEST(CloudFaults, DensityThatVariesAHundredfold) {
   cloud.normals = cloud.points;
   const Solved solved(cloud);
   EXPECT_EQ(solved.graph.report().components, 1);
-  EXPECT_LT(sphere_error(cloud, solved.graph, solved.map(5), 5).angle, 0.15);
+  EXPECT_LT(sphere_error(cloud, solved.graph, solved.map(5), 5).angle, 0.11);  // measured 0.095
 }
 
 TEST(CloudFaults, NoiseDegradesGracefully) {
   const Cloud clean = even_sphere(10000);
   const double h = 0.035;
-  double last = 0;
+  double clean_error = 0;
   for (double share : {0.0, 0.1, 0.3}) {
     Cloud noisy = clean;
     std::mt19937_64 random(6);
@@ -212,10 +212,10 @@ TEST(CloudFaults, NoiseDegradesGracefully) {
     }
     const Solved solved(noisy);
     const SphereError error = sphere_error(clean, solved.graph, solved.map(5), 5);
-    EXPECT_LT(error.rms, 0.06 + 0.3 * share);
-    last = error.rms;
+    if (share == 0) clean_error = error.rms;
+    EXPECT_LE(error.rms, (1 + share) * clean_error);  // noise of a share of h adds less than that share
   }
-  EXPECT_LT(last, 0.15);
+  EXPECT_LT(clean_error, 1.6 * h);
 }
 
 TEST(CloudFaults, ArgumentsOutOfRange) {

@@ -152,8 +152,8 @@ TEST(Normals, OfAMoebiusBandMakeReflections) {
       farthest = std::max(farthest, map.distance[i]);
     }
     // Half way round the band, no farther: the seam of the orientation is no wall.
-    EXPECT_GT(farthest, 2.0);
-    EXPECT_LT(farthest, 4.2);
+    EXPECT_GT(farthest, 2.4);  // measured 2.6 in both variants: short of pi, where heat from both sides meets
+    EXPECT_LT(farthest, 2.8);
   }
 }
 
