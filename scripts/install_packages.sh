@@ -9,7 +9,7 @@ packages=(
   libpcl-dev                                                  # PCD files, voxel grid, outlier removal
   libminizip-dev                                              # .npz files
   libcli11-dev nlohmann-json3-dev libfmt-dev                  # the program
-  libosmesa6-dev libstb-dev libjs-three                       # pictures
+  libstb-dev libjs-three                                      # pictures
   libgtest-dev libbenchmark-dev                               # tests and benchmarks
   "$@"
 )

@@ -2,6 +2,7 @@
 // threads, the march and neighbour searches change.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <random>
@@ -9,10 +10,12 @@
 #include "ahm/error.hpp"
 #include "ahm/maps/log_map_solver.hpp"
 #include "ahm/pointcloud/point_cloud_graph.hpp"
+#include "ahm/polymesh/polygon_mesh_graph.hpp"
+#include "ahm/testing/closed_forms.hpp"
+#include "ahm/testing/polygon_meshes.hpp"
 #include "experiments/comparison.hpp"
-#include "experiments/timing.hpp"
 #include "kernels/quads.hpp"
-#include "polymesh/polygons.hpp"
+#include "timing.hpp"
 #ifdef AHM_WITH_PCL
 #include "ahm/pcl/search.hpp"
 #endif
@@ -131,11 +134,10 @@ Exact exact_distances(const Shape& shape) {
     const Vec3& p = shape.quads.points[source];
     std::vector<double> distance;
     if (shape.name == "sphere")
-      for (const Vec3& q : shape.quads.points)
-        distance.push_back(std::acos(std::clamp(p[0] * q[0] + p[1] * q[1] + p[2] * q[2], -1.0, 1.0)));
-#ifdef AHM_BASELINES_CGAL
+      for (const Vec3& q : shape.quads.points) distance.push_back(test::sphere_distance(p, q));
+#ifdef AHM_METHODS_CGAL
     else if (shape.quads.points.size() <= exact_up_to)
-      distance = baselines::exact_distance(shape.quads.points, shape.triangles)->solve(source).distance;
+      distance = methods::exact_distance(shape.quads.points, shape.triangles)->solve(source).distance;
 #endif
     exact.push_back(std::move(distance));
   }
@@ -148,15 +150,9 @@ struct Accuracy {
 };
 
 /// Where the sphere's own log map puts q, with the u axis of the sources.
-std::array<double, 2> sphere_log(const Vec3& p, const Vec3& q) {
-  auto dot = [](const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; };
-  Vec3 x;
-  for (int a = 0; a < 3; ++a) x[a] = u_direction[a] - dot(u_direction, p) * p[a];
-  const double r = std::sqrt(dot(x, x));
-  for (double& c : x) c /= r;
-  const Vec3 y{p[1] * x[2] - p[2] * x[1], p[2] * x[0] - p[0] * x[2], p[0] * x[1] - p[1] * x[0]};
-  const double u = dot(q, x), v = dot(q, y), scale = std::acos(std::clamp(dot(p, q), -1.0, 1.0)) / std::hypot(u, v);
-  return {scale * u, scale * v};
+Vec2 sphere_log(const Vec3& p, const Vec3& q) {
+  const Vec3 x = unit(test::tangential(u_direction, p));
+  return test::sphere_log(p, x, test::cross(p, x), q);
 }
 
 Accuracy accuracy(const Shape& shape, const Exact& exact, const std::vector<PointLogs>& maps) {

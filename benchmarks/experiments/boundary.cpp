@@ -4,19 +4,19 @@
 
 #include <cmath>
 
-#include "baselines/signed_heat.hpp"
 #include "experiments/comparison.hpp"
+#include "methods/signed_heat.hpp"
 
 namespace ahm::bench {
 namespace {
 
 constexpr NamedMethod methods[] = {
-    {"AHM_a", [](const TangentGraph& g) { return baselines::affine_heat(g, Variant::adaptive); }},
-    {"AHM_l", [](const TangentGraph& g) { return baselines::affine_heat(g, Variant::localized); }},
-    {"VHM_log", [](const TangentGraph& g) { return baselines::vector_heat_log(g); }},
-    {"SEM", [](const TangentGraph& g) { return baselines::smoothed_exponential(g); }},
-    {"HM (graph)", [](const TangentGraph& g) { return baselines::heat_distance(g); }},
-    {"SHM", [](const TangentGraph& g) -> baselines::Method { return std::make_unique<baselines::SignedHeat>(g); }}};
+    {"AHM_a", [](const TangentGraph& g) { return methods::affine_heat(g, Variant::adaptive); }},
+    {"AHM_l", [](const TangentGraph& g) { return methods::affine_heat(g, Variant::localized); }},
+    {"VHM_log", [](const TangentGraph& g) { return methods::vector_heat_log(g); }},
+    {"SEM", [](const TangentGraph& g) { return methods::smoothed_exponential(g); }},
+    {"HM (graph)", [](const TangentGraph& g) { return methods::heat_distance(g); }},
+    {"SHM", [](const TangentGraph& g) -> methods::Method { return std::make_unique<methods::SignedHeat>(g); }}};
 
 }  // namespace
 
@@ -30,7 +30,7 @@ Table boundary(const Settings& settings) {
     const Index source = cap.nearest({std::sin(polar), 0, std::cos(polar)});
     const std::vector<double> exact = cap.sphere_log(source), distance = lengths(exact);
     for (const NamedMethod& method : methods) {
-      const baselines::Result result = method.make(cap.graph())->solve(source);
+      const methods::Result result = method.make(cap.graph())->solve(source);
       for (const bool on_rim : {false, true}) {
         auto chosen = [&](std::size_t i) { return (i + meridians >= distance.size()) == on_rim; };
         double sum = 0, count = 0;

@@ -2,12 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <queue>
 
 #include "ahm/error.hpp"
-#include "sphere_error.hpp"
+#include "ahm/testing/closed_forms.hpp"
 
 namespace ahm::bench {
 
@@ -15,7 +16,7 @@ namespace {
 
 trimesh::TriangleMeshGraph build(const Mesh& mesh, trimesh::MeshOptions options) {
   options.non_manifold = trimesh::NonManifold::split;
-  return trimesh::TriangleMeshGraph::build(mesh.points, mesh.faces, options);
+  return trimesh::TriangleMeshGraph::build(mesh.positions, mesh.faces, options);
 }
 
 }  // namespace
@@ -32,7 +33,7 @@ std::vector<double> Surface::plane_log(Index source) const {
   const Frame frame = *graph().frame(source);
   std::vector<double> result;
   for (const Vec3& q : points_) {
-    const Vec3 offset{q[0] - frame.origin[0], q[1] - frame.origin[1], q[2] - frame.origin[2]};
+    const Vec3 offset = test::minus(q, frame.origin);
     result.push_back(dot(frame.x, offset));
     result.push_back(dot(frame.y, offset));
   }
@@ -44,10 +45,8 @@ std::vector<double> Surface::sphere_log(Index source) const {
   const Vec3& p = points_[source];
   std::vector<double> result;
   for (const Vec3& q : points_) {
-    const double x = dot(frame.x, q), y = dot(frame.y, q), r = std::hypot(x, y);
-    const double scale = r > 0 ? std::atan2(r, dot(p, q)) / r : 0;
-    result.push_back(scale * x);
-    result.push_back(scale * y);
+    const Vec2 exact = test::sphere_log(p, frame.x, frame.y, q);
+    result.insert(result.end(), exact.begin(), exact.end());
   }
   return result;
 }
@@ -94,13 +93,13 @@ void for_user_surfaces(const Settings& settings, Index largest, const std::funct
 
 std::span<const NamedMethod> log_map_methods() {
   static constexpr NamedMethod list[] = {
-      {"AHM_a", [](const TangentGraph& graph) { return baselines::affine_heat(graph, Variant::adaptive); }},
-      {"AHM_l", [](const TangentGraph& graph) { return baselines::affine_heat(graph, Variant::localized); }},
-      {"VHM_log", [](const TangentGraph& graph) { return baselines::vector_heat_log(graph); }},
-      {"SEM", [](const TangentGraph& graph) { return baselines::smoothed_exponential(graph); }},
+      {"AHM_a", [](const TangentGraph& graph) { return methods::affine_heat(graph, Variant::adaptive); }},
+      {"AHM_l", [](const TangentGraph& graph) { return methods::affine_heat(graph, Variant::localized); }},
+      {"VHM_log", [](const TangentGraph& graph) { return methods::vector_heat_log(graph); }},
+      {"SEM", [](const TangentGraph& graph) { return methods::smoothed_exponential(graph); }},
       {"DEM",
        [](const TangentGraph& graph) {
-         return baselines::discrete_exponential(graph, {.turn = baselines::FrameTurn::in_space});
+         return methods::discrete_exponential(graph, {.turn = methods::FrameTurn::in_space});
        }},
   };
   return list;

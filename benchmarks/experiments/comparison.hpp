@@ -2,7 +2,7 @@
 /// What the experiments share: a surface made ready for all methods, the methods, and errors against known answers.
 ///
 /// \code
-/// const Surface surface("sphere", icosphere(10000));
+/// const Surface surface("sphere", split_icosphere(10000));
 /// const Index source = surface.size() / 3;
 /// for (const NamedMethod& method : log_map_methods()) {
 ///   const auto result = method.make(surface.graph())->solve(source);
@@ -16,8 +16,8 @@
 #include <vector>
 
 #include "ahm/trimesh/triangle_mesh_graph.hpp"
-#include "baselines/baselines.hpp"
 #include "experiments/surfaces.hpp"
+#include "methods/method.hpp"
 
 namespace ahm::bench {
 
@@ -55,7 +55,7 @@ void for_user_surfaces(const Settings& settings, Index largest, const std::funct
 
 struct NamedMethod {
   std::string_view name;
-  baselines::Method (*make)(const TangentGraph&);
+  methods::Method (*make)(const TangentGraph&);
 };
 /// AHM_a, AHM_l, VHM_log, SEM, DEM as published.
 std::span<const NamedMethod> log_map_methods();

@@ -1,6 +1,7 @@
 // Fig. 24: convergence to the closed form on the unit sphere.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "experiments/comparison.hpp"
@@ -9,18 +10,18 @@ namespace ahm::bench {
 namespace {
 
 constexpr NamedMethod methods[] = {
-    {"AHM_a", [](const TangentGraph& g) { return baselines::affine_heat(g, Variant::adaptive); }},
-    {"AHM_l", [](const TangentGraph& g) { return baselines::affine_heat(g, Variant::localized); }},
-    {"AHM_a, order 2", [](const TangentGraph& g) { return baselines::affine_heat(g, Variant::adaptive, 1.0, 2); }},
-    {"VHM_log", [](const TangentGraph& g) { return baselines::vector_heat_log(g); }},
-    {"SEM", [](const TangentGraph& g) { return baselines::smoothed_exponential(g); }}};
+    {"AHM_a", [](const TangentGraph& g) { return methods::affine_heat(g, Variant::adaptive); }},
+    {"AHM_l", [](const TangentGraph& g) { return methods::affine_heat(g, Variant::localized); }},
+    {"AHM_a, order 2", [](const TangentGraph& g) { return methods::affine_heat(g, Variant::adaptive, 1.0, 2); }},
+    {"VHM_log", [](const TangentGraph& g) { return methods::vector_heat_log(g); }},
+    {"SEM", [](const TangentGraph& g) { return methods::smoothed_exponential(g); }}};
 
 /// The norms of the paper, and L2 short of the cut locus; mean over sources.
 struct Norms {
   double whole = 0, inside = 0, hemisphere = 0;
 };
 
-Norms norms(const Surface& surface, const baselines::Baseline& method) {
+Norms norms(const Surface& surface, const methods::Baseline& method) {
   constexpr int source_count = 3;
   Norms mean;
   for (int s = 0; s < source_count; ++s) {
@@ -62,7 +63,7 @@ Table convergence(const Settings& settings) {
                "order Linf"});
   std::vector<Surface> smooth, jittered;
   for (Index n = 642; n <= (settings.toy ? 2562 : 163842); n = 4 * n - 6) {
-    smooth.emplace_back("icosphere", icosphere(n));
+    smooth.emplace_back("icosphere", split_icosphere(n));
     jittered.emplace_back("jittered", jittered_icosphere(n, 0.15));
   }
   for (const NamedMethod& method : methods) {

@@ -43,7 +43,7 @@ Table delaunay(const Settings& settings) {
       {"as given, negative weights", {.intrinsic_delaunay = false, .clamp_weights = false}}};
   const Index n = settings.toy ? 600 : 2500;
   for (const Triangulation& t : triangulations) {
-    measure("icosphere", icosphere(n), t, table);
+    measure("icosphere", split_icosphere(n), t, table);
     measure("thin across", settings.toy ? parallels_and_meridians(12, 50) : parallels_and_meridians(25, 100), t, table);
     measure("thin along", settings.toy ? parallels_and_meridians(50, 12) : parallels_and_meridians(100, 25), t, table);
     measure("needles", with_needles(n), t, table);

@@ -8,13 +8,13 @@ namespace {
 
 constexpr int ring_count = 10;
 
-using baselines::FrameTurn;
+using methods::FrameTurn;
 constexpr NamedMethod methods[] = {
-    {"AHM_a", [](const TangentGraph& g) { return baselines::affine_heat(g, Variant::adaptive); }},
-    {"DEM", [](const TangentGraph& g) { return baselines::discrete_exponential(g, {.turn = FrameTurn::in_space}); }},
-    {"DEM, along the path", [](const TangentGraph& g) { return baselines::discrete_exponential(g); }},
+    {"AHM_a", [](const TangentGraph& g) { return methods::affine_heat(g, Variant::adaptive); }},
+    {"DEM", [](const TangentGraph& g) { return methods::discrete_exponential(g, {.turn = FrameTurn::in_space}); }},
+    {"DEM, along the path", [](const TangentGraph& g) { return methods::discrete_exponential(g); }},
     {"DEM, averaged", [](const TangentGraph& g) {
-       return baselines::discrete_exponential(g, {.turn = FrameTurn::in_space, .upwind_average = true});
+       return methods::discrete_exponential(g, {.turn = FrameTurn::in_space, .upwind_average = true});
      }}};
 
 }  // namespace

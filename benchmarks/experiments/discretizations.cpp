@@ -5,11 +5,12 @@
 #include <functional>
 
 #include "ahm/error.hpp"
+#include "ahm/maps/log_map_solver.hpp"
 #include "ahm/pointcloud/point_cloud_graph.hpp"
 #include "ahm/polymesh/polygon_mesh_graph.hpp"
+#include "ahm/testing/closed_forms.hpp"
+#include "ahm/testing/polygon_meshes.hpp"
 #include "experiments/comparison.hpp"
-#include "polymesh/polygons.hpp"
-#include "sphere_error.hpp"
 
 namespace ahm::bench {
 namespace {
@@ -30,11 +31,12 @@ void measure(const char* name, std::span<const Vec3> points, const Backend& back
       std::vector<Cell> row{name, points.size(), t_coef, to_string(variant)};
       try {
         const LogMapSolver solver(backend.graph, {.t_coef = t_coef}, {.strategy = Strategy::global});
-        SphereError mean;
+        test::SphereError mean;
         for (Index s = 0; s < source_count; ++s) {
           const Index p = 7 + s * static_cast<Index>(points.size() / source_count);
           const auto [u, v] = backend.logs(solver.solve(backend.source(p), {.variant = variant}));
-          const SphereError e = sphere_error(points, u, v, p, *backend.graph.frame(backend.vertex(p)));
+          const Frame frame = *backend.graph.frame(backend.vertex(p));
+          const test::SphereError e = test::sphere_error(points, u, v, p, frame.x, frame.y);
           mean.rms += e.rms / source_count, mean.hemisphere += e.hemisphere / source_count;
           mean.angle += e.angle / source_count, mean.missing += e.missing;
         }
@@ -72,8 +74,11 @@ void measure_cloud(const char* name, const std::vector<Vec3>& points, Table& tab
 }
 
 void measure_polygons(const std::string& name, const test::Polygons& mesh, Table& table) {
-  measure_mesh(name.c_str(), mesh.positions, mesh.graph(), table);
-  measure_mesh((name + ", as published").c_str(), mesh.positions, mesh.graph({.clamp_weights = false}), table);
+  auto graph = [&](const polymesh::PolygonOptions& options) {
+    return polymesh::PolygonMeshGraph::build(mesh.positions, mesh.begin, mesh.corners, options);
+  };
+  measure_mesh(name.c_str(), mesh.positions, graph({}), table);
+  measure_mesh((name + ", as published").c_str(), mesh.positions, graph({.clamp_weights = false}), table);
   const auto refined = polymesh::PolygonMesh::from_faces(mesh.positions, mesh.begin, mesh.corners).refined();
   measure_mesh((name + ", refined").c_str(), mesh.positions,
                trimesh::TriangleMeshGraph::build(refined.positions, refined.triangles), table);
@@ -85,11 +90,11 @@ Table discretizations(const Settings& settings) {
   Table table(
       {"discretization", "vertices", "t_coef", "variant", "rms", "largest, hemisphere", "angle rms", "missing"});
   for (Index n : settings.toy ? std::vector<Index>{600} : std::vector<Index>{2500, 10000, 40000, 160000}) {
-    const Mesh mesh = icosphere(n);
-    measure_mesh("triangles", mesh.points, trimesh::TriangleMeshGraph::build(mesh.points, mesh.faces), table);
-    measure_cloud("points of the icosphere", mesh.points, table);
-    measure_cloud("random points", random_sphere(n), table);
-    measure_cloud("points on a spiral", even_sphere(n), table);
+    const Mesh mesh = split_icosphere(n);
+    measure_mesh("triangles", mesh.positions, trimesh::TriangleMeshGraph::build(mesh.positions, mesh.faces), table);
+    measure_cloud("points of the icosphere", mesh.positions, table);
+    measure_cloud("random points", test::random_sphere(n).points, table);
+    measure_cloud("points on a spiral", test::even_sphere(n).points, table);
     if (n > 20000) continue;
     measure_polygons("quads", test::cube_sphere(static_cast<Index>(std::sqrt(n / 6.0))), table);
     measure_polygons("hexagons", test::dual_sphere(static_cast<Index>(std::sqrt(n / 20.0))), table);

@@ -4,32 +4,32 @@
 #include <cmath>
 
 #include "ahm/error.hpp"
-#include "baselines/signed_heat.hpp"
 #include "experiments/comparison.hpp"
+#include "methods/signed_heat.hpp"
 
 namespace ahm::bench {
 namespace {
 
-#ifdef AHM_BASELINES_CGAL
+#ifdef AHM_METHODS_CGAL
 
 constexpr int ring_count = 10;
 
 struct DistanceMethod {
   const char* name;
-  baselines::Method (*make)(const Surface&);
+  methods::Method (*make)(const Surface&);
 };
 constexpr DistanceMethod methods[] = {
-    {"AHM_a", [](const Surface& s) { return baselines::affine_heat(s.graph(), Variant::adaptive); }},
-    {"AHM_l", [](const Surface& s) { return baselines::affine_heat(s.graph(), Variant::localized); }},
-    {"AHM_a, order 2", [](const Surface& s) { return baselines::affine_heat(s.graph(), Variant::adaptive, 1.0, 2); }},
-    {"HM", [](const Surface& s) { return baselines::heat_distance(s.mesh().mesh()); }},
-    {"HM (graph)", [](const Surface& s) { return baselines::heat_distance(s.graph()); }},
-    {"SHM", [](const Surface& s) -> baselines::Method { return std::make_unique<baselines::SignedHeat>(s.graph()); }}};
+    {"AHM_a", [](const Surface& s) { return methods::affine_heat(s.graph(), Variant::adaptive); }},
+    {"AHM_l", [](const Surface& s) { return methods::affine_heat(s.graph(), Variant::localized); }},
+    {"AHM_a, order 2", [](const Surface& s) { return methods::affine_heat(s.graph(), Variant::adaptive, 1.0, 2); }},
+    {"HM", [](const Surface& s) { return methods::heat_distance(s.mesh().mesh()); }},
+    {"HM (graph)", [](const Surface& s) { return methods::heat_distance(s.graph()); }},
+    {"SHM", [](const Surface& s) -> methods::Method { return std::make_unique<methods::SignedHeat>(s.graph()); }}};
 
 /// Relative errors of one method over the rings about three sources.
 void measure(const Surface& surface, const DistanceMethod& method, std::span<const Index> sources,
              std::span<const std::vector<double>> exact, Table& table) {
-  const baselines::Method made = method.make(surface);
+  const methods::Method made = method.make(surface);
   std::vector<std::vector<double>> by_ring(ring_count);
   for (std::size_t s = 0; s < sources.size(); ++s) {
     const std::vector<double> distance = made->solve(sources[s]).distance;
@@ -52,7 +52,7 @@ void measure(const Surface& surface, const DistanceMethod& method, std::span<con
 void measure(const Surface& surface, Table& table) {
   const Index n = surface.size(), sources[] = {n / 7, n / 2, 5 * n / 6};
   std::vector<std::vector<double>> exact;
-  const auto geodesics = baselines::exact_distance(surface.points(), surface.faces());
+  const auto geodesics = methods::exact_distance(surface.points(), surface.faces());
   for (Index source : sources) exact.push_back(geodesics->solve(source).distance);
   for (const DistanceMethod& method : methods) try {
       measure(surface, method, sources, exact, table);
@@ -66,10 +66,10 @@ void measure(const Surface& surface, Table& table) {
 }  // namespace
 
 Table distance([[maybe_unused]] const Settings& settings) {
-#ifdef AHM_BASELINES_CGAL
+#ifdef AHM_METHODS_CGAL
   Table table({"shape", "vertices", "method", "distance / longest", "mean", "median", "95%", "largest"});
   const Index n = settings.toy ? 600 : 10000;
-  measure(Surface("sphere", icosphere(n)), table);
+  measure(Surface("sphere", split_icosphere(n)), table);
   measure(Surface("bumpy sphere", bumpy_sphere(n)), table);
   measure(Surface("torus", torus(n)), table);
   for_user_surfaces(settings, 50000, [&](const Surface& surface) { measure(surface, table); });

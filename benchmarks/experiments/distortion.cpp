@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "baselines/tests/flat_meshes.hpp"
+#include "ahm/testing/triangle_meshes.hpp"
 #include "experiments/comparison.hpp"
 
 namespace ahm::bench {
@@ -38,9 +38,8 @@ void measure(const Surface& surface, Table& table) {
 Table distortion(const Settings& settings) {
   Table table({"shape", "vertices", "method", "distance / longest", "median D", "95% D", "flipped area", "unmeasured"});
   const Index n = settings.toy ? 600 : 20000;
-  const test::Mesh grid = test::flat_square(settings.toy ? 25 : 141, 0.0);
-  measure(Surface("flat grid", {grid.positions, grid.faces}), table);
-  measure(Surface("sphere", icosphere(n)), table);
+  measure(Surface("flat grid", test::flat_square(settings.toy ? 25 : 141, 0.0)), table);
+  measure(Surface("sphere", split_icosphere(n)), table);
   measure(Surface("ellipsoid", ellipsoid(n)), table);
   measure(Surface("bumpy sphere", bumpy_sphere(n)), table);
   measure(Surface("torus", torus(n)), table);

@@ -21,12 +21,15 @@
 #include <string_view>
 #include <vector>
 
+#include "ahm/types.hpp"
+
 namespace ahm::bench {
 
 struct Settings {
   bool toy = false;              ///< small sizes, for a test run
   std::filesystem::path meshes;  ///< folder of the user's meshes; empty: generated shapes only
   unsigned threads = 0;          ///< of what is timed; 0: one per core
+  std::vector<Index> vertices;   ///< sizes for the scaling experiments; empty: their own
 };
 
 /// A word, a number, or nothing.
@@ -83,7 +86,7 @@ class Table {
 
 struct Experiment {
   std::string_view name;    ///< of the command, the table and the plot
-  std::string_view figure;  ///< of Soliman & Sharp 2025
+  std::string_view figure;  ///< of Soliman & Sharp 2025, or "scaling"
   std::string_view title;
   std::string_view paper;  ///< what the paper shows, in two sentences at most
   Table (*run)(const Settings&);

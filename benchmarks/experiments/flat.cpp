@@ -5,7 +5,7 @@
 #include <map>
 
 #include "ahm/applications/distortion.hpp"
-#include "baselines/tests/flat_meshes.hpp"
+#include "ahm/testing/triangle_meshes.hpp"
 #include "experiments/comparison.hpp"
 
 namespace ahm::bench {
@@ -13,9 +13,9 @@ namespace {
 
 constexpr int near_rings = 3;  // mean edges that count as near the source
 
-void measure(const std::string& name, const test::Mesh& mesh, Table& table) {
-  const Surface surface(name, {mesh.positions, mesh.faces});
-  const Index source = test::nearest(mesh, 0.5, 0.5);
+void measure(const std::string& name, const Mesh& mesh, Table& table) {
+  const Surface surface(name, mesh);
+  const Index source = test::nearest(mesh, {0.5, 0.5});
   const std::vector<double> exact = surface.plane_log(source), distance = lengths(exact);
   const double diameter = mesh.diameter(), near = near_rings * surface.mean_edge();
   for (const NamedMethod& method : log_map_methods()) {

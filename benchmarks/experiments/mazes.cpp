@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ahm/testing/triangle_meshes.hpp"
 #include "experiments/comparison.hpp"
-#include "trimesh/meshes.hpp"
 
 namespace ahm::bench {
 
@@ -13,8 +13,8 @@ Table mazes(const Settings& settings) {
   Table table({"cells", "vertices", "method", "longest path / diameter", "longest path / h", "rms / diameter",
                "largest / diameter", "missing"});
   for (Index cells : settings.toy ? std::vector<Index>{4, 8} : std::vector<Index>{5, 10, 20, 40}) {
-    const test::Mesh maze = test::maze(cells);
-    const Surface surface("maze", {maze.positions, maze.faces});
+    const Mesh maze = test::maze(cells);
+    const Surface surface("maze", maze);
     const std::vector<double> exact = surface.plane_log(0), paths = surface.path_lengths(0);
     const double diameter = maze.diameter(), longest = std::ranges::max(paths);
     for (const NamedMethod& method : log_map_methods()) {

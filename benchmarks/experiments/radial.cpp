@@ -1,14 +1,15 @@
 // Fig. 21: the radial vector field on ever thinner triangles, by affine and by vector diffusion.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
 #include "ahm/fields/vector_heat.hpp"
-#include "baselines/heat_fields.hpp"
-#include "baselines/tests/flat_meshes.hpp"
+#include "ahm/testing/closed_forms.hpp"
+#include "ahm/testing/triangle_meshes.hpp"
 #include "experiments/comparison.hpp"
-#include "sphere_error.hpp"
+#include "methods/heat_fields.hpp"
 
 namespace ahm::bench {
 namespace {
@@ -51,7 +52,7 @@ void measure(const char* name, double stretch, const Mesh& mesh, Radial radial, 
       const Index source = surface.size() / 11 + s * (surface.size() / source_count);
       add_angles(surface, source, radial, radial_field(solver, Source::at_vertex(Vertex(source))).values, affine);
       std::vector<double> circle(static_cast<std::size_t>(2 * surface.size()), 0.0);
-      baselines::add_outward_circle(surface.graph(), source, circle);
+      methods::add_outward_circle(surface.graph(), source, circle);
       solver.operators().solve_vector(circle, 1);
       add_angles(surface, source, radial, circle, vector);
     }
@@ -65,9 +66,8 @@ void measure(const char* name, double stretch, const Mesh& mesh, Radial radial, 
 }
 
 Mesh stretched_plane(Index side, double stretch) {
-  const test::Mesh square = test::flat_square(side);
-  Mesh mesh{square.positions, square.faces};
-  for (Vec3& p : mesh.points) p[0] *= stretch;
+  Mesh mesh = test::flat_square(side);
+  for (Vec3& p : mesh.positions) p[0] *= stretch;
   return mesh;
 }
 

@@ -6,6 +6,7 @@ namespace ahm::bench {
 
 Table backends(const Settings&);
 Table boundary(const Settings&);
+Table cloud_scaling(const Settings&);
 Table convergence(const Settings&);
 Table cut_locus(const Settings&);
 Table delaunay(const Settings&);
@@ -14,7 +15,12 @@ Table discretizations(const Settings&);
 Table distance(const Settings&);
 Table distortion(const Settings&);
 Table flat(const Settings&);
+Table local_maps(const Settings&);
+Table march(const Settings&);
+Table margins(const Settings&);
 Table mazes(const Settings&);
+Table mesh_scaling(const Settings&);
+Table methods_compared(const Settings&);
 Table radial(const Settings&);
 Table runtime(const Settings&);
 Table tessellations(const Settings&);
@@ -74,6 +80,13 @@ std::span<const Experiment> experiments() {
                  discretizations},
       Experiment{"backends", "after Fig. 16", "What each backend costs",
                  "The same algorithm runs on triangles, polygons and point clouds, with like results.", backends},
+      Experiment{"methods", "all", "Every method on the sphere",
+                 "The paper compares with these methods, figure by figure.", methods_compared},
+      Experiment{"mesh_scaling", "scaling", "Time and memory of meshes", "Not in the paper.", mesh_scaling},
+      Experiment{"cloud_scaling", "scaling", "Time and memory of clouds", "Not in the paper.", cloud_scaling},
+      Experiment{"march", "scaling", "One map by march", "Not in the paper.", march},
+      Experiment{"local_maps", "scaling", "Local maps of every vertex", "Not in the paper.", local_maps},
+      Experiment{"margins", "scaling", "Margins of local maps", "Not in the paper.", margins},
   };
   return list;
 }

@@ -7,7 +7,7 @@
 #include "ahm/error.hpp"
 #include "ahm/maps/log_map_solver.hpp"
 #include "experiments/comparison.hpp"
-#include "experiments/timing.hpp"
+#include "timing.hpp"
 
 namespace ahm::bench {
 namespace {
@@ -15,7 +15,7 @@ namespace {
 void measure(const std::string& name, const Mesh& mesh, unsigned threads, Table& table) {
   std::optional<Surface> surface;
   std::optional<LogMapSolver> solver;
-  std::optional<baselines::Method> vector_heat;
+  std::optional<methods::Method> vector_heat;
   const double build = least_seconds([&] { surface.emplace(name, mesh, trimesh::MeshOptions{.threads = threads}); });
   const TangentGraph& graph = surface->graph();
   const double factor = least_seconds([&] {
@@ -33,7 +33,7 @@ void measure(const std::string& name, const Mesh& mesh, unsigned threads, Table&
     sources.push_back(Source::at_vertex(Vertex(static_cast<Offset>(s) * graph.size() / 32)));
   const double batch = least_seconds([&] { solver->solve(sources, {.threads = threads}); }) / 32;
   solver.reset();
-  const double vector_factor = least_seconds([&] { vector_heat.emplace(baselines::vector_heat_log(graph)); });
+  const double vector_factor = least_seconds([&] { vector_heat.emplace(methods::vector_heat_log(graph)); });
   const double vector_further = least_seconds([&] { (*vector_heat)->solve(source); });
   table.add({name, graph.size(), build, factor, factor + adaptive, adaptive, factor + localized, localized, batch,
              vector_factor + vector_further, vector_further});

@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <numbers>
 #include <random>
 
 #include "ahm/error.hpp"
@@ -13,18 +16,13 @@ namespace {
 
 using std::numbers::pi;
 
-Vec3 to_sphere(const Vec3& p) {
-  const double r = std::hypot(p[0], p[1], p[2]);
-  return {p[0] / r, p[1] / r, p[2] / r};
-}
-
 Vec3 on_sphere(double polar, double turn) {
   return {std::sin(polar) * std::cos(turn), std::sin(polar) * std::sin(turn), std::cos(polar)};
 }
 
 NamedMesh read_triangles(const std::filesystem::path& path) {
   const io::Geometry file = io::read(path);
-  NamedMesh mesh{{file.points, {}}, path.stem().string()};
+  NamedMesh mesh{{file.points, {}, {}}, path.stem().string()};
   for (std::size_t f = 0; f < file.face_count(); ++f) {
     if (file.face(f).size() != 3)
       throw InvalidGeometry(fmt::format("face {} has {} corners; triangulate the mesh", f, file.face(f).size()));
@@ -46,7 +44,7 @@ std::vector<NamedMesh> user_meshes(const Settings& settings, Index largest) {
   std::sort(files.begin(), files.end());
   std::vector<NamedMesh> meshes;
   for (const auto& [size, path] : files) try {
-      if (NamedMesh mesh = read_triangles(path); static_cast<Index>(mesh.points.size()) <= largest)
+      if (NamedMesh mesh = read_triangles(path); static_cast<Index>(mesh.positions.size()) <= largest)
         meshes.push_back(std::move(mesh));
     } catch (const Error& e) {
       fmt::print(stderr, "left out: {}: {}\n", path.string(), e.what());
@@ -56,11 +54,12 @@ std::vector<NamedMesh> user_meshes(const Settings& settings, Index largest) {
 
 Mesh parallels_and_meridians(int parallels, int meridians, double last) {
   Mesh mesh;
-  mesh.points.push_back(on_sphere(0, 0));
+  mesh.positions.push_back(on_sphere(0, 0));
   const bool closed = last >= pi;
   const int rings = closed ? parallels - 1 : parallels;
   for (int r = 1; r <= rings; ++r)
-    for (int m = 0; m < meridians; ++m) mesh.points.push_back(on_sphere(last * r / parallels, 2 * pi * m / meridians));
+    for (int m = 0; m < meridians; ++m)
+      mesh.positions.push_back(on_sphere(last * r / parallels, 2 * pi * m / meridians));
   auto at = [&](int r, int m) { return 1 + (r - 1) * meridians + m % meridians; };
   for (int m = 0; m < meridians; ++m) {
     mesh.faces.push_back({0, at(1, m), at(1, m + 1)});
@@ -70,21 +69,21 @@ Mesh parallels_and_meridians(int parallels, int meridians, double last) {
     }
   }
   if (!closed) return mesh;
-  mesh.points.push_back(on_sphere(pi, 0));
+  mesh.positions.push_back(on_sphere(pi, 0));
   for (int m = 0; m < meridians; ++m)
-    mesh.faces.push_back({static_cast<Index>(mesh.points.size() - 1), at(rings, m + 1), at(rings, m)});
+    mesh.faces.push_back({static_cast<Index>(mesh.positions.size() - 1), at(rings, m + 1), at(rings, m)});
   return mesh;
 }
 
 Mesh with_needles(Index n) {
-  Mesh mesh = icosphere(n);
-  std::vector<std::array<Index, 3>> faces;
+  Mesh mesh = split_icosphere(n);
+  std::vector<Triangle> faces;
   for (const auto& [a, b, c] : mesh.faces) {
     Vec3 p;
     for (int axis = 0; axis < 3; ++axis)
-      p[axis] = 0.5 * mesh.points[a][axis] + 0.49 * mesh.points[b][axis] + 0.01 * mesh.points[c][axis];
-    const auto middle = static_cast<Index>(mesh.points.size());
-    mesh.points.push_back(to_sphere(p));
+      p[axis] = 0.5 * mesh.positions[a][axis] + 0.49 * mesh.positions[b][axis] + 0.01 * mesh.positions[c][axis];
+    const auto middle = static_cast<Index>(mesh.positions.size());
+    mesh.positions.push_back(unit(p));
     faces.insert(faces.end(), {{a, b, middle}, {b, c, middle}, {c, a, middle}});
   }
   mesh.faces = faces;
@@ -92,18 +91,18 @@ Mesh with_needles(Index n) {
 }
 
 Mesh sliver_sphere(Index n) {
-  Mesh mesh = icosphere(642);
+  Mesh mesh = split_icosphere(642);
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> uniform(0.05, 1.0);
-  while (static_cast<Index>(mesh.points.size()) < n) {
+  while (static_cast<Index>(mesh.positions.size()) < n) {
     const auto f = static_cast<std::size_t>(random() % mesh.faces.size());
     const auto [a, b, c] = mesh.faces[f];
     const double x = uniform(random), y = uniform(random), z = uniform(random);
     Vec3 p;
     for (int axis = 0; axis < 3; ++axis)
-      p[axis] = x * mesh.points[a][axis] + y * mesh.points[b][axis] + z * mesh.points[c][axis];
-    const auto middle = static_cast<Index>(mesh.points.size());
-    mesh.points.push_back(to_sphere(p));
+      p[axis] = x * mesh.positions[a][axis] + y * mesh.positions[b][axis] + z * mesh.positions[c][axis];
+    const auto middle = static_cast<Index>(mesh.positions.size());
+    mesh.positions.push_back(unit(p));
     mesh.faces[f] = {a, b, middle};
     mesh.faces.insert(mesh.faces.end(), {{b, c, middle}, {c, a, middle}});
   }
@@ -111,32 +110,32 @@ Mesh sliver_sphere(Index n) {
 }
 
 Mesh jittered_icosphere(Index n, double amount) {
-  Mesh mesh = icosphere(n);
+  Mesh mesh = split_icosphere(n);
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> uniform(-1, 1);
-  const double edge = std::sqrt(4 * pi / (std::sqrt(3.0) / 2 * static_cast<double>(mesh.points.size())));
-  for (Vec3& p : mesh.points) {
+  const double edge = std::sqrt(4 * pi / (std::sqrt(3.0) / 2 * static_cast<double>(mesh.positions.size())));
+  for (Vec3& p : mesh.positions) {
     for (double& x : p) x += amount * edge * uniform(random);
-    p = to_sphere(p);
+    p = unit(p);
   }
   return mesh;
 }
 
 Mesh stretched_icosphere(Index n, double factor) {
-  Mesh mesh = icosphere(n);
-  for (Vec3& p : mesh.points) p = to_sphere({p[0], p[1], factor * p[2]});
+  Mesh mesh = split_icosphere(n);
+  for (Vec3& p : mesh.positions) p = unit({p[0], p[1], factor * p[2]});
   return mesh;
 }
 
 Mesh ellipsoid(Index n) {
-  Mesh mesh = icosphere(n);
-  for (Vec3& p : mesh.points) p[2] *= 2;
+  Mesh mesh = split_icosphere(n);
+  for (Vec3& p : mesh.positions) p[2] *= 2;
   return mesh;
 }
 
 Mesh bumpy_sphere(Index n) {
-  Mesh mesh = icosphere(n);
-  for (Vec3& p : mesh.points) {
+  Mesh mesh = split_icosphere(n);
+  for (Vec3& p : mesh.positions) {
     const double r = 1 + 0.1 * std::sin(5 * p[0]) * std::sin(5 * p[1] + 1) * std::sin(5 * p[2] + 2);
     for (double& x : p) x *= r;
   }
@@ -148,7 +147,7 @@ Mesh tube(int around, double radius) {
   const int rings = 1 + static_cast<int>(std::lround(around / (pi * radius)));
   for (int r = 0; r < rings; ++r)
     for (int m = 0; m < around; ++m)
-      mesh.points.push_back(
+      mesh.positions.push_back(
           {2.0 * r / (rings - 1), radius * std::cos(2 * pi * m / around), radius * std::sin(2 * pi * m / around)});
   for (int r = 0; r + 1 < rings; ++r)
     for (int m = 0; m < around; ++m) {

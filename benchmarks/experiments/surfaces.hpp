@@ -2,7 +2,7 @@
 /// The surfaces of the experiments: generated ones, and those of the user.
 ///
 /// \code
-/// for (const NamedMesh& mesh : user_meshes(settings)) use(mesh.name, mesh.points, mesh.faces);
+/// for (const NamedMesh& mesh : user_meshes(settings)) use(mesh.name, mesh.positions, mesh.faces);
 /// \endcode
 #pragma once
 

@@ -1,6 +1,7 @@
 // Fig. 23: spheres of few and of badly shaped triangles. All methods work on the intrinsic Delaunay triangulation.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "ahm/applications/distortion.hpp"
@@ -13,7 +14,7 @@ namespace {
 void measure(const Surface& surface, Index source, std::span<const double> exact, std::span<const double> distance,
              double within, Table& table) {
   for (const NamedMethod& method : log_map_methods()) {
-    const baselines::Result found = method.make(surface.graph())->solve(source);
+    const methods::Result found = method.make(surface.graph())->solve(source);
     const Errors e = errors(found.coordinates, exact, [&](std::size_t i) { return distance[i] <= within; });
     const DistortionSummary D = summary(ahm::distortion(surface.points(), surface.faces(), found.coordinates));
     table.add({surface.name(), surface.size(), method.name, exact.empty() ? Cell() : Cell(e.rms),
@@ -32,13 +33,13 @@ void measure_sphere(const char* name, const Mesh& mesh, Table& table) {
 
 /// Against exact distances on a far finer mesh, whose first vertices are those of the coarse ones.
 void measure_bumpy([[maybe_unused]] const Settings& settings, [[maybe_unused]] Table& table) {
-#ifdef AHM_BASELINES_CGAL
+#ifdef AHM_METHODS_CGAL
   const Mesh fine = bumpy_sphere(settings.toy ? 2562 : 10242);
   const Index source = 17;
-  std::vector<double> exact = baselines::exact_distance(fine.points, fine.faces)->solve(source).distance;
+  std::vector<double> exact = methods::exact_distance(fine.positions, fine.faces)->solve(source).distance;
   const double within = 0.75 * std::ranges::max(exact);
   for (Index n : {162, 642, 2562}) {
-    if (2 * n > static_cast<Index>(fine.points.size())) break;
+    if (2 * n > static_cast<Index>(fine.positions.size())) break;
     const Surface coarse(fmt::format("bumpy {}", n), bumpy_sphere(n));
     measure(coarse, source, {}, std::span(exact).first(static_cast<std::size_t>(n)), within, table);
   }
@@ -50,9 +51,9 @@ void measure_bumpy([[maybe_unused]] const Settings& settings, [[maybe_unused]] T
 Table tessellations(const Settings& settings) {
   Table table(
       {"mesh", "vertices", "method", "rms", "largest", "distance rms", "median D", "95% D", "flipped area", "missing"});
-  measure_sphere("icosphere 42", icosphere(42), table);
-  measure_sphere("icosphere 162", icosphere(162), table);
-  measure_sphere("icosphere 642", icosphere(642), table);
+  measure_sphere("icosphere 42", split_icosphere(42), table);
+  measure_sphere("icosphere 162", split_icosphere(162), table);
+  measure_sphere("icosphere 642", split_icosphere(642), table);
   measure_sphere("jittered 642", jittered_icosphere(642, 0.3), table);
   measure_sphere("thin across", settings.toy ? parallels_and_meridians(8, 32) : parallels_and_meridians(12, 96), table);
   measure_sphere("thin along", settings.toy ? parallels_and_meridians(32, 8) : parallels_and_meridians(96, 12), table);

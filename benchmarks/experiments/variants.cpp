@@ -1,6 +1,7 @@
 // Fig. 8: how far the localized variant is from the adaptive one.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "ahm/maps/log_map_solver.hpp"
@@ -45,7 +46,7 @@ Table variants(const Settings& settings) {
   Table table({"shape", "vertices", "distance / longest", "median difference", "95% difference",
                "median difference, trusted", "trusted share"});
   const Index n = settings.toy ? 600 : 40000;
-  measure(Surface("sphere", icosphere(n)), table);
+  measure(Surface("sphere", split_icosphere(n)), table);
   measure(Surface("ellipsoid", ellipsoid(n)), table);
   measure(Surface("bumpy sphere", bumpy_sphere(n)), table);
   measure(Surface("torus", torus(n)), table);

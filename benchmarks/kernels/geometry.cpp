@@ -34,7 +34,7 @@ double bytes(const ahm::CsrGraphData& g) {
 // Triangle meshes.
 
 ahm::trimesh::TriangleMesh checked(const Mesh& mesh) {
-  return ahm::trimesh::TriangleMesh::from_positions(mesh.points, mesh.faces);
+  return ahm::trimesh::TriangleMesh::from_positions(mesh.positions, mesh.faces);
 }
 
 void mesh_flips(benchmark::State& state) {

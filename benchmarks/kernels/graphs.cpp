@@ -30,7 +30,7 @@ const Mesh& torus_mesh(Index n) {
 
 const std::vector<Vec3>& sphere_points(Index n) {
   static Last<std::vector<Vec3>> last;
-  return last.get(n, [n] { return random_sphere(n); });
+  return last.get(n, [n] { return test::random_sphere(n).points; });
 }
 
 const CsrGraph& graph_of(Shape shape, Index n) {
@@ -41,7 +41,7 @@ const CsrGraph& graph_of(Shape shape, Index n) {
         .get(n,
              [n] {
                const Mesh& mesh = torus_mesh(n);
-               return trimesh::TriangleMeshGraph::build(mesh.points, mesh.faces, {.threads = 1});
+               return trimesh::TriangleMeshGraph::build(mesh.positions, mesh.faces, {.threads = 1});
              })
         .graph();
   return clouds.get(n, [n] { return pointcloud::PointCloudGraph::build(sphere_points(n), {}, {.threads = 1}); })

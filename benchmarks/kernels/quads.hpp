@@ -19,7 +19,7 @@ struct Quads {
 
 /// Glues faces 2 f and 2 f + 1 of a mesh together, the halves of a quad as `torus` makes them.
 inline Quads quads_of(const Mesh& mesh) {
-  Quads quads{mesh.points};
+  Quads quads{mesh.positions};
   for (std::size_t f = 0; f + 1 < mesh.faces.size(); f += 2) {
     const auto &a = mesh.faces[f], &b = mesh.faces[f + 1];
     if (a[2] == b[1])  // cut from corner 0 to corner 2, else from 1 to 3

@@ -12,8 +12,8 @@
 #include "ahm/applications/inverse_map.hpp"
 #include "ahm/error.hpp"
 #include "ahm/polymesh/polygon_mesh_graph.hpp"
-#include "support/planar_graphs.hpp"
-#include "trimesh/meshes.hpp"
+#include "ahm/testing/flat_graphs.hpp"
+#include "support/solved_mesh.hpp"
 
 namespace ahm::test {
 namespace {

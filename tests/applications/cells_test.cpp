@@ -8,8 +8,9 @@
 #include <numbers>
 
 #include "ahm/error.hpp"
-#include "support/planar_graphs.hpp"
-#include "support/surface_graphs.hpp"
+#include "ahm/testing/curved_graphs.hpp"
+#include "ahm/testing/flat_graphs.hpp"
+#include "ahm/testing/graph_changes.hpp"
 
 namespace ahm::test {
 namespace {

@@ -11,9 +11,9 @@
 #include "ahm/grid/grid_graph.hpp"
 #include "ahm/maps/log_map_solver.hpp"
 #include "ahm/pointcloud/point_cloud_graph.hpp"
+#include "ahm/testing/flat_graphs.hpp"
 #include "ahm/trimesh/triangle_mesh_graph.hpp"
 #include "mapped_surfaces.hpp"
-#include "support/planar_graphs.hpp"
 
 namespace ahm::test {
 namespace {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "ahm/applications/inverse_map.hpp"
+#include "ahm/testing/vectors.hpp"
 
 namespace ahm::test {
 
@@ -70,7 +71,6 @@ inline Patch patch(int side, double half, const Immersion& immersion) {
   return p;
 }
 
-inline double dot(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 inline double distance(const Vec3& a, const Vec3& b) { return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]); }
 
 /// The same points for every test: `count` of them in the disc about the origin.

@@ -8,13 +8,15 @@
 #include <numeric>
 #include <random>
 
-#include "../trimesh/meshes.hpp"
 #include "ahm/error.hpp"
 #include "ahm/grid/grid_graph.hpp"
 #include "ahm/pointcloud/point_cloud_graph.hpp"
 #include "ahm/polymesh/polygon_mesh_graph.hpp"
-#include "support/planar_graphs.hpp"
-#include "support/surface_graphs.hpp"
+#include "ahm/testing/curved_graphs.hpp"
+#include "ahm/testing/flat_graphs.hpp"
+#include "ahm/testing/graph_changes.hpp"
+#include "ahm/testing/vectors.hpp"
+#include "support/solved_mesh.hpp"
 
 namespace ahm::test {
 namespace {

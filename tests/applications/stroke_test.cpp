@@ -9,8 +9,7 @@
 
 #include "ahm/error.hpp"
 #include "ahm/maps/log_map_solver.hpp"
-#include "support/planar_graphs.hpp"
-#include "support/surface_graphs.hpp"
+#include "ahm/testing/flat_graphs.hpp"
 
 namespace ahm::test {
 namespace {

@@ -3,7 +3,6 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "ahm/io/texture_atlas.hpp"
 #include "ahm/io/textured_mesh.hpp"
 #include "files.hpp"
 

@@ -62,6 +62,8 @@ TEST_F(Html, HoldsEveryPointOfACloud) {
   EXPECT_EQ(decoded_size(data(text, "positions")), 121U * 12);
   EXPECT_EQ(decoded_size(data(text, "coordinates")), 121U * 8);
   EXPECT_EQ(decoded_size(data(text, "discs")), 121U * 4);
+  EXPECT_EQ(decoded_size(data(text, "trust")), 121U);
+  EXPECT_EQ(decoded_size(data(text, "slopes")), 121U * 6);
   EXPECT_EQ(data(text, "triangles"), "");
 }
 

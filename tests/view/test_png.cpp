@@ -1,18 +1,10 @@
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <array>
-#include <cstdint>
 #include <set>
 
 #include "ahm/error.hpp"
-#include "patch.hpp"
-
-#if __has_include(<stb_image.h>)
-#define STB_IMAGE_IMPLEMENTATION
-#define STBI_ONLY_PNG
-#include <stb_image.h>
-#endif
+#include "ahm/io/image.hpp"
+#include "pixels.hpp"
 
 namespace ahm::view::test {
 namespace {
@@ -20,47 +12,16 @@ namespace {
 class Png : public testing::Test {
  protected:
   void SetUp() override {
-#ifndef STB_IMAGE_IMPLEMENTATION
-    GTEST_SKIP() << "stb_image.h was not found";
-#endif
-    if (!can_write_png()) GTEST_SKIP() << "built without OSMesa";
-    options.width = 400;
-    options.height = 300;
-    options.view_direction = {{0, 0, 1}};
+    if (!can_write_png()) GTEST_SKIP() << "built without stb";
   }
 
-  PictureOptions options;
+  PictureOptions options = from_above();
   Folder folder;
 };
 
-#ifdef STB_IMAGE_IMPLEMENTATION
-using Rgb = std::array<int, 3>;
-
-struct Pixels {
-  int width = 0, height = 0;
-  std::vector<Rgb> at;
-
-  explicit Pixels(const std::filesystem::path& path) {
-    int channels = 0;
-    unsigned char* data = stbi_load(path.c_str(), &width, &height, &channels, 3);
-    for (int k = 0; data != nullptr && k < width * height; ++k)
-      at.push_back({data[3 * k], data[3 * k + 1], data[3 * k + 2]});
-    stbi_image_free(data);
-  }
-  const Rgb& operator()(int x, int y) const { return at[y * width + x]; }
-  template <class Predicate>
-  int count(const Predicate& predicate) const {
-    return static_cast<int>(std::count_if(at.begin(), at.end(), predicate));
-  }
-};
-
-bool is_white(const Rgb& c) { return c == Rgb{255, 255, 255}; }
-bool is_source_red(const Rgb& c) { return c[0] > 200 && c[1] < 50 && c[2] < 60; }
-bool is_coloured(const Rgb& c) { return std::max({c[0], c[1], c[2]}) - std::min({c[0], c[1], c[2]}) > 30; }
-
 Pixels picture(const Folder& folder, const Scene& scene, const PictureOptions& options) {
   write_png(folder / "picture.png", scene, options);
-  return Pixels(folder / "picture.png");
+  return Pixels(io::read_image(folder / "picture.png"));
 }
 
 TEST_F(Png, HasTheSizeAskedForAndAWhiteBackground) {
@@ -75,11 +36,17 @@ TEST_F(Png, HasTheSizeAskedForAndAWhiteBackground) {
   }
 }
 
+std::set<Rgb> colours(const Pixels& pixels) {
+  std::set<Rgb> result;
+  pixels.count([&](const Rgb& c) { return result.insert(c).second; });
+  return result;
+}
+
 TEST_F(Png, IsPaintedInManyColours) {
   for (const bool is_mesh : {true, false}) {
     const Patch patch(40, is_mesh);
     const Pixels pixels = picture(folder, patch.scene(), options);
-    EXPECT_GT(std::set<Rgb>(pixels.at.begin(), pixels.at.end()).size(), 300U);
+    EXPECT_GT(colours(pixels).size(), 300U);
     EXPECT_GT(pixels.count(is_coloured), 400 * 300 / 4);
   }
 }
@@ -105,19 +72,12 @@ TEST_F(Png, RingsHaveTheGivenWidth) {
   const Pixels pixels = picture(folder, patch.scene(), options);
   const auto brightness = [&](double r) {
     const int offset = static_cast<int>(std::lround(r * 0.5 * 300 / 1.08 * std::sqrt(0.5)));
-    const Rgb& c = pixels(200 - offset, 150 - offset);
-    return c[0] + c[1] + c[2];
+    return view::test::brightness(pixels(200 - offset, 150 - offset));
   };
   for (const double r : {0.3, 0.7}) {
     EXPECT_LT(brightness(r) + 60, brightness(r + 0.2));
     EXPECT_LT(brightness(r + 0.4) + 60, brightness(r + 0.2));
   }
-}
-
-/// Pixel of the place (x, y) of the patch, seen from straight above.
-Rgb at_place(const Pixels& pixels, double x, double y) {
-  const double scale = 0.5 * 300 / 1.08;
-  return pixels(static_cast<int>(200 + scale * x), static_cast<int>(150 - scale * y));
 }
 
 int difference(const Rgb& a, const Rgb& b) {
@@ -216,8 +176,8 @@ TEST_F(Png, DoesNotDependOnHowFarFromTheOriginTheSceneLies) {
     const Patch near(64, is_mesh), far(64, is_mesh, {1048576, -2097152, 524288});  // exact in double: same patch, moved
     const Pixels a = picture(folder, near.scene(), options), b = picture(folder, far.scene(), options);
     int different = 0;
-    for (std::size_t k = 0; k < a.at.size(); ++k)
-      for (std::size_t c = 0; c < 3; ++c) different += std::abs(a.at[k][c] - b.at[k][c]) > 8 ? 1 : 0;
+    for (std::size_t k = 0; k < a.image().rgba.size(); ++k)
+      different += std::abs(a.image().rgba[k] - b.image().rgba[k]) > 8 ? 1 : 0;
     EXPECT_LT(different, 400 * 300 / 1000);
   }
 }
@@ -264,7 +224,6 @@ TEST_F(Png, AFailedWriteLeavesNothing) {
   EXPECT_THROW(write_png(folder / "missing/picture.png", patch.scene(), options), IoError);
   EXPECT_EQ(folder.files(), 0U);
 }
-#endif
 
 }  // namespace
 }  // namespace ahm::view::test

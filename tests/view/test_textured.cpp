@@ -23,7 +23,7 @@ struct Square {
     io::MeshPart part;
     part.name = "square";
     part.points = points;
-    part.face_begin = begin, part.face_vertices = vertices;
+    part.faces = {begin, vertices};
     if (image) part.texture_coordinates = places;
     part.texture = image;
     return part;

@@ -116,7 +116,14 @@ Vector3d Camera::to_pixels(const Vector3d& x, int width, int height) const {
 bool has_coordinate(const Scene& scene, Index point) {
   const auto i = static_cast<std::size_t>(point);
   if (!scene.labels.empty()) return scene.labels[i] >= 0 && std::isfinite(scene.distance[i]);
-  return std::isfinite(scene.u[i]) && std::isfinite(scene.v[i]);
+  if (!scene.u.empty()) return std::isfinite(scene.u[i]) && std::isfinite(scene.v[i]);
+  return !scene.distance.empty() && std::isfinite(scene.distance[i]);
+}
+
+double distance_at(const Scene& scene, Index point) {
+  const auto i = static_cast<std::size_t>(point);
+  if (!scene.distance.empty() && std::isfinite(scene.distance[i])) return scene.distance[i];
+  return scene.u.empty() ? 0 : std::hypot(scene.u[i], scene.v[i]);
 }
 
 std::vector<Index> shown_points(const Scene& scene) {
@@ -174,12 +181,13 @@ double choose_ring_width(const Scene& scene, const std::vector<Index>& shown, co
     if (!has_coordinate(scene, i)) continue;
     const auto k = static_cast<std::size_t>(i);
     if (options.pattern == Pattern::polar) first.push_back(std::hypot(scene.u[k], scene.v[k]));
-    if (options.pattern == Pattern::cells) first.push_back(scene.distance[k]);
     if (options.pattern == Pattern::grid) first.push_back(scene.u[k]), second.push_back(scene.v[k]);
+    if (options.pattern == Pattern::cells || options.pattern == Pattern::distance)
+      first.push_back(distance_at(scene, i));
   }
   if (first.empty()) return 1;
   const Range range = robust_range(std::move(first));
-  double exact = range.high / (options.pattern == Pattern::polar ? 12 : 4);
+  double exact = range.high / (options.pattern == Pattern::cells ? 4 : 12);
   if (!second.empty()) {
     const Range other = robust_range(std::move(second));
     exact = std::max(range.high - range.low, other.high - other.low) / 24;

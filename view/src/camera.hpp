@@ -41,6 +41,9 @@ std::vector<Index> shown_points(const Scene& scene);
 /// Whether the point has a coordinate.
 bool has_coordinate(const Scene& scene, Index point);
 
+/// Distance from the source as the scene gives it, else |(u, v)|. Only where there is a coordinate.
+double distance_at(const Scene& scene, Index point);
+
 /// Frames the mapped part, or everything if nothing is mapped.
 Camera choose_camera(const Scene& scene, const std::vector<Index>& shown, const PictureOptions& options);
 

@@ -41,21 +41,43 @@ void check_faces(const Scene& scene) {
   }
 }
 
-void check_size(std::size_t size, std::size_t expected, const char* name) {
-  require(size == expected, std::string(name) + ": " + std::to_string(size) + " entries instead of " +
-                                std::to_string(expected) +
-                                "; give one per point where the pattern needs it, else none");
+void check_size(std::size_t size, std::size_t points, const char* name) {
+  require(size == points, std::string("scene.") + name + ": " + std::to_string(size) + " entries for " +
+                              std::to_string(points) + " points; give one per point");
+}
+
+/// What the pattern is painted by; the rest may be there or not, but for labels, which only cells have.
+void check_map(const Scene& scene, Pattern pattern) {
+  const auto optional = [&](std::size_t size, const char* name) {
+    if (size > 0) check_size(size, scene.points.size(), name);
+  };
+  const bool cells = pattern == Pattern::cells, coordinates = pattern == Pattern::polar || pattern == Pattern::grid;
+  if (coordinates || !scene.u.empty() || !scene.v.empty()) {
+    check_size(scene.u.size(), scene.points.size(), "u");
+    check_size(scene.v.size(), scene.points.size(), "v");
+  }
+  require(!cells || scene.u.empty(), "scene.u: given for cells, which are painted by labels");
+  require(cells || scene.labels.empty(), "scene.labels: given for another pattern than cells");
+  if (cells) check_size(scene.labels.size(), scene.points.size(), "labels");
+  const bool needs_distance = cells || (pattern == Pattern::distance && scene.u.empty());
+  needs_distance ? check_size(scene.distance.size(), scene.points.size(), "distance")
+                 : optional(scene.distance.size(), "distance");
+  optional(scene.quality.size(), "quality");
+  optional(scene.normals.size(), "normals");
 }
 
 }  // namespace
 
+void check_picture(const PictureOptions& options) {
+  for (const auto& [size, name] : {std::pair{options.width, "width"}, std::pair{options.height, "height"}})
+    require(size >= 16 && size <= 8192,
+            std::string("options.") + name + " = " + std::to_string(size) + ": must be between 16 and 8192 pixels");
+  check_direction(options.view_direction, "options.view_direction");
+  check_direction(options.up, "options.up");
+}
+
 void check(const Scene& scene, const PictureOptions& options) {
-  const bool cells = options.pattern == Pattern::cells;
-  check_size(scene.u.size(), cells ? 0 : scene.points.size(), "scene.u");
-  check_size(scene.v.size(), cells ? 0 : scene.points.size(), "scene.v");
-  check_size(scene.labels.size(), cells ? scene.points.size() : 0, "scene.labels");
-  check_size(scene.distance.size(), cells ? scene.points.size() : 0, "scene.distance");
-  if (!scene.normals.empty()) check_size(scene.normals.size(), scene.points.size(), "scene.normals");
+  check_map(scene, options.pattern);
   check_faces(scene);
   require(is_finite(scene.source), "scene.source: must be finite");
   for (const Vec3& dot : scene.dots) require(is_finite(dot), "scene.dots: must be finite");
@@ -69,16 +91,12 @@ void check(const Scene& scene, const PictureOptions& options) {
   if (scene.source_axes)
     for (const Vec3& axis : *scene.source_axes) require(is_finite(axis), "scene.source_axes: must be finite");
 
-  for (const auto& [size, name] : {std::pair{options.width, "width"}, std::pair{options.height, "height"}})
-    require(size >= 16 && size <= 8192,
-            std::string("options.") + name + " = " + std::to_string(size) + ": must be between 16 and 8192 pixels");
+  check_picture(options);
   require(options.sectors > 0 && options.sectors % 2 == 0 && options.sectors <= 720,
           "options.sectors = " + std::to_string(options.sectors) + ": must be even, and between 2 and 720");
   if (options.ring_width)
     require(std::isfinite(*options.ring_width) && *options.ring_width > 0,
             "options.ring_width = " + std::to_string(*options.ring_width) + ": must be finite and positive");
-  check_direction(options.view_direction, "options.view_direction");
-  check_direction(options.up, "options.up");
 }
 
 }  // namespace ahm::view

@@ -5,6 +5,9 @@
 
 namespace ahm::view {
 
+/// Size and view. @throws InvalidArgument
+void check_picture(const PictureOptions& options);
+
 /// @throws InvalidArgument naming the first bad field.
 void check(const Scene& scene, const PictureOptions& options);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 
 namespace ahm::view {
@@ -49,25 +50,44 @@ std::vector<double> colours_of(const std::vector<Cell>& cells) {
   return result;
 }
 
+/// The farthest distance, in whole rings.
+double largest_distance(const Scene& scene, const std::vector<Index>& shown) {
+  double largest = 0;
+  for (const Index i : shown)
+    if (has_coordinate(scene, i)) largest = std::max(largest, distance_at(scene, i));
+  return largest;
+}
+
 }  // namespace
 
 Paint make_paint(const Scene& scene, const std::vector<Index>& shown, const PictureOptions& options) {
   const std::size_t n = scene.points.size();
-  Paint paint{options.pattern, choose_ring_width(scene, shown, options), std::vector<Vector2d>(n, Vector2d::Zero()),
-              std::vector<float>(n, 0)};
-  const std::vector<Cell> cells = scene.labels.empty() ? std::vector<Cell>() : cells_of(scene, shown);
+  Paint paint{options.pattern,
+              choose_ring_width(scene, shown, options),
+              0,
+              std::vector<Vector2d>(n, Vector2d::Zero()),
+              std::vector<float>(n, 0),
+              std::vector<float>(n, 1)};
+  if (options.pattern == Pattern::none) return paint;
+  if (options.pattern == Pattern::distance) paint.rings = largest_distance(scene, shown) / paint.ring_width;
+  const bool is_cells = options.pattern == Pattern::cells;
+  const std::vector<Cell> cells = is_cells ? cells_of(scene, shown) : std::vector<Cell>();
   const std::vector<double> colour = colours_of(cells);
   for (const Index point : shown) {
     if (!has_coordinate(scene, point)) continue;
     const auto i = static_cast<std::size_t>(point);
     paint.known[i] = 1;
-    if (scene.labels.empty()) {
+    if (!scene.quality.empty() && std::isfinite(scene.quality[i]))
+      paint.quality[i] = static_cast<float>(scene.quality[i]);
+    if (options.pattern == Pattern::distance) {
+      paint.uv[i] = {distance_at(scene, point) / paint.ring_width, 0};
+    } else if (is_cells) {
+      const auto cell = std::lower_bound(cells.begin(), cells.end(), scene.labels[i],
+                                         [](const Cell& c, Index label) { return c.label < label; });
+      paint.uv[i] = {colour[cell - cells.begin()], scene.distance[i] / paint.ring_width};
+    } else {
       paint.uv[i] = Vector2d(scene.u[i], scene.v[i]) / paint.ring_width;
-      continue;
     }
-    const auto cell = std::lower_bound(cells.begin(), cells.end(), scene.labels[i],
-                                       [](const Cell& c, Index label) { return c.label < label; });
-    paint.uv[i] = {colour[cell - cells.begin()], scene.distance[i] / paint.ring_width};
   }
   return paint;
 }

@@ -42,13 +42,15 @@ constexpr std::array<std::string_view, letters.size()> strokes = {
 }  // namespace
 
 /// Paints where the signed distance is negative, with half a pixel of soft edge.
-template <class Distance>
-void Pen::fill(Vector2d low, Vector2d high, Colour colour, const Distance& distance) {
+template <class PaintAt, class Distance>
+void Pen::fill(Vector2d low, Vector2d high, const PaintAt& colour_at, const Distance& distance) {
   const auto clip = [](double x, int size) { return static_cast<int>(std::clamp(x, 0.0, static_cast<double>(size))); };
   for (int y = clip(low.y() - 1, image_.height); y < clip(high.y() + 2, image_.height); ++y)
     for (int x = clip(low.x() - 1, image_.width); x < clip(high.x() + 2, image_.width); ++x) {
-      const double cover = std::clamp(0.5 - distance(Vector2d(x + 0.5, y + 0.5)), 0.0, 1.0);
+      const Vector2d place(x + 0.5, y + 0.5);
+      const double cover = std::clamp(0.5 - distance(place), 0.0, 1.0);
       if (cover <= 0) continue;
+      const Colour colour = colour_at(place);
       std::uint8_t* p = image_.pixel(x, y);
       for (std::size_t k = 0; k < 3; ++k)
         p[k] = static_cast<std::uint8_t>(std::lround(p[k] + cover * (static_cast<double>(colour[k]) - p[k])));
@@ -56,23 +58,34 @@ void Pen::fill(Vector2d low, Vector2d high, Colour colour, const Distance& dista
 }
 
 void Pen::disc(Vector2d centre, double radius, Colour colour) {
+  disc(centre, radius, [=](const Vector2d&) { return colour; });
+}
+
+void Pen::disc(Vector2d centre, double radius, const ColourAt& colour) {
   const Vector2d r(radius, radius);
   fill(centre - r, centre + r, colour, [&](const Vector2d& p) { return (p - centre).norm() - radius; });
 }
 
+void Pen::box(Vector2d low, Vector2d high, const ColourAt& colour) {
+  fill(low, high, colour, [&](const Vector2d& p) { return (low - p).cwiseMax(p - high).maxCoeff(); });
+}
+
 void Pen::line(Vector2d from, Vector2d to, double width, Colour colour) {
   const Vector2d r(width, width);
-  fill(from.cwiseMin(to) - r, from.cwiseMax(to) + r, colour,
-       [&](const Vector2d& p) { return distance_to_line(p, from, to) - width / 2; });
+  fill(
+      from.cwiseMin(to) - r, from.cwiseMax(to) + r, [=](const Vector2d&) { return colour; },
+      [&](const Vector2d& p) { return distance_to_line(p, from, to) - width / 2; });
 }
 
 void Pen::triangle(Vector2d a, Vector2d b, Vector2d c, double rounding, Colour colour) {
   const Vector2d r(rounding, rounding);
-  fill(a.cwiseMin(b).cwiseMin(c) - r, a.cwiseMax(b).cwiseMax(c) + r, colour, [&](const Vector2d& p) {
-    const double edge = std::min({distance_to_line(p, a, b), distance_to_line(p, b, c), distance_to_line(p, c, a)});
-    const bool first = cross(b - a, p - a) > 0, second = cross(c - b, p - b) > 0, third = cross(a - c, p - c) > 0;
-    return (first == second && second == third ? -edge : edge) - rounding;
-  });
+  fill(
+      a.cwiseMin(b).cwiseMin(c) - r, a.cwiseMax(b).cwiseMax(c) + r, [=](const Vector2d&) { return colour; },
+      [&](const Vector2d& p) {
+        const double edge = std::min({distance_to_line(p, a, b), distance_to_line(p, b, c), distance_to_line(p, c, a)});
+        const bool first = cross(b - a, p - a) > 0, second = cross(c - b, p - b) > 0, third = cross(a - c, p - c) > 0;
+        return (first == second && second == third ? -edge : edge) - rounding;
+      });
 }
 
 double Pen::text(Vector2d at, double height, double stroke, std::string_view text, Colour colour) {

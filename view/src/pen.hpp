@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <string_view>
 
 #include "ahm/image.hpp"
@@ -17,7 +18,11 @@ class Pen {
  public:
   explicit Pen(Image& image) : image_(image) {}
 
+  using ColourAt = std::function<Colour(const Eigen::Vector2d&)>;  ///< of a place on the image
+
   void disc(Eigen::Vector2d centre, double radius, Colour colour);
+  void disc(Eigen::Vector2d centre, double radius, const ColourAt& colour);
+  void box(Eigen::Vector2d low, Eigen::Vector2d high, const ColourAt& colour);
   /// A line with round ends.
   void line(Eigen::Vector2d from, Eigen::Vector2d to, double width, Colour colour);
   void triangle(Eigen::Vector2d a, Eigen::Vector2d b, Eigen::Vector2d c, double rounding, Colour colour);
@@ -25,8 +30,8 @@ class Pen {
   double text(Eigen::Vector2d at, double height, double stroke, std::string_view text, Colour colour);
 
  private:
-  template <class Distance>
-  void fill(Eigen::Vector2d low, Eigen::Vector2d high, Colour colour, const Distance& distance);
+  template <class PaintAt, class Distance>
+  void fill(Eigen::Vector2d low, Eigen::Vector2d high, const PaintAt& colour, const Distance& distance);
 
   Image& image_;
 };

@@ -1,29 +1,25 @@
-// The three-dimensional part of a PNG.
+// From drawables to a film: every tile by itself, on all threads.
 #pragma once
 
-#include "ahm/image.hpp"
 #include "drawable.hpp"
+#include "film.hpp"
+#include "material.hpp"
 
 namespace ahm::view {
 
-/// The pattern by itself, in a corner.
-struct Legend {
-  double x = 0, y = 0, radius = 0;  ///< pixels, y down; no legend if the radius is 0
-  double rings = 2;
+struct Painted {
+  Drawable drawable;
+  Material material;
 };
 
-/// A picture without marks, and how far away what it shows is.
-struct Rendering {
-  Image image;
-  int factor;                 ///< samples of depth per pixel and side
-  std::vector<float> depths;  ///< along the camera's axis in scene units, infinite for the background; rows upwards
+/// Draws the things, transparent ones in the given order over the others. The picture does not depend on the number of
+/// threads.
+Film render(std::vector<Painted> things, const Camera& camera, const PictureOptions& options);
 
-  /// Whether a position in camera coordinates is in the picture with nothing before it, up to a tolerance.
-  bool shows(const Camera& camera, const Eigen::Vector3d& position, double tolerance) const;
-};
+/// The film as a picture, without marks.
+Image develop(const Film& film, const PictureOptions& options);
 
-/// The drawable, shaded and painted. @throws Error if OpenGL fails.
-Rendering render(const Drawable& drawable, const Camera& camera, double ring_width, const PictureOptions& options,
-                 const Legend& legend);
+/// Whether a position in scene coordinates is in the picture with nothing before it by more than `tolerance`.
+bool shows(const Film& film, const Camera& camera, const Eigen::Vector3d& position, double tolerance);
 
 }  // namespace ahm::view

@@ -1,11 +1,12 @@
-#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <nanoflann.hpp>
 #include <span>
-#include <thread>
 
+#include "ahm/pointcloud/neighbor_search.hpp"
+#include "ahm/pointcloud/plane_fit.hpp"
+#include "ahm/util/parallel.hpp"
 #include "drawable.hpp"
 
 namespace ahm::view {
@@ -14,66 +15,13 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-/// What nanoflann wants to know about an array of points.
-struct PointsAdaptor {
-  const std::vector<Vector3d>& points;
-  std::size_t kdtree_get_point_count() const { return points.size(); }
-  double kdtree_get_pt(std::size_t i, std::size_t axis) const { return points[i][static_cast<Eigen::Index>(axis)]; }
-  template <class Box>
-  bool kdtree_get_bbox(Box&) const {
-    return false;
-  }
-};
-using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, PointsAdaptor>, PointsAdaptor, 3,
-                                                 std::size_t>;
-
 constexpr std::size_t ring_size = 6;  // neighbours a disc reaches, so that discs overlap
 constexpr std::size_t neighbours_for_normal = 12;
 
 struct Local {
   float radius = 0;
-  Vector3f normal = Vector3f::Zero();  // zero, where unknown: drawn facing the viewer
   std::array<std::uint32_t, ring_size> ring{};
 };
-
-/// The direction in which these points are thinnest.
-Vector3f thinnest_direction(const std::vector<Vector3d>& points, std::span<const std::size_t> index) {
-  if (index.size() < 3) return Vector3f::Zero();
-  Vector3d mean = Vector3d::Zero();
-  for (const std::size_t k : index) mean += points[k] / static_cast<double>(index.size());
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-  for (const std::size_t k : index) covariance += (points[k] - mean) * (points[k] - mean).transpose();
-  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
-  solver.computeDirect(covariance);
-  return solver.eigenvectors().col(0).cast<float>();
-}
-
-/// Nearest neighbours of point i, the distance to the farthest of them, and a normal unless one is given.
-Local look_around(const Tree& tree, const std::vector<Vector3d>& points, std::size_t i, const Vector3d& given) {
-  const bool estimate = !given.allFinite() || !(given.norm() > 0);
-  std::array<std::size_t, neighbours_for_normal> index;
-  std::array<double, neighbours_for_normal> squared;
-  const std::size_t wanted = estimate ? neighbours_for_normal : ring_size + 1;
-  const std::size_t found = tree.knnSearch(points[i].data(), wanted, index.data(), squared.data());
-  Local local;
-  local.ring.fill(static_cast<std::uint32_t>(i));
-  const std::size_t used = std::min(found, ring_size + 1);  // the first one found is the point itself, or its double
-  for (std::size_t k = 1; k < used; ++k) local.ring[k - 1] = static_cast<std::uint32_t>(index[k]);
-  if (used > 0) local.radius = static_cast<float>(std::sqrt(squared[used - 1]));
-  local.normal =
-      estimate ? thinnest_direction(points, {index.data(), found}) : Vector3f(given.normalized().cast<float>());
-  return local;
-}
-
-/// Runs body(begin, end) over the parts of 0..n on all processors; parts write only their own entries.
-template <class Body>
-void in_parallel(std::size_t n, const Body& body) {
-  const std::size_t parts = n < 10'000 ? 1 : std::clamp<std::size_t>(std::thread::hardware_concurrency(), 1, 16);
-  std::vector<std::jthread> threads;
-  for (std::size_t part = 1; part < parts; ++part)
-    threads.emplace_back([&, part] { body(n * part / parts, n * (part + 1) / parts); });
-  body(0, n / parts);
-}
 
 /// Radii within bounds: no blob for a floater (its neighbours lie closer to each other than to it), no pinhole for a
 /// doubled point, nothing far from the median.
@@ -95,33 +43,101 @@ std::vector<float> limited_radii(const std::vector<Local>& locals) {
   return radii;
 }
 
+/// Makes one disc after the other.
+class Splatter {
+ public:
+  Splatter(const Scene& scene, const std::vector<Index>& shown, const Camera& camera, const Paint& paint)
+      : scene_(scene), shown_(shown), paint_(paint), rings_per_length_(camera.scale / paint.ring_width) {
+    points_.reserve(shown.size());
+    for (const Index i : shown) {
+      const Vector3d x = camera.to_scene(scene.points[i]);
+      points_.push_back({x.x(), x.y(), x.z()});
+    }
+  }
+
+  Drawable make(unsigned threads) {
+    const std::size_t n = points_.size();
+    out_.positions.resize(n), out_.normals.resize(n), out_.values.resize(n), out_.known.resize(n);
+    if (paint_.pattern != Pattern::none) out_.gradients.resize(n);
+    out_.values_per_length = static_cast<float>(4 * rings_per_length_);
+    std::vector<Local> locals(n);
+    const auto search = pointcloud::nanoflann_search(points_);
+    detail::parallel_chunks(static_cast<Offset>(n), 4096, threads, [&](Offset begin, Offset end) {
+      for (Offset k = begin; k < end; ++k) locals[k] = look_around(*search, static_cast<std::size_t>(k));
+    });
+    out_.radii = limited_radii(locals);
+    return std::move(out_);
+  }
+
+ private:
+  /// Fills in point k but for its radius.
+  Local look_around(const pointcloud::NeighborSearch& search, std::size_t k) {
+    const auto i = static_cast<std::size_t>(shown_[k]);
+    out_.positions[k] = as_vector(points_[k]).cast<float>();
+    out_.values[k] = {static_cast<float>(paint_.uv[i].x()), static_cast<float>(paint_.uv[i].y()), paint_.quality[i]};
+    out_.known[k] = paint_.known[i];
+    const Vector3d given = scene_.normals.empty() ? Vector3d::Zero().eval() : as_vector(scene_.normals[i]).eval();
+    const bool estimate = !given.allFinite() || !(given.norm() > 0);
+
+    std::array<Index, neighbours_for_normal> index;
+    std::array<double, neighbours_for_normal> squared;
+    const std::size_t wanted = estimate ? neighbours_for_normal : ring_size + 1;
+    const auto found = static_cast<std::size_t>(
+        search.nearest(points_[k], std::span(index).first(wanted), std::span(squared).first(wanted)));
+    if (estimate && found > 0) {
+      const Vec3 normal =
+          pointcloud::fit_plane(points_, static_cast<Index>(k), std::span(index).subspan(1, found - 1)).normal;
+      out_.normals[k] = as_vector(normal).cast<float>();
+    } else {
+      out_.normals[k] = given.normalized().cast<float>();
+    }
+    // The first one found is the point itself, or its double.
+    const std::size_t used = std::min(found, ring_size + 1);
+    Local local;
+    local.ring.fill(static_cast<std::uint32_t>(k));
+    for (std::size_t r = 1; r < used; ++r) local.ring[r - 1] = static_cast<std::uint32_t>(index[r]);
+    if (used > 0) local.radius = static_cast<float>(std::sqrt(squared[used - 1]));
+    if (!out_.gradients.empty()) out_.gradients[k] = gradient(k, std::span(index).first(used));
+    return local;
+  }
+
+  /// Least squares over the neighbours on the same side of a cut, in the plane of the disc. Zero where they do not
+  /// span it.
+  std::array<Vector3f, 2> gradient(std::size_t k, std::span<const Index> ring) const {
+    const auto own = static_cast<std::size_t>(shown_[k]);
+    const Vector3d normal = out_.normals[k].cast<double>();
+    if (paint_.known[own] == 0 || !(normal.squaredNorm() > 0)) return {Vector3f::Zero(), Vector3f::Zero()};
+    const Vector3d x = normal.unitOrthogonal(), y = normal.cross(x);
+    Eigen::Matrix2d square = Eigen::Matrix2d::Zero(), right = Eigen::Matrix2d::Zero();
+    for (const Index j : ring) {
+      const auto other = static_cast<std::size_t>(shown_[j]);
+      const Vector3d d = as_vector(points_[j]) - as_vector(points_[k]);
+      const Eigen::Vector2d change = paint_.uv[other] - paint_.uv[own];
+      if (paint_.known[other] == 0 || change.norm() > 5 * rings_per_length_ * d.norm()) continue;
+      if (paint_.pattern == Pattern::cells && change.x() != 0) continue;
+      const Eigen::Vector2d flat(d.dot(x), d.dot(y));
+      square += flat * flat.transpose();
+      right += flat * change.transpose();
+    }
+    const double trace = square.trace();
+    if (!(square.determinant() > 1e-3 * trace * trace)) return {Vector3f::Zero(), Vector3f::Zero()};
+    const Eigen::Matrix2d g = square.inverse() * right;  // column c: of value c, along x and y
+    return {(g(0, 0) * x + g(1, 0) * y).cast<float>(), (g(0, 1) * x + g(1, 1) * y).cast<float>()};
+  }
+
+  const Scene& scene_;
+  const std::vector<Index>& shown_;
+  const Paint& paint_;
+  double rings_per_length_;  ///< how far the map moves per unit of length where it is an isometry
+  std::vector<Vec3> points_;
+  Drawable out_;
+};
+
 }  // namespace
 
-Drawable make_splats(const Scene& scene, const std::vector<Index>& shown, const Camera& camera, const Paint& paint) {
-  std::vector<Vector3d> points;
-  points.reserve(shown.size());
-  for (const Index i : shown) points.push_back(camera.to_scene(scene.points[i]));
-
-  const std::size_t n = points.size();
-  Drawable out;
-  out.positions.resize(n), out.normals.resize(n);
-  out.uv.resize(n), out.known.resize(n);
-  std::vector<Local> locals(n);
-  const PointsAdaptor adaptor{points};
-  const Tree tree(3, adaptor, nanoflann::KDTreeSingleIndexAdaptorParams(16));
-  in_parallel(n, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) {
-      const auto i = static_cast<std::size_t>(shown[k]);
-      const Vector3d given = scene.normals.empty() ? Vector3d::Zero() : Vector3d(as_vector(scene.normals[i]));
-      locals[k] = look_around(tree, points, k, given);
-      out.positions[k] = points[k].cast<float>();
-      out.normals[k] = locals[k].normal;
-      out.uv[k] = paint.uv[i].cast<float>();
-      out.known[k] = paint.known[i];
-    }
-  });
-  out.radii = limited_radii(locals);
-  return out;
+Drawable make_splats(const Scene& scene, const std::vector<Index>& shown, const Camera& camera, const Paint& paint,
+                     unsigned threads) {
+  return Splatter(scene, shown, camera, paint).make(threads);
 }
 
 }  // namespace ahm::view

@@ -1,4 +1,5 @@
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -103,10 +104,10 @@ class SurfaceBuilder {
     return sum.norm() > 0 ? sum.normalized() : own;
   }
 
-  std::uint32_t add(const Vector3d& position, const Vector3d& normal, const Vector2d& uv, float known) {
+  std::uint32_t add(const Vector3d& position, const Vector3d& normal, const Vector3d& value, float known) {
     out_.positions.push_back(position.cast<float>());
     out_.normals.push_back(normal.cast<float>());
-    out_.uv.push_back(uv.cast<float>());
+    out_.values.push_back(value.cast<float>());
     out_.known.push_back(known);
     return static_cast<std::uint32_t>(out_.positions.size() - 1);
   }
@@ -115,7 +116,8 @@ class SurfaceBuilder {
     const auto i = static_cast<std::size_t>(point);
     for (const std::uint32_t candidate : shared_[i])
       if ((out_.normals[candidate].cast<double>() - normal).norm() < 1e-3) return candidate;
-    shared_[i].push_back(add(points_[i], normal, paint_.uv[i], paint_.known[i]));
+    const Vector2d& uv = paint_.uv[i];
+    shared_[i].push_back(add(points_[i], normal, {uv.x(), uv.y(), paint_.quality[i]}, paint_.known[i]));
     return shared_[i].back();
   }
 
@@ -156,18 +158,19 @@ class SurfaceBuilder {
       for (const std::size_t k : corners) {
         position += out_.positions[vertex[k]].cast<double>() / static_cast<double>(corners.size());
         normal += out_.normals[vertex[k]].cast<double>();
-        sum += distance(out_.uv[vertex[k]].cast<double>()) / static_cast<double>(corners.size());
+        sum += distance(out_.values[vertex[k]].head<2>().cast<double>()) / static_cast<double>(corners.size());
       }
       normal.normalize();
       return sum;
     };
     for (std::size_t k = 0; k < 3; ++k) {
       const std::size_t next = (k + 1) % 3, previous = (k + 2) % 3;
-      const Vector2d own = out_.uv[vertex[k]].cast<double>();
+      const Vector3d own = out_.values[vertex[k]].cast<double>();
       const auto part = [&](std::initializer_list<std::size_t> corners) {
         Vector3d position, normal;
         const double shared = mean(corners, position, normal);
-        return add(position, normal, with_distance(own, shared), 1);
+        const Vector2d uv = with_distance(own.head<2>(), shared);
+        return add(position, normal, {uv.x(), uv.y(), own.z()}, 1);
       };
       const std::uint32_t a = part({k, next}), centre = part({0, 1, 2}), b = part({k, previous});
       out_.triangles.insert(out_.triangles.end(), {vertex[k], a, centre, vertex[k], centre, b});
@@ -190,8 +193,24 @@ Drawable make_surface(const Scene& scene, const Camera& camera, const Paint& pai
   return SurfaceBuilder(scene, camera, paint).build();
 }
 
-Drawable make_drawable(const Scene& scene, const std::vector<Index>& shown, const Camera& camera, const Paint& paint) {
-  return scene.face_vertices.empty() ? make_splats(scene, shown, camera, paint) : make_surface(scene, camera, paint);
+Drawable make_drawable(const Scene& scene, const std::vector<Index>& shown, const Camera& camera, const Paint& paint,
+                       unsigned threads) {
+  return scene.face_vertices.empty() ? make_splats(scene, shown, camera, paint, threads)
+                                     : make_surface(scene, camera, paint);
+}
+
+float typical_spacing(const Drawable& drawable) {
+  if (drawable.positions.empty()) return 0;
+  if (!drawable.is_mesh()) {
+    std::vector<float> radii = drawable.radii;
+    const auto middle = radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2);
+    std::nth_element(radii.begin(), middle, radii.end());
+    return *middle;
+  }
+  double sum = 0;
+  for (std::size_t k = 0; k < drawable.triangles.size(); k += 3)
+    sum += (drawable.positions[drawable.triangles[k]] - drawable.positions[drawable.triangles[k + 1]]).norm();
+  return drawable.triangles.empty() ? 0 : static_cast<float>(3 * sum / static_cast<double>(drawable.triangles.size()));
 }
 
 }  // namespace ahm::view

@@ -95,10 +95,18 @@ float largest_radius(const Drawable& drawable) {
   return drawable.is_mesh() ? 1 : *std::max_element(drawable.radii.begin(), drawable.radii.end());
 }
 
+/// The largest component of a gradient; what lies far beyond an isometry is cut off.
+float steepest(const Drawable& drawable) {
+  float most = 0;
+  for (const auto& gradient : drawable.gradients)
+    for (const Eigen::Vector3f& g : gradient) most = std::max(most, g.cwiseAbs().maxCoeff());
+  return std::min(most, drawable.values_per_length);
+}
+
 /// What the viewer needs besides arrays, as JSON.
-std::string describe(const Scene& scene, const Drawable& drawable, const Camera& camera, double ring_width,
+std::string describe(const Scene& scene, const Drawable& drawable, const Camera& camera, const Paint& paint,
                      const PictureOptions& options) {
-  constexpr const char* patterns[] = {"polar", "grid", "cells"};
+  constexpr const char* patterns[] = {"polar", "grid", "cells", "distance", "none"};
   std::string axes;
   if (scene.source_axes)
     for (std::size_t k = 0; k < 2; ++k)
@@ -109,7 +117,8 @@ std::string describe(const Scene& scene, const Drawable& drawable, const Camera&
   return std::string("{\"is_mesh\":") + (drawable.is_mesh() ? "true" : "false") +
          ",\"is_mapped\":" + (is_mapped ? "true" : "false") + ",\"pattern\":\"" +
          patterns[static_cast<std::size_t>(options.pattern)] + "\",\"sectors\":" + std::to_string(options.sectors) +
-         ",\"ring_width\":" + number(ring_width) + ",\"largest_radius\":" + number(largest_radius(drawable)) +
+         ",\"ring_width\":" + number(paint.ring_width) + ",\"rings\":" + number(paint.rings) +
+         ",\"steepest\":" + number(steepest(drawable)) + ",\"largest_radius\":" + number(largest_radius(drawable)) +
          ",\"source\":" + triple(camera.to_scene(scene.source)) + ",\"axes\":[" + axes +
          "],\"dots\":" + triples(scene.dots, camera) + ",\"curve\":" + triples(scene.curve, camera) +
          ",\"curve_pieces\":[" + pieces + "]" + ",\"eye\":" + triple(camera.eye()) +
@@ -121,15 +130,16 @@ std::string describe(const Scene& scene, const Drawable& drawable, const Camera&
 
 /// Coordinates with 1e30 for "none": interpolated with anything, it stays beyond any coordinate.
 std::vector<Eigen::Vector2f> coordinates(const Drawable& drawable) {
-  std::vector<Eigen::Vector2f> uv = drawable.uv;
+  std::vector<Eigen::Vector2f> uv(drawable.values.size());
   for (std::size_t i = 0; i < uv.size(); ++i)
-    if (drawable.known[i] == 0) uv[i].setConstant(1e30F);
+    uv[i] = drawable.values[i].head<2>() + Eigen::Vector2f::Constant(drawable.known[i] == 0 ? 1e30F : 0);
   return uv;
 }
 
+std::uint8_t byte(float x) { return static_cast<std::uint8_t>(std::lround(255 * std::clamp(x, 0.0F, 1.0F))); }
+
 /// Normal and radius in four bytes.
 std::vector<std::array<std::uint8_t, 4>> discs(const Drawable& drawable) {
-  const auto byte = [](float x) { return static_cast<std::uint8_t>(std::lround(255 * std::clamp(x, 0.0F, 1.0F))); };
   const float largest = largest_radius(drawable);
   std::vector<std::array<std::uint8_t, 4>> out(drawable.normals.size());
   for (std::size_t i = 0; i < out.size(); ++i) {
@@ -137,6 +147,26 @@ std::vector<std::array<std::uint8_t, 4>> discs(const Drawable& drawable) {
     out[i] = {byte(n.x()), byte(n.y()), byte(n.z()),
               drawable.is_mesh() ? std::uint8_t{0} : byte(drawable.radii[i] / largest)};
   }
+  return out;
+}
+
+/// Quality in a byte, 128 at one half.
+std::vector<std::uint8_t> trust(const Drawable& drawable) {
+  std::vector<std::uint8_t> out;
+  for (const Eigen::Vector3f& value : drawable.values) out.push_back(byte(value.z()));
+  return out;
+}
+
+/// Gradients in six bytes, 127 for zero.
+std::vector<std::array<std::uint8_t, 6>> slopes(const Drawable& drawable) {
+  std::vector<std::array<std::uint8_t, 6>> out(drawable.is_mesh() ? 0 : drawable.positions.size());
+  const float scale = steepest(drawable) > 0 ? 0.5F / steepest(drawable) : 0;
+  for (auto& bytes : out) bytes.fill(127);
+  for (std::size_t i = 0; i < drawable.gradients.size(); ++i)
+    for (std::size_t k = 0; k < 6; ++k) {
+      const float component = drawable.gradients[i][k / 3][static_cast<Eigen::Index>(k % 3)];
+      out[i][k] = byte(127.0F / 255 + scale * component);
+    }
   return out;
 }
 
@@ -167,12 +197,13 @@ void write_html(const std::filesystem::path& path, const Scene& scene, const Pic
   const std::vector<Index> shown = shown_points(scene);
   const Camera camera = choose_camera(scene, shown, options);
   const Paint paint = make_paint(scene, shown, options);
-  const Drawable drawable = make_drawable(scene, shown, camera, paint);
+  const Drawable drawable = make_drawable(scene, shown, camera, paint, options.threads);
 
   const std::string title = escape(scene.title.empty() ? "logarithmic map" : scene.title);
-  const std::string meta = describe(scene, drawable, camera, paint.ring_width, options);
+  const std::string meta = describe(scene, drawable, camera, paint, options);
   const std::string positions = base64(drawable.positions), uv = base64(coordinates(drawable));
   const std::string disc = base64(discs(drawable)), triangles = base64(drawable.triangles);
+  const std::string trusted = base64(trust(drawable)), slope = base64(slopes(drawable));
   io::AtomicFile file(path);
   fill_in(file, resources::page,
           {{"@TITLE@", title},
@@ -180,6 +211,8 @@ void write_html(const std::filesystem::path& path, const Scene& scene, const Pic
            {"@POSITIONS@", positions},
            {"@COORDINATES@", uv},
            {"@DISCS@", disc},
+           {"@TRUST@", trusted},
+           {"@SLOPES@", slope},
            {"@TRIANGLES@", triangles},
            {"@PALETTE@", resources::palette},
            {"@THREE@", resources::three},

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <memory>
 #include <string_view>
@@ -11,7 +10,7 @@
 
 #include "cli/console.hpp"
 #include "cli/system_info.hpp"
-#include "commands/commands.hpp"
+#include "commands/subcommand.hpp"
 
 namespace ahm::app {
 namespace {
@@ -26,9 +25,6 @@ constexpr const char* main_footer =
     "of the shortest path that leads to it from the source.\n"
     "\n"
     "Exit status: 0 success, 1 the work failed, 2 the command line is wrong, 130 or 143 interrupted.";
-
-constexpr auto subcommands = {add_info,   add_logmap, add_local_maps, add_inverse, add_coverage,
-                              add_stroke, add_cells,  add_center,     add_atlas,   add_decal};
 
 std::function<void()> print_later(std::string text) {
   return [text = std::move(text)] { print(text); };
@@ -57,7 +53,7 @@ std::function<void()> parse_command_line(int argc, const char* const* argv) {
   bool version = false;
   app->add_flag("--version", version, "Print the versions of ahm, its libraries and the BLAS in use");
   std::vector<Subcommand> commands;
-  for (const auto& add : subcommands) commands.push_back(add(*app));
+  for (const AddSubcommand add : subcommands()) commands.push_back(add(*app));
   if (argc == 2 && std::string_view(argv[1]) == "--version") return print_later(versions_as_text());
   check_first_word(argc > 1 ? argv[1] : "", commands);
   const auto chosen = [&] { return app->get_subcommands().empty() ? nullptr : app->get_subcommands().front(); };

@@ -7,6 +7,7 @@
 
 #include "ahm/io/formats.hpp"
 #include "cli/numbers.hpp"
+#include "input/backend.hpp"
 
 namespace ahm::app {
 
@@ -27,40 +28,11 @@ std::string non_empty(const std::string& text) {
   return text;
 }
 
-void add_input(CLI::App& app, std::string& input) {
-  app.add_option("INPUT", input, fmt::format("File to read: {}", fmt::join(io::extensions(io::Use::read), " ")))
-      ->required()
-      ->type_name("");
+CLI::Option* add_source(CLI::App& app, SourceOptions& o, const std::string& help) {
+  return add_parsed(app, "-s,--source", o.spec, parse_source, "SPEC", help);
 }
 
-CLI::Option* add_source(CLI::App& app, RunOptions& o, const std::string& help) {
-  return add_parsed(app, "-s,--source", o.source, parse_source, "SPEC", help);
-}
-
-CLI::Option* add_output(CLI::App& app, RunOptions& o) {
-  return add_parsed(app, "-o,--output", o.output, non_empty, "OUTPUT", "File to write, see below");
-}
-
-CLI::Option* add_variant(CLI::App& app, RunOptions& o) {
-  return add_parsed(
-      app, "--variant", o.variant,
-      [](const std::string& text) {
-        return choice({"adaptive", "localized"})(text) == "adaptive" ? Variant::adaptive : Variant::localized;
-      },
-      "NAME", "adaptive (default) or localized");
-}
-
-CLI::Option* add_backend(CLI::App& app, RunOptions& o) {
-  return add_parsed(app, "--backend", o.backend, choice({"auto", "trimesh", "polymesh", "pointcloud"}), "NAME",
-                    "auto (default): by the faces of INPUT; trimesh, polymesh or pointcloud");
-}
-
-CLI::Option* add_t_coef(CLI::App& app, RunOptions& o) {
-  return add_parsed(app, "--t-coef", o.t_coef, parse_positive, "T",
-                    "Diffusion time in squared mean edge lengths, > 0 (default 1); larger is smoother");
-}
-
-CLI::Option* add_u_axis(CLI::App& app, RunOptions& o) {
+CLI::Option* add_u_axis(CLI::App& app, SourceOptions& o) {
   return add_parsed(
       app, "--u-axis", o.u_axis,
       [](const std::string& text) {
@@ -82,33 +54,33 @@ CLI::Option* add_min_quality(CLI::App& app, double& min_quality) {
       "Q", "Trust vertices of this quality and above, in (0, 1] (default 0.5)");
 }
 
-CLI::Option* add_threads(CLI::App& app, unsigned& threads) {
-  return add_parsed(app, "--threads", threads, integer_parser(0, 4096), "N", "0 (default): one per core");
+void add_input(CLI::App& app, InputOptions& o) {
+  app.add_option("INPUT", o.path, fmt::format("File to read: {}", fmt::join(io::extensions(io::Use::read), " ")))
+      ->required()
+      ->type_name("");
 }
 
-CLI::Option* add_json(CLI::App& app, RunOptions& o) {
-  return add_parsed(app, "--json", o.json, non_empty, "FILE|-", "Write a summary for programs; -: to standard output");
+CLI::Option* add_backend(CLI::App& app, InputOptions& o) {
+  std::vector<std::string> names = backend_names();
+  const std::string last = names.back();
+  names.pop_back();
+  const std::string help = fmt::format("auto (default): by the faces of INPUT; {} or {}", fmt::join(names, ", "), last);
+  names.insert(names.begin(), "auto");
+  names.push_back(last);
+  return add_parsed(app, "--backend", o.backend, choice(names), "NAME", help);
 }
 
-CLI::Option* add_view(CLI::App& app, RunOptions& o) {
-  return add_parsed(app, "--view", o.view, non_empty, "FILE", "Draw the result: .png or .html");
-}
-
-CLI::Option* add_verbose(CLI::App& app, RunOptions& o) {
-  return app.add_flag("--verbose", o.verbose, "Print the time of each stage and the peak memory");
-}
-
-CLI::Option* add_drop_nan(CLI::App& app, RunOptions& o) {
+CLI::Option* add_drop_nan(CLI::App& app, InputOptions& o) {
   return app.add_flag("--drop-nan", o.drop_nan,
                       "Drop points with nan or infinite coordinates instead of refusing them");
 }
 
-CLI::Option* add_non_manifold(CLI::App& app, RunOptions& o) {
+CLI::Option* add_non_manifold(CLI::App& app, InputOptions& o) {
   return add_parsed(app, "--non-manifold", o.non_manifold, choice({"error", "split"}), "HOW",
                     "Edges of more than two faces and pinched vertices: error (default) or split, cutting there");
 }
 
-void add_cloud_options(CLI::App& app, RunOptions& o) {
+void add_cloud_options(CLI::App& app, InputOptions& o) {
   const char* group = "Point clouds";
   add_parsed(app, "--voxel", o.voxel, parse_positive, "SIZE", "Keep one point per cube of this edge length first")
       ->group(group);
@@ -124,28 +96,60 @@ void add_cloud_options(CLI::App& app, RunOptions& o) {
       ->group(group);
 }
 
-void add_mesh_options(CLI::App& app, RunOptions& o) {
+void add_mesh_options(CLI::App& app, InputOptions& o) {
   const char* group = "Triangle meshes";
   app.add_flag("!--no-flips", o.flips, "Keep the edges as they are instead of flipping to intrinsic Delaunay")
       ->group(group);
   add_non_manifold(app, o)->group(group);
-}
-
-void add_polygon_options(CLI::App& app, RunOptions& o) {
   add_parsed(app, "--discretization", o.discretization, choice({"auto", "polygons", "refined"}), "NAME",
              "polygons: every face one cell, refined: a virtual vertex in every face and intrinsic\n"
              "triangles. auto (default): refined, or polygons where a face is twisted")
       ->group("Polygon meshes");
 }
 
-void add_graph_options(CLI::App& app, RunOptions& o) {
-  add_variant(app, o);
-  add_backend(app, o);
-  add_t_coef(app, o);
-  add_threads(app, o.threads);
-  add_cloud_options(app, o);
-  add_mesh_options(app, o);
-  add_polygon_options(app, o);
+CLI::Option* add_variant(CLI::App& app, SolveOptions& o) {
+  return add_parsed(app, "--variant", o.variant,
+                    choice_of<Variant>({{"adaptive", Variant::adaptive}, {"localized", Variant::localized}}), "NAME",
+                    "adaptive (default) or localized");
+}
+
+CLI::Option* add_t_coef(CLI::App& app, SolveOptions& o) {
+  return add_parsed(app, "--t-coef", o.t_coef, parse_positive, "T",
+                    "Diffusion time in squared mean edge lengths, > 0 (default 1); larger is smoother");
+}
+
+CLI::Option* add_threads(CLI::App& app, InputOptions& graph, SolveOptions* maps) {
+  const auto parse = [maps, number = integer_parser(0, 4096)](const std::string& text) {
+    const auto threads = static_cast<unsigned>(number(text));
+    if (maps != nullptr) maps->threads = threads;
+    return threads;
+  };
+  return add_parsed(app, "--threads", graph.threads, parse, "N", "0 (default): one per core");
+}
+
+void add_graph_options(CLI::App& app, InputOptions& input, SolveOptions& solve) {
+  add_variant(app, solve);
+  add_backend(app, input);
+  add_t_coef(app, solve);
+  add_threads(app, input, &solve);
+  add_cloud_options(app, input);
+  add_mesh_options(app, input);
+}
+
+CLI::Option* add_output(CLI::App& app, OutputOptions& o) {
+  return add_parsed(app, "-o,--output", o.output, non_empty, "OUTPUT", "File to write, see below");
+}
+
+CLI::Option* add_json(CLI::App& app, OutputOptions& o) {
+  return add_parsed(app, "--json", o.json, non_empty, "FILE|-", "Write a summary for programs; -: to standard output");
+}
+
+CLI::Option* add_view(CLI::App& app, OutputOptions& o) {
+  return add_parsed(app, "--view", o.view, non_empty, "FILE", "Draw the result: .png or .html");
+}
+
+CLI::Option* add_verbose(CLI::App& app, OutputOptions& o) {
+  return app.add_flag("--verbose", o.verbose, "Print the time of each stage and the peak memory");
 }
 
 }  // namespace ahm::app

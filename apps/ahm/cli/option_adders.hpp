@@ -3,11 +3,13 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <limits>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cli/options.hpp"
@@ -40,28 +42,40 @@ std::function<Index(const std::string&)> integer_parser(std::int64_t low,
 std::function<std::string(const std::string&)> choice(std::vector<std::string> allowed);
 std::string non_empty(const std::string& text);
 
-void add_input(CLI::App& app, std::string& input);
-CLI::Option* add_source(CLI::App& app, RunOptions& o, const std::string& help);
-CLI::Option* add_output(CLI::App& app, RunOptions& o);
-CLI::Option* add_variant(CLI::App& app, RunOptions& o);
-CLI::Option* add_backend(CLI::App& app, RunOptions& o);
-CLI::Option* add_t_coef(CLI::App& app, RunOptions& o);
-CLI::Option* add_u_axis(CLI::App& app, RunOptions& o);
-CLI::Option* add_min_quality(CLI::App& app, double& min_quality);
-CLI::Option* add_threads(CLI::App& app, unsigned& threads);
-CLI::Option* add_drop_nan(CLI::App& app, RunOptions& o);
-CLI::Option* add_non_manifold(CLI::App& app, RunOptions& o);
-CLI::Option* add_json(CLI::App& app, RunOptions& o);
-CLI::Option* add_view(CLI::App& app, RunOptions& o);
-CLI::Option* add_verbose(CLI::App& app, RunOptions& o);
+/// Words that stand for values.
+template <class Value>
+std::function<Value(const std::string&)> choice_of(std::vector<std::pair<std::string, Value>> allowed) {
+  std::vector<std::string> words;
+  for (const auto& [word, value] : allowed) words.push_back(word);
+  return [allowed = std::move(allowed), check = choice(words)](const std::string& text) {
+    check(text);
+    return std::find_if(allowed.begin(), allowed.end(), [&](const auto& a) { return a.first == text; })->second;
+  };
+}
 
+CLI::Option* add_source(CLI::App& app, SourceOptions& o, const std::string& help);
+CLI::Option* add_u_axis(CLI::App& app, SourceOptions& o);
+CLI::Option* add_min_quality(CLI::App& app, double& min_quality);
+
+void add_input(CLI::App& app, InputOptions& o);
+CLI::Option* add_backend(CLI::App& app, InputOptions& o);
+CLI::Option* add_drop_nan(CLI::App& app, InputOptions& o);
+CLI::Option* add_non_manifold(CLI::App& app, InputOptions& o);
 /// How points become a graph: --voxel, --outliers, --drop-nan, --k, --knn, --normals.
-void add_cloud_options(CLI::App& app, RunOptions& o);
-/// --no-flips, --non-manifold
-void add_mesh_options(CLI::App& app, RunOptions& o);
-/// --discretization
-void add_polygon_options(CLI::App& app, RunOptions& o);
-/// --variant, --backend, --t-coef, --threads and the three groups above.
-void add_graph_options(CLI::App& app, RunOptions& o);
+void add_cloud_options(CLI::App& app, InputOptions& o);
+/// --no-flips, --non-manifold, --discretization
+void add_mesh_options(CLI::App& app, InputOptions& o);
+
+CLI::Option* add_variant(CLI::App& app, SolveOptions& o);
+CLI::Option* add_t_coef(CLI::App& app, SolveOptions& o);
+/// For the graph, and for maps on it where there are any.
+CLI::Option* add_threads(CLI::App& app, InputOptions& graph, SolveOptions* maps = nullptr);
+/// --variant, --backend, --t-coef, --threads, those of clouds and those of meshes.
+void add_graph_options(CLI::App& app, InputOptions& input, SolveOptions& solve);
+
+CLI::Option* add_output(CLI::App& app, OutputOptions& o);
+CLI::Option* add_json(CLI::App& app, OutputOptions& o);
+CLI::Option* add_view(CLI::App& app, OutputOptions& o);
+CLI::Option* add_verbose(CLI::App& app, OutputOptions& o);
 
 }  // namespace ahm::app

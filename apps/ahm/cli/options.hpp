@@ -1,5 +1,5 @@
 /// \file
-/// The command line as data.
+/// The command line as data: groups of options, of which each subcommand composes what it offers.
 #pragma once
 
 #include <optional>
@@ -8,8 +8,42 @@
 #include "ahm/heat/heat_operators.hpp"
 #include "ahm/maps/log_map_solver.hpp"
 #include "cli/source_spec.hpp"
+#include "output/picture_options.hpp"
 
 namespace ahm::app {
+
+/// What is read, and how it becomes a surface.
+struct InputOptions {
+  std::string path;
+  std::string backend = "auto";  ///< or a name of the table in input/backends.cpp
+  unsigned threads = 0;          ///< 0: one per core
+
+  // Point clouds
+  std::optional<double> voxel;
+  bool outliers = false;
+  bool drop_nan = false;
+  std::optional<double> local;  ///< build the graph only around the source, as a map of this radius needs it
+  Index k = 30;
+  std::string knn = "nanoflann";  ///< nanoflann, flann, pcl
+  std::string normals = "auto";   ///< auto, oriented, unoriented, estimate
+
+  // Meshes
+  bool flips = true;                    ///< intrinsic Delaunay triangulation
+  std::string non_manifold = "error";   ///< error, split
+  std::string discretization = "auto";  ///< of polygons: auto, polygons, refined
+};
+
+/// How maps are computed.
+struct SolveOptions {
+  Variant variant = Variant::adaptive;
+  double t_coef = 1.0;
+  std::optional<double> radius;
+  Ordering ordering = Ordering::amd;
+  Strategy strategy = Strategy::automatic;
+  int order = 1;
+  double accuracy = SolverOptions{}.accuracy;
+  unsigned threads = 0;
+};
 
 /// Where the u axis points.
 struct UAxis {
@@ -17,47 +51,19 @@ struct UAxis {
   Vec3 direction{};        ///< a vector of space
 };
 
-/// What subcommands that build a graph understand; each has the part it offers.
-struct RunOptions {
-  std::string input;
-  std::string output;  ///< empty with `estimate` only
-  SourceSpec source;
+/// Where a map starts.
+struct SourceOptions {
+  SourceSpec spec;
   std::optional<UAxis> u_axis;
-  Variant variant = Variant::adaptive;
-  std::string backend = "auto";  ///< auto, trimesh, polymesh, pointcloud
-  double t_coef = 1.0;
-  std::optional<double> radius;
-  bool local = false;  ///< build the graph of a cloud around the source only; needs `radius`
-  Ordering ordering = Ordering::amd;
-  Strategy strategy = Strategy::automatic;
-  int order = 1;
-  double accuracy = SolverOptions{}.accuracy;
-  bool gradient = false;  ///< columns with the direction away from the source
-  bool estimate = false;  ///< tell what the run would cost instead of running
-
-  std::optional<double> voxel;
-  bool outliers = false;
-  bool drop_nan = false;
-  Index k = 30;
-  std::string knn = "nanoflann";  ///< nanoflann, flann, pcl
-  std::string normals = "auto";   ///< auto, oriented, unoriented, estimate
-
-  std::string discretization = "auto";  ///< of polygon meshes: auto, polygons, refined
-  bool flips = true;                    ///< intrinsic Delaunay triangulation of triangle meshes
-  std::string non_manifold = "error";   ///< error, split
-
-  std::string json;  ///< empty: none; "-": standard output
-  std::string view;  ///< empty: none
-  unsigned threads = 0;
-  bool verbose = false;
 };
 
-/// `ahm info`
-struct InfoOptions {
-  std::string input;
-  std::string json;
-  Index k = 30;
-  unsigned threads = 0;
+/// What is told, and where. Empty: not at all.
+struct OutputOptions {
+  std::string output;
+  std::string json;  ///< "-": standard output
+  std::string view;
+  PictureChoice picture;
+  bool verbose = false;
 };
 
 }  // namespace ahm::app

@@ -24,30 +24,12 @@ std::vector<std::string> words_of(const std::string& text) {
 }
 
 /// Hands every entry to `parse`: words of the text, or lines of the file it names.
-template <class Parse>
-void for_each_entry(const std::string& text, const Parse& parse) {
+void for_each_entry(const std::string& text, const std::function<void(const std::string&)>& parse) {
   std::error_code ignored;
-  if (!std::filesystem::is_regular_file(text, ignored)) {
-    const std::vector<std::string> words = words_of(text);
-    if (words.empty()) throw std::invalid_argument("the list is empty");
-    for (const std::string& word : words) parse(word);
-    return;
-  }
-  std::ifstream file(text);
-  if (!file) throw IoError(text + ": cannot be read");
-  std::size_t number = 0, entries = 0;
-  for (std::string line; std::getline(file, line);) {
-    ++number;
-    const std::size_t first = line.find_first_not_of(blanks);
-    if (first == std::string::npos || line[first] == '#') continue;
-    try {
-      parse(line.substr(first, line.find_last_not_of(blanks) - first + 1));
-    } catch (const std::invalid_argument& e) {
-      throw InvalidArgument(fmt::format("{}, line {}: {}", text, number, e.what()));
-    }
-    ++entries;
-  }
-  if (entries == 0) throw InvalidArgument(text + ": holds no entries");
+  if (std::filesystem::is_regular_file(text, ignored)) return for_each_line(text, text, "entries", parse);
+  const std::vector<std::string> words = words_of(text);
+  if (words.empty()) throw std::invalid_argument("the list is empty");
+  for (const std::string& word : words) parse(word);
 }
 
 SourceSpec parse_entry(const std::string& text) {
@@ -56,6 +38,25 @@ SourceSpec parse_entry(const std::string& text) {
 }
 
 }  // namespace
+
+void for_each_line(const std::string& path, const std::string& name, const std::string& what,
+                   const std::function<void(const std::string&)>& parse) {
+  std::ifstream file(path);
+  if (!file) throw IoError(name + ": cannot be read");
+  std::size_t number = 0, entries = 0;
+  for (std::string line; std::getline(file, line);) {
+    ++number;
+    const std::size_t first = line.find_first_not_of(blanks);
+    if (first == std::string::npos || line[first] == '#') continue;
+    try {
+      parse(line.substr(first, line.find_last_not_of(blanks) - first + 1));
+    } catch (const std::invalid_argument& e) {
+      throw InvalidArgument(fmt::format("{}, line {}: {}", name, number, e.what()));
+    }
+    ++entries;
+  }
+  if (entries == 0) throw InvalidArgument(name + ": holds no " + what);
+}
 
 std::vector<SourceSpec> parse_sources(const std::string& text) {
   std::vector<SourceSpec> result;

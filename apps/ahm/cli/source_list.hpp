@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,13 @@
 #include "cli/source_spec.hpp"
 
 namespace ahm::app {
+
+/// Calls `parse` with every line of a file but empty ones and those that begin with #.
+/// @param name  of the file, for messages
+/// @param what  is listed, likewise: "entries"
+/// @throws InvalidArgument naming the line where `parse` throws std::invalid_argument; where there is none; IoError
+void for_each_line(const std::string& path, const std::string& name, const std::string& what,
+                   const std::function<void(const std::string&)>& parse);
 
 /// Sources as in `parse_source`: separated by blanks, or in the file of this name, one per line, where a position may
 /// also stand as three numbers between blanks. In files empty lines and those that begin with # do not count.

@@ -2,18 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "ahm/applications/atlas/texture_atlas.hpp"
 #include "ahm/applications/cells.hpp"
 #include "ahm/graph/components.hpp"
-#include "ahm/io/texture_atlas.hpp"
 #include "ahm/view/textured_picture.hpp"
 #include "cli/numbers.hpp"
 #include "cli/option_adders.hpp"
 #include "cli/source_list.hpp"
-#include "commands/commands.hpp"
+#include "commands/solve.hpp"
+#include "commands/subcommand.hpp"
+#include "output/summary.hpp"
 #include "output/texture_output.hpp"
 
 namespace ahm::app {
@@ -37,20 +38,22 @@ constexpr const char* atlas_footer =
     "  ahm atlas quads.obj --sources '12 480 901' --texture wood.jpg -o wood.obj";
 
 struct AtlasCommandOptions {
-  RunOptions run;
+  InputOptions input;
+  SolveOptions solve;
+  OutputOptions output;
   std::vector<SourceSpec> sources;
   Index charts = 20;
   std::optional<double> max_distortion;
-  io::PackOptions pack;
+  PackOptions pack;
   std::string texture;
 };
 
-std::vector<Vertex> choose_sources(const AtlasCommandOptions& options, const Surface& surface,
-                                   const LogMapSolver& solver, const MapOptions& map) {
+std::vector<Vertex> choose_sources(const AtlasCommandOptions& options, const Input& input, const LogMapSolver& solver,
+                                   const MapOptions& map) {
   if (options.sources.empty())
     return farthest_points(solver, Vertex{0}, std::min(options.charts, solver.graph().size()), map);
   std::vector<Vertex> result;
-  for (const SourceSpec& spec : options.sources) result.push_back(vertex_at(surface, spec, "--sources"));
+  for (const SourceSpec& spec : options.sources) result.push_back(vertex_at(input, spec, "--sources"));
   return result;
 }
 
@@ -58,15 +61,15 @@ std::vector<Vertex> choose_sources(const AtlasCommandOptions& options, const Sur
 struct Made {
   Atlas atlas;
   AtlasDistortion distortion;
-  io::TextureAtlas packed;
+  TextureAtlas packed;
   std::size_t faces = 0, uncharted = 0;
   std::vector<Vec3> sources;
 
   Made(Atlas made, const Skin& skin, const TangentGraph& graph, const std::vector<Vec3>& positions,
-       const io::PackOptions& options)
+       const PackOptions& options)
       : atlas(std::move(made)),
         distortion(ahm::distortion(atlas, skin.faces(), positions)),
-        packed(io::pack(atlas, skin.faces(), options)),
+        packed(ahm::pack(atlas, skin.faces(), options)),
         faces(atlas.chart_of_face.size()),
         uncharted(static_cast<std::size_t>(std::count(atlas.chart_of_face.begin(), atlas.chart_of_face.end(), -1))) {
     for (Vertex vertex : atlas.sources) sources.push_back(graph.frame(vertex.index)->origin);
@@ -100,19 +103,19 @@ void comment(const AtlasCommandOptions& options, const Made& made, const Tangent
 }
 
 void write_files(const AtlasCommandOptions& options, const Skin& skin, const Made& made) {
-  const Image texture = options.texture.empty() ? io::checkerboard(made.packed) : io::read_image(options.texture);
+  const Image texture = options.texture.empty() ? checkerboard(made.packed) : io::read_image(options.texture);
   const auto is_charted = [&](std::size_t f) { return made.atlas.chart_of_face[f] >= 0; };
   const SkinPart charted(skin, is_charted, made.packed.coordinates);
   const SkinPart rest(skin, [&](std::size_t f) { return !is_charted(f); });
   std::vector<io::MeshPart> parts{charted.view("atlas")};
   parts.front().texture = &texture;
   if (!rest.empty()) parts.push_back(rest.view("rest"));
-  io::write_textured(options.run.output, parts);
-  if (options.run.view.empty()) return;
+  io::write_textured(options.output.output, parts);
+  if (options.output.view.empty()) return;
   view::TexturedScene scene;
   scene.parts = parts;
   scene.towards = made.sources.front();
-  view::write_textured_png(options.run.view, scene);
+  view::write_textured_png(options.output.view, scene, picture_options(options.output.picture));
 }
 
 nlohmann::ordered_json as_json(const DistortionSummary& s) {
@@ -120,8 +123,8 @@ nlohmann::ordered_json as_json(const DistortionSummary& s) {
           {"largest", s.largest}, {"flipped", s.flipped}, {"flipped_area", s.flipped_area}};
 }
 
-void report(const AtlasCommandOptions& options, const Surface& surface, const Made& made, const Journal& journal) {
-  nlohmann::ordered_json j = summary("ahm atlas", options.run, surface);
+void report(const AtlasCommandOptions& options, const Input& input, const Made& made, Journal& journal) {
+  nlohmann::ordered_json j = summary("ahm atlas", options.input.path, options.output, input);
   j["faces"] = made.faces;
   j["uncharted"] = made.uncharted;
   j["sources"] = made.sources;
@@ -132,7 +135,7 @@ void report(const AtlasCommandOptions& options, const Surface& surface, const Ma
     chart["distortion"] = as_json(made.distortion.charts[k]);
     j["charts"].push_back(chart);
   }
-  const io::TextureAtlas& packed = made.packed;
+  const TextureAtlas& packed = made.packed;
   j["texture"] = {
       {"size", packed.size}, {"margin", packed.margin}, {"texels_per_unit", packed.scale}, {"filled", packed.filled}};
   const DistortionSummary& d = made.distortion.all;
@@ -143,23 +146,23 @@ void report(const AtlasCommandOptions& options, const Surface& surface, const Ma
       "texture: {} x {}, {:.1f} % filled, {:.4g} texels per unit of length\n",
       made.atlas.charts.size(), made.atlas.sources.size(), made.faces, d.mean, d.median, d.percentile_95,
       100 * d.flipped, 100 * d.flipped_area, packed.size, packed.size, 100 * packed.filled, packed.scale);
-  deliver(std::move(j), text, options.run, journal);
+  deliver(std::move(j), text, options.output, journal);
 }
 
-void run_atlas(const AtlasCommandOptions& options) {
-  check_texture_output(options.run, {".obj", ".glb"}, {"atlas"}, options.texture);
+void run(const AtlasCommandOptions& options) {
+  check_texture_output(options.input.path, options.output, {".obj", ".glb"}, {"atlas"}, options.texture);
   if (!options.texture.empty()) io::read_image(options.texture);  // better refused now than after the work
-  Journal journal(options.run.verbose);
-  const Surface surface = open_surface(options.run, journal);
-  const TangentGraph& graph = surface.model->graph();
-  const LogMapSolver solver = make_solver(options.run, *surface.model, journal, 0);
+  Journal journal(options.output.verbose);
+  const Input input = open_input(options.input, journal);
+  const TangentGraph& graph = input.graph();
+  const LogMapSolver solver = make_solver(options.solve, input.graph(), journal, 0);
 
   journal.start("sources");
   MapOptions map;
-  map.variant = options.run.variant;
-  map.threads = options.run.threads;
-  const std::vector<Vertex> sources = choose_sources(options, surface, solver, map);
-  const Skin skin = skin_of(surface, solver, sources);
+  map.variant = options.solve.variant;
+  map.threads = options.solve.threads;
+  const std::vector<Vertex> sources = choose_sources(options, input, solver, map);
+  const Skin skin = skin_of(input, solver, sources);
   const std::vector<Vec3> positions = positions_of(skin, graph.size());
   journal.start("charts");
   RefineOptions refine;
@@ -171,41 +174,39 @@ void run_atlas(const AtlasCommandOptions& options) {
 
   journal.start("write");
   write_files(options, skin, made);
-  journal.finish();
-  journal.clear_display();
-  report(options, surface, made, journal);
+  report(options, input, made, journal);
 }
 
-}  // namespace
-
-Subcommand add_atlas(CLI::App& program) {
-  const auto options = std::make_shared<AtlasCommandOptions>();
-  AtlasCommandOptions& o = *options;
-  o.run.source = SourcePosition{};  // none: the sources are checked by themselves
-  CLI::App& atlas = *program.add_subcommand("atlas", "Texture atlas: charts of low distortion, packed in a square");
-  add_input(atlas, o.run.input);
-  auto* charts = add_parsed(atlas, "--charts", o.charts, integer_parser(1), "K",
+void offer(CLI::App& app, AtlasCommandOptions& o) {
+  add_input(app, o.input);
+  auto* charts = add_parsed(app, "--charts", o.charts, integer_parser(1), "K",
                             "Spread K sources, each the farthest from those before (default 20)");
-  add_parsed(atlas, "--sources", o.sources, parse_sources, "SOURCES", "List or file instead, see below")
+  add_parsed(app, "--sources", o.sources, parse_sources, "SOURCES", "List or file instead, see below")
       ->excludes(charts);
   add_parsed(
-      atlas, "--max-distortion", o.max_distortion,
+      app, "--max-distortion", o.max_distortion,
       [](const std::string& text) {
         const double value = parse_number(text);
         if (!(value > 1)) throw std::invalid_argument(fmt::format("'{}' is not greater than 1", text));
         return value;
       },
       "D", "Add sources until 99 % of every chart have no more, unflipped");
-  add_parsed(atlas, "--size", o.pack.size, integer_parser(16, 32768), "N", "Side of the texture (default 2048)");
-  add_parsed(atlas, "--margin", o.pack.margin, integer_parser(0, 1024), "N", "Texels free around charts (default 4)");
-  add_parsed(atlas, "--texture", o.texture, non_empty, "FILE", "PNG or JPEG instead of a checkerboard");
-  add_output(atlas, o.run)->required();
-  add_graph_options(atlas, o.run);
-  add_json(atlas, o.run);
-  add_view(atlas, o.run)->description("Draw the result: .png");
-  add_verbose(atlas, o.run);
-  atlas.footer(atlas_footer);
-  return {&atlas, [options] { run_atlas(*options); }};
+  add_parsed(app, "--size", o.pack.size, integer_parser(16, 32768), "N", "Side of the texture (default 2048)");
+  add_parsed(app, "--margin", o.pack.margin, integer_parser(0, 1024), "N", "Texels free around charts (default 4)");
+  add_parsed(app, "--texture", o.texture, non_empty, "FILE", "PNG or JPEG instead of a checkerboard");
+  add_output(app, o.output)->required();
+  add_graph_options(app, o.input, o.solve);
+  add_json(app, o.output);
+  add_view(app, o.output)->description("Draw the result: .png");
+  add_texture_picture(app, o.output.picture);
+  add_verbose(app, o.output);
+}
+
+}  // namespace
+
+Subcommand add_atlas(CLI::App& program) {
+  return subcommand<AtlasCommandOptions>(
+      program, "atlas", "Texture atlas: charts of low distortion, packed in a square", atlas_footer, offer, run);
 }
 
 }  // namespace ahm::app

@@ -6,14 +6,15 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "cli/numbers.hpp"
 #include "cli/option_adders.hpp"
 #include "cli/source_list.hpp"
-#include "commands/commands.hpp"
+#include "commands/solve.hpp"
+#include "commands/subcommand.hpp"
 #include "output/results.hpp"
+#include "output/summary.hpp"
 
 namespace ahm::app {
 namespace {
@@ -32,17 +33,19 @@ constexpr const char* cells_footer =
     "  ahm cells part.stl --sources '12 480 901' -o cells.ply";
 
 struct CellsOptions {
-  RunOptions run;
+  InputOptions input;
+  SolveOptions solve;
+  OutputOptions output;
   std::vector<SourceSpec> sources;
   Index count = 0;  ///< of spread sources; 0: `sources`
   std::optional<SourceSpec> start;
 };
 
 /// Sources as vertices of the graph.
-std::vector<Vertex> vertices_of(const Surface& surface, const std::vector<SourceSpec>& specs) {
+std::vector<Vertex> vertices_of(const Input& input, const std::vector<SourceSpec>& specs) {
   std::vector<Vertex> result;
   for (const SourceSpec& spec : specs) {
-    const Vertex vertex = vertex_at(surface, spec, "--sources");
+    const Vertex vertex = vertex_at(input, spec, "--sources");
     if (std::find(result.begin(), result.end(), vertex) != result.end())
       throw InvalidArgument(
           fmt::format("--sources {}: this is the vertex of an entry before; give every source once", to_string(spec)));
@@ -51,9 +54,9 @@ std::vector<Vertex> vertices_of(const Surface& surface, const std::vector<Source
   return result;
 }
 
-std::vector<Index> rows_of_vertices(const Surface& surface) {
-  std::vector<Index> result(static_cast<std::size_t>(surface.model->graph().size()), -1);
-  for (const auto& [row, vertex] : surface.model->row_vertices()) result[vertex] = row;
+std::vector<Index> rows_of_vertices(const Input& input) {
+  std::vector<Index> result(static_cast<std::size_t>(input.graph().size()), -1);
+  for (const auto& [row, vertex] : input.surface->row_vertices()) result[vertex] = row;
   return result;
 }
 
@@ -76,18 +79,18 @@ void move_to_rows(const TangentGraph& graph, const std::vector<Index>& row_of_ve
   }
 }
 
-std::vector<Vertex> spread(const CellsOptions& options, const Surface& surface, const LogMapSolver& solver,
+std::vector<Vertex> spread(const CellsOptions& options, const Input& input, const LogMapSolver& solver,
                            Journal& journal) {
   journal.start("spread");
-  const TangentGraph& graph = surface.model->graph();
+  const TangentGraph& graph = input.graph();
   if (options.count > graph.size())
     throw InvalidArgument(fmt::format("--count {}: the graph has {} vertices only", options.count, graph.size()));
-  const Vertex first = options.start ? vertex_at(surface, *options.start, "--start") : Vertex{0};
+  const Vertex first = options.start ? vertex_at(input, *options.start, "--start") : Vertex{0};
   MapOptions map;
-  map.variant = options.run.variant;
-  map.threads = options.run.threads;
+  map.variant = options.solve.variant;
+  map.threads = options.solve.threads;
   std::vector<Vertex> result = farthest_points(solver, first, options.count, map);
-  move_to_rows(graph, rows_of_vertices(surface), result);
+  move_to_rows(graph, rows_of_vertices(input), result);
   return result;
 }
 
@@ -99,11 +102,11 @@ struct CellRows {
 };
 
 /// Of several vertices of a row, the one nearest to its source counts.
-CellRows rows_of(const Surface& surface, const std::vector<Index>& labels, const std::vector<double>& distance) {
-  const std::size_t n = surface.input.points.size();
+CellRows rows_of(const Input& input, const std::vector<Index>& labels, const std::vector<double>& distance) {
+  const std::size_t n = input.rows();
   const std::vector<double> none(n, std::numeric_limits<double>::quiet_NaN());
   CellRows rows{none, none, std::vector<Index>(n, -1), std::vector<Status>(n, Status::removed)};
-  for (const auto& [row, vertex] : surface.model->row_vertices()) {
+  for (const auto& [row, vertex] : input.surface->row_vertices()) {
     const auto r = static_cast<std::size_t>(row), v = static_cast<std::size_t>(vertex);
     if (rows.status[r] == Status::ok && !(distance[v] < rows.distance[r])) continue;
     if (labels[v] < 0) {
@@ -150,10 +153,9 @@ void write_results(const CellRows& rows, const std::vector<Vec3>& sources, Resul
   results.write(table, scene, journal, picture);
 }
 
-void report(const CellsOptions& options, const Surface& surface, const std::vector<Index>& rows,
-            const std::vector<Vec3>& positions, const std::vector<Cell>& cells, double farthest,
-            const Journal& journal) {
-  nlohmann::ordered_json j = summary("ahm cells", options.run, surface);
+void report(const CellsOptions& options, const Input& input, const std::vector<Index>& rows,
+            const std::vector<Vec3>& positions, const std::vector<Cell>& cells, double farthest, Journal& journal) {
+  nlohmann::ordered_json j = summary("ahm cells", options.input.path, options.output, input);
   const auto [smallest, largest] =
       std::minmax_element(cells.begin(), cells.end(), [](const Cell& a, const Cell& b) { return a.area < b.area; });
   j["largest_distance"] = farthest;
@@ -170,30 +172,30 @@ void report(const CellsOptions& options, const Surface& surface, const std::vect
       fmt::format("{} cells around vertices {}{}\nareas {:.4g} to {:.4g}, farthest point {:.6g} from its source\n",
                   rows.size(), fmt::join(rows.begin(), rows.begin() + static_cast<std::ptrdiff_t>(shown), " "),
                   shown < rows.size() ? " ..." : "", smallest->area, largest->area, farthest);
-  deliver(std::move(j), text, options.run, journal);
+  deliver(std::move(j), text, options.output, journal);
 }
 
-void run_cells(const CellsOptions& options) {
-  check_results(options.run);
-  Journal journal(options.run.verbose);
-  const Surface surface = open_surface(options.run, journal);
-  const TangentGraph& graph = surface.model->graph();
-  std::vector<Vertex> sources = vertices_of(surface, options.sources);
-  const LogMapSolver solver = make_solver(options.run, *surface.model, journal, 0);
-  if (options.count > 0) sources = spread(options, surface, solver, journal);
+void run(const CellsOptions& options) {
+  check_results(options.input.path, options.output);
+  Journal journal(options.output.verbose);
+  const Input input = open_input(options.input, journal);
+  const TangentGraph& graph = input.graph();
+  std::vector<Vertex> sources = vertices_of(input, options.sources);
+  const LogMapSolver solver = make_solver(options.solve, graph, journal, 0);
+  if (options.count > 0) sources = spread(options, input, solver, journal);
 
   journal.start("cells");
   const std::vector<Index> labels = nearest_source(solver, sources);
   const VertexField field = distance_in_cells(solver, sources, labels);
-  const CellRows rows = rows_of(surface, labels, field.values);
-  comment_on_statuses(rows.status, options.run.input, journal);
+  const CellRows rows = rows_of(input, labels, field.values);
+  comment_on_statuses(rows.status, options.input.path, journal);
   if (const auto far = std::count(field.status.begin(), field.status.end(), Status::unreached); far > 0)
     journal.add_warning(fmt::format(
         "{} vertices are about 700 edges or more from every source: they have a label, but no distance; give more "
         "sources",
         far));
 
-  const std::vector<Index> row_of_vertex = rows_of_vertices(surface);
+  const std::vector<Index> row_of_vertex = rows_of_vertices(input);
   std::vector<Index> source_rows;
   std::vector<Vec3> positions;
   for (const auto [vertex] : sources) {
@@ -202,36 +204,35 @@ void run_cells(const CellsOptions& options) {
   }
   double farthest = 0;
   for (double d : rows.distance) farthest = std::max(farthest, std::isnan(d) ? 0 : d);
-  Results results(options.run, surface);
+  Results results(options.output, input, options.input.path);
   write_results(rows, positions, results, journal);
-  report(options, surface, source_rows, positions, sizes(graph, labels, sources.size()), farthest, journal);
+  report(options, input, source_rows, positions, sizes(graph, labels, sources.size()), farthest, journal);
   results.keep();
+}
+
+void offer(CLI::App& app, CellsOptions& o) {
+  add_input(app, o.input);
+  auto* sources = add_parsed(app, "--sources", o.sources, parse_sources, "SOURCES", "List or file, see below");
+  auto* count = add_parsed(app, "--count", o.count, integer_parser(1), "K",
+                           "Spread K sources instead, each the farthest from those before");
+  add_parsed(app, "--start", o.start, parse_source, "SPEC", "With --count: the first one (default: any)")->needs(count);
+  app.callback([=] {
+    if ((sources->count() > 0) == (count->count() > 0))
+      throw CLI::ValidationError("--sources", "give either --sources or --count");
+  });
+  add_output(app, o.output)->required();
+  add_graph_options(app, o.input, o.solve);
+  add_json(app, o.output);
+  add_view(app, o.output);
+  add_map_picture(app, o.output.picture);
+  add_verbose(app, o.output);
 }
 
 }  // namespace
 
 Subcommand add_cells(CLI::App& program) {
-  const auto options = std::make_shared<CellsOptions>();
-  CellsOptions& o = *options;
-  o.run.source = SourcePosition{};  // none: the sources are checked by themselves
-  CLI::App& cells = *program.add_subcommand("cells", "Regions nearest to given or evenly spread points");
-  add_input(cells, o.run.input);
-  auto* sources = add_parsed(cells, "--sources", o.sources, parse_sources, "SOURCES", "List or file, see below");
-  auto* count = add_parsed(cells, "--count", o.count, integer_parser(1), "K",
-                           "Spread K sources instead, each the farthest from those before");
-  add_parsed(cells, "--start", o.start, parse_source, "SPEC", "With --count: the first one (default: any)")
-      ->needs(count);
-  cells.callback([=] {
-    if ((sources->count() > 0) == (count->count() > 0))
-      throw CLI::ValidationError("--sources", "give either --sources or --count");
-  });
-  add_output(cells, o.run)->required();
-  add_graph_options(cells, o.run);
-  add_json(cells, o.run);
-  add_view(cells, o.run);
-  add_verbose(cells, o.run);
-  cells.footer(cells_footer);
-  return {&cells, [options] { run_cells(*options); }};
+  return subcommand<CellsOptions>(program, "cells", "Regions nearest to given or evenly spread points", cells_footer,
+                                  offer, run);
 }
 
 }  // namespace ahm::app

@@ -1,16 +1,17 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "ahm/applications/mean.hpp"
 #include "cli/numbers.hpp"
 #include "cli/option_adders.hpp"
 #include "cli/source_list.hpp"
-#include "commands/commands.hpp"
-#include "input/surface.hpp"
+#include "commands/solve.hpp"
+#include "commands/subcommand.hpp"
+#include "input/open.hpp"
 #include "output/output_paths.hpp"
+#include "output/summary.hpp"
 
 namespace ahm::app {
 namespace {
@@ -28,38 +29,40 @@ constexpr const char* center_footer =
     "  ahm center terrain.ply --points towns.xyz --weights people.txt --median --json center.json";
 
 struct CenterCommandOptions {
-  RunOptions run;
+  InputOptions input;
+  SolveOptions solve;
+  OutputOptions output;
   std::vector<SourceSpec> points;
   std::vector<double> weights;
   std::optional<SourceSpec> start;
   bool median = false;
 };
 
-Center find_center(const CenterCommandOptions& options, const Surface& surface, const LogMapSolver& solver,
+Center find_center(const CenterCommandOptions& options, const Input& input, const LogMapSolver& solver,
                    Journal& journal) {
   std::vector<Vertex> vertices;
-  for (const SourceSpec& spec : options.points) vertices.push_back(vertex_at(surface, spec, "--points"));
+  for (const SourceSpec& spec : options.points) vertices.push_back(vertex_at(input, spec, "--points"));
   if (!options.weights.empty() && options.weights.size() != vertices.size())
     throw InvalidArgument(fmt::format("--weights: {} numbers for {} points", options.weights.size(), vertices.size()));
   CenterOptions center;
-  if (options.start) center.start = vertex_at(surface, *options.start, "--start");
-  center.map.variant = options.run.variant;
-  center.map.threads = options.run.threads;
+  if (options.start) center.start = vertex_at(input, *options.start, "--start");
+  center.map.variant = options.solve.variant;
+  center.map.threads = options.solve.threads;
   center.map.progress = journal.progress();
   journal.start("search");
   const auto find = options.median ? geometric_median : karcher_mean;
   return find(solver, vertices, options.weights, center);
 }
 
-void report(const CenterCommandOptions& options, const Surface& surface, const Center& center, const Journal& journal) {
-  const Frame frame = *surface.model->graph().frame(center.vertex.index);
+void report(const CenterCommandOptions& options, const Input& input, const Center& center, Journal& journal) {
+  const Frame frame = *input.graph().frame(center.vertex.index);
   Vec3 position = frame.origin;
   for (std::size_t a = 0; a < 3; ++a) position[a] += center.offset[0] * frame.x[a] + center.offset[1] * frame.y[a];
   Index row = -1;
-  for (const RowVertex& entry : surface.model->row_vertices())
+  for (const RowVertex& entry : input.surface->row_vertices())
     if (entry.vertex == center.vertex.index) row = entry.row;
   const char* name = options.median ? "median" : "mean";
-  nlohmann::ordered_json j = summary("ahm center", options.run, surface);
+  nlohmann::ordered_json j = summary("ahm center", options.input.path, options.output, input);
   j.erase("output");
   j["center"] = {{"kind", name},
                  {"points", options.points.size()},
@@ -76,7 +79,7 @@ void report(const CenterCommandOptions& options, const Surface& surface, const C
       name, options.points.size(), p[0], p[1], p[2], row < 0 ? "(inside a face)" : fmt::format("{}", row), v[0], v[1],
       v[2], options.median ? "mean distance" : "root mean squared distance", center.spread, center.maps,
       center.converged ? "converged" : "not converged");
-  deliver(std::move(j), text, options.run, journal);
+  deliver(std::move(j), text, options.output, journal);
 }
 
 void comment_on(const Center& center, const TangentGraph& graph, Journal& journal) {
@@ -91,35 +94,32 @@ void comment_on(const Center& center, const TangentGraph& graph, Journal& journa
         away, away / edge));
 }
 
-void run_center(const CenterCommandOptions& options) {
-  check_outputs(options.run.input, {{"--json", options.run.json}});
-  Journal journal(options.run.verbose);
-  const Surface surface = open_surface(options.run, journal);
-  const LogMapSolver solver = make_solver(options.run, *surface.model, journal, 6);
-  const Center center = find_center(options, surface, solver, journal);
-  comment_on(center, surface.model->graph(), journal);
-  journal.finish();
-  journal.clear_display();
-  report(options, surface, center, journal);
+void run(const CenterCommandOptions& options) {
+  check_outputs(options.input.path, {{"--json", options.output.json}});
+  Journal journal(options.output.verbose);
+  const Input input = open_input(options.input, journal);
+  const LogMapSolver solver = make_solver(options.solve, input.graph(), journal, 6);
+  const Center center = find_center(options, input, solver, journal);
+  comment_on(center, input.graph(), journal);
+  report(options, input, center, journal);
+}
+
+void offer(CLI::App& app, CenterCommandOptions& o) {
+  add_input(app, o.input);
+  add_parsed(app, "--points", o.points, parse_sources, "POINTS", "List or file, see below")->required();
+  add_parsed(app, "--weights", o.weights, parse_weights, "WEIGHTS", "List or file (default: all equal)");
+  app.add_flag("--median", o.median, "Least sum of distances instead of squared distances");
+  add_parsed(app, "--start", o.start, parse_source, "SPEC", "Where to begin (default: the heaviest point)");
+  add_graph_options(app, o.input, o.solve);
+  add_json(app, o.output);
+  add_verbose(app, o.output);
 }
 
 }  // namespace
 
 Subcommand add_center(CLI::App& program) {
-  const auto options = std::make_shared<CenterCommandOptions>();
-  CenterCommandOptions& o = *options;
-  o.run.source = SourcePosition{};  // none: the points are checked by themselves
-  CLI::App& center = *program.add_subcommand("center", "Mean or median of points of a surface");
-  add_input(center, o.run.input);
-  add_parsed(center, "--points", o.points, parse_sources, "POINTS", "List or file, see below")->required();
-  add_parsed(center, "--weights", o.weights, parse_weights, "WEIGHTS", "List or file (default: all equal)");
-  center.add_flag("--median", o.median, "Least sum of distances instead of squared distances");
-  add_parsed(center, "--start", o.start, parse_source, "SPEC", "Where to begin (default: the heaviest point)");
-  add_graph_options(center, o.run);
-  add_json(center, o.run);
-  add_verbose(center, o.run);
-  center.footer(center_footer);
-  return {&center, [options] { run_center(*options); }};
+  return subcommand<CenterCommandOptions>(program, "center", "Mean or median of points of a surface", center_footer,
+                                          offer, run);
 }
 
 }  // namespace ahm::app

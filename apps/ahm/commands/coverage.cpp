@@ -4,16 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "ahm/io/write.hpp"
 #include "cli/numbers.hpp"
 #include "cli/option_adders.hpp"
-#include "commands/commands.hpp"
+#include "commands/solve.hpp"
+#include "commands/subcommand.hpp"
 #include "input/skin.hpp"
 #include "output/output_paths.hpp"
 #include "output/results.hpp"
+#include "output/summary.hpp"
 
 namespace ahm::app {
 namespace {
@@ -31,18 +32,13 @@ constexpr const char* coverage_footer =
     "  ahm coverage part.stl --source 17 --radius 30 --spacing 2 --pattern spiral -o path.ply";
 
 struct CoverageCommandOptions {
-  RunOptions run;
+  InputOptions input;
+  SourceOptions source;
+  SolveOptions solve;
+  OutputOptions output;
   CoverageOptions path;
   double min_quality = trusted_quality;
 };
-
-void check_options(const CoverageCommandOptions& options) {
-  const RunOptions& o = options.run;
-  check_results(o);
-  const std::string extension = extension_of(o.output);
-  if (extension != ".csv" && extension != ".ply")
-    throw InvalidArgument(fmt::format("--output {}: the name must end in .csv or .ply", o.output));
-}
 
 /// Text, with an edge between consecutive points of a piece.
 void write_path(const std::string& name, const CoveragePath& path) {
@@ -68,9 +64,9 @@ void write_path(const std::string& name, const CoveragePath& path) {
 }
 
 /// The path on the map, as a picture.
-void write_view(const Surface& surface, const ResolvedSource& source, const LogMap& map, const CoveragePath& path,
+void write_view(const Input& input, const ResolvedSource& source, const LogMap& map, const CoveragePath& path,
                 Results& results, Journal& journal) {
-  const MapRows rows = rows_of(map, *surface.model, surface.input.points.size());
+  const MapRows rows = rows_of(map, *input.surface, input.rows());
   std::vector<Vec3> curve;
   std::vector<Index> pieces;
   for (const CoveragePoint& point : path.points) {
@@ -81,6 +77,7 @@ void write_view(const Surface& surface, const ResolvedSource& source, const LogM
   view::Scene scene = results.scene();
   scene.u = rows.u;
   scene.v = rows.v;
+  scene.quality = rows.quality;
   scene.source = source.position;
   if (source.frame) scene.source_axes = {source.frame->x, source.frame->y, source.frame->normal};
   scene.curve = curve;
@@ -121,11 +118,11 @@ struct Summary {
   }
 };
 
-void report(const CoverageCommandOptions& options, const Surface& surface, const ResolvedSource& source,
-            const CoveragePath& path, double trusted, const Summary& amount, const Journal& journal) {
+void report(const CoverageCommandOptions& options, const Input& input, const ResolvedSource& source,
+            const CoveragePath& path, double trusted, const Summary& amount, Journal& journal) {
   const std::string pattern = options.path.pattern == CoveragePattern::raster ? "raster" : "spiral";
-  nlohmann::ordered_json j = summary("ahm coverage", options.run, surface);
-  j["source"] = {{"spec", to_string(options.run.source)}, {"position", source.position}};
+  nlohmann::ordered_json j = summary("ahm coverage", options.input.path, options.output, input);
+  j["source"] = {{"spec", to_string(options.source.spec)}, {"position", source.position}};
   j["pattern"] = pattern;
   j["radius"] = options.path.radius;
   j["spacing"] = options.path.spacing;
@@ -140,70 +137,67 @@ void report(const CoverageCommandOptions& options, const Surface& surface, const
                       "on the surface: {:.1f} % of the pattern; trusted: {:.1f} % of the area within the radius\n",
                       pattern, path.points.size(), path.pieces, amount.length, amount.spacing_low, amount.spacing_high,
                       100 * amount.covered, 100 * trusted),
-          options.run, journal);
+          options.output, journal);
 }
 
-void run_coverage(const CoverageCommandOptions& options) {
-  check_options(options);
-  Journal journal(options.run.verbose);
-  const Surface surface = open_surface(options.run, journal);
-  const auto& [input, backend, model] = surface;
-  const ResolvedSource source = resolve(options.run, *model);
-  const LogMapSolver solver = make_solver(options.run, *model, journal);
-  const LogMap map = solve(options.run, solver, source.source, journal);
+void run(const CoverageCommandOptions& options) {
+  check_results(options.input.path, options.output, {".csv", ".ply"});
+  Journal journal(options.output.verbose);
+  const Input input = open_input(options.input, journal, options.source.spec);
+  const ResolvedSource source = resolve(options.source, input);
+  const LogMapSolver solver = make_solver(options.solve, input.graph(), journal);
+  const LogMap map = solve(options.solve, solver, source.source, journal);
 
   journal.start("path");
-  const InverseMap inverse = inverse_of(surface, map, options.min_quality);
+  const InverseMap inverse = inverse_of(input, map, options.min_quality);
   const CoveragePath path = coverage_path(inverse, options.path);
   if (path.points.empty())
     throw InvalidArgument(fmt::format(
         "--source {}: no line of the pattern meets a trusted part of the surface within {}; choose another source, or "
         "lower --spacing or --min-quality",
-        to_string(options.run.source), options.path.radius));
+        to_string(options.source.spec), options.path.radius));
   const Summary amount(path);
   if (amount.spacing_high > 1.25 * options.path.spacing)
     journal.add_warning(fmt::format(
         "lines lie up to {:.4g} apart in space, more than --spacing {}: the surface is saddle-shaped or rough",
         amount.spacing_high, options.path.spacing));
 
-  Results results(options.run, surface);
-  write_view(surface, source, map, path, results, journal);
+  Results results(options.output, input, options.input.path);
+  write_view(input, source, map, path, results, journal);
   journal.start("write");
-  write_path(options.run.output, path);
-  journal.finish();
-  journal.clear_display();
-  report(options, surface, source, path, trusted_share(model->graph(), map, options), amount, journal);
+  write_path(options.output.output, path);
+  report(options, input, source, path, trusted_share(input.graph(), map, options), amount, journal);
   results.keep();
+}
+
+void offer(CLI::App& app, CoverageCommandOptions& o) {
+  add_input(app, o.input);
+  add_source(app, o.source, "Middle of what is covered")->required();
+  add_parsed(app, "--radius", o.path.radius, parse_positive, "R", "How far to go, along the surface")->required();
+  add_parsed(app, "--spacing", o.path.spacing, parse_positive, "S", "Between lines or turns")->required();
+  add_output(app, o.output)->required();
+  add_parsed(
+      app, "--pattern", o.path.pattern,
+      [](const std::string& text) {
+        return choice({"raster", "spiral"})(text) == "raster" ? CoveragePattern::raster : CoveragePattern::spiral;
+      },
+      "NAME", "raster (default) or spiral");
+  add_parsed(app, "--angle", o.path.angle, parse_degrees, "DEG", "Direction of the lines, from the u axis (default 0)");
+  add_parsed(app, "--step", o.path.step, parse_positive, "L", "Between points of the path (default: S / 2)");
+  add_min_quality(app, o.min_quality);
+  add_u_axis(app, o.source);
+  add_graph_options(app, o.input, o.solve);
+  add_json(app, o.output);
+  add_view(app, o.output);
+  add_map_picture(app, o.output.picture);
+  add_verbose(app, o.output);
 }
 
 }  // namespace
 
 Subcommand add_coverage(CLI::App& program) {
-  const auto options = std::make_shared<CoverageCommandOptions>();
-  CoverageCommandOptions& o = *options;
-  CLI::App& coverage = *program.add_subcommand("coverage", "Path that covers a surface around a point, with normals");
-  add_input(coverage, o.run.input);
-  add_source(coverage, o.run, "Middle of what is covered")->required();
-  add_parsed(coverage, "--radius", o.path.radius, parse_positive, "R", "How far to go, along the surface")->required();
-  add_parsed(coverage, "--spacing", o.path.spacing, parse_positive, "S", "Between lines or turns")->required();
-  add_output(coverage, o.run)->required();
-  add_parsed(
-      coverage, "--pattern", o.path.pattern,
-      [](const std::string& text) {
-        return choice({"raster", "spiral"})(text) == "raster" ? CoveragePattern::raster : CoveragePattern::spiral;
-      },
-      "NAME", "raster (default) or spiral");
-  add_parsed(coverage, "--angle", o.path.angle, parse_degrees, "DEG",
-             "Direction of the lines, from the u axis (default 0)");
-  add_parsed(coverage, "--step", o.path.step, parse_positive, "L", "Between points of the path (default: S / 2)");
-  add_min_quality(coverage, o.min_quality);
-  add_u_axis(coverage, o.run);
-  add_graph_options(coverage, o.run);
-  add_json(coverage, o.run);
-  add_view(coverage, o.run);
-  add_verbose(coverage, o.run);
-  coverage.footer(coverage_footer);
-  return {&coverage, [options] { run_coverage(*options); }};
+  return subcommand<CoverageCommandOptions>(
+      program, "coverage", "Path that covers a surface around a point, with normals", coverage_footer, offer, run);
 }
 
 }  // namespace ahm::app

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "ahm/applications/distortion.hpp"
@@ -12,8 +11,10 @@
 #include "ahm/view/textured_picture.hpp"
 #include "cli/numbers.hpp"
 #include "cli/option_adders.hpp"
-#include "commands/commands.hpp"
+#include "commands/solve.hpp"
+#include "commands/subcommand.hpp"
 #include "output/output_paths.hpp"
+#include "output/summary.hpp"
 #include "output/texture_output.hpp"
 
 namespace ahm::app {
@@ -33,7 +34,10 @@ constexpr const char* decal_footer =
     "  ahm decal scan.ply --image arrow.png --source 17 --size 0.2 --angle 45 -o painted.ply";
 
 struct DecalCommandOptions {
-  RunOptions run;
+  InputOptions input;
+  SourceOptions source;
+  SolveOptions solve;
+  OutputOptions output;
   std::string image;
   double size = 0;
   DecalOptions decal;
@@ -73,14 +77,14 @@ struct Amount {
   }
 };
 
-Skin skin_behind(const DecalCommandOptions& options, const Surface& surface, const LogMapSolver& solver) {
-  if (options.alone || surface.backend == "pointcloud") return {};
-  return skin_of(surface, solver, {});
+Skin skin_behind(const DecalCommandOptions& options, const Input& input, const LogMapSolver& solver) {
+  if (options.alone || !input.backend->has_faces) return {};
+  return skin_of(input, solver, {});
 }
 
-void write_mesh(const DecalCommandOptions& options, const Surface& surface, const LogMapSolver& solver,
-                const Decal& decal, const Image& image, const Vec3& source) {
-  const Skin skin = skin_behind(options, surface, solver);
+void write_mesh(const DecalCommandOptions& options, const Input& input, const LogMapSolver& solver, const Decal& decal,
+                const Image& image, const Vec3& source) {
+  const Skin skin = skin_behind(options, input, solver);
   const SkinPart behind(skin, [](std::size_t) { return true; });
   std::vector<double> corners;
   for (Index v : decal.face_vertices)
@@ -94,21 +98,21 @@ void write_mesh(const DecalCommandOptions& options, const Surface& surface, cons
   part.texture_coordinates = corners;
   part.texture = &image;
   part.transparent = true;
-  io::write_textured(options.run.output, parts);
-  if (options.run.view.empty()) return;
+  io::write_textured(options.output.output, parts);
+  if (options.output.view.empty()) return;
   view::TexturedScene scene;
   scene.parts = parts;
   scene.towards = source;
-  view::write_textured_png(options.run.view, scene);
+  view::write_textured_png(options.output.view, scene, picture_options(options.output.picture));
 }
 
 /// The colours of the input, light grey where there are none, under the image.
-std::vector<std::array<std::uint8_t, 3>> painted(const Surface& surface, const std::vector<double>& places,
+std::vector<std::array<std::uint8_t, 3>> painted(const Input& input, const std::vector<double>& places,
                                                  const Image& image) {
-  std::vector<std::array<std::uint8_t, 3>> colors = surface.input.colors;
-  colors.resize(surface.input.points.size(), {200, 200, 200});
-  const bool by_row = surface.backend != "pointcloud";
-  for (const auto& [row, vertex] : surface.model->row_vertices()) {
+  std::vector<std::array<std::uint8_t, 3>> colors = input.geometry.colors;
+  colors.resize(input.rows(), {200, 200, 200});
+  const bool by_row = input.backend->has_faces;
+  for (const auto& [row, vertex] : input.surface->row_vertices()) {
     const auto k = static_cast<std::size_t>(by_row ? row : vertex);
     if (std::isnan(places[2 * k])) continue;
     const auto texel = image.sample(places[2 * k], places[2 * k + 1]);
@@ -120,45 +124,30 @@ std::vector<std::array<std::uint8_t, 3>> painted(const Surface& surface, const s
   return colors;
 }
 
-/// For a picture of the rows: two thirds of the way to a neighbour.
-std::vector<double> disc_radii(const Surface& surface) {
-  const TangentGraph& graph = surface.model->graph();
-  std::vector<double> radii(surface.input.points.size(), 0.0);
-  for (const auto& [row, vertex] : surface.model->row_vertices()) {
-    const Star star = graph.star(vertex);
-    double sum = 0;
-    for (std::size_t e = 0; e < star.degree(); ++e) sum += std::hypot(star.log(e)[0], star.log(e)[1]);
-    if (star.degree() > 0) radii[row] = graph.length_unit() * sum / static_cast<double>(star.degree()) / 1.5;
-  }
-  return radii;
-}
-
-void write_points(const DecalCommandOptions& options, const Surface& surface, const InverseMap& inverse,
-                  const Image& image, const Vec3& source) {
-  const auto colors = painted(surface, image_coordinates_of_vertices(inverse, options.decal), image);
-  const std::vector<Vec3> normals = surface.model->normals();
-  const io::Geometry& input = surface.input;
+void write_points(const DecalCommandOptions& options, const Input& input, const InverseMap& inverse, const Image& image,
+                  const Vec3& source) {
+  const auto colors = painted(input, image_coordinates_of_vertices(inverse, options.decal), image);
+  const std::vector<Vec3> normals = input.surface->normals();
+  const io::Geometry& given = input.geometry;
   io::Table table{.title = "coloured by libahm"};
-  table.add({"x", "y", "z"}, input.points);
-  if (!input.normals.empty()) table.add({"nx", "ny", "nz"}, input.normals);
+  table.add({"x", "y", "z"}, given.points);
+  if (!given.normals.empty()) table.add({"nx", "ny", "nz"}, given.normals);
   table.add({"red", "green", "blue"}, colors);
-  table.faces = input.faces();
-  io::write(options.run.output, table);
-  if (options.run.view.empty()) return;
+  table.faces = given.faces();
+  io::write(options.output.output, table);
+  if (options.output.view.empty()) return;
   view::TexturedScene scene;
-  scene.points = input.points, scene.colors = colors, scene.normals = normals;
-  const std::vector<double> radii = disc_radii(surface);
-  scene.radii = radii;
+  scene.points = given.points, scene.colors = colors, scene.normals = normals;
   scene.towards = source;
-  view::write_textured_png(options.run.view, scene);
+  view::write_textured_png(options.output.view, scene, picture_options(options.output.picture));
 }
 
-void report(const DecalCommandOptions& options, const Surface& surface, const Decal& decal, const Amount& amount,
-            const Vec3& source, const Journal& journal) {
-  nlohmann::ordered_json j = summary("ahm decal", options.run, surface);
+void report(const DecalCommandOptions& options, const Input& input, const Decal& decal, const Amount& amount,
+            const Vec3& source, Journal& journal) {
+  nlohmann::ordered_json j = summary("ahm decal", options.input.path, options.output, input);
   const DistortionSummary& d = amount.distortion;
   j["image"] = options.image;
-  j["source"] = {{"spec", to_string(options.run.source)}, {"position", source}};
+  j["source"] = {{"spec", to_string(options.source.spec)}, {"position", source}};
   j["width"] = options.decal.width;
   j["height"] = options.decal.height;
   j["faces"] = decal.face_begin.size() - 1;
@@ -170,33 +159,34 @@ void report(const DecalCommandOptions& options, const Surface& surface, const De
       "distortion: mean {:.4g}, 95 % of the area below {:.4g}\n",
       options.decal.width, options.decal.height, 100 * amount.covered, decal.face_begin.size() - 1, d.mean,
       d.percentile_95);
-  deliver(std::move(j), text, options.run, journal);
+  deliver(std::move(j), text, options.output, journal);
 }
 
-void run_decal(DecalCommandOptions options) {
-  check_texture_output(options.run, {".obj", ".glb", ".ply"}, {"decal"}, options.image);
+void run(const DecalCommandOptions& given) {
+  DecalCommandOptions options = given;
+  check_texture_output(options.input.path, options.output, {".obj", ".glb", ".ply"}, {"decal"}, options.image);
   const Image image = io::read_image(options.image);
   const double longer = std::max(image.width, image.height);
   options.decal.width = options.size * image.width / longer;
   options.decal.height = options.size * image.height / longer;
   options.decal.lift = options.lift.value_or(0.002 * options.size);
 
-  Journal journal(options.run.verbose);
-  const Surface surface = open_surface(options.run, journal);
-  const ResolvedSource source = resolve(options.run, *surface.model);
-  const LogMapSolver solver = make_solver(options.run, *surface.model, journal);
-  RunOptions near = options.run;
-  near.radius = map_radius(options.decal, surface.model->graph());
+  Journal journal(options.output.verbose);
+  const Input input = open_input(options.input, journal, options.source.spec);
+  const ResolvedSource source = resolve(options.source, input);
+  const LogMapSolver solver = make_solver(options.solve, input.graph(), journal);
+  SolveOptions near = options.solve;
+  near.radius = map_radius(options.decal, input.graph());
   const LogMap map = solve(near, solver, source.source, journal);
 
   journal.start("decal");
-  const InverseMap inverse = inverse_of(surface, map, options.min_quality);
+  const InverseMap inverse = inverse_of(input, map, options.min_quality);
   const Decal decal = make_decal(inverse, options.decal);
   if (decal.face_begin.size() < 2)
     throw InvalidArgument(fmt::format(
         "--source {}: no part of the image lies on a trusted part of the surface; choose another source, or raise "
         "--size, or lower --min-quality",
-        to_string(options.run.source)));
+        to_string(options.source.spec)));
   const Amount amount(decal, options.decal);
   if (amount.covered < 0.9 && std::isinf(options.decal.radius))
     journal.add_warning(
@@ -204,37 +194,36 @@ void run_decal(DecalCommandOptions options) {
                     100 - 100 * amount.covered));
 
   journal.start("write");
-  extension_of(options.run.output) == ".ply" ? write_points(options, surface, inverse, image, source.position)
-                                             : write_mesh(options, surface, solver, decal, image, source.position);
-  journal.finish();
-  journal.clear_display();
-  report(options, surface, decal, amount, source.position, journal);
+  extension_of(options.output.output) == ".ply" ? write_points(options, input, inverse, image, source.position)
+                                                : write_mesh(options, input, solver, decal, image, source.position);
+  report(options, input, decal, amount, source.position, journal);
+}
+
+void offer(CLI::App& app, DecalCommandOptions& o) {
+  add_input(app, o.input);
+  add_parsed(app, "--image", o.image, non_empty, "FILE", "PNG or JPEG; its opacity counts")->required();
+  add_source(app, o.source, "Where the middle of the image lies")->required();
+  add_parsed(app, "--size", o.size, parse_positive, "S", "Longer side of the image, along the surface")->required();
+  add_output(app, o.output)->required();
+  add_parsed(app, "--angle", o.decal.angle, parse_degrees, "DEG", "Turns the image, from the u axis (default 0)");
+  app.add_flag("--mirror", o.decal.mirrored, "Exchange left and right, for clouds whose normals point inwards");
+  add_parsed(app, "--radius", o.decal.radius, parse_positive, "R", "Cut off what is farther from the source");
+  add_parsed(app, "--lift", o.lift, parse_number, "L", "Above the surface, .obj and .glb (default: S / 500)");
+  app.add_flag("--alone", o.alone, "Write the decal without the surface (.obj, .glb)");
+  add_min_quality(app, o.min_quality);
+  add_u_axis(app, o.source);
+  add_graph_options(app, o.input, o.solve);
+  add_json(app, o.output);
+  add_view(app, o.output)->description("Draw the result: .png");
+  add_texture_picture(app, o.output.picture);
+  add_verbose(app, o.output);
 }
 
 }  // namespace
 
 Subcommand add_decal(CLI::App& program) {
-  const auto options = std::make_shared<DecalCommandOptions>();
-  DecalCommandOptions& o = *options;
-  CLI::App& decal = *program.add_subcommand("decal", "An image laid on a surface around a point");
-  add_input(decal, o.run.input);
-  add_parsed(decal, "--image", o.image, non_empty, "FILE", "PNG or JPEG; its opacity counts")->required();
-  add_source(decal, o.run, "Where the middle of the image lies")->required();
-  add_parsed(decal, "--size", o.size, parse_positive, "S", "Longer side of the image, along the surface")->required();
-  add_output(decal, o.run)->required();
-  add_parsed(decal, "--angle", o.decal.angle, parse_degrees, "DEG", "Turns the image, from the u axis (default 0)");
-  decal.add_flag("--mirror", o.decal.mirrored, "Exchange left and right, for clouds whose normals point inwards");
-  add_parsed(decal, "--radius", o.decal.radius, parse_positive, "R", "Cut off what is farther from the source");
-  add_parsed(decal, "--lift", o.lift, parse_number, "L", "Above the surface, .obj and .glb (default: S / 500)");
-  decal.add_flag("--alone", o.alone, "Write the decal without the surface (.obj, .glb)");
-  add_min_quality(decal, o.min_quality);
-  add_u_axis(decal, o.run);
-  add_graph_options(decal, o.run);
-  add_json(decal, o.run);
-  add_view(decal, o.run)->description("Draw the result: .png");
-  add_verbose(decal, o.run);
-  decal.footer(decal_footer);
-  return {&decal, [options] { run_decal(*options); }};
+  return subcommand<DecalCommandOptions>(program, "decal", "An image laid on a surface around a point", decal_footer,
+                                         offer, run);
 }
 
 }  // namespace ahm::app

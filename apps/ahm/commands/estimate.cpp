@@ -1,3 +1,5 @@
+#include "commands/estimate.hpp"
+
 #include <fmt/format.h>
 
 #include <array>
@@ -7,30 +9,19 @@
 #include "ahm/maps/cost.hpp"
 #include "cli/console.hpp"
 #include "cli/system_info.hpp"
-#include "commands/commands.hpp"
 #include "input/backend.hpp"
 #include "output/output_paths.hpp"
-#include "output/run_report.hpp"
+#include "output/summary.hpp"
 
 namespace ahm::app {
 namespace {
-
-/// Of reading the input and building the graph, per vertex.
-struct GraphCost {
-  double bytes, seconds;
-};
-
-GraphCost graph_cost(const std::string& backend) {
-  if (backend == "pointcloud") return {800, 5.5e-6};
-  return {800, 3e-6};
-}
 
 struct Estimate {
   Strategy strategy;
   double bytes, seconds;
 };
 
-Estimate estimate(const GraphSize& size, Strategy strategy, const GraphCost& graph, int times) {
+Estimate estimate(const GraphSize& size, Strategy strategy, const Backend& graph, int times) {
   const Cost cost = estimate_cost(size, strategy);
   const double n = size.vertices;
   const double kept = strategy == Strategy::global ? times : 1;  // the factors of every diffusion time stay in memory
@@ -39,21 +30,21 @@ Estimate estimate(const GraphSize& size, Strategy strategy, const GraphCost& gra
 
 }  // namespace
 
-void run_estimate(const RunOptions& options) {
-  check_outputs(options.input, {{"--json", options.json}});
-  const io::Geometry input = io::read(options.input);
-  const std::string backend = choose_backend(input, options.backend);
+void run_estimate(const InputOptions& options, const SolveOptions& solve, const std::string& json) {
+  check_outputs(options.path, {{"--json", json}});
+  const io::Geometry input = io::read(options.path);
+  const Backend& backend = choose_backend(input, options.backend);
   const GraphSize size{static_cast<Index>(input.points.size())};
-  const SolverOptions solver{.strategy = options.strategy, .expected_maps = 1};
+  const SolverOptions solver{.strategy = solve.strategy, .expected_maps = 1};
   const Strategy chosen = choose_strategy(size, solver);
 
   nlohmann::ordered_json j{{"program", "ahm logmap --estimate"},
                            {"n", size.vertices},
-                           {"backend", backend},
+                           {"backend", backend.name},
                            {"strategy", to_string(chosen)}};
-  std::string text = fmt::format("{} vertices, backend {}\n", size.vertices, backend);
+  std::string text = fmt::format("{} vertices, backend {}\n", size.vertices, backend.name);
   for (Strategy strategy : {Strategy::global, Strategy::march}) {
-    const Estimate e = estimate(size, strategy, graph_cost(backend), options.order == 1 ? 1 : 3);
+    const Estimate e = estimate(size, strategy, backend, solve.order == 1 ? 1 : 3);
     j[std::string(to_string(strategy))] = {{"seconds", e.seconds}, {"peak_bytes", e.bytes}};
     text += fmt::format("{:<7} about {:.2g} s, {}{}\n", to_string(strategy), e.seconds,
                         bytes_as_text(static_cast<std::int64_t>(e.bytes)), strategy == chosen ? "  (chosen)" : "");
@@ -61,8 +52,8 @@ void run_estimate(const RunOptions& options) {
   const double memory = machine_memory();
   j["machine_bytes"] = memory;
   text += fmt::format("this machine has {}\n", bytes_as_text(static_cast<std::int64_t>(memory)));
-  write_json(options.json, j);
-  if (options.json != "-") print(text);
+  write_json(json, j);
+  if (json != "-") print(text);
 }
 
 }  // namespace ahm::app

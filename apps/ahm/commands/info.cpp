@@ -1,43 +1,49 @@
-#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "ahm/io/read.hpp"
 #include "cli/console.hpp"
 #include "cli/option_adders.hpp"
 #include "cli/progress_display.hpp"
-#include "commands/commands.hpp"
+#include "commands/subcommand.hpp"
 #include "input/survey.hpp"
 #include "output/output_paths.hpp"
-#include "output/run_report.hpp"
+#include "output/summary.hpp"
 
 namespace ahm::app {
 namespace {
 
-void run_info(const InfoOptions& options) {
-  check_outputs(options.input, {{"--json", options.json}});
+struct InfoOptions {
+  InputOptions input;
+  OutputOptions output;
+};
+
+void run(const InfoOptions& options) {
+  const std::string &path = options.input.path, &json = options.output.json;
+  check_outputs(path, {{"--json", json}});
   Survey result;
   {
     ProgressDisplay display;
     display.update("read", 0);
-    const io::Geometry input = io::read(options.input);
-    result = survey(input, options, display.progress());
+    const io::Geometry input = io::read(path);
+    result = survey(input, options.input, display.progress());
   }
-  write_json(options.json, as_json(result, options.input));
-  if (options.json != "-") print(as_text(result, options.input));
+  write_json(json, as_json(result, path));
+  if (json != "-") print(as_text(result, path));
+}
+
+void offer(CLI::App& app, InfoOptions& o) {
+  add_input(app, o.input);
+  add_parsed(app, "--json", o.output.json, non_empty, "FILE|-", "Write the same for programs; -: to standard output");
+  add_parsed(app, "--k", o.input.k, integer_parser(3), "N",
+             "Neighbours per point when looking for components (default 30)");
+  add_threads(app, o.input);
 }
 
 }  // namespace
 
 Subcommand add_info(CLI::App& program) {
-  const auto options = std::make_shared<InfoOptions>();
-  InfoOptions& o = *options;
-  CLI::App& info = *program.add_subcommand("info", "What is in a file, what is wrong with it, what to run on it");
-  add_input(info, o.input);
-  add_parsed(info, "--json", o.json, non_empty, "FILE|-", "Write the same for programs; -: to standard output");
-  add_parsed(info, "--k", o.k, integer_parser(3), "N", "Neighbours per point when looking for components (default 30)");
-  add_threads(info, o.threads);
-  info.footer("Example:\n  ahm info scan.pcd");
-  return {&info, [options] { run_info(*options); }};
+  return subcommand<InfoOptions>(program, "info", "What is in a file, what is wrong with it, what to run on it",
+                                 "Example:\n  ahm info scan.pcd", offer, run);
 }
 
 }  // namespace ahm::app

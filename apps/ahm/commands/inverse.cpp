@@ -1,16 +1,17 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "ahm/io/write.hpp"
 #include "cli/numbers.hpp"
 #include "cli/option_adders.hpp"
 #include "cli/source_list.hpp"
-#include "commands/commands.hpp"
+#include "commands/solve.hpp"
+#include "commands/subcommand.hpp"
 #include "input/skin.hpp"
-#include "output/output_paths.hpp"
+#include "output/results.hpp"
+#include "output/summary.hpp"
 
 namespace ahm::app {
 namespace {
@@ -27,16 +28,13 @@ constexpr const char* inverse_footer =
     "  ahm inverse scan.ply --source 17 --at '0.1,0 0.1,0.05' -o points.csv";
 
 struct InverseCommandOptions {
-  RunOptions run;
+  InputOptions input;
+  SourceOptions source;
+  SolveOptions solve;
+  OutputOptions output;
   std::vector<std::array<double, 2>> points;
   double min_quality = trusted_quality;
 };
-
-void check_options(const RunOptions& o) {
-  check_outputs(o.input, {{"--output", o.output}, {"--json", o.json}});
-  if (extension_of(o.output) != ".csv")
-    throw InvalidArgument(fmt::format("--output {}: the name must end in .csv", o.output));
-}
 
 /// Returns how many of the points the surface has.
 std::size_t write(const InverseCommandOptions& options, const InverseMap& inverse) {
@@ -57,47 +55,45 @@ std::size_t write(const InverseCommandOptions& options, const InverseMap& invers
   table.add({"x", "y", "z"}, positions);
   table.add({"nx", "ny", "nz"}, normals);
   table.add({"hx", "hy", "hz"}, headings);
-  io::write(options.run.output, table);
+  io::write(options.output.output, table);
   return found;
 }
 
-void run_inverse(const InverseCommandOptions& options) {
-  check_options(options.run);
-  Journal journal(options.run.verbose);
-  const Surface surface = open_surface(options.run, journal);
-  const ResolvedSource source = resolve(options.run, *surface.model);
-  const LogMapSolver solver = make_solver(options.run, *surface.model, journal);
-  const LogMap map = solve(options.run, solver, source.source, journal);
+void run(const InverseCommandOptions& options) {
+  check_results(options.input.path, options.output, {".csv"});
+  Journal journal(options.output.verbose);
+  const Input input = open_input(options.input, journal, options.source.spec);
+  const ResolvedSource source = resolve(options.source, input);
+  const LogMapSolver solver = make_solver(options.solve, input.graph(), journal);
+  const LogMap map = solve(options.solve, solver, source.source, journal);
 
   journal.start("write");
-  const std::size_t found = write(options, inverse_of(surface, map, options.min_quality));
-  journal.finish();
-  journal.clear_display();
-  nlohmann::ordered_json j = summary("ahm inverse", options.run, surface);
-  j["source"] = {{"spec", to_string(options.run.source)}, {"position", source.position}};
+  const std::size_t found = write(options, inverse_of(input, map, options.min_quality));
+  nlohmann::ordered_json j = summary("ahm inverse", options.input.path, options.output, input);
+  j["source"] = {{"spec", to_string(options.source.spec)}, {"position", source.position}};
   j["points"] = options.points.size();
   j["found"] = found;
-  deliver(std::move(j), fmt::format("{} of {} points lie on the surface\n", found, options.points.size()), options.run,
-          journal);
+  deliver(std::move(j), fmt::format("{} of {} points lie on the surface\n", found, options.points.size()),
+          options.output, journal);
+}
+
+void offer(CLI::App& app, InverseCommandOptions& o) {
+  add_input(app, o.input);
+  add_source(app, o.source, "Where the map starts, see below")->required();
+  add_parsed(app, "--at", o.points, parse_plane_points, "POINTS", "Coordinates to look up, see below")->required();
+  add_output(app, o.output)->required();
+  add_min_quality(app, o.min_quality);
+  add_u_axis(app, o.source);
+  add_graph_options(app, o.input, o.solve);
+  add_json(app, o.output);
+  add_verbose(app, o.output);
 }
 
 }  // namespace
 
 Subcommand add_inverse(CLI::App& program) {
-  const auto options = std::make_shared<InverseCommandOptions>();
-  InverseCommandOptions& o = *options;
-  CLI::App& inverse = *program.add_subcommand("inverse", "Points of a surface at given coordinates, with frames");
-  add_input(inverse, o.run.input);
-  add_source(inverse, o.run, "Where the map starts, see below")->required();
-  add_parsed(inverse, "--at", o.points, parse_plane_points, "POINTS", "Coordinates to look up, see below")->required();
-  add_output(inverse, o.run)->required();
-  add_min_quality(inverse, o.min_quality);
-  add_u_axis(inverse, o.run);
-  add_graph_options(inverse, o.run);
-  add_json(inverse, o.run);
-  add_verbose(inverse, o.run);
-  inverse.footer(inverse_footer);
-  return {&inverse, [options] { run_inverse(*options); }};
+  return subcommand<InverseCommandOptions>(program, "inverse", "Points of a surface at given coordinates, with frames",
+                                           inverse_footer, offer, run);
 }
 
 }  // namespace ahm::app

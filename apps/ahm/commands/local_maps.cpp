@@ -4,17 +4,17 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
-#include <memory>
 #include <nlohmann/json.hpp>
-#include <stdexcept>
 
 #include "ahm/io/npz.hpp"
 #include "cli/numbers.hpp"
 #include "cli/option_adders.hpp"
-#include "commands/commands.hpp"
-#include "input/surface.hpp"
-#include "output/output_paths.hpp"
+#include "cli/source_list.hpp"
+#include "commands/solve.hpp"
+#include "commands/subcommand.hpp"
+#include "input/open.hpp"
+#include "output/results.hpp"
+#include "output/summary.hpp"
 
 namespace ahm::app {
 namespace {
@@ -31,7 +31,9 @@ constexpr const char* local_maps_footer =
     "  ahm local-maps scan.ply --radius 0.02 --k 32 --pad --float32 -o neighbours.npz";
 
 struct LocalMapsOptions {
-  RunOptions run;  ///< a part of it
+  InputOptions input;
+  SolveOptions solve;
+  OutputOptions output;
   double radius = 0;
   Index nearest = 0;            ///< 0: all
   std::string sources = "all";  ///< or a file of row numbers
@@ -42,10 +44,7 @@ struct LocalMapsOptions {
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 void check_options(const LocalMapsOptions& options) {
-  const RunOptions& o = options.run;
-  check_outputs(o.input, {{"--output", o.output}, {"--json", o.json}});
-  if (extension_of(o.output) != ".npz")
-    throw InvalidArgument(fmt::format("--output {}: the name must end in .npz", o.output));
+  check_results(options.input.path, options.output, {".npz"});
   if (!io::has_npz()) throw InvalidArgument("this build of ahm cannot write .npz files; it was built without minizip");
 }
 
@@ -63,22 +62,14 @@ struct Rows {
 
 /// Row numbers, one per line.
 std::vector<Index> read_rows(const std::string& path, std::size_t rows) {
-  std::ifstream file(path);
-  if (!file) throw IoError("--sources " + path + ": cannot be read; write all, or the name of a file of row numbers");
+  const std::string name = "--sources " + path;
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored))
+    throw IoError(name + ": cannot be read; write all, or the name of a file of row numbers");
   std::vector<Index> result;
-  std::size_t number = 0;
-  for (std::string line; std::getline(file, line);) {
-    ++number;
-    const auto first = line.find_first_not_of(" \t\r"), last = line.find_last_not_of(" \t\r");
-    if (first == std::string::npos || line[first] == '#') continue;
-    try {
-      result.push_back(static_cast<Index>(
-          parse_integer(line.substr(first, last - first + 1), 0, static_cast<std::int64_t>(rows) - 1)));
-    } catch (const std::invalid_argument& e) {
-      throw InvalidArgument(fmt::format("--sources {}, line {}: {}", path, number, e.what()));
-    }
-  }
-  if (result.empty()) throw InvalidArgument("--sources " + path + ": holds no row numbers");
+  for_each_line(path, name, "row numbers", [&](const std::string& line) {
+    result.push_back(static_cast<Index>(parse_integer(line, 0, static_cast<std::int64_t>(rows) - 1)));
+  });
   return result;
 }
 
@@ -136,18 +127,18 @@ std::vector<T> padded(const LocalMaps& maps, const std::vector<T>& values, std::
   return result;
 }
 
-void write(const LocalMapsOptions& options, const LocalMaps& maps, const std::vector<Index>& rows, const Model& model,
-           const std::vector<Vertex>& vertices) {
+void write(const LocalMapsOptions& options, const LocalMaps& maps, const std::vector<Index>& rows,
+           const TangentGraph& graph, const std::vector<Vertex>& vertices) {
   const std::size_t sources = rows.size(), entries = maps.indices.size();
   const auto k = static_cast<std::size_t>(options.nearest);
   const auto real = options.float32 ? io::NpyType::float32 : io::NpyType::float64;
   const auto complex = options.float32 ? io::NpyType::complex64 : io::NpyType::complex128;
   const bool rotations = maps.kind == TransportKind::rotation2;
-  io::NpzFile file(options.run.output);
+  io::NpzFile file(options.output.output);
   file.add("sources", {sources}, std::span<const Index>(rows));
   std::vector<double> frames;
   for (const auto [vertex] : vertices) {
-    const Frame frame = *model.graph().frame(vertex);
+    const Frame frame = *graph.frame(vertex);
     for (const Vec3& axis : {frame.x, frame.y, frame.normal}) frames.insert(frames.end(), axis.begin(), axis.end());
   }
   file.add("frames", {sources, 3, 3}, frames, real);
@@ -174,14 +165,11 @@ void write(const LocalMapsOptions& options, const LocalMaps& maps, const std::ve
   file.commit();
 }
 
-void run_local_maps(const LocalMapsOptions& options) {
+void run(const LocalMapsOptions& options) {
   check_options(options);
-  Journal journal(options.run.verbose);
-  RunOptions run = options.run;
-  run.source = SourcePosition{{0, 0, 0}};  // none: the backends check it against the input
-  const Surface surface = open_surface(run, journal);
-  const auto& [input, backend, model] = surface;
-  const Rows rows(*model, input.points.size());
+  Journal journal(options.output.verbose);
+  const Input input = open_input(options.input, journal);
+  const Rows rows(*input.surface, input.rows());
   const std::vector<Index> wanted = wanted_rows(options, rows);
   std::vector<Vertex> vertices;
   for (Index row : wanted) vertices.emplace_back(rows.vertex_of_row[row]);
@@ -191,55 +179,53 @@ void run_local_maps(const LocalMapsOptions& options) {
   map_options.radius = options.radius;
   const bool has_virtual = std::count(rows.row_of_vertex.begin(), rows.row_of_vertex.end(), -1) > 0;
   map_options.nearest = has_virtual ? 0 : options.nearest;
-  map_options.variant = options.run.variant;
-  map_options.t_coef = options.run.t_coef;
-  map_options.threads = options.run.threads;
+  map_options.variant = options.solve.variant;
+  map_options.t_coef = options.solve.t_coef;
+  map_options.threads = options.solve.threads;
   map_options.progress = journal.progress();
-  LocalMaps maps = local_maps(model->graph(), vertices, map_options);
+  LocalMaps maps = local_maps(input.graph(), vertices, map_options);
   keep_rows(maps, rows, options.nearest);
 
   journal.start("write");
-  write(options, maps, wanted, *model, vertices);
-  journal.finish();
-  journal.clear_display();
+  write(options, maps, wanted, input.graph(), vertices);
 
   const double mean = static_cast<double>(maps.indices.size()) / static_cast<double>(wanted.size());
-  nlohmann::ordered_json j = summary("ahm local-maps", options.run, surface);
+  nlohmann::ordered_json j = summary("ahm local-maps", options.input.path, options.output, input);
   j["radius"] = options.radius;
   j["sources"] = wanted.size();
   j["entries"] = maps.indices.size();
   j["mean_neighbours"] = mean;
-  deliver(j, fmt::format("{} neighbourhoods of {:.1f} vertices on average\n", wanted.size(), mean), options.run,
+  deliver(j, fmt::format("{} neighbourhoods of {:.1f} vertices on average\n", wanted.size(), mean), options.output,
           journal);
+}
+
+void offer(CLI::App& app, LocalMapsOptions& o) {
+  add_input(app, o.input);
+  add_parsed(app, "--radius", o.radius, parse_positive, "R", "Of the neighbourhoods, along the surface")->required();
+  add_parsed(app, "-o,--output", o.output.output, non_empty, "OUTPUT", "File to write, .npz")->required();
+  add_parsed(app, "--k", o.nearest, integer_parser(1), "K", "Keep only so many nearest, the source included");
+  add_parsed(app, "--sources", o.sources, non_empty, "all|FILE",
+             "all (default), or a file of rows of INPUT, counted from 0");
+  app.add_flag("--pad", o.pad, "Fixed rows of K entries and a mask; needs --k");
+  app.add_flag("--float32", o.float32, "Numbers in single precision");
+  add_variant(app, o.solve);
+  add_backend(app, o.input);
+  add_t_coef(app, o.solve);
+  add_drop_nan(app, o.input);
+  add_non_manifold(app, o.input);
+  add_threads(app, o.input, &o.solve);
+  add_json(app, o.output);
+  add_verbose(app, o.output);
+  app.callback([&o] {
+    if (o.pad && o.nearest == 0) throw CLI::ValidationError("--pad", "needs --k");
+  });
 }
 
 }  // namespace
 
 Subcommand add_local_maps(CLI::App& program) {
-  const auto options = std::make_shared<LocalMapsOptions>();
-  LocalMapsOptions& o = *options;
-  CLI::App& local = *program.add_subcommand("local-maps", "Log maps of all neighbourhoods, for learning on surfaces");
-  add_input(local, o.run.input);
-  add_parsed(local, "--radius", o.radius, parse_positive, "R", "Of the neighbourhoods, along the surface")->required();
-  add_parsed(local, "-o,--output", o.run.output, non_empty, "OUTPUT", "File to write, .npz")->required();
-  add_parsed(local, "--k", o.nearest, integer_parser(1), "K", "Keep only so many nearest, the source included");
-  add_parsed(local, "--sources", o.sources, non_empty, "all|FILE",
-             "all (default), or a file of rows of INPUT, counted from 0");
-  local.add_flag("--pad", o.pad, "Fixed rows of K entries and a mask; needs --k");
-  local.add_flag("--float32", o.float32, "Numbers in single precision");
-  add_variant(local, o.run);
-  add_backend(local, o.run);
-  add_t_coef(local, o.run);
-  add_drop_nan(local, o.run);
-  add_non_manifold(local, o.run);
-  add_threads(local, o.run.threads);
-  add_json(local, o.run);
-  add_verbose(local, o.run);
-  local.callback([&o] {
-    if (o.pad && o.nearest == 0) throw CLI::ValidationError("--pad", "needs --k");
-  });
-  local.footer(local_maps_footer);
-  return {&local, [options] { run_local_maps(*options); }};
+  return subcommand<LocalMapsOptions>(program, "local-maps", "Log maps of all neighbourhoods, for learning on surfaces",
+                                      local_maps_footer, offer, run);
 }
 
 }  // namespace ahm::app

@@ -3,17 +3,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "ahm/error.hpp"
 #include "ahm/maps/log_map_solver.hpp"
 #include "cli/numbers.hpp"
 #include "cli/option_adders.hpp"
-#include "commands/commands.hpp"
-#include "output/output_paths.hpp"
+#include "commands/estimate.hpp"
+#include "commands/logmap_report.hpp"
+#include "commands/solve.hpp"
+#include "commands/subcommand.hpp"
 #include "output/results.hpp"
-#include "output/run_report.hpp"
 
 namespace ahm::app {
 namespace {
@@ -39,14 +39,23 @@ constexpr const char* logmap_footer =
     "  ahm logmap mesh.obj --source face:7:.2,.3,.5 --u-axis 1,0,0 -o map.ply\n"
     "  ahm logmap scan.xyz --source 17 -o map.csv --json - | jq .status";
 
+struct LogmapOptions {
+  InputOptions input;
+  SourceOptions source;
+  SolveOptions solve;
+  OutputOptions output;
+  bool gradient = false;  ///< columns with the direction away from the source
+  bool local = false;     ///< build the graph of a cloud around the source only
+  bool estimate = false;  ///< tell what the run would cost instead of running
+};
+
 double distance(const Vec3& a, const Vec3& b) { return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]); }
 
 /// Something the user should know about where the source ended up.
-void comment_on_source(const RunOptions& options, const Model& model, const ResolvedSource& source, Journal& journal) {
-  const auto* wanted = std::get_if<SourcePosition>(&options.source);
+void comment_on_source(const SourceSpec& spec, const Input& input, const ResolvedSource& source, Journal& journal) {
+  const auto* wanted = std::get_if<SourcePosition>(&spec);
   if (wanted == nullptr) return;
-  const double away = distance(wanted->position, source.position);
-  const double edge = model.graph().mean_edge_length() * model.graph().length_unit();
+  const double away = distance(wanted->position, source.position), edge = input.mean_edge_length();
   if (away > 10 * edge)
     journal.add_warning(
         fmt::format("the vertex nearest to {} is {:.4g} away, at {:.6g} {:.6g} {:.6g}: {:.0f} mean edge lengths",
@@ -58,6 +67,11 @@ void mark_beyond(const std::vector<Vec3>& points, const Vec3& source, double rad
   for (std::size_t i = 0; i < points.size(); ++i)
     if (rows.status[i] == Status::removed && distance(points[i], source) > radius)
       rows.status[i] = Status::beyond_radius;
+}
+
+double radius_of_local(const LogmapOptions& options) {
+  if (!options.solve.radius) throw InvalidArgument("--local needs --radius");
+  return *options.solve.radius;
 }
 
 void write_results(const ResolvedSource& source, const MapRows& rows, const std::vector<Vec3>& away, Results& results,
@@ -74,105 +88,98 @@ void write_results(const ResolvedSource& source, const MapRows& rows, const std:
   view::Scene scene = results.scene();
   scene.u = rows.u;
   scene.v = rows.v;
+  scene.quality = rows.quality;
   scene.source = source.position;
   if (source.frame) scene.source_axes = {source.frame->x, source.frame->y, source.frame->normal};
   results.write(table, scene, journal);
 }
 
-void run_logmap(const RunOptions& options) {
-  if (options.estimate) return run_estimate(options);
-  check_results(options);
-  Journal journal(options.verbose);
-  const Surface surface = open_surface(options, journal);
-  const auto& [input, backend, model] = surface;
-  const ResolvedSource source = resolve(options, *model);
-  comment_on_source(options, *model, source, journal);
+void run(const LogmapOptions& options) {
+  if (options.estimate) return run_estimate(options.input, options.solve, options.output.json);
+  check_results(options.input.path, options.output);
+  Journal journal(options.output.verbose);
+  InputOptions opened = options.input;
+  if (options.local) opened.local = radius_of_local(options);
+  const Input input = open_input(opened, journal, options.source.spec);
+  const ResolvedSource source = resolve(options.source, input);
+  comment_on_source(options.source.spec, input, source, journal);
 
-  const LogMapSolver solver = make_solver(options, *model, journal);
-  const LogMap map = solve(options, solver, source.source, journal);
-  MapRows rows = rows_of(map, *model, input.points.size());
-  if (options.local) mark_beyond(input.points, source.position, *options.radius, rows);
-  comment_on_statuses(rows.status, options.input, journal);
-  Results results(options, surface);
-  const std::vector<Vec3> away = options.gradient ? gradients(map, *model, rows) : std::vector<Vec3>();
+  const LogMapSolver solver = make_solver(options.solve, input.graph(), journal);
+  const LogMap map = solve(options.solve, solver, source.source, journal);
+  MapRows rows = rows_of(map, *input.surface, input.rows());
+  if (opened.local) mark_beyond(input.geometry.points, source.position, *opened.local, rows);
+  comment_on_statuses(rows.status, options.input.path, journal);
+  comment_on_quality(rows.quality, journal);
+
+  Results results(options.output, input, options.input.path);
+  const std::vector<Vec3> away = options.gradient ? gradients(map, *input.surface, rows) : std::vector<Vec3>();
   write_results(source, rows, away, results, journal);
-  const Run run{options, input, backend, *model, solver, source, map, rows, journal.times(), journal.warnings()};
-  write_json(options.json, run_as_json(run));
+  report({options.input.path, options.source.spec, options.solve, input, solver, source, map, rows}, options.output,
+         journal);
   results.keep();
-  const bool stdout_taken = options.json == "-" || is_stream(options.output);
-  stdout_taken ? say(run_as_text(run)) : print(run_as_text(run));
 }
 
-void add_method_options(CLI::App& app, RunOptions& o) {
+void offer_method(CLI::App& app, LogmapOptions& o) {
   const char* group = "Method";
-  add_variant(app, o)->group(group);
-  add_backend(app, o)->group(group);
-  add_t_coef(app, o)->group(group);
-  add_parsed(app, "--radius", o.radius, parse_positive, "R", "Leave out everything farther than this from the source")
+  add_variant(app, o.solve)->group(group);
+  add_backend(app, o.input)->group(group);
+  add_t_coef(app, o.solve)->group(group);
+  add_parsed(app, "--radius", o.solve.radius, parse_positive, "R",
+             "Leave out everything farther than this from the source")
       ->group(group);
-  add_u_axis(app, o)->group(group);
-  add_parsed(
-      app, "--ordering", o.ordering,
-      [](const std::string& text) {
-        return choice({"amd", "nested-dissection"})(text) == "amd" ? Ordering::amd : Ordering::nested_dissection;
-      },
-      "NAME", "Of the factorization: amd (default) or nested-dissection")
+  add_u_axis(app, o.source)->group(group);
+  add_parsed(app, "--ordering", o.solve.ordering,
+             choice_of<Ordering>({{"amd", Ordering::amd}, {"nested-dissection", Ordering::nested_dissection}}), "NAME",
+             "Of the factorization: amd (default) or nested-dissection")
       ->group(group);
   add_parsed(
-      app, "--strategy", o.strategy,
-      [](const std::string& text) {
-        const std::string name = choice({"auto", "global", "march"})(text);
-        return name == "auto" ? Strategy::automatic : name == "global" ? Strategy::global : Strategy::march;
-      },
+      app, "--strategy", o.solve.strategy,
+      choice_of<Strategy>({{"auto", Strategy::automatic}, {"global", Strategy::global}, {"march", Strategy::march}}),
       "NAME", "auto (default), global: one factorization, or march: band by band, any size and distance")
       ->group(group);
-  add_parsed(app, "--order", o.order, integer_parser(1, 2), "N",
+  add_parsed(app, "--order", o.solve.order, integer_parser(1, 2), "N",
              "1 (default), or 2: extrapolate from several diffusion times, with an estimate of the error")
       ->group(group);
-  add_parsed(app, "--accuracy", o.accuracy, parse_positive, "A",
+  add_parsed(app, "--accuracy", o.solve.accuracy, parse_positive, "A",
              "Of a march, against a global solve, relative (default 1e-9)")
       ->group(group);
   app.add_flag("--gradient", o.gradient, "Add the direction away from the source to the rows of OUTPUT")->group(group);
-  add_threads(app, o.threads)->group(group);
+  add_threads(app, o.input, &o.solve)->group(group);
 }
 
-void add_local(CLI::App& app, RunOptions& o) {
+void offer_reports(CLI::App& app, OutputOptions& o) {
+  const char* group = "Reports";
+  add_json(app, o)->group(group);
+  add_view(app, o)->group(group);
+  add_map_picture(app, o.picture);
+  add_verbose(app, o)->group(group);
+}
+
+void offer(CLI::App& app, LogmapOptions& o) {
+  add_input(app, o.input);
+  auto* source = add_source(app, o.source, "Where the map starts, see below");
+  auto* output = add_output(app, o.output);
+  auto* estimate = app.add_flag("--estimate", o.estimate, "Tell what time and memory the run would take, and end");
+  app.callback([=] {
+    if (estimate->count() > 0) return;
+    if (source->count() == 0) throw CLI::RequiredError("--source");
+    if (output->count() == 0) throw CLI::RequiredError("--output");
+  });
+  offer_method(app, o);
+  add_cloud_options(app, o.input);
   app.add_flag("--local", o.local,
                "With --radius: build the graph of the surroundings of the source only, fast on huge scans;\n"
                "the diffusion time is then that of the surroundings")
       ->group("Point clouds");
-}
-
-void add_report_options(CLI::App& app, RunOptions& o) {
-  const char* group = "Reports";
-  add_json(app, o)->group(group);
-  add_view(app, o)->group(group);
-  add_verbose(app, o)->group(group);
+  add_mesh_options(app, o.input);
+  offer_reports(app, o.output);
 }
 
 }  // namespace
 
 Subcommand add_logmap(CLI::App& program) {
-  const auto options = std::make_shared<RunOptions>();
-  RunOptions& o = *options;
-  CLI::App& logmap = *program.add_subcommand("logmap", "Logarithmic map of a surface from one source");
-  add_input(logmap, o.input);
-  auto* source = add_source(logmap, o, "Where the map starts, see below");
-  auto* output = add_output(logmap, o);
-  auto* estimate = logmap.add_flag("--estimate", o.estimate, "Tell what time and memory the run would take, and end");
-  logmap.callback([=] {
-    if (estimate->count() > 0) return;
-    if (source->count() == 0) throw CLI::RequiredError("--source");
-    if (output->count() == 0) throw CLI::RequiredError("--output");
-  });
-  add_method_options(logmap, o);
-  add_cloud_options(logmap, o);
-  add_local(logmap, o);
-  add_mesh_options(logmap, o);
-  add_polygon_options(logmap, o);
-  add_report_options(logmap, o);
-  logmap.footer(logmap_footer);
-  return {&logmap, [options] { run_logmap(*options); }};
+  return subcommand<LogmapOptions>(program, "logmap", "Logarithmic map of a surface from one source", logmap_footer,
+                                   offer, run);
 }
 
 }  // namespace ahm::app

@@ -2,16 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
 #include "cli/numbers.hpp"
 #include "cli/option_adders.hpp"
 #include "cli/source_list.hpp"
-#include "commands/commands.hpp"
+#include "commands/solve.hpp"
+#include "commands/subcommand.hpp"
 #include "input/curve.hpp"
 #include "output/results.hpp"
+#include "output/summary.hpp"
 
 namespace ahm::app {
 namespace {
@@ -34,7 +35,9 @@ constexpr const char* stroke_footer =
     "  ahm stroke part.stl --curve seam.xyz --closed -o stroke.ply";
 
 struct StrokeCommandOptions {
-  RunOptions run;
+  InputOptions input;
+  SolveOptions solve;
+  OutputOptions output;
   std::vector<SourceSpec> curve;
   StrokeOptions shape;
 };
@@ -69,6 +72,7 @@ void write_results(const Curve& curve, const StrokeOptions& shape, const MapRows
   view::Scene scene = results.scene();
   scene.u = rows.u;
   scene.v = rows.v;
+  scene.distance = distance;
   scene.curve = line;
   scene.source = line.front();
   if (curve.first) scene.source_axes = {curve.first->x, curve.first->y, curve.first->normal};
@@ -77,12 +81,12 @@ void write_results(const Curve& curve, const StrokeOptions& shape, const MapRows
   results.write(table, scene, journal, picture);
 }
 
-void report(const StrokeCommandOptions& options, const Surface& surface, const Curve& curve, const MapRows& rows,
-            const std::vector<double>& distance, const Journal& journal) {
+void report(const StrokeCommandOptions& options, const Input& input, const Curve& curve, const MapRows& rows,
+            const std::vector<double>& distance, Journal& journal) {
   const auto mapped = std::count(rows.status.begin(), rows.status.end(), Status::ok);
   double farthest = 0;
   for (double d : distance) farthest = std::max(farthest, std::isnan(d) ? 0 : d);
-  nlohmann::ordered_json j = summary("ahm stroke", options.run, surface);
+  nlohmann::ordered_json j = summary("ahm stroke", options.input.path, options.output, input);
   j["curve"] = {{"given", options.curve.size()},
                 {"points", curve.points.size()},
                 {"length", curve.length},
@@ -98,50 +102,49 @@ void report(const StrokeCommandOptions& options, const Surface& surface, const C
       "the curve\n",
       options.shape.closed ? "closed" : "open", curve.points.size(), curve.length, curve.gap, mapped,
       rows.status.size(), farthest);
-  deliver(std::move(j), text, options.run, journal);
+  deliver(std::move(j), text, options.output, journal);
 }
 
-void run_stroke(const StrokeCommandOptions& options) {
-  check_results(options.run);
-  Journal journal(options.run.verbose);
-  const Surface surface = open_surface(options.run, journal);
-  const TangentGraph& graph = surface.model->graph();
-  const Curve curve = draw_curve(surface, options.curve, options.shape);
-  comment_on_curve(curve, graph.mean_edge_length() * graph.length_unit(), journal);
+void run(const StrokeCommandOptions& options) {
+  check_results(options.input.path, options.output);
+  Journal journal(options.output.verbose);
+  const Input input = open_input(options.input, journal);
+  const Curve curve = draw_curve(input, options.curve, options.shape);
+  comment_on_curve(curve, input.mean_edge_length(), journal);
 
-  const LogMapSolver solver = make_solver(options.run, *surface.model, journal);
-  const LogMap map = solve(options.run, solver, curve.source, journal);
-  const MapRows rows = rows_of(map, *surface.model, surface.input.points.size());
+  const LogMapSolver solver = make_solver(options.solve, input.graph(), journal);
+  const LogMap map = solve(options.solve, solver, curve.source, journal);
+  const MapRows rows = rows_of(map, *input.surface, input.rows());
   std::vector<double> distance;
   for (std::size_t i = 0; i < rows.u.size(); ++i)
     distance.push_back(distance_from_curve(rows.u[i], rows.v[i], curve.length, options.shape));
-  comment_on_statuses(rows.status, options.run.input, journal);
-  Results results(options.run, surface);
+  comment_on_statuses(rows.status, options.input.path, journal);
+  Results results(options.output, input, options.input.path);
   write_results(curve, options.shape, rows, distance, results, journal);
-  report(options, surface, curve, rows, distance, journal);
+  report(options, input, curve, rows, distance, journal);
   results.keep();
+}
+
+void offer(CLI::App& app, StrokeCommandOptions& o) {
+  add_input(app, o.input);
+  add_parsed(app, "--curve", o.curve, parse_sources, "CURVE", "List or file of points, see below")->required();
+  add_output(app, o.output)->required();
+  app.add_flag("--closed", o.shape.closed, "Join the last point to the first");
+  app.add_flag_callback(
+      "--circle", [&o] { o.shape.closed = true, o.shape.shape = StrokeShape::circle; },
+      "Closed; map the curve to a circle instead of a line");
+  add_graph_options(app, o.input, o.solve);
+  add_json(app, o.output);
+  add_view(app, o.output);
+  add_map_picture(app, o.output.picture);
+  add_verbose(app, o.output);
 }
 
 }  // namespace
 
 Subcommand add_stroke(CLI::App& program) {
-  const auto options = std::make_shared<StrokeCommandOptions>();
-  StrokeCommandOptions& o = *options;
-  o.run.source = SourcePosition{};  // none: the curve is checked by itself
-  CLI::App& stroke = *program.add_subcommand("stroke", "Coordinates along a curve on a surface and across it");
-  add_input(stroke, o.run.input);
-  add_parsed(stroke, "--curve", o.curve, parse_sources, "CURVE", "List or file of points, see below")->required();
-  add_output(stroke, o.run)->required();
-  stroke.add_flag("--closed", o.shape.closed, "Join the last point to the first");
-  stroke.add_flag_callback(
-      "--circle", [&o] { o.shape.closed = true, o.shape.shape = StrokeShape::circle; },
-      "Closed; map the curve to a circle instead of a line");
-  add_graph_options(stroke, o.run);
-  add_json(stroke, o.run);
-  add_view(stroke, o.run);
-  add_verbose(stroke, o.run);
-  stroke.footer(stroke_footer);
-  return {&stroke, [options] { run_stroke(*options); }};
+  return subcommand<StrokeCommandOptions>(program, "stroke", "Coordinates along a curve on a surface and across it",
+                                          stroke_footer, offer, run);
 }
 
 }  // namespace ahm::app

@@ -51,21 +51,29 @@ class Model {
   virtual std::vector<std::string> warnings() const = 0;
 };
 
-/// Name of the backend for an input: the user's choice, or for `auto` the one that suits the input.
-std::string choose_backend(const io::Geometry& input, const std::string& requested);
+/// A way to make a surface of an input.
+struct Backend {
+  std::string_view name;
+  bool has_faces;                      ///< maps the faces of the input, not its points alone
+  bool (*suits)(const io::Geometry&);  ///< `auto` takes the first of the table that does
+  double bytes, seconds;               ///< of reading the input and building the graph, per point
+  /// @param source  that the surface is opened for, if there is one: filters of clouds keep it
+  /// @throws what the backend throws
+  std::unique_ptr<Model> (*build)(const io::Geometry& input, const InputOptions& options,
+                                  const std::optional<SourceSpec>& source, const Progress& progress);
+};
 
-/// Builds the model. Cheap checks of the arguments against the input come first.
-/// @throws what the backend throws
-std::unique_ptr<Model> build_model(const std::string& backend, const io::Geometry& input, const RunOptions& options,
-                                   const Progress& progress);
+/// Names of the table, in its order.
+std::vector<std::string> backend_names();
 
-/// The triangle mesh backend.
-std::unique_ptr<Model> build_trimesh(const io::Geometry& input, const RunOptions& options, const Progress& progress);
+/// The user's choice, or for `auto` the backend that suits the input.
+const Backend& choose_backend(const io::Geometry& input, const std::string& requested);
 
-/// The polygon mesh backend, by either discretization.
-std::unique_ptr<Model> build_polymesh(const io::Geometry& input, const RunOptions& options, const Progress& progress);
-
-/// The point cloud backend.
-std::unique_ptr<Model> build_pointcloud(const io::Geometry& input, const RunOptions& options, const Progress& progress);
+std::unique_ptr<Model> build_trimesh(const io::Geometry&, const InputOptions&, const std::optional<SourceSpec>&,
+                                     const Progress&);
+std::unique_ptr<Model> build_polymesh(const io::Geometry&, const InputOptions&, const std::optional<SourceSpec>&,
+                                      const Progress&);
+std::unique_ptr<Model> build_pointcloud(const io::Geometry&, const InputOptions&, const std::optional<SourceSpec>&,
+                                        const Progress&);
 
 }  // namespace ahm::app

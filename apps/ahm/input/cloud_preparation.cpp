@@ -8,6 +8,7 @@
 
 #include "ahm/error.hpp"
 #include "ahm/pointcloud/surroundings.hpp"
+#include "cli/source_list.hpp"
 #ifdef AHM_WITH_PCL
 #include "ahm/pcl/filters.hpp"
 #endif
@@ -39,7 +40,7 @@ void keep(PreparedCloud& cloud, const std::vector<Index>& kept) {
 }
 #endif
 
-PreparedCloud finite_points(const io::Geometry& input, const RunOptions& options) {
+PreparedCloud finite_points(const io::Geometry& input, const InputOptions& options) {
   PreparedCloud cloud;
   const bool with_normals = !input.normals.empty() && options.normals != "estimate";
   std::vector<Index> bad;
@@ -55,30 +56,24 @@ PreparedCloud finite_points(const io::Geometry& input, const RunOptions& options
   if (!bad.empty() && !options.drop_nan)
     throw InvalidGeometry(fmt::format(
         "{}: {} of {} points have a coordinate that is nan or infinite (points {}); --drop-nan leaves them out",
-        options.input, bad.size(), input.points.size(), list_first(bad)));
+        options.path, bad.size(), input.points.size(), list_first(bad)));
   cloud.non_finite = static_cast<Index>(bad.size());
   return cloud;
 }
 
-void require_normals(const io::Geometry& input, const RunOptions& options) {
+void require_normals(const io::Geometry& input, const InputOptions& options) {
   if (input.normals.empty() && (options.normals == "oriented" || options.normals == "unoriented"))
     throw InvalidArgument(fmt::format("--normals {}: {} has no normals; leave the option out to estimate them",
-                                      options.normals, options.input));
+                                      options.normals, options.path));
 }
 
 /// Keeps what lies within one and a half radii of the source, or of the point nearest to it.
-void keep_surroundings(PreparedCloud& cloud, const io::Geometry& input, const RunOptions& options,
-                       std::optional<Index> source) {
-  if (!options.radius) throw InvalidArgument("--local needs --radius");
-  Vec3 center{};
-  if (source) {
-    center = input.points[*source];
-  } else if (const auto* wanted = std::get_if<SourcePosition>(&options.source); wanted && !cloud.points.empty()) {
-    center = *std::min_element(cloud.points.begin(), cloud.points.end(), [&](const Vec3& a, const Vec3& b) {
-      return distance(a, wanted->position) < distance(b, wanted->position);
-    });
-  }
-  pointcloud::Surroundings near = pointcloud::surroundings(cloud.points, cloud.normals, center, 1.5 * *options.radius);
+void keep_surroundings(PreparedCloud& cloud, const io::Geometry& input, double radius, const SourceSpec& source) {
+  Vec3 center = position_in(input, source, "--source");
+  if (std::holds_alternative<SourcePosition>(source) && !cloud.points.empty())
+    center = *std::min_element(cloud.points.begin(), cloud.points.end(),
+                               [&](const Vec3& a, const Vec3& b) { return distance(a, center) < distance(b, center); });
+  pointcloud::Surroundings near = pointcloud::surroundings(cloud.points, cloud.normals, center, 1.5 * radius);
   cloud.beyond = static_cast<Index>(cloud.points.size() - near.points.size());
   for (Index& row : near.index) row = cloud.input_row[row];
   cloud.points = std::move(near.points);
@@ -118,18 +113,20 @@ void apply_outlier_removal(PreparedCloud& cloud, std::optional<Index> source) {
 
 }  // namespace
 
-PreparedCloud prepare_cloud(const io::Geometry& input, const RunOptions& options,
-                            [[maybe_unused]] std::optional<Index> source) {
+PreparedCloud prepare_cloud(const io::Geometry& input, const InputOptions& options,
+                            const std::optional<SourceSpec>& source) {
   const auto begin = std::chrono::steady_clock::now();
 #ifndef AHM_WITH_PCL
   if (options.voxel || options.outliers) throw InvalidArgument("--voxel and --outliers: this build of ahm has no PCL");
 #endif
   PreparedCloud cloud = finite_points(input, options);
   require_normals(input, options);
-  if (options.local) keep_surroundings(cloud, input, options, source);
+  if (options.local && source) keep_surroundings(cloud, input, *options.local, *source);
 #ifdef AHM_WITH_PCL
-  if (options.voxel) apply_voxel_grid(cloud, *options.voxel, source);
-  if (options.outliers) apply_outlier_removal(cloud, source);
+  const auto* vertex = source ? std::get_if<SourceVertex>(&*source) : nullptr;
+  const std::optional<Index> row = vertex ? std::optional(vertex->index) : std::nullopt;
+  if (options.voxel) apply_voxel_grid(cloud, *options.voxel, row);
+  if (options.outliers) apply_outlier_removal(cloud, row);
 #endif
   cloud.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return cloud;

@@ -23,9 +23,10 @@ struct PreparedCloud {
   double seconds = 0;
 };
 
-/// Applies the options of `ahm logmap` that concern the input cloud, in the order non-finite, surroundings, voxel grid, outliers.
-/// @param source  the input row that must remain: it represents its voxel. Not an outlier, or the call is refused
+/// Applies the options that concern the input cloud, in the order non-finite, surroundings, voxel grid, outliers.
+/// @param source  where the map starts: a row represents its voxel, and is no outlier or the call is refused
 /// @throws InvalidGeometry (non-finite points without --drop-nan; unusable normals), InvalidArgument
-PreparedCloud prepare_cloud(const io::Geometry& input, const RunOptions& options, std::optional<Index> source);
+PreparedCloud prepare_cloud(const io::Geometry& input, const InputOptions& options,
+                            const std::optional<SourceSpec>& source);
 
 }  // namespace ahm::app

@@ -29,8 +29,8 @@ struct Sample {
 /// The nearest points of the surface.
 class Projection {
  public:
-  explicit Projection(const Surface& surface) : model_(*surface.model) {
-    if (surface.backend != "pointcloud") faces_ = std::make_unique<NearestFace>(surface.input);
+  explicit Projection(const Input& input) : model_(*input.surface) {
+    if (input.backend->has_faces) faces_ = std::make_unique<NearestFace>(input.geometry);
   }
 
   Sample operator()(const Vec3& p) const {
@@ -52,11 +52,11 @@ class Projection {
 
 /// The given points as corners, and points on the straight lines between them; the largest distance of these from the
 /// surface.
-std::vector<Sample> sample(const Surface& surface, const std::vector<SourceSpec>& given, bool closed, double step,
+std::vector<Sample> sample(const Input& input, const std::vector<SourceSpec>& given, bool closed, double step,
                            double& gap) {
   std::vector<Vec3> corners;
   corners.reserve(given.size() + 1);
-  for (const SourceSpec& spec : given) corners.push_back(position_in(surface.input, spec, "--curve"));
+  for (const SourceSpec& spec : given) corners.push_back(position_in(input.geometry, spec, "--curve"));
   if (closed) corners.push_back(corners.front());
   double length = 0;
   for (std::size_t k = 0; k + 1 < corners.size(); ++k) length += distance(corners[k], corners[k + 1]);
@@ -67,7 +67,7 @@ std::vector<Sample> sample(const Surface& surface, const std::vector<SourceSpec>
                     "input?",
                     length, most_points, 2 * step));
 
-  const Projection project(surface);
+  const Projection project(input);
   std::vector<Sample> samples;
   for (std::size_t k = 0; k < corners.size(); ++k) {
     if (k + 1 == corners.size() && closed) break;
@@ -134,14 +134,14 @@ Source carried(const ResolvedSource& point, const Vec3& position, bool is_cloud,
 
 }  // namespace
 
-Curve draw_curve(const Surface& surface, const std::vector<SourceSpec>& given, const StrokeOptions& options) {
-  const TangentGraph& graph = surface.model->graph();
+Curve draw_curve(const Input& input, const std::vector<SourceSpec>& given, const StrokeOptions& options) {
+  const TangentGraph& graph = input.graph();
   const double edge = graph.mean_edge_length() * graph.length_unit();
   Curve curve;
-  std::vector<Sample> samples = sample(surface, given, options.closed, edge / 2, curve.gap);
+  std::vector<Sample> samples = sample(input, given, options.closed, edge / 2, curve.gap);
   thin(samples, options.closed, 1e-6 * edge);
 
-  const bool is_cloud = surface.backend == "pointcloud", may_mirror = graph.transport_kind() == TransportKind::block;
+  const bool is_cloud = !input.backend->has_faces, may_mirror = graph.transport_kind() == TransportKind::block;
   const std::size_t n = samples.size();
   std::vector<Source> sources;
   std::vector<double> lengths;
@@ -154,7 +154,7 @@ Curve draw_curve(const Surface& surface, const std::vector<SourceSpec>& given, c
   };
   for (std::size_t k = 0; k < n; ++k) {
     const ResolvedSource point =
-        resolve(*surface.model, samples[k].spec, tangent(samples, k, options.closed), "--curve");
+        resolve(*input.surface, samples[k].spec, tangent(samples, k, options.closed), "--curve");
     if (k == 0) curve.first = point.frame;
     turn_over(point.frame);
     sources.push_back(carried(point, samples[k].position, is_cloud, side));

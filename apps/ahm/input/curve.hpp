@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "ahm/applications/stroke.hpp"
-#include "input/surface.hpp"
+#include "input/open.hpp"
 
 namespace ahm::app {
 
@@ -24,6 +24,6 @@ struct Curve {
 /// the nearest points of the surface: points in faces of meshes; of clouds, points of the tangent plane of the nearest
 /// vertex, which carries them with its offset.
 /// @throws InvalidArgument
-Curve draw_curve(const Surface& surface, const std::vector<SourceSpec>& given, const StrokeOptions& options);
+Curve draw_curve(const Input& input, const std::vector<SourceSpec>& given, const StrokeOptions& options);
 
 }  // namespace ahm::app

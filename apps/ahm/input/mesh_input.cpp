@@ -10,7 +10,8 @@
 
 namespace ahm::app {
 
-void check_mesh_input(const std::string& backend, const io::Geometry& input, const RunOptions& options) {
+void check_mesh_input(const std::string& backend, const io::Geometry& input, const InputOptions& options,
+                      const std::optional<SourceSpec>& source) {
   if (input.face_count() == 0)
     throw InvalidArgument(
         fmt::format("--backend {}: the input has no faces; --backend pointcloud maps its points", backend));
@@ -18,7 +19,7 @@ void check_mesh_input(const std::string& backend, const io::Geometry& input, con
     throw InvalidArgument(
         "--voxel, --outliers, --drop-nan and --local are for point clouds; add --backend pointcloud to map the "
         "vertices as one");
-  position_in(input, options.source, "--source");
+  if (source) position_in(input, *source, "--source");
 }
 
 Index nearest_row(std::span<const Vec3> points, std::span<const Index> vertex_of_row, const Vec3& position) {

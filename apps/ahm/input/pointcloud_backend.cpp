@@ -24,14 +24,13 @@ using pointcloud::NormalSigns;
 using pointcloud::PointCloudGraph;
 
 /// The cheap checks: everything about the source that needs no graph.
-std::optional<Index> checked_source_row(const SourceSpec& spec, const io::Geometry& input) {
-  if (const auto* face = std::get_if<SourceFace>(&spec))
+const std::optional<SourceSpec>& checked_source(const std::optional<SourceSpec>& source, const io::Geometry& input) {
+  if (!source) return source;
+  if (const auto* face = std::get_if<SourceFace>(&*source))
     throw InvalidArgument(fmt::format(
         "--source {}: a cloud has no faces (backend pointcloud); write a vertex index or x,y,z", to_string(*face)));
-  const auto* vertex = std::get_if<SourceVertex>(&spec);
-  if (vertex == nullptr) return std::nullopt;
-  position_in(input, spec, "--source");
-  return vertex->index;
+  position_in(input, *source, "--source");
+  return source;
 }
 
 pointcloud::NeighborSearchFactory search_factory(const std::string& name) {
@@ -44,7 +43,7 @@ pointcloud::NeighborSearchFactory search_factory(const std::string& name) {
 #endif
 }
 
-CloudOptions cloud_options(const RunOptions& options, const Progress& progress) {
+CloudOptions cloud_options(const InputOptions& options, const Progress& progress) {
   CloudOptions result;
   result.k = options.k;
   result.search = search_factory(options.knn);
@@ -57,9 +56,9 @@ CloudOptions cloud_options(const RunOptions& options, const Progress& progress) 
 
 class PointcloudModel final : public Model {
  public:
-  PointcloudModel(const io::Geometry& input, const RunOptions& options, const Progress& progress)
-      : PointcloudModel(input, options, progress,
-                        prepare_cloud(input, options, checked_source_row(options.source, input))) {}
+  PointcloudModel(const io::Geometry& input, const InputOptions& options, const std::optional<SourceSpec>& source,
+                  const Progress& progress)
+      : PointcloudModel(input, options, progress, prepare_cloud(input, options, checked_source(source, input))) {}
 
   const TangentGraph& graph() const override { return cloud_.graph(); }
 
@@ -98,7 +97,7 @@ class PointcloudModel final : public Model {
   std::vector<std::string> warnings() const override;
 
  private:
-  PointcloudModel(const io::Geometry& input, const RunOptions& options, const Progress& progress,
+  PointcloudModel(const io::Geometry& input, const InputOptions& options, const Progress& progress,
                   PreparedCloud prepared)
       : prepared_(std::move(prepared)),
         input_points_(input.points.size()),
@@ -175,9 +174,9 @@ std::vector<std::string> PointcloudModel::warnings() const {
 
 }  // namespace
 
-std::unique_ptr<Model> build_pointcloud(const io::Geometry& input, const RunOptions& options,
-                                        const Progress& progress) {
-  return std::make_unique<PointcloudModel>(input, options, progress);
+std::unique_ptr<Model> build_pointcloud(const io::Geometry& input, const InputOptions& options,
+                                        const std::optional<SourceSpec>& source, const Progress& progress) {
+  return std::make_unique<PointcloudModel>(input, options, source, progress);
 }
 
 }  // namespace ahm::app

@@ -35,7 +35,7 @@ std::array<double, 3> barycentric(const Vec3& p, const Vec3& a, const Vec3& b, c
   return {1 - s - t, s, t};
 }
 
-PolygonOptions polygon_options(const RunOptions& options, const Progress& progress) {
+PolygonOptions polygon_options(const InputOptions& options, const Progress& progress) {
   PolygonOptions result;
   result.non_manifold = options.non_manifold == "split" ? NonManifold::split : NonManifold::error;
   result.threads = options.threads;
@@ -47,8 +47,9 @@ PolygonOptions polygon_options(const RunOptions& options, const Progress& progre
 /// the first vertices of either graph.
 class PolymeshModel final : public Model {
  public:
-  PolymeshModel(const io::Geometry& input, const RunOptions& options, const Progress& progress)
-      : input_(input), mesh_(check(input, options)) {
+  PolymeshModel(const io::Geometry& input, const InputOptions& options, const std::optional<SourceSpec>& source,
+                const Progress& progress)
+      : input_(input), mesh_(check(input, options, source)) {
     if (options.discretization != "polygons") refinement_ = mesh_.refined();
     if (options.discretization == "polygons" || (options.discretization == "auto" && !refinement_.folded.empty())) {
       polygons_.emplace(PolygonMeshGraph::build(mesh_, polygon_options(options, progress)));
@@ -110,8 +111,9 @@ class PolymeshModel final : public Model {
   std::vector<std::string> warnings() const override { return warnings_; }
 
  private:
-  static PolygonMesh check(const io::Geometry& input, const RunOptions& options) {
-    check_mesh_input("polymesh", input, options);
+  static PolygonMesh check(const io::Geometry& input, const InputOptions& options,
+                           const std::optional<SourceSpec>& source) {
+    check_mesh_input("polymesh", input, options, source);
     try {
       return PolygonMesh::from_faces(input.points, input.face_begin, input.face_vertices,
                                      polygon_options(options, {}).non_manifold);
@@ -205,8 +207,9 @@ nlohmann::ordered_json PolymeshModel::report() const {
 
 }  // namespace
 
-std::unique_ptr<Model> build_polymesh(const io::Geometry& input, const RunOptions& options, const Progress& progress) {
-  return std::make_unique<PolymeshModel>(input, options, progress);
+std::unique_ptr<Model> build_polymesh(const io::Geometry& input, const InputOptions& options,
+                                      const std::optional<SourceSpec>& source, const Progress& progress) {
+  return std::make_unique<PolymeshModel>(input, options, source, progress);
 }
 
 }  // namespace ahm::app

@@ -10,7 +10,7 @@ namespace {
 
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
-bool is_cloud(const Surface& surface) { return surface.backend == "pointcloud"; }
+bool is_cloud(const Input& input) { return !input.backend->has_faces; }
 
 /// The polygons of the input by rows, turned to the side of the normals.
 struct InputFaces {
@@ -51,14 +51,14 @@ struct InputFaces {
   }
 };
 
-Skin skin_of_mesh(const Surface& surface) {
+Skin skin_of_mesh(const Input& input) {
   Skin skin;
-  skin.points = surface.input.points;
-  skin.normals = surface.model->normals();
-  skin.face_begin = surface.input.face_begin;
-  skin.corner_vertices = surface.model->corner_vertices();
-  std::vector<Index> row_of(at(surface.model->graph().size()), -1);
-  for (const auto& [row, vertex] : surface.model->row_vertices()) row_of[vertex] = row;
+  skin.points = input.geometry.points;
+  skin.normals = input.surface->normals();
+  skin.face_begin = input.geometry.face_begin;
+  skin.corner_vertices = input.surface->corner_vertices();
+  std::vector<Index> row_of(at(input.graph().size()), -1);
+  for (const auto& [row, vertex] : input.surface->row_vertices()) row_of[vertex] = row;
   for (Index vertex : skin.corner_vertices) skin.corner_points.push_back(row_of[vertex]);
   return skin;
 }
@@ -88,18 +88,18 @@ Skin skin_of_cloud(const TangentGraph& graph, const LogMapSolver& solver, std::s
 
 }  // namespace
 
-Skin skin_of(const Surface& surface, const LogMapSolver& solver, std::span<const Vertex> sources) {
-  return is_cloud(surface) ? skin_of_cloud(surface.model->graph(), solver, sources) : skin_of_mesh(surface);
+Skin skin_of(const Input& input, const LogMapSolver& solver, std::span<const Vertex> sources) {
+  return is_cloud(input) ? skin_of_cloud(input.graph(), solver, sources) : skin_of_mesh(input);
 }
 
-InverseMap inverse_of(const Surface& surface, const LogMap& map, double min_quality) {
-  const TangentGraph& graph = surface.model->graph();
-  if (is_cloud(surface)) return inverse_map(graph, map, {.min_quality = min_quality});
-  const std::size_t rows = surface.input.points.size();
+InverseMap inverse_of(const Input& input, const LogMap& map, double min_quality) {
+  const TangentGraph& graph = input.graph();
+  if (is_cloud(input)) return inverse_map(graph, map, {.min_quality = min_quality});
+  const std::size_t rows = input.rows();
   const std::vector<Vec3> graph_normals = source_side_normals(graph, map);
   const std::vector<double> quality = map_quality(graph, map);
   std::vector<Index> nearest(rows, -1);
-  for (const auto& [row, vertex] : surface.model->row_vertices())
+  for (const auto& [row, vertex] : input.surface->row_vertices())
     if (map.status(Vertex(vertex)) == Status::ok &&
         (nearest[row] < 0 || map.distance(Vertex(vertex)) < map.distance(Vertex(nearest[row]))))
       nearest[row] = vertex;
@@ -114,7 +114,7 @@ InverseMap inverse_of(const Surface& surface, const LogMap& map, double min_qual
     valid[r] = quality[nearest[r]] >= min_quality;
   }
   return InverseMap(
-      {surface.input.points, normals, coordinates, valid, InputFaces(surface.input, normals).triangles()});
+      {input.geometry.points, normals, coordinates, valid, InputFaces(input.geometry, normals).triangles()});
 }
 
 }  // namespace ahm::app

@@ -7,7 +7,7 @@
 
 #include "ahm/applications/atlas.hpp"
 #include "ahm/applications/inverse_map.hpp"
-#include "input/surface.hpp"
+#include "input/open.hpp"
 
 namespace ahm::app {
 
@@ -22,10 +22,10 @@ struct Skin {
 
 /// The faces of the input; for clouds the triangles of `star_triangles`, as a map from the sources finds them.
 /// @param sources  vertices, at most one per component counts
-Skin skin_of(const Surface& surface, const LogMapSolver& solver, std::span<const Vertex> sources);
+Skin skin_of(const Input& input, const LogMapSolver& solver, std::span<const Vertex> sources);
 
 /// The inverse of a map with frames: for meshes on the rows and faces of the input, so that points lie on them whatever
 /// the graph looks like (of several vertices of a row the one nearest to the source counts), for clouds on the graph.
-InverseMap inverse_of(const Surface& surface, const LogMap& map, double min_quality);
+InverseMap inverse_of(const Input& input, const LogMap& map, double min_quality);
 
 }  // namespace ahm::app

@@ -87,7 +87,7 @@ Index central_point(const std::vector<Vec3>& points, std::span<const Index> poin
   return best;
 }
 
-Connectivity find_connectivity(const FiniteCloud& cloud, const InfoOptions& options, const Progress& progress) {
+Connectivity find_connectivity(const FiniteCloud& cloud, const InputOptions& options, const Progress& progress) {
   pointcloud::CloudOptions cloud_options;
   cloud_options.k = options.k;
   cloud_options.threads = options.threads;
@@ -107,7 +107,7 @@ Connectivity find_connectivity(const FiniteCloud& cloud, const InfoOptions& opti
 
 }  // namespace
 
-Survey survey(const io::Geometry& input, const InfoOptions& options, const Progress& progress) {
+Survey survey(const io::Geometry& input, const InputOptions& options, const Progress& progress) {
   Survey s;
   s.points = input.points.size();
   s.faces = input.face_count();

@@ -41,7 +41,7 @@ struct Survey {
 
 /// Looks at everything. Failures to build a graph are findings, not errors.
 /// @throws Cancelled, std::bad_alloc
-Survey survey(const io::Geometry& input, const InfoOptions& options, const Progress& progress);
+Survey survey(const io::Geometry& input, const InputOptions& options, const Progress& progress);
 
 /// The command line to run on this file, or empty when nothing can be run.
 std::string suggestion(const Survey& survey, const std::string& path);

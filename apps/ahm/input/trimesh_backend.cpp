@@ -30,7 +30,7 @@ std::vector<Triangle> triangles(const io::Geometry& input) {
   return result;
 }
 
-MeshOptions mesh_options(const RunOptions& options, const Progress& progress) {
+MeshOptions mesh_options(const InputOptions& options, const Progress& progress) {
   MeshOptions result;
   result.intrinsic_delaunay = options.flips;
   result.non_manifold = options.non_manifold == "split" ? trimesh::NonManifold::split : trimesh::NonManifold::error;
@@ -41,8 +41,9 @@ MeshOptions mesh_options(const RunOptions& options, const Progress& progress) {
 
 class TrimeshModel final : public Model {
  public:
-  TrimeshModel(const io::Geometry& input, const RunOptions& options, const Progress& progress)
-      : points_(input.points), mesh_(build(input, options, progress)) {}
+  TrimeshModel(const io::Geometry& input, const InputOptions& options, const std::optional<SourceSpec>& source,
+               const Progress& progress)
+      : points_(input.points), mesh_(build(input, options, source, progress)) {}
 
   const TangentGraph& graph() const override { return mesh_.graph(); }
 
@@ -88,8 +89,9 @@ class TrimeshModel final : public Model {
   std::vector<std::string> warnings() const override { return mesh_.report().warnings; }
 
  private:
-  static TriangleMeshGraph build(const io::Geometry& input, const RunOptions& options, const Progress& progress) {
-    check_mesh_input("trimesh", input, options);
+  static TriangleMeshGraph build(const io::Geometry& input, const InputOptions& options,
+                                 const std::optional<SourceSpec>& source, const Progress& progress) {
+    check_mesh_input("trimesh", input, options, source);
     try {
       return TriangleMeshGraph::build(input.points, triangles(input), mesh_options(options, progress));
     } catch (const InvalidGeometry& e) {
@@ -123,8 +125,9 @@ nlohmann::ordered_json TrimeshModel::report() const {
 
 }  // namespace
 
-std::unique_ptr<Model> build_trimesh(const io::Geometry& input, const RunOptions& options, const Progress& progress) {
-  return std::make_unique<TrimeshModel>(input, options, progress);
+std::unique_ptr<Model> build_trimesh(const io::Geometry& input, const InputOptions& options,
+                                     const std::optional<SourceSpec>& source, const Progress& progress) {
+  return std::make_unique<TrimeshModel>(input, options, source, progress);
 }
 
 }  // namespace ahm::app

@@ -1,8 +1,10 @@
 #include "output/output_paths.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cctype>
 #include <cerrno>
 #include <filesystem>
@@ -51,6 +53,14 @@ void check_outputs(const std::string& input, const std::vector<OutputPath>& outp
         throw InvalidArgument(
             fmt::format("{} and {} name the same file {}", outputs[j].option, outputs[i].option, outputs[i].path));
   }
+}
+
+void check_ending(const OutputPath& output, const std::vector<std::string>& endings) {
+  if (std::find(endings.begin(), endings.end(), extension_of(output.path)) != endings.end()) return;
+  const std::string last = endings.back();
+  const std::string others = fmt::format("{}", fmt::join(endings.begin(), endings.end() - 1, ", "));
+  throw InvalidArgument(fmt::format("{} {}: the name must end in {}{}{}", output.option, output.path, others,
+                                    others.empty() ? "" : " or ", last));
 }
 
 bool is_stream(const std::string& path) {

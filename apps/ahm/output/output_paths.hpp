@@ -17,6 +17,9 @@ struct OutputPath {
 /// @throws IoError, InvalidArgument
 void check_outputs(const std::string& input, const std::vector<OutputPath>& outputs);
 
+/// @throws InvalidArgument where the name ends in none of these, such as ".csv"
+void check_ending(const OutputPath& output, const std::vector<std::string>& endings);
+
 /// True for a device or a pipe, such as /dev/stdout.
 bool is_stream(const std::string& path);
 

@@ -23,10 +23,12 @@ void check_view(const std::string& path) {
 
 }  // namespace
 
-void check_results(const RunOptions& options) {
-  check_outputs(options.input, {{"--output", options.output}, {"--json", options.json}, {"--view", options.view}});
-  io::check_writable(options.output);
-  check_view(options.view);
+void check_results(const std::string& input, const OutputOptions& output, const std::vector<std::string>& endings) {
+  const OutputPath file{"--output", output.output};
+  check_outputs(input, {file, {"--json", output.json}, {"--view", output.view}});
+  if (!endings.empty()) check_ending(file, endings);
+  if (endings.empty() && !output.output.empty()) io::check_writable(output.output);
+  check_view(output.view);
 }
 
 void comment_on_statuses(const std::vector<Status>& status, const std::string& input, Journal& journal) {
@@ -43,8 +45,11 @@ void comment_on_statuses(const std::vector<Status>& status, const std::string& i
                     unreached));
 }
 
-Results::Results(const RunOptions& options, const Surface& surface)
-    : options_(options), input_(surface.input), normals_(surface.model->normals()) {}
+Results::Results(const OutputOptions& output, const Input& input, const std::string& path)
+    : output_(output),
+      input_(input.geometry),
+      title_(std::filesystem::path(path).filename().string()),
+      normals_(input.surface->normals()) {}
 
 Results::~Results() {
   std::error_code ignored;
@@ -66,23 +71,23 @@ view::Scene Results::scene() const {
   scene.normals = normals_;
   scene.face_begin = input_.face_begin;
   scene.face_vertices = input_.face_vertices;
-  scene.title = std::filesystem::path(options_.input).filename().string();
+  scene.title = title_;
   return scene;
 }
 
 void Results::write_view(const view::Scene& scene, Journal& journal, const view::PictureOptions& picture) {
-  if (options_.view.empty()) return;
+  if (output_.view.empty()) return;
   journal.start("view");
-  view::write_picture(options_.view, scene, picture);
-  written_.push_back(options_.view);
+  draw(output_.view, scene, picture.pattern, output_.picture);
+  written_.push_back(output_.view);
 }
 
 void Results::write(const io::Table& table, const view::Scene& scene, Journal& journal,
                     const view::PictureOptions& picture) {
   write_view(scene, journal, picture);
   journal.start("write");
-  io::write(options_.output, table);
-  written_.push_back(options_.output);
+  io::write(output_.output, table);
+  written_.push_back(output_.output);
   journal.finish();
   journal.clear_display();
 }

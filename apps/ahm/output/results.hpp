@@ -7,13 +7,15 @@
 
 #include "ahm/io/write.hpp"
 #include "ahm/view/picture.hpp"
-#include "input/surface.hpp"
+#include "input/open.hpp"
 #include "output/map_rows.hpp"
 
 namespace ahm::app {
 
-/// Before the work: whether --output, --view and --json can be written. @throws IoError, InvalidArgument
-void check_results(const RunOptions& options);
+/// Before the work: whether --output, --view and --json can be written.
+/// @param endings  that --output may have; none: those of tables
+/// @throws IoError, InvalidArgument
+void check_results(const std::string& input, const OutputOptions& output, const std::vector<std::string>& endings = {});
 
 /// Warns where many rows have no number.
 void comment_on_statuses(const std::vector<Status>& status, const std::string& input, Journal& journal);
@@ -21,8 +23,8 @@ void comment_on_statuses(const std::vector<Status>& status, const std::string& i
 /// The files of a run: all of them or, after a failure, none.
 class Results {
  public:
-  /// @param options, surface  must outlive the results
-  Results(const RunOptions& options, const Surface& surface);
+  /// @param output, input  must outlive the results
+  Results(const OutputOptions& output, const Input& input, const std::string& path);
   ~Results();
   Results(const Results&) = delete;
   Results& operator=(const Results&) = delete;
@@ -40,8 +42,9 @@ class Results {
   void keep() { written_.clear(); }
 
  private:
-  const RunOptions& options_;
+  const OutputOptions& output_;
   const io::Geometry& input_;
+  std::string title_;
   std::vector<Vec3> normals_;
   std::vector<std::string> written_;
 };

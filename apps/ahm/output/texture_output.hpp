@@ -14,8 +14,9 @@ namespace ahm::app {
 /// Before the work: whether all files can be written, those beside an .obj included, and none is `image`.
 /// @param extensions  that --output may have
 /// @throws IoError, InvalidArgument
-void check_texture_output(const RunOptions& options, const std::vector<std::string>& extensions,
-                          const std::vector<std::string>& parts, const std::string& image);
+void check_texture_output(const std::string& input, const OutputOptions& output,
+                          const std::vector<std::string>& extensions, const std::vector<std::string>& parts,
+                          const std::string& image);
 
 /// Some faces of a skin, with or without texture coordinates, as a part of a textured mesh.
 class SkinPart {

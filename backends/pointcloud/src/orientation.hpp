@@ -14,9 +14,9 @@ namespace ahm::pointcloud {
 /// a pair it undoes on the other, and noise has no direction.
 bool have_thin_walls(const CleanPoints& cloud, const TangentPlanes& planes, const Neighborhoods& neighborhoods);
 
-/// Flips normals so that they agree along a spanning tree of the flattest edges, per connected component. The component as a
-/// whole keeps the majority of the signs that were given, else points away from its centroid, else (flat clouds) along its
-/// largest coordinate.
+/// Flips normals so that they agree along a spanning tree of the flattest edges [HDDMS92], per connected component.
+/// The component as a whole keeps the majority of the signs that were given, else points away from its centroid, else
+/// (flat clouds) along its largest coordinate.
 /// @return the number of normals that are flipped against the majority of their component
 Index orient_normals(const CleanPoints& cloud, const WeightedEdges& edges, bool signs_given, TangentPlanes& planes);
 

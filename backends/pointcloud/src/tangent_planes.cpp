@@ -1,6 +1,5 @@
 #include "tangent_planes.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -8,6 +7,7 @@
 #include <utility>
 
 #include "ahm/error.hpp"
+#include "ahm/pointcloud/plane_fit.hpp"
 #include "ahm/util/parallel.hpp"
 #include "vec3.hpp"
 
@@ -17,36 +17,8 @@ namespace {
 constexpr Offset chunk = 4096;  // points per task
 
 /// Neighbours are narrow, and more of them are wanted, when their second principal variance is below this share of the
-/// first ...
+/// first.
 constexpr double narrow_ratio = 1e-3;
-/// ... and on a line, without a plane, below this share.
-constexpr double collinear_ratio = 1e-10;
-
-struct PlaneFit {
-  Vec3 normal{0, 0, 0};  ///< direction of least variance
-  double ratio = 0;      ///< second principal variance / first
-};
-
-PlaneFit fit_plane(std::span<const Vec3> points, Index i, std::span<const Index> neighbors) {
-  const Vec3 origin = points[i];
-  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d second = Eigen::Matrix3d::Zero();
-  for (Index j : neighbors) {
-    const Vec3 offset = points[j] - origin;
-    const Eigen::Map<const Eigen::Vector3d> v(offset.data());
-    mean += v;
-    second.noalias() += v * v.transpose();
-  }
-  const double count = static_cast<double>(neighbors.size()) + 1.0;  // with the point itself
-  mean /= count;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(second / count - mean * mean.transpose());
-  const auto& variance = eigen.eigenvalues();
-  const double ratio = variance[2] > 0 ? variance[1] / variance[2] : 0.0;
-  if (!(ratio > collinear_ratio)) return {};
-  const Eigen::Vector3d n = eigen.eigenvectors().col(0);
-  return {normalized({n[0], n[1], n[2]}), ratio};
-}
-
 /// Buffers of one thread's queries.
 struct QueryBuffers {
   std::vector<Index> indices;

@@ -48,7 +48,7 @@ class TuftedCover {
     glue(cloud, planes, triangles);
   }
 
-  /// Adds the least length to every edge that keeps each face away from degeneracy (SC20 Sec. 4.5).
+  /// Adds the least length to every edge that keeps each face away from degeneracy ([SC20] Sec. 4.5).
   double mollify() {
     const double mean = std::accumulate(length_.begin(), length_.end(), 0.0) / static_cast<double>(length_.size());
     const double margin = 1e-5 * mean;
@@ -61,7 +61,7 @@ class TuftedCover {
     return epsilon;
   }
 
-  /// Flips edges until all are Delaunay (BS07). Returns the number of flips.
+  /// Flips edges until all are Delaunay [BS07]. Returns the number of flips.
   Offset flip_to_delaunay() {
     std::vector<Half> stack;
     for (Half h = 0; h < static_cast<Half>(tail_.size()); ++h)

@@ -1,5 +1,5 @@
 /// \file
-/// The tufted Laplacian of Sharp & Crane 2020 (SC20): edge weights >= 0 and lumped masses from any set of triangles.
+/// The tufted Laplacian [SC20]: edge weights >= 0 and lumped masses from any set of triangles.
 #pragma once
 
 #include <vector>

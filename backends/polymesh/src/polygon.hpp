@@ -1,5 +1,5 @@
 /// \file
-/// One polygon, refined by its virtual vertex (Bunge, Herholz, Kazhdan, Botsch 2020).
+/// One polygon, refined by its virtual vertex [BHKB20].
 #pragma once
 
 #include <Eigen/Core>
@@ -33,7 +33,7 @@ class Polygon {
   /// sum w_c x_c of other positions of the corners.
   Vec3 blend(std::span<const Vec3> positions, std::span<const Index> corners) const;
 
-  /// Stiffness of the triangles around p restricted to functions with u(p) = sum w_c u_c (BHKB20 Eq. 11): writes the
+  /// Stiffness of the triangles around p restricted to functions with u(p) = sum w_c u_c ([BHKB20] Eq. 11): writes the
   /// m x m weights -K_cd, row major, 0 on the diagonal.
   void stiffness(double* weights);
   /// Lumped mass of the same: row sums, but at least half of what the triangles at the corner give without p.

@@ -1,5 +1,5 @@
 /// \file
-/// A triangulation of a mesh's own metric, flipped to the intrinsic Delaunay triangulation (BS07).
+/// A triangulation of a mesh's own metric, flipped to the intrinsic Delaunay triangulation [BS07].
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@ namespace ahm::trimesh {
 /// Half-edge arrays whose faces are laid out in the plane one by one.
 class IntrinsicTriangulation {
  public:
-  /// The mesh itself. Degenerate faces are mollified at once when `mollify` asks for it (SC20 Sec. 4.5): the least
+  /// The mesh itself. Degenerate faces are mollified at once when `mollify` asks for it ([SC20] Sec. 4.5): the least
   /// length is added to every edge that leaves each face a margin in the triangle inequality.
   IntrinsicTriangulation(const TriangleMesh& mesh, bool mollify, unsigned threads);
 

@@ -1,5 +1,5 @@
 /// \file
-/// Tangent spaces of the vertices (KCPS13), with true angles at the boundary.
+/// Tangent spaces of the vertices [KCPS13], with true angles at the boundary.
 #pragma once
 
 #include <vector>

@@ -1,6 +1,5 @@
-// Stands in for stb.cpp and pack.cpp in a build without stb.
+// Stands in for stb.cpp in a build without stb.
 #include "ahm/io/image.hpp"
-#include "ahm/io/texture_atlas.hpp"
 
 namespace ahm::io {
 
@@ -10,9 +9,6 @@ Image read_image(const std::filesystem::path& path) {
 }
 std::string png_bytes(const Image&) {
   throw IoError("this build has no stb, which writes images (Debian: libstb-dev)");
-}
-TextureAtlas pack(const Atlas&, const FaceList&, const PackOptions&) {
-  throw IoError("this build has no stb, which packs charts (Debian: libstb-dev)");
 }
 
 }  // namespace ahm::io

@@ -37,9 +37,9 @@ struct Best {
 
   Best(const LogMap& map, std::span<const Vertex> vertices) {
     for (Vertex v : vertices) {
-      if (map.status(v.index) != Status::ok) {
-        if (status != Status::ok) status = map.status(v.index);
-      } else if (!vertex || map.distance(v.index) < map.distance(vertex->index)) {
+      if (map.status(v) != Status::ok) {
+        if (status != Status::ok) status = map.status(v);
+      } else if (!vertex || map.distance(v) < map.distance(*vertex)) {
         vertex = v;
         status = Status::ok;
       }
@@ -150,10 +150,10 @@ PlacedSource Surface::source(const SurfacePoint& point, const std::optional<Vec3
 
 PlacedSource Surface::source_at_row(Row row, const std::optional<Vec3>& u_axis) const {
   const Vertex v = vertex(row);
-  PlacedSource result{Source::at_vertex(v.index), {}, graph().frame(v.index), row};
+  PlacedSource result{Source::at_vertex(v), {}, graph().frame(v.index), row};
   if (!positions().empty()) result.position = positions()[row.index];
   if (!u_axis) return result;
-  result.source = Source::at_vertex(v.index, projected(graph(), v, *u_axis));
+  result.source = Source::at_vertex(v, projected(graph(), v, *u_axis));
   result.frame = turned(*result.frame, *u_axis);
   return result;
 }
@@ -210,13 +210,13 @@ RowLogMap Surface::on_rows(const LogMap& map) const {
     const Best best(map, rows().vertices(Row(static_cast<Index>(r))));
     result.status[r] = best.status;
     if (!best.vertex) continue;
-    const Index v = best.vertex->index;
+    const Vertex v = *best.vertex;
     const auto phi = map.coordinates(v);
     result.u[r] = phi[0];
     result.v[r] = phi[1];
     result.distance[r] = map.distance(v);
     result.angle[r] = std::atan2(phi[1], phi[0]);
-    if (!error.empty()) result.error_estimate[r] = error[v];
+    if (!error.empty()) result.error_estimate[r] = error[v.index];
     result.vertex[r] = best.vertex;
   }
   return result;
@@ -228,7 +228,7 @@ std::vector<Vec2> Surface::on_corners(const LogMap& map) const {
   std::vector<Vec2> result(all.vertices.size(), Vec2{nan, nan});
   for (std::size_t f = 0; f < all.size(); ++f)
     for (std::size_t c = 0; c < all[f].size(); ++c) {
-      const Index v = corner_vertex(static_cast<Index>(f), c);
+      const Vertex v{corner_vertex(static_cast<Index>(f), c)};
       if (map.status(v) != Status::ok) continue;
       const auto phi = map.coordinates(v);
       result[static_cast<std::size_t>(all.begin[f]) + c] = {phi[0], phi[1]};
@@ -241,7 +241,7 @@ Sample Surface::at(const LogMap& map, const SurfacePoint& point) const {
   const auto at_row = [&](Row row) -> std::pair<Sample, Index> {
     const Best best(map, rows().vertices(row));
     if (!best.vertex) return {{nan, nan, best.status}, -1};
-    const auto phi = map.coordinates(best.vertex->index);
+    const auto phi = map.coordinates(*best.vertex);
     return {{phi[0], phi[1], Status::ok}, best.vertex->index};
   };
   const auto visit = Overloaded{[&](Row row) { return at_row(row).first; },
@@ -273,7 +273,7 @@ Sample Surface::at(const LogMap& map, const SurfacePoint& point) const {
 Sample Surface::sample_in_face(const LogMap& map, const FacePoint& point) const {
   Sample sum{0, 0, Status::ok};
   for (std::size_t c = 0; c < point.barycentric.size(); ++c) {
-    const Index v = corner_vertex(point.face, c);
+    const Vertex v{corner_vertex(point.face, c)};
     if (map.status(v) != Status::ok) return {nan, nan, map.status(v)};
     const auto phi = map.coordinates(v);
     sum.u += point.barycentric[c] * phi[0];

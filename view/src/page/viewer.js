@@ -15,20 +15,24 @@
   // one is a colour.
   const common = element("palette").textContent + `
     uniform int pattern;
-    uniform float sectors, ring_scale;
-    vec3 paint(vec2 uv, vec2 dx, vec2 dy) {
-      if (!(abs(uv.x) < 1e29)) return unknown_colour();
+    uniform float sectors, ring_scale, rings, pixel_size;
+    vec3 to_srgb(vec3 linear) {
+      return mix(12.92 * linear, 1.055 * pow(max(linear, vec3(0.0)), vec3(1.0 / 2.4)) - 0.055, step(0.0031308, linear));
+    }
+    vec3 paint(vec2 uv, vec2 dx, vec2 dy, float trust) {
+      if (!(abs(uv.x) < 1e29)) return pattern == 4 ? plain_colour() : unknown_colour();
       vec2 scale = vec2(pattern == 2 ? 1.0 : ring_scale, ring_scale);
-      return map_colour(pattern, uv * scale, dx * scale, dy * scale, sectors);
+      vec3 colour = map_colour(pattern, uv * scale, dx * scale, dy * scale, sectors, rings * ring_scale);
+      return trust < 0.5 && pattern != 4 ? untrusted_colour(colour, gl_FragCoord.xy * vec2(1.0, -1.0) * pixel_size, pixel_size) : colour;
     }
     vec4 finish(vec3 colour, vec3 n, vec3 p) {
       if (dot(n, p) > 0.0) n = -n;
       return vec4(to_srgb(clamp(lit(colour, n, vec3(0.0, 0.0, 1.0)), 0.0, 1.0)), 1.0);
     }`;
-  const pattern = ["polar", "grid", "cells"].indexOf(meta.pattern);
+  const pattern = ["polar", "grid", "cells", "distance", "none"].indexOf(meta.pattern);
   const uniforms = {
     pattern: { value: pattern }, sectors: { value: meta.sectors }, ring_scale: { value: 1 }, largest_radius: { value: meta.largest_radius },
-    pixels_per_unit: { value: 1 }
+    pixels_per_unit: { value: 1 }, rings: { value: meta.rings }, pixel_size: { value: 1 }, steepest: { value: meta.steepest }
   };
 
   function surface_material() {
@@ -37,9 +41,12 @@
       vertexShader: `
         attribute vec4 disc;
         attribute vec2 map;
+        attribute float trust;
         varying vec3 view_position, view_normal;
         varying vec2 uv_map;
+        varying float map_trust;
         void main() {
+          map_trust = trust;
           vec4 p = modelViewMatrix * vec4(position, 1.0);
           view_position = p.xyz;
           view_normal = normalMatrix * (2.0 * disc.xyz - 1.0);
@@ -49,8 +56,9 @@
       fragmentShader: common + `
         varying vec3 view_position, view_normal;
         varying vec2 uv_map;
+        varying float map_trust;
         void main() {
-          gl_FragColor = finish(paint(uv_map, dFdx(uv_map), dFdy(uv_map)), normalize(view_normal), view_position);
+          gl_FragColor = finish(paint(uv_map, dFdx(uv_map), dFdy(uv_map), map_trust), normalize(view_normal), view_position);
         }`
     });
   }
@@ -62,11 +70,16 @@
       vertexShader: `
         attribute vec4 disc;
         attribute vec2 map;
-        uniform float largest_radius, pixels_per_unit;
-        varying vec3 centre, disc_normal;
+        attribute float trust;
+        attribute vec3 slope_u, slope_v;  // of the map along the disc
+        uniform float largest_radius, pixels_per_unit, steepest;
+        varying vec3 centre, disc_normal, change_u, change_v;
         varying vec2 uv_map;
-        varying float disc_radius;
+        varying float disc_radius, disc_size, map_trust;
         void main() {
+          map_trust = trust;
+          change_u = steepest * (normalMatrix * (2.0 * slope_u - 254.0 / 255.0));
+          change_v = steepest * (normalMatrix * (2.0 * slope_v - 254.0 / 255.0));
           vec4 p = modelViewMatrix * vec4(position, 1.0);
           float size = max(2.0 * disc.w * largest_radius * pixels_per_unit / max(-p.z, 1e-6), 2.0);
           vec3 n = normalMatrix * (2.0 * disc.xyz - 1.0);
@@ -74,15 +87,16 @@
           centre = p.xyz;
           disc_normal = dot(n, p.xyz) > 0.0 ? -n : n;
           disc_radius = 0.5 * size * max(-p.z, 1e-6) / pixels_per_unit;
+          disc_size = 0.5 * size;
           uv_map = map;
           gl_PointSize = size;
           gl_Position = projectionMatrix * p;
         }`,
       fragmentShader: common + `
         uniform mat4 projectionMatrix;
-        varying vec3 centre, disc_normal;
+        varying vec3 centre, disc_normal, change_u, change_v;
         varying vec2 uv_map;
-        varying float disc_radius;
+        varying float disc_radius, disc_size, map_trust;
         void main() {
           vec2 offset = (2.0 * gl_PointCoord - 1.0) * vec2(1.0, -1.0) * disc_radius;
           float rise = -dot(disc_normal.xy, offset) / max(disc_normal.z, 0.25);
@@ -92,7 +106,13 @@
           #if defined(GL_EXT_frag_depth) || __VERSION__ >= 300
             gl_FragDepthEXT = 0.5 - 0.5 * (projectionMatrix[2][2] * z + projectionMatrix[3][2]) / z;
           #endif
-          gl_FragColor = finish(paint(uv_map, vec2(0.0), vec2(0.0)), disc_normal, centre);
+          vec3 along = vec3(offset, rise);
+          vec2 uv = uv_map + vec2(dot(change_u, along), dot(change_v, along));
+          vec2 tilt = -disc_normal.xy / max(disc_normal.z, 0.25);
+          float pixel = disc_radius / disc_size;
+          vec2 dx = pixel * vec2(change_u.x + tilt.x * change_u.z, change_v.x + tilt.x * change_v.z);
+          vec2 dy = pixel * vec2(change_u.y + tilt.y * change_u.z, change_v.y + tilt.y * change_v.z);
+          gl_FragColor = finish(paint(uv_map.x < 1e29 ? uv : uv_map, dx, dy, map_trust), disc_normal, centre);
         }`
     });
   }
@@ -102,6 +122,12 @@
     geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(bytes("positions")), 3));
     geometry.setAttribute("map", new THREE.BufferAttribute(new Float32Array(bytes("coordinates")), 2));
     geometry.setAttribute("disc", new THREE.BufferAttribute(new Uint8Array(bytes("discs")), 4, true));
+    geometry.setAttribute("trust", new THREE.BufferAttribute(new Uint8Array(bytes("trust")), 1, true));
+    if (!meta.is_mesh) {
+      const slopes = new THREE.InterleavedBuffer(new Uint8Array(bytes("slopes")), 6);
+      geometry.setAttribute("slope_u", new THREE.InterleavedBufferAttribute(slopes, 3, 0, true));
+      geometry.setAttribute("slope_v", new THREE.InterleavedBufferAttribute(slopes, 3, 3, true));
+    }
     if (meta.is_mesh) geometry.setIndex(new THREE.BufferAttribute(new Uint32Array(bytes("triangles")), 1));
     const object = meta.is_mesh ? new THREE.Mesh(geometry, surface_material()) : new THREE.Points(geometry, splat_material());
     object.frustumCulled = false;
@@ -159,7 +185,7 @@
         uniform float pixel;
         void main() {
           float cover = clamp((0.98 - length(at)) / pixel + 0.5, 0.0, 1.0);
-          vec3 c = map_colour(pattern, at * 4.0, vec2(4.0 * pixel, 0.0), vec2(0.0, 4.0 * pixel), sectors);
+          vec3 c = map_colour(pattern, at * 4.0, vec2(4.0 * pixel, 0.0), vec2(0.0, 4.0 * pixel), sectors, 1.0);
           if (length(at) < 0.06) c = vec3(0.75, 0.007, 0.013);
           gl_FragColor = vec4(to_srgb(c), cover);
         }`
@@ -180,7 +206,7 @@
     camera.up.fromArray(meta.up);
     const controls = new THREE.OrbitControls(camera, renderer.domElement);
     const source_position = new THREE.Vector3().fromArray(meta.source);
-    const has_legend = meta.is_mapped && meta.pattern !== "cells";
+    const has_legend = meta.is_mapped && pattern < 2;
     let pending = false;
 
     function draw() {
@@ -190,6 +216,7 @@
       camera.near = 0.02 * distance;
       camera.far = Math.max(meta.far, 4 * distance);
       camera.updateProjectionMatrix();
+      uniforms.pixel_size.value = 1200 / (Math.min(width, height) * renderer.getPixelRatio());
       uniforms.pixels_per_unit.value =
           0.5 * height * renderer.getPixelRatio() / Math.tan(0.5 * meta.field_of_view * Math.PI / 180);
       const to_eye = camera.position.clone().sub(source_position);

@@ -21,7 +21,8 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 void check(const PolyhedralSurface& surface, std::span<const MeshPoint> sources, const ExactOptions& options) {
   if (sources.empty()) throw InvalidArgument("'sources' is empty; an exact map needs a source");
-  if (!(options.radius > 0)) throw InvalidArgument("'radius' is " + detail::number(options.radius) + "; it must be > 0");
+  if (!(options.radius > 0))
+    throw InvalidArgument("'radius' is " + detail::number(options.radius) + "; it must be > 0");
   if (options.only_targets && options.targets.empty()) throw InvalidArgument("'only_targets' needs 'targets'");
   for (const MeshPoint& p : sources) checked(surface, p, "source");
 }
@@ -83,12 +84,12 @@ class MapBuilder {
   ExactMap map_;
 };
 
-Vec2 ExactMap::coordinates(Index row) const {
+Vec2 ExactMap::coordinates_at(std::size_t row) const {
   return {distance_[row] * std::cos(direction_[row]), distance_[row] * std::sin(direction_[row])};
 }
 
-Index ExactMap::source(Index vertex) const {
-  const Index origin = arrival_[vertex].origin;
+Index ExactMap::source(Vertex vertex) const {
+  const Index origin = arrival_[vertex.index].origin;
   return origin < 0 ? -1 : origins_[origin].source;
 }
 

@@ -18,28 +18,7 @@ using std::numbers::pi;
 /// Crossings closer than this multiple of its length to an end of a straight piece are that end.
 constexpr double end_margin = 1e-11;
 /// A line that leaves a face closer than this multiple of the side to a corner goes through the vertex.
-constexpr double vertex_margin = 1e-12;
-
-/// The side to take where a line grazes the boundary at a corner: the other one there.
-Exit other_side(const PolyhedralSurface& surface, const Exit& exit) {
-  if (exit.along > 0.5 * surface.record(exit.side).length) return {exit.walked, next(exit.side), 0.0};
-  return {exit.walked, previous(exit.side), surface.record(previous(exit.side)).length};
-}
-
-/// Adds the crossings of a straight piece of the given length, ends excluded. Where it meets a vertex, the surface is
-/// flat there (else the piece would end), and any face will do to go on in.
-void follow(const PolyhedralSurface& surface, Line line, Exit exit, double length, std::vector<MeshPoint>& points) {
-  const double first = end_margin * length, last = (1 - end_margin) * length;
-  const std::size_t most = points.size() + 3 * static_cast<std::size_t>(surface.face_count()) + 3;
-  for (; exit.walked < last; exit = leave_upwards(surface, line)) {
-    Line beyond = cross(surface, line, exit);
-    if (beyond.half < 0) beyond = cross(surface, line, exit = other_side(surface, exit));
-    if (beyond.half < 0 || points.size() > most)
-      throw Error("a path of length " + detail::number(length) + " was lost in face " + std::to_string(line.half / 3));
-    if (exit.walked > first) points.push_back(point_on(surface, exit.side, exit.along));
-    line = beyond;
-  }
-}
+constexpr double vertex_margin = 1e-12, graze_margin = 1e-10;
 
 double positive_angle(double angle) { return angle < 0 ? angle + 2 * pi : angle; }
 
@@ -60,16 +39,15 @@ class Backwards {
   Backwards(const PolyhedralSurface& surface, const ExactMap& map) : surface_(surface), map_(map) {}
 
   GeodesicPath to_vertex(Index vertex) {
-    const Arrival& in = map_.arrival(vertex);
-    path_.points.push_back(surface_.vertex_point(vertex));
+    const Arrival& in = map_.arrival(Vertex{vertex});
     if (in.half >= 0) {
       const Half corner = previous(in.half);
       path_.end_direction =
           angle_at_vertex(surface_, corner, in_previous(surface_.record(in.half), {in.from[0], in.from[1]})) *
           surface_.angle_scale(vertex);
-      pieces_from(vertex);
+      back_from(vertex);
     }
-    return finish(in.origin, map_.distance(vertex), map_.direction(vertex));
+    return finish(in.origin, map_.distance(Vertex{vertex}), map_.direction(Vertex{vertex}));
   }
 
   GeodesicPath to_target(std::size_t k) {
@@ -78,42 +56,60 @@ class Backwards {
     const Vec2 place = surface_.place(target);
     path_.points.push_back(target);
     path_.end_direction = positive_angle(std::atan2(in.from[1] - place[1], in.from[0] - place[0]));
-    piece(in, {place[0], place[1]}, false);
-    const Index bend = map_.origins()[in.origin].vertex;
-    if (bend >= 0 && map_.arrival(bend).half >= 0) {
-      path_.points.push_back(surface_.vertex_point(bend));
-      pieces_from(bend);
-    }
+    back_from(piece(in, {place[0], place[1]}, map_.target_distance(k), false));
     return finish(in.origin, map_.target_distance(k), map_.target_direction(k));
   }
 
  private:
-  /// From a vertex, which is added already, back to the source, which is not.
-  void pieces_from(Index vertex) {
-    for (;;) {
-      const Arrival& in = map_.arrival(vertex);
-      piece(in, apex(surface_.record(in.half)), true);
-      vertex = map_.origins()[in.origin].vertex;
-      if (vertex < 0 || map_.arrival(vertex).half < 0) return;
-      path_.points.push_back(surface_.vertex_point(vertex));
+  /// From a vertex back to the source, which is not added; -1: that is where the path is.
+  void back_from(Index vertex) {
+    while (vertex >= 0 && map_.arrival(Vertex{vertex}).half >= 0) {
+      path_.points.push_back(surface_.vertex_point(Vertex{vertex}));
+      const Arrival& in = map_.arrival(Vertex{vertex});
+      vertex = piece(in, apex(surface_.record(in.half)), map_.distance(Vertex{vertex}), true);
     }
   }
 
-  /// The crossings of the straight piece that comes in at a place of its last face, or at its apex.
-  void piece(const Arrival& in, Place end, bool at_apex) {
+  /// Adds the crossings of the straight piece that comes in at a place of its last face, or at its apex.
+  /// @return the vertex it comes from, or the first it goes through: both sides of that may be covered by windows, within
+  ///         rounding, but only its own map says which one is right. -1: a source that is no vertex.
+  Index piece(const Arrival& in, Place end, double end_distance, bool at_apex) {
+    const Index origin = map_.origins()[in.origin].vertex;
     const Place back{in.from[0] - end.x, in.from[1] - end.y};
-    const double length = distance(back, {});
-    if (!(length > 0)) return;
-    const Line line{in.half, end, {back.x / length, back.y / length}};
-    follow(surface_, line, at_apex ? leave_through(surface_, line, in.half) : leave(surface_, line), length,
-           path_.points);
+    const double length = distance(back, {}), first = end_margin * length, last = (1 - end_margin) * length;
+    if (!(length > 0)) return origin;
+    Line line{in.half, end, {back.x / length, back.y / length}};
+    Exit exit = at_apex ? leave_through(surface_, line, in.half) : leave(surface_, line);
+    while (exit.walked < last) {
+      const Index through = grazed(exit, end_distance);
+      if (through >= 0) return through;
+      if (exit.walked > first) path_.points.push_back(point_on(surface_, exit.side, exit.along));
+      line = cross(surface_, line, exit);
+      if (line.half < 0 || path_.points.size() > most_points())
+        throw Error("a path of length " + detail::number(end_distance) + " was lost beyond face " +
+                    std::to_string(exit.side / 3));
+      exit = leave_upwards(surface_, line);
+    }
+    return origin;
   }
+
+  /// The vertex at an exit, if shortest paths to it are part of this one.
+  Index grazed(const Exit& exit, double end_distance) const {
+    const HalfRecord& r = surface_.record(exit.side);
+    const bool at_tail = exit.along < graze_margin * r.length;
+    if (!at_tail && exit.along < (1 - graze_margin) * r.length) return -1;
+    const Index vertex = at_tail ? r.tail : r.head;
+    const double left = map_.distance(Vertex{vertex}), margin = 1e-9 * end_distance;
+    return left < end_distance && std::abs(left + exit.walked - end_distance) <= margin ? vertex : -1;
+  }
+
+  std::size_t most_points() const { return 3 * static_cast<std::size_t>(surface_.face_count()) + 3; }
 
   GeodesicPath finish(Index origin, double distance, double direction) {
     path_.length = distance;
     path_.start_direction = direction;
     path_.source = map_.origins()[origin].source;
-    if (distance > 0) path_.points.push_back(map_.sources()[path_.source]);
+    if (distance > 0 || path_.points.empty()) path_.points.push_back(map_.sources()[path_.source]);
     std::reverse(path_.points.begin(), path_.points.end());
     return std::move(path_);
   }
@@ -138,14 +134,15 @@ class Tracer {
     path_.points.push_back(start);
     const bool at_vertex = vertex_of(surface_, start) >= 0;
     for (Exit exit = at_vertex ? leave_corner(line) : leave(surface_, line);;) {
-      if (left_ <= exit.walked) return end(TraceEnd::complete, line, left_, point_of(surface_, line.half, line.at(left_)));
+      if (left_ <= exit.walked)
+        return end(TraceEnd::complete, line, left_, point_of(surface_, line.half, line.at(left_)));
       const double side = surface_.record(exit.side).length;
-      const bool at_tail = exit.along < vertex_margin * side, at_head = exit.along > (1 - vertex_margin) * side;
+      const bool at_tail = exit.along<vertex_margin * side, at_head = exit.along>(1 - vertex_margin) * side;
       if (at_tail || at_head) {
         const Half corner = at_tail ? exit.side : next(exit.side);
         const Index vertex = surface_.record(corner).tail;
         if (surface_.on_boundary(vertex))
-          return end(TraceEnd::boundary, line, exit.walked, surface_.vertex_point(vertex));
+          return end(TraceEnd::boundary, line, exit.walked, surface_.vertex_point(Vertex{vertex}));
         line = through_vertex(line, corner, exit.walked);
         exit = leave_corner(line);
         continue;
@@ -179,7 +176,7 @@ class Tracer {
     const double in = angle_at_vertex(surface_, corner, {-seen.direction.x, -seen.direction.y});
     done_ += walked;
     left_ -= walked;
-    path_.points.push_back(surface_.vertex_point(vertex));
+    path_.points.push_back(surface_.vertex_point(Vertex{vertex}));
     return line_from_vertex(surface_, vertex, in < sum / 2 ? in + sum / 2 : in - sum / 2);
   }
 
@@ -191,12 +188,12 @@ class Tracer {
 
 }  // namespace
 
-GeodesicPath path_to_vertex(const PolyhedralSurface& surface, const ExactMap& map, Index vertex) {
-  if (vertex < 0 || vertex >= map.size() || map.size() != surface.vertex_count())
-    throw InvalidArgument("vertex " + std::to_string(vertex) + " is outside [0, " + std::to_string(map.size()) +
+GeodesicPath path_to_vertex(const PolyhedralSurface& surface, const ExactMap& map, Vertex vertex) {
+  if (vertex.index < 0 || vertex.index >= map.size() || map.size() != surface.vertex_count())
+    throw InvalidArgument("vertex " + std::to_string(vertex.index) + " is outside [0, " + std::to_string(map.size()) +
                           "), or the map is of another surface");
   if (map.status(vertex) != Status::ok) return without_points(map.status(vertex));
-  return Backwards(surface, map).to_vertex(vertex);
+  return Backwards(surface, map).to_vertex(vertex.index);
 }
 
 GeodesicPath path_to_target(const PolyhedralSurface& surface, const ExactMap& map, std::size_t target) {
@@ -230,9 +227,9 @@ TracedPath trace(const PolyhedralSurface& surface, const MeshPoint& from, double
   double angle = direction / surface.angle_scale(vertex);
   if (!surface.on_boundary(vertex)) angle -= sum * std::floor(angle / sum);
   if (angle < -1e-9 || angle > sum + 1e-9)
-    throw InvalidArgument("'direction' " + detail::number(direction) + " at boundary vertex " +
-                          std::to_string(vertex) + " must be in [0, " + detail::number(sum) + "]");
-  return Tracer(surface, length).from(surface.vertex_point(vertex), line_from_vertex(surface, vertex, angle));
+    throw InvalidArgument("'direction' " + detail::number(direction) + " at boundary vertex " + std::to_string(vertex) +
+                          " must be in [0, " + detail::number(sum) + "]");
+  return Tracer(surface, length).from(surface.vertex_point(Vertex{vertex}), line_from_vertex(surface, vertex, angle));
 }
 
 }  // namespace ahm::exact

@@ -50,7 +50,8 @@ void check_face(Index face, const FaceSides& sides, const std::array<double, 3>&
 FaceSides lay_out(Index face, const std::array<double, 3>& l) {
   std::array<double, 3> s = l;
   std::sort(s.begin(), s.end(), std::greater<>());
-  if (!std::isfinite(s[0] + s[1] + s[2]) || !(s[2] > 0)) refuse(face, "has a side whose length is not positive and finite");
+  if (!std::isfinite(s[0] + s[1] + s[2]) || !(s[2] > 0))
+    refuse(face, "has a side whose length is not positive and finite");
   if (s[0] > (s[1] + s[2]) * (1 + 1e-9)) refuse(face, "breaks the triangle inequality");
   const double area = 0.5 * std::sqrt(std::max(0.0, (s[0] + (s[1] + s[2])) * (s[2] - (s[0] - s[1])) *
                                                         (s[2] + (s[0] - s[1])) * (s[0] + (s[1] - s[2]))));
@@ -74,8 +75,7 @@ void check_twin(const Connectivity& c, Half h) {
 }  // namespace
 
 PolyhedralSurface::PolyhedralSurface(const Connectivity& connectivity, std::span<const FaceSides> sides) {
-  if (sides.empty() || connectivity.tails.size() != 3 * sides.size() ||
-      connectivity.twins.size() != 3 * sides.size() ||
+  if (sides.empty() || connectivity.tails.size() != 3 * sides.size() || connectivity.twins.size() != 3 * sides.size() ||
       (!connectivity.mirrored.empty() && connectivity.mirrored.size() != 3 * sides.size()))
     throw InvalidGeometry("a surface needs faces, and three tails and twins for each of them");
   if (*std::min_element(connectivity.tails.begin(), connectivity.tails.end()) < 0)
@@ -186,12 +186,16 @@ Corner PolyhedralSurface::turn_right(Corner c) const {
 
 double PolyhedralSurface::turned(Corner corner) const {
   double sum = 0;
-  for (Corner c = first_corner(record_[corner.half].tail); c.half != corner.half; c = turn_left(c)) sum += angle_[c.half];
+  for (Corner c = first_corner(record_[corner.half].tail); c.half != corner.half; c = turn_left(c))
+    sum += angle_[c.half];
   return sum;
 }
 
-MeshPoint PolyhedralSurface::vertex_point(Index v) const {
-  const Half h = corner_.at(static_cast<std::size_t>(v)).half;
+MeshPoint PolyhedralSurface::vertex_point(Vertex vertex) const {
+  if (vertex.index < 0 || vertex.index >= vertex_count())
+    throw InvalidArgument("vertex " + std::to_string(vertex.index) + " is outside [0, " +
+                          std::to_string(vertex_count()) + ")");
+  const Half h = corner_[vertex.index].half;
   MeshPoint point{h / 3, {0, 0, 0}};
   point.barycentric[h % 3] = 1;
   return point;

@@ -17,15 +17,23 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double slack = 1 + 1e-12;
 /// How far beside a window a point still counts as covered, and how wide a window must be; relative to the side.
 constexpr double margin = 1e-12, least_width = 1e-14;
+/// Rays to a vertex that cross a side closer than this multiple of it may be one ray, past a vertex they both touch.
+constexpr double same_ray = 1e-10;
+/// Rays that meet a side at a smaller angle, or from its other side by rounding, run along it; its ends see them.
+constexpr double least_angle = 1e-15;
 /// Added to both ends of the angles that open behind a vertex.
 constexpr double wedge_margin = 1e-12;
 /// Width of a bucket in mean side lengths, and how many the ring has.
 constexpr double bucket_width = 0.25;
 constexpr std::uint32_t ring = 4096;
 
+/// Whether an origin lies on the line of a side, in its frame.
+bool on_line(Place from, double length) { return !(-from.y > least_angle * (std::abs(from.x) + length)); }
+
 }  // namespace
 
-Propagation::Propagation(const PolyhedralSurface& surface, double radius, std::span<const MeshPoint> targets, bool only_targets)
+Propagation::Propagation(const PolyhedralSurface& surface, double radius, std::span<const MeshPoint> targets,
+                         bool only_targets)
     : surface_(surface),
       horizon_(radius),
       only_targets_(only_targets),
@@ -102,8 +110,8 @@ void Propagation::add_vertex_source(std::uint32_t origin2, Index vertex) {
 /// The same ray in the frame of the next half-edge of its face.
 Propagation::Ray Propagation::in_next(const Ray& ray) const {
   const double turn = pi - surface_.angle(next(ray.half));
-  return {next(ray.half), exact::in_next(surface_.record(ray.half), ray.from), ray.turn + (ray.origin2 & 1 ? -turn : turn),
-          ray.origin2};
+  return {next(ray.half), exact::in_next(surface_.record(ray.half), ray.from),
+          ray.turn + (ray.origin2 & 1 ? -turn : turn), ray.origin2};
 }
 
 /// A source on the right side of a half-edge lights the face beyond like its own.
@@ -126,6 +134,7 @@ void Propagation::light_right(const Ray& ray, double begin, double end) {
   const HalfRecord& r = surface_.record(ray.half);
   if (r.beyond_right < 0 || !(end - begin > least_width * r.right)) return;
   Window w = beyond_right(ray, begin, end);
+  if (on_line(w.from, r.right)) return;
   const double sigma = origins_[w.origin()].distance;
   const bool mirror = (r.mirrored & 2) != 0;
   const Index tail = mirror ? r.head : r.apex, head = mirror ? r.apex : r.head;
@@ -138,15 +147,15 @@ void Propagation::light_right(const Ray& ray, double begin, double end) {
 Window Propagation::beyond_right(const Ray& ray, double begin, double end) const {
   const HalfRecord& r = surface_.record(ray.half);
   const double turn = surface_.angle(next(ray.half));
-  Window w{begin, end, exact::beyond_right(r, ray.from), ray.turn - (ray.origin2 & 1 ? -turn : turn), r.beyond_right,
-           ray.origin2};
+  Window w{begin,          end,        exact::beyond_right(r, ray.from), ray.turn - (ray.origin2 & 1 ? -turn : turn),
+           r.beyond_right, ray.origin2};
   if (r.mirrored & 2) mirror(w, r.right);
   return w;
 }
 
 void Propagation::mirror(Window& w, double length) {
-  w = {length - w.end, length - w.begin, {length - w.from.x, w.from.y}, w.turn + (w.mirrored() ? -pi : pi), w.half,
-       w.origin2 ^ 1};
+  w = {length - w.end, length - w.begin, {length - w.from.x, w.from.y}, w.turn + (w.mirrored() ? -pi : pi),
+       w.half,         w.origin2 ^ 1};
 }
 
 /// Lights the face of a corner from its vertex, between two angles from its half-edge.
@@ -232,7 +241,7 @@ void Propagation::cross_face(const Window& w) {
     Sighting& best = sighting_[w.half];
     if (to_apex < best.distance) {
       best = {to_apex, crossing};
-    } else if (to_apex > best.distance * slack) {
+    } else if (to_apex > best.distance * slack && std::abs(crossing - best.crossing) > same_ray * r.length) {
       (crossing < best.crossing ? right : left) = false;
     }
   }
@@ -245,9 +254,10 @@ void Propagation::cross_face(const Window& w) {
 void Propagation::go_left(const Window& w, const HalfRecord& r, double sigma, double to_apex) {
   const double down = -w.from.y;
   auto hit = [&](double t) { return t * down / (down * r.apex_x + (w.from.x - t) * r.apex_y) * r.left; };
-  const double begin = hit(w.begin), end = to_apex > 0 ? r.left : std::min(r.left, hit(w.end));
+  const double begin = std::max(0.0, hit(w.begin)), end = to_apex > 0 ? r.left : std::min(r.left, hit(w.end));
   if (!(end - begin > least_width * r.left)) return;
   const Place from = beyond_left(r, w.from);
+  if (on_line(from, r.left)) return;
   const double at_begin = sigma + distance(from, {begin, 0});
   const double at_end = to_apex > 0 ? to_apex : sigma + distance(from, {end, 0});
   if (at_end > (distance_[r.tail] + end) * slack || at_begin > (distance_[r.apex] + r.left - begin) * slack) return;
@@ -266,9 +276,10 @@ void Propagation::go_right(const Window& w, const HalfRecord& r, double sigma, d
     const double u = r.length - t;
     return r.right - u * down / (down * base + (x - u) * r.apex_y) * r.right;
   };
-  const double begin = to_apex > 0 ? 0 : std::max(0.0, hit(w.begin)), end = hit(w.end);
+  const double begin = to_apex > 0 ? 0 : std::max(0.0, hit(w.begin)), end = std::min(r.right, hit(w.end));
   if (!(end - begin > least_width * r.right)) return;
   const Place from = exact::beyond_right(r, w.from);
+  if (on_line(from, r.right)) return;
   const double at_begin = to_apex > 0 ? to_apex : sigma + distance(from, {begin, 0});
   const double at_end = sigma + distance(from, {end, 0});
   if (at_end > (distance_[r.apex] + end) * slack || at_begin > (distance_[r.head] + r.right - begin) * slack) return;

@@ -25,7 +25,7 @@ struct Window {
 
 /// What is known of a vertex or target besides its distance.
 struct Reached {
-  Half half = -1;     ///< as `Arrival`
+  Half half = -1;  ///< as `Arrival`
   Index origin = -1;
   Place from;
   double direction = 0;  ///< by true angles
@@ -99,10 +99,10 @@ class Propagation {
   std::vector<Reached> reached_;
   std::vector<Sighting> sighting_;  ///< per half-edge
   std::vector<Origin> origins_;
-  std::vector<Vec2> targets_;             ///< in the frame of side 0 of their faces
-  std::vector<Index> target_vertex_;      ///< -1: none
-  std::vector<Index> target_order_;       ///< by face
-  std::vector<Offset> targets_of_face_;   ///< faces + 1; empty: none
+  std::vector<Vec2> targets_;            ///< in the frame of side 0 of their faces
+  std::vector<Index> target_vertex_;     ///< -1: none
+  std::vector<Index> target_order_;      ///< by face
+  std::vector<Offset> targets_of_face_;  ///< faces + 1; empty: none
   BucketQueue<Window> windows_;
   BucketQueue<Bend> bends_;
   Offset made_ = 0;

@@ -10,9 +10,9 @@ namespace ahm::exact {
 
 /// A straight line that is being followed from face to face.
 struct Line {
-  Half half = -1;    ///< in whose frame it is given
-  Place start;       ///< where it started, unfolded
-  Place direction;   ///< unit vector
+  Half half = -1;     ///< in whose frame it is given
+  Place start;        ///< where it started, unfolded
+  Place direction;    ///< unit vector
   double walked = 0;  ///< how far it has been followed
 
   Place at(double s) const { return {start.x + s * direction.x, start.y + s * direction.y}; }
@@ -20,9 +20,9 @@ struct Line {
 
 /// Where a line leaves a face.
 struct Exit {
-  double walked;   ///< along the line
-  Half side;       ///< half-edge of the same face
-  double along;    ///< from the tail of that half-edge
+  double walked;  ///< along the line
+  Half side;      ///< half-edge of the same face
+  double along;   ///< from the tail of that half-edge
 };
 
 /// The same line in the frame of another half-edge of its face.

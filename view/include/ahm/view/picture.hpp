@@ -17,15 +17,18 @@
 #include <span>
 #include <string>
 
+#include "ahm/image.hpp"
 #include "ahm/types.hpp"
 
 namespace ahm::view {
 
 /// What the points are painted by.
 enum class Pattern {
-  polar,  ///< (u, v): rings of equal distance, sectors of equal direction
-  grid,   ///< (u, v): squares, warm colours where v > 0 (left of a curve), cold ones where v < 0
-  cells,  ///< labels: neighbouring cells in different colours, with rings of equal distance
+  polar,     ///< (u, v): rings of equal distance, sectors of equal direction
+  grid,      ///< (u, v): squares, warm colours where v > 0 (left of a curve), cold ones where v < 0
+  cells,     ///< labels: neighbouring cells in different colours, with rings of equal distance
+  distance,  ///< distance: colours of evenly rising lightness, with a bar that tells the numbers, and lines at the rings
+  none,      ///< the surface alone
 };
 
 /// What is shown. The spans are only read, and only during the call.
@@ -40,13 +43,17 @@ struct Scene {
   std::span<const Index> face_vertices;
   /// The map, one number per point in world units; NaN where there is no coordinate (painted grey). Empty for cells.
   std::span<const double> u, v;
-  /// For cells only: the number of each point's cell, and the distance from the cell's source in world units. Points
-  /// are grey where the one is negative or the other is not finite.
+  /// For cells: the number of each point's cell, and the distance from the cell's source in world units. Points are
+  /// grey where the one is negative or the other is not finite.
   std::span<const Index> labels;
+  /// For cells, and for `Pattern::distance`, where empty means |(u, v)|.
   std::span<const double> distance;
-  /// Position of the source (need not be one of the points), a red dot.
+  /// How far the map can be trusted, one number per point (`map_quality`): hatched in grey where it is below
+  /// `trusted_quality`. Not finite, or empty: trusted.
+  std::span<const double> quality;
+  /// Position of the source (need not be one of the points), a red dot; drawn where nothing stands before it, as all marks are.
   Vec3 source{};
-  /// Further red dots, and a polyline in red; drawn where nothing stands before them.
+  /// Further red dots, and a polyline in red.
   std::span<const Vec3> dots, curve;
   /// Where a further piece of the polyline begins: points of `curve`, ascending. Empty: it is in one piece.
   std::span<const Index> curve_pieces;
@@ -71,17 +78,23 @@ struct PictureOptions {
   std::optional<Vec3> view_direction;
   /// Upwards in the picture. Default: z for flat scans (z is by far the thinnest side of the box), else y.
   std::optional<Vec3> up;
+  /// Threads; 0: one per core. The picture does not depend on it.
+  unsigned threads = 0;
 };
 
-/// Whether this build can write PNG files (needs OSMesa and stb).
+/// Whether this build can write PNG files (needs stb).
 bool can_write_png() noexcept;
 
 /// Whether this build can write HTML pages (needs three.js).
 bool can_write_html() noexcept;
 
-/// Renders the scene in memory (no display needed) and writes a PNG file; the file appears complete or not at all.
-/// @throws InvalidArgument for sizes, indices or options out of range; InvalidGeometry if no point is finite;
-///         IoError if the file cannot be written; Error if this build has no OSMesa.
+/// Draws the scene in memory; no display is needed.
+/// @throws InvalidArgument for sizes, indices or options out of range; InvalidGeometry if no point is finite
+Image draw_picture(const Scene& scene, const PictureOptions& options = {});
+
+/// Writes `draw_picture` as a PNG file, which appears complete or not at all.
+/// @throws as `draw_picture`;
+///         IoError if the file cannot be written, or this build has no stb.
 void write_png(const std::filesystem::path& path, const Scene& scene, const PictureOptions& options = {});
 
 /// Writes one self-contained HTML page that can be turned and zoomed, and needs no network.

@@ -20,7 +20,8 @@ namespace ahm::view {
 struct TexturedScene {
   /// Meshes as they are written to files (`io::write_textured`). Transparent parts are laid over the others.
   std::span<const io::MeshPart> parts;
-  /// Points, with a colour and the radius of the disc that is drawn, in world units, each.
+  /// Points, with a colour each, and the radius of the disc that is drawn in world units; no radii: as far as the
+  /// neighbours.
   std::span<const Vec3> points = {};
   std::span<const std::array<std::uint8_t, 3>> colors = {};
   std::span<const Vec3> normals = {};  ///< empty or one per point, either sign

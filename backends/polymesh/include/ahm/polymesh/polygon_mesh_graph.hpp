@@ -1,6 +1,6 @@
 /// \file
-/// From a polygon mesh to a tangent graph, without triangulating it: the Laplacian and mass of Bunge, Herholz, Kazhdan,
-/// Botsch 2020 (BHKB20), every pair of corners of a polygon an edge.
+/// From a polygon mesh to a tangent graph, without triangulating it: the Laplacian and mass of [BHKB20], every
+/// pair of corners of a polygon an edge.
 ///
 /// \code
 /// auto surface = ahm::polymesh::PolygonMeshGraph::build(positions, face_begin, face_vertices);

@@ -3,7 +3,7 @@
 ///
 /// \code
 /// ahm::exact::PolyhedralSurface surface({mesh.tails(), mesh.twins(), mesh.mirrored(), mesh.corners()}, layouts);
-/// ahm::exact::ExactMap map = ahm::exact::exact_map(surface, {surface.vertex_point(42)});
+/// ahm::exact::ExactMap map = ahm::exact::exact_map(surface, surface.vertex_point(ahm::Vertex{42}));
 /// \endcode
 #pragma once
 
@@ -42,10 +42,10 @@ struct MeshPoint {
 /// its head at (length, 0) and the third corner of its face, the apex, above.
 struct alignas(64) HalfRecord {
   double length, apex_x, apex_y;
-  double left, right;            ///< lengths of the sides tail - apex and head - apex
+  double left, right;  ///< lengths of the sides tail - apex and head - apex
   Index tail, head, apex;
   Half beyond_left, beyond_right;  ///< half-edges of the faces beyond these sides, negative on the boundary
-  std::uint8_t mirrored;           ///< bit 0: the face beyond the left side is oppositely oriented, bit 1: the right one
+  std::uint8_t mirrored;  ///< bit 0: the face beyond the left side is oppositely oriented, bit 1: the right one
 };
 
 /// A corner met while turning about its vertex. `half` starts at the vertex; `forward`: its face is oriented like the
@@ -96,7 +96,8 @@ class PolyhedralSurface {
   /// The angle at a vertex from its first corner's right side to the right side of this corner.
   double turned(Corner corner) const;
 
-  MeshPoint vertex_point(Index vertex) const;
+  /// @throws InvalidArgument (out of range)
+  MeshPoint vertex_point(Vertex vertex) const;
   /// The point's place in the frame of side 0 of its face.
   Vec2 place(const MeshPoint& point) const;
 

@@ -1,0 +1,108 @@
+#include "commands/logmap_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "ahm/maps/quality.hpp"
+#include "cli/system_info.hpp"
+#include "output/summary.hpp"
+
+namespace ahm::app {
+namespace {
+
+constexpr std::array all_statuses = {Status::ok, Status::disconnected, Status::beyond_radius, Status::unreached,
+                                     Status::removed};
+
+std::size_t count(const MapRows& rows, Status status) {
+  return static_cast<std::size_t>(std::count(rows.status.begin(), rows.status.end(), status));
+}
+
+double largest_distance(const MapRows& rows) {
+  double largest = 0;
+  for (double d : rows.distance)
+    if (d > largest) largest = d;  // false for NaN
+  return largest;
+}
+
+/// Mapped rows at a cut locus or in a fold.
+std::ptrdiff_t untrusted(const MapRows& rows) {
+  return std::count_if(rows.quality.begin(), rows.quality.end(), [](double q) { return q < trusted_quality; });
+}
+
+/// Of the numbers that are not NaN.
+double median(std::vector<double> values) {
+  std::erase_if(values, [](double v) { return std::isnan(v); });
+  if (values.empty()) return NAN;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+nlohmann::ordered_json source_as_json(const LogmapRun& run) {
+  nlohmann::ordered_json j;
+  j["spec"] = to_string(run.spec);
+  j["index"] = run.source.row ? nlohmann::ordered_json(*run.source.row) : nlohmann::ordered_json(nullptr);
+  j["position"] = run.source.position;
+  if (run.source.frame)
+    j["frame"] = {{"u", run.source.frame->x}, {"v", run.source.frame->y}, {"normal", run.source.frame->normal}};
+  return j;
+}
+
+nlohmann::ordered_json factor_as_json(const FactorStatistics& s) {
+  return {{"assemble_seconds", s.assemble_seconds},
+          {"analyze_seconds", s.analyze_seconds},
+          {"factor_seconds", s.factor_seconds},
+          {"nonzeros_A", s.nonzeros_A},
+          {"nonzeros_B", s.nonzeros_B},
+          {"bytes", s.bytes}};
+}
+
+nlohmann::ordered_json as_json(const LogmapRun& run, const OutputOptions& output) {
+  nlohmann::ordered_json j = summary("ahm logmap", run.path, output, run.input);
+  j["input"]["normals"] = !run.input.geometry.normals.empty();
+  j["n"] = run.rows.status.size();
+  j["variant"] = to_string(run.map.variant());
+  j["strategy"] = to_string(run.map.strategy());
+  j["order"] = run.options.order;
+  j["t_coef"] = run.options.t_coef;
+  j["mean_edge_length"] = run.input.mean_edge_length();
+  j["largest_distance"] = largest_distance(run.rows);
+  for (Status s : all_statuses) j["status"][std::string(to_string(s))] = count(run.rows, s);
+  j["untrusted"] = untrusted(run.rows);
+  if (!run.rows.error_estimate.empty()) j["median_error_estimate"] = median(run.rows.error_estimate);
+  j["source"] = source_as_json(run);
+  j[std::string(run.input.backend->name)] = run.input.surface->report();
+  if (run.solver.strategy() == Strategy::global) j["factor"] = factor_as_json(run.solver.operators().statistics());
+  if (const MarchStatistics& m = run.map.march(); m.bands > 0)
+    j["march"] = {{"bands", m.bands}, {"largest_band", m.largest_band}, {"solved_vertices", m.solved}};
+  return j;
+}
+
+std::string as_text(const LogmapRun& run) {
+  std::string text = fmt::format("{} vertices", run.rows.status.size());
+  for (Status s : all_statuses)
+    if (const std::size_t c = count(run.rows, s); c > 0 || s == Status::ok)
+      text += fmt::format(", {} {}", c, to_string(s));
+  const Vec3& p = run.source.position;
+  text += fmt::format("\nsource {} at {:.6g} {:.6g} {:.6g}, largest distance {:.6g}, mean edge length {:.4g}\n",
+                      run.source.row ? fmt::format("{}", *run.source.row) : to_string(run.spec), p[0], p[1], p[2],
+                      largest_distance(run.rows), run.input.mean_edge_length());
+  const auto ok = static_cast<double>(count(run.rows, Status::ok));
+  text += fmt::format("quality above {} at {:.2f} % of the mapped vertices", trusted_quality,
+                      ok > 0 ? 100 - 100 * static_cast<double>(untrusted(run.rows)) / ok : 0.0);
+  if (!run.rows.error_estimate.empty())
+    text += fmt::format(", median error about {:.2g}", median(run.rows.error_estimate));
+  return text + "\n";
+}
+
+}  // namespace
+
+void report(const LogmapRun& run, const OutputOptions& output, Journal& journal) {
+  deliver(as_json(run, output), as_text(run), output, journal, {{"versions", versions()}});
+}
+
+}  // namespace ahm::app

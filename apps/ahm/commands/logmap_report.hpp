@@ -1,0 +1,28 @@
+/// \file
+/// What `ahm logmap` tells about a run.
+#pragma once
+
+#include <string>
+
+#include "ahm/maps/log_map_solver.hpp"
+#include "input/open.hpp"
+#include "output/map_rows.hpp"
+
+namespace ahm::app {
+
+/// The parts of a finished run. References live as long as the call that is given them.
+struct LogmapRun {
+  const std::string& path;
+  const SourceSpec& spec;
+  const SolveOptions& options;
+  const Input& input;
+  const LogMapSolver& solver;
+  const ResolvedSource& source;
+  const LogMap& map;
+  const MapRows& rows;
+};
+
+/// Delivers the summaries, for programs and for people.
+void report(const LogmapRun& run, const OutputOptions& output, Journal& journal);
+
+}  // namespace ahm::app

@@ -1,0 +1,65 @@
+#include "commands/solve.hpp"
+
+#include <fmt/format.h>
+
+#include "ahm/error.hpp"
+#include "ahm/maps/cost.hpp"
+#include "cli/system_info.hpp"
+
+namespace ahm::app {
+namespace {
+
+/// Better refused than swapped for.
+void check_memory(const SolveOptions& options, const TangentGraph& graph) {
+  if (options.strategy != Strategy::global) return;
+  const GraphSize size{graph.size(), graph.dimension(), graph.transport_kind()};
+  const double factors = options.order == 1 ? 1 : 3;
+  const double wanted = factors * estimate_cost(size, Strategy::global).bytes, memory = machine_memory();
+  if (memory > 0 && wanted > memory)
+    throw ResourceExhausted(fmt::format(
+        "--strategy global: the factors would take about {}, this machine has {}; leave the choice to auto, which "
+        "marches",
+        bytes_as_text(static_cast<std::int64_t>(wanted)), bytes_as_text(static_cast<std::int64_t>(memory))));
+}
+
+std::string strategy_as_text(const LogMap& map) {
+  const MarchStatistics& m = map.march();
+  if (map.strategy() == Strategy::global) return "global";
+  return fmt::format("march: {} bands, the largest of {} vertices", m.bands, m.largest_band);
+}
+
+}  // namespace
+
+LogMapSolver make_solver(const SolveOptions& options, const TangentGraph& graph, Journal& journal, int maps) {
+  check_memory(options, graph);
+  journal.start("factor");
+  OperatorOptions operators;
+  operators.t_coef = options.t_coef;
+  operators.ordering = options.ordering;
+  operators.progress = journal.progress();
+  SolverOptions solver;
+  solver.strategy = options.strategy;
+  solver.expected_maps = maps;
+  solver.order = options.order;
+  solver.accuracy = options.accuracy;
+  return LogMapSolver(graph, operators, solver);
+}
+
+MapOptions map_options(const SolveOptions& options, Journal& journal) {
+  MapOptions map;
+  map.variant = options.variant;
+  if (options.radius) map.radius = *options.radius;
+  map.threads = options.threads;
+  map.frames = true;
+  map.progress = journal.progress();
+  return map;
+}
+
+LogMap solve(const SolveOptions& options, const LogMapSolver& solver, const Source& source, Journal& journal) {
+  journal.start("solve");
+  LogMap map = solver.solve(source, map_options(options, journal));
+  journal.tell(strategy_as_text(map));
+  return map;
+}
+
+}  // namespace ahm::app

@@ -1,0 +1,22 @@
+/// \file
+/// The second step of every subcommand that maps: factor and solve.
+#pragma once
+
+#include "ahm/maps/log_map_solver.hpp"
+#include "cli/journal.hpp"
+#include "cli/options.hpp"
+
+namespace ahm::app {
+
+/// The solver of the options: t_coef, ordering, strategy, order, accuracy.
+/// @param maps  how many are expected; 0: many
+/// @throws ResourceExhausted where a global solve would swap
+LogMapSolver make_solver(const SolveOptions& options, const TangentGraph& graph, Journal& journal, int maps = 1);
+
+/// What the options say of single maps: variant, radius, threads. With frames, for `map_quality` and transport.
+MapOptions map_options(const SolveOptions& options, Journal& journal);
+
+/// One map; the journal tells the strategy.
+LogMap solve(const SolveOptions& options, const LogMapSolver& solver, const Source& source, Journal& journal);
+
+}  // namespace ahm::app

@@ -1,0 +1,45 @@
+/// \file
+/// The first step of every subcommand that maps: the input as a surface, and the user's sources on it.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "cli/journal.hpp"
+#include "input/backend.hpp"
+
+namespace ahm::app {
+
+/// The input and what a backend made of it.
+struct Input {
+  io::Geometry geometry;
+  const Backend* backend;
+  std::unique_ptr<Model> surface;
+
+  const TangentGraph& graph() const { return surface->graph(); }
+  std::size_t rows() const { return geometry.points.size(); }
+  /// World units.
+  double mean_edge_length() const { return graph().mean_edge_length() * graph().length_unit(); }
+};
+
+/// Reads the input, chooses the backend and builds the graph; warnings go to the journal.
+/// @param source  --source, where the surface is opened for one: it is checked before the graph is built
+/// @throws InvalidGeometry where there are no points; what the reader and the backend throw
+Input open_input(const InputOptions& options, Journal& journal, const std::optional<SourceSpec>& source = {});
+
+/// A source where the user wants it. @param option  that asked for it, for messages
+/// @throws InvalidArgument
+ResolvedSource resolve(const Model& model, const SourceSpec& spec, const std::optional<Vec3>& u_axis,
+                       const std::string& option);
+
+/// The source of --source and --u-axis.
+/// @throws InvalidArgument, also where the surface bends alike in all directions, or its directions are noise
+ResolvedSource resolve(const SourceOptions& options, const Input& input);
+
+/// The vertex of the graph at a row of the input or nearest to a position.
+/// @throws InvalidArgument, also for a point in a face
+Vertex vertex_at(const Input& input, const SourceSpec& spec, const std::string& option);
+std::vector<Vertex> vertices_at(const Input& input, const std::vector<SourceSpec>& specs, const std::string& option);
+
+}  // namespace ahm::app

@@ -1,0 +1,98 @@
+#include "output/picture_options.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "ahm/maps/quality.hpp"
+#include "cli/journal.hpp"
+#include "cli/numbers.hpp"
+#include "cli/option_adders.hpp"
+
+namespace ahm::app {
+namespace {
+
+constexpr const char* group = "Pictures";
+
+std::array<int, 2> parse_size(const std::string& text) {
+  const std::size_t cross = text.find('x');
+  if (cross == std::string::npos) throw std::invalid_argument("'" + text + "' is not WxH, as in 1600x1200");
+  const auto side = [](const std::string& part) { return static_cast<int>(parse_integer(part, 16, 8192)); };
+  return {side(text.substr(0, cross)), side(text.substr(cross + 1))};
+}
+
+int parse_sectors(const std::string& text) {
+  const auto sectors = static_cast<int>(parse_integer(text, 2, 720));
+  if (sectors % 2 != 0) throw std::invalid_argument("'" + text + "' is odd, so that the checkerboard would not close");
+  return sectors;
+}
+
+void add_size(CLI::App& app, const std::string& name, PictureChoice& choice) {
+  add_parsed(app, name, choice.size, parse_size, "WxH", "Pixels of a .png (default 1600x1200)")
+      ->group(group)
+      ->needs("--view");
+}
+
+void add_view_from(CLI::App& app, PictureChoice& choice) {
+  add_parsed(app, "--view-from", choice.from, parse_direction, "X,Y,Z",
+             "Direction from the surface to the viewer (default: where the source is seen)")
+      ->group(group)
+      ->needs("--view");
+}
+
+}  // namespace
+
+void add_map_picture(CLI::App& app, PictureChoice& choice) {
+  add_size(app, "--size", choice);
+  add_view_from(app, choice);
+  add_parsed(app, "--rings", choice.rings, parse_positive, "R", "Width of a ring or square (default: a round number)")
+      ->group(group)
+      ->needs("--view");
+  add_parsed(app, "--sectors", choice.sectors, parse_sectors, "N", "Sectors of the polar pattern, even (default 24)")
+      ->group(group)
+      ->needs("--view");
+  add_parsed(app, "--color", choice.color, ahm::app::choice({"polar", "distance", "none"}), "BY",
+             "polar (default): rings and sectors, squares along a curve, a colour per cell;\n"
+             "distance: with a bar that tells the numbers; none: the surface alone")
+      ->group(group)
+      ->needs("--view");
+}
+
+void add_texture_picture(CLI::App& app, PictureChoice& choice) {
+  add_size(app, "--view-size", choice);
+  add_view_from(app, choice);
+}
+
+view::PictureOptions picture_options(const PictureChoice& choice) {
+  view::PictureOptions options;
+  if (choice.size) options.width = (*choice.size)[0], options.height = (*choice.size)[1];
+  options.view_direction = choice.from;
+  options.ring_width = choice.rings;
+  if (choice.sectors) options.sectors = *choice.sectors;
+  return options;
+}
+
+void draw(const std::string& path, const view::Scene& scene, view::Pattern usual, const PictureChoice& choice) {
+  view::PictureOptions options = picture_options(choice);
+  options.pattern = choice.color == "distance" ? view::Pattern::distance
+                    : choice.color == "none"   ? view::Pattern::none
+                                               : usual;
+  view::Scene shown = scene;
+  if (options.pattern != view::Pattern::cells) shown.labels = {};
+  view::write_picture(path, shown, options);
+}
+
+void comment_on_quality(std::span<const double> quality, Journal& journal) {
+  const auto mapped = std::count_if(quality.begin(), quality.end(), [](double q) { return std::isfinite(q); });
+  const auto poor = std::count_if(quality.begin(), quality.end(), [](double q) { return q < trusted_quality; });
+  if (5 * poor <= mapped) return;
+  journal.add_warning(fmt::format(
+      "at {:.0f} % of the mapped vertices the map is not to be trusted (quality below {}): they lie beyond a cut "
+      "locus, "
+      "in folds, or where the surface is too coarse; keep to what is near with --radius, or start elsewhere",
+      100.0 * static_cast<double>(poor) / static_cast<double>(mapped), trusted_quality));
+}
+
+}  // namespace ahm::app

@@ -1,0 +1,35 @@
+#include "ahm/pointcloud/plane_fit.hpp"
+
+#include <Eigen/Eigenvalues>
+
+#include "vec3.hpp"
+
+namespace ahm::pointcloud {
+namespace {
+
+/// On a line, without a plane: second principal variance below this share of the first.
+constexpr double collinear_ratio = 1e-10;
+
+}  // namespace
+
+PlaneFit fit_plane(std::span<const Vec3> points, Index i, std::span<const Index> neighbors) {
+  const Vec3 origin = points[i];
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d second = Eigen::Matrix3d::Zero();
+  for (Index j : neighbors) {
+    const Vec3 offset = points[j] - origin;
+    const Eigen::Map<const Eigen::Vector3d> v(offset.data());
+    mean += v;
+    second.noalias() += v * v.transpose();
+  }
+  const double count = static_cast<double>(neighbors.size()) + 1.0;  // with the point itself
+  mean /= count;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(second / count - mean * mean.transpose());
+  const auto& variance = eigen.eigenvalues();
+  const double ratio = variance[2] > 0 ? variance[1] / variance[2] : 0.0;
+  if (!(ratio > collinear_ratio)) return {};
+  const Eigen::Vector3d n = eigen.eigenvectors().col(0);
+  return {normalized({n[0], n[1], n[2]}), ratio};
+}
+
+}  // namespace ahm::pointcloud

@@ -1,0 +1,24 @@
+#include "kernels/kernels.hpp"
+
+#include <benchmark/benchmark.h>
+
+#include "ahm/heat/heat_operators.hpp"
+#include "heat/blas_control.hpp"
+
+namespace ahm::bench {
+
+int run_kernels(std::vector<std::string> options) {
+  options.insert(options.begin(), "ahm-bench kernels");
+  std::vector<char*> argv;
+  for (std::string& option : options) argv.push_back(option.data());
+  int argc = static_cast<int>(argv.size());
+  benchmark::Initialize(&argc, argv.data());
+  if (benchmark::ReportUnrecognizedArguments(argc, argv.data())) return 1;
+  const LinearAlgebraInfo info = linear_algebra_info();
+  benchmark::AddCustomContext("CHOLMOD", info.cholmod);
+  benchmark::AddCustomContext("BLAS", info.blas);
+  without_openmp_regions([] { benchmark::RunSpecifiedBenchmarks(); });
+  return 0;
+}
+
+}  // namespace ahm::bench

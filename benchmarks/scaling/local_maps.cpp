@@ -1,0 +1,85 @@
+// Local maps of every vertex, and how far their margins must reach.
+#include "ahm/maps/local_maps.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "ahm/maps/log_map_solver.hpp"
+#include "ahm/trimesh/triangle_mesh_graph.hpp"
+#include "scaling/sizes.hpp"
+#include "shapes.hpp"
+
+namespace ahm::bench {
+namespace {
+
+/// Largest difference to the maps of the whole graph, relative to the radius, over some sources.
+double difference(const TangentGraph& graph, double radius, double margin, Variant variant) {
+  const LogMapSolver solver(graph, {}, {.strategy = Strategy::global});
+  std::vector<Index> sources;
+  for (Index s = 0; s < graph.size(); s += graph.size() / 40) sources.push_back(s);
+  const LocalMaps maps = ahm::local_maps(graph, sources, {.radius = radius, .variant = variant, .margin = margin});
+  double worst = 0;
+  for (std::size_t s = 0; s < sources.size(); ++s) {
+    const LogMap whole = solver.solve(Source::at_vertex(Vertex(sources[s])), {.variant = variant});
+    for (Offset e = maps.indptr[s]; e < maps.indptr[s + 1]; ++e)
+      for (int a = 0; a < 2; ++a)
+        worst = std::max(worst, std::abs(maps.logs[2 * e + a] - whole.coordinates(Vertex(maps.indices[e]))[a]));
+  }
+  return worst / radius;
+}
+
+trimesh::TriangleMeshGraph torus_graph(Index n) {
+  const Mesh mesh = torus(n);
+  return trimesh::TriangleMeshGraph::build(mesh.positions, mesh.faces);
+}
+
+}  // namespace
+
+Table margins(const Settings& settings) {
+  Table table({"vertices", "variant", "R / h", "margin", "difference / R"});
+  for (Index n : sizes(settings, 1500, {10000})) {
+    const auto surface = torus_graph(n);
+    const double h = surface.graph().mean_edge_length() * surface.graph().length_unit();
+    for (Variant variant : {Variant::adaptive, Variant::localized})
+      for (double radius : {4.0, 10.0})
+        for (double margin : {0.0, 1.0, 2.0, 3.0, 4.0, 6.0, 8.0})
+          table.add({surface.graph().size(), to_string(variant), radius, margin,
+                     difference(surface.graph(), radius * h, margin, variant)});
+  }
+  table.seen = fmt::format("The boundary shows by at most {:.1g} of the radius with the default margin of 2.",
+                           table.where("margin", "2").largest("difference / R"));
+  return table;
+}
+
+Table local_maps(const Settings& settings) {
+  Table table({"vertices", "R / h", "variant", "neighbours", "s", "maps per second", "times a loop of global solves",
+               "peak MB"});
+  for (Index n : sizes(settings, 1500, {100000})) {
+    const auto surface = torus_graph(n);
+    const CsrGraph& graph = surface.graph();
+    const double edge = graph.mean_edge_length() * graph.length_unit();
+    const LogMapSolver solver(graph, {.check_graph = false}, {.strategy = Strategy::global});
+    const double single =
+        median_of_five([&] { solver.solve(Source::at_vertex(Vertex(n / 2)), {.threads = settings.threads}); });
+    for (double radius : {5.4, 12.0})
+      for (Variant variant : {Variant::adaptive, Variant::localized}) {
+        Offset entries = 0;
+        const double s = seconds([&] {
+          const LocalMapOptions options{
+              .radius = radius * edge, .variant = variant, .check_graph = false, .threads = settings.threads};
+          entries = ahm::local_maps(graph, options).indptr.back();
+        });
+        table.add({graph.size(), radius, to_string(variant), static_cast<double>(entries) / graph.size(), s,
+                   graph.size() / s, single * graph.size() / s, peak_megabytes()});
+      }
+  }
+  table.seen = fmt::format("{:.0f} to {:.0f} maps per second, at least {:.0f} times as many as one after the other.",
+                           table.smallest("maps per second"), table.largest("maps per second"),
+                           table.smallest("times a loop of global solves"));
+  return table;
+}
+
+}  // namespace ahm::bench

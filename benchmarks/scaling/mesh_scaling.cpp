@@ -1,0 +1,54 @@
+// Time and memory from triangles to log maps on icospheres.
+#include <fmt/format.h>
+
+#include <optional>
+
+#include "ahm/maps/log_map_solver.hpp"
+#include "ahm/trimesh/triangle_mesh_graph.hpp"
+#include "scaling/sizes.hpp"
+#include "shapes.hpp"
+
+namespace ahm::bench {
+namespace {
+
+std::vector<double> measure(Index n, const Settings& settings) {
+  const Mesh mesh = split_icosphere(n);
+  const MapOptions options{.threads = settings.threads};
+  std::optional<trimesh::TriangleMeshGraph> surface;
+  std::optional<LogMapSolver> solver;
+  const double build = seconds([&] {
+    surface.emplace(trimesh::TriangleMeshGraph::build(mesh.positions, mesh.faces, {.threads = settings.threads}));
+  });
+  const Source source = surface->source_at_vertex(0);
+  const double first = seconds([&] {
+    solver.emplace(surface->graph(), OperatorOptions{.threads = settings.threads},
+                   SolverOptions{.strategy = Strategy::global});
+    solver->solve(source, options);
+  });
+  const double peak = peak_megabytes();
+  const double adaptive = median_of_five([&] { solver->solve(source, options); });
+  const double localized =
+      median_of_five([&] { solver->solve(source, {.variant = Variant::localized, .threads = settings.threads}); });
+  std::vector<Source> sources;
+  for (Index s = 0; s < 64; ++s) sources.push_back(surface->source_at_vertex(s * (mesh.vertices() / 64)));
+  const double batch = seconds([&] { solver->solve(sources, options); });
+  return {static_cast<double>(mesh.vertices()), build, first, adaptive, localized, batch / 64, peak};
+}
+
+}  // namespace
+
+Table mesh_scaling(const Settings& settings) {
+  Table table({"vertices", "graph s", "first map s", "further adaptive s", "further localized s", "batch of 64, s each",
+               "peak MB"});
+  for (Index n : sizes(settings, 600, {10000, 40000, 160000})) {
+    const std::vector<double> numbers = in_own_process(7, [&] { return measure(n, settings); });
+    std::vector<Cell> row{static_cast<Index>(numbers[0])};
+    row.insert(row.end(), numbers.begin() + 1, numbers.end());
+    table.add(row);
+  }
+  table.seen = fmt::format("{:.0f} vertices take {:.2g} s to their first map and {:.0f} MB.", table.largest("vertices"),
+                           table.largest("graph s") + table.largest("first map s"), table.largest("peak MB"));
+  return table;
+}
+
+}  // namespace ahm::bench

@@ -1,0 +1,72 @@
+// The experiments about cost, at toy size.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "experiments/experiment.hpp"
+#include "shapes.hpp"
+
+namespace ahm::bench {
+namespace {
+
+Table run(std::string_view name, const Settings& settings) {
+  for (const Experiment& e : experiments())
+    if (e.name == name) return e.run(settings);
+  throw std::logic_error("no experiment " + std::string(name));
+}
+
+TEST(BackendsExperiment, FinerIsNearerAndLarger) {
+  const Table table = run("backends", {.toy = true}).where("part", "backend");
+  for (const char* shape : {"sphere", "torus", "bumpy sphere"})
+    for (const char* as : {"triangles", "quads", "points"}) {
+      const Table rows = table.where("shape", shape).where("as", as);
+      for (const char* error : {"mean error", "median error"}) {
+        const std::vector<double> errors = rows.numbers(error);
+        ASSERT_EQ(errors.size(), 2u) << shape << " " << as;
+        EXPECT_LT(errors[1], errors[0]) << shape << " " << as << " " << error;
+      }
+      const std::vector<double> bytes = rows.numbers("factors MB");
+      EXPECT_LT(bytes[0], bytes[1]) << shape << " " << as;
+    }
+}
+
+TEST(BackendsExperiment, AllComeAboutAsNearOnTheSphere) {
+  const Table sphere = run("backends", {.toy = true}).where("part", "backend").where("shape", "sphere");
+  const std::vector<double> triangles = sphere.where("as", "triangles").numbers("vector error");
+  for (const char* as : {"quads", "points"}) {
+    const std::vector<double> other = sphere.where("as", as).numbers("vector error");
+    ASSERT_EQ(other.size(), triangles.size());
+    for (std::size_t k = 0; k < other.size(); ++k) {
+      EXPECT_LT(other[k], 1.5 * triangles[k]) << as;
+      EXPECT_GT(other[k], triangles[k] / 1.5) << as;
+    }
+  }
+}
+
+void write_off(const Mesh& mesh, const std::filesystem::path& path) {
+  std::ofstream file(path);
+  file << "OFF\n" << mesh.positions.size() << ' ' << mesh.faces.size() << " 0\n";
+  for (const Vec3& p : mesh.positions) file << p[0] << ' ' << p[1] << ' ' << p[2] << '\n';
+  for (const auto& [a, b, c] : mesh.faces) file << "3 " << a << ' ' << b << ' ' << c << '\n';
+}
+
+TEST(RuntimeExperiment, TakesTheMeshesOfAFolderAndLeavesOutWhatIsNone) {
+  const auto folder = std::filesystem::path(testing::TempDir()) / ("ahm_runtime_meshes" + std::to_string(getpid()));
+  std::filesystem::remove_all(folder);
+  std::filesystem::create_directories(folder / "below");
+  write_off(torus(300), folder / "ring.off");
+  write_off(split_icosphere(100), folder / "below" / "ball.off");
+  std::ofstream(folder / "broken.off") << "OFF\n3 1 0\n0 0 0\n";
+  std::ofstream(folder / "notes.txt") << "no mesh";
+  const Table table = run("runtime", {.toy = true, .meshes = folder});
+  EXPECT_EQ(table.where("mesh", "ring").rows().size(), 1u);
+  EXPECT_EQ(table.where("mesh", "ball").mean("vertices"), 162);
+  EXPECT_TRUE(table.where("mesh", "broken").rows().empty());
+  EXPECT_TRUE(table.where("mesh", "notes").rows().empty());
+  EXPECT_GT(table.smallest("further AHM_a s"), 0);
+}
+
+}  // namespace
+}  // namespace ahm::bench

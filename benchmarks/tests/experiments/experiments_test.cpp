@@ -1,0 +1,186 @@
+// Every experiment at toy size, and what must hold of its numbers at any size.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "experiments/experiment.hpp"
+
+namespace ahm::bench {
+namespace {
+
+/// The table of an experiment at toy size, made once.
+const Table& toy(std::string_view name) {
+  static std::map<std::string_view, Table> made;
+  if (const auto at = made.find(name); at != made.end()) return at->second;
+  for (const Experiment& e : experiments())
+    if (e.name == name) return made.emplace(e.name, e.run({.toy = true})).first->second;
+  throw std::logic_error("no experiment " + std::string(name));
+}
+
+constexpr const char* affine[] = {"AHM_a", "AHM_l"};
+
+TEST(FlatExperiment, AffineHeatAndDiscreteExponentialAreExact) {
+  const Table& table = toy("flat");
+  for (const char* method : {"AHM_a", "AHM_l", "DEM"})
+    EXPECT_LE(table.where("method", method).largest("largest / diameter"), 1e-11) << method;
+  EXPECT_EQ(table.largest("missing"), 0);
+}
+
+TEST(MazeExperiment, AffineHeatIsTheIdentity) {
+  const Table& table = toy("mazes");
+  for (const char* method : affine)
+    EXPECT_LE(table.where("method", method).largest("largest / diameter"), 1e-11) << method;
+  EXPECT_GT(table.smallest("longest path / diameter"), 1.5);  // or it is no maze
+}
+
+TEST(DistortionExperiment, AffineHeatHasNoneOnTheFlatGrid) {
+  const Table table = toy("distortion").where("shape", "flat grid");
+  for (const char* method : affine) EXPECT_LE(table.where("method", method).largest("95% D"), 1 + 1e-9) << method;
+}
+
+TEST(DistortionExperiment, NothingIsLessThanAnIsometry) { EXPECT_GE(toy("distortion").smallest("median D"), 1); }
+
+#ifdef AHM_METHODS_CGAL
+TEST(DistanceExperiment, AffineHeatIsNearerThanTheHeatMethodsNearTheSource) {
+  const Table near = toy("distance").where("distance / longest", "0.05");
+  for (const char* shape : {"sphere", "bumpy sphere", "torus"})
+    for (const char* method : affine)
+      for (const char* other : {"HM", "HM (graph)", "SHM"}) {
+        const Table rows = near.where("shape", shape);
+        EXPECT_LT(rows.where("method", method).mean("mean"), rows.where("method", other).mean("mean"))
+            << shape << " " << method << " " << other;
+      }
+}
+#endif
+
+TEST(ConvergenceExperiment, TheAdaptiveVariantIsOfFirstOrder) {
+  const Table table = toy("convergence").where("method", "AHM_a");
+  for (const char* order : {"order L2", "order L2 inside", "order Linf"})
+    EXPECT_GE(table.smallest(order), 0.75) << order;
+}
+
+TEST(ConvergenceExperiment, SecondOrderIsNearer) {
+  const Table finest = toy("convergence").where("vertices", "2562");
+  EXPECT_LT(finest.where("method", "AHM_a, order 2").largest("L2 inside"),
+            0.5 * finest.where("method", "AHM_a").smallest("L2 inside"));
+}
+
+TEST(VariantsExperiment, DifferLeastAtTheSource) {
+  const Table& table = toy("variants");
+  for (const char* shape : {"sphere", "ellipsoid", "bumpy sphere", "torus"}) {
+    const Table rows = table.where("shape", shape);
+    EXPECT_EQ(rows.where("distance / longest", "0.05").mean("median difference"), rows.smallest("median difference"));
+  }
+}
+
+TEST(CutLocusExperiment, TheBandIsAsManyEdgesWideAtAnyResolution) {
+  const Table table = toy("cut_locus").where("method", "AHM_a");
+  for (const char* edges : {"1", "2", "3", "4"}) {
+    const Table rows = table.where("edges from cut", edges);
+    EXPECT_LT(rows.largest("mean / radius"), 1.25 * rows.smallest("mean / radius")) << edges;
+  }
+  const Table finest = table.where("around", "32");  // away from the band the error falls like the heat across it
+  for (int edges = 2; edges <= 12; edges += 2)
+    EXPECT_LT(finest.where("edges from cut", std::to_string(edges)).mean("mean / radius"), std::exp(-0.9 * edges) * 4)
+        << edges;
+}
+
+TEST(TimesExperiment, NoTimeMattersInThePlane) {
+  const Table plane = toy("times").where("shape", "plane");
+  for (const char* method : affine) EXPECT_LE(plane.where("method", method).largest("largest"), 1e-11) << method;
+}
+
+TEST(DelaunayExperiment, FlipsLeaveNoNegativeWeightAndAreNearer) {
+  const Table &table = toy("delaunay"), flipped = table.where("triangulation", "intrinsic Delaunay");
+  EXPECT_EQ(flipped.largest("clamped weights"), 0);
+  for (const char* mesh : {"needles", "slivers"})
+    for (const char* method : affine) {
+      auto rms = [&](const char* how) {
+        return table.where("triangulation", how).where("mesh", mesh).where("method", method).mean("rms");
+      };
+      EXPECT_LT(rms("intrinsic Delaunay"), rms("as given")) << mesh << " " << method;
+    }
+}
+
+TEST(TessellationsExperiment, FinerIsNearer) {
+  const Table& table = toy("tessellations");
+  EXPECT_EQ(table.largest("missing"), 0);
+  for (const char* method : affine) {
+    auto rms = [&](const char* mesh) { return table.where("mesh", mesh).where("method", method).mean("rms"); };
+    EXPECT_GT(rms("icosphere 42"), rms("icosphere 162")) << method;
+    EXPECT_GT(rms("icosphere 162"), rms("icosphere 642")) << method;
+  }
+}
+
+TEST(DemExperiment, AffineHeatConvergesFarFromTheSourceAndPathsOfEdgesDoNot) {
+  const Table far = toy("dem").where("distance / pi", "0.75");
+  auto gain = [&](const char* method) {
+    const Table rows = far.where("method", method);
+    return rows.where("vertices", "642").mean("mean") / rows.where("vertices", "2562").mean("mean");
+  };
+  EXPECT_GT(gain("AHM_a"), 1.7);
+  EXPECT_LT(gain("DEM"), 1.4);
+}
+
+TEST(BoundaryExperiment, TheRimIsNoFartherOffThanFirstOrder) {
+  const Table rim = toy("boundary").where("part", "rim");
+  EXPECT_LE(rim.where("method", "AHM_l").largest("distance rms / h"), 0.2);
+  EXPECT_LE(rim.where("method", "AHM_a").largest("distance rms / h"), 1.0);
+}
+
+TEST(RadialExperiment, AffineDiffusionIsExactInThePlaneHoweverThinTheTriangles) {
+  EXPECT_LE(toy("radial").where("mesh", "plane").where("method", "affine").largest("95% angle"), 1e-11);
+}
+
+TEST(DiscretizationsExperiment, AllAreOfTheSameSizeOfError) {
+  const Table table = toy("discretizations").where("t_coef", "1").where("variant", "adaptive");
+  const double triangles = table.where("discretization", "triangles").mean("rms");
+  for (const char* how : {"points of the icosphere", "random points", "points on a spiral", "quads", "quads, refined",
+                          "hexagons", "hexagons, refined", "Voronoi cells", "Voronoi cells, refined"})
+    EXPECT_LE(table.where("discretization", how).mean("rms"), 2 * triangles) << how;
+}
+
+class AnyExperiment : public testing::TestWithParam<std::string> {};
+
+TEST_P(AnyExperiment, FillsItsTableAndSaysWhatIsSeen) {
+#ifndef AHM_METHODS_CGAL
+  if (GetParam() == "distance") GTEST_SKIP() << "needs CGAL";
+#endif
+  const Table& table = toy(GetParam());
+  EXPECT_FALSE(table.rows().empty());
+  EXPECT_FALSE(table.seen.empty());
+  for (const auto& row : table.rows())
+    for (const Cell& cell : row) EXPECT_TRUE(cell.text() != "nan" && cell.text() != "inf");
+}
+
+TEST(LocalMapsExperiment, WiderMarginsAreNearer) {
+  const Table& table = toy("margins");
+  for (const char* variant : {"adaptive", "localized"}) {
+    const Table rows = table.where("variant", variant).where("R / h", "4");
+    EXPECT_LT(rows.where("margin", "4").mean("difference / R"),
+              1e-2 * rows.where("margin", "0").mean("difference / R"));
+  }
+}
+
+TEST(MarchExperiment, MapsEveryVertexByBothStrategies) {
+  const Table& table = toy("march");
+  for (const char* shape : {"cloud", "mesh"}) {
+    const Table rows = table.where("shape", shape);
+    EXPECT_EQ(rows.smallest("ok"), rows.largest("vertices"));
+  }
+}
+
+std::vector<std::string> names() {
+  std::vector<std::string> result;
+  for (const Experiment& e : experiments()) result.emplace_back(e.name);
+  return result;
+}
+
+INSTANTIATE_TEST_SUITE_P(, AnyExperiment, testing::ValuesIn(names()), [](const auto& info) { return info.param; });
+
+}  // namespace
+}  // namespace ahm::bench

@@ -1,0 +1,13 @@
+// Stands in for pack.cpp in a build without stb.
+#include "ahm/applications/atlas/texture_atlas.hpp"
+#include "ahm/error.hpp"
+
+namespace ahm {
+
+bool can_pack() noexcept { return false; }
+
+TextureAtlas pack(const Atlas&, const FaceList&, const PackOptions&) {
+  throw Error("this build has no stb, which packs charts (Debian: libstb-dev)");
+}
+
+}  // namespace ahm

@@ -1,0 +1,148 @@
+// Flat clouds give the identity, to rounding; clouds rolled up from the plane converge to it.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <random>
+
+#include "ahm/testing/vectors.hpp"
+#include "solved_cloud.hpp"
+
+namespace ahm::test {
+namespace {
+
+constexpr double gate = 1e-11;
+
+/// Largest difference between (u, v) and the position relative to p along the axes of the graph's frame at p.
+double flat_error(const Cloud& cloud, const Solved& solved, Index p, Variant variant) {
+  const Frame frame = *solved.graph.graph().frame(solved.graph.vertex_of_point()[p]);
+  const auto map = solved.map(p, variant);
+  double worst = 0;
+  for (std::size_t i = 0; i < cloud.points.size(); ++i) {
+    EXPECT_EQ(map.status[i], Status::ok) << "point " << i;
+    const Vec3 offset{cloud.points[i][0] - cloud.points[p][0], cloud.points[i][1] - cloud.points[p][1],
+                      cloud.points[i][2] - cloud.points[p][2]};
+    worst = std::max(worst, std::hypot(map.u[i] - dot(frame.x, offset), map.v[i] - dot(frame.y, offset)));
+  }
+  return worst;
+}
+
+TEST(FlatCloud, IsTheIdentityFromInteriorAndBoundary) {
+  const Cloud cloud = flat_cloud(4000);
+  const Solved solved(cloud);
+  // The interior, the four corners of the square and the rim of the hole.
+  std::vector<Index> sources{17, 2000};
+  for (auto corner : {std::array{0.0, 0.0}, std::array{1.0, 0.0}, std::array{0.0, 1.0}, std::array{1.0, 1.0},
+                      std::array{0.65, 0.5}}) {
+    auto nearest = std::min_element(cloud.plane.begin(), cloud.plane.end(), [&](const auto& a, const auto& b) {
+      return std::hypot(a[0] - corner[0], a[1] - corner[1]) < std::hypot(b[0] - corner[0], b[1] - corner[1]);
+    });
+    sources.push_back(static_cast<Index>(nearest - cloud.plane.begin()));
+  }
+  for (Index p : sources)
+    for (Variant variant : {Variant::adaptive, Variant::localized})
+      EXPECT_LT(flat_error(cloud, solved, p, variant), gate * std::sqrt(2.0)) << "source " << p;
+}
+
+TEST(FlatCloud, IsTheIdentityOnARegularGrid) {
+  // Every cell is cocircular: the hardest case for Delaunay.
+  Cloud cloud;
+  for (int x = 0; x < 40; ++x)
+    for (int y = 0; y < 40; ++y) cloud.points.push_back({x * 1.0, y * 1.0, 0.0});
+  for (Index p : {0, 820, 1599}) EXPECT_LT(flat_error(cloud, Solved(cloud), p, Variant::adaptive), gate * 56);
+}
+
+TEST(FlatCloud, CoversItsArea) {
+  // The lumped masses of a cloud that fills the unit square (less the hole) add up to about its area; local
+  // triangulations that disagree count a little twice.
+  const Cloud cloud = flat_cloud(4000);
+  const auto graph = pointcloud::PointCloudGraph::build(cloud.points);
+  const auto& masses = graph.graph().data().masses;
+  const double area = std::accumulate(masses.begin(), masses.end(), 0.0) * std::pow(graph.graph().length_unit(), 2);
+  EXPECT_NEAR(area, 1 - 0.15 * 0.15 * 3.14159, 0.1);
+}
+
+TEST(FlatCloud, ScalesBitwiseByPowersOfTwoAndSurvivesExtremeScales) {
+  const Cloud cloud = flat_cloud(500);
+  const auto map = Solved(cloud).map(3);
+  for (double factor : {0x1p-990, 0x1p-20, 0x1p30, 0x1p1000}) {
+    Cloud scaled = cloud;
+    for (Vec3& p : scaled.points)
+      for (double& c : p) c *= factor;
+    const auto other = Solved(scaled).map(3);
+    for (std::size_t i = 0; i < cloud.points.size(); ++i) ASSERT_EQ(other.u[i], factor * map.u[i]) << factor;
+  }
+  for (double factor : {1e-300, 1e-12, 1e12, 1e300}) {
+    Cloud scaled = cloud;
+    for (Vec3& p : scaled.points)
+      for (double& c : p) c *= factor;
+    const auto other = Solved(scaled).map(3);
+    for (std::size_t i = 0; i < cloud.points.size(); ++i) ASSERT_NEAR(other.u[i] / factor, map.u[i], 1e-11);
+  }
+}
+
+TEST(FlatCloud, IsAsGoodFarFromTheOriginAsItsDigitsAllow) {
+  for (double far : {1e6, 1e8}) {
+    Cloud cloud = flat_cloud(1500);
+    for (Vec3& p : cloud.points)
+      for (double& c : p) c += far;
+    EXPECT_LT(flat_error(cloud, Solved(cloud), 10, Variant::adaptive), 100 * far * 2.3e-16);
+  }
+}
+
+TEST(FlatCloud, DoesNotDependOnTheOrderOfPoints) {
+  const Cloud cloud = flat_cloud(1000);
+  std::vector<Index> order(cloud.points.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::shuffle(order.begin(), order.end(), std::mt19937(2));
+  Cloud shuffled = cloud;
+  for (std::size_t i = 0; i < order.size(); ++i) shuffled.points[order[i]] = cloud.points[i];
+  const auto map = Solved(cloud).map(3), other = Solved(shuffled).map(order[3]);
+  for (std::size_t i = 0; i < order.size(); ++i) ASSERT_EQ(other.u[order[i]], map.u[i]);
+}
+
+TEST(FlatCloud, DoesNotDependOnTheNumberOfThreads) {
+  const Cloud cloud = random_sphere(20000);
+  pointcloud::CloudOptions one, many;
+  one.threads = 1;
+  many.threads = 7;
+  const auto a = pointcloud::PointCloudGraph::build(cloud.points, {}, one),
+             b = pointcloud::PointCloudGraph::build(cloud.points, {}, many);
+  EXPECT_EQ(a.graph().data().neighbors, b.graph().data().neighbors);
+  EXPECT_EQ(a.graph().data().weights, b.graph().data().weights);
+  EXPECT_EQ(a.graph().data().transports, b.graph().data().transports);
+}
+
+TEST(RolledCloud, ConvergesToThePlaneWithSecondOrder) {
+  auto error = [](Index rows, Variant variant) {
+    const Cloud cloud = rolled_cloud(rows, 0.5);
+    const Solved solved(cloud, true);
+    const Index p = (rows / 2) * rows + rows / 2;
+    // u along the axis of the cylinder, which is the plane's u; v is the normal times u.
+    const LogMap map = solved.solver.solve(solved.graph.source_at_point(p, {1, 0, 0}), {.variant = variant});
+    const auto on_points = solved.graph.on_points(map);
+    double worst = 0;
+    for (std::size_t i = 0; i < cloud.points.size(); ++i)
+      worst = std::max(worst, std::hypot(on_points.u[i] - (cloud.plane[i][0] - cloud.plane[p][0]),
+                                         on_points.v[i] - (cloud.plane[i][1] - cloud.plane[p][1])));
+    return worst;
+  };
+  for (Variant variant : {Variant::adaptive, Variant::localized}) {
+    const double coarse = error(30, variant), fine = error(60, variant);
+    EXPECT_GE(std::log2(coarse / fine), 1.8) << coarse << " -> " << fine;
+  }
+}
+
+TEST(Source, PointsItsUAxisWhereAsked) {
+  const Cloud cloud = flat_cloud(800);
+  const Solved solved(cloud);
+  const Vec3 direction{cloud.points[60][0] - cloud.points[5][0], cloud.points[60][1] - cloud.points[5][1],
+                       cloud.points[60][2] - cloud.points[5][2]};
+  const auto map = solved.graph.on_points(solved.solver.solve(solved.graph.source_at_point(5, direction)));
+  EXPECT_NEAR(map.u[60], std::sqrt(dot(direction, direction)), 1e-11);
+  EXPECT_NEAR(map.v[60], 0, 1e-11);
+}
+
+}  // namespace
+}  // namespace ahm::test

@@ -1,0 +1,304 @@
+// What a bad mesh gets: an error that names the culprit, or a result with a status per vertex.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "ahm/error.hpp"
+#include "ahm/graph/validate.hpp"
+#include "ahm/testing/paper_band.hpp"
+#include "support/solved_mesh.hpp"
+
+namespace ahm::test {
+namespace {
+
+using trimesh::MeshOptions;
+using trimesh::NonManifold;
+using trimesh::TriangleMesh;
+using trimesh::TriangleMeshGraph;
+using trimesh::VertexMap;
+
+template <class Exception>
+void expect_error(const Mesh& mesh, const std::string& text, const MeshOptions& options = {}) {
+  try {
+    TriangleMeshGraph::build(mesh.positions, mesh.faces, options);
+    ADD_FAILURE() << "no error; expected one that says: " << text;
+  } catch (const Exception& e) {
+    EXPECT_NE(std::string(e.what()).find(text), std::string::npos) << e.what();
+  }
+}
+
+void expect_nan_exactly_where_not_ok(const VertexMap& map) {
+  for (std::size_t i = 0; i < map.status.size(); ++i)
+    for (double x : {map.u[i], map.v[i], map.distance[i], map.angle[i]})
+      ASSERT_EQ(std::isnan(x), map.status[i] != Status::ok);
+}
+
+Mesh joined(const Mesh& a, const Mesh& b, double shift) {
+  Mesh mesh = a;
+  for (const Vec3& p : b.positions) mesh.positions.push_back({p[0] + shift, p[1], p[2]});
+  for (const auto& t : b.faces) mesh.faces.push_back({t[0] + a.vertices(), t[1] + a.vertices(), t[2] + a.vertices()});
+  return mesh;
+}
+
+TEST(MeshFaults, NothingThere) {
+  expect_error<InvalidGeometry>({}, "no vertices");
+  expect_error<InvalidGeometry>({{{0, 0, 0}}, {}, {}}, "no faces");
+}
+
+TEST(MeshFaults, BadFaces) {
+  Mesh mesh = icosphere(2);
+  mesh.faces[7][1] = mesh.vertices();
+  expect_error<InvalidGeometry>(mesh, "face 7");
+  mesh.faces[7][1] = -1;
+  expect_error<InvalidGeometry>(mesh, "outside [0, 42)");
+  mesh.faces[7][1] = mesh.faces[7][0];
+  expect_error<InvalidGeometry>(mesh, "use a vertex twice: face 7");
+}
+
+TEST(MeshFaults, DuplicateFaces) {
+  Mesh mesh = icosphere(2);
+  mesh.faces.push_back(mesh.faces[3]);
+  expect_error<InvalidGeometry>(mesh, "face 80 repeats face 3");
+  mesh.faces.back() = {mesh.faces[3][1], mesh.faces[3][0], mesh.faces[3][2]};
+  expect_error<InvalidGeometry>(mesh, "1 faces are duplicates");
+  Mesh pillow{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}, {2, 1, 0}}, {}};
+  expect_error<InvalidGeometry>(pillow, "face 1 repeats face 0");
+}
+
+TEST(MeshFaults, CoordinatesThatAreNotFinite) {
+  Mesh mesh = icosphere(2);
+  mesh.positions[5][1] = NAN;
+  expect_error<InvalidGeometry>(mesh, "vertex 5");
+  mesh.positions[5][1] = INFINITY;
+  expect_error<InvalidGeometry>(mesh, "inf");
+}
+
+TEST(MeshFaults, UnreferencedVerticesAreMasked) {
+  Mesh mesh = icosphere(6);
+  const VertexMap clean = SolvedMesh(mesh).map(SolvedMesh(mesh).surface.source_at_vertex(0));
+  mesh.positions.insert(mesh.positions.begin(), {9, 9, 9});
+  mesh.positions.push_back({8, 8, 8});
+  for (auto& t : mesh.faces)
+    for (Index& v : t) ++v;
+  const SolvedMesh solved(mesh);
+  EXPECT_EQ(solved.surface.report().topology.unreferenced, 2);
+  const VertexMap map = solved.map(solved.surface.source_at_vertex(1));
+  expect_nan_exactly_where_not_ok(map);
+  EXPECT_EQ(map.status.front(), Status::removed);
+  EXPECT_EQ(map.status.back(), Status::removed);
+  for (std::size_t i = 0; i < clean.u.size(); ++i) ASSERT_NEAR(map.distance[i + 1], clean.distance[i], 1e-12);
+  EXPECT_THROW(solved.surface.source_at_vertex(0), InvalidArgument);
+}
+
+TEST(MeshFaults, OtherComponentsAreMasked) {
+  const Mesh one = icosphere(6), both = joined(one, icosphere(5), 5.0);
+  const SolvedMesh alone(one), solved(both);
+  EXPECT_EQ(solved.surface.report().topology.components, 2);
+  const VertexMap map = solved.map(solved.surface.source_at_vertex(3));
+  expect_nan_exactly_where_not_ok(map);
+  for (Index i = 0; i < both.vertices(); ++i)
+    ASSERT_EQ(map.status[i], i < one.vertices() ? Status::ok : Status::disconnected);
+}
+
+TEST(MeshFaults, EdgesOfThreeFaces) {
+  Mesh mesh = holed_square(12);
+  const auto [a, b, c] = mesh.faces[40];
+  const Index fin = mesh.vertices();
+  Vec3 p = mesh.positions[c];
+  p[2] += 1;
+  mesh.positions.push_back(p);
+  mesh.faces.push_back({a, b, fin});
+  expect_error<InvalidGeometry>(mesh, "1 edges have more than two faces: (" + std::to_string(std::min(a, b)) + ", " +
+                                          std::to_string(std::max(a, b)) + ") with 3 faces");
+  const SolvedMesh solved(mesh, {.non_manifold = NonManifold::split});
+  EXPECT_EQ(solved.surface.report().topology.non_manifold_edges, 1);
+  EXPECT_FALSE(solved.surface.report().warnings.empty());
+  const VertexMap map = solved.map(solved.surface.source_at_vertex(0));
+  expect_nan_exactly_where_not_ok(map);
+  EXPECT_EQ(map.status[fin], Status::disconnected);
+  EXPECT_EQ(map.status[a], Status::ok);  // the copy on the source's sheet
+}
+
+TEST(MeshFaults, BowTies) {
+  Mesh mesh = joined(holed_square(8), holed_square(9), 4.0);
+  const Index cut = holed_square(8).vertices();
+  for (auto& t : mesh.faces)
+    for (Index& v : t)
+      if (v == cut) v = 5;  // both squares now share vertex 5
+  expect_error<InvalidGeometry>(mesh, "bow ties): 5");
+  const SolvedMesh solved(mesh, {.non_manifold = NonManifold::split});
+  EXPECT_EQ(solved.surface.report().topology.components, 2);
+  EXPECT_EQ(solved.surface.report().topology.non_manifold_vertices, 1);
+  const VertexMap map = solved.map(solved.surface.source_at_vertex(cut + 7));
+  EXPECT_EQ(map.status[5], Status::ok);
+  EXPECT_EQ(map.status[6], Status::disconnected);
+  EXPECT_EQ(map.status[cut], Status::removed);
+}
+
+TEST(MeshFaults, TheFirstTenAreListed) {
+  Mesh mesh = icosphere(3);
+  for (Index f = 0; f < 12; ++f) mesh.faces.push_back(mesh.faces[f]);
+  expect_error<InvalidGeometry>(mesh, "12 faces are duplicates");
+  expect_error<InvalidGeometry>(mesh, "and 2 more");
+}
+
+TEST(MeshFaults, MoebiusBandsAreSolvedWithReflections) {
+  const Mesh mesh = moebius_mesh(80, 8);
+  for (bool flips : {true, false}) {
+    const SolvedMesh solved(mesh, {.intrinsic_delaunay = flips});
+    EXPECT_FALSE(solved.surface.report().topology.orientable);
+    EXPECT_EQ(solved.surface.report().topology.boundary_loops, 1);
+    EXPECT_EQ(solved.surface.graph().transport_kind(), TransportKind::block);
+    EXPECT_NO_THROW(validate(solved.surface.graph()));
+    const LogMap raw = solved.solver.solve(solved.surface.source_at({200, {0.2, 0.5, 0.3}}));
+    const VertexMap map = solved.surface.on_vertices(raw);
+    expect_nan_exactly_where_not_ok(map);
+    for (Index i = 0; i < mesh.vertices(); ++i) {
+      ASSERT_EQ(map.status[i], Status::ok);
+      // No shorter than the chord, no longer than round the band.
+      const Frame at = *solved.surface.frame_at({200, {0.2, 0.5, 0.3}});
+      const double chord = std::hypot(mesh.positions[i][0] - at.origin[0], mesh.positions[i][1] - at.origin[1],
+                                      mesh.positions[i][2] - at.origin[2]);
+      ASSERT_GT(map.distance[i], 0.9 * chord - 0.02);
+      ASSERT_LT(map.distance[i], 4);
+    }
+    EXPECT_EQ(solved.surface.on_corners(raw).size(), 3 * mesh.faces.size());
+  }
+}
+
+TEST(MeshFaults, AMoebiusBandOfPaperIsAsFlatAsItsStrip) {
+  const PaperBand band = paper_band(60, 12);
+  for (bool flips : {true, false}) {
+    const auto surface = TriangleMeshGraph::build(
+        TriangleMesh::from_edge_lengths(static_cast<Index>(band.plane.size()), band.faces, band.lengths),
+        {.intrinsic_delaunay = flips});
+    EXPECT_EQ(surface.graph().transport_kind(), TransportKind::block);
+    if (flips) {
+      EXPECT_GT(surface.report().flips, 100);
+    }
+    const LogMapSolver solver(surface.graph());
+    // Sources in faces all round the band, some at the twist; within a third of the band the other way round is far.
+    for (std::size_t f = 7; f < band.faces.size(); f += 131)
+      for (Variant variant : {Variant::adaptive, Variant::localized}) {
+        const trimesh::SurfacePoint point{static_cast<Index>(f), {0.2, 0.5, 0.3}};
+        std::array<double, 2> p{0, 0};
+        for (int s = 0; s < 3; ++s)
+          for (int a = 0; a < 2; ++a) p[a] += point.barycentric[s] * band.corners[3 * f + s][a];
+        const LogMap raw = solver.solve(surface.source_at(point), {.variant = variant});
+        const VertexMap map = surface.on_vertices(raw);
+        for (std::size_t i = 0; i < band.plane.size(); ++i)
+          if (const double d = band.distance(p, band.plane[i]); d < 0.3) {
+            EXPECT_NEAR(map.distance[i], d, 1e-6) << f << ", " << i;
+          }
+        const auto corners = surface.on_corners(raw);
+        for (std::size_t k = 0; k < corners.size(); ++k)
+          if (const double d = band.distance(p, band.corners[k]); d < 0.25) {
+            EXPECT_NEAR(std::hypot(corners[k][0], corners[k][1]), d, 1e-6) << f << ", corner " << k;
+          }
+        for (Index g = 0; g < static_cast<Index>(band.faces.size()); g += 17) {
+          std::array<double, 2> q{0, 0};
+          for (int s = 0; s < 3; ++s)
+            for (int a = 0; a < 2; ++a) q[a] += band.corners[3 * g + s][a] / 3;
+          if (band.distance(p, q) > 0.25) continue;
+          const auto sample = surface.at(raw, {g, {1.0 / 3, 1.0 / 3, 1.0 / 3}});
+          EXPECT_NEAR(std::hypot(sample.u, sample.v), band.distance(p, q), 1e-6) << f << ", face " << g;
+        }
+      }
+  }
+}
+
+TEST(MeshFaults, FlatCapsAreFlippedAwayWithoutMollification) {
+  // T-junctions closed by triangles of no area.
+  Mesh mesh{{}, {}, {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {0.5, 0.5}, {0.25, 0.25}}};
+  for (const auto& p : mesh.plane) mesh.positions.push_back({p[0], p[1], 0});
+  mesh.faces = {{0, 1, 2}, {0, 4, 3}, {4, 2, 3}, {0, 2, 4}};
+  mesh.faces[1] = {0, 5, 3};
+  mesh.faces.push_back({5, 4, 3});
+  mesh.faces.push_back({0, 4, 5});
+  const SolvedMesh solved(mesh);
+  EXPECT_EQ(solved.surface.report().degenerate_faces, 2);
+  EXPECT_EQ(solved.surface.report().mollification, 0);
+  const VertexMap map = solved.map(solved.surface.source_at_vertex(1, {1, 0, 0}));
+  EXPECT_LT(plane_error(mesh, map, {1, 0}, {1, 0}), 1e-13);
+}
+
+TEST(MeshFaults, CoincidentVerticesAreMollified) {
+  Mesh mesh = holed_square(15);
+  const auto [a, b, c] = mesh.faces[60];
+  mesh.positions[a] = mesh.positions[b];
+  mesh.plane[a] = mesh.plane[b];
+  for (bool flips : {true, false}) {
+    const SolvedMesh solved(mesh, {.intrinsic_delaunay = flips});
+    EXPECT_GT(solved.surface.report().mollification, 0);
+    EXPECT_LT(solved.surface.report().mollification, 1e-6);
+    EXPECT_FALSE(solved.surface.report().warnings.empty());
+    const VertexMap map = solved.map(solved.surface.source_at_vertex(c));
+    expect_nan_exactly_where_not_ok(map);
+    for (Index i = 0; i < mesh.vertices(); ++i) {
+      ASSERT_EQ(map.status[i], Status::ok);
+      ASSERT_NEAR(map.distance[i], std::hypot(mesh.plane[i][0] - mesh.plane[c][0], mesh.plane[i][1] - mesh.plane[c][1]),
+                  0.05);
+    }
+  }
+}
+
+TEST(MeshFaults, ThinSliversAtTheBoundary) {
+  Mesh mesh = holed_square(15);
+  // A vertex 1e-12 beside a boundary edge.
+  for (double height : {1e-6, 1e-12, 0.0}) {
+    Mesh other = mesh;
+    for (const auto& t : mesh.faces) {
+      if (mesh.plane[t[0]][1] != 0 || mesh.plane[t[1]][1] != 0) continue;
+      const auto &p = mesh.plane[t[0]], &q = mesh.plane[t[1]];
+      other.plane.push_back({0.5 * (p[0] + q[0]), -height});
+      other.faces.push_back({t[1], t[0], other.vertices()});
+      other.positions.push_back({});
+    }
+    for (std::size_t i = 0; i < other.plane.size(); ++i) other.positions[i] = {other.plane[i][0], other.plane[i][1], 0};
+    const SolvedMesh solved(other);
+    const VertexMap map = solved.map(solved.surface.source_at_vertex(0, {1, 0, 0}));
+    EXPECT_LT(plane_error(other, map, other.plane[0], {1, 0}), 1e-5) << height;
+  }
+}
+
+TEST(MeshFaults, AllVerticesAtOnePlace) {
+  Mesh mesh = icosphere(2);
+  for (Vec3& p : mesh.positions) p = {1, 2, 3};
+  expect_error<InvalidGeometry>(mesh, "same place");
+}
+
+TEST(MeshFaults, EdgeLengthsOverManyOrdersOfMagnitude) {
+  Mesh mesh = holed_square(20);
+  for (std::size_t i = 0; i < mesh.plane.size(); ++i) {
+    mesh.plane[i] = {std::pow(mesh.plane[i][0], 12), mesh.plane[i][1]};
+    mesh.positions[i] = {mesh.plane[i][0], mesh.plane[i][1] * (1e-9 + mesh.plane[i][0]), 0};
+    mesh.plane[i] = {mesh.positions[i][0], mesh.positions[i][1]};
+  }
+  const SolvedMesh solved(mesh);
+  EXPECT_GT(solved.surface.report().longest_edge, 1e6 * solved.surface.report().shortest_edge);
+  EXPECT_FALSE(solved.surface.report().warnings.empty());
+  expect_nan_exactly_where_not_ok(solved.map(solved.surface.source_at_vertex(mesh.vertices() - 1)));
+}
+
+TEST(MeshFaults, BadEdgeLengths) {
+  const std::vector<Triangle> faces{{0, 1, 2}, {1, 0, 3}};
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  using Lengths = std::vector<std::array<double, 3>>;
+  for (const Lengths& lengths : {Lengths{{1, 1, 1}}, Lengths{{1, 1, 1}, {nan, 1, 1}}, Lengths{{1, 1, 1}, {1, 1, -1}},
+                                 Lengths{{1, 1, 1}, {1, 1, 3}}, Lengths{{1, 1, 1}, {1.1, 1, 1}}})
+    EXPECT_THROW(TriangleMesh::from_edge_lengths(4, faces, lengths), InvalidGeometry);
+  EXPECT_NO_THROW(TriangleMesh::from_edge_lengths(4, faces, Lengths{{1, 1, 1}, {1, 1, 1}}));
+}
+
+TEST(MeshFaults, BuildingCanBeStopped) {
+  std::stop_source stop;
+  stop.request_stop();
+  MeshOptions options;
+  options.progress.stop = stop.get_token();
+  const Mesh mesh = icosphere(4);
+  EXPECT_THROW(TriangleMeshGraph::build(mesh.positions, mesh.faces, options), Cancelled);
+}
+
+}  // namespace
+}  // namespace ahm::test

@@ -1,0 +1,135 @@
+// What must not change the map, and what must change it in a known way.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "support/solved_mesh.hpp"
+
+namespace ahm::test {
+namespace {
+
+using trimesh::VertexMap;
+
+/// A patch of a bumpy height field, with non-Delaunay edges.
+Mesh bumpy(Index side = 20) {
+  Mesh mesh = holed_square(side);
+  mesh.positions.clear();
+  for (const auto& p : mesh.plane)
+    mesh.positions.push_back({p[0], p[1], 0.2 * std::sin(5 * p[0]) * std::cos(4 * p[1])});
+  return mesh;
+}
+
+constexpr Vec3 east{1, 0, 0};
+
+VertexMap solve(const Mesh& mesh, Index source, Variant variant = Variant::adaptive) {
+  const SolvedMesh solved(mesh);
+  return solved.map(solved.surface.source_at_vertex(source, east), variant);
+}
+
+TEST(MeshSymmetry, RelabellingVerticesAndFacesRelabelsTheMap) {
+  const Mesh mesh = bumpy();
+  std::mt19937_64 random(4);
+  std::vector<Index> order(mesh.positions.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<Index>(i);
+  std::shuffle(order.begin(), order.end(), random);
+  Mesh other = mesh;
+  for (std::size_t i = 0; i < order.size(); ++i) other.positions[order[i]] = mesh.positions[i];
+  std::shuffle(other.faces.begin(), other.faces.end(), random);
+  for (Triangle& t : other.faces) {
+    for (Index& v : t) v = order[v];
+    std::rotate(t.begin(), t.begin() + static_cast<std::ptrdiff_t>(random() % 3), t.end());
+  }
+  for (Variant variant : {Variant::adaptive, Variant::localized}) {
+    const VertexMap a = solve(mesh, 100, variant), b = solve(other, order[100], variant);
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      ASSERT_NEAR(a.u[i], b.u[order[i]], 1e-11);
+      ASSERT_NEAR(a.v[i], b.v[order[i]], 1e-11);
+    }
+  }
+}
+
+TEST(MeshSymmetry, ReversedOrientationIsTheMirrorImage) {
+  const Mesh mesh = bumpy();
+  Mesh other = mesh;
+  for (Triangle& t : other.faces) std::swap(t[0], t[1]);
+  for (Variant variant : {Variant::adaptive, Variant::localized}) {
+    const VertexMap a = solve(mesh, 100, variant), b = solve(other, 100, variant);
+    for (std::size_t i = 0; i < a.u.size(); ++i) {
+      ASSERT_NEAR(a.u[i], b.u[i], 1e-11);
+      ASSERT_NEAR(a.v[i], -b.v[i], 1e-11);
+    }
+  }
+}
+
+TEST(MeshSymmetry, MixedOrientationIsRepairedByTheMajority) {
+  const Mesh mesh = bumpy();
+  Mesh other = mesh;
+  for (std::size_t f = 0; f < other.faces.size(); f += 3) std::swap(other.faces[f][1], other.faces[f][2]);
+  const SolvedMesh solved(other);
+  EXPECT_EQ(solved.surface.report().topology.reoriented, static_cast<Index>((other.faces.size() + 2) / 3));
+  EXPECT_FALSE(solved.surface.report().warnings.empty());
+  const VertexMap a = solve(mesh, 100), b = solved.map(solved.surface.source_at_vertex(100, east));
+  for (std::size_t i = 0; i < a.u.size(); ++i) {
+    ASSERT_NEAR(a.u[i], b.u[i], 1e-11);
+    ASSERT_NEAR(a.v[i], b.v[i], 1e-11);
+  }
+}
+
+TEST(MeshSymmetry, PowersOfTwoScaleBitForBit) {
+  const Mesh mesh = bumpy();
+  const VertexMap a = solve(mesh, 100);
+  for (int exponent : {-1000, -20, 7, 1000}) {
+    Mesh other = mesh;
+    for (Vec3& p : other.positions)
+      for (double& x : p) x = std::scalbn(x, exponent);
+    const VertexMap b = solve(other, 100);
+    for (std::size_t i = 0; i < a.u.size(); ++i) ASSERT_EQ(std::scalbn(a.u[i], exponent), b.u[i]) << exponent;
+  }
+}
+
+TEST(MeshSymmetry, AnyScaleScales) {
+  const Mesh mesh = bumpy();
+  const VertexMap a = solve(mesh, 100);
+  for (double scale : {1e-300, 1e-12, 1e12, 1e300}) {
+    Mesh other = mesh;
+    for (Vec3& p : other.positions)
+      for (double& x : p) x *= scale;
+    const VertexMap b = solve(other, 100);
+    for (std::size_t i = 0; i < a.u.size(); ++i) ASSERT_NEAR(a.u[i], b.u[i] / scale, 1e-11) << scale;
+  }
+}
+
+TEST(MeshSymmetry, FarFromTheOriginIsAsGoodAsTheInputDigits) {
+  const Mesh mesh = bumpy();
+  const VertexMap a = solve(mesh, 100);
+  Mesh other = mesh;
+  for (Vec3& p : other.positions) p = {p[0] + 1e8, p[1] - 1e8, p[2] + 1e8};
+  const VertexMap b = solve(other, 100);
+  for (std::size_t i = 0; i < a.u.size(); ++i) ASSERT_NEAR(a.distance[i], b.distance[i], 1e-5);
+}
+
+TEST(MeshSymmetry, RepeatsBitForBitOnAnyNumberOfThreads) {
+  const Mesh mesh = bumpy(60);
+  const auto one = trimesh::TriangleMeshGraph::build(mesh.positions, mesh.faces, {.threads = 1});
+  const auto many = trimesh::TriangleMeshGraph::build(mesh.positions, mesh.faces, {.threads = 7});
+  EXPECT_EQ(one.graph().data().logs, many.graph().data().logs);
+  EXPECT_EQ(one.graph().data().weights, many.graph().data().weights);
+  EXPECT_EQ(one.graph().data().transports, many.graph().data().transports);
+  EXPECT_EQ(one.graph().data().masses, many.graph().data().masses);
+}
+
+TEST(MeshSymmetry, TheUDirectionTurnsTheMap) {
+  const SolvedMesh solved(bumpy());
+  const VertexMap a = solved.map(solved.surface.source_at_vertex(100));
+  const Frame frame = *solved.surface.graph().frame(solved.surface.vertex(100).index);
+  const VertexMap b = solved.map(solved.surface.source_at_vertex(100, frame.y));
+  for (std::size_t i = 0; i < a.u.size(); ++i) {
+    ASSERT_NEAR(a.u[i], -b.v[i], 1e-11);
+    ASSERT_NEAR(a.v[i], b.u[i], 1e-11);
+  }
+}
+
+}  // namespace
+}  // namespace ahm::test

@@ -1,0 +1,211 @@
+// The banded march: the same map as the global solve, at any distance, for any graph and source.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "ahm/error.hpp"
+#include "ahm/fields/vector_heat.hpp"
+#include "ahm/maps/log_map_solver.hpp"
+#include "ahm/testing/curved_graphs.hpp"
+#include "ahm/testing/flat_graphs.hpp"
+#include "ahm/testing/graph_changes.hpp"
+
+namespace ahm::test {
+namespace {
+
+constexpr SolverOptions global{.strategy = Strategy::global}, marching{.strategy = Strategy::march};
+constexpr std::array variants{Variant::adaptive, Variant::localized};
+
+/// Largest difference of two maps, relative to the largest distance; infinite where only one is ok.
+double difference(const LogMap& a, const LogMap& b) {
+  double largest = 0, scale = 0;
+  for (Index i = 0; i < a.size(); ++i) {
+    if (a.status(Vertex(i)) != b.status(Vertex(i))) return std::numeric_limits<double>::infinity();
+    if (a.status(Vertex(i)) != Status::ok) continue;
+    scale = std::max(scale, a.distance(Vertex(i)));
+    for (int c = 0; c < a.dimension(); ++c)
+      largest = std::max(largest, std::abs(a.coordinates(Vertex(i))[c] - b.coordinates(Vertex(i))[c]));
+  }
+  return largest / scale;
+}
+
+/// A source of three samples with offsets, as for a point inside a face.
+Source blended(const TangentGraph& graph) {
+  const auto d = static_cast<std::size_t>(graph.dimension());
+  Source source(graph.dimension());
+  std::vector<double> axes(d * d, 0.0), offset(d, 0.0);
+  for (std::size_t a = 0; a < d; ++a) axes[a * d + a] = 1;
+  const Star star = graph.star(5);
+  source.add(Vertex{5}, 0.5, offset, axes);
+  for (std::size_t e = 0; e < 2; ++e) {
+    for (std::size_t a = 0; a < d; ++a) offset[a] = star.log(e)[a];
+    source.add(Vertex(star.neighbors[e]), 0.25, offset, axes);
+  }
+  return source;
+}
+
+TEST(March, AgreesWithTheGlobalSolve) {
+  for (const CsrGraphData& data : {sphere_graph(6000), as_blocks(sphere_graph(6000)), bent_lattice(16)}) {
+    const CsrGraph graph(data);
+    const LogMapSolver whole(graph, {}, global), march(graph, {}, marching);
+    for (const Source& source : {Source::at_vertex(Vertex{5}), blended(graph)})
+      for (Variant variant : variants) {
+        const LogMap expected = whole.solve(source, {.variant = variant}),
+                     map = march.solve(source, {.variant = variant});
+        EXPECT_EQ(map.strategy(), Strategy::march);
+        EXPECT_LT(difference(expected, map), 1e-9) << to_string(variant) << ", " << map.march().bands << " bands";
+      }
+  }
+}
+
+TEST(March, TakesSeveralBands) {
+  const CsrGraph graph(sphere_graph(20000));
+  const LogMap map = LogMapSolver(graph, {}, marching).solve(Source::at_vertex(Vertex{0}));
+  EXPECT_GT(map.march().bands, 4);
+  EXPECT_LT(map.march().largest_band, 15000);
+  EXPECT_LT(difference(LogMapSolver(graph, {}, global).solve(Source::at_vertex(Vertex{0})), map), 1e-9);
+}
+
+TEST(March, IsAsAccurateAsWanted) {
+  const CsrGraph graph(sphere_graph(8000));
+  const LogMap expected = LogMapSolver(graph, {}, global).solve(Source::at_vertex(Vertex{0}));
+  for (double accuracy : {1e-3, 1e-6, 1e-9, 1e-11}) {
+    const LogMapSolver march(graph, {}, {.strategy = Strategy::march, .accuracy = accuracy});
+    EXPECT_LT(difference(expected, march.solve(Source::at_vertex(Vertex{0}))), accuracy);
+  }
+}
+
+TEST(March, AgreesAtOtherDiffusionTimes) {
+  const CsrGraph graph(sphere_graph(8000));
+  for (double t_coef : {0.1, 0.5, 4.0, 16.0}) {
+    const LogMap expected = LogMapSolver(graph, {.t_coef = t_coef}, global).solve(Source::at_vertex(Vertex{3}));
+    const LogMap map = LogMapSolver(graph, {.t_coef = t_coef}, marching).solve(Source::at_vertex(Vertex{3}));
+    EXPECT_LT(difference(expected, map), 1e-9) << "t_coef " << t_coef;
+  }
+}
+
+TEST(March, IsExactOnThePlane) {
+  const FlatGraph flat = planar_triangulation(150);
+  const CsrGraph graph(flat.data);
+  const LogMapSolver solver(graph, {}, marching);
+  for (Variant variant : variants) {
+    const LogMap map = solver.solve(Source::at_vertex(Vertex{77}), {.variant = variant});
+    EXPECT_GT(map.march().bands, 1);
+    for (Index i = 0; i < flat.size(); ++i)
+      for (int a = 0; a < 2; ++a)
+        ASSERT_NEAR(map.coordinates(Vertex(i))[a], flat.exact(77, i)[a], 1e-11 * flat.diameter()) << "vertex " << i;
+  }
+}
+
+TEST(March, HasNoHorizon) {
+  const CsrGraph graph(tube(20000, 6));
+  for (Variant variant : variants) {
+    const LogMap map = LogMapSolver(graph, {}, marching).solve(Source::at_vertex(Vertex{0}), {.variant = variant});
+    EXPECT_EQ(map.count(Status::ok), graph.size());
+    for (Index r = 1; r < 20000; r += 97) ASSERT_NEAR(map.distance(Vertex(r * 6)) / r, 1.0, 1e-3) << "ring " << r;
+    EXPECT_NEAR(map.distance(Vertex(19999 * 6)) / 19999, 1.0, 1e-3);
+  }
+}
+
+TEST(March, GoesOnWhereTheGlobalSolveEnds) {
+  const CsrGraph graph(tube(2000, 6));
+  const LogMap masked = LogMapSolver(graph, {}, global).solve(Source::at_vertex(Vertex{0}));
+  EXPECT_GT(masked.count(Status::unreached), 0);
+  const LogMap map = LogMapSolver(graph).solve(Source::at_vertex(Vertex{0}));
+  EXPECT_EQ(map.strategy(), Strategy::march);
+  EXPECT_EQ(map.count(Status::ok), graph.size());
+  EXPECT_LT(difference(LogMapSolver(graph, {}, marching).solve(Source::at_vertex(Vertex{0})), map), 1e-9);
+}
+
+TEST(March, MasksOtherComponents) {
+  const FlatGraph flat = planar_triangulation(60);
+  const CsrGraph graph(doubled(flat.data));
+  const LogMap map = LogMapSolver(graph, {}, marching).solve(Source::at_vertex(Vertex(7 + flat.size())));
+  EXPECT_EQ(map.count(Status::disconnected), flat.size());
+  EXPECT_EQ(map.count(Status::ok), flat.size());
+  EXPECT_EQ(map.status(Vertex{7}), Status::disconnected);
+}
+
+TEST(March, TakesSourcesInSeveralComponents) {
+  const FlatGraph flat = planar_triangulation(60);
+  const CsrGraph graph(doubled(flat.data));
+  const std::array zero{0.0, 0.0}, one{1.0, 0.0};
+  const std::array identity{1.0, 0.0, 0.0, 1.0};
+  Source source(2);
+  source.add(Vertex{7}, 1, zero, identity).add(Vertex(9 + flat.size()), 1, one, identity);
+  const LogMap expected = LogMapSolver(graph, {}, global).solve(source);
+  EXPECT_LT(difference(expected, LogMapSolver(graph, {}, marching).solve(source)), 1e-9);
+}
+
+TEST(March, EndsAtTheRadius) {
+  const FlatGraph flat = planar_triangulation(150);
+  const CsrGraph graph(flat.data);
+  const LogMapSolver march(graph, {}, marching);
+  const LogMap whole = march.solve(Source::at_vertex(Vertex{75})),
+               local = march.solve(Source::at_vertex(Vertex{75}), {.radius = 0.2});
+  EXPECT_LT(local.march().solved, whole.march().solved / 2);
+  for (Index i = 0; i < graph.size(); ++i) {
+    if (std::abs(whole.distance(Vertex(i)) - 0.2) < 1e-9) continue;
+    ASSERT_EQ(local.status(Vertex(i)), whole.distance(Vertex(i)) < 0.2 ? Status::ok : Status::beyond_radius);
+    if (local.status(Vertex(i)) == Status::ok)
+      ASSERT_NEAR(local.coordinates(Vertex(i))[0], whole.coordinates(Vertex(i))[0], 1e-11);
+  }
+}
+
+TEST(March, DoesNotDependOnThreads) {
+  const CsrGraph graph(sphere_graph(20000));
+  const LogMapSolver march(graph, {}, marching);
+  const std::vector sources{Source::at_vertex(Vertex{0}), Source::at_vertex(Vertex{9}),
+                            Source::at_vertex(Vertex{1000})};
+  const auto one = march.solve(sources, {.threads = 1}), four = march.solve(sources, {.threads = 4});
+  for (std::size_t s = 0; s < sources.size(); ++s) {
+    const LogMap single = march.solve(sources[s], {.threads = 2});
+    for (std::size_t k = 0; k < one[s].coordinates().size(); ++k) {
+      ASSERT_EQ(one[s].coordinates()[k], four[s].coordinates()[k]);
+      ASSERT_EQ(one[s].coordinates()[k], single.coordinates()[k]);
+    }
+  }
+}
+
+TEST(March, CanBeStopped) {
+  const CsrGraph graph(sphere_graph(5000));
+  std::stop_source stop;
+  stop.request_stop();
+  EXPECT_THROW(
+      LogMapSolver(graph, {}, marching).solve(Source::at_vertex(Vertex{0}), {.progress = {{}, stop.get_token()}}),
+      Cancelled);
+}
+
+TEST(March, StillGivesTheOperatorsOfTheWholeGraph) {
+  const CsrGraph graph(sphere_graph(3000));
+  const LogMapSolver march(graph, {}, marching), whole(graph, {}, global);
+  const auto a = parallel_transport(march, Source::at_vertex(Vertex{4})),
+             b = parallel_transport(whole, Source::at_vertex(Vertex{4}));
+  EXPECT_EQ(a.values, b.values);
+}
+
+TEST(March, RefusesFactorsBeyondTheMemory) {
+  const CsrGraph graph(sphere_graph(3000));
+  const LogMapSolver small_memory(graph, {}, {.memory = 1 << 20});
+  EXPECT_EQ(small_memory.solve(Source::at_vertex(Vertex{4})).count(Status::ok), graph.size());
+  EXPECT_THROW(parallel_transport(small_memory, Source::at_vertex(Vertex{4})), ResourceExhausted);
+}
+
+TEST(Strategy, IsChosenFromTheNumberOfMapsAndTheMemory) {
+  const CsrGraph small(sphere_graph(2000)), large(sphere_graph(60000));
+  auto chosen = [](const TangentGraph& graph, const SolverOptions& options) {
+    return LogMapSolver(graph, {}, options).strategy();
+  };
+  EXPECT_EQ(chosen(small, {.expected_maps = 1}), Strategy::global);
+  EXPECT_EQ(chosen(large, {.expected_maps = 1}), Strategy::march);
+  EXPECT_EQ(chosen(large, {}), Strategy::global);
+  EXPECT_EQ(chosen(large, {.memory = 1 << 20}), Strategy::march);
+  EXPECT_EQ(chosen(small, {.strategy = Strategy::march}), Strategy::march);
+  EXPECT_THROW(chosen(small, {.accuracy = 0.0}), InvalidArgument);
+  EXPECT_THROW(chosen(small, {.expected_maps = -1}), InvalidArgument);
+}
+
+}  // namespace
+}  // namespace ahm::test

@@ -1,0 +1,91 @@
+// The frames of a map, and the quality judged by them.
+#include "ahm/maps/quality.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "ahm/error.hpp"
+#include "ahm/fields/vector_heat.hpp"
+#include "ahm/maps/log_map_solver.hpp"
+#include "ahm/testing/curved_graphs.hpp"
+#include "ahm/testing/flat_graphs.hpp"
+#include "ahm/testing/graph_changes.hpp"
+
+namespace ahm::test {
+namespace {
+
+constexpr SolverOptions global{.strategy = Strategy::global}, marching{.strategy = Strategy::march};
+
+TEST(MapFrames, AreTheParallelTransportOfTheSourcesAxes) {
+  const CsrGraph graph(sphere_graph(3000));
+  const LogMapSolver solver(graph, {}, global);
+  const LogMap map = solver.solve(Source::at_vertex(Vertex{5}), {.frames = true});
+  const VertexField carried = parallel_transport(solver, Source::at_vertex(Vertex{5}));
+  ASSERT_EQ(map.frames().size(), carried.values.size());
+  for (std::size_t k = 0; k < carried.values.size(); ++k) ASSERT_NEAR(map.frames()[k], carried.values[k], 1e-12);
+}
+
+TEST(MapFrames, AreTheSameByMarch) {
+  for (const CsrGraphData& data : {sphere_graph(6000), as_blocks(sphere_graph(3000)), bent_lattice(12)}) {
+    const CsrGraph graph(data);
+    const LogMap expected = LogMapSolver(graph, {}, global).solve(Source::at_vertex(Vertex{5}), {.frames = true});
+    const LogMap map = LogMapSolver(graph, {}, marching).solve(Source::at_vertex(Vertex{5}), {.frames = true});
+    ASSERT_EQ(map.frames().size(), expected.frames().size());
+    double largest = 0;
+    for (std::size_t k = 0; k < map.frames().size(); ++k)
+      largest = std::max(largest, std::abs(map.frames()[k] - expected.frames()[k]));
+    EXPECT_LT(largest, 1e-6);
+  }
+}
+
+TEST(MapFrames, AreKeptOnlyWhereAskedFor) {
+  const CsrGraph graph(sphere_graph(100));
+  EXPECT_TRUE(LogMapSolver(graph).solve(Source::at_vertex(Vertex{0})).frames().empty());
+}
+
+TEST(MapQuality, IsOneOnFlatGeometry) {
+  for (const FlatGraph& flat :
+       {planar_triangulation(40), lattice3(9), planar_triangulation(20, TransportKind::block, true)}) {
+    const CsrGraph graph(flat.data);
+    const LogMap map = LogMapSolver(graph).solve(Source::at_vertex(Vertex{33}), {.frames = true});
+    for (double q : map_quality(graph, map)) ASSERT_NEAR(q, 1.0, 1e-12);
+  }
+}
+
+// On a tube the cut locus is the line opposite to the source: the map jumps from one side to the other.
+TEST(MapQuality, FindsTheCutLocus) {
+  const Index around = 60, rings = 121;
+  const CsrGraph graph(tube(rings, around));
+  const LogMap map = LogMapSolver(graph).solve(Source::at_vertex(Vertex(60 * around)), {.frames = true});
+  const std::vector<double> quality = map_quality(graph, map);
+  for (Index r = 0; r < rings; ++r) {
+    // Around the tube the two ways to the line meet at an angle that closes with the distance along the tube.
+    if (std::abs(r - 60) <= 15) {
+      EXPECT_LT(quality[r * around + around / 2], trusted_quality) << "ring " << r;
+    }
+    EXPECT_GT(quality[r * around + around / 4], 0.99) << "ring " << r;
+    EXPECT_GT(quality[r * around], 0.99) << "ring " << r;
+  }
+}
+
+TEST(MapQuality, IsNanWhereTheMapIs) {
+  const FlatGraph flat = planar_triangulation(20);
+  const CsrGraph graph(doubled(flat.data));
+  const LogMap map = LogMapSolver(graph).solve(Source::at_vertex(Vertex{0}), {.radius = 0.5, .frames = true});
+  const std::vector<double> quality = map_quality(graph, map);
+  for (Index i = 0; i < graph.size(); ++i) ASSERT_EQ(std::isnan(quality[i]), map.status(Vertex(i)) != Status::ok);
+  EXPECT_GT(map.count(Status::beyond_radius), 0);
+  EXPECT_EQ(map.count(Status::disconnected), flat.size());
+}
+
+TEST(MapQuality, NeedsFramesAndTheRightGraph) {
+  const CsrGraph graph(sphere_graph(200)), other(sphere_graph(300));
+  const LogMapSolver solver(graph);
+  EXPECT_THROW(map_quality(graph, solver.solve(Source::at_vertex(Vertex{0}))), InvalidArgument);
+  EXPECT_THROW(map_quality(other, solver.solve(Source::at_vertex(Vertex{0}), {.frames = true})), InvalidArgument);
+}
+
+}  // namespace
+}  // namespace ahm::test

@@ -1,0 +1,127 @@
+// Second order: extrapolation keeps every law of the method (accuracy on curved surfaces: tests/trimesh, tests/grid).
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "ahm/error.hpp"
+#include "ahm/maps/log_map_solver.hpp"
+#include "ahm/testing/curved_graphs.hpp"
+#include "ahm/testing/flat_graphs.hpp"
+#include "ahm/testing/graph_changes.hpp"
+
+namespace ahm::test {
+namespace {
+
+constexpr SolverOptions global{.strategy = Strategy::global, .order = 2},
+    marching{.strategy = Strategy::march, .order = 2};
+
+/// Largest difference of coordinates; the statuses must agree.
+double difference(const LogMap& a, const LogMap& b) {
+  double largest = 0;
+  for (Index i = 0; i < a.size(); ++i) {
+    EXPECT_EQ(a.status(Vertex(i)), b.status(Vertex(i))) << "vertex " << i;
+    if (a.status(Vertex(i)) != Status::ok || b.status(Vertex(i)) != Status::ok) continue;
+    for (int c = 0; c < a.dimension(); ++c)
+      largest = std::max(largest, std::abs(a.coordinates(Vertex(i))[c] - b.coordinates(Vertex(i))[c]));
+  }
+  return largest;
+}
+
+// Two times (n^(1/d) < 100) and three, by either strategy.
+TEST(SecondOrder, IsExactOnThePlaneAndKnowsIt) {
+  for (Index side : {30, 120})
+    for (const SolverOptions& options : {global, marching}) {
+      const FlatGraph flat = planar_triangulation(side);
+      const CsrGraph graph(flat.data);
+      for (Variant variant : {Variant::adaptive, Variant::localized}) {
+        const LogMap map = LogMapSolver(graph, {}, options).solve(Source::at_vertex(Vertex{77}), {.variant = variant});
+        for (Index i = 0; i < flat.size(); ++i) {
+          for (int a = 0; a < 2; ++a)
+            ASSERT_NEAR(map.coordinates(Vertex(i))[a], flat.exact(77, i)[a], 1e-10 * flat.diameter()) << "vertex " << i;
+          ASSERT_LT(map.error_estimate()[i], 1e-10 * flat.diameter());
+        }
+      }
+    }
+}
+
+TEST(SecondOrder, IsExactInSpace) {
+  const FlatGraph flat = lattice3(9);
+  const CsrGraph graph(flat.data);
+  const LogMap map = LogMapSolver(graph, {}, global).solve(Source::at_vertex(Vertex{100}));
+  for (Index i = 0; i < flat.size(); ++i)
+    for (int a = 0; a < 3; ++a)
+      ASSERT_NEAR(map.coordinates(Vertex(i))[a], flat.exact(100, i)[a], 1e-10 * flat.diameter());
+}
+
+TEST(SecondOrder, MarchesToTheSameMap) {
+  for (const CsrGraphData& data : {sphere_graph(12000), as_blocks(sphere_graph(3000))}) {
+    const CsrGraph graph(data);
+    const LogMap expected = LogMapSolver(graph, {}, global).solve(Source::at_vertex(Vertex{5}));
+    const LogMap map = LogMapSolver(graph, {}, marching).solve(Source::at_vertex(Vertex{5}));
+    EXPECT_EQ(map.strategy(), Strategy::march);
+    EXPECT_GT(map.march().bands, 0);
+    EXPECT_LT(difference(expected, map), 1e-8);
+  }
+}
+
+TEST(SecondOrder, ExtrapolatesTwoMapsOfTheFirst) {
+  const CsrGraph graph(sphere_graph(3000));
+  const LogMap one = LogMapSolver(graph, {.t_coef = 1}).solve(Source::at_vertex(Vertex{5}));
+  const LogMap two = LogMapSolver(graph, {.t_coef = 2}).solve(Source::at_vertex(Vertex{5}));
+  const LogMap map = LogMapSolver(graph, {}, global).solve(Source::at_vertex(Vertex{5}));
+  const double h = graph.mean_edge_length(), step = (std::sqrt(2.0) - 1) * h;
+  Index smooth = 0, kept = 0;
+  for (Index i = 0; i < map.size(); ++i) {
+    const double change = std::hypot(two.coordinates(Vertex(i))[0] - one.coordinates(Vertex(i))[0],
+                                     two.coordinates(Vertex(i))[1] - one.coordinates(Vertex(i))[1]) /
+                          step;
+    for (int a = 0; a < 2; ++a) {
+      const double p = one.coordinates(Vertex(i))[a], q = two.coordinates(Vertex(i))[a];
+      if (change <= 3) {
+        ASSERT_NEAR(map.coordinates(Vertex(i))[a], p + (p - q) / (std::sqrt(2.0) - 1), 1e-12) << "vertex " << i;
+        ++smooth;
+      } else if (change >= 5) {
+        ASSERT_NEAR(map.coordinates(Vertex(i))[a], p, 1e-12) << "vertex " << i;  // near the antipode
+        ++kept;
+      }
+    }
+  }
+  EXPECT_GT(smooth, map.size());
+  EXPECT_GT(kept, 0);
+}
+
+TEST(SecondOrder, DoesNotDependOnUnitsOrOnTheBatch) {
+  const CsrGraph graph(sphere_graph(3000)), large(scaled(sphere_graph(3000), 1024));
+  const LogMapSolver solver(graph, {}, global);
+  const std::vector<Source> sources{Source::at_vertex(Vertex{5}), Source::at_vertex(Vertex{99}),
+                                    Source::at_vertex(Vertex{1234})};
+  const std::vector<LogMap> batch = solver.solve(sources);
+  for (std::size_t s = 0; s < sources.size(); ++s) EXPECT_LT(difference(batch[s], solver.solve(sources[s])), 1e-11);
+  const LogMap scaled_map = LogMapSolver(large, {}, global).solve(sources[0]);
+  for (Index i = 0; i < graph.size(); ++i)
+    ASSERT_NEAR(scaled_map.distance(Vertex(i)), 1024 * batch[0].distance(Vertex(i)), 1e-9 * 1024);
+}
+
+TEST(SecondOrder, EndsAtTheRadius) {
+  const FlatGraph flat = planar_triangulation(120);
+  const CsrGraph graph(flat.data);
+  for (const SolverOptions& options : {global, marching}) {
+    const LogMap map = LogMapSolver(graph, {}, options).solve(Source::at_vertex(Vertex{7300}), {.radius = 0.2});
+    for (Index i = 0; i < flat.size(); ++i) {
+      const double distance = std::hypot(flat.exact(7300, i)[0], flat.exact(7300, i)[1]);
+      if (std::abs(distance - 0.2) < 1e-9) continue;
+      ASSERT_EQ(map.status(Vertex(i)), distance < 0.2 ? Status::ok : Status::beyond_radius) << "vertex " << i;
+      ASSERT_EQ(std::isnan(map.error_estimate()[i]), distance > 0.2);
+    }
+  }
+}
+
+TEST(SecondOrder, IsOneOfTwo) {
+  const CsrGraph graph(sphere_graph(100));
+  for (int order : {0, 3, -1}) EXPECT_THROW(LogMapSolver(graph, {}, {.order = order}), InvalidArgument);
+  EXPECT_TRUE(LogMapSolver(graph).solve(Source::at_vertex(Vertex{0})).error_estimate().empty());
+}
+
+}  // namespace
+}  // namespace ahm::test

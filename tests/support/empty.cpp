@@ -1,0 +1,1 @@
+// Nothing: here only to have what every test includes compiled.

@@ -1,0 +1,34 @@
+/// \file
+/// A triangle mesh taken all the way to maps, and its maps beside the plane it was made from.
+#pragma once
+
+#include "ahm/maps/log_map_solver.hpp"
+#include "ahm/testing/triangle_meshes.hpp"
+#include "ahm/trimesh/triangle_mesh_graph.hpp"
+
+namespace ahm::test {
+
+/// Builds, factors and solves in one go.
+struct SolvedMesh {
+  explicit SolvedMesh(const Mesh& mesh, const trimesh::MeshOptions& options = {})
+      : surface(trimesh::TriangleMeshGraph::build(mesh.positions, mesh.faces, options)), solver(surface.graph()) {}
+
+  trimesh::VertexMap map(const Source& source, Variant variant = Variant::adaptive) const {
+    return surface.on_vertices(solver.solve(source, {.variant = variant}));
+  }
+
+  trimesh::TriangleMeshGraph surface;
+  LogMapSolver solver;
+};
+
+/// Largest distance between the map and the plane seen from `origin` with unit axis `axis`; infinite unless all is
+/// mapped.
+inline double plane_error(const Mesh& mesh, const trimesh::VertexMap& map, const Vec2& origin, const Vec2& axis) {
+  return plane_error(mesh.plane, map.u, map.v, origin, axis);
+}
+
+inline Vec2 plane_point(const Mesh& mesh, const trimesh::SurfacePoint& point) {
+  return mesh.plane_point(point.face, point.barycentric);
+}
+
+}  // namespace ahm::test

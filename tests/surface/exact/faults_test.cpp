@@ -1,0 +1,102 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <string>
+
+#include "ahm/error.hpp"
+#include "polyhedra.hpp"
+
+namespace ahm::test {
+namespace {
+
+using exact::Connectivity;
+using exact::MeshPoint;
+using exact::PolyhedralSurface;
+
+/// Two triangles 0 1 2 and 2 1 3.
+struct TwoFaces {
+  std::vector<Index> tails{0, 1, 2, 2, 1, 3};
+  std::vector<exact::Half> twins{-1, 3, -1, 1, -1, -1};
+  std::vector<std::array<double, 3>> lengths{{1, 1, 1}, {1, 1, 1}};
+  PolyhedralSurface build() const { return PolyhedralSurface::from_lengths({tails, twins}, lengths); }
+};
+
+void expect_refused(const TwoFaces& faces, const std::string& words) {
+  try {
+    faces.build();
+    ADD_FAILURE() << "not refused: " << words;
+  } catch (const InvalidGeometry& e) {
+    EXPECT_NE(std::string(e.what()).find(words), std::string::npos) << e.what();
+  }
+}
+
+TEST(PolyhedralSurface, NamesTheFaceThatIsDegenerate) {
+  TwoFaces flat;
+  flat.lengths[1] = {1, 0.5, 0.5};
+  expect_refused(flat, "face 1 is degenerate");
+  TwoFaces point;
+  point.lengths[1] = {1, 0, 1};
+  expect_refused(point, "face 1 has a side whose length");
+  TwoFaces open;
+  open.lengths[0] = {3, 1, 1};
+  expect_refused(open, "face 0 breaks the triangle inequality");
+  TwoFaces endless;
+  endless.lengths[0] = {1, 1, std::numeric_limits<double>::infinity()};
+  expect_refused(endless, "face 0 has a side");
+}
+
+TEST(PolyhedralSurface, RefusesGluingThatDoesNotFit) {
+  TwoFaces one_way;
+  one_way.twins[3] = -1;
+  expect_refused(one_way, "not mutual");
+  TwoFaces elsewhere;
+  elsewhere.twins = {3, -1, -1, 0, -1, -1};
+  expect_refused(elsewhere, "between other vertices");
+  TwoFaces unequal;
+  unequal.lengths[1] = {1.1, 1, 1};
+  expect_refused(unequal, "faces 0 and 1");
+  TwoFaces pinched;
+  pinched.twins = {-1, -1, -1, -1, -1, -1};
+  expect_refused(pinched, "several fans");
+}
+
+TEST(PolyhedralSurface, KeepsCapsThatAreNearlyFlat) {
+  // A square with a vertex 1e-9 beside one of its diagonals.
+  Mesh mesh;
+  mesh.plane = {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {0.5 + 1e-9, 0.5 - 1e-9}};
+  mesh.faces = {{0, 1, 4}, {1, 2, 4}, {2, 0, 4}, {0, 2, 3}};
+  for (const Vec2& p : mesh.plane) mesh.positions.push_back({p[0], p[1], 0});
+  const Polyhedron solid(mesh);
+  for (Index a = 0; a < 5; ++a) {
+    const exact::ExactMap map = exact::exact_map(solid.surface, solid.surface.vertex_point(Vertex(a)));
+    for (Index b = 0; b < 5; ++b)
+      EXPECT_NEAR(map.distance(Vertex(b)), distance(solid.mesh.position(a), solid.mesh.position(b)), 1e-15);
+  }
+}
+
+TEST(ExactMap, RefusesArgumentsOutOfRange) {
+  const PolyhedralSurface surface = TwoFaces{}.build();
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const std::vector<MeshPoint> bad{
+      {2, {1, 0, 0}}, {-1, {1, 0, 0}}, {0, {0.5, 0.6, 0}}, {0, {1.5, -0.5, 0}}, {0, {nan, 1, 0}}};
+  for (const MeshPoint& point : bad) {
+    EXPECT_THROW(exact::exact_map(surface, point), InvalidArgument);
+    EXPECT_THROW(exact::geodesic_path(surface, {0, {1, 0, 0}}, point), InvalidArgument);
+    EXPECT_THROW(exact::trace(surface, point, 0, 1), InvalidArgument);
+  }
+  EXPECT_THROW(exact::exact_map(surface, std::span<const MeshPoint>()), InvalidArgument);
+  exact::ExactOptions options;
+  options.radius = 0;
+  EXPECT_THROW(exact::exact_map(surface, MeshPoint{}, options), InvalidArgument);
+  EXPECT_THROW(exact::trace(surface, {0, {0.2, 0.3, 0.5}}, nan, 1), InvalidArgument);
+  EXPECT_THROW(exact::trace(surface, {0, {0.2, 0.3, 0.5}}, 0, -1), InvalidArgument);
+  EXPECT_THROW(exact::trace(surface, {0, {1, 0, 0}}, 3, 1), InvalidArgument);
+  const exact::ExactMap map = exact::exact_map(surface, MeshPoint{});
+  EXPECT_THROW(exact::path_to_vertex(surface, map, Vertex(4)), InvalidArgument);
+  EXPECT_THROW(exact::path_to_target(surface, map, 0), InvalidArgument);
+}
+
+}  // namespace
+}  // namespace ahm::test

@@ -1,0 +1,150 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "polyhedra.hpp"
+
+namespace ahm::test {
+namespace {
+
+using exact::ExactMap;
+using exact::GeodesicPath;
+using exact::MeshPoint;
+using exact::TracedPath;
+using exact::TraceEnd;
+
+std::vector<Mesh> shapes() {
+  return {icosphere(7), sliver_square(300), holed_square(14), folded_strip(11), moebius_mesh(40, 6), maze(3)};
+}
+
+TEST(GeodesicPath, IsAsLongAsTheExactDistance) {
+  for (const Mesh& mesh : shapes()) {
+    const Polyhedron solid(mesh);
+    const ExactMap map = exact::exact_map(solid.surface, solid.surface.vertex_point(Vertex(11)));
+    for (Index v = 0; v < map.size(); ++v) {
+      const GeodesicPath path = exact::path_to_vertex(solid.surface, map, Vertex(v));
+      EXPECT_EQ(path.length, map.distance(Vertex(v)));
+      EXPECT_NEAR(solid.length(path.points), map.distance(Vertex(v)), 1e-12);
+      EXPECT_LT(distance(solid.position(path.points.front()), solid.mesh.position(11)), 1e-15);
+      EXPECT_LT(distance(solid.position(path.points.back()), solid.mesh.position(v)), 1e-15);
+    }
+  }
+}
+
+TEST(GeodesicPath, GoesThroughFacesThatSharePoints) {
+  const Polyhedron solid(icosphere(7));
+  std::mt19937_64 random(7);
+  auto corners = [&](const MeshPoint& p) {
+    std::vector<Index> used;
+    for (int s = 0; s < 3; ++s)
+      if (p.barycentric[s] > 0) used.push_back(solid.surface.record(3 * p.face + s).tail);
+    return used;
+  };
+  for (int k = 0; k < 50; ++k) {
+    const GeodesicPath path =
+        exact::geodesic_path(solid.surface, random_point(solid.surface, random), random_point(solid.surface, random));
+    for (std::size_t j = 1; j < path.points.size(); ++j) {
+      std::vector<Index> all = corners(path.points[j - 1]);
+      for (Index v : corners(path.points[j])) all.push_back(v);
+      std::ranges::sort(all);
+      const auto [first, last] = std::ranges::unique(all);
+      EXPECT_LE(first - all.begin(), 3) << "two neighbouring points lie in one face";
+    }
+  }
+}
+
+TEST(GeodesicPath, IsTheSameCurveTurnedRound) {
+  std::mt19937_64 random(4);
+  for (const Mesh& mesh : shapes()) {
+    const Polyhedron solid(mesh);
+    for (int k = 0; k < 30; ++k) {
+      const MeshPoint p = random_point(solid.surface, random), q = random_point(solid.surface, random);
+      const GeodesicPath there = exact::geodesic_path(solid.surface, p, q),
+                         back = exact::geodesic_path(solid.surface, q, p);
+      EXPECT_NEAR(there.length, back.length, 1e-12);
+      EXPECT_NEAR(solid.length(there.points), there.length, 1e-12);
+      auto wrapped = [](double a) { return std::remainder(a, 2 * std::numbers::pi); };
+      EXPECT_NEAR(wrapped(there.start_direction - back.end_direction), 0, 1e-9);
+      EXPECT_NEAR(wrapped(there.end_direction - back.start_direction), 0, 1e-9);
+      if (there.points.size() != back.points.size()) continue;  // a point on either side of a vertex, within rounding
+      for (std::size_t j = 0; j < there.points.size(); ++j)
+        EXPECT_LT(distance(solid.position(there.points[j]), solid.position(back.points[back.points.size() - 1 - j])),
+                  1e-9);
+    }
+  }
+}
+
+TEST(Trace, FollowsTheShortestPathToItsEnd) {
+  for (const Mesh& mesh : shapes()) {
+    const Polyhedron solid(mesh);
+    std::mt19937_64 random(9);
+    for (const MeshPoint& from : {solid.surface.vertex_point(Vertex(11)), random_point(solid.surface, random)}) {
+      const ExactMap map = exact::exact_map(solid.surface, from);
+      Index straight = 0;
+      for (Index v = 0; v < map.size(); ++v) {
+        const GeodesicPath path = exact::path_to_vertex(solid.surface, map, Vertex(v));
+        const bool bends = std::any_of(path.points.begin() + 1, path.points.end() - 1,
+                                       [](const MeshPoint& p) { return std::ranges::max(p.barycentric) > 1 - 1e-9; });
+        if (bends || path.points.size() < 2) continue;
+        ++straight;
+        const TracedPath ray = exact::trace(solid.surface, from, map.direction(Vertex(v)), map.distance(Vertex(v)));
+        EXPECT_NEAR(ray.length, map.distance(Vertex(v)), 1e-12);
+        EXPECT_LT(distance(solid.position(ray.points.back()), solid.mesh.position(v)), 1e-9);
+      }
+      EXPECT_GT(straight, 5);
+    }
+  }
+}
+
+TEST(Trace, IsStraightInThePlaneWhateverTheTriangles) {
+  const Polyhedron solid(sliver_square(400));
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> angle(0, 2 * std::numbers::pi);
+  for (int k = 0; k < 100; ++k) {
+    const MeshPoint from = random_point(solid.surface, random);
+    const TracedPath ray = exact::trace(solid.surface, from, angle(random), 10);
+    EXPECT_EQ(ray.end, TraceEnd::boundary);
+    EXPECT_NEAR(distance(solid.position(from), solid.position(ray.points.back())), ray.length, 1e-12);
+  }
+}
+
+TEST(Trace, PassesAVertexWithEqualAnglesOnBothSides) {
+  // Towards the apex of a cone: it leaves on the opposite side of the unrolled cone, where the paths of both sides meet.
+  for (double angle : {4.0, 8.0}) {
+    const PolarCone cone(angle, 24, 5);
+    const auto mesh =
+        trimesh::TriangleMesh::from_edge_lengths(static_cast<Index>(cone.polar.size()), cone.faces, cone.lengths);
+    const auto surface = surface_of(mesh);
+    const Index start = 1 + 3 * 24;  // radius 0.8, angle 0
+    const ExactMap map = exact::exact_map(surface, surface.vertex_point(Vertex(start)));
+    const double unit = mesh.length_unit();
+    const TracedPath ray =
+        exact::trace(surface, surface.vertex_point(Vertex(start)), map.direction(Vertex(0)), 1.2 / unit);
+    ASSERT_EQ(ray.end, TraceEnd::complete);
+    const MeshPoint& end = ray.points.back();
+    int corner = static_cast<int>(std::ranges::max_element(end.barycentric) - end.barycentric.begin());
+    EXPECT_NEAR(end.barycentric[corner], 1, 1e-9);
+    const Index reached = surface.record(3 * end.face + corner).tail;
+    EXPECT_NEAR(cone.polar[reached][0], 0.4, 1e-12);
+    EXPECT_NEAR(cone.polar[reached][1], angle / 2, 1e-12);
+  }
+}
+
+TEST(Trace, ComesBackAfterAFullTurnOfTheEquator) {
+  // Edges of an octahedron's equator: four vertices of equal angles.
+  Mesh mesh;
+  mesh.positions = {{1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+  mesh.faces = {{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}, {1, 0, 5}, {2, 1, 5}, {3, 2, 5}, {0, 3, 5}};
+  const Polyhedron solid(mesh);
+  const ExactMap map = exact::exact_map(solid.surface, solid.surface.vertex_point(Vertex(0)));
+  const TracedPath ray = exact::trace(solid.surface, solid.surface.vertex_point(Vertex(0)), map.direction(Vertex(1)),
+                                      4 * std::sqrt(2.0) / solid.mesh.length_unit());
+  EXPECT_EQ(ray.end, TraceEnd::complete);
+  EXPECT_LT(distance(solid.position(ray.points.back()), solid.mesh.position(0)), 1e-12);
+  EXPECT_NEAR(solid.length(ray.points), ray.length, 1e-12);
+}
+
+}  // namespace
+}  // namespace ahm::test

@@ -1,0 +1,195 @@
+// Laws of the renderer: what is where, what hides what, and what is not to be trusted.
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "pixels.hpp"
+
+namespace ahm::view::test {
+namespace {
+
+/// Unit sphere as a cloud of n points along a spiral, with its exact map from the north pole.
+struct Sphere {
+  std::vector<Vec3> points;
+  std::vector<double> u, v;
+
+  explicit Sphere(int n) {
+    for (int k = 0; k < n; ++k) {
+      const double z = 1 - (2.0 * k + 1) / n, angle = k * std::numbers::pi * (3 - std::sqrt(5.0));
+      const double ring = std::sqrt(1 - z * z), polar = std::acos(z);
+      points.push_back({ring * std::cos(angle), ring * std::sin(angle), z});
+      u.push_back(polar * std::cos(angle)), v.push_back(polar * std::sin(angle));
+    }
+  }
+  Scene scene() const {
+    Scene scene;
+    scene.points = scene.normals = points;
+    scene.u = u, scene.v = v;
+    scene.source = {0, 0, 1};
+    return scene;
+  }
+};
+
+/// Radii at which light changes along a ray through the middle of a sector, in units of the patch.
+std::vector<double> ring_borders(const Pixels& pixels, double direction, double to) {
+  std::vector<double> borders;
+  double before = brightness(at_place(pixels, 0.11 * std::cos(direction), 0.11 * std::sin(direction)));
+  for (double r = 0.115; r < to; r += 0.005) {
+    const double now = brightness(at_place(pixels, r * std::cos(direction), r * std::sin(direction)));
+    if (std::abs(now - before) > 60) borders.push_back(r), r += 0.05;
+    before = brightness(at_place(pixels, r * std::cos(direction), r * std::sin(direction)));
+  }
+  return borders;
+}
+
+TEST(Renderer, RingsOfAPlaneLieAtWholeRingWidths) {
+  for (const bool is_mesh : {true, false}) {
+    const Patch patch(25, is_mesh);  // coarser than the rings are wide: the pattern is not that of single points
+    PictureOptions options = from_above();
+    options.ring_width = 0.15;
+    options.sectors = 4;
+    const std::vector<double> borders =
+        ring_borders(Pixels(draw_picture(patch.scene(), options)), 0.25 * std::numbers::pi, 0.95);
+    ASSERT_EQ(borders.size(), 6U) << is_mesh;
+    for (std::size_t k = 0; k < borders.size(); ++k)
+      EXPECT_NEAR(borders[k], 0.15 * (static_cast<double>(k) + 1), 0.012);
+  }
+}
+
+TEST(Renderer, RingsOfACloudAreAsCleanAsThoseOfTheMesh) {
+  const Patch cloud(30, false), mesh(30, true);
+  PictureOptions options = from_above();
+  options.ring_width = 0.2;
+  const Pixels a(draw_picture(cloud.scene(), options)), b(draw_picture(mesh.scene(), options));
+  int different = 0;
+  for (int y = 20; y < 280; ++y)
+    for (int x = 70; x < 330; ++x) different += std::abs(brightness(a(x, y)) - brightness(b(x, y))) > 60 ? 1 : 0;
+  EXPECT_LT(different, 260 * 260 / 200);
+}
+
+TEST(Renderer, HidesDotsSourceAndCurveBehindTheSurface) {
+  const Sphere sphere(4000);
+  const std::vector<Vec3> dots{{0, 0, -1}}, front{{0, 0, 1}}, curve{{0.1, 0, -0.99}, {-0.1, 0, -0.99}};
+  PictureOptions options = from_above();
+  Scene scene = sphere.scene();
+  scene.dots = dots;
+  scene.curve = curve;
+  scene.source = {0, 0, -1};
+  scene.source_axes = {{{1, 0, 0}, {0, 1, 0}, {0, 0, -1}}};
+  EXPECT_EQ(Pixels(draw_picture(scene, options)).count(is_source_red), 0);
+  scene.dots = front;
+  EXPECT_GT(Pixels(draw_picture(scene, options)).count(is_source_red), 10);
+  options.view_direction = {{0, 0, -1}};
+  EXPECT_GT(Pixels(draw_picture(scene, options)).count(is_source_red), 50);
+}
+
+TEST(Renderer, ADotOnThinGroundIsSeenFromAboveAlone) {
+  for (const bool is_mesh : {true, false}) {
+    const Patch patch(60, is_mesh);
+    const std::vector<Vec3> above{{0.5, 0.5, 0.03}}, below{{0.5, 0.5, -0.1}};
+    Scene scene = patch.scene();
+    scene.dots = above;
+    EXPECT_TRUE(is_source_red(at_place(Pixels(draw_picture(scene, from_above())), 0.5, 0.5)));
+    scene.dots = below;
+    EXPECT_FALSE(is_source_red(at_place(Pixels(draw_picture(scene, from_above())), 0.5, 0.5)));
+  }
+}
+
+TEST(Renderer, HatchesInGreyWhatIsNotToBeTrusted) {
+  for (const bool is_mesh : {true, false}) {
+    const Patch patch(40, is_mesh);
+    std::vector<double> quality;
+    for (const Vec3& p : patch.points) quality.push_back(p[0] < 0 ? 0.9 : 0.1);
+    Scene scene = patch.scene();
+    scene.source_axes.reset();
+    const Pixels trusted(draw_picture(scene, from_above()));
+    scene.quality = quality;
+    const Pixels pixels(draw_picture(scene, from_above()));
+    int coloured = 0, light = 0, dark = 0, all = 0;
+    for (double x = 0.1; x < 0.9; x += 0.02)
+      for (double y = -0.9; y < 0.9; y += 0.02) {
+        const Rgb right = at_place(pixels, x, y);
+        EXPECT_EQ(at_place(pixels, -x, y), at_place(trusted, -x, y));
+        ++all;
+        coloured += spread(right) > 45 ? 1 : 0;
+        light += brightness(right) > 400 ? 1 : 0, dark += brightness(right) < 380 ? 1 : 0;
+      }
+    EXPECT_LT(coloured, all / 50) << is_mesh;
+    EXPECT_GT(light, all / 5);
+    EXPECT_GT(dark, all / 5);
+  }
+}
+
+TEST(Renderer, DoesNotDependOnTheNumberOfThreads) {
+  const Sphere sphere(20'000);
+  const Patch patch(60, true);
+  for (const Scene& scene : {sphere.scene(), patch.scene()}) {
+    PictureOptions one, many;
+    one.threads = 1, many.threads = 7;
+    EXPECT_EQ(draw_picture(scene, one).rgba, draw_picture(scene, many).rgba);
+  }
+}
+
+TEST(Renderer, LeavesNoHolesBetweenTrianglesAndDiscs) {
+  for (const bool is_mesh : {true, false})
+    for (const int n : {3, 17, 90, 400}) {
+      const Patch patch(n, is_mesh);
+      const Pixels pixels(draw_picture(patch.scene(), from_above()));
+      for (int y = 20; y < 280; ++y)
+        for (int x = 70; x < 330; ++x) ASSERT_FALSE(is_white(pixels(x, y))) << n << ' ' << x << ' ' << y;
+    }
+}
+
+TEST(Renderer, CutsTrianglesThatReachBehindTheCamera) {
+  Patch patch(2, true);  // a square before the camera, and one corner far behind it
+  for (Vec3& p : patch.points)
+    if (p[0] > 0.5 && p[1] > 0.5) p[2] = 100;
+  PictureOptions options = from_above();
+  const std::vector<double> unmapped(patch.points.size(), std::numeric_limits<double>::quiet_NaN());
+  std::vector<double> u = unmapped;
+  for (std::size_t k : {0, 1, 3, 4}) u[k] = patch.u[k];
+  Scene scene = patch.scene();
+  scene.u = scene.v = u;
+  const Pixels pixels(draw_picture(scene, options));
+  EXPECT_GT(pixels.count([](const Rgb& c) { return !is_white(c); }), 400 * 300 / 4);
+}
+
+TEST(Renderer, DistancesRiseInBrightnessAndHaveABar) {
+  const Patch patch(60, true);
+  PictureOptions options = from_above();
+  options.width = 800, options.height = 600;
+  options.pattern = Pattern::distance;
+  options.ring_width = 10;  // no lines
+  Scene scene = patch.scene();
+  scene.source_axes.reset();
+  const Pixels pixels(draw_picture(scene, options));
+  const auto sum = [](const Rgb& c) { return 30 * c[0] + 59 * c[1] + 11 * c[2]; };
+  int before = 0;
+  for (int r = 30; r < 270; r += 10) {
+    const int now = sum(pixels(400 + r, 300));
+    EXPECT_GT(now, before) << r;
+    before = now;
+  }
+  int levels = 0, last = 0;  // the bar, from below
+  for (int y = 574; y > 426; y -= 4) {
+    const int now = sum(pixels(26, y));
+    EXPECT_GE(now, last) << y;
+    levels += now > last ? 1 : 0;
+    last = now;
+  }
+  EXPECT_GT(levels, 25);
+}
+
+TEST(Renderer, TheSurfaceAloneNeedsNoMap) {
+  Patch patch(20, true);
+  Scene scene = patch.scene();
+  scene.u = scene.v = {};
+  scene.source_axes.reset();
+  PictureOptions options = from_above();
+  options.pattern = Pattern::none;
+  const Pixels pixels(draw_picture(scene, options));
+  EXPECT_GT(pixels.count([](const Rgb& c) { return !is_white(c) && spread(c) < 25; }), 400 * 300 / 3);
+}
+
+}  // namespace
+}  // namespace ahm::view::test
