@@ -31,11 +31,11 @@ TEST(Options, UAxisTurnsTheFrame) {
   const std::vector<std::string> axes = {"u", "v", "normal"};
   for (std::size_t i = 0; i < 3; ++i)
     for (std::size_t a = 0; a < 3; ++a)
-      EXPECT_NEAR(frame.at(axes[i]).at(a).get<double>(), expected[i][a], 0.1) << axes[i];
+      EXPECT_NEAR(frame.at(axes[i]).at(a).get<double>(), expected[i][a], 1e-12) << axes[i];
   for (const Row& row : read_csv(folder / "map.csv"))
     if (row.distance > 0.3 && row.distance < 1.5) {
       EXPECT_NEAR(std::remainder(row.angle - std::atan2(-row.position[0], row.position[1]), 2 * std::numbers::pi), 0,
-                  0.3);
+                  0.05);
     }
 }
 
@@ -165,8 +165,8 @@ TEST(Options, EstimateRunsNothing) {
 TEST(ProgressBar, ShowsOnATerminalAndIsGoneAtTheEnd) {
   if (!has_terminals()) GTEST_SKIP() << "this system gives out no pseudo-terminals";
   Folder folder;
-  const auto input = folder.write("sphere.xyz", xyz(sphere(120000)));
-  const auto outcome = finish(start({"logmap", input, "--source", "0", "-o", folder / "map.csv"}, true));
+  const auto input = folder.write("sphere.xyz", xyz(sphere(60000)));
+  const auto outcome = finish_slowly(start({"logmap", input, "--source", "0", "-o", folder / "map.csv"}, true));
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_NE(outcome.err.find("["), std::string::npos) << "no bar in more than a second";
   const std::string clear = "\r\x1b[K";

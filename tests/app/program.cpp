@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <poll.h>
+#include <signal.h>
 #include <spawn.h>
 #include <stdlib.h>
 #include <sys/wait.h>
@@ -10,14 +11,17 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
-#include <numbers>
 #include <random>
 #include <sstream>
 #include <stdexcept>
+#include <thread>
+
+#include "ahm/testing/clouds.hpp"
 
 extern char** environ;
 
@@ -85,15 +89,48 @@ Running start(const std::vector<std::string>& arguments, bool on_terminal) {
   return running;
 }
 
-Outcome finish(Running running) {
-  Outcome outcome;
-  drain(running, outcome);
+namespace {
+
+/// Takes leave of a program whose outputs have ended.
+void reap(const Running& running, Outcome& outcome) {
   close(running.out);
   close(running.err);
   int status = 0;
   waitpid(running.pid, &status, 0);
   outcome.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+}  // namespace
+
+Outcome finish(Running running) {
+  Outcome outcome;
+  drain(running, outcome);
+  reap(running, outcome);
   return outcome;
+}
+
+Outcome finish_slowly(Running running) {
+  Outcome outcome;
+  {
+    const std::jthread brake([&](const std::stop_token& ended) {
+      for (int slice = 0; slice < 50 && !ended.stop_requested(); ++slice) {
+        kill(running.pid, SIGSTOP);
+        std::this_thread::sleep_for(std::chrono::milliseconds(200));
+        kill(running.pid, SIGCONT);
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+      }
+    });
+    drain(running, outcome);
+  }  // the brake is off before the process is taken leave of
+  reap(running, outcome);
+  return outcome;
+}
+
+std::string read_until(const Running& running, const std::string& word) {
+  std::string text;
+  char letter;
+  while (text.find(word) == std::string::npos && read(running.err, &letter, 1) == 1) text += letter;
+  return text;
 }
 
 Outcome run(const std::vector<std::string>& arguments) { return finish(start(arguments)); }
@@ -196,12 +233,8 @@ std::vector<Vec3> plane(int m) {
 }
 
 std::vector<Vec3> sphere(int n) {
-  const double golden = std::numbers::pi * (3 - std::sqrt(5.0));
-  std::vector<Vec3> points{{0, 0, 1}};
-  for (int i = 1; i < n; ++i) {
-    const double z = 1 - (2.0 * i + 1) / n, r = std::sqrt(1 - z * z);
-    points.push_back({r * std::cos(golden * i), r * std::sin(golden * i), z});
-  }
+  std::vector<Vec3> points = even_sphere(n).points;
+  points[0] = {0, 0, 1};
   return points;
 }
 

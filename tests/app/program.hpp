@@ -32,6 +32,11 @@ bool has_terminals();
 /// Starts the program with pipes at its outputs, or with a terminal at its standard error.
 Running start(const std::vector<std::string>& arguments, bool on_terminal = false);
 Outcome finish(Running running);
+/// The same with the program stopped ten times as long as it runs, as on a slow machine, for its first second of work.
+Outcome finish_slowly(Running running);
+
+/// Reads its standard error until a word has come, or the end.
+std::string read_until(const Running& running, const std::string& word);
 
 /// start, then finish.
 Outcome run(const std::vector<std::string>& arguments);

@@ -53,7 +53,7 @@ class GridMap : public testing::TestWithParam<Grid> {
 TEST_P(GridMap, IsTheIdentityFromEveryVertex) {
   for (Variant variant : {Variant::adaptive, Variant::localized})
     for (Index p : {Index{0}, grid.size() / 3, grid.size() / 2, grid.size() - 1})
-      expect_identity(solver.solve(Source::at_vertex(p), {.variant = variant}), at(p));
+      expect_identity(solver.solve(Source::at_vertex(Vertex(p)), {.variant = variant}), at(p));
 }
 
 TEST_P(GridMap, IsTheIdentityFromEveryPoint) {
@@ -110,7 +110,7 @@ TEST(GridMarch, IsTheIdentityInSpace) {
   const Vertex p = grid.vertex(std::array<Index, 3>{3, 14, 11});
   const LogMapSolver solver(grid, {}, {.strategy = Strategy::march});
   for (Variant variant : {Variant::adaptive, Variant::localized}) {
-    const LogMap map = solver.solve(Source::at_vertex(p), {.variant = variant});
+    const LogMap map = solver.solve(Source::at_vertex(Vertex(p)), {.variant = variant});
     EXPECT_GT(map.march().bands, 3);
     for (Index i = 0; i < grid.size(); ++i)
       for (int a = 0; a < 3; ++a)

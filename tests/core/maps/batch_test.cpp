@@ -26,23 +26,6 @@ bool same_bits(const LogMap& a, const LogMap& b) {
          std::equal(a.status().begin(), a.status().end(), b.status().begin(), b.status().end());
 }
 
-TEST_F(Batch, GivesTheSameMapsAsOneSourceAtATime) {
-  for (Variant variant : {Variant::adaptive, Variant::localized}) {
-    const auto maps = solver.solve(sources, {.variant = variant});
-    ASSERT_EQ(maps.size(), sources.size());
-    for (std::size_t s = 0; s < sources.size(); ++s) {
-      const LogMap single = solver.solve(sources[s], {.variant = variant});
-      for (std::size_t k = 0; k < single.coordinates().size(); ++k)
-        ASSERT_NEAR(maps[s].coordinates()[k], single.coordinates()[k], 1e-12);
-    }
-  }
-}
-
-TEST_F(Batch, DoesNotDependOnTheNumberOfThreads) {
-  const auto one = solver.solve(sources, {.threads = 1}), many = solver.solve(sources, {.threads = 5});
-  for (std::size_t s = 0; s < sources.size(); ++s) ASSERT_TRUE(same_bits(one[s], many[s]));
-}
-
 TEST_F(Batch, SolvesFromManyThreadsAtOnce) {
   std::vector<LogMap> expected;
   for (const Source& source : sources) expected.push_back(solver.solve(source, {.threads = 1}));

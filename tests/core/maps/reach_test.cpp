@@ -11,7 +11,6 @@
 #include "ahm/fields/vector_heat.hpp"
 #include "ahm/maps/log_map_solver.hpp"
 #include "ahm/testing/flat_graphs.hpp"
-#include "ahm/testing/graph_changes.hpp"
 
 namespace ahm::test {
 namespace {
@@ -83,25 +82,6 @@ TEST(Reach, GrowsWithTheDiffusionTime) {
   const CsrGraph graph(flat.data);
   const LogMap map = LogMapSolver(graph, {.t_coef = 64.0}).solve(Source::at_vertex(Vertex{1}));
   EXPECT_EQ(map.count(Status::ok), flat.size());
-}
-
-TEST(Reach, MasksOtherComponentsAndLeavesTheSourcesAlone) {
-  const FlatGraph flat = planar_triangulation(10);
-  const CsrGraph one(flat.data), two(doubled(flat.data));
-  const LogMapSolver alone(one), solver(two);
-  EXPECT_EQ(solver.operators().component_count(), 2);
-  for (Variant variant : {Variant::adaptive, Variant::localized}) {
-    const LogMap expected = alone.solve(Source::at_vertex(Vertex{7}), {.variant = variant});
-    const LogMap map = solver.solve(Source::at_vertex(Vertex(7 + flat.size())), {.variant = variant});
-    expect_nan_exactly_where_not_ok(map);
-    EXPECT_EQ(map.count(Status::disconnected), flat.size());
-    for (Index i = 0; i < flat.size(); ++i) {
-      ASSERT_EQ(map.status(Vertex(i)), Status::disconnected);
-      ASSERT_EQ(map.status(Vertex(i + flat.size())), Status::ok);
-      for (int a = 0; a < 2; ++a)
-        ASSERT_NEAR(map.coordinates(Vertex(i + flat.size()))[a], expected.coordinates(Vertex(i))[a], 1e-11);
-    }
-  }
 }
 
 TEST(Reach, TakesEdgesWithoutWeightForNoConnection) {

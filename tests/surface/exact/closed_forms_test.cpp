@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "ahm/testing/paper_band.hpp"
 #include "polyhedra.hpp"
 
 namespace ahm::test {
@@ -19,9 +20,10 @@ TEST(ExactMap, UnrollsConesAboutSharpAndSaddleApexes) {
         trimesh::TriangleMesh::from_edge_lengths(static_cast<Index>(cone.polar.size()), cone.faces, cone.lengths);
     const PolyhedralSurface surface = surface_of(mesh);
     for (Index source : {0, 30, 100}) {
-      const ExactMap map = exact::exact_map(surface, surface.vertex_point(source));
+      const ExactMap map = exact::exact_map(surface, surface.vertex_point(Vertex(source)));
       for (Index v = 0; v < map.size(); ++v)
-        EXPECT_NEAR(map.distance(v) * mesh.length_unit(), cone.distance(source, v), 1e-12) << angle << ' ' << source;
+        EXPECT_NEAR(map.distance(Vertex(v)) * mesh.length_unit(), cone.distance(source, v), 1e-12)
+            << angle << ' ' << source;
     }
   }
 }
@@ -31,11 +33,11 @@ TEST(ExactMap, ScalesTheDirectionsAboutAnApexToAFullTurn) {
   const auto mesh =
       trimesh::TriangleMesh::from_edge_lengths(static_cast<Index>(cone.polar.size()), cone.faces, cone.lengths);
   const PolyhedralSurface surface = surface_of(mesh);
-  const ExactMap map = exact::exact_map(surface, surface.vertex_point(0));
-  const double first = map.direction(1);
+  const ExactMap map = exact::exact_map(surface, surface.vertex_point(Vertex(0)));
+  const double first = map.direction(Vertex(1));
   for (Index v = 1; v < map.size(); ++v) {
     const double turn = 2 * 3.14159265358979323846, expected = first + cone.polar[v][1] * turn / cone.angle;
-    EXPECT_NEAR(std::remainder(map.direction(v) - expected, turn), 0, 1e-12);
+    EXPECT_NEAR(std::remainder(map.direction(Vertex(v)) - expected, turn), 0, 1e-12);
   }
 }
 
@@ -60,7 +62,7 @@ TEST(ExactMap, GoesThroughTheTwistOfAPaperBand) {
   ASSERT_FALSE(mesh.report().orientable);
   const PolyhedralSurface surface = surface_of(mesh);
   for (Index source = 0; source < surface.vertex_count(); source += 4) {
-    const ExactMap map = exact::exact_map(surface, surface.vertex_point(source));
+    const ExactMap map = exact::exact_map(surface, surface.vertex_point(Vertex(source)));
     auto seen = [&](Index v) { return seen_in_band(band.plane[source], band.plane[v]); };
     const exact::Corner first = surface.first_corner(source);
     const auto& r = surface.record(first.half);
@@ -69,9 +71,9 @@ TEST(ExactMap, GoesThroughTheTwistOfAPaperBand) {
     for (Index v = 0; v < map.size(); ++v) {
       if (v == source) continue;
       const Vec2 d = seen(v);
-      EXPECT_NEAR(map.distance(v) * mesh.length_unit(), std::hypot(d[0], d[1]), 1e-12);
+      EXPECT_NEAR(map.distance(Vertex(v)) * mesh.length_unit(), std::hypot(d[0], d[1]), 1e-12);
       const double turned =
-          std::remainder(map.direction(v) - sense * angle_between(seen(right), d), 2 * std::numbers::pi);
+          std::remainder(map.direction(Vertex(v)) - sense * angle_between(seen(right), d), 2 * std::numbers::pi);
       EXPECT_NEAR(turned, 0, 1e-11) << source << ' ' << v;
     }
   }

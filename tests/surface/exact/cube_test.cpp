@@ -37,6 +37,33 @@ Mesh cube(Index parts) {
   return mesh;
 }
 
+/// The unit cube, four of its sides cut into needles that run across it: rows of vertices in a line, as CAD has them.
+Mesh needle_cube(Index strips) {
+  Mesh mesh;
+  const double corner[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+  for (Index i = 0; i <= strips; ++i)
+    for (const auto& c : corner) mesh.positions.push_back({static_cast<double>(i) / strips, c[0], c[1]});
+  for (Index i = 0; i < strips; ++i)
+    for (Index k = 0; k < 4; ++k) {
+      const Index a = 4 * i + k, b = 4 * i + (k + 1) % 4, c = b + 4, d = a + 4;
+      mesh.faces.push_back({a, c, b});
+      mesh.faces.push_back({a, d, c});
+    }
+  const Index end = 4 * strips;
+  mesh.faces.insert(mesh.faces.end(), {{0, 1, 2}, {0, 2, 3}, {end, end + 2, end + 1}, {end, end + 3, end + 2}});
+  return mesh;
+}
+
+/// By some angle about every axis: no coordinate is a round number afterwards.
+Vec3 turned_in_space(Vec3 p) {
+  for (int k = 0; k < 3; ++k) {
+    const double c = std::cos(0.3 + k), s = std::sin(0.3 + k), x = p[k], y = p[(k + 1) % 3];
+    p[k] = c * x - s * y;
+    p[(k + 1) % 3] = s * x + c * y;
+  }
+  return p;
+}
+
 double dot3(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 Vec3 axis_vector(int axis, double sign) {
   Vec3 v{0, 0, 0};
@@ -118,18 +145,85 @@ TEST(ExactMap, AgreesWithTheRolledCube) {
   const double unit = solid.mesh.length_unit();
   RollingCube rolling;
   for (Index source : {0, 3, 17, 40, 88}) {
-    const exact::ExactMap map = exact::exact_map(solid.surface, solid.surface.vertex_point(source));
+    const exact::ExactMap map = exact::exact_map(solid.surface, solid.surface.vertex_point(Vertex(source)));
     for (Index v = 0; v < map.size(); ++v)
-      EXPECT_NEAR(map.distance(v) * unit, rolling.distance(mesh.positions[source], mesh.positions[v]), 1e-12)
+      EXPECT_NEAR(map.distance(Vertex(v)) * unit, rolling.distance(mesh.positions[source], mesh.positions[v]), 1e-12)
           << source << ' ' << v;
+  }
+}
+
+TEST(ExactMap, AgreesWithTheRolledCubeInNeedles) {
+  for (Index strips : {7, 60}) {
+    const Mesh mesh = needle_cube(strips);
+    Mesh turned = mesh;
+    for (Vec3& p : turned.positions) p = turned_in_space(p);
+    const Polyhedron solid(turned);
+    const double unit = solid.mesh.length_unit();
+    std::mt19937_64 random(6);
+    exact::ExactOptions options;
+    for (int k = 0; k < 60; ++k) options.targets.push_back(random_point(solid.surface, random));
+    // Inside faces the plane of a side is met by rounding only.
+    auto on_cube = [&](const exact::MeshPoint& point) {
+      Vec3 p{0, 0, 0};
+      const Triangle& face = mesh.faces[point.face];
+      for (int s = 0; s < 3; ++s)
+        for (int a = 0; a < 3; ++a)
+          p[a] += point.barycentric[solid.mesh.stored_corner(point.face, s)] * mesh.positions[face[s]][a];
+      for (double& x : p) x = std::abs(x) < 1e-14 ? 0 : std::abs(x - 1) < 1e-14 ? 1 : x;
+      return p;
+    };
+    RollingCube rolling;
+    for (int trial = 0; trial < 12; ++trial) {
+      const exact::MeshPoint source =
+          trial < 4 ? solid.surface.vertex_point(Vertex(5 * trial + 1)) : options.targets[trial];
+      const exact::ExactMap map = exact::exact_map(solid.surface, source, options);
+      for (Index v = 0; v < map.size(); ++v) {
+        EXPECT_NEAR(map.distance(Vertex(v)) * unit, rolling.distance(on_cube(source), mesh.positions[v]), 1e-12);
+        const exact::GeodesicPath path = exact::path_to_vertex(solid.surface, map, Vertex(v));
+        EXPECT_NEAR(solid.length(path.points), path.length, 1e-12) << strips << ' ' << trial << ' ' << v;
+      }
+      for (std::size_t k = 0; k < map.targets(); ++k) {
+        EXPECT_NEAR(map.target_distance(k) * unit, rolling.distance(on_cube(source), on_cube(options.targets[k])),
+                    1e-12);
+        const exact::GeodesicPath path = exact::path_to_target(solid.surface, map, k);
+        EXPECT_NEAR(solid.length(path.points), path.length, 1e-12) << strips << ' ' << trial << ' ' << k;
+      }
+    }
+  }
+}
+
+TEST(ExactMap, IsMadeOfRealPathsOnNeedlesOfRoundedCoordinates) {
+  // Rows of vertices that are in a line but for the last digits of single precision.
+  for (Index strips : {7, 60}) {
+    Mesh mesh = needle_cube(strips);
+    for (Vec3& p : mesh.positions) {
+      p = turned_in_space({p[0], 0.3 * p[1], 0.7 * p[2]});
+      for (double& x : p) x = static_cast<float>(x);
+    }
+    const Polyhedron solid(mesh);
+    std::mt19937_64 random(8);
+    for (int trial = 0; trial < 30; ++trial) {
+      const exact::MeshPoint p =
+          trial < 10 ? solid.surface.vertex_point(Vertex(trial)) : random_point(solid.surface, random);
+      const exact::MeshPoint q = random_point(solid.surface, random);
+      const exact::GeodesicPath there = exact::geodesic_path(solid.surface, p, q),
+                                back = exact::geodesic_path(solid.surface, q, p);
+      EXPECT_NEAR(there.length, back.length, 1e-12) << strips << ' ' << trial;
+      EXPECT_NEAR(solid.length(there.points), there.length, 1e-12) << strips << ' ' << trial;
+      const exact::ExactMap map = exact::exact_map(solid.surface, p);
+      for (Index v = 0; v < map.size(); ++v)
+        EXPECT_NEAR(solid.length(exact::path_to_vertex(solid.surface, map, Vertex(v)).points), map.distance(Vertex(v)),
+                    1e-12);
+    }
   }
 }
 
 TEST(ExactMap, ReachesTheOppositeCornerOfACubeLast) {
   const Polyhedron solid(cube(4));
-  const exact::ExactMap map = exact::exact_map(solid.surface, solid.surface.vertex_point(0));
+  const exact::ExactMap map = exact::exact_map(solid.surface, solid.surface.vertex_point(Vertex(0)));
   double farthest = 0;
-  for (Index v = 0; v < map.size(); ++v) farthest = std::max(farthest, map.distance(v) * solid.mesh.length_unit());
+  for (Index v = 0; v < map.size(); ++v)
+    farthest = std::max(farthest, map.distance(Vertex(v)) * solid.mesh.length_unit());
   EXPECT_NEAR(farthest, std::sqrt(5.0), 1e-13);
 }
 

@@ -70,9 +70,9 @@ TEST(PolyhedralSurface, KeepsCapsThatAreNearlyFlat) {
   for (const Vec2& p : mesh.plane) mesh.positions.push_back({p[0], p[1], 0});
   const Polyhedron solid(mesh);
   for (Index a = 0; a < 5; ++a) {
-    const exact::ExactMap map = exact::exact_map(solid.surface, solid.surface.vertex_point(a));
+    const exact::ExactMap map = exact::exact_map(solid.surface, solid.surface.vertex_point(Vertex(a)));
     for (Index b = 0; b < 5; ++b)
-      EXPECT_NEAR(map.distance(b), distance(solid.mesh.position(a), solid.mesh.position(b)), 1e-15);
+      EXPECT_NEAR(map.distance(Vertex(b)), distance(solid.mesh.position(a), solid.mesh.position(b)), 1e-15);
   }
 }
 
@@ -94,7 +94,7 @@ TEST(ExactMap, RefusesArgumentsOutOfRange) {
   EXPECT_THROW(exact::trace(surface, {0, {0.2, 0.3, 0.5}}, 0, -1), InvalidArgument);
   EXPECT_THROW(exact::trace(surface, {0, {1, 0, 0}}, 3, 1), InvalidArgument);
   const exact::ExactMap map = exact::exact_map(surface, MeshPoint{});
-  EXPECT_THROW(exact::path_to_vertex(surface, map, 4), InvalidArgument);
+  EXPECT_THROW(exact::path_to_vertex(surface, map, Vertex(4)), InvalidArgument);
   EXPECT_THROW(exact::path_to_target(surface, map, 0), InvalidArgument);
 }
 

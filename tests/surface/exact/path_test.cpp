@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "ahm/error.hpp"
 #include "polyhedra.hpp"
 
 namespace ahm::test {
@@ -22,11 +23,11 @@ std::vector<Mesh> shapes() {
 TEST(GeodesicPath, IsAsLongAsTheExactDistance) {
   for (const Mesh& mesh : shapes()) {
     const Polyhedron solid(mesh);
-    const ExactMap map = exact::exact_map(solid.surface, solid.surface.vertex_point(11));
+    const ExactMap map = exact::exact_map(solid.surface, solid.surface.vertex_point(Vertex(11)));
     for (Index v = 0; v < map.size(); ++v) {
-      const GeodesicPath path = exact::path_to_vertex(solid.surface, map, v);
-      EXPECT_EQ(path.length, map.distance(v));
-      EXPECT_NEAR(solid.length(path.points), map.distance(v), 1e-12);
+      const GeodesicPath path = exact::path_to_vertex(solid.surface, map, Vertex(v));
+      EXPECT_EQ(path.length, map.distance(Vertex(v)));
+      EXPECT_NEAR(solid.length(path.points), map.distance(Vertex(v)), 1e-12);
       EXPECT_LT(distance(solid.position(path.points.front()), solid.mesh.position(11)), 1e-15);
       EXPECT_LT(distance(solid.position(path.points.back()), solid.mesh.position(v)), 1e-15);
     }
@@ -76,21 +77,38 @@ TEST(GeodesicPath, IsTheSameCurveTurnedRound) {
   }
 }
 
+TEST(GeodesicPath, IsTheSumOfItsLegsThroughStopsAndBack) {
+  const Polyhedron solid(icosphere(7));
+  std::mt19937_64 random(12);
+  std::vector<MeshPoint> stops;
+  for (int k = 0; k < 4; ++k) stops.push_back(random_point(solid.surface, random));
+  double sum = 0;
+  for (std::size_t k = 0; k < 3; ++k) sum += exact::geodesic_path(solid.surface, stops[k], stops[k + 1]).length;
+  const GeodesicPath open = exact::geodesic_path(solid.surface, stops);
+  EXPECT_NEAR(open.length, sum, 1e-13);
+  EXPECT_NEAR(solid.length(open.points), sum, 1e-12);
+  const GeodesicPath loop = exact::geodesic_path(solid.surface, stops, true);
+  EXPECT_NEAR(loop.length, sum + exact::geodesic_path(solid.surface, stops[3], stops[0]).length, 1e-13);
+  EXPECT_LT(distance(solid.position(loop.points.front()), solid.position(loop.points.back())), 1e-15);
+  EXPECT_EQ(loop.start_direction, open.start_direction);
+  EXPECT_THROW(exact::geodesic_path(solid.surface, std::span(stops).first(1)), InvalidArgument);
+}
+
 TEST(Trace, FollowsTheShortestPathToItsEnd) {
   for (const Mesh& mesh : shapes()) {
     const Polyhedron solid(mesh);
     std::mt19937_64 random(9);
-    for (const MeshPoint& from : {solid.surface.vertex_point(11), random_point(solid.surface, random)}) {
+    for (const MeshPoint& from : {solid.surface.vertex_point(Vertex(11)), random_point(solid.surface, random)}) {
       const ExactMap map = exact::exact_map(solid.surface, from);
       Index straight = 0;
       for (Index v = 0; v < map.size(); ++v) {
-        const GeodesicPath path = exact::path_to_vertex(solid.surface, map, v);
+        const GeodesicPath path = exact::path_to_vertex(solid.surface, map, Vertex(v));
         const bool bends = std::any_of(path.points.begin() + 1, path.points.end() - 1,
                                        [](const MeshPoint& p) { return std::ranges::max(p.barycentric) > 1 - 1e-9; });
         if (bends || path.points.size() < 2) continue;
         ++straight;
-        const TracedPath ray = exact::trace(solid.surface, from, map.direction(v), map.distance(v));
-        EXPECT_NEAR(ray.length, map.distance(v), 1e-12);
+        const TracedPath ray = exact::trace(solid.surface, from, map.direction(Vertex(v)), map.distance(Vertex(v)));
+        EXPECT_NEAR(ray.length, map.distance(Vertex(v)), 1e-12);
         EXPECT_LT(distance(solid.position(ray.points.back()), solid.mesh.position(v)), 1e-9);
       }
       EXPECT_GT(straight, 5);
@@ -118,9 +136,10 @@ TEST(Trace, PassesAVertexWithEqualAnglesOnBothSides) {
         trimesh::TriangleMesh::from_edge_lengths(static_cast<Index>(cone.polar.size()), cone.faces, cone.lengths);
     const auto surface = surface_of(mesh);
     const Index start = 1 + 3 * 24;  // radius 0.8, angle 0
-    const ExactMap map = exact::exact_map(surface, surface.vertex_point(start));
+    const ExactMap map = exact::exact_map(surface, surface.vertex_point(Vertex(start)));
     const double unit = mesh.length_unit();
-    const TracedPath ray = exact::trace(surface, surface.vertex_point(start), map.direction(0), 1.2 / unit);
+    const TracedPath ray =
+        exact::trace(surface, surface.vertex_point(Vertex(start)), map.direction(Vertex(0)), 1.2 / unit);
     ASSERT_EQ(ray.end, TraceEnd::complete);
     const MeshPoint& end = ray.points.back();
     int corner = static_cast<int>(std::ranges::max_element(end.barycentric) - end.barycentric.begin());
@@ -137,8 +156,8 @@ TEST(Trace, ComesBackAfterAFullTurnOfTheEquator) {
   mesh.positions = {{1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
   mesh.faces = {{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}, {1, 0, 5}, {2, 1, 5}, {3, 2, 5}, {0, 3, 5}};
   const Polyhedron solid(mesh);
-  const ExactMap map = exact::exact_map(solid.surface, solid.surface.vertex_point(0));
-  const TracedPath ray = exact::trace(solid.surface, solid.surface.vertex_point(0), map.direction(1),
+  const ExactMap map = exact::exact_map(solid.surface, solid.surface.vertex_point(Vertex(0)));
+  const TracedPath ray = exact::trace(solid.surface, solid.surface.vertex_point(Vertex(0)), map.direction(Vertex(1)),
                                       4 * std::sqrt(2.0) / solid.mesh.length_unit());
   EXPECT_EQ(ray.end, TraceEnd::complete);
   EXPECT_LT(distance(solid.position(ray.points.back()), solid.mesh.position(0)), 1e-12);

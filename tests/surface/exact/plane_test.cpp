@@ -17,16 +17,16 @@ double cross(const Vec2& a, const Vec2& b) { return a[0] * b[1] - a[1] * b[0]; }
 
 /// Largest difference between a vertex's map and the plane seen from it, along its first edge.
 double plane_error(const Mesh& mesh, const Polyhedron& solid, Index source) {
-  const ExactMap map = exact::exact_map(solid.surface, solid.surface.vertex_point(source));
+  const ExactMap map = exact::exact_map(solid.surface, solid.surface.vertex_point(Vertex(source)));
   const Index ahead = solid.surface.record(solid.surface.first_corner(source).half).head;
   const Vec2 u = minus(mesh.plane[ahead], mesh.plane[source]);
   const double length = std::hypot(u[0], u[1]), unit = solid.mesh.length_unit();
   double worst = 0;
   for (Index v = 0; v < map.size(); ++v) {
-    const Vec2 d = minus(mesh.plane[v], mesh.plane[source]), uv = map.coordinates(v);
+    const Vec2 d = minus(mesh.plane[v], mesh.plane[source]), uv = map.coordinates(Vertex(v));
     worst = std::max({worst, std::abs(uv[0] * unit - (d[0] * u[0] + d[1] * u[1]) / length),
                       std::abs(uv[1] * unit - cross(u, d) / length)});
-    EXPECT_EQ(map.status(v), Status::ok);
+    EXPECT_EQ(map.status(Vertex(v)), Status::ok);
   }
   return worst;
 }
@@ -108,10 +108,10 @@ TEST(ExactMap, BendsAroundHoles) {
     const Polyhedron solid(mesh);
     const VisibilityGraph graph(mesh, solid.surface);
     for (Index source : {0, 40, 90}) {
-      const ExactMap map = exact::exact_map(solid.surface, solid.surface.vertex_point(source));
+      const ExactMap map = exact::exact_map(solid.surface, solid.surface.vertex_point(Vertex(source)));
       const std::vector<double> expected = graph.distances(source);
       for (Index v = 0; v < map.size(); ++v)
-        EXPECT_NEAR(map.distance(v) * solid.mesh.length_unit(), expected[v], 1e-12)
+        EXPECT_NEAR(map.distance(Vertex(v)) * solid.mesh.length_unit(), expected[v], 1e-12)
             << seed << ' ' << source << ' ' << v;
     }
   }
@@ -121,10 +121,10 @@ TEST(ExactMap, FollowsTheCorridorsOfAMaze) {
   const Mesh mesh = maze(3);
   const Polyhedron solid(mesh);
   const VisibilityGraph graph(mesh, solid.surface);
-  const ExactMap map = exact::exact_map(solid.surface, solid.surface.vertex_point(0));
+  const ExactMap map = exact::exact_map(solid.surface, solid.surface.vertex_point(Vertex(0)));
   const std::vector<double> expected = graph.distances(0);
   for (Index v = 0; v < map.size(); ++v)
-    EXPECT_NEAR(map.distance(v) * solid.mesh.length_unit(), expected[v], 1e-12) << v;
+    EXPECT_NEAR(map.distance(Vertex(v)) * solid.mesh.length_unit(), expected[v], 1e-12) << v;
 }
 
 TEST(ExactMap, KnowsTargetsAsThePlaneDoes) {

@@ -84,12 +84,12 @@ class MapBuilder {
   ExactMap map_;
 };
 
-Vec2 ExactMap::coordinates(Index row) const {
+Vec2 ExactMap::coordinates_at(std::size_t row) const {
   return {distance_[row] * std::cos(direction_[row]), distance_[row] * std::sin(direction_[row])};
 }
 
-Index ExactMap::source(Index vertex) const {
-  const Index origin = arrival_[vertex].origin;
+Index ExactMap::source(Vertex vertex) const {
+  const Index origin = arrival_[vertex.index].origin;
   return origin < 0 ? -1 : origins_[origin].source;
 }
 

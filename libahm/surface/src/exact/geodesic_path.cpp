@@ -22,8 +22,8 @@ constexpr double vertex_margin = 1e-12, graze_margin = 1e-10;
 
 double positive_angle(double angle) { return angle < 0 ? angle + 2 * pi : angle; }
 
-/// The angle at which a line leaves a vertex, which it starts at in the frame of a corner's half-edge, or that of its
-/// continuation backwards, from the right side of the first corner. True, not scaled.
+/// The true angle, from the right side of the first corner, at which a vertex sees a place in one of its faces.
+/// @param corner   the half-edge of the face that starts at the vertex; the place is in its frame
 double angle_at_vertex(const PolyhedralSurface& surface, Half corner, Place towards) {
   const double width = surface.angle(corner), within = std::clamp(std::atan2(towards.y, towards.x), 0.0, width);
   double turned = 0;
@@ -39,7 +39,7 @@ class Backwards {
   Backwards(const PolyhedralSurface& surface, const ExactMap& map) : surface_(surface), map_(map) {}
 
   GeodesicPath to_vertex(Index vertex) {
-    const Arrival& in = map_.arrival(vertex);
+    const Arrival& in = map_.arrival(Vertex{vertex});
     if (in.half >= 0) {
       const Half corner = previous(in.half);
       path_.end_direction =
@@ -47,7 +47,7 @@ class Backwards {
           surface_.angle_scale(vertex);
       back_from(vertex);
     }
-    return finish(in.origin, map_.distance(vertex), map_.direction(vertex));
+    return finish(in.origin, map_.distance(Vertex{vertex}), map_.direction(Vertex{vertex}));
   }
 
   GeodesicPath to_target(std::size_t k) {
@@ -63,10 +63,10 @@ class Backwards {
  private:
   /// From a vertex back to the source, which is not added; -1: that is where the path is.
   void back_from(Index vertex) {
-    while (vertex >= 0 && map_.arrival(vertex).half >= 0) {
-      path_.points.push_back(surface_.vertex_point(vertex));
-      const Arrival& in = map_.arrival(vertex);
-      vertex = piece(in, apex(surface_.record(in.half)), map_.distance(vertex), true);
+    while (vertex >= 0 && map_.arrival(Vertex{vertex}).half >= 0) {
+      path_.points.push_back(surface_.vertex_point(Vertex{vertex}));
+      const Arrival& in = map_.arrival(Vertex{vertex});
+      vertex = piece(in, apex(surface_.record(in.half)), map_.distance(Vertex{vertex}), true);
     }
   }
 
@@ -99,7 +99,7 @@ class Backwards {
     const bool at_tail = exit.along < graze_margin * r.length;
     if (!at_tail && exit.along < (1 - graze_margin) * r.length) return -1;
     const Index vertex = at_tail ? r.tail : r.head;
-    const double left = map_.distance(vertex), margin = 1e-9 * end_distance;
+    const double left = map_.distance(Vertex{vertex}), margin = 1e-9 * end_distance;
     return left < end_distance && std::abs(left + exit.walked - end_distance) <= margin ? vertex : -1;
   }
 
@@ -142,7 +142,7 @@ class Tracer {
         const Half corner = at_tail ? exit.side : next(exit.side);
         const Index vertex = surface_.record(corner).tail;
         if (surface_.on_boundary(vertex))
-          return end(TraceEnd::boundary, line, exit.walked, surface_.vertex_point(vertex));
+          return end(TraceEnd::boundary, line, exit.walked, surface_.vertex_point(Vertex{vertex}));
         line = through_vertex(line, corner, exit.walked);
         exit = leave_corner(line);
         continue;
@@ -176,7 +176,7 @@ class Tracer {
     const double in = angle_at_vertex(surface_, corner, {-seen.direction.x, -seen.direction.y});
     done_ += walked;
     left_ -= walked;
-    path_.points.push_back(surface_.vertex_point(vertex));
+    path_.points.push_back(surface_.vertex_point(Vertex{vertex}));
     return line_from_vertex(surface_, vertex, in < sum / 2 ? in + sum / 2 : in - sum / 2);
   }
 
@@ -188,12 +188,12 @@ class Tracer {
 
 }  // namespace
 
-GeodesicPath path_to_vertex(const PolyhedralSurface& surface, const ExactMap& map, Index vertex) {
-  if (vertex < 0 || vertex >= map.size() || map.size() != surface.vertex_count())
-    throw InvalidArgument("vertex " + std::to_string(vertex) + " is outside [0, " + std::to_string(map.size()) +
+GeodesicPath path_to_vertex(const PolyhedralSurface& surface, const ExactMap& map, Vertex vertex) {
+  if (vertex.index < 0 || vertex.index >= map.size() || map.size() != surface.vertex_count())
+    throw InvalidArgument("vertex " + std::to_string(vertex.index) + " is outside [0, " + std::to_string(map.size()) +
                           "), or the map is of another surface");
   if (map.status(vertex) != Status::ok) return without_points(map.status(vertex));
-  return Backwards(surface, map).to_vertex(vertex);
+  return Backwards(surface, map).to_vertex(vertex.index);
 }
 
 GeodesicPath path_to_target(const PolyhedralSurface& surface, const ExactMap& map, std::size_t target) {
@@ -213,6 +213,21 @@ GeodesicPath geodesic_path(const PolyhedralSurface& surface, const MeshPoint& fr
   return path_to_target(surface, exact_map(surface, from, options), 0);
 }
 
+GeodesicPath geodesic_path(const PolyhedralSurface& surface, std::span<const MeshPoint> stops, bool closed) {
+  if (stops.size() < 2)
+    throw InvalidArgument("'stops' has " + std::to_string(stops.size()) + " points; a path needs 2");
+  GeodesicPath path = geodesic_path(surface, stops[0], stops[1]);
+  const std::size_t legs = stops.size() - (closed ? 0 : 1);
+  for (std::size_t k = 1; k < legs && path.status == Status::ok; ++k) {
+    const GeodesicPath leg = geodesic_path(surface, stops[k], stops[(k + 1) % stops.size()]);
+    if (leg.status != Status::ok) return without_points(leg.status);
+    path.points.insert(path.points.end(), leg.points.begin() + 1, leg.points.end());
+    path.length += leg.length;
+    path.end_direction = leg.end_direction;
+  }
+  return path;
+}
+
 TracedPath trace(const PolyhedralSurface& surface, const MeshPoint& from, double direction, double length) {
   const MeshPoint start = checked(surface, from, "from");
   if (!std::isfinite(direction)) throw InvalidArgument("'direction' is not finite");
@@ -229,7 +244,7 @@ TracedPath trace(const PolyhedralSurface& surface, const MeshPoint& from, double
   if (angle < -1e-9 || angle > sum + 1e-9)
     throw InvalidArgument("'direction' " + detail::number(direction) + " at boundary vertex " + std::to_string(vertex) +
                           " must be in [0, " + detail::number(sum) + "]");
-  return Tracer(surface, length).from(surface.vertex_point(vertex), line_from_vertex(surface, vertex, angle));
+  return Tracer(surface, length).from(surface.vertex_point(Vertex{vertex}), line_from_vertex(surface, vertex, angle));
 }
 
 }  // namespace ahm::exact

@@ -1,3 +1,4 @@
+#include "ahm/util/disjoint_sets.hpp"
 #include "ahm/surface/exact/polyhedral_surface.hpp"
 
 #include <algorithm>
@@ -190,8 +191,11 @@ double PolyhedralSurface::turned(Corner corner) const {
   return sum;
 }
 
-MeshPoint PolyhedralSurface::vertex_point(Index v) const {
-  const Half h = corner_.at(static_cast<std::size_t>(v)).half;
+MeshPoint PolyhedralSurface::vertex_point(Vertex vertex) const {
+  if (vertex.index < 0 || vertex.index >= vertex_count())
+    throw InvalidArgument("vertex " + std::to_string(vertex.index) + " is outside [0, " +
+                          std::to_string(vertex_count()) + ")");
+  const Half h = corner_[vertex.index].half;
   MeshPoint point{h / 3, {0, 0, 0}};
   point.barycentric[h % 3] = 1;
   return point;

@@ -2,8 +2,8 @@
 /// Exact geodesic distances and log maps of polyhedral surfaces.
 ///
 /// \code
-/// ahm::exact::ExactMap map = ahm::exact::exact_map(surface, {surface.vertex_point(42)});
-/// if (map.status(i) == ahm::Status::ok) std::cout << map.distance(i) << ' ' << map.coordinates(i)[0] << '\n';
+/// ahm::exact::ExactMap map = ahm::exact::exact_map(surface, surface.vertex_point(ahm::Vertex{42}));
+/// if (map.status(v) == ahm::Status::ok) std::cout << map.distance(v) << ' ' << map.coordinates(v)[0] << '\n';
 /// \endcode
 #pragma once
 
@@ -54,30 +54,30 @@ struct ExactStatistics {
 class ExactMap {
  public:
   Index size() const noexcept { return static_cast<Index>(vertices_); }
-  Status status(Index vertex) const { return status_[vertex]; }
+  Status status(Vertex vertex) const { return status_[vertex.index]; }
   std::span<const Status> status() const noexcept { return std::span(status_).first(vertices_); }
 
   /// Length of the shortest path from the nearest source; NaN where the status is not ok. World units.
-  double distance(Index vertex) const { return distance_[vertex]; }
+  double distance(Vertex vertex) const { return distance_[vertex.index]; }
   std::span<const double> distances() const noexcept { return std::span(distance_).first(vertices_); }
   /// The angle at which that path leaves its source: from the right side of the vertex's first corner
   /// (`PolyhedralSurface::first_corner`), scaled by `angle_scale`; from side 0 of the face for other sources.
-  double direction(Index vertex) const { return direction_[vertex]; }
+  double direction(Vertex vertex) const { return direction_[vertex.index]; }
   std::span<const double> directions() const noexcept { return std::span(direction_).first(vertices_); }
   /// distance (cos, sin) of the direction.
-  Vec2 coordinates(Index vertex) const;
+  Vec2 coordinates(Vertex vertex) const { return coordinates_at(vertex.index); }
   /// Number of the nearest source, -1 where not reached.
-  Index source(Index vertex) const;
+  Index source(Vertex vertex) const;
 
   /// The same for target k.
   Status target_status(std::size_t k) const { return status_[target_row(k)]; }
   double target_distance(std::size_t k) const { return distance_[target_row(k)]; }
   double target_direction(std::size_t k) const { return direction_[target_row(k)]; }
-  Vec2 target_coordinates(std::size_t k) const { return coordinates(static_cast<Index>(target_row(k))); }
+  Vec2 target_coordinates(std::size_t k) const { return coordinates_at(target_row(k)); }
   std::size_t targets() const noexcept { return targets_.size(); }
 
   /// For paths: how the shortest path comes in, and where its pieces start.
-  const Arrival& arrival(Index vertex) const { return arrival_[vertex]; }
+  const Arrival& arrival(Vertex vertex) const { return arrival_[vertex.index]; }
   const Arrival& target_arrival(std::size_t k) const { return arrival_[target_row(k)]; }
   std::span<const Origin> origins() const noexcept { return origins_; }
   std::span<const MeshPoint> sources() const noexcept { return sources_; }
@@ -88,6 +88,7 @@ class ExactMap {
  private:
   friend class MapBuilder;
   std::size_t target_row(std::size_t k) const { return vertices_ + k; }
+  Vec2 coordinates_at(std::size_t row) const;
 
   std::size_t vertices_ = 0;
   std::vector<double> distance_, direction_;  ///< vertices, then targets

@@ -7,6 +7,7 @@
 /// \endcode
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "ahm/surface/exact/exact_map.hpp"
@@ -28,13 +29,18 @@ struct GeodesicPath {
 /// The path that an exact map found, by unfolding the faces between the points where it bends. Linear in its points.
 /// @param surface  the map's own
 /// @throws InvalidArgument (vertex or target out of range)
-GeodesicPath path_to_vertex(const PolyhedralSurface& surface, const ExactMap& map, Index vertex);
+GeodesicPath path_to_vertex(const PolyhedralSurface& surface, const ExactMap& map, Vertex vertex);
 GeodesicPath path_to_target(const PolyhedralSurface& surface, const ExactMap& map, std::size_t target);
 
 /// A shortest path between two points; of several of one length the same one each time. The propagation ends where it
 /// has reached the farther point.
 /// @throws as `exact_map`
 GeodesicPath geodesic_path(const PolyhedralSurface& surface, const MeshPoint& from, const MeshPoint& to);
+
+/// The shortest path through these points in this order, which bends at them; `closed`: and back to the first.
+/// @return the status of the first stop that cannot be reached, without points, where there is one
+/// @throws InvalidArgument (fewer than two points), as `exact_map`
+GeodesicPath geodesic_path(const PolyhedralSurface& surface, std::span<const MeshPoint> stops, bool closed = false);
 
 /// How a straightest geodesic ended.
 enum class TraceEnd {

@@ -3,7 +3,7 @@
 ///
 /// \code
 /// ahm::exact::PolyhedralSurface surface({mesh.tails(), mesh.twins(), mesh.mirrored(), mesh.corners()}, layouts);
-/// ahm::exact::ExactMap map = ahm::exact::exact_map(surface, {surface.vertex_point(42)});
+/// ahm::exact::ExactMap map = ahm::exact::exact_map(surface, surface.vertex_point(ahm::Vertex{42}));
 /// \endcode
 #pragma once
 
@@ -96,7 +96,8 @@ class PolyhedralSurface {
   /// The angle at a vertex from its first corner's right side to the right side of this corner.
   double turned(Corner corner) const;
 
-  MeshPoint vertex_point(Index vertex) const;
+  /// @throws InvalidArgument (out of range)
+  MeshPoint vertex_point(Vertex vertex) const;
   /// The point's place in the frame of side 0 of its face.
   Vec2 place(const MeshPoint& point) const;
 

@@ -1,0 +1,110 @@
+// The solvers under the two operators, each alone: on matrices small enough to know the answer.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "ahm/error.hpp"
+#include "heat/blas_control.hpp"
+#include "heat/conjugate_gradient.hpp"
+#include "heat/triangular_solve.hpp"
+
+namespace ahm::test {
+namespace {
+
+/// tridiag(-1, 2.5, -1), the upper triangle by columns.
+SparseUpper chain(Offset n) {
+  SparseUpper K;
+  K.column_begin = {0};
+  for (Offset j = 0; j < n; ++j) {
+    if (j > 0) K.rows.push_back(j - 1), K.values.push_back(-1);
+    K.rows.push_back(j), K.values.push_back(2.5);
+    K.column_begin.push_back(static_cast<Offset>(K.rows.size()));
+  }
+  return K;
+}
+
+std::vector<double> chain_times(const std::vector<double>& x) {
+  std::vector<double> y(x.size());
+  for (std::size_t i = 0; i < x.size(); ++i)
+    y[i] = 2.5 * x[i] - (i > 0 ? x[i - 1] : 0) - (i + 1 < x.size() ? x[i + 1] : 0);
+  return y;
+}
+
+TEST(ConjugateGradient, InvertsAChain) {
+  std::vector<double> x(200);
+  for (std::size_t i = 0; i < x.size(); ++i) x[i] = std::sin(1.0 + 2.3 * static_cast<double>(i));
+  std::vector<double> solved = chain_times(x), twice = solved;
+  twice.insert(twice.end(), solved.begin(), solved.end());
+  const ConjugateGradient solver(chain(200), "A");
+  EXPECT_EQ(solver.nonzeros(), 199);
+  solver.solve(solved, 1);
+  solver.solve(twice, 2);
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    ASSERT_NEAR(solved[i], x[i], 1e-12);
+    ASSERT_EQ(twice[i], solved[i]);
+    ASSERT_EQ(twice[i + x.size()], solved[i]);
+  }
+}
+
+TEST(ConjugateGradient, RefusesWhatIsNotPositiveDefinite) {
+  SparseUpper K = chain(3);
+  K.values[0] = -1;
+  EXPECT_THROW(ConjugateGradient(K, "A"), NotPositiveDefinite);
+  K = chain(2);
+  K.values[1] = 5;  // [2.5 5; 5 2.5] has the eigenvalue -2.5
+  const ConjugateGradient solver(K, "A");
+  std::vector<double> b{1, -1};
+  EXPECT_THROW(solver.solve(b, 1), NotPositiveDefinite);
+}
+
+/// L of two supernodes, {0, 1} and {2}, by hand: columns (2, 1, 3), (., 4, 5), (6).
+struct HandFactor {
+  std::vector<std::int64_t> permutation, super{0, 2, 3}, row_begin{0, 3, 4}, value_begin{0, 6, 7}, indices{0, 1, 2, 2};
+  std::vector<double> values{2, 1, 3, 0, 4, 5, 6};
+  SupernodalFactor view() const {
+    return {3, false, permutation, super, row_begin, value_begin, indices, values.data()};
+  }
+};
+
+TEST(NarrowSolve, InvertsAFactorWrittenByHand) {
+  const double L[3][3] = {{2, 0, 0}, {1, 4, 0}, {3, 5, 6}};
+  for (const std::vector<std::int64_t>& order : {std::vector<std::int64_t>{0, 1, 2}, {2, 0, 1}}) {
+    HandFactor factor;
+    factor.permutation = order;
+    for (Offset columns = 1; columns <= max_narrow_columns; ++columns) {
+      std::vector<double> x(static_cast<std::size_t>(3 * columns)), b(x.size(), 0.0);
+      for (std::size_t k = 0; k < x.size(); ++k) x[k] = 1.0 + static_cast<double>(k * k);
+      for (Offset c = 0; c < columns; ++c)  // K = P^T L L^T P: row order[i] of K is row i of L L^T
+        for (int i = 0; i < 3; ++i)
+          for (int j = 0; j < 3; ++j)
+            for (int k = 0; k < 3; ++k)
+              b[static_cast<std::size_t>(3 * c + order[i])] +=
+                  L[i][k] * L[j][k] * x[static_cast<std::size_t>(3 * c + order[j])];
+      narrow_solve(factor.view(), b, columns);
+      for (std::size_t k = 0; k < x.size(); ++k) ASSERT_NEAR(b[k], x[k], 1e-13 * std::abs(x.back())) << columns;
+    }
+  }
+}
+
+TEST(OneBlasThread, MayBeNestedAndSaysWhatTheBlasIs) {
+  const std::string before = blas_name();
+  {
+    const OneBlasThread outer;
+    const OneBlasThread inner;
+    EXPECT_EQ(blas_name(), before);
+  }
+  EXPECT_FALSE(before.empty());
+  EXPECT_TRUE(blas_is_optimized("OpenBLAS 0.3.21"));
+}
+
+TEST(WithoutOpenmpRegions, RunsTheWorkAndPassesOnItsErrors) {
+  int runs = 0;
+  without_openmp_regions([&] { without_openmp_regions([&] { ++runs; }); });
+  EXPECT_EQ(runs, 1);
+  EXPECT_THROW(without_openmp_regions([] { throw InvalidArgument("work"); }), InvalidArgument);
+}
+
+}  // namespace
+}  // namespace ahm::test

@@ -1,0 +1,45 @@
+// What maps cost before they are made.
+#include "ahm/maps/cost.hpp"
+
+#include <gtest/gtest.h>
+
+#include "ahm/error.hpp"
+#include "ahm/testing/curved_graphs.hpp"
+
+namespace ahm::test {
+namespace {
+
+TEST(Cost, GrowsWithTheGraphAndMarchesInLessMemory) {
+  for (int d : {2, 3})
+    for (Strategy strategy : {Strategy::global, Strategy::march}) {
+      Cost last;
+      for (Index n : {1000, 10000, 100000, 1000000}) {
+        const Cost cost = estimate_cost({n, d, TransportKind::block}, strategy);
+        EXPECT_GT(cost.bytes, last.bytes);
+        EXPECT_GT(cost.first_map_seconds, last.first_map_seconds);
+        EXPECT_GT(cost.next_map_seconds, last.next_map_seconds);
+        EXPECT_LE(cost.next_map_seconds, cost.first_map_seconds);
+        last = cost;
+      }
+    }
+  const GraphSize large{1'000'000, 2, TransportKind::rotation2};
+  EXPECT_LT(estimate_cost(large, Strategy::march).bytes, estimate_cost(large, Strategy::global).bytes);
+  EXPECT_THROW(estimate_cost(large, Strategy::automatic), InvalidArgument);
+}
+
+TEST(Cost, OfFactorsIsRightToAHalf) {
+  const CsrGraph graph(sphere_graph(20000));
+  const double bytes = static_cast<double>(HeatOperators(graph).statistics().bytes);
+  const double estimate = estimate_cost({graph.size(), 2, graph.transport_kind()}, Strategy::global).bytes;
+  EXPECT_GT(estimate, bytes);  // the peak holds more than the factors
+  EXPECT_LT(estimate, 4 * bytes);
+}
+
+TEST(Cost, OfBlocksIsThatOfTheirNumbers) {
+  const Cost rotations = estimate_cost({10000, 2, TransportKind::rotation2}, Strategy::global),
+             blocks = estimate_cost({10000, 2, TransportKind::block}, Strategy::global);
+  EXPECT_NEAR(blocks.bytes / rotations.bytes, 5.0 / 3.0, 1e-12);  // 1 + 4 numbers per entry instead of 1 + 2
+}
+
+}  // namespace
+}  // namespace ahm::test

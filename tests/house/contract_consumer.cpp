@@ -1,0 +1,16 @@
+// A user's own graph under the published contract.
+#include <ahm/graph/csr_graph.hpp>
+#include <ahm/testing/curved_graphs.hpp>
+#include <ahm/testing/flat_graphs.hpp>
+#include <ahm/testing/graph_contract.hpp>
+
+namespace ahm::test {
+
+struct MyGraphs {
+  static std::unique_ptr<TangentGraph> surface() { return std::make_unique<CsrGraph>(sphere_graph(80)); }
+  static std::unique_ptr<TangentGraph> flat() { return std::make_unique<CsrGraph>(planar_triangulation(9).data); }
+};
+
+INSTANTIATE_TYPED_TEST_SUITE_P(Mine, GraphContract, MyGraphs);
+
+}  // namespace ahm::test

@@ -1,0 +1,63 @@
+// Loops over threads: every index once, whatever the number of threads, and the first error to the caller.
+#include "ahm/util/parallel.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+namespace ahm::test {
+namespace {
+
+TEST(ParallelChunks, CoverEveryIndexOnceInTheSameChunksOnAnyNumberOfThreads) {
+  for (Offset n : {0, 1, 9, 10, 11, 1000})
+    for (unsigned threads : {1u, 3u, 64u}) {
+      std::vector<std::atomic<int>> visits(static_cast<std::size_t>(n));
+      std::atomic<int> uneven{0};
+      detail::parallel_chunks(n, 10, threads, [&](Offset begin, Offset end) {
+        uneven += begin % 10 != 0 || (end != n && end != begin + 10);
+        for (Offset i = begin; i < end; ++i) ++visits[static_cast<std::size_t>(i)];
+      });
+      EXPECT_EQ(uneven, 0);
+      for (const auto& count : visits) ASSERT_EQ(count, 1) << "n " << n << ", threads " << threads;
+    }
+}
+
+TEST(ParallelChunks, PassOnTheFirstErrorAndStop) {
+  std::atomic<int> chunks{0};
+  auto body = [&](Offset begin, Offset) {
+    ++chunks;
+    if (begin == 0) throw std::runtime_error("first");
+  };
+  EXPECT_THROW(detail::parallel_chunks(1000, 1, 1, body), std::runtime_error);
+  EXPECT_EQ(chunks, 1);
+  EXPECT_THROW(detail::parallel_chunks(1000, 1, 4, body), std::runtime_error);
+}
+
+TEST(ForEachIndex, VisitsEachOnce) {
+  std::vector<int> visits(40000, 0);
+  detail::for_each_index(visits.size(), 4, [&](std::size_t i) { ++visits[i]; });
+  for (int count : visits) ASSERT_EQ(count, 1);
+}
+
+TEST(RunBoth, RunsBothTasksAndPassesOnTheErrorOfOne) {
+  for (bool concurrently : {false, true}) {
+    int first = 0, second = 0;
+    detail::run_both(
+        concurrently, [&] { first = 1; }, [&] { second = 2; });
+    EXPECT_EQ(std::pair(first, second), std::pair(1, 2));
+    EXPECT_THROW(detail::run_both(
+                     concurrently, [] {}, [] { throw std::logic_error("second"); }),
+                 std::logic_error);
+  }
+}
+
+TEST(ThreadCount, IsTheNumberAskedForOrThatOfTheCores) {
+  EXPECT_EQ(detail::thread_count(3), 3u);
+  EXPECT_GE(detail::thread_count(0), 1u);
+}
+
+}  // namespace
+}  // namespace ahm::test
