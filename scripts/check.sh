@@ -14,7 +14,7 @@ format() {
 tidy() {
   echo "clang-tidy ..."
   cmake --preset asan >/dev/null
-  git ls-files -z 'libahm/core/src/*.cpp' 'libahm/surface/src/*.cpp' 'io/src/*.cpp' ':!io/src/*/pcl_*' |
+  git ls-files -z 'libahm/core/src/*.cpp' 'libahm/surface/src/*.cpp' 'io/src/*.cpp' ':!io/src/*/pcl_*' ':!io/src/image/stb.cpp' |
     xargs -0 -n 4 -P "$(nproc)" clang-tidy -p build/asan --quiet --warnings-as-errors='*' \
       --extra-arg=-Wno-unknown-warning-option
 }

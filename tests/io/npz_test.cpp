@@ -47,8 +47,8 @@ TEST_F(Npz, ReadsBackAsWritten) {
   const std::string path = this->path("a.npz");
   NpzFile file(path);
   file.add("x", {3, 2}, x);
-  file.add("single"), {6}, x, NpyType::float32);
-  file.add("z"), {3}, x, NpyType::complex128);
+  file.add("single", {6}, x, NpyType::float32);
+  file.add("z", {3}, x, NpyType::complex128);
   file.add("i", {3}, std::span<const std::int32_t>(i));
   file.add("o", {2}, std::span<const std::int64_t>(o));
   file.add("mask", {3}, std::span<const std::uint8_t>(mask));
