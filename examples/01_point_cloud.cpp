@@ -1,6 +1,6 @@
 // From scattered points to the direction and distance of each of them, seen from one.
 #include <ahm/maps/log_map_solver.hpp>
-#include <ahm/pointcloud/point_cloud_graph.hpp>
+#include <ahm/pointcloud/point_cloud_surface.hpp>
 #include <cmath>
 #include <cstdio>
 
@@ -13,9 +13,10 @@ int main() {
       points.push_back({u, 0.3 * std::sin(angle), 0.3 * std::cos(angle)});
     }
 
-  const auto cloud = ahm::pointcloud::PointCloudGraph::build(points);
+  const auto cloud = ahm::pointcloud::PointCloudSurface::build(points);
   const ahm::LogMapSolver solver(cloud.graph());  // factors once, then serves any number of sources
-  const auto map = cloud.on_points(solver.solve(cloud.source_at_point(0, {1, 0, 0})));  // u along the cylinder's axis
+  const auto map =
+      cloud.on_rows(solver.solve(cloud.source(ahm::Row{0}, ahm::Vec3{1, 0, 0}).source));  // u along the cylinder's axis
 
   // Unrolled, the last point is the far corner of the unit square.
   std::printf("u = %.4f  v = %.4f  distance = %.4f\n", map.u.back(), map.v.back(), map.distance.back());

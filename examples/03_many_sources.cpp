@@ -1,6 +1,6 @@
 // Many sources on one factorization, local by a radius, with progress and a way to stop.
 #include <ahm/maps/log_map_solver.hpp>
-#include <ahm/pointcloud/point_cloud_graph.hpp>
+#include <ahm/pointcloud/point_cloud_surface.hpp>
 #include <cmath>
 #include <cstdio>
 
@@ -11,11 +11,11 @@ int main() {
     const double z = 1 - (2 * i + 1.0) / n, r = std::sqrt(1 - z * z), turn = 2.399963 * i;
     sphere.push_back({r * std::cos(turn), r * std::sin(turn), z});
   }
-  const auto cloud = ahm::pointcloud::PointCloudGraph::build(sphere);
+  const auto cloud = ahm::pointcloud::PointCloudSurface::build(sphere);
   const ahm::LogMapSolver solver(cloud.graph());
 
   std::vector<ahm::Source> sources;
-  for (int point = 0; point < n; point += 100) sources.push_back(cloud.source_at_point(point));
+  for (int point = 0; point < n; point += 100) sources.push_back(cloud.source(ahm::Row{point}).source);
 
   std::stop_source stop;  // stop.request_stop() from anywhere makes solve throw ahm::Cancelled
   ahm::MapOptions options;

@@ -1,6 +1,6 @@
 // A source inside a face, sampled at another point of the surface: both given on the input mesh.
 #include <ahm/maps/log_map_solver.hpp>
-#include <ahm/trimesh/triangle_mesh_graph.hpp>
+#include <ahm/trimesh/triangle_mesh_surface.hpp>
 #include <cmath>
 #include <cstdio>
 
@@ -17,12 +17,12 @@ int main() {
     faces.push_back({2 * i, 2 * i + 3, 2 * i + 2});
   }
 
-  const auto mesh = ahm::trimesh::TriangleMeshGraph::build(positions, faces);
+  const auto mesh = ahm::trimesh::TriangleMeshSurface::build(positions, faces);
   const ahm::LogMapSolver solver(mesh.graph());
-  const ahm::trimesh::SurfacePoint source{0, {0.5, 0.25, 0.25}}, target{2 * n - 1, {0.25, 0.25, 0.5}};
-  const ahm::LogMap map = solver.solve(mesh.source_at(source, {1, 0, 0}));  // u along the x axis of space
-  const ahm::trimesh::Sample sample = mesh.at(map, target);
-  std::printf("%ld flips; the target lies at u = %.6f, v = %.6f\n", static_cast<long>(mesh.report().flips), sample.u,
+  const ahm::FacePoint source{0, {0.5, 0.25, 0.25}}, target{2 * n - 1, {0.25, 0.25, 0.5}};
+  const ahm::LogMap map = solver.solve(mesh.source(source, ahm::Vec3{1, 0, 0}).source);  // u along the x axis of space
+  const ahm::Sample sample = mesh.at(map, target);
+  std::printf("%ld flips; the target lies at u = %.6f, v = %.6f\n", static_cast<long>(mesh.details().flips), sample.u,
               sample.v);
   // Unfolded, source and target are (2.5, 0.025) and (1.25, 3.975).
   return std::hypot(sample.u + 1.25, sample.v - 3.95) < 1e-9 ? 0 : 1;

@@ -9,8 +9,8 @@
 
 #include "ahm/error.hpp"
 #include "ahm/maps/log_map_solver.hpp"
-#include "ahm/pointcloud/point_cloud_graph.hpp"
-#include "ahm/polymesh/polygon_mesh_graph.hpp"
+#include "ahm/pointcloud/point_cloud_surface.hpp"
+#include "ahm/polymesh/polygon_mesh_surface.hpp"
 #include "ahm/testing/closed_forms.hpp"
 #include "ahm/testing/polygon_meshes.hpp"
 #include "experiments/comparison.hpp"
@@ -88,31 +88,32 @@ struct PointLogs {
 /// The three backends behind what they have in common.
 struct Triangles {
   static constexpr const char* name = "triangles";
-  trimesh::TriangleMeshGraph surface;
+  trimesh::TriangleMeshSurface surface;
   Triangles(const Shape& shape, const Setup& setup)
-      : surface(trimesh::TriangleMeshGraph::build(shape.quads.points, shape.triangles, {.threads = setup.threads})) {}
-  Source source(Index point) const { return surface.source_at_vertex(point, u_direction); }
-  auto on_points(const LogMap& map) const { return surface.on_vertices(map); }
+      : surface(trimesh::TriangleMeshSurface::build(shape.quads.points, shape.triangles, {.threads = setup.threads})) {}
+  Source source(Index point) const { return surface.source(Row(point), u_direction).source; }
+  auto on_points(const LogMap& map) const { return surface.on_rows(map); }
 };
 
 struct Quadrilaterals {
   static constexpr const char* name = "quads";
-  polymesh::PolygonMeshGraph surface;
+  polymesh::PolygonMeshSurface surface;
   Quadrilaterals(const Shape& shape, const Setup& setup)
-      : surface(polymesh::PolygonMeshGraph::build(shape.quads.points, shape.quads.begin, shape.quads.corners,
-                                                  {.threads = setup.threads})) {}
-  Source source(Index point) const { return surface.source_at_vertex(point, u_direction); }
-  auto on_points(const LogMap& map) const { return surface.on_vertices(map); }
+      : surface(polymesh::PolygonMeshSurface::build(
+            shape.quads.points, shape.quads.begin, shape.quads.corners,
+            {.discretization = polymesh::Discretization::polygons, .threads = setup.threads})) {}
+  Source source(Index point) const { return surface.source(Row(point), u_direction).source; }
+  auto on_points(const LogMap& map) const { return surface.on_rows(map); }
 };
 
 struct Points {
   static constexpr const char* name = "points";
-  pointcloud::PointCloudGraph surface;
+  pointcloud::PointCloudSurface surface;
   Points(const Shape& shape, const Setup& setup)
-      : surface(pointcloud::PointCloudGraph::build(shape.quads.points, {},
-                                                   {.search = setup.search, .threads = setup.threads})) {}
-  Source source(Index point) const { return surface.source_at_point(point, u_direction); }
-  auto on_points(const LogMap& map) const { return surface.on_points(map); }
+      : surface(pointcloud::PointCloudSurface::build(shape.quads.points, {},
+                                                     {.search = setup.search, .threads = setup.threads})) {}
+  Source source(Index point) const { return surface.source(Row(point), u_direction).source; }
+  auto on_points(const LogMap& map) const { return surface.on_rows(map); }
 };
 
 // Errors.

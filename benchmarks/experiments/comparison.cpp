@@ -14,9 +14,9 @@ namespace ahm::bench {
 
 namespace {
 
-trimesh::TriangleMeshGraph build(const Mesh& mesh, trimesh::MeshOptions options) {
+trimesh::TriangleMeshSurface build(const Mesh& mesh, trimesh::MeshOptions options) {
   options.non_manifold = trimesh::NonManifold::split;
-  return trimesh::TriangleMeshGraph::build(mesh.positions, mesh.faces, options);
+  return trimesh::TriangleMeshSurface::build(mesh.positions, mesh.faces, options);
 }
 
 }  // namespace

@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "ahm/trimesh/triangle_mesh_graph.hpp"
+#include "ahm/trimesh/triangle_mesh_surface.hpp"
 #include "experiments/surfaces.hpp"
 #include "methods/method.hpp"
 
@@ -29,7 +29,7 @@ class Surface {
 
   const std::string& name() const noexcept { return name_; }
   const TangentGraph& graph() const noexcept { return surface_.graph(); }
-  const trimesh::TriangleMeshGraph& mesh() const noexcept { return surface_; }
+  const trimesh::TriangleMeshSurface& mesh() const noexcept { return surface_; }
   Index size() const noexcept { return surface_.graph().size(); }
   std::span<const Vec3> points() const noexcept { return points_; }
   std::span<const Triangle> faces() const noexcept { return faces_; }
@@ -44,7 +44,7 @@ class Surface {
 
  private:
   std::string name_;
-  trimesh::TriangleMeshGraph surface_;
+  trimesh::TriangleMeshSurface surface_;
   std::vector<Vec3> points_;
   std::vector<Triangle> faces_;
 };

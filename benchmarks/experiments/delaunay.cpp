@@ -18,7 +18,7 @@ void measure(const char* name, const Mesh& mesh, const Triangulation& triangulat
   const Surface surface(name, mesh, triangulation.options);
   const Index source = surface.size() / 3;
   const std::vector<double> exact = surface.sphere_log(source), distance = lengths(exact);
-  const trimesh::MeshReport& report = surface.mesh().report();
+  const trimesh::MeshDetails& report = surface.mesh().details();
   for (const NamedMethod& method : log_map_methods().first(2)) {
     std::vector<Cell> row{name, surface.size(), triangulation.name, method.name, report.flips, report.clamped_weights};
     try {

@@ -6,8 +6,8 @@
 
 #include "ahm/error.hpp"
 #include "ahm/maps/log_map_solver.hpp"
-#include "ahm/pointcloud/point_cloud_graph.hpp"
-#include "ahm/polymesh/polygon_mesh_graph.hpp"
+#include "ahm/pointcloud/point_cloud_surface.hpp"
+#include "ahm/polymesh/polygon_mesh_surface.hpp"
 #include "ahm/testing/closed_forms.hpp"
 #include "ahm/testing/polygon_meshes.hpp"
 #include "experiments/comparison.hpp"
@@ -52,36 +52,36 @@ void measure(const char* name, std::span<const Vec3> points, const Backend& back
 template <class Surface>
 void measure_mesh(const char* name, std::span<const Vec3> points, const Surface& surface, Table& table) {
   measure(name, points,
-          {surface.graph(), [&](Index p) { return surface.source_at_vertex(p); },
+          {surface.graph(), [&](Index p) { return surface.source(Row(p)).source; },
            [&](const LogMap& map) {
-             auto on = surface.on_vertices(map);
+             auto on = surface.on_rows(map);
              return std::array{std::move(on.u), std::move(on.v)};
            },
-           [&](Index p) { return surface.vertex(p).index; }},
+           [&](Index p) { return surface.vertex(Row(p)).index; }},
           table);
 }
 
 void measure_cloud(const char* name, const std::vector<Vec3>& points, Table& table) {
-  const auto cloud = pointcloud::PointCloudGraph::build(points);
+  const auto cloud = pointcloud::PointCloudSurface::build(points);
   measure(name, points,
-          {cloud.graph(), [&](Index p) { return cloud.source_at_point(p); },
+          {cloud.graph(), [&](Index p) { return cloud.source(Row(p)).source; },
            [&](const LogMap& map) {
-             auto on = cloud.on_points(map);
+             auto on = cloud.on_rows(map);
              return std::array{std::move(on.u), std::move(on.v)};
            },
-           [&](Index p) { return cloud.vertex_of_point()[p]; }},
+           [&](Index p) { return cloud.vertex(Row(p)).index; }},
           table);
 }
 
 void measure_polygons(const std::string& name, const test::Polygons& mesh, Table& table) {
   auto graph = [&](const polymesh::PolygonOptions& options) {
-    return polymesh::PolygonMeshGraph::build(mesh.positions, mesh.begin, mesh.corners, options);
+    return polymesh::PolygonMeshSurface::build(mesh.positions, mesh.begin, mesh.corners, options);
   };
   measure_mesh(name.c_str(), mesh.positions, graph({}), table);
   measure_mesh((name + ", as published").c_str(), mesh.positions, graph({.clamp_weights = false}), table);
   const auto refined = polymesh::PolygonMesh::from_faces(mesh.positions, mesh.begin, mesh.corners).refined();
   measure_mesh((name + ", refined").c_str(), mesh.positions,
-               trimesh::TriangleMeshGraph::build(refined.positions, refined.triangles), table);
+               trimesh::TriangleMeshSurface::build(refined.positions, refined.triangles), table);
 }
 
 }  // namespace
@@ -91,7 +91,7 @@ Table discretizations(const Settings& settings) {
       {"discretization", "vertices", "t_coef", "variant", "rms", "largest, hemisphere", "angle rms", "missing"});
   for (Index n : settings.toy ? std::vector<Index>{600} : std::vector<Index>{2500, 10000, 40000, 160000}) {
     const Mesh mesh = split_icosphere(n);
-    measure_mesh("triangles", mesh.positions, trimesh::TriangleMeshGraph::build(mesh.positions, mesh.faces), table);
+    measure_mesh("triangles", mesh.positions, trimesh::TriangleMeshSurface::build(mesh.positions, mesh.faces), table);
     measure_cloud("points of the icosphere", mesh.positions, table);
     measure_cloud("random points", test::random_sphere(n).points, table);
     measure_cloud("points on a spiral", test::even_sphere(n).points, table);

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "ahm/pointcloud/point_cloud_graph.hpp"
+#include "ahm/pointcloud/point_cloud_surface.hpp"
 #include "ahm/testing/closed_forms.hpp"
 #include "experiments/comparison.hpp"
 #include "methods/signed_heat.hpp"
@@ -76,11 +76,11 @@ Table methods_compared(const Settings& settings) {
   Table table({"shape", "vertices", "method", "distance", "angle", "map", "made s", "per source s"});
   for (Index n : settings.toy ? std::vector<Index>{642} : std::vector<Index>{10242, 40962}) {
     const Mesh mesh = split_icosphere(n);
-    const auto surface = trimesh::TriangleMeshGraph::build(mesh.positions, mesh.faces);
+    const auto surface = trimesh::TriangleMeshSurface::build(mesh.positions, mesh.faces);
     measure_all("icosphere", surface.graph(), table);
     measure("icosphere", "HM (faces)", surface.graph(), table, [&] { return methods::heat_distance(surface.mesh()); });
   }
-  const auto cloud = pointcloud::PointCloudGraph::build(test::random_sphere(settings.toy ? 1000 : 10000).points);
+  const auto cloud = pointcloud::PointCloudSurface::build(test::random_sphere(settings.toy ? 1000 : 10000).points);
   measure_all("random cloud", cloud.graph(), table);
   const Table clouds = table.where("shape", "random cloud");
   auto map = [&](const char* method) { return clouds.where("method", method).mean("map"); };

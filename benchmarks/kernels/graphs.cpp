@@ -34,17 +34,17 @@ const std::vector<Vec3>& sphere_points(Index n) {
 }
 
 const CsrGraph& graph_of(Shape shape, Index n) {
-  static Last<trimesh::TriangleMeshGraph> meshes;
-  static Last<pointcloud::PointCloudGraph> clouds;
+  static Last<trimesh::TriangleMeshSurface> meshes;
+  static Last<pointcloud::PointCloudSurface> clouds;
   if (shape == Shape::mesh)
     return meshes
         .get(n,
              [n] {
                const Mesh& mesh = torus_mesh(n);
-               return trimesh::TriangleMeshGraph::build(mesh.positions, mesh.faces, {.threads = 1});
+               return trimesh::TriangleMeshSurface::build(mesh.positions, mesh.faces, {.threads = 1});
              })
         .graph();
-  return clouds.get(n, [n] { return pointcloud::PointCloudGraph::build(sphere_points(n), {}, {.threads = 1}); })
+  return clouds.get(n, [n] { return pointcloud::PointCloudSurface::build(sphere_points(n), {}, {.threads = 1}); })
       .graph();
 }
 

@@ -2,8 +2,8 @@
 /// The shapes the kernels run on, each made once: the last of each kind is kept.
 #pragma once
 
-#include "ahm/pointcloud/point_cloud_graph.hpp"
-#include "ahm/trimesh/triangle_mesh_graph.hpp"
+#include "ahm/pointcloud/point_cloud_surface.hpp"
+#include "ahm/trimesh/triangle_mesh_surface.hpp"
 #include "shapes.hpp"
 
 namespace ahm::bench {

@@ -3,7 +3,7 @@
 ///
 /// \code
 /// const Quads quads = quads_of(torus(10000));      // the same vertices; quad f is faces 2 f and 2 f + 1 of the mesh
-/// auto surface = ahm::polymesh::PolygonMeshGraph::build(quads.points, quads.begin, quads.corners);
+/// auto surface = ahm::polymesh::PolygonMeshSurface::build(quads.points, quads.begin, quads.corners);
 /// \endcode
 #pragma once
 

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "ahm/maps/log_map_solver.hpp"
-#include "ahm/pointcloud/point_cloud_graph.hpp"
+#include "ahm/pointcloud/point_cloud_surface.hpp"
 #include "scaling/sizes.hpp"
 #include "shapes.hpp"
 
@@ -14,15 +14,15 @@ namespace {
 std::vector<double> measure(Index n, Ordering ordering, const Settings& settings) {
   const std::vector<Vec3> points = test::random_sphere(n).points;
   const MapOptions options{.threads = settings.threads};
-  std::optional<pointcloud::PointCloudGraph> cloud;
+  std::optional<pointcloud::PointCloudSurface> cloud;
   std::optional<LogMapSolver> solver;
   const double build =
-      seconds([&] { cloud.emplace(pointcloud::PointCloudGraph::build(points, {}, {.threads = settings.threads})); });
+      seconds([&] { cloud.emplace(pointcloud::PointCloudSurface::build(points, {}, {.threads = settings.threads})); });
   const double factor = seconds([&] {
     solver.emplace(cloud->graph(), OperatorOptions{.ordering = ordering, .threads = settings.threads},
                    SolverOptions{.strategy = Strategy::global});
   });
-  const Source source = cloud->source_at_point(0);
+  const Source source = cloud->source(Row(0)).source;
   Index ok = 0;
   const double first = seconds([&] { ok = solver->solve(source, options).count(Status::ok); });
   const double peak = peak_megabytes();
@@ -30,7 +30,7 @@ std::vector<double> measure(Index n, Ordering ordering, const Settings& settings
   const double localized =
       median_of_five([&] { solver->solve(source, {.variant = Variant::localized, .threads = settings.threads}); });
   std::vector<Source> sources;
-  for (Index s = 0; s < 64; ++s) sources.push_back(cloud->source_at_point(s * (n / 64)));
+  for (Index s = 0; s < 64; ++s) sources.push_back(cloud->source(Row(s * (n / 64))).source);
   const double batch = seconds([&] { solver->solve(sources, options); });
   return {build,
           factor,

@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "ahm/maps/log_map_solver.hpp"
-#include "ahm/trimesh/triangle_mesh_graph.hpp"
+#include "ahm/trimesh/triangle_mesh_surface.hpp"
 #include "scaling/sizes.hpp"
 #include "shapes.hpp"
 
@@ -31,9 +31,9 @@ double difference(const TangentGraph& graph, double radius, double margin, Varia
   return worst / radius;
 }
 
-trimesh::TriangleMeshGraph torus_graph(Index n) {
+trimesh::TriangleMeshSurface torus_graph(Index n) {
   const Mesh mesh = torus(n);
-  return trimesh::TriangleMeshGraph::build(mesh.positions, mesh.faces);
+  return trimesh::TriangleMeshSurface::build(mesh.positions, mesh.faces);
 }
 
 }  // namespace

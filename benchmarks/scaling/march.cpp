@@ -4,8 +4,8 @@
 #include <optional>
 
 #include "ahm/maps/log_map_solver.hpp"
-#include "ahm/pointcloud/point_cloud_graph.hpp"
-#include "ahm/trimesh/triangle_mesh_graph.hpp"
+#include "ahm/pointcloud/point_cloud_surface.hpp"
+#include "ahm/trimesh/triangle_mesh_surface.hpp"
 #include "scaling/sizes.hpp"
 #include "shapes.hpp"
 
@@ -40,16 +40,16 @@ std::vector<double> solve(const TangentGraph& graph, Strategy strategy, double b
 std::vector<double> measure(bool mesh, Index n, Strategy strategy, const Settings& settings) {
   if (mesh) {
     const Mesh shape = split_icosphere(n);
-    std::optional<trimesh::TriangleMeshGraph> surface;
+    std::optional<trimesh::TriangleMeshSurface> surface;
     const double build = seconds([&] {
-      surface.emplace(trimesh::TriangleMeshGraph::build(shape.positions, shape.faces, {.threads = settings.threads}));
+      surface.emplace(trimesh::TriangleMeshSurface::build(shape.positions, shape.faces, {.threads = settings.threads}));
     });
     return solve(surface->graph(), strategy, build, settings);
   }
   const std::vector<Vec3> points = test::random_sphere(n).points;
-  std::optional<pointcloud::PointCloudGraph> cloud;
+  std::optional<pointcloud::PointCloudSurface> cloud;
   const double build =
-      seconds([&] { cloud.emplace(pointcloud::PointCloudGraph::build(points, {}, {.threads = settings.threads})); });
+      seconds([&] { cloud.emplace(pointcloud::PointCloudSurface::build(points, {}, {.threads = settings.threads})); });
   return solve(cloud->graph(), strategy, build, settings);
 }
 

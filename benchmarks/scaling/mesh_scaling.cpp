@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "ahm/maps/log_map_solver.hpp"
-#include "ahm/trimesh/triangle_mesh_graph.hpp"
+#include "ahm/trimesh/triangle_mesh_surface.hpp"
 #include "scaling/sizes.hpp"
 #include "shapes.hpp"
 
@@ -14,12 +14,12 @@ namespace {
 std::vector<double> measure(Index n, const Settings& settings) {
   const Mesh mesh = split_icosphere(n);
   const MapOptions options{.threads = settings.threads};
-  std::optional<trimesh::TriangleMeshGraph> surface;
+  std::optional<trimesh::TriangleMeshSurface> surface;
   std::optional<LogMapSolver> solver;
   const double build = seconds([&] {
-    surface.emplace(trimesh::TriangleMeshGraph::build(mesh.positions, mesh.faces, {.threads = settings.threads}));
+    surface.emplace(trimesh::TriangleMeshSurface::build(mesh.positions, mesh.faces, {.threads = settings.threads}));
   });
-  const Source source = surface->source_at_vertex(0);
+  const Source source = surface->source(Row(0)).source;
   const double first = seconds([&] {
     solver.emplace(surface->graph(), OperatorOptions{.threads = settings.threads},
                    SolverOptions{.strategy = Strategy::global});
@@ -30,7 +30,7 @@ std::vector<double> measure(Index n, const Settings& settings) {
   const double localized =
       median_of_five([&] { solver->solve(source, {.variant = Variant::localized, .threads = settings.threads}); });
   std::vector<Source> sources;
-  for (Index s = 0; s < 64; ++s) sources.push_back(surface->source_at_vertex(s * (mesh.vertices() / 64)));
+  for (Index s = 0; s < 64; ++s) sources.push_back(surface->source(Row(s * (mesh.vertices() / 64))).source);
   const double batch = seconds([&] { solver->solve(sources, options); });
   return {static_cast<double>(mesh.vertices()), build, first, adaptive, localized, batch / 64, peak};
 }

@@ -11,7 +11,7 @@
 #include "ahm/applications/cells.hpp"
 #include "ahm/applications/inverse_map.hpp"
 #include "ahm/error.hpp"
-#include "ahm/polymesh/polygon_mesh_graph.hpp"
+#include "ahm/polymesh/polygon_mesh_surface.hpp"
 #include "ahm/testing/flat_graphs.hpp"
 #include "support/solved_mesh.hpp"
 
@@ -194,7 +194,8 @@ TEST(Atlas, OfPolygonsKeepsThemWhole) {
       vertices.insert(vertices.end(), {i, i + 1, i + side + 2, i + side + 1});
       begin.push_back(begin.back() + 4);
     }
-  const auto mesh = polymesh::PolygonMeshGraph::build(positions, begin, vertices);
+  const auto mesh = polymesh::PolygonMeshSurface::build(positions, begin, vertices,
+                                                        {.discretization = polymesh::Discretization::polygons});
   const LogMapSolver solver(mesh.graph());
   const Atlas atlas = make_atlas(solver, farthest_points(solver, Vertex{0}, 6), {begin, vertices});
   expect_partition(atlas, {begin, vertices});

@@ -10,9 +10,9 @@
 #include "ahm/error.hpp"
 #include "ahm/grid/grid_graph.hpp"
 #include "ahm/maps/log_map_solver.hpp"
-#include "ahm/pointcloud/point_cloud_graph.hpp"
+#include "ahm/pointcloud/point_cloud_surface.hpp"
 #include "ahm/testing/flat_graphs.hpp"
-#include "ahm/trimesh/triangle_mesh_graph.hpp"
+#include "ahm/trimesh/triangle_mesh_surface.hpp"
 #include "mapped_surfaces.hpp"
 
 namespace ahm::test {
@@ -241,11 +241,11 @@ std::vector<Vec3> sphere_points(int n) {
 TEST(InverseMap, OnASphereOfPointsGoesTheGeodesicWay) {
   const int n = 4000;
   const auto points = sphere_points(n);
-  const auto cloud = pointcloud::PointCloudGraph::build(points);
+  const auto cloud = pointcloud::PointCloudSurface::build(points);
   const Index source = n / 3;
   const auto& graph = cloud.graph();
-  const Frame from = *graph.frame(cloud.vertex_of_point()[source]);
-  const LogMap map = LogMapSolver(graph).solve(cloud.source_at_point(source), {.frames = true});
+  const Frame from = *graph.frame(cloud.vertex(Row(source)).index);
+  const LogMap map = LogMapSolver(graph).solve(cloud.source(Row(source)).source, {.frames = true});
   const InverseMap inverse = inverse_map(graph, map);
   const double h = graph.mean_edge_length() * graph.length_unit();
   const double outwards = dot(from.normal, points[source]);
@@ -264,9 +264,9 @@ TEST(InverseMap, OnASphereOfPointsGoesTheGeodesicWay) {
 
 TEST(InverseMap, OnAMeshHasNoHoles) {
   const Patch cap = patch(41, 1.1, on_sphere);
-  const auto mesh = trimesh::TriangleMeshGraph::build(cap.positions, cap.triangles);
+  const auto mesh = trimesh::TriangleMeshSurface::build(cap.positions, cap.triangles);
   const Index source = 20 * 41 + 20;
-  const LogMap map = LogMapSolver(mesh.graph()).solve(mesh.source_at_vertex(source, {1, 0, 0}), {.frames = true});
+  const LogMap map = LogMapSolver(mesh.graph()).solve(mesh.source(Row(source), Vec3{1, 0, 0}).source, {.frames = true});
   const InverseMap inverse = inverse_map(mesh.graph(), map);
   for (const auto& [u, v] : points_in_disc(1, 1000)) {
     const auto point = inverse.at(u, v);

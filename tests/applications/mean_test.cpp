@@ -10,8 +10,8 @@
 
 #include "ahm/error.hpp"
 #include "ahm/grid/grid_graph.hpp"
-#include "ahm/pointcloud/point_cloud_graph.hpp"
-#include "ahm/polymesh/polygon_mesh_graph.hpp"
+#include "ahm/pointcloud/point_cloud_surface.hpp"
+#include "ahm/polymesh/polygon_mesh_surface.hpp"
 #include "ahm/testing/curved_graphs.hpp"
 #include "ahm/testing/flat_graphs.hpp"
 #include "ahm/testing/graph_changes.hpp"
@@ -160,9 +160,9 @@ void expect_exact_mean(const TangentGraph& flat, double size) {
 TEST(KarcherMean, IsExactOnFlatGeometryOfEveryBackend) {
   expect_exact_mean(grid::GridGraph({.shape = {21, 17}, .spacing = {0.1, 0.07}}), 3);
   const Mesh mesh = sliver_square(150);
-  const auto surface = trimesh::TriangleMeshGraph::build(mesh.positions, mesh.faces);
+  const auto surface = trimesh::TriangleMeshSurface::build(mesh.positions, mesh.faces);
   expect_exact_mean(surface.graph(), 5);
-  const auto cloud = pointcloud::PointCloudGraph::build(mesh.positions);
+  const auto cloud = pointcloud::PointCloudSurface::build(mesh.positions);
   expect_exact_mean(cloud.graph(), 5);
   std::vector<Offset> begin{0};  // rows of quads
   std::vector<Index> corners;
@@ -174,7 +174,8 @@ TEST(KarcherMean, IsExactOnFlatGeometryOfEveryBackend) {
     for (Index corner : {i, i + 1, i + 10, i + 9}) corners.push_back(corner);
     begin.push_back(static_cast<Offset>(corners.size()));
   }
-  const auto polygons = polymesh::PolygonMeshGraph::build(positions, begin, corners);
+  const auto polygons = polymesh::PolygonMeshSurface::build(positions, begin, corners,
+                                                            {.discretization = polymesh::Discretization::polygons});
   expect_exact_mean(polygons.graph(), 12);
 }
 

@@ -7,9 +7,9 @@
 #include <string>
 
 #include "ahm/maps/log_map_solver.hpp"
-#include "ahm/pointcloud/point_cloud_graph.hpp"
-#include "ahm/polymesh/polygon_mesh_graph.hpp"
-#include "ahm/trimesh/triangle_mesh_graph.hpp"
+#include "ahm/pointcloud/point_cloud_surface.hpp"
+#include "ahm/polymesh/polygon_mesh_surface.hpp"
+#include "ahm/trimesh/triangle_mesh_surface.hpp"
 
 namespace ahm::test {
 namespace {
@@ -58,15 +58,15 @@ Map on_triangles(const Surface& s, const MapOptions& options) {
       else
         faces.insert(faces.end(), {{a, b, d}, {b, c, d}});
     }
-  const auto mesh = trimesh::TriangleMeshGraph::build(s.points, faces);
+  const auto mesh = trimesh::TriangleMeshSurface::build(s.points, faces);
   const LogMapSolver solver(mesh.graph());
-  return pack(mesh.on_vertices(solver.solve(mesh.source_at_vertex(s.source(), {1, 0, 0}), options)));
+  return pack(mesh.on_rows(solver.solve(mesh.source(Row(s.source()), Vec3{1, 0, 0}).source, options)));
 }
 
 Map on_points(const Surface& s, const MapOptions& options) {
-  const auto cloud = pointcloud::PointCloudGraph::build(s.points, s.normals);
+  const auto cloud = pointcloud::PointCloudSurface::build(s.points, s.normals);
   const LogMapSolver solver(cloud.graph());
-  return pack(cloud.on_points(solver.solve(cloud.source_at_point(s.source(), {1, 0, 0}), options)));
+  return pack(cloud.on_rows(solver.solve(cloud.source(Row(s.source()), Vec3{1, 0, 0}).source, options)));
 }
 
 /// The same grid as quads, some of them joined to hexagons.
@@ -82,9 +82,10 @@ Map on_polygons(const Surface& s, const MapOptions& options) {
       begin.push_back(static_cast<Offset>(corners.size()));
       i += width;
     }
-  const auto mesh = polymesh::PolygonMeshGraph::build(s.points, begin, corners);
+  const auto mesh = polymesh::PolygonMeshSurface::build(s.points, begin, corners,
+                                                        {.discretization = polymesh::Discretization::polygons});
   const LogMapSolver solver(mesh.graph());
-  return pack(mesh.on_vertices(solver.solve(mesh.source_at_vertex(s.source(), {1, 0, 0}), options)));
+  return pack(mesh.on_rows(solver.solve(mesh.source(Row(s.source()), Vec3{1, 0, 0}).source, options)));
 }
 
 /// Every way to discretize the surface; a backend joins by one line.

@@ -5,15 +5,15 @@
 #include <cmath>
 
 #include "ahm/eigen.hpp"
-#include "ahm/pointcloud/point_cloud_graph.hpp"
+#include "ahm/pointcloud/point_cloud_surface.hpp"
 
 TEST(AvxCaller, SeesResultsAsEigenMatrices) {
   std::vector<ahm::Vec3> points;
   for (int x = 0; x < 30; ++x)
     for (int y = 0; y < 30; ++y) points.push_back({1.0 * x, 1.0 * y, 0});
-  const auto cloud = ahm::pointcloud::PointCloudGraph::build(points);
+  const auto cloud = ahm::pointcloud::PointCloudSurface::build(points);
   const ahm::LogMapSolver solver(cloud.graph());
-  const ahm::LogMap map = solver.solve(cloud.source_at_point(0));
+  const ahm::LogMap map = solver.solve(cloud.source(ahm::Row{0}).source);
   const Eigen::VectorXd distance = ahm::coordinates(map).rowwise().norm();
   EXPECT_NEAR(distance.maxCoeff(), 29 * std::sqrt(2.0), 1e-10);
   const ahm::VertexField field = ahm::distance(map);

@@ -75,7 +75,7 @@ TEST_F(Npz, RefusesWhatCannotBe) {
   EXPECT_THROW(NpzFile("/dev/null"), IoError);
   NpzFile file(this->path("a.npz"));
   EXPECT_THROW(file.add("x", {4}, std::vector<double>(3)), InvalidArgument);
-  EXPECT_THROW(file.add("x"), {3}, std::vector<double>(3), NpyType::complex64), InvalidArgument);
+  EXPECT_THROW(file.add("x", {3}, std::vector<double>(3), NpyType::complex64), InvalidArgument);
 }
 
 }  // namespace

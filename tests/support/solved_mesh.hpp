@@ -4,26 +4,26 @@
 
 #include "ahm/maps/log_map_solver.hpp"
 #include "ahm/testing/triangle_meshes.hpp"
-#include "ahm/trimesh/triangle_mesh_graph.hpp"
+#include "ahm/trimesh/triangle_mesh_surface.hpp"
 
 namespace ahm::test {
 
 /// Builds, factors and solves in one go.
 struct SolvedMesh {
   explicit SolvedMesh(const Mesh& mesh, const trimesh::MeshOptions& options = {})
-      : surface(trimesh::TriangleMeshGraph::build(mesh.positions, mesh.faces, options)), solver(surface.graph()) {}
+      : surface(trimesh::TriangleMeshSurface::build(mesh.positions, mesh.faces, options)), solver(surface.graph()) {}
 
-  trimesh::VertexMap map(const Source& source, Variant variant = Variant::adaptive) const {
-    return surface.on_vertices(solver.solve(source, {.variant = variant}));
+  RowLogMap map(const Source& source, Variant variant = Variant::adaptive) const {
+    return surface.on_rows(solver.solve(source, {.variant = variant}));
   }
 
-  trimesh::TriangleMeshGraph surface;
+  trimesh::TriangleMeshSurface surface;
   LogMapSolver solver;
 };
 
 /// Largest distance between the map and the plane seen from `origin` with unit axis `axis`; infinite unless all is
 /// mapped.
-inline double plane_error(const Mesh& mesh, const trimesh::VertexMap& map, const Vec2& origin, const Vec2& axis) {
+inline double plane_error(const Mesh& mesh, const RowLogMap& map, const Vec2& origin, const Vec2& axis) {
   return plane_error(mesh.plane, map.u, map.v, origin, axis);
 }
 

@@ -8,7 +8,7 @@
 
 #include "ahm/error.hpp"
 #include "ahm/grid/grid_graph.hpp"
-#include "ahm/pointcloud/point_cloud_graph.hpp"
+#include "ahm/pointcloud/point_cloud_surface.hpp"
 #include "ahm/testing/flat_graphs.hpp"
 #include "ahm/testing/vectors.hpp"
 #include "support/solved_mesh.hpp"
@@ -16,7 +16,7 @@
 namespace ahm::test {
 namespace {
 
-using trimesh::TriangleMeshGraph;
+using trimesh::TriangleMeshSurface;
 
 Vec3 in_space(const Frame& frame, std::span<const double> v) {
   Vec3 result;
@@ -59,7 +59,7 @@ TEST(DirectionInFrame, RefusesWhatHasNoDirection) {
 
 TEST(Curvature, OfThePlaneIsZero) {
   const Mesh mesh = holed_square(16);
-  const auto surface = TriangleMeshGraph::build(mesh.positions, mesh.faces);
+  const auto surface = TriangleMeshSurface::build(mesh.positions, mesh.faces);
   for (double kappa : curvature_directions(surface.graph()).values) EXPECT_NEAR(kappa, 0, 1e-9);
   for (double kappa : curvature_directions(grid::GridGraph({.shape = {5, 4}, .spacing = {1, 2}})).values)
     EXPECT_EQ(kappa, 0);
@@ -78,17 +78,17 @@ TEST(Curvature, OfACylinderRunsRoundIt) {
   const double radius = 0.4;
   for (Index side : {20, 40, 80}) {
     const Mesh mesh = rolled_square(side, radius);
-    const auto surface = TriangleMeshGraph::build(mesh.positions, mesh.faces);
+    const auto surface = TriangleMeshSurface::build(mesh.positions, mesh.faces);
     const CsrGraph& graph = surface.graph();
     const PrincipalCurvatures bend = curvature_directions(graph);
     // A circle leaves its parabola by (x / R)^2 / 4 of it. Off the border vertices lie amid those of the fit; on it the
     // difference of fourth order is one of third order.
-    const double reach = 2 * surface.report().longest_edge / radius;
+    const double reach = 2 * surface.details().longest_edge / radius;
     for (Index i = 0; i < mesh.vertices(); ++i) {
       const auto& p = mesh.plane[i];
       const bool border = std::min({p[0], p[1], 1 - p[0], 1 - p[1]}) < 2.5 / side;
       const double tolerance = border ? reach : reach * reach / 4;
-      const Index v = surface.vertex(i).index;
+      const Index v = surface.vertex(Row(i)).index;
       EXPECT_NEAR(std::abs(bend.values[2 * v]) * radius, 1, tolerance) << i;
       EXPECT_NEAR(bend.values[2 * v + 1] * radius, 0, tolerance) << i;
       EXPECT_NEAR(in_space(*graph.frame(v), bend.direction(Vertex(v)))[0], 0, tolerance) << i;
@@ -112,8 +112,8 @@ TEST(Curvature, OfAnEllipsoidIsThatOfItsEquation) {
     Mesh mesh = icosphere(parts);
     for (Vec3& p : mesh.positions)
       for (int a = 0; a < 3; ++a) p[a] *= axes[a];
-    const auto surface = TriangleMeshGraph::build(mesh.positions, mesh.faces);
-    const auto cloud = pointcloud::PointCloudGraph::build(mesh.positions);
+    const auto surface = TriangleMeshSurface::build(mesh.positions, mesh.faces);
+    const auto cloud = pointcloud::PointCloudSurface::build(mesh.positions);
     for (const CsrGraph* graph : {&surface.graph(), &cloud.graph()}) {
       const PrincipalCurvatures bend = curvature_directions(*graph);
       double worst = 0, mixed = 0;
@@ -143,25 +143,25 @@ TEST(Curvature, DoesNotDependOnTheSizeOfOtherPieces) {
   for (const Vec3& p : sphere.positions) both.positions.push_back({1e-6 * p[0] + 3, 1e-6 * p[1], 1e-6 * p[2]});
   for (const auto& f : sphere.faces)
     both.faces.push_back({f[0] + sphere.vertices(), f[1] + sphere.vertices(), f[2] + sphere.vertices()});
-  const auto surface = TriangleMeshGraph::build(both.positions, both.faces);
+  const auto surface = TriangleMeshSurface::build(both.positions, both.faces);
   const PrincipalCurvatures bend = curvature_directions(surface.graph());
   for (Index i = 0; i < sphere.vertices(); ++i)
     for (int k : {0, 1})  // positions of the small one are rounded to 1e-10 of it
-      EXPECT_NEAR(1e-6 * bend.values[2 * surface.vertex(i + sphere.vertices()).index + k],
-                  bend.values[2 * surface.vertex(i).index + k], 1e-7);
+      EXPECT_NEAR(1e-6 * bend.values[2 * surface.vertex(Row(i + sphere.vertices())).index + k],
+                  bend.values[2 * surface.vertex(Row(i)).index + k], 1e-7);
 }
 
 TEST(Curvature, ChangesSignWithTheNormalAndScalesWithLength) {
   Mesh mesh = icosphere(8);
   for (Vec3& p : mesh.positions) p[0] *= 1.3, p[2] *= 0.7;
-  const auto surface = TriangleMeshGraph::build(mesh.positions, mesh.faces);
+  const auto surface = TriangleMeshSurface::build(mesh.positions, mesh.faces);
   for (Vec3& p : mesh.positions)
     for (double& x : p) x *= 1e100;
   for (auto& face : mesh.faces) std::swap(face[0], face[1]);
-  const auto other = TriangleMeshGraph::build(mesh.positions, mesh.faces);
+  const auto other = TriangleMeshSurface::build(mesh.positions, mesh.faces);
   const PrincipalCurvatures a = curvature_directions(surface.graph()), b = curvature_directions(other.graph());
   for (Index i = 0; i < mesh.vertices(); ++i) {
-    const Index v = surface.vertex(i).index, w = other.vertex(i).index;
+    const Index v = surface.vertex(Row(i)).index, w = other.vertex(Row(i)).index;
     for (int k : {0, 1}) EXPECT_NEAR(b.values[2 * w + k] * 1e100, -a.values[2 * v + k], 1e-9);
     if (std::abs(a.values[2 * v] - a.values[2 * v + 1]) < 0.1) continue;
     const Vec3 along = in_space(*surface.graph().frame(v), a.direction(Vertex(v))),

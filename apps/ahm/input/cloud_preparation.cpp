@@ -26,33 +26,11 @@ std::string list_first(const std::vector<Index>& indices) {
 
 double distance(const Vec3& a, const Vec3& b) { return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]); }
 
-#ifdef AHM_WITH_PCL
-/// Keeps the listed points (indices into `cloud`, ascending).
-void keep(PreparedCloud& cloud, const std::vector<Index>& kept) {
-  for (std::size_t i = 0; i < kept.size(); ++i) {  // kept[i] >= i: in place
-    cloud.points[i] = cloud.points[kept[i]];
-    if (!cloud.normals.empty()) cloud.normals[i] = cloud.normals[kept[i]];
-    cloud.input_row[i] = cloud.input_row[kept[i]];
-  }
-  cloud.points.resize(kept.size());
-  if (!cloud.normals.empty()) cloud.normals.resize(kept.size());
-  cloud.input_row.resize(kept.size());
-}
-#endif
-
 PreparedCloud finite_points(const io::Geometry& input, const InputOptions& options) {
   PreparedCloud cloud;
-  const bool with_normals = !input.normals.empty() && options.normals != "estimate";
   std::vector<Index> bad;
-  for (std::size_t i = 0; i < input.points.size(); ++i) {
-    if (!is_finite(input.points[i])) {
-      bad.push_back(static_cast<Index>(i));
-      continue;
-    }
-    cloud.points.push_back(input.points[i]);
-    if (with_normals) cloud.normals.push_back(input.normals[i]);
-    cloud.input_row.push_back(static_cast<Index>(i));
-  }
+  for (std::size_t i = 0; i < input.points.size(); ++i)
+    (is_finite(input.points[i]) ? cloud.rows : bad).push_back(static_cast<Index>(i));
   if (!bad.empty() && !options.drop_nan)
     throw InvalidGeometry(fmt::format(
         "{}: {} of {} points have a coordinate that is nan or infinite (points {}); --drop-nan leaves them out",
@@ -70,42 +48,48 @@ void require_normals(const io::Geometry& input, const InputOptions& options) {
 /// Keeps what lies within one and a half radii of the source, or of the point nearest to it.
 void keep_surroundings(PreparedCloud& cloud, const io::Geometry& input, double radius, const SourceSpec& source) {
   Vec3 center = position_in(input, source, "--source");
-  if (std::holds_alternative<SourcePosition>(source) && !cloud.points.empty())
-    center = *std::min_element(cloud.points.begin(), cloud.points.end(),
-                               [&](const Vec3& a, const Vec3& b) { return distance(a, center) < distance(b, center); });
-  pointcloud::Surroundings near = pointcloud::surroundings(cloud.points, cloud.normals, center, 1.5 * radius);
-  cloud.beyond = static_cast<Index>(cloud.points.size() - near.points.size());
-  for (Index& row : near.index) row = cloud.input_row[row];
-  cloud.points = std::move(near.points);
-  cloud.normals = std::move(near.normals);
-  cloud.input_row = std::move(near.index);
+  if (std::holds_alternative<SourcePosition>(source) && !cloud.rows.empty())
+    center = input.points[*std::min_element(cloud.rows.begin(), cloud.rows.end(), [&](Index a, Index b) {
+      return distance(input.points[a], center) < distance(input.points[b], center);
+    })];
+  std::vector<Index> near = pointcloud::surroundings(input.points, center, 1.5 * radius);
+  cloud.beyond = static_cast<Index>(cloud.rows.size() - near.size());
+  cloud.rows = std::move(near);
 }
 
 #ifdef AHM_WITH_PCL
-pcl_bridge::ReducedCloud reduce(const PreparedCloud& cloud, double size) try {
-  return pcl_bridge::voxel_grid(cloud.points, cloud.normals, size);
-} catch (const InvalidArgument& e) {
-  throw InvalidArgument(fmt::format("--voxel {}: {}", size, e.what()));
+/// Of all rows, those that are listed.
+std::vector<Vec3> taken(const std::vector<Vec3>& all, const std::vector<Index>& rows) {
+  std::vector<Vec3> result;
+  for (Index row : rows) result.push_back(all[row]);
+  return result;
 }
 
-void apply_voxel_grid(PreparedCloud& cloud, double size, std::optional<Index> source) {
-  const pcl_bridge::ReducedCloud reduced = reduce(cloud, size);
+void apply_voxel_grid(PreparedCloud& cloud, const io::Geometry& input, const InputOptions& options,
+                      std::optional<Index> source) try {
+  const bool with_normals = !input.normals.empty() && options.normals != "estimate";
+  const pcl_bridge::ReducedCloud reduced =
+      pcl_bridge::voxel_grid(taken(input.points, cloud.rows),
+                             with_normals ? taken(input.normals, cloud.rows) : std::vector<Vec3>(), *options.voxel);
   std::vector<Index> kept = reduced.point_of_row;
   if (source) {  // the source represents its voxel itself
-    const auto place =
-        std::lower_bound(cloud.input_row.begin(), cloud.input_row.end(), *source) - cloud.input_row.begin();
+    const auto place = std::lower_bound(cloud.rows.begin(), cloud.rows.end(), *source) - cloud.rows.begin();
     kept[reduced.row_of_point[place]] = static_cast<Index>(place);
     std::sort(kept.begin(), kept.end());
   }
-  cloud.voxel_replaced = static_cast<Index>(cloud.points.size() - kept.size());
-  keep(cloud, kept);
+  cloud.voxel_replaced = static_cast<Index>(cloud.rows.size() - kept.size());
+  for (Index& point : kept) point = cloud.rows[point];
+  cloud.rows = std::move(kept);
+} catch (const InvalidArgument& e) {
+  throw InvalidArgument(fmt::format("--voxel {}: {}", *options.voxel, e.what()));
 }
 
-void apply_outlier_removal(PreparedCloud& cloud, std::optional<Index> source) {
-  const std::vector<Index> kept = pcl_bridge::outlier_removal(cloud.points);
-  cloud.outliers = static_cast<Index>(cloud.points.size() - kept.size());
-  keep(cloud, kept);
-  if (source && !std::binary_search(cloud.input_row.begin(), cloud.input_row.end(), *source))
+void apply_outlier_removal(PreparedCloud& cloud, const io::Geometry& input, std::optional<Index> source) {
+  std::vector<Index> kept = pcl_bridge::outlier_removal(taken(input.points, cloud.rows));
+  cloud.outliers = static_cast<Index>(cloud.rows.size() - kept.size());
+  for (Index& point : kept) point = cloud.rows[point];
+  cloud.rows = std::move(kept);
+  if (source && !std::binary_search(cloud.rows.begin(), cloud.rows.end(), *source))
     throw InvalidArgument(
         fmt::format("--source {}: --outliers removes this point; choose another one or leave --outliers out", *source));
 }
@@ -125,8 +109,8 @@ PreparedCloud prepare_cloud(const io::Geometry& input, const InputOptions& optio
 #ifdef AHM_WITH_PCL
   const auto* vertex = source ? std::get_if<SourceVertex>(&*source) : nullptr;
   const std::optional<Index> row = vertex ? std::optional(vertex->index) : std::nullopt;
-  if (options.voxel) apply_voxel_grid(cloud, *options.voxel, row);
-  if (options.outliers) apply_outlier_removal(cloud, row);
+  if (options.voxel) apply_voxel_grid(cloud, input, options, row);
+  if (options.outliers) apply_outlier_removal(cloud, input, row);
 #endif
   cloud.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return cloud;

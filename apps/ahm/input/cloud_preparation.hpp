@@ -11,15 +11,13 @@
 
 namespace ahm::app {
 
-/// The points that remain, and where they stand in the input.
+/// The points that remain.
 struct PreparedCloud {
-  std::vector<Vec3> points;
-  std::vector<Vec3> normals;     ///< empty, or one per point
-  std::vector<Index> input_row;  ///< of each point, ascending
-  Index non_finite = 0;          ///< input points dropped
-  Index voxel_replaced = 0;      ///< points represented by another one of their voxel
-  Index outliers = 0;            ///< points removed as outliers
-  Index beyond = 0;              ///< points left out by --local
+  std::vector<Index> rows;   ///< of the input, ascending
+  Index non_finite = 0;      ///< input points dropped
+  Index voxel_replaced = 0;  ///< points represented by another one of their voxel
+  Index outliers = 0;        ///< points removed as outliers
+  Index beyond = 0;          ///< points left out by --local
   double seconds = 0;
 };
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "ahm/io/geometry.hpp"
-#include "ahm/pointcloud/point_cloud_graph.hpp"
+#include "ahm/pointcloud/point_cloud_surface.hpp"
 #include "ahm/progress.hpp"
 #include "cli/options.hpp"
 
@@ -22,7 +22,8 @@ struct Spacing {
 
 /// The neighbour graph of the points, as far as it can be built.
 struct Connectivity {
-  pointcloud::CloudReport report;
+  pointcloud::CloudDetails report;
+  std::vector<std::string> warnings;
   std::vector<Index> component_sizes;  ///< vertices, largest first
   Index central_point = 0;             ///< input row in the largest component, near its middle: a source to start with
 };

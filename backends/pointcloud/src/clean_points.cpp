@@ -7,11 +7,10 @@
 
 #include "ahm/error.hpp"
 #include "ahm/util/text.hpp"
+#include "ahm/util/vec.hpp"
 
 namespace ahm::pointcloud {
 namespace {
-
-bool is_finite(const Vec3& p) { return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]); }
 
 /// The value in the middle when sorted; reorders.
 double median(std::vector<double>& values) {
@@ -69,8 +68,8 @@ std::uint64_t morton_code(const Vec3& p) {
 }
 
 /// Copies the finite points; `kept` are their numbers.
-std::vector<Vec3> finite_points(std::span<const Vec3> input, const CloudOptions& options, std::vector<Index>& kept,
-                                CloudReport& report) {
+std::vector<Vec3> finite_points(std::span<const Vec3> input, const std::function<Index(std::size_t)>& row,
+                                const CloudOptions& options, std::vector<Index>& kept, CloudDetails& report) {
   std::vector<Vec3> points;
   points.reserve(input.size());
   kept.reserve(input.size());
@@ -82,21 +81,23 @@ std::vector<Vec3> finite_points(std::span<const Vec3> input, const CloudOptions&
     }
     ++report.non_finite;
     if (!options.drop_non_finite)
-      throw InvalidGeometry("point " + std::to_string(i) + " is (" + detail::number(input[i][0]) + ", " +
-                            detail::number(input[i][1]) + ", " + detail::number(input[i][2]) +
-                            "): coordinates must be finite; drop such points with drop_non_finite");
+      throw InvalidGeometry("non_finite",
+                            "point " + std::to_string(row(i)) + " is (" + detail::number(input[i][0]) + ", " +
+                                detail::number(input[i][1]) + ", " + detail::number(input[i][2]) +
+                                "): coordinates must be finite",
+                            "drop such points with drop_non_finite");
   }
   return points;
 }
 
 }  // namespace
 
-CleanPoints clean_points(std::span<const Vec3> input, const CloudOptions& options, CloudReport& report) {
+CleanPoints clean_points(std::span<const Vec3> input, const std::function<Index(std::size_t)>& row,
+                         const CloudOptions& options, CloudDetails& report) {
   if (input.size() > static_cast<std::size_t>(std::numeric_limits<Index>::max() / 2))
     throw InvalidGeometry("the cloud has " + std::to_string(input.size()) + " points; at most 2^30 are supported");
-  report.points = static_cast<Index>(input.size());
   std::vector<Index> kept;
-  std::vector<Vec3> scaled = finite_points(input, options, kept, report);
+  std::vector<Vec3> scaled = finite_points(input, row, options, kept, report);
   CleanPoints clean;
   clean.unit = std::scalbn(1.0, normalize(scaled));
 

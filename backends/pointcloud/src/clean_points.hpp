@@ -3,10 +3,11 @@
 /// memory.
 #pragma once
 
+#include <functional>
 #include <span>
 #include <vector>
 
-#include "ahm/pointcloud/point_cloud_graph.hpp"
+#include "ahm/pointcloud/point_cloud_surface.hpp"
 
 namespace ahm::pointcloud {
 
@@ -19,7 +20,9 @@ struct CleanPoints {
 
 /// Cleans, and counts what it drops and merges in `report`. Scaling by powers of two changes no bit of the result but
 /// `unit`.
+/// @param row  names a point, for messages
 /// @throws InvalidGeometry
-CleanPoints clean_points(std::span<const Vec3> points, const CloudOptions& options, CloudReport& report);
+CleanPoints clean_points(std::span<const Vec3> points, const std::function<Index(std::size_t)>& row,
+                         const CloudOptions& options, CloudDetails& report);
 
 }  // namespace ahm::pointcloud

@@ -127,7 +127,7 @@ std::vector<Triangle> unique_triangles(const std::vector<std::vector<Triangle>>&
 
 std::vector<Triangle> local_delaunay(const CleanPoints& cloud, const Neighborhoods& neighborhoods,
                                      const TangentPlanes& planes, bool oriented, const CloudOptions& options,
-                                     CloudReport& report) {
+                                     CloudDetails& report) {
   const auto n = static_cast<Offset>(cloud.points.size());
   std::vector<std::vector<Triangle>> parts(static_cast<std::size_t>((n + chunk - 1) / chunk));
   std::atomic<Offset> too_long{0}, other_sheet{0};

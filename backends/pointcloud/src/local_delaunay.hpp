@@ -15,6 +15,6 @@ namespace ahm::pointcloud {
 /// @param oriented  reject neighbours whose normals point the other way
 std::vector<Triangle> local_delaunay(const CleanPoints& cloud, const Neighborhoods& neighborhoods,
                                      const TangentPlanes& planes, bool oriented, const CloudOptions& options,
-                                     CloudReport& report);
+                                     CloudDetails& report);
 
 }  // namespace ahm::pointcloud

@@ -1,22 +1,15 @@
 #include "ahm/pointcloud/surroundings.hpp"
 
-#include <cmath>
+#include "ahm/util/vec.hpp"
 
 namespace ahm::pointcloud {
 
-Surroundings surroundings(std::span<const Vec3> points, std::span<const Vec3> normals, const Vec3& center,
-                          double radius) {
-  Surroundings result;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const Vec3& p = points[i];
+std::vector<Index> surroundings(std::span<const Vec3> points, const Vec3& center, double radius) {
+  std::vector<Index> result;
+  for (std::size_t i = 0; i < points.size(); ++i)
     // The cheap test first; NaN fails it.
-    if (!(std::abs(p[0] - center[0]) <= radius) ||
-        !(std::hypot(p[0] - center[0], p[1] - center[1], p[2] - center[2]) <= radius))
-      continue;
-    result.points.push_back(p);
-    if (!normals.empty()) result.normals.push_back(normals[i]);
-    result.index.push_back(static_cast<Index>(i));
-  }
+    if (std::abs(points[i][0] - center[0]) <= radius && distance(points[i], center) <= radius)
+      result.push_back(static_cast<Index>(i));
   return result;
 }
 

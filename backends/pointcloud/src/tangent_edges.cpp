@@ -61,7 +61,7 @@ std::vector<Offset> row_starts(const WeightedEdges& edges, const std::vector<Ind
 
 CsrGraphData tangent_edges(const CleanPoints& cloud, const TangentPlanes& planes, const WeightedEdges& edges,
                            const std::vector<Index>& vertex_of_clean, Index vertices, bool trusted,
-                           EdgeLength edge_length, unsigned threads, CloudReport& report) {
+                           EdgeLength edge_length, unsigned threads, CloudDetails& report) {
   const auto count = static_cast<Offset>(edges.tails.size());
   auto is_reflection = [&](std::size_t e) {
     return !trusted && dot(planes.normals[edges.tails[e]], planes.normals[edges.heads[e]]) < 0;

@@ -16,6 +16,6 @@ namespace ahm::pointcloud {
 /// @param vertex_of_clean  number of each clean point among the vertices, -1: none
 CsrGraphData tangent_edges(const CleanPoints& cloud, const TangentPlanes& planes, const WeightedEdges& edges,
                            const std::vector<Index>& vertex_of_clean, Index vertices, bool trusted,
-                           EdgeLength edge_length, unsigned threads, CloudReport& report);
+                           EdgeLength edge_length, unsigned threads, CloudDetails& report);
 
 }  // namespace ahm::pointcloud

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "ahm/pointcloud/point_cloud_graph.hpp"
+#include "ahm/pointcloud/point_cloud_surface.hpp"
 #include "clean_points.hpp"
 
 namespace ahm::pointcloud {

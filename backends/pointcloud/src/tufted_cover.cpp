@@ -237,13 +237,11 @@ WeightedEdges TuftedCover::weighted_edges() const {
 }  // namespace
 
 WeightedEdges tufted_laplacian(const CleanPoints& cloud, const TangentPlanes& planes,
-                               const std::vector<Triangle>& triangles, CloudReport& report) {
+                               const std::vector<Triangle>& triangles, CloudDetails& report) {
   TuftedCover cover(cloud, planes, triangles);
   report.mollification = cover.mollify();
   report.flips = cover.flip_to_delaunay();
-  if (!cover.is_delaunay())
-    report.warnings.push_back(
-        "the intrinsic Delaunay flips did not come to an end: some edges of degenerate triangles were left out");
+  report.flips_stopped = !cover.is_delaunay();
   return cover.weighted_edges();
 }
 

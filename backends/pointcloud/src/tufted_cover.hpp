@@ -19,6 +19,6 @@ struct WeightedEdges {
 /// intrinsic Delaunay triangulation and sums its cotangent weights over the two layers. Parallel edges are summed,
 /// loops dropped. Fills `flips` and `mollification` (in units of the clean points) of the report.
 WeightedEdges tufted_laplacian(const CleanPoints& cloud, const TangentPlanes& planes,
-                               const std::vector<Triangle>& triangles, CloudReport& report);
+                               const std::vector<Triangle>& triangles, CloudDetails& report);
 
 }  // namespace ahm::pointcloud

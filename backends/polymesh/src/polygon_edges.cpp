@@ -44,11 +44,10 @@ class FaceMatrices {
   }
   double mass(Offset corner) const { return masses_[corner]; }
 
-  void summarize(bool clamp, PolygonReport& report) const {
+  void summarize(bool clamp, PolygonDetails& report) const {
     for (Index f = 0; f < mesh_.face_count(); ++f) {
       const auto m = static_cast<Index>(mesh_.face(f).size());
       report.triangles += m == 3;
-      report.largest_face = std::max(report.largest_face, m);
       report.nonplanar_faces += shape_[f] == Shape::nonplanar;
       report.degenerate_faces += shape_[f] == Shape::degenerate;
       for (Index c = 0; c < m; ++c)
@@ -96,7 +95,7 @@ class FaceMatrices {
 };
 
 /// The mean length of the sides, each edge of the mesh once, and the extremes.
-double measure_sides(const PolygonMesh& mesh, PolygonReport& report) {
+double measure_sides(const PolygonMesh& mesh, PolygonDetails& report) {
   double sum = 0, shortest = std::numeric_limits<double>::infinity(), longest = 0;
   for (Index f = 0; f < mesh.face_count(); ++f) {
     const auto corners = mesh.face(f);
@@ -140,7 +139,7 @@ void write_transport(std::complex<double> turn_i, bool mirrored_i, std::complex<
 }  // namespace
 
 CsrGraphData polygon_edges(const PolygonMesh& mesh, const Frames& frames, const PolygonOptions& options,
-                           PolygonReport& report) {
+                           PolygonDetails& report) {
   const auto n = static_cast<std::size_t>(mesh.vertex_count());
   CsrGraphData g;
   g.kind = mesh.report().orientable ? TransportKind::rotation2 : TransportKind::block;

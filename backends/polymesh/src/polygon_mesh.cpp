@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <string>
 
+#include "ahm/util/disjoint_sets.hpp"
 #include "ahm/error.hpp"
 #include "ahm/surface/gluing.hpp"
 #include "polygon.hpp"
@@ -32,22 +33,6 @@ struct PolygonMesh::Sides {
   Half across_tail(Half h) const { return is_mirrored(h) ? twin[h] : next(twin[h]); }
   Half across_head(Half h) const { return is_mirrored(h) ? next(twin[h]) : twin[h]; }
 };
-
-std::vector<std::string> topology_warnings(const TopologyReport& t) {
-  std::vector<std::string> warnings;
-  auto warn = [&](auto count, const std::string& text) {
-    if (count > 0) warnings.push_back(std::to_string(count) + text);
-  };
-  warn(t.unreferenced, " vertices are used by no face and were left out");
-  warn(t.reoriented, " faces were turned over to orient the mesh consistently");
-  warn(t.non_manifold_edges, " edges with more than two faces were cut");
-  warn(t.non_manifold_vertices, " additional vertices were made where several fans of faces met");
-  if (!t.orientable) warnings.push_back("the mesh is not orientable; it is solved with reflections");
-  if (t.components > 1)
-    warnings.push_back("the mesh falls into " + std::to_string(t.components) +
-                       " components; a map covers those that hold its source");
-  return warnings;
-}
 
 PolygonMesh PolygonMesh::from_faces(std::span<const Vec3> positions, std::span<const Offset> face_begin,
                                     std::span<const Index> face_vertices, NonManifold non_manifold) {
@@ -85,8 +70,8 @@ PolygonMesh PolygonMesh::from_faces(std::span<const Vec3> positions, std::span<c
   if (!mesh.report_.orientable) mesh.orient_vertices(sides);
   mesh.count_parts(sides);
 
-  for (Index v : mesh.input_of_vertex_) mesh.original_.push_back(positions[v]);
-  mesh.position_ = mesh.original_;
+  mesh.input_.assign(positions.begin(), positions.end());
+  for (Index v : mesh.input_of_vertex_) mesh.position_.push_back(positions[v]);
   mesh.length_unit_ = detail::normalize_positions(mesh.position_);
   return mesh;
 }
@@ -115,8 +100,10 @@ void PolygonMesh::number_vertices(const Sides& sides, NonManifold non_manifold) 
   }
   report_.non_manifold_vertices = static_cast<Index>(later.size());
   if (pinched.count() > 0 && non_manifold == NonManifold::error)
-    throw InvalidGeometry(std::to_string(pinched.count()) + " vertices join several fans of faces (bow ties): " +
-                          pinched.text() + "; repair them, or split them with NonManifold::split");
+    throw InvalidGeometry(
+        "non_manifold_vertices",
+        std::to_string(pinched.count()) + " vertices join several fans of faces (bow ties): " + pinched.text(),
+        "repair them, or split them with NonManifold::split");
   corner_.assign(sides.tail.size(), -1);
   for (Index v = 0; v < report_.vertices; ++v) {
     if (Index& first = vertex_of_input_[v]; first >= 0) {
@@ -183,7 +170,7 @@ void PolygonMesh::count_parts(const Sides& sides) {
 
 Refinement PolygonMesh::refined() const {
   Refinement result;
-  result.positions = original_;
+  for (Index v : input_of_vertex_) result.positions.push_back(input_[v]);
   result.face_begin.push_back(0);
   Polygon polygon;
   std::vector<std::array<std::size_t, 3>> ears;
@@ -200,7 +187,7 @@ Refinement PolygonMesh::refined() const {
       } else {
         if (folds) result.folded.push_back(f);
         const auto middle = static_cast<Index>(result.positions.size());
-        result.positions.push_back(polygon.blend(original_, corners));
+        result.positions.push_back(polygon.blend(result.positions, corners));
         for (std::size_t s = 0; s < corners.size(); ++s)
           result.triangles.push_back({corners[s], corners[(s + 1) % corners.size()], middle});
       }

@@ -78,7 +78,7 @@ class Rows {
   }
 
   /// Edges of the triangulation: mean length, and what was left out.
-  void summarize(CsrGraphData& g, MeshReport& report) const {
+  void summarize(CsrGraphData& g, MeshDetails& report) const {
     double sum = 0;
     for (Half h = 0; h < edges_.size(); ++h) {
       const Half t = edges_.twin[h];
@@ -102,7 +102,7 @@ class Rows {
 }  // namespace
 
 CsrGraphData mesh_edges(const TriangleMesh& mesh, const IntrinsicTriangulation& triangulation,
-                        const VertexFrames& frames, bool clamp, unsigned threads, MeshReport& report) {
+                        const VertexFrames& frames, bool clamp, unsigned threads, MeshDetails& report) {
   const auto n = static_cast<std::size_t>(mesh.vertex_count());
   const HalfEdges edges = triangulation.half_edges();
   const Rows rows(triangulation, frames, clamp);

@@ -1,22 +1,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <string>
 
-#include "ahm/error.hpp"
 #include "impl.hpp"
 
 namespace ahm::trimesh {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-void check_map(const LogMap& map, const CsrGraph& graph) {
-  if (map.size() != graph.size() || map.dimension() != 2)
-    throw InvalidArgument("the map has " + std::to_string(map.size()) + " vertices in dimension " +
-                          std::to_string(map.dimension()) + "; the mesh's graph has " + std::to_string(graph.size()) +
-                          " in dimension 2");
-}
 
 Vec2 coordinates(const LogMap& map, Index vertex) {
   const auto phi = map.coordinates(Vertex(vertex));
@@ -111,35 +102,11 @@ class Unfolding {
 
 }  // namespace
 
-VertexMap TriangleMeshGraph::on_vertices(const LogMap& map) const {
-  check_map(map, impl_->graph);
-  const auto n = impl_->mesh.vertex_of_input().size();
-  VertexMap result{std::vector<double>(n, nan), std::vector<double>(n, nan), std::vector<double>(n, nan),
-                   std::vector<double>(n, nan), std::vector<Status>(n, Status::removed)};
-  for (Index v = 0; v < impl_->graph.size(); ++v) {
-    const Index i = impl_->mesh.input_of_vertex()[v];
-    const Status status = map.status(Vertex(v));
-    if (status != Status::ok) {
-      if (result.status[i] != Status::ok) result.status[i] = status;
-      continue;
-    }
-    const Vec2 phi = coordinates(map, v);
-    const double distance = std::hypot(phi.x, phi.y);
-    if (result.status[i] == Status::ok && result.distance[i] <= distance) continue;  // another copy is nearer
-    result.u[i] = phi.x;
-    result.v[i] = phi.y;
-    result.distance[i] = distance;
-    result.angle[i] = std::atan2(phi.y, phi.x);
-    result.status[i] = Status::ok;
-  }
-  return result;
-}
-
-std::vector<std::array<double, 2>> TriangleMeshGraph::on_corners(const LogMap& map) const {
-  check_map(map, impl_->graph);
+std::vector<ahm::Vec2> TriangleMeshSurface::on_corners(const LogMap& map) const {
+  check_map(map);
   const TriangleMesh& mesh = impl_->mesh;
   const Unfolding unfolding(mesh, map);
-  std::vector<std::array<double, 2>> result(mesh.tails().size(), {nan, nan});
+  std::vector<ahm::Vec2> result(mesh.tails().size(), {nan, nan});
   for (Index f = 0; f < mesh.face_count(); ++f) {
     if (!unfolding.known(f)) continue;
     for (int s = 0; s < 3; ++s) {
@@ -150,8 +117,7 @@ std::vector<std::array<double, 2>> TriangleMeshGraph::on_corners(const LogMap& m
   return result;
 }
 
-Sample TriangleMeshGraph::at(const LogMap& map, const SurfacePoint& point) const {
-  check_map(map, impl_->graph);
+Sample TriangleMeshSurface::sample_in_face(const LogMap& map, const FacePoint& point) const {
   const FlipHistory::Point p = impl_->locate(point);
   const auto tail = impl_->triangulation.half_edges().tail;
   MappedFace face(impl_->mesh, impl_->triangulation.sides(p.face));
@@ -171,7 +137,8 @@ Sample TriangleMeshGraph::at(const LogMap& map, const SurfacePoint& point) const
   return {phi.x, phi.y, Status::ok};
 }
 
-TriangleMeshGraph::Located TriangleMeshGraph::locate(const SurfacePoint& point) const {
+TriangleMeshSurface::Located TriangleMeshSurface::locate(const FacePoint& point) const {
+  check(point);
   const FlipHistory::Point p = impl_->locate(point);
   const auto tail = impl_->triangulation.half_edges().tail;
   return {{tail[3 * p.face], tail[3 * p.face + 1], tail[3 * p.face + 2]}, p.weight, p.depth};

@@ -3,43 +3,19 @@
 #include <string>
 
 #include "ahm/error.hpp"
-#include "ahm/util/text.hpp"
+#include "ahm/surface/directions.hpp"
 #include "impl.hpp"
 
 namespace ahm::trimesh {
-namespace {
-
-/// A unit vector along `direction` projected to the plane of two orthonormal axes.
-Vec2 project(const Vec3& x, const Vec3& y, const Vec3& direction, const std::string& where) {
-  double largest = std::max({std::abs(direction[0]), std::abs(direction[1]), std::abs(direction[2])});
-  if (!(largest > 0) || !std::isfinite(largest))
-    throw InvalidArgument("the u direction " + where + " must be finite and not zero");
-  const Vec3 scaled = 1 / largest * direction;
-  const Vec2 p{dot(x, scaled), dot(y, scaled)};
-  if (!(norm(p) > 1e-9)) throw InvalidArgument("the u direction is perpendicular to the surface " + where);
-  return normalized(p);
-}
-
-}  // namespace
-
-FlipHistory::Point TriangleMeshGraph::Impl::locate(const SurfacePoint& point) const {
-  const auto& b = point.barycentric;
-  if (point.face < 0 || point.face >= mesh.face_count())
-    throw InvalidArgument("face " + std::to_string(point.face) + " is outside [0, " +
-                          std::to_string(mesh.face_count()) + ")");
-  const double sum = b[0] + b[1] + b[2];
-  if (!(std::abs(sum - 1) <= 1e-9) || !(std::min({b[0], b[1], b[2]}) >= -1e-9))
-    throw InvalidArgument("barycentric coordinates (" + detail::number(b[0]) + ", " + detail::number(b[1]) + ", " +
-                          detail::number(b[2]) + ") in face " + std::to_string(point.face) +
-                          " must be >= 0 and sum to 1");
+FlipHistory::Point TriangleMeshSurface::Impl::locate(const FacePoint& point) const {
   std::array<double, 3> weight;
   double total = 0;
-  for (int s = 0; s < 3; ++s) total += weight[mesh.stored_corner(point.face, s)] = std::max(0.0, b[s]);
+  for (int s = 0; s < 3; ++s) total += weight[mesh.stored_corner(point.face, s)] = std::max(0.0, point.barycentric[s]);
   for (double& w : weight) w /= total;
   return triangulation.history().locate(point.face, weight);
 }
 
-Vec2 TriangleMeshGraph::Impl::input_side(Index face, int from, int to) const {
+Vec2 TriangleMeshSurface::Impl::input_side(Index face, int from, int to) const {
   const auto layout = mesh.layout(face);
   const int a = mesh.stored_corner(face, from), b = mesh.stored_corner(face, to);
   const auto& side = layout[b == (a + 1) % 3 ? a : b];
@@ -47,7 +23,7 @@ Vec2 TriangleMeshGraph::Impl::input_side(Index face, int from, int to) const {
   return b == (a + 1) % 3 ? v : -v;
 }
 
-Source TriangleMeshGraph::Impl::source(const SurfacePoint& point, Vec2 u) const {
+Source TriangleMeshSurface::Impl::source(const FacePoint& point, Vec2 u) const {
   const FlipHistory::Point p = locate(point);
   const HalfEdges edges = triangulation.half_edges();
   const Vec2* side = triangulation.sides(p.face);
@@ -82,43 +58,7 @@ Source TriangleMeshGraph::Impl::source(const SurfacePoint& point, Vec2 u) const 
   return source;
 }
 
-Vertex TriangleMeshGraph::vertex(Index input_vertex) const {
-  const auto map = impl_->mesh.vertex_of_input();
-  if (input_vertex < 0 || static_cast<std::size_t>(input_vertex) >= map.size())
-    throw InvalidArgument("source vertex " + std::to_string(input_vertex) + " is outside [0, " +
-                          std::to_string(map.size()) + ")");
-  if (map[input_vertex] < 0)
-    throw InvalidArgument("source vertex " + std::to_string(input_vertex) + " is used by no face; choose another");
-  return Vertex(map[input_vertex]);
-}
-
-std::array<double, 2> TriangleMeshGraph::direction_in_frame(Vertex vertex, const Vec3& direction) const {
-  if (vertex.index < 0 || vertex.index >= impl_->graph.size())
-    throw InvalidArgument("vertex " + std::to_string(vertex.index) + " is outside [0, " +
-                          std::to_string(impl_->graph.size()) + ")");
-  const auto frame = impl_->graph.frame(vertex.index);
-  if (!frame) throw InvalidArgument("the mesh was given by edge lengths, so a direction in space has no meaning");
-  const Vec2 u = project(frame->x, frame->y, direction,
-                         "at vertex " + std::to_string(impl_->mesh.input_of_vertex()[vertex.index]));
-  return {u.x, u.y};
-}
-
-Source TriangleMeshGraph::source_at_vertex(Index input_vertex) const { return Source::at_vertex(vertex(input_vertex)); }
-
-Source TriangleMeshGraph::source_at_vertex(Index input_vertex, const Vec3& u_direction) const {
-  const Vertex v = vertex(input_vertex);
-  return Source::at_vertex(v, direction_in_frame(v, u_direction));
-}
-
-Source TriangleMeshGraph::source_at(const SurfacePoint& point) const {
-  impl_->locate(point);  // checks
-  const Vec2 u = impl_->input_side(point.face, 0, 1);
-  return impl_->source(point, norm(u) > 0 ? normalized(u) : Vec2{1, 0});
-}
-
-std::optional<Frame> TriangleMeshGraph::frame_at(const SurfacePoint& point) const {
-  impl_->locate(point);  // checks
-  const TriangleMesh& mesh = impl_->mesh;
+std::optional<Frame> TriangleMeshSurface::Impl::frame(const FacePoint& point) const {
   if (!mesh.has_positions()) return std::nullopt;
   Vec3 corner[3], origin{0, 0, 0};
   for (int s = 0; s < 3; ++s) {
@@ -134,46 +74,58 @@ std::optional<Frame> TriangleMeshGraph::frame_at(const SurfacePoint& point) cons
   return Frame{origin, x, cross(n, x), n};
 }
 
-Source TriangleMeshGraph::source_at(const SurfacePoint& point, const Vec3& u_direction) const {
-  const auto frame = frame_at(point);
-  if (!frame)
-    throw InvalidArgument("face " + std::to_string(point.face) +
-                          " has no plane in space (no positions, or no area), so a direction "
-                          "in space has no meaning");
-  const Vec2 u = project(frame->x, frame->y, u_direction, "in face " + std::to_string(point.face));
-  return impl_->source(point, normalized(u * normalized(impl_->input_side(point.face, 0, 1))));
+PlacedSource TriangleMeshSurface::source_in_face(const FacePoint& point, const std::optional<Vec3>& u_axis) const {
+  std::optional<Frame> frame = impl_->frame(point);
+  const Vec2 side = impl_->input_side(point.face, 0, 1);
+  Vec2 u = norm(side) > 0 ? normalized(side) : Vec2{1, 0};
+  if (u_axis) {
+    const std::string where = "in face " + std::to_string(point.face);
+    if (!frame)
+      throw InvalidArgument(where.substr(3) +
+                            " has no plane in space (no positions, or no area), so a direction in space "
+                            "has no meaning");
+    const auto [x, y] = projected(frame->x, frame->y, *u_axis, where);
+    u = normalized(normalized(Vec2{x, y}) * u);
+    frame = turned(*frame, *u_axis);
+  }
+  return {impl_->source(point, u), impl_->mesh.has_positions() ? position(point) : Vec3{}, frame, std::nullopt};
 }
 
-Source TriangleMeshGraph::source_at_edge(Index from, Index to, double t) const {
-  if (!(t >= 0 && t <= 1)) throw InvalidArgument("t is " + detail::number(t) + "; it must be in [0, 1]");
+PlacedSource TriangleMeshSurface::source_on_edge(const EdgePoint& edge, const std::optional<Vec3>& u_axis) const {
+  const FacePoint point = face_point(edge);
+  PlacedSource result = source_in_face(point, u_axis);
+  if (u_axis) return result;
+  const auto given = faces()[static_cast<std::size_t>(point.face)];
+  const auto corner = [&](Row row) {
+    return static_cast<int>(std::find(given.begin(), given.end(), row.index) - given.begin());
+  };
+  const Vec2 u = impl_->input_side(point.face, corner(edge.from), corner(edge.to));
+  result.source = impl_->source(point, norm(u) > 0 ? normalized(u) : Vec2{1, 0});
+  if (result.frame) result.frame = turned(*result.frame, positions()[edge.to.index] - positions()[edge.from.index]);
+  return result;
+}
+
+/// Looks through the fans of all copies of `from`; only a split mesh has more than one.
+FacePoint TriangleMeshSurface::face_point(const EdgePoint& edge) const {
   const TriangleMesh& mesh = impl_->mesh;
   const HalfEdges edges(mesh);
-  vertex(from), vertex(to);  // check
-  auto input = [&](Half h) { return mesh.input_of_vertex()[edges.tail[h]]; };
-  // The fans of all copies of `from`; only a split mesh has more than one.
-  for (Index v = mesh.vertex_of_input()[from]; v < mesh.vertex_count(); ++v) {
-    if (mesh.input_of_vertex()[v] != from) {
-      v = std::max(v, mesh.report().vertices - mesh.report().unreferenced - 1);
-      continue;
-    }
-    const Corner start = edges.rightmost({mesh.corners()[v], true});
+  for (Vertex v : rows().vertices(edge.from)) {
+    const Corner start = edges.rightmost({mesh.corners()[v.index], true});
     for (Corner c = start; c.half >= 0;) {
       const Index face = c.half / 3;
       const int at = c.half % 3;
       for (int other : {(at + 1) % 3, (at + 2) % 3}) {
-        if (input(3 * face + other) != to) continue;
-        SurfacePoint point{face, {0, 0, 0}};
-        const int a = mesh.stored_corner(face, at), b = mesh.stored_corner(face, other);
-        point.barycentric[a] = 1 - t;
-        point.barycentric[b] = t;
-        const Vec2 u = impl_->input_side(face, a, b);
-        return impl_->source(point, norm(u) > 0 ? normalized(u) : Vec2{1, 0});
+        if (mesh.input_of_vertex()[edges.tail[3 * face + other]] != edge.to.index) continue;
+        FacePoint point{face, {0, 0, 0}};
+        point.barycentric[mesh.stored_corner(face, at)] = 1 - edge.t;
+        point.barycentric[mesh.stored_corner(face, other)] = edge.t;
+        return point;
       }
       c = edges.turn_left(c);
       if (c == start) break;
     }
   }
-  throw InvalidArgument("vertices " + std::to_string(from) + " and " + std::to_string(to) +
+  throw InvalidArgument("rows " + std::to_string(edge.from.index) + " and " + std::to_string(edge.to.index) +
                         " are not joined by an edge");
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "ahm/util/disjoint_sets.hpp"
 #include "ahm/error.hpp"
 #include "ahm/surface/gluing.hpp"
 #include "ahm/util/text.hpp"
@@ -103,8 +104,10 @@ void TriangleMesh::number_vertices(NonManifold non_manifold) {
   Fans fans = find_fans(HalfEdges(*this), report_.vertices);
   report_.non_manifold_vertices = static_cast<Index>(fans.pinched.count());
   if (fans.pinched.count() > 0 && non_manifold == NonManifold::error)
-    throw InvalidGeometry(std::to_string(fans.pinched.count()) + " vertices join several fans of faces (bow ties): " +
-                          fans.pinched.text() + "; repair them, or split them with NonManifold::split");
+    throw InvalidGeometry("non_manifold_vertices",
+                          std::to_string(fans.pinched.count()) +
+                              " vertices join several fans of faces (bow ties): " + fans.pinched.text(),
+                          "repair them, or split them with NonManifold::split");
   std::vector<Index> vertex_of_fan(fans.corner.size(), -1);
   auto number = [&](Index fan, Index input) {
     vertex_of_fan[fan] = vertex_count();
@@ -144,8 +147,8 @@ TriangleMesh TriangleMesh::from_positions(std::span<const Vec3> positions, std::
                                           NonManifold non_manifold) {
   detail::check_positions(positions);
   TriangleMesh mesh(static_cast<Index>(positions.size()), faces, non_manifold);
-  for (Index v : mesh.input_of_vertex_) mesh.original_.push_back(positions[v]);
-  mesh.position_ = mesh.original_;
+  mesh.input_.assign(positions.begin(), positions.end());
+  for (Index v : mesh.input_of_vertex_) mesh.position_.push_back(positions[v]);
   mesh.length_unit_ = detail::normalize_positions(mesh.position_);
   return mesh;
 }

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "ahm/error.hpp"
-#include "ahm/trimesh/triangle_mesh_graph.hpp"
+#include "ahm/trimesh/triangle_mesh_surface.hpp"
 #include "flat_maps.hpp"
 #include "methods/method.hpp"
 
@@ -16,20 +16,20 @@ namespace {
 using methods::Method;
 using methods::Result;
 using trimesh::TriangleMesh;
-using trimesh::TriangleMeshGraph;
+using trimesh::TriangleMeshSurface;
 
 /// A time that drowns the part of the error which depends on how the edges lie: at t_coef = 1 it does not shrink with h
 /// and hides the order.
 constexpr double long_time = 16;
 
-Method on_graph(const TriangleMeshGraph& surface) { return methods::heat_distance(surface.graph(), long_time); }
-Method on_faces(const TriangleMeshGraph& surface) { return methods::heat_distance(surface.mesh(), long_time); }
+Method on_graph(const TriangleMeshSurface& surface) { return methods::heat_distance(surface.graph(), long_time); }
+Method on_faces(const TriangleMeshSurface& surface) { return methods::heat_distance(surface.mesh(), long_time); }
 
 /// Root mean square error of distances from the middle of a square, away from its border.
 template <class Make>
 double square_error(Index side, const Make& make) {
   const Mesh mesh = flat_square(side);
-  const auto surface = TriangleMeshGraph::build(mesh.positions, mesh.faces);
+  const auto surface = TriangleMeshSurface::build(mesh.positions, mesh.faces);
   const Index source = nearest(mesh, {0.5, 0.5});
   const Result result = make(surface)->solve(source);
   double sum = 0;
@@ -53,7 +53,7 @@ TEST(HeatDistance, ConvergesWithFirstOrderInThePlane) {
 template <class Make>
 double sphere_error(Index parts, const Make& make) {
   const Mesh mesh = icosphere(parts);
-  const auto surface = TriangleMeshGraph::build(mesh.positions, mesh.faces);
+  const auto surface = TriangleMeshSurface::build(mesh.positions, mesh.faces);
   const Index source = parts * parts / 3;
   const Result result = make(surface)->solve(source);
   double sum = 0;
@@ -120,7 +120,7 @@ TEST(ExactDistance, UnfoldsTheCube) {
 
 TEST(ExactDistance, IsNoLongerThanAnyPathOfEdges) {
   const Mesh mesh = icosphere(8);
-  const auto surface = TriangleMeshGraph::build(mesh.positions, mesh.faces, {.intrinsic_delaunay = false});
+  const auto surface = TriangleMeshSurface::build(mesh.positions, mesh.faces, {.intrinsic_delaunay = false});
   const Result exact = methods::exact_distance(mesh.positions, mesh.faces)->solve(3);
   const CsrGraph& graph = surface.graph();
   for (Index i = 0; i < graph.size(); ++i) {

@@ -12,7 +12,7 @@
 #include "ahm/testing/closed_forms.hpp"
 #include "ahm/testing/curved_graphs.hpp"
 #include "ahm/testing/flat_graphs.hpp"
-#include "ahm/trimesh/triangle_mesh_graph.hpp"
+#include "ahm/trimesh/triangle_mesh_surface.hpp"
 #include "flat_maps.hpp"
 #include "methods/signed_heat.hpp"
 
@@ -22,7 +22,7 @@ namespace {
 using methods::Method;
 using methods::Result;
 using std::numbers::pi;
-using trimesh::TriangleMeshGraph;
+using trimesh::TriangleMeshSurface;
 
 struct PlanarErrors {
   double angle, distance;  ///< root mean square
@@ -31,7 +31,7 @@ struct PlanarErrors {
 /// Errors of a map from the middle of a jittered square.
 PlanarErrors planar_errors(const std::function<Method(const TangentGraph&)>& make) {
   const Mesh mesh = flat_square(61);
-  const auto surface = TriangleMeshGraph::build(mesh.positions, mesh.faces);
+  const auto surface = TriangleMeshSurface::build(mesh.positions, mesh.faces);
   const Index source = nearest(mesh, {0.5, 0.5});
   const Result result = make(surface.graph())->solve(source);
   PlanarErrors errors{0, 0};
@@ -66,7 +66,7 @@ TEST(DiscreteExponential, IsExactAlongAStraightLineOfEdges) {
   // From a vertex of the icosahedron its edges are great circles, and Dijkstra's path follows them.
   const Index parts = 16;
   const Mesh mesh = icosphere(parts);
-  const auto surface = TriangleMeshGraph::build(mesh.positions, mesh.faces);
+  const auto surface = TriangleMeshSurface::build(mesh.positions, mesh.faces);
   const double edge = std::acos(1 / std::sqrt(5.0));  // between neighbouring vertices of the icosahedron
   for (auto turn : {methods::FrameTurn::along_path, methods::FrameTurn::in_space}) {
     const Result result = methods::discrete_exponential(surface.graph(), {.turn = turn})->solve(0);
@@ -83,7 +83,7 @@ TEST(DiscreteExponential, IsExactAlongAStraightLineOfEdges) {
 
 TEST(DiscreteExponential, TurnsInSpaceAsAlongThePathWhereNormalsAgree) {
   const Mesh mesh = flat_square(31);
-  const auto surface = TriangleMeshGraph::build(mesh.positions, mesh.faces);
+  const auto surface = TriangleMeshSurface::build(mesh.positions, mesh.faces);
   const Result result =
       methods::discrete_exponential(surface.graph(), {.turn = methods::FrameTurn::in_space})->solve(50);
   for (Index i = 0; i < mesh.vertices(); ++i) {
@@ -101,7 +101,7 @@ TEST(DiscreteExponential, TurnsInSpaceOnlyWhereFramesAreKnown) {
 /// Root mean square distance between a map of a rolled square and the plane it was rolled from.
 double rolled_error(Index side, methods::FrameTurn turn) {
   const Mesh mesh = rolled_square(side, 0.3);
-  const auto surface = TriangleMeshGraph::build(mesh.positions, mesh.faces);
+  const auto surface = TriangleMeshSurface::build(mesh.positions, mesh.faces);
   const Index source = nearest(mesh, {0.5, 0.5});
   const Result result = methods::discrete_exponential(surface.graph(), {.turn = turn})->solve(source);
   double c = 0, s = 0, sum = 0;  // the turn of the frame is fitted
@@ -128,7 +128,7 @@ TEST(DiscreteExponential, ConvergesOnACylinderWhicheverWayItTurns) {
 /// Root mean square vector error on the unit sphere within `reach`, from vertex 0.
 double sphere_error(Index parts, double reach, const std::function<Method(const TangentGraph&)>& make) {
   const Mesh mesh = icosphere(parts);
-  const auto surface = TriangleMeshGraph::build(mesh.positions, mesh.faces);
+  const auto surface = TriangleMeshSurface::build(mesh.positions, mesh.faces);
   const Frame frame = *surface.graph().frame(0);
   const Result result = make(surface.graph())->solve(0);
   double sum = 0;
@@ -206,7 +206,7 @@ TEST(VectorHeatLog, DistortsEvenThePlane) {
 
 TEST(VectorHeatLog, IsHalfAnEdgeShortAsPublished) {
   const Mesh mesh = hexagon(20);
-  const auto surface = TriangleMeshGraph::build(mesh.positions, mesh.faces);
+  const auto surface = TriangleMeshSurface::build(mesh.positions, mesh.faces);
   const Result published = methods::vector_heat_log(surface.graph())->solve(0),
                radial = methods::vector_heat_log(surface.graph(), {.radial_at_source = true})->solve(0);
   // On six equal edges the two differ by the half edges at the source alone.

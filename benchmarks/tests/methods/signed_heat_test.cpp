@@ -9,7 +9,7 @@
 #include "ahm/applications/stroke.hpp"
 #include "ahm/error.hpp"
 #include "ahm/testing/curved_graphs.hpp"
-#include "ahm/trimesh/triangle_mesh_graph.hpp"
+#include "ahm/trimesh/triangle_mesh_surface.hpp"
 #include "flat_maps.hpp"
 
 namespace ahm::test {
@@ -28,7 +28,7 @@ double height(const Mesh& mesh, Index i) { return mesh.plane[i][1] - 0.5; }
 TEST(SignedHeat, IsExactForAStraightLineInThePlane) {
   const Index side = 31;
   const Mesh mesh = flat_square(side);
-  const auto surface = trimesh::TriangleMeshGraph::build(mesh.positions, mesh.faces, {.intrinsic_delaunay = false});
+  const auto surface = trimesh::TriangleMeshSurface::build(mesh.positions, mesh.faces, {.intrinsic_delaunay = false});
   const methods::SignedHeat shm(surface.graph());
   // A broken line counts as a whole one, on either of its sides and beyond its ends.
   for (const auto& [first, last] : {std::pair{0, 30}, std::pair{10, 20}}) {
@@ -40,7 +40,7 @@ TEST(SignedHeat, IsExactForAStraightLineInThePlane) {
 TEST(SignedHeat, ClosesTheGapsOfABrokenLine) {
   const Index side = 31;
   const Mesh mesh = flat_square(side);
-  const auto surface = trimesh::TriangleMeshGraph::build(mesh.positions, mesh.faces, {.intrinsic_delaunay = false});
+  const auto surface = trimesh::TriangleMeshSurface::build(mesh.positions, mesh.faces, {.intrinsic_delaunay = false});
   Source broken(2);
   for (const auto& [first, last] : {std::pair{2, 6}, std::pair{14, 17}, std::pair{25, 29}}) {
     const Source part = stroke_source(surface.graph(), middle_row(side, first, last));
@@ -55,7 +55,7 @@ TEST(SignedHeat, ClosesTheGapsOfABrokenLine) {
 TEST(SignedHeat, ChangesSignWithTheDirectionOfTheCurve) {
   const Index side = 21;
   const Mesh mesh = flat_square(side);
-  const auto surface = trimesh::TriangleMeshGraph::build(mesh.positions, mesh.faces, {.intrinsic_delaunay = false});
+  const auto surface = trimesh::TriangleMeshSurface::build(mesh.positions, mesh.faces, {.intrinsic_delaunay = false});
   const methods::SignedHeat shm(surface.graph());
   auto path = middle_row(side, 5, 15);
   const auto f = shm.signed_distance(stroke_source(surface.graph(), path));
@@ -82,7 +82,7 @@ std::vector<Vertex> ring(const Mesh& mesh, Index radius) {
 
 TEST(SignedHeat, IsPositiveInsideACounterClockwiseLoop) {
   const Mesh mesh = hexagon(20);
-  const auto surface = trimesh::TriangleMeshGraph::build(mesh.positions, mesh.faces);
+  const auto surface = trimesh::TriangleMeshSurface::build(mesh.positions, mesh.faces);
   const auto f = methods::SignedHeat(surface.graph())
                      .signed_distance(stroke_source(surface.graph(), ring(mesh, 10), {.closed = true}));
   // The distance from a hexagon's middle to its sides; heat rounds its corners by a few edges.

@@ -89,8 +89,9 @@ class Gluer {
     refuse_duplicates();
     result_.non_manifold_edges = static_cast<Index>(crowded_.count());
     if (crowded_.count() > 0 && non_manifold == NonManifold::error)
-      throw InvalidGeometry(std::to_string(crowded_.count()) + " edges have more than two faces: " + crowded_.text() +
-                            "; repair them, or cut the mesh there with NonManifold::split");
+      throw InvalidGeometry("non_manifold_edges",
+                            std::to_string(crowded_.count()) + " edges have more than two faces: " + crowded_.text(),
+                            "repair them, or cut the mesh there with NonManifold::split");
   }
 
   /// Turns faces over until neighbours agree, component by component.

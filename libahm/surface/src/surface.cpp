@@ -69,8 +69,8 @@ std::vector<Vec3> Surface::normals() const {
 
 Vertex Surface::vertex(Row row) const {
   if (const auto vertex = rows().vertex(row)) return *vertex;
-  const auto [fault, text] = why_without_vertex(row);
-  throw InvalidArgument(fault, "row " + std::to_string(row.index) + " " + std::string(text), "choose another one");
+  const auto [fault, text, remedy] = why_without_vertex(row);
+  throw InvalidArgument(fault, "row " + std::to_string(row.index) + " " + std::string(text), std::string(remedy));
 }
 
 Row Surface::nearest_row(const Vec3& position) const {
@@ -228,7 +228,7 @@ std::vector<Vec2> Surface::on_corners(const LogMap& map) const {
   std::vector<Vec2> result(all.vertices.size(), Vec2{nan, nan});
   for (std::size_t f = 0; f < all.size(); ++f)
     for (std::size_t c = 0; c < all[f].size(); ++c) {
-      const Vertex v{corner_vertex(static_cast<Index>(f), c)};
+      const Vertex v = corner_vertex(static_cast<Index>(f), c);
       if (map.status(v) != Status::ok) continue;
       const auto phi = map.coordinates(v);
       result[static_cast<std::size_t>(all.begin[f]) + c] = {phi[0], phi[1]};
@@ -273,7 +273,7 @@ Sample Surface::at(const LogMap& map, const SurfacePoint& point) const {
 Sample Surface::sample_in_face(const LogMap& map, const FacePoint& point) const {
   Sample sum{0, 0, Status::ok};
   for (std::size_t c = 0; c < point.barycentric.size(); ++c) {
-    const Vertex v{corner_vertex(point.face, c)};
+    const Vertex v = corner_vertex(point.face, c);
     if (map.status(v) != Status::ok) return {nan, nan, map.status(v)};
     const auto phi = map.coordinates(v);
     sum.u += point.barycentric[c] * phi[0];
@@ -282,13 +282,13 @@ Sample Surface::sample_in_face(const LogMap& map, const FacePoint& point) const 
   return sum;
 }
 
-Index Surface::corner_vertex(Index face, std::size_t corner) const {
+Vertex Surface::corner_vertex(Index face, std::size_t corner) const {
   const FaceList all = faces();
   const auto given = all[static_cast<std::size_t>(face)];
   const auto stored = corner_vertices().subspan(static_cast<std::size_t>(all.begin[face]), given.size());
   const std::optional<Row> second = rows().row(Vertex(stored[1]));
   const bool reversed = !second || second->index != given[1];
-  return stored[reversed ? (given.size() - corner) % given.size() : corner];
+  return Vertex(stored[reversed ? (given.size() - corner) % given.size() : corner]);
 }
 
 void Surface::check_map(const LogMap& map) const {

@@ -27,8 +27,8 @@ template <typename PointT>
   return cloud;
 }
 
-pointcloud::PointMap make_map(std::size_t n) {
-  pointcloud::PointMap map;
+RowLogMap make_map(std::size_t n) {
+  RowLogMap map;
   for (std::size_t i = 0; i < n; ++i) {
     map.u.push_back(static_cast<double>(i));
     map.v.push_back(0.25);
@@ -108,9 +108,9 @@ TEST(ToPcl, ClosesTheWayFromAScanToItsMap) {
   const CloudArrays scan = from_pcl(cloud);
   pointcloud::CloudOptions options;
   options.search = kdtree_search;
-  const auto graph = pointcloud::PointCloudGraph::build(scan.points, scan.normals, options);
+  const auto graph = pointcloud::PointCloudSurface::build(scan.points, scan.normals, options);
   const LogMapSolver solver(graph.graph());
-  const auto map = graph.on_points(solver.solve(graph.source_at_point(0, Vec3{1, 0, 0})));
+  const auto map = graph.on_rows(solver.solve(graph.source(Row(0), Vec3{1, 0, 0}).source));
   for (const PointLogMap& p : to_pcl(cloud, map)) {
     EXPECT_EQ(p.status, static_cast<std::uint32_t>(Status::ok));
     EXPECT_NEAR(p.u, p.x - cloud[0].x, 1e-6);

@@ -1,5 +1,5 @@
 // The published contract, on clouds.
-#include "ahm/pointcloud/point_cloud_graph.hpp"
+#include "ahm/pointcloud/point_cloud_surface.hpp"
 #include "ahm/testing/clouds.hpp"
 #include "ahm/testing/graph_contract.hpp"
 
@@ -8,7 +8,7 @@ namespace {
 
 struct CloudGraphs {
   static std::unique_ptr<TangentGraph> make(const Cloud& cloud) {
-    const auto built = pointcloud::PointCloudGraph::build(cloud.points);
+    const auto built = pointcloud::PointCloudSurface::build(cloud.points);
     return std::make_unique<CsrGraph>(built.graph().data());
   }
   static std::unique_ptr<TangentGraph> surface() { return make(random_sphere(300)); }

@@ -11,21 +11,20 @@ namespace ahm::test {
 namespace {
 
 using pointcloud::CloudOptions;
-using pointcloud::PointCloudGraph;
-using pointcloud::PointMap;
+using pointcloud::PointCloudSurface;
 
 template <class Exception>
 void expect_error(const std::vector<Vec3>& points, const std::string& text, const CloudOptions& options = {},
                   const std::vector<Vec3>& normals = {}) {
   try {
-    PointCloudGraph::build(points, normals, options);
+    PointCloudSurface::build(points, normals, options);
     ADD_FAILURE() << "no error; expected one that says: " << text;
   } catch (const Exception& e) {
     EXPECT_NE(std::string(e.what()).find(text), std::string::npos) << e.what();
   }
 }
 
-void expect_nan_exactly_where_not_ok(const PointMap& map) {
+void expect_nan_exactly_where_not_ok(const RowLogMap& map) {
   for (std::size_t i = 0; i < map.status.size(); ++i)
     for (double x : {map.u[i], map.v[i], map.distance[i], map.angle[i]})
       ASSERT_EQ(std::isnan(x), map.status[i] != Status::ok);
@@ -44,27 +43,27 @@ TEST(CloudFaults, PointsThatAreNotFinite) {
   expect_error<InvalidGeometry>(points, "point 42");
   CloudOptions drop;
   drop.drop_non_finite = true;
-  const auto graph = PointCloudGraph::build(points, {}, drop);
-  EXPECT_EQ(graph.report().non_finite, 2);
+  const auto graph = PointCloudSurface::build(points, {}, drop);
+  EXPECT_EQ(graph.details().non_finite, 2);
   const LogMapSolver solver(graph.graph());
-  const PointMap map = graph.on_points(solver.solve(graph.source_at_point(0)));
+  const RowLogMap map = graph.on_rows(solver.solve(graph.source(Row(0)).source));
   expect_nan_exactly_where_not_ok(map);
   EXPECT_EQ(map.status[42], Status::removed);
   EXPECT_EQ(map.status[77], Status::removed);
   EXPECT_EQ(map.status[43], Status::ok);
-  EXPECT_THROW(graph.source_at_point(42), InvalidArgument);
-  EXPECT_THROW(graph.source_at_point(100), InvalidArgument);
-  EXPECT_THROW(graph.source_at_point(-1), InvalidArgument);
+  EXPECT_THROW(graph.source(Row(42)), InvalidArgument);
+  EXPECT_THROW(graph.source(Row(100)), InvalidArgument);
+  EXPECT_THROW(graph.source(Row(-1)), InvalidArgument);
 }
 
 TEST(CloudFaults, DuplicatesAreMergedAndAllOfThemGetTheResult) {
   Cloud cloud = flat_cloud(400);
-  const PointMap once = Solved(cloud).map(9);
+  const RowLogMap once = Solved(cloud).map(9);
   for (int copy = 0; copy < 40; ++copy)
     for (int i = 0; i < 20; ++i) cloud.points.push_back(cloud.points[i]);
   const Solved solved(cloud);
-  EXPECT_EQ(solved.graph.report().duplicates, 800);
-  const PointMap map = solved.map(409);  // a copy of point 9
+  EXPECT_EQ(solved.graph.details().duplicates, 800);
+  const RowLogMap map = solved.map(409);  // a copy of point 9
   for (std::size_t i = 0; i < 400; ++i) ASSERT_NEAR(map.u[i], once.u[i], 1e-13);
   for (std::size_t i = 400; i < cloud.points.size(); ++i) ASSERT_EQ(map.u[i], map.u[(i - 400) % 20]);
 }
@@ -72,9 +71,10 @@ TEST(CloudFaults, DuplicatesAreMergedAndAllOfThemGetTheResult) {
 TEST(CloudFaults, FewerPointsThanNeighboursAskedFor) {
   const Cloud cloud = flat_cloud(12);
   const Solved solved(cloud);
-  EXPECT_EQ(solved.graph.report().k, 11);
-  EXPECT_NE(solved.graph.report().warnings.at(0).find("reduced to 11"), std::string::npos);
-  const PointMap map = solved.map(0);
+  EXPECT_EQ(solved.graph.details().k, 11);
+  EXPECT_EQ(solved.graph.warnings().at(0).id, "k_reduced");
+  EXPECT_EQ(solved.graph.warnings().at(0).numbers, (std::vector<double>{30, 11, 12}));
+  const RowLogMap map = solved.map(0);
   for (std::size_t i = 0; i < 12; ++i)
     EXPECT_NEAR(map.distance[i],
                 std::hypot(cloud.plane[i][0] - cloud.plane[0][0], cloud.plane[i][1] - cloud.plane[0][1]), 1e-12);
@@ -82,7 +82,7 @@ TEST(CloudFaults, FewerPointsThanNeighboursAskedFor) {
 
 TEST(CloudFaults, ThreePointsAreATriangle) {
   const Cloud cloud{{{0, 0, 0}, {3, 0, 0}, {0, 4, 0}}, {}, {}};
-  const PointMap map = Solved(cloud).map(1);
+  const RowLogMap map = Solved(cloud).map(1);
   EXPECT_NEAR(map.distance[0], 3, 1e-12);
   EXPECT_NEAR(map.distance[2], 5, 1e-12);
 }
@@ -97,11 +97,14 @@ TEST(CloudFaults, ALineBesideASurfaceIsMaskedAndNamed) {
   Cloud cloud = flat_cloud(500);
   for (int i = 0; i < 200; ++i) cloud.points.push_back({100.0 + 0.01 * i, 0, 0});
   const Solved solved(cloud);
-  EXPECT_EQ(solved.graph.report().degenerate, 200);
-  bool named = false;
-  for (const auto& warning : solved.graph.report().warnings) named |= warning.find("500, 501") != std::string::npos;
-  EXPECT_TRUE(named);
-  const PointMap map = solved.map(3);
+  EXPECT_EQ(solved.graph.details().degenerate, 200);
+  std::vector<Row> named;
+  for (const Warning& warning : solved.graph.warnings())
+    if (warning.id == "degenerate") named = warning.rows;
+  ASSERT_EQ(named.size(), 10U);
+  EXPECT_EQ(named[0], Row(500));
+  EXPECT_EQ(named[9], Row(509));
+  const RowLogMap map = solved.map(3);
   expect_nan_exactly_where_not_ok(map);
   EXPECT_EQ(map.status[600], Status::removed);
   EXPECT_EQ(map.status[499], Status::ok);
@@ -113,8 +116,8 @@ TEST(CloudFaults, ScanLinesFarApartFindTheirPlanesInAWiderNeighbourhood) {
   for (int line = 0; line < 12; ++line)
     for (int i = 0; i < 120; ++i) cloud.points.push_back({0.05 * i, 1.0 * line, 0.0});
   const Solved solved(cloud);
-  EXPECT_EQ(solved.graph.report().degenerate, 0);
-  EXPECT_EQ(static_cast<Index>(solved.graph.vertex_of_point().size()), solved.graph.report().vertices);
+  EXPECT_EQ(solved.graph.details().degenerate, 0);
+  EXPECT_EQ(solved.graph.rows().row_count(), solved.graph.details().vertices);
 }
 
 TEST(CloudFaults, SeparateClustersAreMasked) {
@@ -122,8 +125,8 @@ TEST(CloudFaults, SeparateClustersAreMasked) {
   const std::size_t first = cloud.points.size();
   for (const Vec3& p : random_sphere(1500, 2).points) cloud.points.push_back({p[0] + 10, p[1], p[2]});
   const Solved solved(cloud);
-  EXPECT_EQ(solved.graph.report().components, 2);
-  const PointMap map = solved.map(3);
+  EXPECT_EQ(solved.graph.details().components, 2);
+  const RowLogMap map = solved.map(3);
   expect_nan_exactly_where_not_ok(map);
   for (std::size_t i = 0; i < cloud.points.size(); ++i)
     ASSERT_EQ(map.status[i], i < first ? Status::ok : Status::disconnected);
@@ -137,7 +140,7 @@ TEST(CloudFaults, IsolatedOutliersDoNotBendTheMap) {
   for (int i = 0; i < 20; ++i)
     cloud.points.push_back({3 + 3 * uniform(random), 3 * uniform(random), 4 + uniform(random)});
   const Solved solved(cloud);
-  const PointMap map = solved.map(3);
+  const RowLogMap map = solved.map(3);
   for (std::size_t i = first; i < cloud.points.size(); ++i) EXPECT_NE(map.status[i], Status::ok);
   for (std::size_t i = 0; i < first; ++i) {
     ASSERT_EQ(map.status[i], Status::ok);
@@ -152,7 +155,7 @@ TEST(CloudFaults, AStrayPointFarAwayCostsTheOthersNoDigit) {
     Cloud with_stray = cloud;
     with_stray.points.push_back({far, -far, far});
     const Solved solved(with_stray);
-    const PointMap map = solved.map(3);
+    const RowLogMap map = solved.map(3);
     EXPECT_NE(map.status.back(), Status::ok);
     for (std::size_t i = 0; i < cloud.points.size(); ++i)
       ASSERT_NEAR(map.distance[i],
@@ -163,8 +166,8 @@ TEST(CloudFaults, AStrayPointFarAwayCostsTheOthersNoDigit) {
 
 TEST(CloudFaults, AMapOfAnotherGraphIsRefused) {
   const Solved one(flat_cloud(100)), two(flat_cloud(120));
-  const LogMap map = one.solver.solve(one.graph.source_at_point(0));
-  EXPECT_THROW(two.graph.on_points(map), InvalidArgument);
+  const LogMap map = one.solver.solve(one.graph.source(Row(0)).source);
+  EXPECT_THROW(two.graph.on_rows(map), InvalidArgument);
 }
 
 TEST(CloudFaults, ASearchThatDoesNotSearchIsRefused) {
@@ -227,11 +230,11 @@ TEST(CloudFaults, ArgumentsOutOfRange) {
   options.max_edge_ratio = NAN;
   expect_error<InvalidArgument>(points, "max_edge_ratio", options);
   expect_error<InvalidArgument>(points, "'normals' has 1 entries", {}, {{0, 0, 1}});
-  const auto graph = PointCloudGraph::build(points);
-  EXPECT_THROW(graph.nearest_point({NAN, 0, 0}), InvalidArgument);
-  EXPECT_THROW(graph.source_at_point(3, {0, 0, 0}), InvalidArgument);
-  EXPECT_THROW(graph.source_at_point(3, graph.graph().frame(graph.vertex_of_point()[3])->normal), InvalidArgument);
-  EXPECT_EQ(graph.nearest_point(points[17]), 17);
+  const auto graph = PointCloudSurface::build(points);
+  EXPECT_THROW(graph.nearest_row({NAN, 0, 0}), InvalidArgument);
+  EXPECT_THROW(graph.source(Row(3), Vec3{0, 0, 0}), InvalidArgument);
+  EXPECT_THROW(graph.source(Row(3), graph.graph().frame(graph.vertex(Row(3)).index)->normal), InvalidArgument);
+  EXPECT_EQ(graph.nearest_row(points[17]).index, 17);
 }
 
 TEST(CloudFaults, CancellationStopsTheBuild) {

@@ -16,7 +16,7 @@ constexpr double gate = 1e-11;
 
 /// Largest difference between (u, v) and the position relative to p along the axes of the graph's frame at p.
 double flat_error(const Cloud& cloud, const Solved& solved, Index p, Variant variant) {
-  const Frame frame = *solved.graph.graph().frame(solved.graph.vertex_of_point()[p]);
+  const Frame frame = *solved.graph.graph().frame(solved.graph.vertex(Row(p)).index);
   const auto map = solved.map(p, variant);
   double worst = 0;
   for (std::size_t i = 0; i < cloud.points.size(); ++i) {
@@ -57,7 +57,7 @@ TEST(FlatCloud, CoversItsArea) {
   // The lumped masses of a cloud that fills the unit square (less the hole) add up to about its area; local
   // triangulations that disagree count a little twice.
   const Cloud cloud = flat_cloud(4000);
-  const auto graph = pointcloud::PointCloudGraph::build(cloud.points);
+  const auto graph = pointcloud::PointCloudSurface::build(cloud.points);
   const auto& masses = graph.graph().data().masses;
   const double area = std::accumulate(masses.begin(), masses.end(), 0.0) * std::pow(graph.graph().length_unit(), 2);
   EXPECT_NEAR(area, 1 - 0.15 * 0.15 * 3.14159, 0.1);
@@ -107,8 +107,8 @@ TEST(FlatCloud, DoesNotDependOnTheNumberOfThreads) {
   pointcloud::CloudOptions one, many;
   one.threads = 1;
   many.threads = 7;
-  const auto a = pointcloud::PointCloudGraph::build(cloud.points, {}, one),
-             b = pointcloud::PointCloudGraph::build(cloud.points, {}, many);
+  const auto a = pointcloud::PointCloudSurface::build(cloud.points, {}, one),
+             b = pointcloud::PointCloudSurface::build(cloud.points, {}, many);
   EXPECT_EQ(a.graph().data().neighbors, b.graph().data().neighbors);
   EXPECT_EQ(a.graph().data().weights, b.graph().data().weights);
   EXPECT_EQ(a.graph().data().transports, b.graph().data().transports);
@@ -120,8 +120,8 @@ TEST(RolledCloud, ConvergesToThePlaneWithSecondOrder) {
     const Solved solved(cloud, true);
     const Index p = (rows / 2) * rows + rows / 2;
     // u along the axis of the cylinder, which is the plane's u; v is the normal times u.
-    const LogMap map = solved.solver.solve(solved.graph.source_at_point(p, {1, 0, 0}), {.variant = variant});
-    const auto on_points = solved.graph.on_points(map);
+    const LogMap map = solved.solver.solve(solved.graph.source(Row(p), Vec3{1, 0, 0}).source, {.variant = variant});
+    const auto on_points = solved.graph.on_rows(map);
     double worst = 0;
     for (std::size_t i = 0; i < cloud.points.size(); ++i)
       worst = std::max(worst, std::hypot(on_points.u[i] - (cloud.plane[i][0] - cloud.plane[p][0]),
@@ -139,7 +139,7 @@ TEST(Source, PointsItsUAxisWhereAsked) {
   const Solved solved(cloud);
   const Vec3 direction{cloud.points[60][0] - cloud.points[5][0], cloud.points[60][1] - cloud.points[5][1],
                        cloud.points[60][2] - cloud.points[5][2]};
-  const auto map = solved.graph.on_points(solved.solver.solve(solved.graph.source_at_point(5, direction)));
+  const auto map = solved.graph.on_rows(solved.solver.solve(solved.graph.source(Row(5), direction).source));
   EXPECT_NEAR(map.u[60], std::sqrt(dot(direction, direction)), 1e-11);
   EXPECT_NEAR(map.v[60], 0, 1e-11);
 }

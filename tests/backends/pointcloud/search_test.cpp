@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "ahm/pointcloud/neighbor_search.hpp"
-#include "ahm/pointcloud/point_cloud_graph.hpp"
+#include "ahm/pointcloud/point_cloud_surface.hpp"
 #include "ahm/testing/clouds.hpp"
 
 namespace ahm::test {
@@ -61,8 +61,8 @@ TEST_P(Search, BuildsTheSameGraph) {
   const Cloud sphere = random_sphere(3000);
   pointcloud::CloudOptions options;
   options.search = GetParam().make;
-  const auto graph = pointcloud::PointCloudGraph::build(sphere.points, {}, options);
-  const auto expected = pointcloud::PointCloudGraph::build(sphere.points);
+  const auto graph = pointcloud::PointCloudSurface::build(sphere.points, {}, options);
+  const auto expected = pointcloud::PointCloudSurface::build(sphere.points);
   EXPECT_EQ(graph.graph().data().neighbors, expected.graph().data().neighbors);
 }
 

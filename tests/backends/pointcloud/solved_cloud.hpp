@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "ahm/maps/log_map_solver.hpp"
-#include "ahm/pointcloud/point_cloud_graph.hpp"
+#include "ahm/pointcloud/point_cloud_surface.hpp"
 #include "ahm/testing/closed_forms.hpp"
 #include "ahm/testing/clouds.hpp"
 #include "ahm/testing/vectors.hpp"
@@ -15,21 +15,21 @@ namespace ahm::test {
 /// Builds, factors and solves in one go.
 struct Solved {
   explicit Solved(const Cloud& cloud, bool with_normals = false, pointcloud::CloudOptions options = {})
-      : graph(pointcloud::PointCloudGraph::build(
+      : graph(pointcloud::PointCloudSurface::build(
             cloud.points, with_normals ? std::span<const Vec3>(cloud.normals) : std::span<const Vec3>(), options)),
         solver(graph.graph()) {}
 
-  pointcloud::PointMap map(Index point, Variant variant = Variant::adaptive) const {
-    return graph.on_points(solver.solve(graph.source_at_point(point), {.variant = variant}));
+  RowLogMap map(Index point, Variant variant = Variant::adaptive) const {
+    return graph.on_rows(solver.solve(graph.source(Row(point)).source, {.variant = variant}));
   }
 
-  pointcloud::PointCloudGraph graph;
+  pointcloud::PointCloudSurface graph;
   LogMapSolver solver;
 };
 
 /// Errors from input point p, in the axes of the solver made tangent to the true sphere; all points must be ok.
-inline SphereError sphere_error(const Cloud& sphere, const pointcloud::PointCloudGraph& graph,
-                                const pointcloud::PointMap& map, Index p) {
+inline SphereError sphere_error(const Cloud& sphere, const pointcloud::PointCloudSurface& graph,
+                                const RowLogMap& map, Index p) {
   for (std::size_t i = 0; i < sphere.points.size(); ++i) EXPECT_EQ(map.status[i], Status::ok) << "point " << i;
   const Frame frame = *graph.graph().frame(graph.vertex_of_point()[p]);
   return sphere_error(sphere.normals, map.u, map.v, p, tangential(frame.x, sphere.normals[p]),

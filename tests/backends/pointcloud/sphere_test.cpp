@@ -33,7 +33,7 @@ TEST(SphereCloud, ConvergesOnRandomPointsInBothVariants) {
   for (Index n : {10000, 80000}) {
     const Cloud cloud = random_sphere(n);
     const Solved solved(cloud);
-    EXPECT_EQ(solved.graph.report().reflections, 0);
+    EXPECT_EQ(solved.graph.details().reflections, 0);
     for (Variant variant : {Variant::adaptive, Variant::localized}) {
       // The error of one source is partly luck: average over some.
       double angle_sum = 0, rms_sum = 0;
@@ -55,7 +55,7 @@ TEST(SphereCloud, ConvergesOnRandomPointsInBothVariants) {
 
 TEST(SphereCloud, IsPositivelyOrientedOutwardsWithoutNormals) {
   const Cloud cloud = even_sphere(2000);
-  const auto graph = pointcloud::PointCloudGraph::build(cloud.points);
+  const auto graph = pointcloud::PointCloudSurface::build(cloud.points);
   for (Index i = 0; i < graph.graph().size(); ++i) {
     const Frame frame = *graph.graph().frame(i);
     EXPECT_GT(dot(frame.normal, frame.origin), 0.9);
@@ -63,7 +63,7 @@ TEST(SphereCloud, IsPositivelyOrientedOutwardsWithoutNormals) {
 }
 
 TEST(SphereCloud, CoversItsArea) {
-  const auto graph = pointcloud::PointCloudGraph::build(even_sphere(5000).points);
+  const auto graph = pointcloud::PointCloudSurface::build(even_sphere(5000).points);
   double area = 0;
   for (double m : graph.graph().data().masses) area += m;
   area *= graph.graph().length_unit() * graph.graph().length_unit();

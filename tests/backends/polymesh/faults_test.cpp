@@ -5,7 +5,7 @@
 
 #include "ahm/error.hpp"
 #include "ahm/graph/validate.hpp"
-#include "ahm/trimesh/triangle_mesh_graph.hpp"
+#include "ahm/trimesh/triangle_mesh_surface.hpp"
 #include "polygon_graphs.hpp"
 
 namespace ahm::test {
@@ -23,8 +23,8 @@ void expect_error(const Polygons& mesh, const std::string& text, const PolygonOp
   }
 }
 
-LogMap map_of(const polymesh::PolygonMeshGraph& surface, Index source = 0) {
-  return LogMapSolver(surface.graph()).solve(surface.source_at_vertex(source));
+LogMap map_of(const polymesh::PolygonMeshSurface& surface, Index source = 0) {
+  return LogMapSolver(surface.graph()).solve(surface.source(Row(source)).source);
 }
 
 TEST(PolygonFaults, NothingThere) {
@@ -79,7 +79,7 @@ TEST(PolygonFaults, EdgesOfThreeFacesAndBowTies) {
   const auto split = build(fin, {.non_manifold = NonManifold::split});
   EXPECT_EQ(split.report().topology.non_manifold_edges, 1);
   EXPECT_NO_THROW(validate(split.graph()));
-  const auto rows = split.on_vertices(map_of(split));
+  const auto rows = split.on_rows(map_of(split));
   EXPECT_EQ(rows.status.size(), fin.positions.size());
 
   const Polygons bow{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {-1, 0, 0}, {-1, -1, 0}, {0, -1, 0}},
@@ -99,11 +99,11 @@ TEST(PolygonFaults, UnreferencedVerticesAndOtherComponentsAreMasked) {
   const auto surface = build(mesh);
   EXPECT_EQ(surface.report().topology.components, 2);
   EXPECT_EQ(surface.report().topology.unreferenced, 1);
-  const auto rows = surface.on_vertices(map_of(surface));
+  const auto rows = surface.on_rows(map_of(surface));
   EXPECT_EQ(rows.status[n], Status::removed);
   EXPECT_EQ(rows.status[n + 1], Status::disconnected);
   for (Index i = 0; i < n; ++i) ASSERT_EQ(rows.status[i], Status::ok);
-  EXPECT_THROW(surface.source_at_vertex(n), InvalidArgument);
+  EXPECT_THROW(surface.source(Row(n)), InvalidArgument);
 }
 
 TEST(PolygonFaults, MoebiusBandsAreSolvedWithReflections) {
@@ -116,8 +116,8 @@ TEST(PolygonFaults, MoebiusBandsAreSolvedWithReflections) {
   const LogMap map = map_of(surface, 3);
   EXPECT_EQ(map.count(Status::ok), mesh.vertices());
   const auto refined = surface.mesh().refined();
-  const auto triangles = trimesh::TriangleMeshGraph::build(refined.positions, refined.triangles);
-  const LogMap other = LogMapSolver(triangles.graph()).solve(triangles.source_at_vertex(3));
+  const auto triangles = trimesh::TriangleMeshSurface::build(refined.positions, refined.triangles);
+  const LogMap other = LogMapSolver(triangles.graph()).solve(triangles.source(Row(3)).source);
   const double h = surface.graph().mean_edge_length() * surface.graph().length_unit();
   for (Index i = 0; i < mesh.vertices(); ++i)
     if (other.distance(Vertex(i)) < 1.5)
@@ -148,7 +148,7 @@ TEST(PolygonFaults, AnyScaleAndAnyPlace) {
     for (auto& p : other.plane)
       for (double& x : p) x *= scale;
     const auto surface = build(other);
-    const auto map = surface.on_vertices(map_of(surface, 9));
+    const auto map = surface.on_rows(map_of(surface, 9));
     for (Index i = 0; i < mesh.vertices(); ++i) {
       const double exact = std::hypot(mesh.plane[i][0] - mesh.plane[9][0], mesh.plane[i][1] - mesh.plane[9][1]);
       ASSERT_NEAR(map.distance[i] / scale, exact, 1e-11) << scale;
@@ -157,7 +157,7 @@ TEST(PolygonFaults, AnyScaleAndAnyPlace) {
   Polygons far = mesh;
   for (Vec3& p : far.positions) p[0] += 1e6, p[1] -= 1e6;
   const auto surface = build(far);
-  const auto map = surface.on_vertices(map_of(surface, 9));
+  const auto map = surface.on_rows(map_of(surface, 9));
   for (Index i = 0; i < mesh.vertices(); ++i) {
     const double exact = std::hypot(mesh.plane[i][0] - mesh.plane[9][0], mesh.plane[i][1] - mesh.plane[9][1]);
     ASSERT_NEAR(map.distance[i], exact, 1e-8);  // the input has ten digits left
@@ -167,16 +167,16 @@ TEST(PolygonFaults, AnyScaleAndAnyPlace) {
 TEST(PolygonFaults, SourcesThatAreNotThere) {
   const Polygons mesh = cube_sphere(3);
   const auto surface = build(mesh);
-  EXPECT_THROW(surface.source_at_vertex(-1), InvalidArgument);
-  EXPECT_THROW(surface.source_at_vertex(mesh.vertices()), InvalidArgument);
-  EXPECT_THROW(surface.source_at_vertex(0, {0, 0, 0}), InvalidArgument);
-  EXPECT_THROW(surface.source_at_vertex(0, mesh.positions[0]), InvalidArgument);  // along the normal
+  EXPECT_THROW(surface.source(Row(-1)).source, InvalidArgument);
+  EXPECT_THROW(surface.source(Row(mesh.vertices())).source, InvalidArgument);
+  EXPECT_THROW(surface.source(Row(0), {0, 0, 0}).source, InvalidArgument);
+  EXPECT_THROW(surface.source(Row(0), mesh.positions[0]).source, InvalidArgument);  // along the normal
   EXPECT_THROW(surface.source_at_face(-1), InvalidArgument);
   EXPECT_THROW(surface.source_at_face(mesh.faces()), InvalidArgument);
   const std::vector<double> three{0.5, 0.25, 0.25}, more{0.5, 0.5, 0.5, 0}, negative{0.5, 0.7, -0.2, 0},
       bad{NAN, 0.5, 0.5, 0};
   for (const auto& weights : {three, more, negative, bad})
-    EXPECT_THROW(surface.source_at_face(0, weights), InvalidArgument);
+    EXPECT_THROW(surface.source(FacePoint{0, weights}), InvalidArgument);
 }
 
 TEST(PolygonFaults, CanBeStopped) {

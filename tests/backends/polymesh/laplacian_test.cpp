@@ -5,7 +5,7 @@
 #include <cmath>
 #include <map>
 
-#include "ahm/trimesh/triangle_mesh_graph.hpp"
+#include "ahm/trimesh/triangle_mesh_surface.hpp"
 #include "polygon_graphs.hpp"
 
 namespace ahm::test {
@@ -69,7 +69,7 @@ TEST(PolygonLaplacian, IsTheCotanLaplacianOnTriangles) {
   for (const Polygons& mesh : {grid, sphere}) {
     std::vector<Triangle> triangles;
     for (Index f = 0; f < mesh.faces(); ++f) triangles.push_back({mesh.face(f)[0], mesh.face(f)[1], mesh.face(f)[2]});
-    const auto cotan = trimesh::TriangleMeshGraph::build(mesh.positions, triangles,
+    const auto cotan = trimesh::TriangleMeshSurface::build(mesh.positions, triangles,
                                                          {.intrinsic_delaunay = false, .clamp_weights = false});
     const auto surface = build(mesh, {.clamp_weights = false});
     const Eigen::MatrixXd K = stiffness(surface.graph()), L = stiffness(cotan.graph());
@@ -82,11 +82,11 @@ TEST(PolygonLaplacian, GivesTheMapOfTheTriangleBackendOnThePlane) {
   const Polygons mesh = quad_grid(20, true);
   std::vector<Triangle> triangles;
   for (Index f = 0; f < mesh.faces(); ++f) triangles.push_back({mesh.face(f)[0], mesh.face(f)[1], mesh.face(f)[2]});
-  const auto other = trimesh::TriangleMeshGraph::build(mesh.positions, triangles, {.intrinsic_delaunay = false});
+  const auto other = trimesh::TriangleMeshSurface::build(mesh.positions, triangles, {.intrinsic_delaunay = false});
   const auto surface = build(mesh);
   const Vec3 u{1, 0.2, 0};
-  const LogMap a = LogMapSolver(surface.graph()).solve(surface.source_at_vertex(200, u));
-  const LogMap b = LogMapSolver(other.graph()).solve(other.source_at_vertex(200, u));
+  const LogMap a = LogMapSolver(surface.graph()).solve(surface.source(Row(200), u).source);
+  const LogMap b = LogMapSolver(other.graph()).solve(other.source(Row(200), u).source);
   for (Index i = 0; i < mesh.vertices(); ++i)
     for (int c : {0, 1}) ASSERT_NEAR(a.coordinates(Vertex(i))[c], b.coordinates(Vertex(i))[c], 1e-11);
 }
@@ -104,8 +104,8 @@ TEST(PolygonRefinement, KeepsTrianglesAndFlatness) {
 
   const auto refined = polymesh::PolygonMesh::from_faces(cells.positions, cells.begin, cells.corners).refined();
   EXPECT_TRUE(refined.folded.empty());
-  const auto surface = trimesh::TriangleMeshGraph::build(refined.positions, refined.triangles);
-  const LogMap map = LogMapSolver(surface.graph()).solve(surface.source_at_vertex(7));
+  const auto surface = trimesh::TriangleMeshSurface::build(refined.positions, refined.triangles);
+  const LogMap map = LogMapSolver(surface.graph()).solve(surface.source(Row(7)).source);
   for (Index i = 0; i < cells.vertices(); ++i) {
     const double exact = std::hypot(cells.plane[i][0] - cells.plane[7][0], cells.plane[i][1] - cells.plane[7][1]);
     ASSERT_NEAR(map.distance(Vertex(i)), exact, 1e-11);
@@ -117,8 +117,8 @@ TEST(PolygonRefinement, CutsFacesThatHideASideAlongDiagonals) {
   const auto refined = polymesh::PolygonMesh::from_faces(mesh.positions, mesh.begin, mesh.corners).refined();
   EXPECT_TRUE(refined.folded.empty());
   EXPECT_EQ(refined.positions.size(), mesh.positions.size() + 16);  // virtual vertices in the squares alone
-  const auto surface = trimesh::TriangleMeshGraph::build(refined.positions, refined.triangles);
-  const LogMap map = LogMapSolver(surface.graph()).solve(surface.source_at_vertex(7));
+  const auto surface = trimesh::TriangleMeshSurface::build(refined.positions, refined.triangles);
+  const LogMap map = LogMapSolver(surface.graph()).solve(surface.source(Row(7)).source);
   for (Index i = 0; i < mesh.vertices(); ++i) {
     const double exact = std::hypot(mesh.plane[i][0] - mesh.plane[7][0], mesh.plane[i][1] - mesh.plane[7][1]);
     ASSERT_NEAR(map.distance(Vertex(i)), exact, 1e-11);

@@ -5,19 +5,19 @@
 #include <cmath>
 
 #include "ahm/maps/log_map_solver.hpp"
-#include "ahm/polymesh/polygon_mesh_graph.hpp"
+#include "ahm/polymesh/polygon_mesh_surface.hpp"
 #include "ahm/testing/polygon_meshes.hpp"
 #include "ahm/testing/triangle_meshes.hpp"
 
 namespace ahm::test {
 
-inline polymesh::PolygonMeshGraph build(const Polygons& mesh, const polymesh::PolygonOptions& options = {}) {
-  return polymesh::PolygonMeshGraph::build(mesh.positions, mesh.begin, mesh.corners, options);
+inline polymesh::PolygonMeshSurface build(const Polygons& mesh, const polymesh::PolygonOptions& options = {}) {
+  return polymesh::PolygonMeshSurface::build(mesh.positions, mesh.begin, mesh.corners, options);
 }
 
 /// Largest distance between the map and the plane seen from `origin` with unit axis `axis`; infinite unless all is
 /// mapped but, where that is `allowed`, vertices whose heat has lost its sign.
-inline double plane_error(const Polygons& mesh, const polymesh::VertexMap& map, const Vec2& origin, const Vec2& axis,
+inline double plane_error(const Polygons& mesh, const RowLogMap& map, const Vec2& origin, const Vec2& axis,
                           bool allowed = false) {
   std::vector<Vec2> plane;
   std::vector<double> u, v;

@@ -6,7 +6,7 @@
 
 #include "ahm/testing/closed_forms.hpp"
 #include "ahm/testing/vectors.hpp"
-#include "ahm/trimesh/triangle_mesh_graph.hpp"
+#include "ahm/trimesh/triangle_mesh_surface.hpp"
 #include "polygon_graphs.hpp"
 
 namespace ahm::test {
@@ -26,15 +26,15 @@ double rms_error(const Polygons& mesh, const LogMap& map, const Frame& frame, In
 
 double polygon_error(const Polygons& mesh, Variant variant) {
   const auto surface = build(mesh);
-  const LogMap map = LogMapSolver(surface.graph()).solve(surface.source_at_vertex(11), {.variant = variant});
+  const LogMap map = LogMapSolver(surface.graph()).solve(surface.source(Row(11)).source, {.variant = variant});
   return rms_error(mesh, map, *surface.graph().frame(11), 11);
 }
 
 double refined_error(const Polygons& mesh, Variant variant) {
   const auto refined = polymesh::PolygonMesh::from_faces(mesh.positions, mesh.begin, mesh.corners).refined();
   EXPECT_TRUE(refined.folded.empty());
-  const auto surface = trimesh::TriangleMeshGraph::build(refined.positions, refined.triangles);
-  const LogMap map = LogMapSolver(surface.graph()).solve(surface.source_at_vertex(11), {.variant = variant});
+  const auto surface = trimesh::TriangleMeshSurface::build(refined.positions, refined.triangles);
+  const LogMap map = LogMapSolver(surface.graph()).solve(surface.source(Row(11)).source, {.variant = variant});
   return rms_error(mesh, map, *surface.graph().frame(11), 11);
 }
 
@@ -77,7 +77,7 @@ TEST(PolygonSphere, StretchedCellsStayPositiveAndMapped) {
   Polygons mesh = cube_sphere(20);
   for (Vec3& p : mesh.positions) p[2] *= 20;
   const auto surface = build(mesh);
-  const LogMap map = LogMapSolver(surface.graph()).solve(surface.source_at_vertex(0));
+  const LogMap map = LogMapSolver(surface.graph()).solve(surface.source(Row(0)).source);
   EXPECT_EQ(map.count(Status::ok), surface.graph().size());
 }
 

@@ -1,14 +1,14 @@
 // The published contract, on triangle meshes.
 #include "ahm/testing/graph_contract.hpp"
 #include "ahm/testing/triangle_meshes.hpp"
-#include "ahm/trimesh/triangle_mesh_graph.hpp"
+#include "ahm/trimesh/triangle_mesh_surface.hpp"
 
 namespace ahm::test {
 namespace {
 
 struct MeshGraphs {
   static std::unique_ptr<TangentGraph> make(const Mesh& mesh, bool flips = true) {
-    const auto built = trimesh::TriangleMeshGraph::build(mesh.positions, mesh.faces, {.intrinsic_delaunay = flips});
+    const auto built = trimesh::TriangleMeshSurface::build(mesh.positions, mesh.faces, {.intrinsic_delaunay = flips});
     return std::make_unique<CsrGraph>(built.graph().data());
   }
   static std::unique_ptr<TangentGraph> surface() { return make(icosphere(5)); }

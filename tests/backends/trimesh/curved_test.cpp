@@ -11,7 +11,6 @@ namespace ahm::test {
 namespace {
 
 using std::numbers::pi;
-using trimesh::VertexMap;
 
 /// Largest error against the plane a developable patch was bent from, up to the turn of the frame, which is fitted.
 double unrolled_error(const Mesh& mesh, Variant variant, const std::array<double, 2>& center) {
@@ -20,7 +19,7 @@ double unrolled_error(const Mesh& mesh, Variant variant, const std::array<double
   auto distance = [&](Index i) { return std::hypot(mesh.plane[i][0] - center[0], mesh.plane[i][1] - center[1]); };
   for (Index i = 0; i < mesh.vertices(); ++i)
     if (distance(i) < distance(source)) source = i;
-  const VertexMap map = solved.map(solved.surface.source_at_vertex(source), variant);
+  const RowLogMap map = solved.map(solved.surface.source(Row(source)).source, variant);
   double c = 0, s = 0;
   for (Index i = 0; i < mesh.vertices(); ++i) {
     const double x = mesh.plane[i][0] - mesh.plane[source][0], y = mesh.plane[i][1] - mesh.plane[source][1];
@@ -62,8 +61,8 @@ SphereErrors sphere_errors(Index parts, Variant variant) {
   SphereErrors e{0, 0, graph.mean_edge_length() * graph.length_unit()};
   double area = 0;
   for (Index source : {0, parts * parts / 3}) {
-    const VertexMap map = solved.map(solved.surface.source_at_vertex(source), variant);
-    const Frame frame = *graph.frame(solved.surface.vertex(source).index);
+    const RowLogMap map = solved.map(solved.surface.source(Row(source)).source, variant);
+    const Frame frame = *graph.frame(solved.surface.vertex(Row(source)).index);
     for (Index i = 0; i < mesh.vertices(); ++i) {
       const auto exact = sphere_log(mesh.positions[source], frame.x, frame.y, mesh.positions[i]);
       const double d = std::hypot(exact[0], exact[1]), off = std::hypot(map.u[i] - exact[0], map.v[i] - exact[1]);

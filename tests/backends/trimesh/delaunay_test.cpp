@@ -12,18 +12,17 @@
 namespace ahm::test {
 namespace {
 
-using trimesh::SurfacePoint;
-using trimesh::TriangleMeshGraph;
+using trimesh::TriangleMeshSurface;
 
-double total_mass(const TriangleMeshGraph& surface) {
+double total_mass(const TriangleMeshSurface& surface) {
   double sum = 0;
   for (Index i = 0; i < surface.graph().size(); ++i) sum += surface.graph().mass(i);
   return sum * surface.graph().length_unit() * surface.graph().length_unit();
 }
 
-SurfacePoint random_point(const Mesh& mesh, std::mt19937_64& random) {
+FacePoint random_point(const Mesh& mesh, std::mt19937_64& random) {
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
-  SurfacePoint p{static_cast<Index>(random() % mesh.faces.size()), {uniform(random), uniform(random), 0}};
+  FacePoint p{static_cast<Index>(random() % mesh.faces.size()), {uniform(random), uniform(random), 0}};
   if (p.barycentric[0] + p.barycentric[1] > 1)
     for (int s : {0, 1}) p.barycentric[s] = 1 - p.barycentric[s];
   p.barycentric[2] = 1 - p.barycentric[0] - p.barycentric[1];
@@ -45,10 +44,10 @@ Mesh rough_sphere(Index parts) {
 
 TEST(Flips, ConserveTheArea) {
   for (const Mesh& mesh : {sliver_square(800), holed_square(30), rough_sphere(12), moebius_mesh(60, 5)}) {
-    const auto flipped = TriangleMeshGraph::build(mesh.positions, mesh.faces);
-    const auto plain = TriangleMeshGraph::build(mesh.positions, mesh.faces, {.intrinsic_delaunay = false});
-    EXPECT_GT(flipped.report().flips, 10);
-    EXPECT_EQ(flipped.report().edges, plain.report().edges);
+    const auto flipped = TriangleMeshSurface::build(mesh.positions, mesh.faces);
+    const auto plain = TriangleMeshSurface::build(mesh.positions, mesh.faces, {.intrinsic_delaunay = false});
+    EXPECT_GT(flipped.details().flips, 10);
+    EXPECT_EQ(flipped.details().edges, plain.details().edges);
     EXPECT_NEAR(total_mass(flipped), total_mass(plain), 1e-12 * total_mass(plain));
   }
 }
@@ -56,7 +55,7 @@ TEST(Flips, ConserveTheArea) {
 TEST(Flips, LeaveOnlyWeightsOfDelaunayEdges) {
   for (const Mesh& mesh : {sliver_square(800), rough_sphere(12), moebius_mesh(60, 5)}) {
     // Unclamped, interior edges have weight >= 0 up to rounding; boundary edges may not.
-    const auto surface = TriangleMeshGraph::build(mesh.positions, mesh.faces, {.clamp_weights = false});
+    const auto surface = TriangleMeshSurface::build(mesh.positions, mesh.faces, {.clamp_weights = false});
     std::map<std::pair<Index, Index>, int> faces_at;  // flips leave the edges of the boundary where they are
     for (const Triangle& t : mesh.faces)
       for (int s = 0; s < 3; ++s) ++faces_at[std::minmax(t[s], t[(s + 1) % 3])];
@@ -74,7 +73,7 @@ TEST(Flips, LeaveOnlyWeightsOfDelaunayEdges) {
 TEST(Flips, KeepFlatVerticesFlat) {
   // The logs of a flat graph tell the angles: each star must close, that is, neighbours lie where the plane has them.
   const Mesh mesh = sliver_square(800);
-  const auto surface = TriangleMeshGraph::build(mesh.positions, mesh.faces);
+  const auto surface = TriangleMeshSurface::build(mesh.positions, mesh.faces);
   for (Index i = 0; i < surface.graph().size(); ++i) {
     const Star star = surface.graph().star(i);
     for (std::size_t e = 1; e < star.degree(); ++e) {
@@ -91,8 +90,8 @@ TEST(Flips, KeepFlatVerticesFlat) {
 TEST(Flips, AreFewAndTheirHistoryIsShallow) {
   for (Index side : {40, 80, 160}) {
     const Mesh mesh = holed_square(side);
-    const auto surface = TriangleMeshGraph::build(mesh.positions, mesh.faces);
-    EXPECT_LT(surface.report().flips, 1.5 * static_cast<double>(mesh.faces.size()));
+    const auto surface = TriangleMeshSurface::build(mesh.positions, mesh.faces);
+    EXPECT_LT(surface.details().flips, 1.5 * static_cast<double>(mesh.faces.size()));
     std::mt19937_64 random(1);
     double depth = 0;
     for (int trial = 0; trial < 2000; ++trial) depth += surface.locate(random_point(mesh, random)).depth / 2000.0;
@@ -104,11 +103,11 @@ TEST(History, FindsEveryPointOfThePlane) {
   std::mt19937_64 random(2);
   for (const Mesh& mesh :
        {sliver_square(500), sliver_square(4000, 5), holed_square(40), holed_square(40, 2, 1e-4), maze(10)}) {
-    const auto surface = TriangleMeshGraph::build(mesh.positions, mesh.faces);
-    EXPECT_GT(surface.report().flips, 0);
+    const auto surface = TriangleMeshSurface::build(mesh.positions, mesh.faces);
+    EXPECT_GT(surface.details().flips, 0);
     double worst = 0;
     for (int trial = 0; trial < 20000; ++trial) {
-      const SurfacePoint point = random_point(mesh, random);
+      const FacePoint point = random_point(mesh, random);
       const auto found = surface.locate(point);
       const auto wanted = plane_point(mesh, point);
       double p[2] = {0, 0};
@@ -126,13 +125,13 @@ TEST(History, FindsEveryPointOfThePlane) {
 
 TEST(History, FindsCornersAndPointsOnEdges) {
   const Mesh mesh = sliver_square(1500, 3);
-  const auto surface = TriangleMeshGraph::build(mesh.positions, mesh.faces);
+  const auto surface = TriangleMeshSurface::build(mesh.positions, mesh.faces);
   for (Index f = 0; f < static_cast<Index>(mesh.faces.size()); ++f)
     for (int s = 0; s < 3; ++s) {
-      SurfacePoint corner{f, {0, 0, 0}}, middle{f, {0.5, 0.5, 0.5}};
+      FacePoint corner{f, {0, 0, 0}}, middle{f, {0.5, 0.5, 0.5}};
       corner.barycentric[s] = 1;
       middle.barycentric[s] = 0;
-      for (const SurfacePoint& point : {corner, middle}) {
+      for (const FacePoint& point : {corner, middle}) {
         const auto found = surface.locate(point);
         const auto wanted = plane_point(mesh, point);
         double p[2] = {0, 0};

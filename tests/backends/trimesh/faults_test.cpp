@@ -15,20 +15,19 @@ namespace {
 using trimesh::MeshOptions;
 using trimesh::NonManifold;
 using trimesh::TriangleMesh;
-using trimesh::TriangleMeshGraph;
-using trimesh::VertexMap;
+using trimesh::TriangleMeshSurface;
 
 template <class Exception>
 void expect_error(const Mesh& mesh, const std::string& text, const MeshOptions& options = {}) {
   try {
-    TriangleMeshGraph::build(mesh.positions, mesh.faces, options);
+    TriangleMeshSurface::build(mesh.positions, mesh.faces, options);
     ADD_FAILURE() << "no error; expected one that says: " << text;
   } catch (const Exception& e) {
     EXPECT_NE(std::string(e.what()).find(text), std::string::npos) << e.what();
   }
 }
 
-void expect_nan_exactly_where_not_ok(const VertexMap& map) {
+void expect_nan_exactly_where_not_ok(const RowLogMap& map) {
   for (std::size_t i = 0; i < map.status.size(); ++i)
     for (double x : {map.u[i], map.v[i], map.distance[i], map.angle[i]})
       ASSERT_EQ(std::isnan(x), map.status[i] != Status::ok);
@@ -76,26 +75,26 @@ TEST(MeshFaults, CoordinatesThatAreNotFinite) {
 
 TEST(MeshFaults, UnreferencedVerticesAreMasked) {
   Mesh mesh = icosphere(6);
-  const VertexMap clean = SolvedMesh(mesh).map(SolvedMesh(mesh).surface.source_at_vertex(0));
+  const RowLogMap clean = SolvedMesh(mesh).map(SolvedMesh(mesh).surface.source(Row(0)).source);
   mesh.positions.insert(mesh.positions.begin(), {9, 9, 9});
   mesh.positions.push_back({8, 8, 8});
   for (auto& t : mesh.faces)
     for (Index& v : t) ++v;
   const SolvedMesh solved(mesh);
-  EXPECT_EQ(solved.surface.report().topology.unreferenced, 2);
-  const VertexMap map = solved.map(solved.surface.source_at_vertex(1));
+  EXPECT_EQ(solved.surface.details().topology.unreferenced, 2);
+  const RowLogMap map = solved.map(solved.surface.source(Row(1)).source);
   expect_nan_exactly_where_not_ok(map);
   EXPECT_EQ(map.status.front(), Status::removed);
   EXPECT_EQ(map.status.back(), Status::removed);
   for (std::size_t i = 0; i < clean.u.size(); ++i) ASSERT_NEAR(map.distance[i + 1], clean.distance[i], 1e-12);
-  EXPECT_THROW(solved.surface.source_at_vertex(0), InvalidArgument);
+  EXPECT_THROW(solved.surface.source(Row(0)), InvalidArgument);
 }
 
 TEST(MeshFaults, OtherComponentsAreMasked) {
   const Mesh one = icosphere(6), both = joined(one, icosphere(5), 5.0);
   const SolvedMesh alone(one), solved(both);
-  EXPECT_EQ(solved.surface.report().topology.components, 2);
-  const VertexMap map = solved.map(solved.surface.source_at_vertex(3));
+  EXPECT_EQ(solved.surface.details().topology.components, 2);
+  const RowLogMap map = solved.map(solved.surface.source(Row(3)).source);
   expect_nan_exactly_where_not_ok(map);
   for (Index i = 0; i < both.vertices(); ++i)
     ASSERT_EQ(map.status[i], i < one.vertices() ? Status::ok : Status::disconnected);
@@ -112,9 +111,9 @@ TEST(MeshFaults, EdgesOfThreeFaces) {
   expect_error<InvalidGeometry>(mesh, "1 edges have more than two faces: (" + std::to_string(std::min(a, b)) + ", " +
                                           std::to_string(std::max(a, b)) + ") with 3 faces");
   const SolvedMesh solved(mesh, {.non_manifold = NonManifold::split});
-  EXPECT_EQ(solved.surface.report().topology.non_manifold_edges, 1);
-  EXPECT_FALSE(solved.surface.report().warnings.empty());
-  const VertexMap map = solved.map(solved.surface.source_at_vertex(0));
+  EXPECT_EQ(solved.surface.details().topology.non_manifold_edges, 1);
+  EXPECT_FALSE(solved.surface.warnings().empty());
+  const RowLogMap map = solved.map(solved.surface.source(Row(0)).source);
   expect_nan_exactly_where_not_ok(map);
   EXPECT_EQ(map.status[fin], Status::disconnected);
   EXPECT_EQ(map.status[a], Status::ok);  // the copy on the source's sheet
@@ -128,9 +127,9 @@ TEST(MeshFaults, BowTies) {
       if (v == cut) v = 5;  // both squares now share vertex 5
   expect_error<InvalidGeometry>(mesh, "bow ties): 5");
   const SolvedMesh solved(mesh, {.non_manifold = NonManifold::split});
-  EXPECT_EQ(solved.surface.report().topology.components, 2);
-  EXPECT_EQ(solved.surface.report().topology.non_manifold_vertices, 1);
-  const VertexMap map = solved.map(solved.surface.source_at_vertex(cut + 7));
+  EXPECT_EQ(solved.surface.details().topology.components, 2);
+  EXPECT_EQ(solved.surface.details().topology.non_manifold_vertices, 1);
+  const RowLogMap map = solved.map(solved.surface.source(Row(cut + 7)).source);
   EXPECT_EQ(map.status[5], Status::ok);
   EXPECT_EQ(map.status[6], Status::disconnected);
   EXPECT_EQ(map.status[cut], Status::removed);
@@ -147,17 +146,17 @@ TEST(MeshFaults, MoebiusBandsAreSolvedWithReflections) {
   const Mesh mesh = moebius_mesh(80, 8);
   for (bool flips : {true, false}) {
     const SolvedMesh solved(mesh, {.intrinsic_delaunay = flips});
-    EXPECT_FALSE(solved.surface.report().topology.orientable);
-    EXPECT_EQ(solved.surface.report().topology.boundary_loops, 1);
+    EXPECT_FALSE(solved.surface.details().topology.orientable);
+    EXPECT_EQ(solved.surface.details().topology.boundary_loops, 1);
     EXPECT_EQ(solved.surface.graph().transport_kind(), TransportKind::block);
     EXPECT_NO_THROW(validate(solved.surface.graph()));
-    const LogMap raw = solved.solver.solve(solved.surface.source_at({200, {0.2, 0.5, 0.3}}));
-    const VertexMap map = solved.surface.on_vertices(raw);
+    const LogMap raw = solved.solver.solve(solved.surface.source(FacePoint{200, {0.2, 0.5, 0.3}}).source);
+    const RowLogMap map = solved.surface.on_rows(raw);
     expect_nan_exactly_where_not_ok(map);
     for (Index i = 0; i < mesh.vertices(); ++i) {
       ASSERT_EQ(map.status[i], Status::ok);
       // No shorter than the chord, no longer than round the band.
-      const Frame at = *solved.surface.frame_at({200, {0.2, 0.5, 0.3}});
+      const Frame at = *solved.surface.source(FacePoint{200, {0.2, 0.5, 0.3}}).frame;
       const double chord = std::hypot(mesh.positions[i][0] - at.origin[0], mesh.positions[i][1] - at.origin[1],
                                       mesh.positions[i][2] - at.origin[2]);
       ASSERT_GT(map.distance[i], 0.9 * chord - 0.02);
@@ -170,23 +169,23 @@ TEST(MeshFaults, MoebiusBandsAreSolvedWithReflections) {
 TEST(MeshFaults, AMoebiusBandOfPaperIsAsFlatAsItsStrip) {
   const PaperBand band = paper_band(60, 12);
   for (bool flips : {true, false}) {
-    const auto surface = TriangleMeshGraph::build(
+    const auto surface = TriangleMeshSurface::build(
         TriangleMesh::from_edge_lengths(static_cast<Index>(band.plane.size()), band.faces, band.lengths),
         {.intrinsic_delaunay = flips});
     EXPECT_EQ(surface.graph().transport_kind(), TransportKind::block);
     if (flips) {
-      EXPECT_GT(surface.report().flips, 100);
+      EXPECT_GT(surface.details().flips, 100);
     }
     const LogMapSolver solver(surface.graph());
     // Sources in faces all round the band, some at the twist; within a third of the band the other way round is far.
     for (std::size_t f = 7; f < band.faces.size(); f += 131)
       for (Variant variant : {Variant::adaptive, Variant::localized}) {
-        const trimesh::SurfacePoint point{static_cast<Index>(f), {0.2, 0.5, 0.3}};
+        const FacePoint point{static_cast<Index>(f), {0.2, 0.5, 0.3}};
         std::array<double, 2> p{0, 0};
         for (int s = 0; s < 3; ++s)
           for (int a = 0; a < 2; ++a) p[a] += point.barycentric[s] * band.corners[3 * f + s][a];
-        const LogMap raw = solver.solve(surface.source_at(point), {.variant = variant});
-        const VertexMap map = surface.on_vertices(raw);
+        const LogMap raw = solver.solve(surface.source(point).source, {.variant = variant});
+        const RowLogMap map = surface.on_rows(raw);
         for (std::size_t i = 0; i < band.plane.size(); ++i)
           if (const double d = band.distance(p, band.plane[i]); d < 0.3) {
             EXPECT_NEAR(map.distance[i], d, 1e-6) << f << ", " << i;
@@ -201,7 +200,7 @@ TEST(MeshFaults, AMoebiusBandOfPaperIsAsFlatAsItsStrip) {
           for (int s = 0; s < 3; ++s)
             for (int a = 0; a < 2; ++a) q[a] += band.corners[3 * g + s][a] / 3;
           if (band.distance(p, q) > 0.25) continue;
-          const auto sample = surface.at(raw, {g, {1.0 / 3, 1.0 / 3, 1.0 / 3}});
+          const auto sample = surface.at(raw, FacePoint{g, {1.0 / 3, 1.0 / 3, 1.0 / 3}});
           EXPECT_NEAR(std::hypot(sample.u, sample.v), band.distance(p, q), 1e-6) << f << ", face " << g;
         }
       }
@@ -217,9 +216,9 @@ TEST(MeshFaults, FlatCapsAreFlippedAwayWithoutMollification) {
   mesh.faces.push_back({5, 4, 3});
   mesh.faces.push_back({0, 4, 5});
   const SolvedMesh solved(mesh);
-  EXPECT_EQ(solved.surface.report().degenerate_faces, 2);
-  EXPECT_EQ(solved.surface.report().mollification, 0);
-  const VertexMap map = solved.map(solved.surface.source_at_vertex(1, {1, 0, 0}));
+  EXPECT_EQ(solved.surface.details().degenerate_faces, 2);
+  EXPECT_EQ(solved.surface.details().mollification, 0);
+  const RowLogMap map = solved.map(solved.surface.source(Row(1), Vec3{1, 0, 0}).source);
   EXPECT_LT(plane_error(mesh, map, {1, 0}, {1, 0}), 1e-13);
 }
 
@@ -230,10 +229,10 @@ TEST(MeshFaults, CoincidentVerticesAreMollified) {
   mesh.plane[a] = mesh.plane[b];
   for (bool flips : {true, false}) {
     const SolvedMesh solved(mesh, {.intrinsic_delaunay = flips});
-    EXPECT_GT(solved.surface.report().mollification, 0);
-    EXPECT_LT(solved.surface.report().mollification, 1e-6);
-    EXPECT_FALSE(solved.surface.report().warnings.empty());
-    const VertexMap map = solved.map(solved.surface.source_at_vertex(c));
+    EXPECT_GT(solved.surface.details().mollification, 0);
+    EXPECT_LT(solved.surface.details().mollification, 1e-6);
+    EXPECT_FALSE(solved.surface.warnings().empty());
+    const RowLogMap map = solved.map(solved.surface.source(Row(c)).source);
     expect_nan_exactly_where_not_ok(map);
     for (Index i = 0; i < mesh.vertices(); ++i) {
       ASSERT_EQ(map.status[i], Status::ok);
@@ -257,7 +256,7 @@ TEST(MeshFaults, ThinSliversAtTheBoundary) {
     }
     for (std::size_t i = 0; i < other.plane.size(); ++i) other.positions[i] = {other.plane[i][0], other.plane[i][1], 0};
     const SolvedMesh solved(other);
-    const VertexMap map = solved.map(solved.surface.source_at_vertex(0, {1, 0, 0}));
+    const RowLogMap map = solved.map(solved.surface.source(Row(0), Vec3{1, 0, 0}).source);
     EXPECT_LT(plane_error(other, map, other.plane[0], {1, 0}), 1e-5) << height;
   }
 }
@@ -276,9 +275,9 @@ TEST(MeshFaults, EdgeLengthsOverManyOrdersOfMagnitude) {
     mesh.plane[i] = {mesh.positions[i][0], mesh.positions[i][1]};
   }
   const SolvedMesh solved(mesh);
-  EXPECT_GT(solved.surface.report().longest_edge, 1e6 * solved.surface.report().shortest_edge);
-  EXPECT_FALSE(solved.surface.report().warnings.empty());
-  expect_nan_exactly_where_not_ok(solved.map(solved.surface.source_at_vertex(mesh.vertices() - 1)));
+  EXPECT_GT(solved.surface.details().longest_edge, 1e6 * solved.surface.details().shortest_edge);
+  EXPECT_FALSE(solved.surface.warnings().empty());
+  expect_nan_exactly_where_not_ok(solved.map(solved.surface.source(Row(mesh.vertices() - 1)).source));
 }
 
 TEST(MeshFaults, BadEdgeLengths) {
@@ -297,7 +296,7 @@ TEST(MeshFaults, BuildingCanBeStopped) {
   MeshOptions options;
   options.progress.stop = stop.get_token();
   const Mesh mesh = icosphere(4);
-  EXPECT_THROW(TriangleMeshGraph::build(mesh.positions, mesh.faces, options), Cancelled);
+  EXPECT_THROW(TriangleMeshSurface::build(mesh.positions, mesh.faces, options), Cancelled);
 }
 
 }  // namespace

@@ -11,9 +11,6 @@
 namespace ahm::test {
 namespace {
 
-using trimesh::SurfacePoint;
-using trimesh::VertexMap;
-
 constexpr double tolerance = 1e-11;
 
 struct FlatCase {
@@ -37,7 +34,7 @@ std::array<double, 2> direction(const std::array<double, 2>& a, const std::array
 }
 
 /// The map from a vertex against the plane, whose u axis is read off at the vertex farthest from the source.
-double vertex_error(const Mesh& mesh, const VertexMap& map, Index source) {
+double vertex_error(const Mesh& mesh, const RowLogMap& map, Index source) {
   std::size_t far = 0;
   auto distance = [&](std::size_t i) {
     return std::hypot(mesh.plane[i][0] - mesh.plane[source][0], mesh.plane[i][1] - mesh.plane[source][1]);
@@ -55,7 +52,7 @@ TEST(MeshPlane, IsTheIdentityFromAnyVertex) {
       const SolvedMesh solved(mesh, {.intrinsic_delaunay = flips});
       for (Index source : {0, 1, 3, mesh.vertices() / 2, mesh.vertices() - 1})
         for (Variant variant : {Variant::adaptive, Variant::localized}) {
-          const VertexMap map = solved.map(solved.surface.source_at_vertex(source), variant);
+          const RowLogMap map = solved.map(solved.surface.source(Row(source)).source, variant);
           EXPECT_LT(vertex_error(mesh, map, source), tolerance * mesh.diameter())
               << name << (flips ? " flipped" : "") << ", vertex " << source << ", " << to_string(variant);
         }
@@ -67,8 +64,8 @@ TEST(MeshPlane, PutsTheFrameWhereItSays) {
     if (name == "folded") continue;  // its faces are not in one plane
     const SolvedMesh solved(mesh);
     for (Index source : {0, mesh.vertices() / 2}) {
-      const VertexMap map = solved.map(solved.surface.source_at_vertex(source));
-      const Frame frame = *solved.surface.graph().frame(solved.surface.vertex(source).index);
+      const RowLogMap map = solved.map(solved.surface.source(Row(source)).source);
+      const Frame frame = *solved.surface.graph().frame(solved.surface.vertex(Row(source)).index);
       for (Index i = 0; i < mesh.vertices(); ++i) {
         const Vec3& p = mesh.positions[i];
         const Vec3 offset{p[0] - frame.origin[0], p[1] - frame.origin[1], p[2] - frame.origin[2]};
@@ -87,7 +84,7 @@ TEST(MeshPlane, IsTheIdentityFromPointsInFacesAndOnEdges) {
       const SolvedMesh solved(mesh, {.intrinsic_delaunay = flips});
       for (int trial = 0; trial < 6; ++trial) {
         const auto f = static_cast<Index>(random() % mesh.faces.size());
-        SurfacePoint point{f, {uniform(random), uniform(random), 0}};
+        FacePoint point{f, {uniform(random), uniform(random), 0}};
         if (point.barycentric[0] + point.barycentric[1] > 1)
           for (int s : {0, 1}) point.barycentric[s] = 1 - point.barycentric[s];
         point.barycentric[2] = 1 - point.barycentric[0] - point.barycentric[1];
@@ -108,11 +105,10 @@ TEST(MeshPlane, IsTheIdentityFromPointsInFacesAndOnEdges) {
 
 TEST(MeshPlane, HoldsForEveryDiffusionTime) {
   const Mesh mesh = holed_square(25);
-  const auto surface = trimesh::TriangleMeshGraph::build(mesh.positions, mesh.faces);
+  const auto surface = trimesh::TriangleMeshSurface::build(mesh.positions, mesh.faces);
   for (double t_coef : {0.1, 1.0, 100.0}) {
     const LogMapSolver solver(surface.graph(), {.t_coef = t_coef});
-    EXPECT_LT(vertex_error(mesh, surface.on_vertices(solver.solve(surface.source_at_vertex(7))), 7), tolerance)
-        << t_coef;
+    EXPECT_LT(vertex_error(mesh, surface.on_rows(solver.solve(surface.source(Row(7)).source)), 7), tolerance) << t_coef;
   }
 }
 
@@ -126,13 +122,13 @@ TEST(MeshPlane, NeedsNoPositions) {
       lengths.back()[s] = std::hypot(a[0] - b[0], a[1] - b[1]);
     }
   }
-  const auto surface =
-      trimesh::TriangleMeshGraph::build(trimesh::TriangleMesh::from_edge_lengths(mesh.vertices(), mesh.faces, lengths));
+  const auto surface = trimesh::TriangleMeshSurface::build(
+      trimesh::TriangleMesh::from_edge_lengths(mesh.vertices(), mesh.faces, lengths));
   EXPECT_FALSE(surface.graph().frame(0).has_value());
   const LogMapSolver solver(surface.graph());
-  EXPECT_LT(vertex_error(mesh, surface.on_vertices(solver.solve(surface.source_at_vertex(7))), 7), tolerance);
+  EXPECT_LT(vertex_error(mesh, surface.on_rows(solver.solve(surface.source(Row(7)).source)), 7), tolerance);
   const SurfacePoint point{11, {0.2, 0.3, 0.5}};
-  const auto map = surface.on_vertices(solver.solve(surface.source_at(point)));
+  const auto map = surface.on_rows(solver.solve(surface.source_at(point)));
   EXPECT_LT(plane_error(mesh, map, plane_point(mesh, point),
                         direction(mesh.plane[mesh.faces[11][0]], mesh.plane[mesh.faces[11][1]])),
             tolerance);

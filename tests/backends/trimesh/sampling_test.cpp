@@ -10,8 +10,6 @@
 namespace ahm::test {
 namespace {
 
-using trimesh::Sample;
-using trimesh::SurfacePoint;
 
 TEST(MeshSampling, IsExactOnThePlane) {
   std::mt19937_64 random(1);
@@ -27,7 +25,7 @@ TEST(MeshSampling, IsExactOnThePlane) {
       return std::array{c * x + s * y, c * y - s * x};
     };
     for (int trial = 0; trial < 500; ++trial) {
-      SurfacePoint point{static_cast<Index>(random() % mesh.faces.size()), {uniform(random), uniform(random), 0}};
+      FacePoint point{static_cast<Index>(random() % mesh.faces.size()), {uniform(random), uniform(random), 0}};
       for (int k : {0, 1}) point.barycentric[k] *= 0.5;
       point.barycentric[2] = 1 - point.barycentric[0] - point.barycentric[1];
       const Sample sample = solved.surface.at(map, point);
@@ -81,7 +79,7 @@ TEST(MeshSampling, CutsTheTextureOpenAlongTheCutLocus) {
     }
   const SolvedMesh solved(mesh);
   const Index source = (rows / 2) * around;
-  const LogMap map = solved.solver.solve(solved.surface.source_at_vertex(source));
+  const LogMap map = solved.solver.solve(solved.surface.source(Row(source)).source);
   Index torn = 0;
   const auto corners = solved.surface.on_corners(map);
   const double stretch = worst_stretch(mesh, corners, torn);
@@ -90,7 +88,7 @@ TEST(MeshSampling, CutsTheTextureOpenAlongTheCutLocus) {
   EXPECT_LE(stretch, 1.6);
   std::vector<std::array<double, 2>> joined(corners.size());
   for (std::size_t k = 0; k < joined.size(); ++k) {
-    const auto phi = map.coordinates(solved.surface.vertex(mesh.faces[k / 3][k % 3]));
+    const auto phi = map.coordinates(solved.surface.vertex(Row(mesh.faces[k / 3][k % 3])).index);
     joined[k] = {phi[0], phi[1]};
   }
   EXPECT_GT(worst_stretch(mesh, joined, torn), 5);
@@ -99,14 +97,14 @@ TEST(MeshSampling, CutsTheTextureOpenAlongTheCutLocus) {
 TEST(MeshSampling, KeepsTheStatusOfMaskedVertices) {
   const Mesh mesh = icosphere(12);
   const SolvedMesh solved(mesh);
-  const LogMap map = solved.solver.solve(solved.surface.source_at_vertex(0), {.radius = 0.5});
-  const auto result = solved.surface.on_vertices(map);
+  const LogMap map = solved.solver.solve(solved.surface.source(Row(0)).source, {.radius = 0.5});
+  const auto result = solved.surface.on_rows(map);
   const auto corners = solved.surface.on_corners(map);
   for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
     bool ok = true;
     for (Index v : mesh.faces[f]) ok = ok && result.status[v] == Status::ok;
     for (int s = 0; s < 3; ++s) ASSERT_EQ(std::isnan(corners[3 * f + s][0]), !ok);
-    const Sample sample = solved.surface.at(map, {static_cast<Index>(f), {0.4, 0.3, 0.3}});
+    const Sample sample = solved.surface.at(map, FacePoint{static_cast<Index>(f), {0.4, 0.3, 0.3}});
     ASSERT_EQ(std::isnan(sample.u), sample.status != Status::ok);
   }
 }
@@ -114,10 +112,10 @@ TEST(MeshSampling, KeepsTheStatusOfMaskedVertices) {
 TEST(MeshSampling, RefusesMapsOfOtherGraphs) {
   const Mesh mesh = icosphere(4), other = icosphere(5);
   const SolvedMesh solved(mesh), wrong(other);
-  const LogMap map = wrong.solver.solve(wrong.surface.source_at_vertex(0));
-  EXPECT_THROW(solved.surface.on_vertices(map), InvalidArgument);
+  const LogMap map = wrong.solver.solve(wrong.surface.source(Row(0)).source);
+  EXPECT_THROW(solved.surface.on_rows(map), InvalidArgument);
   EXPECT_THROW(solved.surface.on_corners(map), InvalidArgument);
-  EXPECT_THROW(solved.surface.at(map, {0, {1, 0, 0}}), InvalidArgument);
+  EXPECT_THROW(solved.surface.at(map, FacePoint{0, {1, 0, 0}}), InvalidArgument);
 }
 
 }  // namespace

@@ -10,8 +10,6 @@
 namespace ahm::test {
 namespace {
 
-using trimesh::VertexMap;
-
 /// A patch of a bumpy height field, with non-Delaunay edges.
 Mesh bumpy(Index side = 20) {
   Mesh mesh = holed_square(side);
@@ -23,9 +21,9 @@ Mesh bumpy(Index side = 20) {
 
 constexpr Vec3 east{1, 0, 0};
 
-VertexMap solve(const Mesh& mesh, Index source, Variant variant = Variant::adaptive) {
+RowLogMap solve(const Mesh& mesh, Index source, Variant variant = Variant::adaptive) {
   const SolvedMesh solved(mesh);
-  return solved.map(solved.surface.source_at_vertex(source, east), variant);
+  return solved.map(solved.surface.source(Row(source), east).source, variant);
 }
 
 TEST(MeshSymmetry, RelabellingVerticesAndFacesRelabelsTheMap) {
@@ -42,7 +40,7 @@ TEST(MeshSymmetry, RelabellingVerticesAndFacesRelabelsTheMap) {
     std::rotate(t.begin(), t.begin() + static_cast<std::ptrdiff_t>(random() % 3), t.end());
   }
   for (Variant variant : {Variant::adaptive, Variant::localized}) {
-    const VertexMap a = solve(mesh, 100, variant), b = solve(other, order[100], variant);
+    const RowLogMap a = solve(mesh, 100, variant), b = solve(other, order[100], variant);
     for (std::size_t i = 0; i < order.size(); ++i) {
       ASSERT_NEAR(a.u[i], b.u[order[i]], 1e-11);
       ASSERT_NEAR(a.v[i], b.v[order[i]], 1e-11);
@@ -55,7 +53,7 @@ TEST(MeshSymmetry, ReversedOrientationIsTheMirrorImage) {
   Mesh other = mesh;
   for (Triangle& t : other.faces) std::swap(t[0], t[1]);
   for (Variant variant : {Variant::adaptive, Variant::localized}) {
-    const VertexMap a = solve(mesh, 100, variant), b = solve(other, 100, variant);
+    const RowLogMap a = solve(mesh, 100, variant), b = solve(other, 100, variant);
     for (std::size_t i = 0; i < a.u.size(); ++i) {
       ASSERT_NEAR(a.u[i], b.u[i], 1e-11);
       ASSERT_NEAR(a.v[i], -b.v[i], 1e-11);
@@ -68,9 +66,9 @@ TEST(MeshSymmetry, MixedOrientationIsRepairedByTheMajority) {
   Mesh other = mesh;
   for (std::size_t f = 0; f < other.faces.size(); f += 3) std::swap(other.faces[f][1], other.faces[f][2]);
   const SolvedMesh solved(other);
-  EXPECT_EQ(solved.surface.report().topology.reoriented, static_cast<Index>((other.faces.size() + 2) / 3));
-  EXPECT_FALSE(solved.surface.report().warnings.empty());
-  const VertexMap a = solve(mesh, 100), b = solved.map(solved.surface.source_at_vertex(100, east));
+  EXPECT_EQ(solved.surface.details().topology.reoriented, static_cast<Index>((other.faces.size() + 2) / 3));
+  EXPECT_FALSE(solved.surface.warnings().empty());
+  const RowLogMap a = solve(mesh, 100), b = solved.map(solved.surface.source(Row(100), east).source);
   for (std::size_t i = 0; i < a.u.size(); ++i) {
     ASSERT_NEAR(a.u[i], b.u[i], 1e-11);
     ASSERT_NEAR(a.v[i], b.v[i], 1e-11);
@@ -79,41 +77,41 @@ TEST(MeshSymmetry, MixedOrientationIsRepairedByTheMajority) {
 
 TEST(MeshSymmetry, PowersOfTwoScaleBitForBit) {
   const Mesh mesh = bumpy();
-  const VertexMap a = solve(mesh, 100);
+  const RowLogMap a = solve(mesh, 100);
   for (int exponent : {-1000, -20, 7, 1000}) {
     Mesh other = mesh;
     for (Vec3& p : other.positions)
       for (double& x : p) x = std::scalbn(x, exponent);
-    const VertexMap b = solve(other, 100);
+    const RowLogMap b = solve(other, 100);
     for (std::size_t i = 0; i < a.u.size(); ++i) ASSERT_EQ(std::scalbn(a.u[i], exponent), b.u[i]) << exponent;
   }
 }
 
 TEST(MeshSymmetry, AnyScaleScales) {
   const Mesh mesh = bumpy();
-  const VertexMap a = solve(mesh, 100);
+  const RowLogMap a = solve(mesh, 100);
   for (double scale : {1e-300, 1e-12, 1e12, 1e300}) {
     Mesh other = mesh;
     for (Vec3& p : other.positions)
       for (double& x : p) x *= scale;
-    const VertexMap b = solve(other, 100);
+    const RowLogMap b = solve(other, 100);
     for (std::size_t i = 0; i < a.u.size(); ++i) ASSERT_NEAR(a.u[i], b.u[i] / scale, 1e-11) << scale;
   }
 }
 
 TEST(MeshSymmetry, FarFromTheOriginIsAsGoodAsTheInputDigits) {
   const Mesh mesh = bumpy();
-  const VertexMap a = solve(mesh, 100);
+  const RowLogMap a = solve(mesh, 100);
   Mesh other = mesh;
   for (Vec3& p : other.positions) p = {p[0] + 1e8, p[1] - 1e8, p[2] + 1e8};
-  const VertexMap b = solve(other, 100);
+  const RowLogMap b = solve(other, 100);
   for (std::size_t i = 0; i < a.u.size(); ++i) ASSERT_NEAR(a.distance[i], b.distance[i], 1e-5);
 }
 
 TEST(MeshSymmetry, RepeatsBitForBitOnAnyNumberOfThreads) {
   const Mesh mesh = bumpy(60);
-  const auto one = trimesh::TriangleMeshGraph::build(mesh.positions, mesh.faces, {.threads = 1});
-  const auto many = trimesh::TriangleMeshGraph::build(mesh.positions, mesh.faces, {.threads = 7});
+  const auto one = trimesh::TriangleMeshSurface::build(mesh.positions, mesh.faces, {.threads = 1});
+  const auto many = trimesh::TriangleMeshSurface::build(mesh.positions, mesh.faces, {.threads = 7});
   EXPECT_EQ(one.graph().data().logs, many.graph().data().logs);
   EXPECT_EQ(one.graph().data().weights, many.graph().data().weights);
   EXPECT_EQ(one.graph().data().transports, many.graph().data().transports);
@@ -122,9 +120,9 @@ TEST(MeshSymmetry, RepeatsBitForBitOnAnyNumberOfThreads) {
 
 TEST(MeshSymmetry, TheUDirectionTurnsTheMap) {
   const SolvedMesh solved(bumpy());
-  const VertexMap a = solved.map(solved.surface.source_at_vertex(100));
-  const Frame frame = *solved.surface.graph().frame(solved.surface.vertex(100).index);
-  const VertexMap b = solved.map(solved.surface.source_at_vertex(100, frame.y));
+  const RowLogMap a = solved.map(solved.surface.source(Row(100)).source);
+  const Frame frame = *solved.surface.graph().frame(solved.surface.vertex(Row(100)).index);
+  const RowLogMap b = solved.map(solved.surface.source(Row(100), frame.y).source);
   for (std::size_t i = 0; i < a.u.size(); ++i) {
     ASSERT_NEAR(a.u[i], -b.v[i], 1e-11);
     ASSERT_NEAR(a.v[i], b.u[i], 1e-11);

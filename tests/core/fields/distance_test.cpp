@@ -41,7 +41,7 @@ TEST(DistanceGradient, AgreesWithDifferencesAlongEdgesToSecondOrder) {
     const Mesh mesh = icosphere(parts);
     const SolvedMesh sphere(mesh);
     const CsrGraph& graph = sphere.surface.graph();
-    const double h = sphere.surface.report().longest_edge;
+    const double h = sphere.surface.details().longest_edge;
     for (Index p : {0, graph.size() / 3}) {
       const DistanceField field = distance_and_gradient(sphere.solver, Source::at_vertex(Vertex(p)));
       double worst = 0;
@@ -69,12 +69,13 @@ TEST(DistanceGradient, PointsAwayFromTheSourceOnTheSphere) {
     const Mesh mesh = icosphere(parts);
     const SolvedMesh sphere(mesh);
     const CsrGraph& graph = sphere.surface.graph();
-    const DistanceField field = distance_and_gradient(sphere.solver, Source::at_vertex(sphere.surface.vertex(0)));
+    const DistanceField field =
+        distance_and_gradient(sphere.solver, Source::at_vertex(sphere.surface.vertex(Row(0)).index));
     double worst = 0;
     for (Index i = 0; i < mesh.vertices(); ++i) {
       const double cosine = dot(mesh.positions[i], mesh.positions[0]);
       if (i == 0 || cosine < -0.7) continue;
-      const Index v = sphere.surface.vertex(i).index;
+      const Index v = sphere.surface.vertex(Row(i)).index;
       const Frame frame = *graph.frame(v);
       const double *g = &field.gradient.values[2 * v], sine = std::sqrt(1 - cosine * cosine);
       Vec3 difference;  // to the exact gradient, (cos d q - p) / sin d

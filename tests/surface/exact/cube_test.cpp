@@ -54,6 +54,16 @@ Mesh needle_cube(Index strips) {
   return mesh;
 }
 
+/// By some angle about every axis: no coordinate is a round number afterwards.
+Vec3 turned_in_space(Vec3 p) {
+  for (int k = 0; k < 3; ++k) {
+    const double c = std::cos(0.3 + k), s = std::sin(0.3 + k), x = p[k], y = p[(k + 1) % 3];
+    p[k] = c * x - s * y;
+    p[(k + 1) % 3] = s * x + c * y;
+  }
+  return p;
+}
+
 double dot3(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 Vec3 axis_vector(int axis, double sign) {
   Vec3 v{0, 0, 0};
@@ -145,7 +155,9 @@ TEST(ExactMap, AgreesWithTheRolledCube) {
 TEST(ExactMap, AgreesWithTheRolledCubeInNeedles) {
   for (Index strips : {7, 60}) {
     const Mesh mesh = needle_cube(strips);
-    const Polyhedron solid(mesh);
+    Mesh turned = mesh;
+    for (Vec3& p : turned.positions) p = turned_in_space(p);
+    const Polyhedron solid(turned);
     const double unit = solid.mesh.length_unit();
     std::mt19937_64 random(6);
     exact::ExactOptions options;
@@ -176,6 +188,32 @@ TEST(ExactMap, AgreesWithTheRolledCubeInNeedles) {
         const exact::GeodesicPath path = exact::path_to_target(solid.surface, map, k);
         EXPECT_NEAR(solid.length(path.points), path.length, 1e-12) << strips << ' ' << trial << ' ' << k;
       }
+    }
+  }
+}
+
+TEST(ExactMap, IsMadeOfRealPathsOnNeedlesOfRoundedCoordinates) {
+  // Rows of vertices that are in a line but for the last digits of single precision.
+  for (Index strips : {7, 60}) {
+    Mesh mesh = needle_cube(strips);
+    for (Vec3& p : mesh.positions) {
+      p = turned_in_space({p[0], 0.3 * p[1], 0.7 * p[2]});
+      for (double& x : p) x = static_cast<float>(x);
+    }
+    const Polyhedron solid(mesh);
+    std::mt19937_64 random(8);
+    for (int trial = 0; trial < 30; ++trial) {
+      const exact::MeshPoint p =
+          trial < 10 ? solid.surface.vertex_point(Vertex(trial)) : random_point(solid.surface, random);
+      const exact::MeshPoint q = random_point(solid.surface, random);
+      const exact::GeodesicPath there = exact::geodesic_path(solid.surface, p, q),
+                                back = exact::geodesic_path(solid.surface, q, p);
+      EXPECT_NEAR(there.length, back.length, 1e-12) << strips << ' ' << trial;
+      EXPECT_NEAR(solid.length(there.points), there.length, 1e-12) << strips << ' ' << trial;
+      const exact::ExactMap map = exact::exact_map(solid.surface, p);
+      for (Index v = 0; v < map.size(); ++v)
+        EXPECT_NEAR(solid.length(exact::path_to_vertex(solid.surface, map, Vertex(v)).points), map.distance(Vertex(v)),
+                    1e-12);
     }
   }
 }

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "ahm/trimesh/triangle_mesh_graph.hpp"
+#include "ahm/trimesh/triangle_mesh_surface.hpp"
 #include "polyhedra.hpp"
 
 namespace ahm::test {
@@ -20,7 +20,7 @@ TEST(ExactMap, HasTheAxesOfTheTriangleBackend) {
     const Polyhedron solid(mesh);
     trimesh::MeshOptions options;
     options.intrinsic_delaunay = false;
-    const auto graph = trimesh::TriangleMeshGraph::build(mesh.positions, mesh.faces, options);
+    const auto graph = trimesh::TriangleMeshSurface::build(mesh.positions, mesh.faces, options);
     for (Index v = 0; v < solid.surface.vertex_count(); v += 7) {
       const ExactMap map = exact::exact_map(solid.surface, solid.surface.vertex_point(Vertex(v)));
       const Star star = graph.graph().star(v);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "ahm/error.hpp"
 #include "polyhedra.hpp"
 
 namespace ahm::test {
@@ -74,6 +75,23 @@ TEST(GeodesicPath, IsTheSameCurveTurnedRound) {
                   1e-9);
     }
   }
+}
+
+TEST(GeodesicPath, IsTheSumOfItsLegsThroughStopsAndBack) {
+  const Polyhedron solid(icosphere(7));
+  std::mt19937_64 random(12);
+  std::vector<MeshPoint> stops;
+  for (int k = 0; k < 4; ++k) stops.push_back(random_point(solid.surface, random));
+  double sum = 0;
+  for (std::size_t k = 0; k < 3; ++k) sum += exact::geodesic_path(solid.surface, stops[k], stops[k + 1]).length;
+  const GeodesicPath open = exact::geodesic_path(solid.surface, stops);
+  EXPECT_NEAR(open.length, sum, 1e-13);
+  EXPECT_NEAR(solid.length(open.points), sum, 1e-12);
+  const GeodesicPath loop = exact::geodesic_path(solid.surface, stops, true);
+  EXPECT_NEAR(loop.length, sum + exact::geodesic_path(solid.surface, stops[3], stops[0]).length, 1e-13);
+  EXPECT_LT(distance(solid.position(loop.points.front()), solid.position(loop.points.back())), 1e-15);
+  EXPECT_EQ(loop.start_direction, open.start_direction);
+  EXPECT_THROW(exact::geodesic_path(solid.surface, std::span(stops).first(1)), InvalidArgument);
 }
 
 TEST(Trace, FollowsTheShortestPathToItsEnd) {

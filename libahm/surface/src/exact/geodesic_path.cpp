@@ -22,8 +22,8 @@ constexpr double vertex_margin = 1e-12, graze_margin = 1e-10;
 
 double positive_angle(double angle) { return angle < 0 ? angle + 2 * pi : angle; }
 
-/// The angle at which a line leaves a vertex, which it starts at in the frame of a corner's half-edge, or that of its
-/// continuation backwards, from the right side of the first corner. True, not scaled.
+/// The true angle, from the right side of the first corner, at which a vertex sees a place in one of its faces.
+/// @param corner   the half-edge of the face that starts at the vertex; the place is in its frame
 double angle_at_vertex(const PolyhedralSurface& surface, Half corner, Place towards) {
   const double width = surface.angle(corner), within = std::clamp(std::atan2(towards.y, towards.x), 0.0, width);
   double turned = 0;
@@ -211,6 +211,21 @@ GeodesicPath geodesic_path(const PolyhedralSurface& surface, const MeshPoint& fr
   options.targets.push_back(to);
   options.only_targets = true;
   return path_to_target(surface, exact_map(surface, from, options), 0);
+}
+
+GeodesicPath geodesic_path(const PolyhedralSurface& surface, std::span<const MeshPoint> stops, bool closed) {
+  if (stops.size() < 2)
+    throw InvalidArgument("'stops' has " + std::to_string(stops.size()) + " points; a path needs 2");
+  GeodesicPath path = geodesic_path(surface, stops[0], stops[1]);
+  const std::size_t legs = stops.size() - (closed ? 0 : 1);
+  for (std::size_t k = 1; k < legs && path.status == Status::ok; ++k) {
+    const GeodesicPath leg = geodesic_path(surface, stops[k], stops[(k + 1) % stops.size()]);
+    if (leg.status != Status::ok) return without_points(leg.status);
+    path.points.insert(path.points.end(), leg.points.begin() + 1, leg.points.end());
+    path.length += leg.length;
+    path.end_direction = leg.end_direction;
+  }
+  return path;
 }
 
 TracedPath trace(const PolyhedralSurface& surface, const MeshPoint& from, double direction, double length) {

@@ -13,7 +13,7 @@ namespace {
 using std::numbers::pi;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-/// A window goes where it loses to a known distance by more than this, relatively.
+/// A window is dropped where it loses to a known distance by more than this, relatively.
 constexpr double slack = 1 + 1e-12;
 /// How far beside a window a point still counts as covered, and how wide a window must be; relative to the side.
 constexpr double margin = 1e-12, least_width = 1e-14;
@@ -84,7 +84,10 @@ void Propagation::add_source(const MeshPoint& point) {
   for (int s = 0; s < 3; ++s) {
     const HalfRecord& r = surface_.record(ray.half);
     offer(r.apex, distance(ray.from, apex(r)), ray, apex(r));
-    zeros == 0 || s != zero ? light_right(ray, 0, r.right) : see_beyond_right(ray);
+    if (zeros == 1 && s == zero)
+      see_beyond_right(ray);
+    else
+      light_right(ray, 0, r.right);
     ray = in_next(ray);
   }
   see_face(ray);
@@ -120,8 +123,8 @@ void Propagation::see_beyond_right(const Ray& ray) {
   if (r.beyond_right < 0) return;
   Window w = beyond_right(ray, 0, r.right);
   Ray there{w.half, {w.from.x, std::max(0.0, w.from.y)}, w.turn, w.origin2};
-  offer(surface_.record(there.half).apex, distance(there.from, apex(surface_.record(there.half))), there,
-        apex(surface_.record(there.half)));
+  const HalfRecord& face = surface_.record(there.half);
+  offer(face.apex, distance(there.from, apex(face)), there, apex(face));
   for (int s = 0; s < 3; ++s) {
     if (s != 2) light_right(there, 0, surface_.record(there.half).right);
     there = in_next(there);
@@ -129,7 +132,7 @@ void Propagation::see_beyond_right(const Ray& ray) {
   see_face(there);
 }
 
-/// Offers the straight way to the corner that the frame's right side ends in and starts a window across that side.
+/// Starts a window across an interval of the frame's right side.
 void Propagation::light_right(const Ray& ray, double begin, double end) {
   const HalfRecord& r = surface_.record(ray.half);
   if (r.beyond_right < 0 || !(end - begin > least_width * r.right)) return;

@@ -12,7 +12,6 @@
 #include <array>
 #include <cstdint>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "ahm/surface/mesh_topology.hpp"
@@ -31,9 +30,6 @@ struct Refinement {
   /// of crossings seen along their vector area (twisted ones): their triangles overlap, and the refinement is not the surface that was given.
   std::vector<Index> folded;
 };
-
-/// What a user should know about a checked mesh, one sentence each.
-std::vector<std::string> topology_warnings(const TopologyReport& report);
 
 /// An immutable polygon mesh, consistently oriented where that is possible.
 ///
@@ -82,7 +78,9 @@ class PolygonMesh {
   /// Position of a vertex in units of `length_unit()` about the middle of the bounding box.
   const Vec3& position(Index vertex) const { return position_[vertex]; }
   /// Position of a vertex as given.
-  const Vec3& original_position(Index vertex) const { return original_[vertex]; }
+  const Vec3& original_position(Index vertex) const { return input_[input_of_vertex_[vertex]]; }
+  /// Positions of all input vertices as given.
+  std::span<const Vec3> input_positions() const noexcept { return input_; }
   /// A power of two near the size of the mesh.
   double length_unit() const noexcept { return length_unit_; }
 
@@ -107,7 +105,7 @@ class PolygonMesh {
   std::vector<Index> vertex_of_input_;
   std::vector<Index> input_of_vertex_;
   std::vector<Vec3> position_;
-  std::vector<Vec3> original_;
+  std::vector<Vec3> input_;
   double length_unit_ = 1.0;
 };
 

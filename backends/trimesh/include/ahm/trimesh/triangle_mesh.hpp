@@ -2,9 +2,9 @@
 /// A checked triangle mesh: what the graph of a surface is built from.
 ///
 /// \code
-/// auto mesh = ahm::trimesh::TriangleMesh::from_positions(positions, faces);   // std::vector<ahm::Vec3>,
-/// std::vector<Triangle> auto same = ahm::trimesh::TriangleMesh::from_edge_lengths(n, faces, lengths);   // the metric
-/// alone, no positions std::cout << mesh.report().components << " components\n";
+/// auto mesh = ahm::trimesh::TriangleMesh::from_positions(positions, faces);            // ahm::Vec3s, ahm::Triangles
+/// auto same = ahm::trimesh::TriangleMesh::from_edge_lengths(n, faces, lengths);        // the metric alone
+/// std::cout << mesh.report().components << " components\n";
 /// \endcode
 #pragma once
 
@@ -68,7 +68,9 @@ class TriangleMesh {
   /// Position of a vertex in units of `length_unit()` about the middle of the bounding box.
   const Vec3& position(Index vertex) const { return position_[vertex]; }
   /// Position of a vertex as given.
-  const Vec3& original_position(Index vertex) const { return original_[vertex]; }
+  const Vec3& original_position(Index vertex) const { return input_[input_of_vertex_[vertex]]; }
+  /// Positions of all input vertices as given; empty without positions.
+  std::span<const Vec3> input_positions() const noexcept { return input_; }
   /// A power of two near the size of the mesh.
   double length_unit() const noexcept { return length_unit_; }
   /// The face laid out in the plane, counter-clockwise, side 0 along the x axis: its three sides as vectors, in units
@@ -93,7 +95,7 @@ class TriangleMesh {
   std::vector<Index> vertex_of_input_;
   std::vector<Index> input_of_vertex_;
   std::vector<Vec3> position_;  ///< per vertex, or empty
-  std::vector<Vec3> original_;  ///< per vertex, or empty
+  std::vector<Vec3> input_;     ///< per input vertex, or empty
   std::vector<double> length_;  ///< per half-edge, or empty
   double length_unit_ = 1.0;
 };

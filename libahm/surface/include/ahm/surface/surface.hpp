@@ -96,11 +96,11 @@ class Surface {
 
  protected:
   Surface();
-  /// Why a row has no vertex: fault and the end of a sentence that begins with "row 7".
+  /// Why a row has no vertex: the end of a sentence that begins with "row 7", and what to do.
   struct Reason {
-    std::string_view fault, text;
+    std::string_view fault, text, remedy;
   };
-  virtual Reason why_without_vertex(Row) const { return {"row_unused", "is used by no face"}; }
+  virtual Reason why_without_vertex(Row) const { return {"row_unused", "is used by no face", "choose another one"}; }
   /// @param point  of a face that exists, with as many weights as corners: >= 0 with sum 1 (to 1e-9)
   /// The base has no faces. @throws InvalidArgument as `source`
   virtual PlacedSource source_in_face(const FacePoint& point, const std::optional<Vec3>& u_axis) const;
@@ -112,7 +112,7 @@ class Surface {
   virtual FacePoint face_point(const EdgePoint& point) const;
 
   /// The vertex at a corner of a face, the corner counted as given.
-  Index corner_vertex(Index face, std::size_t corner) const;
+  Vertex corner_vertex(Index face, std::size_t corner) const;
   /// @throws InvalidArgument (another graph's map)
   void check_map(const LogMap& map) const;
   /// @throws InvalidArgument (face, weights)

@@ -3,8 +3,8 @@
 ///
 /// \code
 /// auto scan = ahm::pcl_bridge::from_pcl(*cloud);                                       // any point type with x, y, z
-/// auto graph = ahm::pointcloud::PointCloudGraph::build(scan.points, scan.normals);
-/// auto map = graph.on_points(ahm::LogMapSolver(graph.graph()).solve(graph.source_at_point(0)));
+/// auto cloud = ahm::pointcloud::PointCloudSurface::build(scan.points, scan.normals);
+/// auto map = cloud.on_rows(ahm::LogMapSolver(cloud.graph()).solve(cloud.source(ahm::Row{0}).source));
 /// pcl::PointCloud<ahm::pcl_bridge::PointLogMap> result = ahm::pcl_bridge::to_pcl(*cloud, map);
 /// \endcode
 ///
@@ -23,11 +23,11 @@
 
 #include "ahm/error.hpp"
 #include "ahm/pcl/point_types.hpp"
-#include "ahm/pointcloud/point_cloud_graph.hpp"
+#include "ahm/pointcloud/point_cloud_surface.hpp"
 
 namespace ahm::pcl_bridge {
 
-/// The arrays `PointCloudGraph::build` takes.
+/// The arrays `PointCloudSurface::build` takes.
 struct CloudArrays {
   std::vector<Vec3> points;
   std::vector<Vec3> normals;  ///< empty when the point type has none
@@ -50,7 +50,7 @@ CloudArrays from_pcl(const ::pcl::PointCloud<PointT>& cloud) {
 
 namespace detail {
 
-inline PointLogMap log_map_point(float x, float y, float z, const pointcloud::PointMap& map, std::size_t i) {
+inline PointLogMap log_map_point(float x, float y, float z, const RowLogMap& map, std::size_t i) {
   PointLogMap p;
   p.x = x;
   p.y = y;
@@ -64,11 +64,11 @@ inline PointLogMap log_map_point(float x, float y, float z, const pointcloud::Po
   return p;
 }
 
-inline bool all_ok(const pointcloud::PointMap& map) {
+inline bool all_ok(const RowLogMap& map) {
   return std::all_of(map.status.begin(), map.status.end(), [](Status s) { return s == Status::ok; });
 }
 
-inline void require_rows(std::size_t points, const pointcloud::PointMap& map) {
+inline void require_rows(std::size_t points, const RowLogMap& map) {
   for (std::size_t rows : {map.u.size(), map.v.size(), map.distance.size(), map.angle.size(), map.status.size()})
     if (rows != points)
       throw InvalidArgument("to_pcl: map has " + std::to_string(rows) + " rows for a cloud of " +
@@ -80,7 +80,7 @@ inline void require_rows(std::size_t points, const pointcloud::PointMap& map) {
 /// The log map on the points of the cloud it was made from: same order, same width and height.
 /// @throws InvalidArgument when the map has another number of rows
 template <typename PointT>
-::pcl::PointCloud<PointLogMap> to_pcl(const ::pcl::PointCloud<PointT>& cloud, const pointcloud::PointMap& map) {
+::pcl::PointCloud<PointLogMap> to_pcl(const ::pcl::PointCloud<PointT>& cloud, const RowLogMap& map) {
   detail::require_rows(cloud.size(), map);
   ::pcl::PointCloud<PointLogMap> result;
   result.reserve(cloud.size());
@@ -97,7 +97,7 @@ template <typename PointT>
 
 /// The same for positions held in an array (they are rounded to single precision).
 /// @throws InvalidArgument when the map has another number of rows
-inline ::pcl::PointCloud<PointLogMap> to_pcl(std::span<const Vec3> points, const pointcloud::PointMap& map) {
+inline ::pcl::PointCloud<PointLogMap> to_pcl(std::span<const Vec3> points, const RowLogMap& map) {
   detail::require_rows(points.size(), map);
   ::pcl::PointCloud<PointLogMap> result;
   result.reserve(points.size());

@@ -4,7 +4,7 @@
 /// \code
 /// ahm::pointcloud::CloudOptions options;
 /// options.search = ahm::pcl_bridge::kdtree_search;
-/// auto cloud = ahm::pointcloud::PointCloudGraph::build(points, {}, options);
+/// auto cloud = ahm::pointcloud::PointCloudSurface::build(points, {}, options);
 /// \endcode
 #pragma once
 

@@ -7,6 +7,7 @@
 /// \endcode
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "ahm/surface/exact/exact_map.hpp"
@@ -35,6 +36,11 @@ GeodesicPath path_to_target(const PolyhedralSurface& surface, const ExactMap& ma
 /// has reached the farther point.
 /// @throws as `exact_map`
 GeodesicPath geodesic_path(const PolyhedralSurface& surface, const MeshPoint& from, const MeshPoint& to);
+
+/// The shortest path through these points in this order, which bends at them; `closed`: and back to the first.
+/// @return the status of the first stop that cannot be reached, without points, where there is one
+/// @throws InvalidArgument (fewer than two points), as `exact_map`
+GeodesicPath geodesic_path(const PolyhedralSurface& surface, std::span<const MeshPoint> stops, bool closed = false);
 
 /// How a straightest geodesic ended.
 enum class TraceEnd {

@@ -2,7 +2,7 @@
 #include <ahm/applications/atlas.hpp>
 #include <ahm/applications/cells.hpp>
 #include <ahm/maps/log_map_solver.hpp>
-#include <ahm/trimesh/triangle_mesh_graph.hpp>
+#include <ahm/trimesh/triangle_mesh_surface.hpp>
 #include <cmath>
 #include <cstdio>
 #include <numbers>
@@ -22,7 +22,7 @@ int main() {
       triangles.push_back({i * across + j, next + j, next + up});
       triangles.push_back({i * across + j, next + up, i * across + up});
     }
-  const auto mesh = ahm::trimesh::TriangleMeshGraph::build(points, triangles);
+  const auto mesh = ahm::trimesh::TriangleMeshSurface::build(points, triangles);
   const ahm::LogMapSolver solver(mesh.graph());
 
   std::vector<ahm::Offset> begin;

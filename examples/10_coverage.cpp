@@ -1,7 +1,7 @@
 // A path that covers a curved panel: a raster in log coordinates, carried back to points, normals and headings.
 #include <ahm/applications/coverage.hpp>
 #include <ahm/maps/log_map_solver.hpp>
-#include <ahm/pointcloud/point_cloud_graph.hpp>
+#include <ahm/pointcloud/point_cloud_surface.hpp>
 #include <cmath>
 #include <cstdio>
 #include <vector>
@@ -11,9 +11,10 @@ int main() {
   for (int i = 0; i < 60; ++i)
     for (int j = 0; j < 60; ++j)
       points.push_back({0.5 * std::sin(0.02 * (i - 30)), 0.01 * (j - 30), 0.5 * std::cos(0.02 * (i - 30))});
-  const auto cloud = ahm::pointcloud::PointCloudGraph::build(points);
+  const auto cloud = ahm::pointcloud::PointCloudSurface::build(points);
   const ahm::LogMapSolver solver(cloud.graph());
-  const ahm::LogMap map = solver.solve(cloud.source_at_point(30 * 60 + 30, {1, 0, 0}), {.frames = true});
+  const ahm::LogMap map =
+      solver.solve(cloud.source(ahm::Row{30 * 60 + 30}, ahm::Vec3{1, 0, 0}).source, {.frames = true});
 
   const ahm::InverseMap inverse = ahm::inverse_map(cloud.graph(), map);
   if (const auto corner = inverse.at(0.1, 0.05))

@@ -1,6 +1,6 @@
 // A floor of hexagonal tiles, and the map seen from the middle of one of them.
 #include <ahm/maps/log_map_solver.hpp>
-#include <ahm/polymesh/polygon_mesh_graph.hpp>
+#include <ahm/polymesh/polygon_mesh_surface.hpp>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -25,14 +25,15 @@ int main() {
       begin.push_back(static_cast<ahm::Offset>(corners.size()));
     }
 
-  const auto floor = ahm::polymesh::PolygonMeshGraph::build(positions, begin, corners);
+  const auto floor = ahm::polymesh::PolygonMeshSurface::build(
+      positions, begin, corners, {.discretization = ahm::polymesh::Discretization::polygons});
   const ahm::LogMapSolver solver(floor.graph());
   const ahm::Index tile = 4 * columns + 4;
   const std::vector<double> middle(6, 1.0 / 6);
-  const auto map = floor.on_vertices(solver.solve(floor.source_at_face(tile, middle, {1, 0, 0})));
+  const auto map = floor.on_rows(solver.solve(floor.source(ahm::FacePoint{tile, middle}, ahm::Vec3{1, 0, 0}).source));
 
   double error = 0;  // on the plane the map is exact
-  const ahm::Vec3 origin = floor.frame_at_face(tile, middle).origin;
+  const ahm::Vec3 origin = floor.position(ahm::FacePoint{tile, middle});
   for (std::size_t i = 0; i < positions.size(); ++i)
     error =
         std::max(error, std::hypot(map.u[i] - (positions[i][0] - origin[0]), map.v[i] - (positions[i][1] - origin[1])));

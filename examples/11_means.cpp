@@ -1,7 +1,7 @@
 // Where to meet: mean and median of points on a dome, and the u axis along its meridians.
 #include <ahm/applications/mean.hpp>
 #include <ahm/fields/distance.hpp>
-#include <ahm/pointcloud/point_cloud_graph.hpp>
+#include <ahm/pointcloud/point_cloud_surface.hpp>
 #include <ahm/surface/directions.hpp>
 #include <array>
 #include <cmath>
@@ -14,9 +14,9 @@ int main() {
     const double z = 1 - (i + 0.5) / n, r = std::sqrt(1 - z * z), turn = 2.399963 * i;
     dome.push_back({r * std::cos(turn), r * std::sin(turn), z});
   }
-  const auto cloud = ahm::pointcloud::PointCloudGraph::build(dome);
+  const auto cloud = ahm::pointcloud::PointCloudSurface::build(dome);
   const ahm::LogMapSolver solver(cloud.graph());
-  const auto near = [&](ahm::Vec3 p) { return ahm::Vertex(cloud.vertex_of_point()[cloud.nearest_point(p)]); };
+  const auto near = [&](ahm::Vec3 p) { return cloud.vertex(cloud.nearest_row(p)); };
 
   const std::array towns{near({0.8, 0, 0.6}), near({-0.4, 0.69, 0.6}), near({-0.4, -0.69, 0.6})};
   const ahm::Center mean = ahm::karcher_mean(solver, towns);

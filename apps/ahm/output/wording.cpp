@@ -1,0 +1,94 @@
+#include "output/wording.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+namespace ahm::app {
+namespace {
+
+/// {0}, {1}, {2} are the warning's numbers, {3} is the list of its rows.
+struct Sentence {
+  std::string_view id, format;
+};
+
+constexpr Sentence sentences[] = {
+    // meshes
+    {"unreferenced", "{0:.0f} vertices are used by no face and were left out"},
+    {"reoriented", "{0:.0f} faces were turned over to orient the mesh consistently"},
+    {"non_manifold_edges", "{0:.0f} edges with more than two faces were cut"},
+    {"non_manifold_vertices", "{0:.0f} additional vertices were made where several fans of faces met"},
+    {"not_orientable", "the mesh is not orientable; it is solved with reflections"},
+    {"components", "the mesh falls into {0:.0f} components; a map covers those that hold its source"},
+    {"flips_stopped", "edge flips were stopped before all edges were Delaunay"},
+    {"mollified", "{0:.0f} degenerate faces: every edge was made longer by {1:.6g}"},
+    {"edge_lengths", "edge lengths range from {0:.6g} to {1:.6g}; one diffusion time cannot suit them all"},
+    {"degenerate_faces", "{0:.0f} faces have almost no area"},
+    {"negative_weights", "{0:.0f} edges have negative weights; far from the source heat may lose its sign"},
+    {"twisted_faces", "{0:.0f} faces are twisted, the first is face {1:.0f}, so the polygons are not refined"},
+    // clouds
+    {"normals_estimated", "{0:.0f} given normals are zero or not finite and were estimated"},
+    {"cover_not_delaunay",
+     "the intrinsic Delaunay flips did not come to an end: some edges of degenerate triangles were left out"},
+    {"degenerate", "{0:.0f} points have collinear or isolated neighbourhoods and were removed: {3}"},
+    {"normals_turned", "{0:.0f} given normals point to the other side than the majority around them and were turned"},
+    {"k_reduced", "k = {0:.0f} was reduced to {1:.0f}: the cloud has only {2:.0f} distinct points"},
+    {"non_finite", "{0:.0f} points with NaN or infinite coordinates were removed"},
+    {"duplicates", "{0:.0f} duplicate points were merged"},
+    {"thin_walls", "{0:.0f} pairs of neighbours were not joined because their normals disagree (thin walls)"},
+    {"reflections", "{0:.0f} edges join oppositely oriented normals and are treated as reflections"},
+    {"cloud_components", "the cloud falls into {0:.0f} components; a map covers those that hold its source"},
+};
+
+struct Advice {
+  std::string_view fault, remedy;
+};
+
+constexpr Advice advices[] = {
+    {"non_manifold_edges", "repair them, or cut the mesh there with --non-manifold split"},
+    {"non_manifold_vertices", "repair them, or split them with --non-manifold split"},
+    {"twisted_faces", "use --discretization polygons"},
+    {"row_left_out", "--voxel, --outliers, --drop-nan or --local removed it; choose another one, or write x,y,z"},
+};
+
+std::string list(const Warning& warning) {
+  std::vector<Index> rows;
+  for (Row row : warning.rows) rows.push_back(row.index);
+  const auto all = static_cast<std::size_t>(warning.numbers.empty() ? 0 : warning.numbers[0]);
+  return fmt::format("{}{}", fmt::join(rows, ", "),
+                     all > rows.size() ? fmt::format(" and {} more", all - rows.size()) : "");
+}
+
+}  // namespace
+
+std::string worded(const Warning& warning) {
+  std::array<double, 3> numbers{};
+  std::copy_n(warning.numbers.begin(), std::min<std::size_t>(warning.numbers.size(), 3), numbers.begin());
+  for (const auto& [id, format] : sentences)
+    if (warning.id == id) return fmt::format(fmt::runtime(format), numbers[0], numbers[1], numbers[2], list(warning));
+  return fmt::format("{} {}", warning.id, fmt::join(warning.numbers, " "));
+}
+
+std::string worded(const Error& error) {
+  for (const auto& [fault, remedy] : advices)
+    if (error.fault() == fault) return fmt::format("{}; {}", error.problem(), remedy);
+  return error.what();
+}
+
+nlohmann::ordered_json as_json(const Report& report) {
+  nlohmann::ordered_json json;
+  for (const auto& [id, value] : report) {
+    const std::size_t dot = id.find('.');
+    nlohmann::ordered_json& entry = dot == std::string_view::npos
+                                        ? json[std::string(id)]
+                                        : json[std::string(id.substr(0, dot))][std::string(id.substr(dot + 1))];
+    std::visit([&](const auto& x) { entry = x; }, value);
+  }
+  return json;
+}
+
+}  // namespace ahm::app

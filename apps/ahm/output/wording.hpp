@@ -1,0 +1,22 @@
+/// \file
+/// What the libraries report as data, in the program's words.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "ahm/error.hpp"
+#include "ahm/report.hpp"
+
+namespace ahm::app {
+
+/// A sentence.
+std::string worded(const Warning& warning);
+
+/// An error's message, with the options of the program as its remedy where the libraries name one of their own.
+std::string worded(const Error& error);
+
+/// "group.name" becomes an entry of an object.
+nlohmann::ordered_json as_json(const Report& report);
+
+}  // namespace ahm::app

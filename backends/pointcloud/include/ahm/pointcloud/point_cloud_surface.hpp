@@ -1,0 +1,131 @@
+/// \file
+/// Scattered points as a surface: normals, local Delaunay triangulations, tufted intrinsic Delaunay Laplacian [SC20].
+///
+/// \code
+/// auto cloud = ahm::pointcloud::PointCloudSurface::build(points);                  // std::vector<ahm::Vec3>
+/// ahm::LogMapSolver solver(cloud.graph());
+/// ahm::LogMap map = solver.solve(cloud.source(ahm::Row{0}).source);
+/// ahm::RowLogMap result = cloud.on_rows(map);                                      // one row per input point
+/// \endcode
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "ahm/graph/csr_graph.hpp"
+#include "ahm/pointcloud/neighbor_search.hpp"
+#include "ahm/progress.hpp"
+#include "ahm/surface/surface.hpp"
+
+namespace ahm::pointcloud {
+
+/// What the signs of given normals mean.
+enum class NormalSigns {
+  /// The majority in each component fixes which side is up; others are turned. Neighbours that face away from each other are
+  /// kept apart if they lie consistently behind each other (thin walls).
+  automatic,
+  oriented,    ///< trusted one by one; neighbours whose normals are opposed are kept apart
+  unoriented,  ///< only the planes are used
+};
+
+/// How long the logarithm of an edge is; its direction is that of the neighbour projected to the tangent plane.
+enum class EdgeLength {
+  projected,  ///< the length of the projection: as accurate as the chord on clean clouds, and blind to noise across the
+              ///< surface
+  chord,      ///< the distance in space: noise of 30 % of the spacing makes every distance 12 % too long
+};
+
+struct CloudOptions {
+  Index k = 30;  ///< neighbours per point, the point itself not counted; clamped to n - 1 and reported
+  NeighborSearchFactory search = nanoflann_search;
+  NormalSigns normal_signs = NormalSigns::automatic;
+  EdgeLength edge_length = EdgeLength::projected;
+  /// Two points are joined only if their distance is at most this multiple of the distance to the k-th neighbour of
+  /// either.
+  double max_edge_ratio = 3.0;
+  /// The points to build from, ascending, after whatever filters a caller applied; none: all. Other rows are `removed`, and
+  /// may hold anything.
+  std::optional<std::vector<Index>> rows;
+  bool drop_non_finite = false;  ///< NaN and infinite points: drop (status `removed`) instead of throwing
+  unsigned threads = 0;          ///< 0: one per core; the result does not depend on it
+  Progress progress;
+};
+
+/// Measured on clouds of 10,000 to 5,000,000 points.
+inline constexpr BuildCost build_cost{.bytes = 800, .seconds = 5.5e-6};
+
+/// What was found and done on the way. Counts are of points, edges or triangles as named.
+struct CloudDetails {
+  Index points = 0;                   ///< rows of the input
+  Index vertices = 0;                 ///< vertices of the graph
+  Index non_finite = 0;               ///< points dropped because a coordinate is NaN or infinite
+  Index duplicates = 0;               ///< points merged into an equal one
+  Index degenerate = 0;               ///< points without a tangent plane or without a triangle, removed
+  std::vector<Row> first_degenerate;  ///< the first ten of them
+  Index k_asked = 0;                  ///< neighbours asked for
+  Index k = 0;                        ///< neighbours used
+  Index components = 0;               ///< connected components of the graph
+  Offset triangles = 0;               ///< of the union of the local Delaunay triangulations
+  Offset flips = 0;                   ///< edge flips to the intrinsic Delaunay triangulation of the tufted cover
+  bool flips_stopped = false;         ///< before all edges were Delaunay
+  Offset rejected_long = 0;           ///< neighbour pairs not joined: too long for the local spacing
+  Offset rejected_normals = 0;        ///< neighbour pairs not joined: oriented normals disagree (thin wall)
+  Offset reflections = 0;             ///< edges between oppositely oriented frames
+  bool normals_given = false;         ///< one per point
+  Index estimated = 0;                ///< given normals that are zero or not finite and were estimated
+  Index turned = 0;                   ///< given normals that pointed to the other side than the majority around them
+  bool oriented = false;              ///< given normals fix which side is up, everywhere
+  double mollification = 0;           ///< length added to every edge of the tufted cover, world units
+  double seconds_normals = 0;         ///< neighbours and tangent planes
+  double seconds_delaunay = 0;        ///< local triangulations
+  double seconds_laplacian = 0;       ///< tufted cover, flips, weights
+  double seconds_graph = 0;           ///< orientation, logs, transports
+};
+
+/// A point cloud as a surface. Rows are the points given; vertices are sorted along a space-filling curve, equal points
+/// share one. The closest point to a position lies in the tangent plane of the row nearest to it; at a row without an
+/// axis, u is x of `graph().frame(vertex)`.
+///
+/// Its report: points, vertices, non_finite, duplicates, degenerate, k, components, triangles, flips, rejected_long,
+/// rejected_normals, reflections, normals_given, oriented, mollification, seconds.normals, seconds.delaunay,
+/// seconds.laplacian, seconds.graph.
+/// Its warnings, each with a count unless said otherwise: normals_estimated; cover_not_delaunay (no number);
+/// degenerate (with rows); normals_turned; k_reduced (asked for, used, distinct points); non_finite; duplicates; thin_walls (pairs of
+/// neighbours not joined); reflections (edges); cloud_components (of more than one).
+/// Faults of a row: row_left_out (by `CloudOptions::rows`), row_removed (not finite, no tangent plane, no triangle).
+class PointCloudSurface final : public Surface {
+ public:
+  /// Builds the graph. Time O(n k log k), memory O(n k).
+  /// @param points   n >= 3 positions; equal points are merged
+  /// @param normals  empty (estimated by PCA) or one per point, any length > 0
+  /// @throws InvalidGeometry (fewer than 3 distinct points, non-finite values, all points collinear), InvalidArgument,
+  /// ResourceExhausted, Cancelled
+  static PointCloudSurface build(std::span<const Vec3> points, std::span<const Vec3> normals = {},
+                                 const CloudOptions& options = {});
+
+  const CsrGraph& graph() const& override { return *graph_; }
+  void graph() && = delete;
+  const RowMap& rows() const override { return rows_; }
+  std::span<const Vec3> positions() const override { return positions_; }
+  Report report() const override;
+  std::vector<Warning> warnings() const override;
+  const CloudDetails& details() const& noexcept { return details_; }
+  void details() && = delete;
+
+ protected:
+  Reason why_without_vertex(Row row) const override;
+
+ private:
+  PointCloudSurface(CsrGraph graph, CloudDetails details, RowMap rows, std::span<const Vec3> points,
+                    std::optional<std::vector<Index>> kept);
+
+  std::unique_ptr<const CsrGraph> graph_;
+  CloudDetails details_;
+  RowMap rows_;
+  std::vector<Vec3> positions_;
+  std::optional<std::vector<Index>> kept_;
+};
+
+}  // namespace ahm::pointcloud

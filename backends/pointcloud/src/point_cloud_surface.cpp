@@ -1,0 +1,250 @@
+#include "ahm/pointcloud/point_cloud_surface.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <new>
+#include <string>
+#include <utility>
+
+#include "ahm/error.hpp"
+#include "ahm/graph/components.hpp"
+#include "ahm/surface/gluing.hpp"
+#include "ahm/util/stopwatch.hpp"
+#include "ahm/util/text.hpp"
+#include "clean_points.hpp"
+#include "local_delaunay.hpp"
+#include "orientation.hpp"
+#include "tangent_edges.hpp"
+#include "tangent_planes.hpp"
+#include "tufted_cover.hpp"
+#include "vec3.hpp"
+
+namespace ahm::pointcloud {
+namespace {
+
+void check_arguments(std::span<const Vec3> points, const CloudOptions& options) {
+  if (points.size() < 3)
+    throw InvalidGeometry("the cloud has " + std::to_string(points.size()) + " points; at least 3 are needed");
+  if (options.k < 3)
+    throw InvalidArgument("k is " + std::to_string(options.k) + "; it must be at least 3 (default 30)");
+  if (!(options.max_edge_ratio >= 1))
+    throw InvalidArgument("max_edge_ratio is " + detail::number(options.max_edge_ratio) +
+                          "; it must be at least 1 (default 3)");
+}
+
+/// The points to build from, and their rows in the input.
+class KeptPoints {
+ public:
+  KeptPoints(std::span<const Vec3> points, std::span<const Vec3> normals, const std::optional<std::vector<Index>>& rows)
+      : points_(points), normals_(normals) {
+    if (!normals.empty() && normals.size() != points.size())
+      throw InvalidArgument("'normals' has " + std::to_string(normals.size()) + " entries for " +
+                            std::to_string(points.size()) + " points; give none or one per point");
+    if (!rows) return;
+    rows_ = *rows;
+    check_rows(static_cast<Index>(points.size()));
+    for (Index row : rows_) {
+      own_points_.push_back(points[row]);
+      if (!normals.empty()) own_normals_.push_back(normals[row]);
+    }
+    points_ = own_points_;
+    normals_ = own_normals_;
+    all_ = false;
+  }
+
+  std::span<const Vec3> points() const { return points_; }
+  std::span<const Vec3> normals() const { return normals_; }
+  Index row(std::size_t point) const { return all_ ? static_cast<Index>(point) : rows_[point]; }
+
+ private:
+  void check_rows(Index n) const {
+    for (std::size_t i = 0; i < rows_.size(); ++i)
+      if (rows_[i] < 0 || rows_[i] >= n || (i > 0 && rows_[i] <= rows_[i - 1]))
+        throw InvalidArgument("options.rows: entry " + std::to_string(i) + " is " + std::to_string(rows_[i]) +
+                              "; give row numbers in [0, " + std::to_string(n) + "), ascending");
+  }
+
+  std::span<const Vec3> points_, normals_;
+  std::span<const Index> rows_;
+  std::vector<Vec3> own_points_, own_normals_;
+  bool all_ = true;
+};
+
+/// "12, 15, 17 and 240 more"
+std::string first_ten(const std::vector<Index>& indices) {
+  detail::ItemList list;
+  for (Index i : indices) list.add(std::to_string(i));
+  return list.text();
+}
+
+/// Whether neighbours whose normals are opposed are kept apart.
+bool cut_between_sheets(std::span<const Vec3> given, const CleanPoints& cloud, const TangentPlanes& planes,
+                        const Neighborhoods& neighborhoods, const CloudOptions& options) {
+  if (given.empty() || options.normal_signs == NormalSigns::unoriented) return false;
+  return options.normal_signs == NormalSigns::oriented || have_thin_walls(cloud, planes, neighborhoods);
+}
+
+/// Makes the signs of the normals consistent, unless the given ones are to be kept.
+void orient(const CleanPoints& cloud, const WeightedEdges& edges, std::span<const Vec3> given, bool cut,
+            const CloudOptions& options, TangentPlanes& planes, CloudDetails& report) {
+  report.oriented = cut;
+  if (cut) return;
+  const bool signs_given = !given.empty() && options.normal_signs == NormalSigns::automatic;
+  report.turned = orient_normals(cloud, edges, signs_given, planes);
+  report.oriented = signs_given && report.turned == 0;
+  if (!signs_given) report.turned = 0;
+}
+
+/// Numbers the points that have a mass; lists the rows of points that have none.
+std::vector<Index> number_vertices(const CleanPoints& cloud, const WeightedEdges& edges, const KeptPoints& kept,
+                                   CloudDetails& report) {
+  std::vector<Index> vertex_of_clean(cloud.points.size(), -1), removed;
+  for (std::size_t i = 0; i < cloud.points.size(); ++i) {
+    if (edges.masses[i] > 0)
+      vertex_of_clean[i] = report.vertices++;
+    else
+      removed.push_back(kept.row(static_cast<std::size_t>(cloud.input[i])));
+  }
+  report.degenerate = static_cast<Index>(removed.size());
+  std::sort(removed.begin(), removed.end());
+  if (report.vertices == 0)
+    throw InvalidGeometry(
+        "no point of the cloud has a tangent plane with a triangle in it: the points lie on a line, or are too "
+        "far apart from each other (points " +
+        first_ten(removed) + ")");
+  for (std::size_t i = 0; i < std::min<std::size_t>(removed.size(), 10); ++i)
+    report.first_degenerate.emplace_back(removed[i]);
+  return vertex_of_clean;
+}
+
+void fill_vertex_data(CsrGraphData& g, std::span<const Vec3> input, const CleanPoints& cloud,
+                      const TangentPlanes& planes, const WeightedEdges& edges,
+                      const std::vector<Index>& vertex_of_clean) {
+  g.length_unit = cloud.unit;
+  for (std::size_t i = 0; i < cloud.points.size(); ++i) {
+    if (vertex_of_clean[i] < 0) continue;
+    const PlaneAxes axes(planes.normals[i]);
+    g.masses.push_back(edges.masses[i]);
+    g.frames.push_back({input[cloud.input[i]], axes.x, axes.y, planes.normals[i]});
+  }
+}
+
+}  // namespace
+
+PointCloudSurface::PointCloudSurface(CsrGraph graph, CloudDetails details, RowMap rows, std::span<const Vec3> points,
+                                     std::optional<std::vector<Index>> kept)
+    : graph_(std::make_unique<const CsrGraph>(std::move(graph))),
+      details_(std::move(details)),
+      rows_(std::move(rows)),
+      positions_(points.begin(), points.end()),
+      kept_(std::move(kept)) {}
+
+PointCloudSurface PointCloudSurface::build(std::span<const Vec3> input, std::span<const Vec3> input_normals,
+                                           const CloudOptions& options) try {
+  const KeptPoints kept(input, input_normals, options.rows);
+  const std::span<const Vec3> points = kept.points();
+  std::span<const Vec3> normals = kept.normals();
+  check_arguments(points, options);
+  CloudDetails details;
+  details.points = static_cast<Index>(input.size());
+  details.normals_given = !normals.empty();
+  detail::Stopwatch stopwatch;
+  CleanPoints cloud = clean_points(
+      points, [&](std::size_t i) { return kept.row(i); }, options, details);
+  const auto search = options.search ? options.search(cloud.points) : nullptr;
+  if (!search) throw InvalidArgument("options.search made no neighbour search; default: nanoflann_search");
+  options.progress.step("neighbours", 0.0);
+  Neighborhoods neighborhoods = find_neighborhoods(cloud, *search, options);
+  details.k_asked = options.k;
+  details.k = neighborhoods.k;
+  TangentPlanes planes = find_tangent_planes(cloud, normals, *search, neighborhoods, options);
+  if (!normals.empty()) details.estimated = planes.estimated;
+  if (planes.estimated == static_cast<Index>(cloud.points.size())) normals = {};
+  const bool cut = cut_between_sheets(normals, cloud, planes, neighborhoods, options);
+  details.seconds_normals = stopwatch.lap();
+
+  std::vector<Triangle> triangles = local_delaunay(cloud, neighborhoods, planes, cut, options, details);
+  details.seconds_delaunay = stopwatch.lap();
+  neighborhoods = {};
+
+  const WeightedEdges edges = triangles.empty()
+                                  ? WeightedEdges{{}, {}, {}, std::vector<double>(cloud.points.size(), 0.0)}
+                                  : tufted_laplacian(cloud, planes, triangles, details);
+  triangles = {};
+  details.mollification *= cloud.unit;
+  options.progress.step("laplacian", 1.0);
+  details.seconds_laplacian = stopwatch.lap();
+
+  const std::vector<Index> vertex_of_clean = number_vertices(cloud, edges, kept, details);
+  orient(cloud, edges, normals, cut, options, planes, details);
+  CsrGraphData data = tangent_edges(cloud, planes, edges, vertex_of_clean, details.vertices, details.oriented,
+                                    options.edge_length, options.threads, details);
+  fill_vertex_data(data, points, cloud, planes, edges, vertex_of_clean);
+  CsrGraph graph(std::move(data));
+  details.components = connected_components(graph).count;
+
+  std::vector<RowVertex> pairs;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (const Index clean = cloud.clean_of_input[i]; clean >= 0 && vertex_of_clean[clean] >= 0)
+      pairs.push_back({Row(kept.row(i)), Vertex(vertex_of_clean[clean])});
+  RowMap rows(details.points, details.vertices, pairs);
+  options.progress.step("graph", 1.0);
+  details.seconds_graph = stopwatch.lap();
+  return PointCloudSurface(std::move(graph), std::move(details), std::move(rows), input, options.rows);
+} catch (const std::bad_alloc&) {
+  throw ResourceExhausted("out of memory while building the graph of a cloud of " + std::to_string(input.size()) +
+                          " points");
+}
+
+Surface::Reason PointCloudSurface::why_without_vertex(Row row) const {
+  if (kept_ && !std::binary_search(kept_->begin(), kept_->end(), row.index))
+    return {"row_left_out", "was left out", "it is not among CloudOptions::rows"};
+  return {"row_removed", "was removed: it is not finite, or has no tangent plane or no neighbours",
+          "choose another one"};
+}
+
+Report PointCloudSurface::report() const {
+  const CloudDetails& d = details_;
+  return {{"points", d.points},
+          {"vertices", d.vertices},
+          {"non_finite", d.non_finite},
+          {"duplicates", d.duplicates},
+          {"degenerate", d.degenerate},
+          {"k", d.k},
+          {"components", d.components},
+          {"triangles", d.triangles},
+          {"flips", d.flips},
+          {"rejected_long", d.rejected_long},
+          {"rejected_normals", d.rejected_normals},
+          {"reflections", d.reflections},
+          {"normals_given", d.normals_given},
+          {"oriented", d.oriented},
+          {"mollification", d.mollification},
+          {"seconds.normals", d.seconds_normals},
+          {"seconds.delaunay", d.seconds_delaunay},
+          {"seconds.laplacian", d.seconds_laplacian},
+          {"seconds.graph", d.seconds_graph}};
+}
+
+std::vector<Warning> PointCloudSurface::warnings() const {
+  const CloudDetails& d = details_;
+  std::vector<Warning> result;
+  const auto warn = [&](std::string_view id, auto count, const std::vector<Row>& rows = {}) {
+    if (count > 0) result.push_back({id, {static_cast<double>(count)}, rows});
+  };
+  warn("normals_estimated", d.estimated);
+  if (d.flips_stopped) result.push_back({"cover_not_delaunay", {}, {}});
+  warn("degenerate", d.degenerate, d.first_degenerate);
+  warn("normals_turned", d.turned);
+  if (d.k < d.k_asked)
+    result.push_back(
+        {"k_reduced", {static_cast<double>(d.k_asked), static_cast<double>(d.k), static_cast<double>(d.k + 1)}, {}});
+  warn("non_finite", d.non_finite);
+  warn("duplicates", d.duplicates);
+  warn("thin_walls", d.rejected_normals);
+  warn("reflections", d.reflections);
+  if (d.components > 1) warn("cloud_components", d.components);
+  return result;
+}
+
+}  // namespace ahm::pointcloud

@@ -1,0 +1,251 @@
+// What every surface promises, whatever it is made of.
+#include "ahm/surface/surface.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <random>
+
+#include "ahm/error.hpp"
+#include "ahm/maps/log_map_solver.hpp"
+#include "ahm/pointcloud/point_cloud_surface.hpp"
+#include "ahm/polymesh/polygon_mesh_surface.hpp"
+#include "ahm/testing/triangle_meshes.hpp"
+
+namespace ahm::test {
+namespace {
+
+using pointcloud::PointCloudSurface;
+using polymesh::Discretization;
+using polymesh::PolygonMeshSurface;
+using trimesh::TriangleMeshSurface;
+
+double distance(const Vec3& a, const Vec3& b) { return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]); }
+
+PolygonMeshSurface polygons(const Mesh& mesh, Discretization discretization) {
+  std::vector<Offset> begin{0};
+  std::vector<Index> corners;
+  for (const Triangle& t : mesh.faces) {
+    corners.insert(corners.end(), t.begin(), t.end());
+    begin.push_back(static_cast<Offset>(corners.size()));
+  }
+  return PolygonMeshSurface::build(mesh.positions, begin, corners, {.discretization = discretization});
+}
+
+/// Calls visit(surface) with every kind of surface that has these faces.
+void for_each_mesh_surface(const Mesh& mesh, const std::function<void(const Surface&)>& visit) {
+  visit(TriangleMeshSurface::build(mesh.positions, mesh.faces));
+  visit(polygons(mesh, Discretization::polygons));
+  visit(polygons(mesh, Discretization::refined));
+}
+
+double largest_difference(const RowLogMap& a, const RowLogMap& b) {
+  double worst = 0;
+  for (std::size_t i = 0; i < a.u.size(); ++i) worst = std::max(worst, std::hypot(a.u[i] - b.u[i], a.v[i] - b.v[i]));
+  return worst;
+}
+
+TEST(Surface, ASourceAtARowIsThatAtACornerOfAFlatFace) {
+  const Mesh mesh = holed_square(12);
+  const Vec3 along{mesh.positions[1][0] - mesh.positions[0][0], mesh.positions[1][1] - mesh.positions[0][1],
+                   mesh.positions[1][2] - mesh.positions[0][2]};
+  for_each_mesh_surface(mesh, [&](const Surface& surface) {
+    const LogMapSolver solver(surface.graph());
+    for (std::size_t corner : {0U, 2U}) {
+      const Row row(mesh.faces[50][corner]);
+      FacePoint point{50, {0, 0, 0}};
+      point.barycentric[corner] = 1;
+      const PlacedSource at_row = surface.source(row, along), in_face = surface.source(point, along);
+      EXPECT_EQ(at_row.row, row);
+      EXPECT_FALSE(in_face.row);
+      EXPECT_LT(distance(at_row.position, in_face.position), 1e-14);
+      EXPECT_LT(distance(at_row.frame->x, in_face.frame->x), 1e-12);
+      EXPECT_LT(largest_difference(surface.on_rows(solver.solve(at_row.source)),
+                                   surface.on_rows(solver.solve(in_face.source))),
+                1e-10);
+    }
+  });
+}
+
+TEST(Surface, AnEdgePointLiesOnTheEdgeAndLooksAlongIt) {
+  const Mesh mesh = holed_square(12);
+  for_each_mesh_surface(mesh, [&](const Surface& surface) {
+    const auto [a, b, c] = mesh.faces[40];
+    const EdgePoint point{Row(c), Row(a), 0.25};
+    const PlacedSource source = surface.source(point);
+    Vec3 wanted, along;
+    for (int k = 0; k < 3; ++k) {
+      wanted[k] = 0.75 * mesh.positions[c][k] + 0.25 * mesh.positions[a][k];
+      along[k] = (mesh.positions[a][k] - mesh.positions[c][k]) / distance(mesh.positions[a], mesh.positions[c]);
+    }
+    EXPECT_LT(distance(source.position, wanted), 1e-14);
+    EXPECT_LT(distance(surface.position(point), wanted), 1e-14);
+    EXPECT_LT(distance(source.frame->x, along), 1e-12);
+    const LogMap map = LogMapSolver(surface.graph()).solve(source.source);
+    const Sample there = surface.at(map, point), end = surface.at(map, Row(a));
+    EXPECT_NEAR(std::hypot(there.u, there.v), 0, 1e-10);
+    EXPECT_NEAR(end.u, 0.75 * distance(mesh.positions[a], mesh.positions[c]), 1e-10);
+    EXPECT_NEAR(end.v, 0, 1e-10);
+    EXPECT_THROW(surface.source(EdgePoint{Row(a), Row(a), 0.5}), InvalidArgument);
+    EXPECT_THROW(surface.source(EdgePoint{Row(a), Row(b), 1.5}), InvalidArgument);
+  });
+}
+
+TEST(Surface, CornersHaveTheValuesOfTheirRowsOnAFlatMesh) {
+  Mesh mesh = holed_square(10);
+  for (std::size_t f = 0; f < mesh.faces.size(); f += 3) std::swap(mesh.faces[f][1], mesh.faces[f][2]);
+  for_each_mesh_surface(mesh, [&](const Surface& surface) {
+    const LogMap map = LogMapSolver(surface.graph()).solve(surface.source(Row(5)).source);
+    const RowLogMap rows = surface.on_rows(map);
+    const std::vector<Vec2> corners = surface.on_corners(map);
+    for (std::size_t f = 0; f < mesh.faces.size(); ++f)
+      for (std::size_t c = 0; c < 3; ++c) {
+        ASSERT_NEAR(corners[3 * f + c][0], rows.u[mesh.faces[f][c]], 1e-9);
+        ASSERT_NEAR(corners[3 * f + c][1], rows.v[mesh.faces[f][c]], 1e-9);
+      }
+  });
+}
+
+/// Three squares that share the edge from row 0 to row 1, each of two triangles.
+Mesh three_pages() {
+  Mesh mesh;
+  mesh.positions = {{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {1, 0, 1}, {-1, 1, 0}, {-1, 1, 1}, {-1, -1, 0}, {-1, -1, 1}};
+  for (Index p : {2, 4, 6}) {
+    mesh.faces.push_back({0, p, p + 1});
+    mesh.faces.push_back({0, p + 1, 1});
+  }
+  return mesh;
+}
+
+TEST(Surface, OfTheCopiesOfACutRowTheOneNearestToTheSourceCounts) {
+  const Mesh mesh = three_pages();
+  const auto surface = TriangleMeshSurface::build(mesh.positions, mesh.faces, {.non_manifold = NonManifold::split});
+  EXPECT_EQ(surface.rows().vertices(Row(0)).size(), 3U);
+  const LogMapSolver solver(surface.graph());
+  for (Index page : {2, 4, 6}) {
+    const LogMap map = solver.solve(surface.source(Row(page)).source);
+    const RowLogMap rows = surface.on_rows(map);
+    for (Index r : {0, 1}) {
+      ASSERT_EQ(rows.status[r], Status::ok);
+      ASSERT_TRUE(rows.vertex[r]);
+      EXPECT_EQ(surface.rows().row(*rows.vertex[r]), Row(r));
+      EXPECT_EQ(rows.distance[r], map.distance(*rows.vertex[r]));
+      for (Vertex v : surface.rows().vertices(Row(r)))
+        EXPECT_FALSE(map.status(v) == Status::ok && map.distance(v) < rows.distance[r]);
+    }
+    EXPECT_NEAR(rows.distance[0], distance(mesh.positions[page], mesh.positions[0]), 1e-9);  // a page is flat
+  }
+}
+
+TEST(Surface, TheClosestPointIsTheNearestOfManyInAllFaces) {
+  const Mesh mesh = icosphere(4);
+  const auto surface = TriangleMeshSurface::build(mesh.positions, mesh.faces);
+  std::mt19937_64 random(7);
+  std::normal_distribution<double> normal;
+  constexpr int parts = 12;
+  for (int trial = 0; trial < 40; ++trial) {
+    const Vec3 query{normal(random), normal(random), normal(random)};
+    const ClosestPoint found = surface.closest_point(query);
+    EXPECT_NEAR(distance(found.position, query), found.distance, 1e-14);
+    EXPECT_LT(distance(surface.position(found.point), found.position), 1e-14);
+    double least = HUGE_VAL, longest = 0;
+    for (const auto& [a, b, c] : mesh.faces) {
+      longest = std::max({longest, distance(mesh.positions[a], mesh.positions[b])});
+      for (int i = 0; i <= parts; ++i)
+        for (int j = 0; i + j <= parts; ++j) {
+          Vec3 p;
+          for (int k = 0; k < 3; ++k)
+            p[k] =
+                (i * mesh.positions[a][k] + j * mesh.positions[b][k] + (parts - i - j) * mesh.positions[c][k]) / parts;
+          least = std::min(least, distance(p, query));
+        }
+    }
+    EXPECT_LE(found.distance, least + 1e-14);
+    EXPECT_GE(found.distance, least - longest / parts);
+  }
+}
+
+TEST(Surface, ATangentPointOfACloudCarriesItsOffset) {
+  std::vector<Vec3> points;
+  for (int x = 0; x < 20; ++x)
+    for (int y = 0; y < 20; ++y)
+      points.push_back({0.1 * x + 0.01 * std::sin(7 * y), 0.1 * y + 0.01 * std::cos(5 * x), 2});
+  const auto cloud = PointCloudSurface::build(points);
+  const ClosestPoint found = cloud.closest_point({0.93, 1.02, 2.3});
+  EXPECT_NEAR(found.distance, 0.3, 1e-12);
+  const PlacedSource source = cloud.source(found.point, Vec3{1, 0, 0});
+  EXPECT_LT(distance(source.position, {0.93, 1.02, 2}), 1e-12);
+  const double left = source.frame->normal[2] > 0 ? 1 : -1;
+  const LogMap map = LogMapSolver(cloud.graph()).solve(source.source, {.frames = true});
+  const RowLogMap rows = cloud.on_rows(map);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    ASSERT_NEAR(rows.u[i], points[i][0] - 0.93, 1e-9);
+    ASSERT_NEAR(rows.v[i], left * (points[i][1] - 1.02), 1e-9);
+  }
+  const Sample back = cloud.at(map, TangentPoint{Row(0), {0.33, 0.44, 5}});  // from far away, too
+  EXPECT_NEAR(back.u, 0.33 - 0.93, 1e-9);
+  EXPECT_NEAR(back.v, left * (0.44 - 1.02), 1e-9);
+}
+
+TEST(Surface, RowsThatACallerDidNotKeepAreRemovedAndSaidSo) {
+  std::vector<Vec3> points;
+  for (int x = 0; x < 15; ++x)
+    for (int y = 0; y < 15; ++y) points.push_back({0.1 * x, 0.1 * y + 0.02 * (x % 2), 0});
+  points[3] = {NAN, 0, 0};
+  std::vector<Index> kept;
+  for (Index i = 0; i < static_cast<Index>(points.size()); ++i)
+    if (i % 7 != 3) kept.push_back(i);
+  const auto cloud = PointCloudSurface::build(points, {}, {.rows = kept});
+  std::vector<Vec3> remaining;
+  for (Index i : kept) remaining.push_back(points[i]);
+  const auto alone = PointCloudSurface::build(remaining);
+  const RowLogMap a = cloud.on_rows(LogMapSolver(cloud.graph()).solve(cloud.source(Row(kept[9])).source));
+  const RowLogMap b = alone.on_rows(LogMapSolver(alone.graph()).solve(alone.source(Row(9)).source));
+  ASSERT_EQ(a.u.size(), points.size());
+  for (std::size_t k = 0; k < kept.size(); ++k) {
+    EXPECT_EQ(a.u[kept[k]], b.u[k]);
+    EXPECT_EQ(a.v[kept[k]], b.v[k]);
+  }
+  EXPECT_EQ(a.status[3], Status::removed);
+  try {
+    cloud.source(Row(10));
+    FAIL();
+  } catch (const InvalidArgument& e) {
+    EXPECT_EQ(e.fault(), "row_left_out");
+  }
+  EXPECT_THROW(PointCloudSurface::build(points, {}, {.rows = std::vector<Index>{5, 4, 6}}), InvalidArgument);
+}
+
+TEST(Surface, StaysValidWhenItIsMoved) {
+  const Mesh mesh = icosphere(3);
+  TriangleMeshSurface first = TriangleMeshSurface::build(mesh.positions, mesh.faces);
+  const ClosestPoint before = first.closest_point({0, 0.3, 2});
+  const LogMapSolver solver(first.graph());
+  const TriangleMeshSurface second = std::move(first);
+  EXPECT_EQ(second.closest_point({0, 0.3, 2}).position, before.position);
+  EXPECT_EQ(second.on_rows(solver.solve(second.source(Row(4)).source)).status[0], Status::ok);
+}
+
+TEST(Surface, NamesWhatIsWrongWithAPoint) {
+  Mesh mesh = icosphere(2);
+  mesh.positions.push_back({5, 5, 5});  // in no face
+  const auto surface = TriangleMeshSurface::build(mesh.positions, mesh.faces);
+  const auto fault = [&](const auto& call) -> std::string {
+    try {
+      call();
+    } catch (const InvalidArgument& e) {
+      return std::string(e.fault());
+    }
+    return "none";
+  };
+  EXPECT_EQ(fault([&] { surface.source(Row(mesh.vertices() - 1)); }), "row_unused");
+  EXPECT_EQ(fault([&] { surface.source(Row(mesh.vertices())); }), "row_out_of_range");
+  EXPECT_EQ(fault([&] { surface.source(Row(0), mesh.positions[0]); }), "axis_along_normal");
+  EXPECT_THROW(surface.closest_point({NAN, 0, 0}), InvalidArgument);
+  EXPECT_THROW(surface.nearest_row({0, 0, INFINITY}), InvalidArgument);
+  EXPECT_NE(surface.nearest_row({5, 5, 4.9}), Row(mesh.vertices() - 1));  // it has no vertex
+}
+
+}  // namespace
+}  // namespace ahm::test
