@@ -129,13 +129,13 @@ Frame turned(const Frame& frame, const Vec3& direction) {
   return result;
 }
 
-PrincipalCurvatures curvature_directions(const TangentGraph& graph) {
+PrincipalCurvatures curvature_directions(const TangentGraph& graph, unsigned threads) {
   const char* name = "curvature_directions";
   check_dimension(graph, name);
   const Index n = graph.size();
   PrincipalCurvatures result{std::vector<double>(2 * static_cast<std::size_t>(n)), {}};
   result.directions.resize(result.values.size());
-  detail::parallel_chunks(n, 1 << 12, 0, [&](Offset begin, Offset end) {
+  detail::parallel_chunks(n, 1 << 12, threads, [&](Offset begin, Offset end) {
     std::vector<Index> first, both;
     std::vector<Vec3> others;
     for (auto i = static_cast<Index>(begin); i < static_cast<Index>(end); ++i) {

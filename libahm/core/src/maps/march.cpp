@@ -8,6 +8,7 @@
 #include "graph/patch.hpp"
 #include "graph/shortest_paths.hpp"
 #include "heat/blas_control.hpp"
+#include "heat/heat_system.hpp"
 
 namespace ahm {
 namespace {
@@ -112,7 +113,8 @@ bool March::advance(const Source* source, double depth) {
         links.push_back({static_cast<Index>(k), e});
         return tau_ * star.weights[e];
       });
-  const HeatOperators operators(patch, options_, iterative_);
+  const HeatOperators operators(iterative_ ? iterative_system(patch, options_) : factored_system(patch, options_),
+                                patch);
 
   HeatExponents exponents;
   Inflow inflow;

@@ -64,7 +64,8 @@ class TangentGraph {
   virtual double mean_edge_length() const noexcept = 0;
   /// Lumped mass (dual area or volume) m_i > 0.
   virtual double mass(Index vertex) const = 0;
-  /// The out-edges of `vertex`; valid until the next call on the same thread at the least.
+  /// The out-edges of `vertex`. A star lives until the next call on the same thread, no longer: whoever needs two at a
+  /// time copies one.
   virtual Star star(Index vertex) const = 0;
   /// Number of directed edges, to size arrays.
   virtual Offset edge_count() const noexcept = 0;
