@@ -1,18 +1,32 @@
 #!/usr/bin/env bash
-# Installs the Debian packages libahm needs: install_packages.sh [extra package ...]. Does nothing where all are there.
+# Installs Debian packages for what is to be done, and does nothing where all are there:
+#   install_packages.sh [program|tests|checks]
+# program: the program without PCL, all that scripts/demo.sh needs; tests (default): everything, tests and benchmarks
+# included; checks: that, and clang's tools.
 set -euo pipefail
 
-packages=(
+program=(
   build-essential cmake ninja-build
   libeigen3-dev libsuitesparse-dev libopenblas0-pthread       # linear algebra, with an optimised BLAS
-  libnanoflann-dev libflann-dev liblz4-dev                    # neighbour search
-  libpcl-dev                                                  # PCD files, voxel grid, outlier removal
-  libminizip-dev                                              # .npz files
+  libnanoflann-dev                                            # neighbour search
   libcli11-dev nlohmann-json3-dev libfmt-dev                  # the program
   libstb-dev libjs-three                                      # pictures
-  libgtest-dev libbenchmark-dev                               # tests and benchmarks
-  "$@"
 )
+tests=(
+  "${program[@]}"
+  libflann-dev liblz4-dev                                     # neighbour search
+  libpcl-dev                                                  # PCD files, voxel grid, outlier removal
+  libminizip-dev                                              # .npz files
+  libgtest-dev libbenchmark-dev                               # tests and benchmarks
+  libcgal-dev python3-matplotlib                              # exact distances and plots of the experiments
+)
+checks=("${tests[@]}" clang-format clang-tidy)
+case "${1:-tests}" in
+  program) packages=("${program[@]}") ;;
+  tests) packages=("${tests[@]}") ;;
+  checks) packages=("${checks[@]}") ;;
+  *) echo "error: install_packages.sh [program|tests|checks]" >&2; exit 2 ;;
+esac
 
 missing=()
 for package in "${packages[@]}"; do
@@ -23,12 +37,23 @@ if [ "${#missing[@]}" -eq 0 ]; then
   exit 0
 fi
 
-echo "Installing ${#missing[@]} Debian packages: ${missing[*]}"
+echo "Installing ${#missing[@]} Debian packages and what they need: ${missing[*]}"
 as_root=()
 if [ "$(id -u)" -ne 0 ]; then
   command -v sudo >/dev/null || { echo "error: run this as root, or install sudo" >&2; exit 1; }
   as_root=(sudo)
 fi
-"${as_root[@]}" apt-get update -qq
+# apt's machine-readable status, "pmstatus:PACKAGE:PERCENT:WHAT", as one line per ten percent.
+progress() {
+  awk -F: '/^(dl|pm)status:/ {
+    step = int($3 / 10); what = $1 == "dlstatus" ? "downloading" : "installing"
+    if (what != last || step > reached) { printf "  %s %3d %%%s\n", what, 10 * step, what == "installing" ? "  " $2 : ""; fflush() }
+    if (what != last || step > reached) reached = step
+    last = what
+  }'
+}
+apt=("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -y -qq -o APT::Status-Fd=1 -o Dpkg::Use-Pty=0)
+echo "  reading the lists of packages"
+"${apt[@]}" update >/dev/null
 # --no-install-recommends: PCL alone would recommend hundreds of packages more.
-"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
+"${apt[@]}" install --no-install-recommends "${missing[@]}" | progress

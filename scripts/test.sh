@@ -3,7 +3,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-scripts/install_packages.sh libcgal-dev python3-matplotlib       # exact distances and plots of the experiments
+scripts/install_packages.sh tests
 echo "Configuring and building (build/release) ..."
 cmake --preset release
 cmake --build --preset release

@@ -84,8 +84,8 @@ void quality(benchmark::State& state, Shape shape) {
 void local_maps(benchmark::State& state, Shape shape) {
   const ahm::CsrGraph& graph = graph_for(state, shape);
   const double radius = 5.5 * graph.mean_edge_length() * graph.length_unit();
-  std::vector<Index> vertices(static_cast<std::size_t>(std::min<Index>(graph.size(), 1000)));
-  for (std::size_t v = 0; v < vertices.size(); ++v) vertices[v] = static_cast<Index>(v);
+  std::vector<ahm::Vertex> vertices;
+  for (Index v = 0; v < std::min<Index>(graph.size(), 1000); ++v) vertices.emplace_back(v);
   std::size_t entries = 0;
   for (auto _ : state)
     entries = ahm::local_maps(graph, vertices, {.radius = radius, .check_graph = false, .threads = 1}).indices.size();

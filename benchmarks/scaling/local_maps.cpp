@@ -18,12 +18,12 @@ namespace {
 /// Largest difference to the maps of the whole graph, relative to the radius, over some sources.
 double difference(const TangentGraph& graph, double radius, double margin, Variant variant) {
   const LogMapSolver solver(graph, {}, {.strategy = Strategy::global});
-  std::vector<Index> sources;
-  for (Index s = 0; s < graph.size(); s += graph.size() / 40) sources.push_back(s);
+  std::vector<Vertex> sources;
+  for (Index s = 0; s < graph.size(); s += graph.size() / 40) sources.emplace_back(s);
   const LocalMaps maps = ahm::local_maps(graph, sources, {.radius = radius, .variant = variant, .margin = margin});
   double worst = 0;
   for (std::size_t s = 0; s < sources.size(); ++s) {
-    const LogMap whole = solver.solve(Source::at_vertex(Vertex(sources[s])), {.variant = variant});
+    const LogMap whole = solver.solve(Source::at_vertex(sources[s]), {.variant = variant});
     for (Offset e = maps.indptr[s]; e < maps.indptr[s + 1]; ++e)
       for (int a = 0; a < 2; ++a)
         worst = std::max(worst, std::abs(maps.logs[2 * e + a] - whole.coordinates(Vertex(maps.indices[e]))[a]));

@@ -47,8 +47,8 @@ TEST_F(Npz, ReadsBackAsWritten) {
   const std::string path = this->path("a.npz");
   NpzFile file(path);
   file.add("x", {3, 2}, x);
-  file.add("single"), {6}, x, NpyType::float32);
-  file.add("z"), {3}, x, NpyType::complex128);
+  file.add("single", {6}, x, NpyType::float32);
+  file.add("z", {3}, x, NpyType::complex128);
   file.add("i", {3}, std::span<const std::int32_t>(i));
   file.add("o", {2}, std::span<const std::int64_t>(o));
   file.add("mask", {3}, std::span<const std::uint8_t>(mask));
@@ -75,7 +75,7 @@ TEST_F(Npz, RefusesWhatCannotBe) {
   EXPECT_THROW(NpzFile("/dev/null"), IoError);
   NpzFile file(this->path("a.npz"));
   EXPECT_THROW(file.add("x", {4}, std::vector<double>(3)), InvalidArgument);
-  EXPECT_THROW(file.add("x"), {3}, std::vector<double>(3), NpyType::complex64), InvalidArgument);
+  EXPECT_THROW(file.add("x", {3}, std::vector<double>(3), NpyType::complex64), InvalidArgument);
 }
 
 }  // namespace

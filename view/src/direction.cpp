@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <optional>
 #include <vector>
 
 namespace ahm::view {
@@ -49,10 +50,15 @@ Vector3d mean_normal(const Scene& scene, const std::vector<Index>& shown) {
   return sum.norm() > 0 ? Vector3d(sum.normalized()) : sum;
 }
 
+/// What stands in the way of a sight: in units of the scene's size.
+struct Tube {
+  double start, radius;
+};
+
 /// Number of sampled points in tubes from the places towards the camera, beyond their own surroundings.
 std::size_t blockers(const Scene& scene, const std::vector<Index>& shown, const Camera& camera,
-                     const Vector3d& direction) {
-  constexpr double start = 0.08, radius = 0.05;
+                     const Vector3d& direction, const Tube& tube) {
+  const auto [start, radius] = tube;
   std::size_t count = 0;
   for (const Vec3& position : places(scene)) {
     const Vector3d place = camera.to_scene(position);
@@ -64,6 +70,27 @@ std::size_t blockers(const Scene& scene, const std::vector<Index>& shown, const 
     }
   }
   return count;
+}
+
+/// Of directions all around, those in which nothing stands before the places: the one most like a candidate. None where
+/// there is none.
+std::optional<Vector3d> through_a_gap(const Scene& scene, const std::vector<Index>& shown, const Camera& camera,
+                                      const std::vector<Vector3d>& candidates) {
+  const double spacing = 1.2 / std::sqrt(static_cast<double>(std::min(shown.size(), sample_size)));
+  const Tube narrow{2 * std::max(spacing, 0.02), std::max(spacing, 0.02)};
+  std::optional<Vector3d> best;
+  double most_alike = -1;
+  constexpr int count = 200;
+  for (int k = 0; k < count; ++k) {  // along a spiral
+    const double z = 1 - (2.0 * k + 1) / count, ring = std::sqrt(1 - z * z), angle = 2.39996322972865 * k;
+    const Vector3d direction(ring * std::cos(angle), ring * std::sin(angle), z);
+    double alike = -1;
+    for (const Vector3d& candidate : candidates) alike = std::max(alike, direction.dot(candidate));
+    if (alike <= most_alike || blockers(scene, shown, camera, direction, narrow) > 0) continue;
+    most_alike = alike;
+    best = direction;
+  }
+  return best;
 }
 
 }  // namespace
@@ -91,14 +118,15 @@ Vector3d choose_direction(const Scene& scene, const std::vector<Index>& shown, c
     for (const auto& [a, b] : tilts) candidates.push_back((sign * normal + a * amount * lean + b * turn).normalized());
   }
   Vector3d best = normal;
+  constexpr Tube wide{0.08, 0.05};
   std::size_t fewest = std::numeric_limits<std::size_t>::max();
   for (const Vector3d& direction : candidates) {
-    const std::size_t count = blockers(scene, shown, camera, direction);
+    const std::size_t count = blockers(scene, shown, camera, direction, wide);
     if (count >= fewest) continue;
     fewest = count;
     best = direction;
   }
-  return best;
+  return fewest == 0 ? best : through_a_gap(scene, shown, camera, candidates).value_or(best);
 }
 
 }  // namespace ahm::view

@@ -81,7 +81,7 @@ void fill_pinholes(Film& film, float gap, unsigned threads) {
   for (const auto& [place, pixel] : filled) film.pixels[place] = pixel;  // each place once: any order
 }
 
-Image develop(const Film& film, float focal, unsigned threads) {
+Image develop(const Film& film, float focal, bool darken, unsigned threads) {
   Image image(film.width, film.height);
   const Crevices crevices(film, focal);
   detail::parallel_chunks(film.height, 16, threads, [&](Offset begin, Offset end) {
@@ -89,7 +89,7 @@ Image develop(const Film& film, float focal, unsigned threads) {
       for (int x = 0; x < film.width; ++x) {
         const Pixel& pixel = film.at(x, y);
         std::uint8_t* out = image.pixel(x, y);
-        const float left = crevices.light(x, y);
+        const float left = darken ? crevices.light(x, y) : 1;
         for (std::size_t c = 0; c < 3; ++c)
           out[c] = glsl::to_srgb_byte(
               static_cast<std::uint16_t>(std::lround(left * static_cast<float>(pixel.light[c])) + 65535 - pixel.cover));

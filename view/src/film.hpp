@@ -33,7 +33,8 @@ struct Film {
 /// Fills single pixels that chance left open between points: all around, something is nearer by more than `gap`.
 void fill_pinholes(Film& film, float gap, unsigned threads);
 
-/// The picture on white, with what lies behind its surroundings darkened. `focal` in pixels.
-Image develop(const Film& film, float focal, unsigned threads);
+/// The picture on white. `focal` in pixels.
+/// @param darken  what lies behind its surroundings
+Image develop(const Film& film, float focal, bool darken, unsigned threads);
 
 }  // namespace ahm::view

@@ -28,9 +28,9 @@ Film render(std::vector<Painted> things, const Camera& camera, const PictureOpti
   return film;
 }
 
-Image develop(const Film& film, const PictureOptions& options) {
+Image develop(const Film& film, const PictureOptions& options, bool darken) {
   const double focal = 0.5 * options.height / std::tan(Camera::field_of_view / 2);
-  return develop(film, static_cast<float>(focal), options.threads);
+  return develop(film, static_cast<float>(focal), darken, options.threads);
 }
 
 bool shows(const Film& film, const Camera& camera, const Eigen::Vector3d& position, double tolerance) {

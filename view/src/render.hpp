@@ -16,8 +16,8 @@ struct Painted {
 /// threads.
 Film render(std::vector<Painted> things, const Camera& camera, const PictureOptions& options);
 
-/// The film as a picture, without marks.
-Image develop(const Film& film, const PictureOptions& options);
+/// The film as a picture, without marks. `darken` shows relief, which textures show themselves.
+Image develop(const Film& film, const PictureOptions& options, bool darken = true);
 
 /// Whether a position in scene coordinates is in the picture with nothing before it by more than `tolerance`.
 bool shows(const Film& film, const Camera& camera, const Eigen::Vector3d& position, double tolerance);

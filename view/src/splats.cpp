@@ -84,7 +84,9 @@ class Splatter {
     const std::size_t wanted = estimate ? neighbours_for_normal : ring_size + 1;
     const auto found = static_cast<std::size_t>(
         search.nearest(points_[k], std::span(index).first(wanted), std::span(squared).first(wanted)));
-    if (estimate && found > 0) {
+    if (estimate && found <= ring_size) {
+      out_.normals[k] = Vector3f::Zero();  // too few to tell: it faces the viewer
+    } else if (estimate) {
       const Vec3 normal =
           pointcloud::fit_plane(points_, static_cast<Index>(k), std::span(index).subspan(1, found - 1)).normal;
       out_.normals[k] = as_vector(normal).cast<float>();

@@ -124,7 +124,7 @@ void write_textured_png(const std::filesystem::path& path, const TexturedScene& 
   std::vector<Painted> things;
   if (!scene.points.empty()) things.push_back(painted_points(scene, camera, options.threads));
   for (const io::MeshPart& part : scene.parts) things.push_back(painted(part, camera));
-  io::write_png(path, develop(render(std::move(things), camera, options), options));
+  io::write_png(path, develop(render(std::move(things), camera, options), options, scene.parts.empty()));
 }
 
 }  // namespace ahm::view

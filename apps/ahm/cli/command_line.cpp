@@ -1,8 +1,11 @@
+// The one source that includes all of CLI11: CLI.hpp makes every file that includes it compile CLI11's help and configuration
+// anew, App.hpp does not.
 #include "cli/command_line.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <memory>
 #include <string_view>

@@ -2,7 +2,7 @@
 /// The options that subcommands share, each written once.
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include <CLI/App.hpp>
 #include <algorithm>
 #include <cstdint>
 #include <functional>

@@ -3,7 +3,7 @@
 /// apps/ahm/CMakeLists.txt.
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include <CLI/App.hpp>
 #include <functional>
 #include <memory>
 #include <span>

@@ -66,16 +66,15 @@ Skin skin_of_mesh(const Input& input) {
 Skin skin_of_cloud(const TangentGraph& graph, const LogMapSolver& solver, std::span<const Vertex> sources) {
   const Components components = connected_components(graph);
   std::vector<bool> has_source(at(components.count), false);
-  Source source(2);
-  constexpr double offset[] = {0, 0}, axes[] = {1, 0, 0, 1};
+  std::vector<Vertex> starts;
   for (Vertex vertex : sources) {
     const std::size_t component = at(components.of_vertex[vertex.index]);
-    if (!has_source[component]) source.add(vertex, 1, offset, axes);
+    if (!has_source[component]) starts.push_back(vertex);
     has_source[component] = true;
   }
   MapOptions options;
   options.frames = true;
-  const LogMap map = solver.solve(source, options);
+  const LogMap map = solver.solve(Source::at_vertices(starts), options);
   Skin skin;
   skin.normals = source_side_normals(graph, map);
   for (Index v = 0; v < graph.size(); ++v) skin.points.push_back(graph.frame(v)->origin);

@@ -70,7 +70,7 @@ Index central_row(const pointcloud::PointCloudSurface& cloud, const std::vector<
   return best;
 }
 
-Connectivity find_connectivity(const io::Geometry& input, const std::vector<Index>& finite, const InfoOptions& options,
+Connectivity find_connectivity(const io::Geometry& input, const std::vector<Index>& finite, const InputOptions& options,
                                const Progress& progress) {
   pointcloud::CloudOptions cloud_options;
   cloud_options.k = options.k;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <string>
 
+#include "ahm/util/disjoint_sets.hpp"
 #include "ahm/error.hpp"
 #include "ahm/surface/gluing.hpp"
 #include "polygon.hpp"

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "ahm/util/disjoint_sets.hpp"
 #include "ahm/error.hpp"
 #include "ahm/surface/gluing.hpp"
 #include "ahm/util/text.hpp"

@@ -9,6 +9,7 @@
 
 #include "ahm/error.hpp"
 #include "ahm/grid/grid_graph.hpp"
+#include "ahm/testing/closed_forms.hpp"
 #include "ahm/testing/curved_graphs.hpp"
 #include "ahm/testing/flat_graphs.hpp"
 #include "ahm/trimesh/triangle_mesh_surface.hpp"

@@ -16,9 +16,9 @@ namespace ahm::test {
 namespace {
 
 /// The middle row of `flat_square`, from left to right.
-std::vector<Index> middle_row(Index side, Index first, Index last) {
-  std::vector<Index> path;
-  for (Index i = first; i <= last; ++i) path.push_back(side / 2 * side + i);
+std::vector<Vertex> middle_row(Index side, Index first, Index last) {
+  std::vector<Vertex> path;
+  for (Index i = first; i <= last; ++i) path.emplace_back(side / 2 * side + i);
   return path;
 }
 
@@ -65,7 +65,7 @@ TEST(SignedHeat, ChangesSignWithTheDirectionOfTheCurve) {
 }
 
 /// A ring of edges of a hexagon, counter-clockwise about its middle.
-std::vector<Index> ring(const Mesh& mesh, Index radius) {
+std::vector<Vertex> ring(const Mesh& mesh, Index radius) {
   std::vector<std::pair<double, Index>> around;
   for (Index i = 0; i < mesh.vertices(); ++i) {
     const auto& p = mesh.plane[i];
@@ -75,8 +75,8 @@ std::vector<Index> ring(const Mesh& mesh, Index radius) {
       around.emplace_back(std::atan2(p[1], p[0]), i);
   }
   std::sort(around.begin(), around.end());
-  std::vector<Index> path;
-  for (const auto& [angle, i] : around) path.push_back(i);
+  std::vector<Vertex> path;
+  for (const auto& [angle, i] : around) path.emplace_back(i);
   return path;
 }
 

@@ -1,9 +1,7 @@
 #include "ahm/applications/cells.hpp"
 
 #include <algorithm>
-#include <functional>
 #include <limits>
-#include <queue>
 #include <string>
 #include <utility>
 
@@ -11,6 +9,7 @@
 #include "ahm/fields/distance.hpp"
 #include "ahm/util/memory.hpp"
 #include "ahm/util/small_math.hpp"
+#include "graph/shortest_paths.hpp"
 #include "maps/inflow.hpp"
 
 namespace ahm {
@@ -55,14 +54,11 @@ std::vector<Index> spell(const LogMapSolver& solver, std::span<const Vertex> ver
   return label;
 }
 
-/// Cells that grow by edge lengths (Dijkstra), each only over vertices spelled as its own or not at all.
+/// Cells that grow by edge lengths (shortest paths), each only over vertices spelled as its own or not at all.
 class Growth {
  public:
   Growth(const TangentGraph& graph, std::span<const Vertex> vertices, std::vector<Index> spelled)
-      : graph_(graph),
-        spelled_(std::move(spelled)),
-        label_(spelled_.size(), nobody),
-        away_(spelled_.size(), std::numeric_limits<double>::infinity()) {
+      : graph_(graph), spelled_(std::move(spelled)), label_(spelled_.size(), nobody), away_(spelled_.size(), unknown) {
     for (std::size_t k = 0; k < vertices.size(); ++k) {
       label_[vertices[k].index] = static_cast<Index>(k);
       away_[vertices[k].index] = 0;
@@ -71,12 +67,8 @@ class Growth {
 
   void run() {
     for (std::size_t i = 0; i < label_.size(); ++i)
-      if (label_[i] != nobody) queue_.emplace(away_[i], static_cast<Index>(i));
-    while (!queue_.empty()) {
-      const auto [d, i] = queue_.top();
-      queue_.pop();
-      if (d == away_[i]) relax(i);
-    }
+      if (label_[i] != nobody) paths_.take_up(static_cast<Index>(i));
+    paths_.run([&](Index i, double) { relax(i); });
   }
 
   /// Lets any cell take what has none yet; what has one keeps it.
@@ -93,19 +85,15 @@ class Growth {
     for (std::size_t e = 0; e < star.degree(); ++e) {
       const auto j = static_cast<std::size_t>(star.neighbors[e]);
       if (spelled_[j] != nobody && spelled_[j] != own) continue;
-      const double d = away_[i] + length(star.log(e));
-      if (!(d < away_[j])) continue;
-      away_[j] = d;
-      label_[j] = own;
-      queue_.emplace(d, star.neighbors[e]);
+      if (paths_.offer(star.neighbors[e], away_[i] + length(star.log(e)))) label_[j] = own;
     }
   }
 
-  using Entry = std::pair<double, Index>;
+  static constexpr double unknown = std::numeric_limits<double>::infinity();
   const TangentGraph& graph_;
   std::vector<Index> spelled_, label_;
   std::vector<double> away_;
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue_;
+  ShortestPaths<double, std::vector<double>, unknown> paths_{away_};
 };
 
 }  // namespace
@@ -170,16 +158,6 @@ std::vector<Index> groups_apart(const std::vector<std::vector<Index>>& touching)
   return group;
 }
 
-/// A source everywhere at these vertices: nothing is measured from one to the other.
-Source all_of(int dimension, std::span<const Vertex> vertices) {
-  const auto d = static_cast<std::size_t>(dimension);
-  std::vector<double> offset(d, 0.0), axes(d * d, 0.0);
-  for (std::size_t a = 0; a < d; ++a) axes[a * d + a] = 1;
-  Source source(dimension);
-  for (Vertex vertex : vertices) source.add(vertex, 1, offset, axes);
-  return source;
-}
-
 }  // namespace
 
 VertexField distance_in_cells(const LogMapSolver& solver, std::span<const Vertex> vertices,
@@ -193,7 +171,7 @@ VertexField distance_in_cells(const LogMapSolver& solver, std::span<const Vertex
     std::vector<Vertex> sources;
     for (std::size_t k = 0; k < group.size(); ++k)
       if (group[k] == g) sources.push_back(vertices[k]);
-    const DistanceField field = distance_and_gradient(solver, all_of(graph.dimension(), sources));
+    const DistanceField field = distance_and_gradient(solver, Source::at_vertices(sources));
     for (std::size_t i = 0; i < labels.size(); ++i) {
       if (labels[i] == nobody || group[labels[i]] != g) continue;
       result.values[i] = field.distance.values[i];

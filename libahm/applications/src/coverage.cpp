@@ -9,11 +9,10 @@
 
 #include "ahm/error.hpp"
 #include "ahm/util/small_math.hpp"
+#include "ahm/util/vec.hpp"
 
 namespace ahm {
 namespace {
-
-Vec3 minus(const Vec3& a, const Vec3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
 
 /// The part of `v` along the unit vector `axis`.
 void remove(Vec3& v, const Vec3& axis) {
@@ -91,9 +90,7 @@ class Carrier {
 
  private:
   std::size_t size() const { return path_.points.size() - begin_; }  // of the current piece
-  double distance(const InversePoint& point) const {
-    return length(minus(point.position, path_.points.back().position));
-  }
+  double distance(const InversePoint& point) const { return length(point.position - path_.points.back().position); }
 
   void append(const InversePoint& point, const Vec2& q, Index line) {
     const double arclength = size() == 0 ? 0.0 : path_.points.back().arclength + distance(point);
@@ -114,7 +111,7 @@ class Carrier {
     const CoveragePoint &from = path_.points[begin_ + (k > 0 ? k - 1 : k)],
                         &to = path_.points[begin_ + std::min(k + 1, count - 1)];
     CoveragePoint& p = path_.points[begin_ + k];
-    Vec3 chord = minus(to.position, from.position);
+    Vec3 chord = to.position - from.position;
     remove(chord, p.normal);
     if (const double norm = length(chord); norm > 0)
       for (std::size_t c = 0; c < 3; ++c) p.heading[c] = chord[c] / norm;
@@ -125,7 +122,7 @@ class Carrier {
     for (double side : {spacing_, -spacing_}) {
       const auto across = inverse_.at(p.coordinates[0] - side * t[1] / norm, p.coordinates[1] + side * t[0] / norm);
       if (!across) continue;
-      Vec3 way = minus(across->position, p.position);
+      Vec3 way = across->position - p.position;
       if (length(way) > inverse_.max_stretch() * spacing_) continue;  // another sheet
       remove(way, p.heading);
       p.spacing = length(way);

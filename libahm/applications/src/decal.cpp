@@ -7,6 +7,7 @@
 #include <string>
 
 #include "ahm/error.hpp"
+#include "ahm/util/disjoint_sets.hpp"
 #include "ahm/util/memory.hpp"
 #include "ahm/util/small_math.hpp"
 #include "ahm/util/text.hpp"
@@ -123,17 +124,12 @@ bool is_uppermost(const InverseMap& inverse, const Triangle& t, const std::vecto
 
 /// Of these triangles, in their order, those that hang together with the first one through vertices.
 std::vector<Triangle> joined_to_first(const std::vector<Triangle>& triangles, std::size_t vertices) {
-  std::vector<Index> parent(triangles.empty() ? 0 : vertices);
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](Index v) {
-    while (parent[v] != v) v = parent[v] = parent[parent[v]];
-    return v;
-  };
+  detail::DisjointSets parts(triangles.empty() ? 0 : vertices);
   for (const Triangle& t : triangles)
-    for (std::size_t k : {1, 2}) parent[root(t[k])] = root(t[0]);
+    for (std::size_t k : {1, 2}) parts.join(t[0], t[k]);
   std::vector<Triangle> result;
   for (const Triangle& t : triangles)
-    if (root(t[0]) == root(triangles.front()[0])) result.push_back(t);
+    if (parts.root(t[0]) == parts.root(triangles.front()[0])) result.push_back(t);
   return result;
 }
 

@@ -5,34 +5,22 @@
 #include <iterator>
 #include <limits>
 #include <numeric>
-#include <queue>
 #include <string>
 #include <utility>
 
 #include "ahm/error.hpp"
 #include "ahm/surface/surface_faces.hpp"
 #include "ahm/util/small_math.hpp"
+#include "ahm/util/vec.hpp"
+#include "graph/shortest_paths.hpp"
 
 namespace ahm {
 namespace {
 
 std::size_t to_size(Index i) { return static_cast<std::size_t>(i); }
 
-template <std::size_t d>
-std::array<double, d> minus(const std::array<double, d>& a, const std::array<double, d>& b) {
-  std::array<double, d> c;
-  for (std::size_t k = 0; k < d; ++k) c[k] = a[k] - b[k];
-  return c;
-}
-
-double cross(const Vec2& a, const Vec2& b) { return a[0] * b[1] - a[1] * b[0]; }
-Vec3 cross(const Vec3& a, const Vec3& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-double dot(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
 /// Zero stays zero.
-Vec3 normalized(const Vec3& a) {
+Vec3 unit_or_zero(const Vec3& a) {
   const double norm = length(a);
   return norm > 0 ? Vec3{a[0] / norm, a[1] / norm, a[2] / norm} : Vec3{};
 }
@@ -69,11 +57,11 @@ bool is_sound(const MappedSurface& s, const Triangle& t, double max_stretch) {
   std::array<double, 3> edge;
   for (std::size_t c = 0; c < 3; ++c) {
     const std::size_t next = (c + 1) % 3;
-    edge[c] = length(minus(q[next], q[c]));
-    const double space = length(minus(s.positions[t[next]], s.positions[t[c]]));
+    edge[c] = length(q[next] - q[c]);
+    const double space = length(s.positions[t[next]] - s.positions[t[c]]);
     if (!(edge[c] > 0 && edge[c] <= max_stretch * space && space <= max_stretch * edge[c])) return false;
   }
-  Vec2 a = minus(q[1], q[0]), b = minus(q[2], q[0]);
+  Vec2 a = q[1] - q[0], b = q[2] - q[0];
   for (double& x : a) x /= edge[0];
   for (double& x : b) x /= edge[2];
   return cross(a, b) > 1e-12;  // the sine of an angle
@@ -93,19 +81,12 @@ std::vector<double> graph_distances(const MappedSurface& s, const std::vector<Tr
     for (Index v : triangles[t]) incident[end[v]++] = static_cast<Index>(t);
 
   std::vector<double> distance(n, std::numeric_limits<double>::infinity());
-  using Entry = std::pair<double, Index>;
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
-  for (Index v : sources) distance[v] = 0, queue.push({0.0, v});
-  while (!queue.empty()) {
-    const auto [d, i] = queue.top();
-    queue.pop();
-    if (d > distance[i]) continue;
+  ShortestPaths<double, std::vector<double>, std::numeric_limits<double>::infinity()> paths(distance);
+  for (Index v : sources) paths.offer(v, 0);
+  paths.run([&](Index i, double d) {
     for (Offset k = begin[i]; k < begin[to_size(i) + 1]; ++k)
-      for (Index j : triangles[incident[k]]) {
-        const double there = d + length(minus(s.positions[j], s.positions[i]));
-        if (there < distance[j]) distance[j] = there, queue.push({there, j});
-      }
-  }
+      for (Index j : triangles[incident[k]]) paths.offer(j, d + length(s.positions[j] - s.positions[i]));
+  });
   return distance;
 }
 
@@ -150,8 +131,8 @@ std::vector<Triangle> sorted_triangles(const MappedSurface& s, double max_stretc
 
 Frame InversePoint::frame() const {
   const double along = dot(du, normal);
-  Vec3 x = normalized({du[0] - along * normal[0], du[1] - along * normal[1], du[2] - along * normal[2]});
-  if (x == Vec3{}) x = normalized(cross(dv, normal));  // du along the normal
+  Vec3 x = unit_or_zero({du[0] - along * normal[0], du[1] - along * normal[1], du[2] - along * normal[2]});
+  if (x == Vec3{}) x = unit_or_zero(cross(dv, normal));  // du along the normal
   return {position, x, cross(normal, x), normal};
 }
 
@@ -218,8 +199,8 @@ std::optional<InversePoint> InverseMap::at(double u, double v) const {
 
 std::optional<InversePoint> InverseMap::in_triangle(const Triangle& t, const Vec2& q) const {
   const std::array<std::size_t, 3> corner{to_size(t[0]), to_size(t[1]), to_size(t[2])};
-  const Vec2 a = minus(plane_[corner[1]], plane_[corner[0]]), b = minus(plane_[corner[2]], plane_[corner[0]]),
-             r = minus(q, plane_[corner[0]]);
+  const Vec2 a = plane_[corner[1]] - plane_[corner[0]], b = plane_[corner[2]] - plane_[corner[0]],
+             r = q - plane_[corner[0]];
   const double area = cross(a, b);
   InversePoint point;
   point.vertices = t;
@@ -227,8 +208,7 @@ std::optional<InversePoint> InverseMap::in_triangle(const Triangle& t, const Vec
   point.weights[0] = 1 - point.weights[1] - point.weights[2];
   // The tolerance closes the seams between triangles against rounding.
   if (!(std::min({point.weights[0], point.weights[1], point.weights[2]}) >= -1e-10)) return std::nullopt;
-  Vec3 ea = minus(positions_[corner[1]], positions_[corner[0]]),
-       eb = minus(positions_[corner[2]], positions_[corner[0]]);
+  Vec3 ea = positions_[corner[1]] - positions_[corner[0]], eb = positions_[corner[2]] - positions_[corner[0]];
   for (std::size_t k = 0; k < 3; ++k) {
     point.position[k] = positions_[corner[0]][k] + (point.weights[1] * ea[k] + point.weights[2] * eb[k]);
     ea[k] /= unit_, eb[k] /= unit_;
@@ -237,7 +217,7 @@ std::optional<InversePoint> InverseMap::in_triangle(const Triangle& t, const Vec
     point.normal[k] = 0;
     for (std::size_t c = 0; c < 3; ++c) point.normal[k] += point.weights[c] * normals_[corner[c]][k];
   }
-  point.normal = normalized(point.normal);
+  point.normal = unit_or_zero(point.normal);
   return point;
 }
 

@@ -164,10 +164,9 @@ Center geometric_median(const LogMapSolver& solver, std::span<const Vertex> vert
 }
 
 Source source_at(const Center& center) {
-  const std::size_t d = center.offset.size();
-  std::vector<double> back(center.offset), identity(d * d, 0.0);
-  for (std::size_t a = 0; a < d; ++a) back[a] = -back[a], identity[a * (d + 1)] = 1.0;
-  return Source(static_cast<int>(d)).add(center.vertex, 1.0, back, identity);
+  std::vector<double> back(center.offset);
+  for (double& z : back) z = -z;
+  return Source(static_cast<int>(back.size())).add(center.vertex, 1.0, back);
 }
 
 }  // namespace ahm

@@ -22,9 +22,7 @@ Step step(const TangentGraph& graph, Vertex from, Vertex to) {
   const double unit = graph.length_unit();
   for (std::size_t e = 0; e < star.degree(); ++e) {
     if (star.neighbors[e] != to.index) continue;
-    const bool is_block = graph.transport_kind() == TransportKind::block;
-    const auto R = star.transports.subspan(e * (is_block ? 4 : 2), is_block ? 4 : 2);
-    return {{star.log(e)[0] * unit, star.log(e)[1] * unit}, is_block && R[0] * R[3] - R[1] * R[2] < 0};
+    return {{star.log(e)[0] * unit, star.log(e)[1] * unit}, star.transport(e).reflects()};
   }
   throw InvalidArgument("stroke_source: vertices " + std::to_string(from.index) + " and " + std::to_string(to.index) +
                         " follow each other in 'path' but are no neighbours in the graph; add the vertices between");
@@ -180,7 +178,7 @@ Source stroke_source(std::span<const StrokePoint> points) {
     const auto& [point, weight, position, angle] = points[k];
     if (point.dimension() != 2)
       throw InvalidArgument("stroke_source: point " + std::to_string(k) + " is a source of dimension " +
-                            std::to_string(point.dimension()) + ", not 2; give its u axis");
+                            std::to_string(point.dimension().value_or(0)) + ", not 2; give its u axis");
     const double c = std::cos(angle), s = std::sin(angle);
     for (std::size_t i = 0; i < point.vertices().size(); ++i) {
       const auto z = point.offsets().subspan(2 * i, 2), U = point.axes().subspan(4 * i, 4);

@@ -71,15 +71,13 @@ Eigen::Matrix2d shape_operator(const Frame& frame, std::span<const Vec3> others)
 /// parallel to each other, near 0 where they are random.
 double agreement_around(const TangentGraph& graph, const PrincipalCurvatures& bend, Index vertex) {
   const Star star = graph.star(vertex);
-  const bool is_block = graph.transport_kind() == TransportKind::block;
   double c = 0, s = 0, count = 0;
   for (std::size_t e = 0; e < star.degree(); ++e) {
     const auto d = bend.direction(Vertex(star.neighbors[e]));
     if (std::isnan(d[0])) continue;
-    const double* R = &star.transports[e * (is_block ? 4 : 2)];
-    const double x = is_block ? R[0] * d[0] + R[1] * d[1] : R[0] * d[0] - R[1] * d[1];
-    const double y = is_block ? R[2] * d[0] + R[3] * d[1] : R[1] * d[0] + R[0] * d[1];
-    c += x * x - y * y, s += 2 * x * y, count += 1;
+    Vec2 v{};
+    star.transport(e).apply(d.data(), v.data());
+    c += v[0] * v[0] - v[1] * v[1], s += 2 * v[0] * v[1], count += 1;
   }
   return count > 0 ? std::hypot(c, s) / count : 0;
 }
@@ -131,13 +129,13 @@ Frame turned(const Frame& frame, const Vec3& direction) {
   return result;
 }
 
-PrincipalCurvatures curvature_directions(const TangentGraph& graph) {
+PrincipalCurvatures curvature_directions(const TangentGraph& graph, unsigned threads) {
   const char* name = "curvature_directions";
   check_dimension(graph, name);
   const Index n = graph.size();
   PrincipalCurvatures result{std::vector<double>(2 * static_cast<std::size_t>(n)), {}};
   result.directions.resize(result.values.size());
-  detail::parallel_chunks(n, 1 << 12, 0, [&](Offset begin, Offset end) {
+  detail::parallel_chunks(n, 1 << 12, threads, [&](Offset begin, Offset end) {
     std::vector<Index> first, both;
     std::vector<Vec3> others;
     for (auto i = static_cast<Index>(begin); i < static_cast<Index>(end); ++i) {

@@ -2,6 +2,9 @@
 /// Results seen as Eigen matrices, without a copy. Header only, so that no Eigen object crosses the library's border
 /// and the caller's own compiler flags decide its alignment.
 ///
+/// Eigen 3.4 is the caller's: libahm is built with it but its package neither needs nor looks for it. Before including this
+/// header, find_package(Eigen3) and link Eigen3::Eigen.
+///
 /// \code
 /// auto phi = ahm::coordinates(map);              // n x d
 /// Eigen::VectorXd distance = phi.rowwise().norm();

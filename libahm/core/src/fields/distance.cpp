@@ -6,8 +6,8 @@
 
 namespace ahm {
 
-DistanceField distance_and_gradient(const LogMapSolver& solver, const Source& source) {
-  VertexField Y = radial_field(solver, source);
+DistanceField distance_and_gradient(const LogMapSolver& solver, const Source& source, const MapOptions& options) {
+  VertexField Y = radial_field(solver, source, options);
   const TangentGraph& graph = solver.graph();
   const double at_source = 1e-8 * graph.mean_edge_length() * graph.length_unit();  // what rounding leaves there
   VertexField distance{1, std::vector<double>(Y.status.size()), Y.status};

@@ -15,31 +15,30 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-/// A source of unit weights at the given vertices, for its checks, components and scale.
+/// A source of unit weights at the given vertices, checked.
 Source plain_source(const LogMapSolver& solver, std::span<const Vertex> vertices) {
-  const auto d = static_cast<std::size_t>(solver.graph().dimension());
-  Source source(static_cast<int>(d));
-  std::vector<double> zero(d, 0.0), identity(d * d, 0.0);
-  for (std::size_t a = 0; a < d; ++a) identity[a * (d + 1)] = 1.0;
-  for (Vertex vertex : vertices) source.add(vertex, 1.0, zero, identity);
+  Source source = Source::at_vertices(vertices);
   check_source(source, solver.graph());
   return source;
 }
 
-AffineHeat affine_heat(const LogMapSolver& solver, const Source& source) {
-  return AffineHeat(solver.graph(), solver.operators(), {inflow_of(source, solver.graph(), solver.operators())},
-                    detail::thread_count(0));
+AffineHeat affine_heat(const LogMapSolver& solver, const Source& source, const MapOptions& options) {
+  constexpr Variant variant = Variant::localized;  // Y is the radial field
+  return AffineHeat(solver.graph(), solver.operators(), variant,
+                    {inflow_of(source, solver.graph(), solver.operators(), variant)},
+                    detail::thread_count(options.threads));
 }
 
 /// Status of every vertex, and NaN where it is not ok. `reached(i)`: whether the value at vertex i can be trusted.
 template <class Reached>
-void finish(VertexField& field, const AffineHeat& heat, const Reached& reached) {
+void finish(VertexField& field, const LogMapSolver& solver, const Source& source, const Reached& reached) {
   const auto width = static_cast<std::size_t>(field.width);
-  const std::vector<bool> connected = heat.connected(0);
-  field.status.assign(connected.size(), Status::ok);
-  for (std::size_t i = 0; i < connected.size(); ++i) {
+  const SourceComponents components(source, solver.operators().components());
+  const auto n = static_cast<std::size_t>(solver.graph().size());
+  field.status.assign(n, Status::ok);
+  for (std::size_t i = 0; i < n; ++i) {
     const std::span value = std::span(field.values).subspan(i * width, width);
-    if (!connected[i])
+    if (!components.hold(static_cast<Index>(i)))
       field.status[i] = Status::disconnected;
     else if (!reached(i) || !all_finite(value))
       field.status[i] = Status::unreached;
@@ -89,10 +88,9 @@ VertexField extend_scalar(const LogMapSolver& solver, std::span<const Vertex> ve
   return detail::with_memory_check("extending scalars", [&] {
     check_values(values, vertices.size(), "values");
     const Source source = plain_source(solver, vertices);
-    const AffineHeat heat = affine_heat(solver, source);
     Blend blend = blend_scalars(solver, vertices, values);
     VertexField field{1, std::move(blend.values), {}};
-    finish(field, heat, [&](std::size_t i) { return blend.reached(i); });
+    finish(field, solver, source, [&](std::size_t i) { return blend.reached(i); });
     return field;
   });
 }
@@ -104,9 +102,8 @@ VertexField transport_vectors(const LogMapSolver& solver, std::span<const Vertex
                d = static_cast<std::size_t>(solver.graph().dimension());
     check_values(vectors, vertices.size() * d, "vectors");
     const Source source = plain_source(solver, vertices);
-    const AffineHeat heat = affine_heat(solver, source);
 
-    // Lengths by A (SSC19 Alg. 1, steps II and III) ...
+    // Lengths by A ([SSC19] Alg. 1, steps II and III) ...
     std::vector<double> lengths;
     for (std::size_t k = 0; k < vertices.size(); ++k) lengths.push_back(length(vectors.subspan(k * d, d)));
     const Blend blend = blend_scalars(solver, vertices, lengths);
@@ -126,40 +123,39 @@ VertexField transport_vectors(const LogMapSolver& solver, std::span<const Vertex
       reached[i] = blend.reached(i) && (norm >= blend.least || longest == 0);
       for (double& component : vector) component = norm > 0 ? component / norm * blend.values[i] : 0.0;
     }
-    finish(field, heat, [&](std::size_t i) { return reached[i] != 0; });
+    finish(field, solver, source, [&](std::size_t i) { return reached[i] != 0; });
     return field;
   });
 }
 
-VertexField parallel_transport(const LogMapSolver& solver, const Source& source) {
+VertexField parallel_transport(const LogMapSolver& solver, const Source& source, const MapOptions& options) {
   return detail::with_memory_check("transporting a frame", [&] {
     check_source(source, solver.graph());
     const auto n = solver.graph().size();
     const auto width = static_cast<std::size_t>(solver.graph().dimension()) * solver.graph().dimension();
-    AffineHeat heat = affine_heat(solver, source);
+    AffineHeat heat = affine_heat(solver, source, options);
     heat.diffuse();
     VertexField field{static_cast<int>(width), std::vector<double>(static_cast<std::size_t>(n) * width), {}};
-    for (Index i = 0; i < n; ++i) {
-      double* axes = field.values.data() + static_cast<std::size_t>(i) * width;
-      heat.frames(0).axes(i, axes);
-    }
-    finish(field, heat, [&](std::size_t i) { return heat.reached(0, static_cast<Index>(i)); });
+    const FrameField U = heat.frames(0);
+    detail::for_each_index(static_cast<std::size_t>(n), options.threads,
+                           [&](std::size_t i) { U.axes(static_cast<Index>(i), field.values.data() + i * width); });
+    finish(field, solver, source, [&](std::size_t i) { return heat.reached(0, static_cast<Index>(i)); });
     return field;
   });
 }
 
-VertexField radial_field(const LogMapSolver& solver, const Source& source) {
+VertexField radial_field(const LogMapSolver& solver, const Source& source, const MapOptions& options) {
   return detail::with_memory_check("computing the radial field", [&] {
     check_source(source, solver.graph());
     const auto d = static_cast<std::size_t>(solver.graph().dimension());
-    AffineHeat heat = affine_heat(solver, source);
+    AffineHeat heat = affine_heat(solver, source, options);
     heat.diffuse_heat();
-    VertexField field{static_cast<int>(d), heat.localized(), {}};
+    VertexField field{static_cast<int>(d), heat.solve(), {}};
     const auto lambda = heat.lambda(0);
     for (std::size_t i = 0; i < lambda.size(); ++i)
       for (std::size_t a = 0; a < d; ++a)
         field.values[i * d + a] = field.values[i * d + a] / lambda[i] * solution_unit(solver.graph());
-    finish(field, heat, [&](std::size_t i) { return lambda[i] >= heat.least_heat(0); });
+    finish(field, solver, source, [&](std::size_t i) { return lambda[i] >= heat.least_heat(0); });
     return field;
   });
 }

@@ -47,7 +47,7 @@ CsrGraph::CsrGraph(CsrGraphData data) : data_(std::move(data)) {
   expect_length("row_begin", g.row_begin.size(), n + 1);
   expect_length("weights", g.weights.size(), edges);
   expect_length("logs", g.logs.size(), edges * d);
-  expect_length("transports", g.transports.size(), edges * (g.kind == TransportKind::rotation2 ? 2 : d * d));
+  expect_length("transports", g.transports.size(), edges * TransportLayout{g.kind, g.dimension}.width());
   if (!g.frames.empty()) expect_length("frames", g.frames.size(), n);
   check_rows(g);
   if (!data_.mean_edge_length) data_.mean_edge_length = mean_log_length(data_);
@@ -57,7 +57,7 @@ Star CsrGraph::star(Index vertex) const {
   const auto i = static_cast<std::size_t>(vertex), d = static_cast<std::size_t>(data_.dimension);
   const auto begin = static_cast<std::size_t>(data_.row_begin[i]);
   const auto degree = static_cast<std::size_t>(data_.row_begin[i + 1]) - begin;
-  const std::size_t r = data_.kind == TransportKind::rotation2 ? 2 : d * d;
+  const std::size_t r = TransportLayout{data_.kind, data_.dimension}.width();
   return {data_.dimension,
           {data_.neighbors.data() + begin, degree},
           {data_.weights.data() + begin, degree},

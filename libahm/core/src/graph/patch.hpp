@@ -20,7 +20,7 @@ template <class LocalOf, class OnOutside>
 CsrGraph cut_out(const TangentGraph& graph, std::span<const Index> vertices, const LocalOf& local_of,
                  const OnOutside& on_outside) {
   const auto d = static_cast<std::size_t>(graph.dimension());
-  const std::size_t r = graph.transport_kind() == TransportKind::rotation2 ? 2 : d * d;
+  const std::size_t r = graph.transport_layout().width();
   CsrGraphData patch;
   patch.dimension = graph.dimension();
   patch.kind = graph.transport_kind();
@@ -55,16 +55,6 @@ CsrGraph cut_out(const TangentGraph& graph, std::span<const Index> vertices, con
     patch.row_begin.push_back(static_cast<Offset>(patch.neighbors.size()));
   }
   return CsrGraph(std::move(patch));
-}
-
-/// How much of the decay exp(-x) of heat an edge from j to k brings: its length over sqrt(tau), or what the one edge lets
-/// through at the least, where it is far longer than sqrt(tau). An upper bound, for ordering vertices.
-/// @param diagonal  called for the diagonal entry m + tau sum w of A at k, if it is needed
-template <class Diagonal>
-double heat_distance(const Star& star, std::size_t edge, double tau, const Diagonal& diagonal) {
-  const double by_length = length(star.log(edge)) / std::sqrt(tau);
-  if (by_length <= 3 || !(star.weights[edge] > 0)) return by_length;
-  return std::min(by_length, std::log(diagonal() / (tau * star.weights[edge])));
 }
 
 }  // namespace ahm

@@ -12,7 +12,8 @@ class ColumnWriter {
  public:
   ColumnWriter(const TangentGraph& graph, double tau, double scaling)
       : d_(graph.dimension()),
-        complex_(graph.transport_kind() == TransportKind::rotation2),
+        layout_(graph.transport_layout()),
+        complex_(layout_.kind == TransportKind::rotation2),
         tau_(tau),
         scaling_(scaling) {
     const auto n = static_cast<std::size_t>(graph.size());
@@ -56,7 +57,7 @@ class ColumnWriter {
     columns_.clear();
     scalar_.clear();
     blocks_.clear();
-    const std::size_t width = complex_ ? 2 : static_cast<std::size_t>(d_) * d_;
+    const std::size_t width = layout_.width();
     for (int e : order_) {
       const Index j = star.neighbors[e];
       if (j >= i) break;
@@ -67,19 +68,9 @@ class ColumnWriter {
       }
       const double entry = -scaling_ * tau_ * star.weights[e];
       scalar_.back() += entry;
-      add_block(blocks_.data() + blocks_.size() - width, entry, star.transports.data() + e * width);
+      // B_ji gains -tau w R_ij, the inverse of the star's R_ji.
+      star.transport(e).add_inverse(entry, blocks_.data() + blocks_.size() - width);
     }
-  }
-
-  /// B_ji gains -tau w R_ij, the inverse of the star's R_ji: its conjugate or transpose.
-  void add_block(double* block, double entry, const double* R_ji) const {
-    if (complex_) {
-      block[0] += entry * R_ji[0];
-      block[1] -= entry * R_ji[1];
-      return;
-    }
-    for (int a = 0; a < d_; ++a)
-      for (int b = 0; b < d_; ++b) block[a * d_ + b] += entry * R_ji[b * d_ + a];
   }
 
   void add_complex_column(Index i, double diagonal) {
@@ -104,7 +95,8 @@ class ColumnWriter {
   }
 
   int d_;
-  bool complex_;
+  TransportLayout layout_;
+  bool complex_;  ///< B is n x n complex, not n d x n d real: the matrices differ in kind
   double tau_, scaling_;
   SparseUpper A_, B_;
   std::vector<int> order_;

@@ -7,19 +7,20 @@
 
 namespace ahm {
 
-AffineHeat::AffineHeat(const TangentGraph& graph, const HeatOperators& operators, std::vector<Inflow> inflows,
-                       unsigned threads)
+AffineHeat::AffineHeat(const TangentGraph& graph, const HeatOperators& operators, Variant variant,
+                       std::vector<Inflow> inflows, unsigned threads)
     : graph_(graph),
       operators_(operators),
+      system_(system_of(variant)),
       inflows_(std::move(inflows)),
       n_(static_cast<std::size_t>(graph.size())),
       d_(static_cast<std::size_t>(graph.dimension())),
-      frames_(graph.size(), graph.dimension(), graph.transport_kind()),
+      layout_(graph.transport_layout()),
       threads_(threads) {}
 
 FrameField AffineHeat::frames(std::size_t source) const {
-  return FrameField(graph_.size(), graph_.dimension(), graph_.transport_kind(),
-                    std::span(frame_solution_).subspan(source * frame_size(), frame_size()));
+  const std::span<const double> all = frame_solution_;
+  return FrameField(graph_.size(), layout_, all.empty() ? all : all.subspan(source * frame_size(), frame_size()));
 }
 
 /// lambda = A^-1 b
@@ -39,15 +40,16 @@ void AffineHeat::diffuse_heat() {
 /// U~ = B^-1 (b U_p) (Eq. 11)
 void AffineHeat::diffuse_frames() {
   frame_solution_.assign(inflows_.size() * frame_size(), 0.0);
-  const std::size_t width = frames_.width(), columns = static_cast<std::size_t>(frames_.columns());
+  const std::size_t width = layout_.width();
+  const int columns = layout_.columns();
   for (std::size_t s = 0; s < inflows_.size(); ++s)
     for (std::size_t k = 0; k < inflows_[s].vertices.size(); ++k) {
       const double* frame = inflows_[s].frames.data() + k * width;
       double* rhs = frame_solution_.data() + s * frame_size() + static_cast<std::size_t>(inflows_[s].vertices[k]) * d_;
-      for (std::size_t a = 0; a < columns; ++a)
-        for (std::size_t c = 0; c < d_; ++c) rhs[a * n_ * d_ + c] += frame[c * columns + a];
+      for (int a = 0; a < columns; ++a)
+        for (std::size_t c = 0; c < d_; ++c) rhs[a * n_ * d_ + c] += frame[layout_.place(static_cast<int>(c), a)];
     }
-  operators_.solve_vector(frame_solution_, static_cast<Index>(inflows_.size() * columns));
+  operators_.solve_vector(frame_solution_, static_cast<Index>(inflows_.size()) * columns);
 }
 
 void AffineHeat::diffuse() {
@@ -80,56 +82,32 @@ std::vector<double> AffineHeat::translations() const {
   return rho;
 }
 
-std::vector<double> AffineHeat::adaptive() const {
+std::vector<double> AffineHeat::solve() const {
   const std::vector<double> rho = translations();
-  std::vector<double> x(rho.size());
+  std::vector<double> X(rho.size());
   for (std::size_t s = 0; s < inflows_.size(); ++s) {
-    double* columns = x.data() + s * n_ * d_;
+    double* right_side = X.data() + s * n_ * d_;
     const FrameField U = frames(s);
     detail::for_each_index(n_, threads_, [&](std::size_t i) {
-      U.to_source(static_cast<Index>(i), rho.data() + (s * n_ + i) * d_, columns + i, n_);
+      system_.put(U, static_cast<Index>(i), std::span(rho).subspan((s * n_ + i) * d_, d_), right_side, n_);
     });
     for (std::size_t k = 0; k < inflows_[s].vertices.size(); ++k)
       for (std::size_t a = 0; a < d_; ++a)
-        columns[a * n_ + static_cast<std::size_t>(inflows_[s].vertices[k])] += inflows_[s].coordinates[k * d_ + a];
+        right_side[system_.place(static_cast<std::size_t>(inflows_[s].vertices[k]), a, n_, d_)] +=
+            inflows_[s].values[k * d_ + a];
   }
-  operators_.solve_scalar(x, static_cast<Index>(inflows_.size() * d_));
-  return x;
+  system_.solve(operators_, X, inflows_.size());
+  return X;
 }
 
-std::vector<double> AffineHeat::localized() const {
-  std::vector<double> Y = translations();
-  for (std::size_t s = 0; s < inflows_.size(); ++s)
-    for (std::size_t k = 0; k < inflows_[s].vertices.size(); ++k)
-      for (std::size_t a = 0; a < d_; ++a)
-        Y[(s * n_ + static_cast<std::size_t>(inflows_[s].vertices[k])) * d_ + a] += inflows_[s].vectors[k * d_ + a];
-  operators_.solve_vector(Y, static_cast<Index>(inflows_.size()));
-  return Y;
+void AffineHeat::solution_at(std::span<const double> solution, Index vertex, double* out) const {
+  for (std::size_t a = 0; a < d_; ++a) out[a] = solution[system_.place(static_cast<std::size_t>(vertex), a, n_, d_)];
 }
 
-void AffineHeat::solution_at(Variant variant, std::span<const double> solution, Index vertex, double* out) const {
-  const auto i = static_cast<std::size_t>(vertex);
-  for (std::size_t a = 0; a < d_; ++a)
-    out[a] = variant == Variant::adaptive ? solution[a * n_ + i] : solution[i * d_ + a];
-}
-
-void AffineHeat::coordinates_at(Variant variant, std::size_t source, std::span<const double> solution, Index vertex,
-                                double* phi) const {
-  if (variant == Variant::adaptive)
-    solution_at(variant, solution, vertex, phi);
-  else
-    frames(source).to_source(vertex, solution.data() + static_cast<std::size_t>(vertex) * d_, phi);
+void AffineHeat::coordinates_at(std::size_t source, std::span<const double> solution, Index vertex, double* phi) const {
+  system_.read(frames(source), vertex, solution, n_, phi);
   const double heat = lambda(source)[vertex], unit = solution_unit(graph_);
   for (std::size_t a = 0; a < d_; ++a) phi[a] = phi[a] / heat * unit;
-}
-
-std::vector<bool> AffineHeat::connected(std::size_t source) const {
-  std::vector<bool> with_source(static_cast<std::size_t>(operators_.component_count()), false);
-  const auto component = operators_.components();
-  for (Index k : inflows_[source].vertices) with_source[component[k]] = true;
-  std::vector<bool> result(n_);
-  for (std::size_t i = 0; i < n_; ++i) result[i] = with_source[component[i]];
-  return result;
 }
 
 }  // namespace ahm

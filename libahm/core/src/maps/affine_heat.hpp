@@ -7,8 +7,8 @@
 ///     lambda = A^-1 b                                   b: source weights
 ///     U~     = B^-1 (b U_p),  U_i = U~_i / |U~_i|
 ///     rho_i  = -tau sum_j w_ij e_ij lambda_j            in frame i
-///     adaptive:   x = A^-1 (rho / U + b z),   phi = x / lambda
-///     localized:  Y = B^-1 (rho + b U z),     phi = (Y / lambda) / U
+///
+/// and then the variant's own system (maps/variants): adaptive, x = A^-1 (rho / U + b z); localized, Y = B^-1 (rho + b U z).
 #pragma once
 
 #include <span>
@@ -19,30 +19,27 @@
 #include "ahm/maps/log_map.hpp"
 #include "maps/frame_field.hpp"
 #include "maps/inflow.hpp"
+#include "maps/variants/variant_system.hpp"
 
 namespace ahm {
 
 class AffineHeat {
  public:
   /// The numbers do not depend on `threads`.
-  AffineHeat(const TangentGraph& graph, const HeatOperators& operators, std::vector<Inflow> inflows,
+  AffineHeat(const TangentGraph& graph, const HeatOperators& operators, Variant variant, std::vector<Inflow> inflows,
              unsigned threads = 1);
 
   /// Solves for lambda and the frames, which everything below needs.
   void diffuse();
-  /// Solves for lambda alone: enough for `localized`.
+  /// Solves for lambda alone: enough for variants that put no frames into their system.
   void diffuse_heat();
 
-  /// x of every source: columns of n numbers, d per source. In units of `solution_unit(graph)`.
-  std::vector<double> adaptive() const;
-  /// Y of every source: columns of n vectors of d numbers. In units of `solution_unit(graph)`.
-  std::vector<double> localized() const;
-  std::vector<double> solve(Variant variant) const { return variant == Variant::adaptive ? adaptive() : localized(); }
-  /// x_i or Y_i of one source, from its part of `solve`.
-  void solution_at(Variant variant, std::span<const double> solution, Index vertex, double* out) const;
-  /// phi_i of one source in world units, from its part of `solve`: x / lambda, or (Y / lambda) / U.
-  void coordinates_at(Variant variant, std::size_t source, std::span<const double> solution, Index vertex,
-                      double* phi) const;
+  /// The variant's unknown for every source, n x d numbers each, in units of `solution_unit(graph)`.
+  std::vector<double> solve() const;
+  /// The unknown of one source at a vertex, from its part of `solve`: d numbers.
+  void solution_at(std::span<const double> solution, Index vertex, double* out) const;
+  /// phi_i of one source in world units, from its part of `solve`.
+  void coordinates_at(std::size_t source, std::span<const double> solution, Index vertex, double* phi) const;
 
   /// Whether enough heat reached the vertex, by both operators, for its numbers to be right.
   bool reached(std::size_t source, Index vertex) const {
@@ -52,19 +49,18 @@ class AffineHeat {
   double least_heat(std::size_t source) const { return least_heat_[source]; }
   std::span<const double> lambda(std::size_t source) const { return std::span(lambda_).subspan(source * n_, n_); }
   FrameField frames(std::size_t source) const;
-  /// For each vertex, whether its component holds a source sample.
-  std::vector<bool> connected(std::size_t source) const;
 
  private:
   void diffuse_frames();
   std::vector<double> translations() const;
-  std::size_t frame_size() const { return static_cast<std::size_t>(frames_.columns()) * n_ * d_; }
+  std::size_t frame_size() const { return static_cast<std::size_t>(layout_.columns()) * n_ * d_; }
 
   const TangentGraph& graph_;
   const HeatOperators& operators_;
+  const VariantSystem& system_;
   std::vector<Inflow> inflows_;
   std::size_t n_, d_;
-  FrameField frames_;  ///< of no source: the shape alone
+  TransportLayout layout_;
   unsigned threads_;
   std::vector<double> lambda_;          ///< n per source
   std::vector<double> least_heat_;      ///< one per source

@@ -35,7 +35,7 @@ Cost estimate_cost(const GraphSize& size, Strategy strategy) {
   if (strategy == Strategy::automatic) throw InvalidArgument("estimate_cost: strategy must be global or march");
   const double n = size.vertices;
   // Real numbers per entry of the operators A and B.
-  const double numbers = 1.0 + (size.kind == TransportKind::rotation2 ? 2 : size.dimension * size.dimension);
+  const double numbers = 1.0 + static_cast<double>(TransportLayout{size.kind, size.dimension}.width());
   return strategy == Strategy::global ? global(n, size.dimension, numbers) : march(n, size.dimension, numbers);
 }
 

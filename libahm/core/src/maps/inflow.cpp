@@ -6,13 +6,14 @@
 
 #include "ahm/error.hpp"
 #include "maps/frame_field.hpp"
+#include "maps/variants/variant_system.hpp"
 
 namespace ahm {
 
 void check_source(const Source& source, const TangentGraph& graph) {
   const int d = graph.dimension();
-  if (source.dimension() != 0 && source.dimension() != d)
-    throw InvalidArgument("source has dimension " + std::to_string(source.dimension()) + ", the graph has " +
+  if (source.dimension().value_or(d) != d)
+    throw InvalidArgument("source has dimension " + std::to_string(*source.dimension()) + ", the graph has " +
                           std::to_string(d));
   for (Vertex vertex : source.vertices())
     if (vertex.index < 0 || vertex.index >= graph.size())
@@ -21,7 +22,7 @@ void check_source(const Source& source, const TangentGraph& graph) {
   const auto weights = source.weights();
   if (std::none_of(weights.begin(), weights.end(), [](double b) { return b > 0; }))
     throw InvalidArgument("source has no vertex of positive weight");
-  if (graph.transport_kind() != TransportKind::rotation2) return;
+  if (graph.transport_layout().may_reflect()) return;
   for (std::size_t k = 0; k * 4 < source.axes().size(); ++k)
     if (const auto U = source.axes().subspan(k * 4, 4); U[0] * U[3] - U[1] * U[2] < 0)
       throw InvalidArgument("source axes at vertex " + std::to_string(source.vertices()[k].index) +
@@ -38,41 +39,44 @@ double source_heat(const TangentGraph& graph, const HeatOperators& operators, st
   return std::ldexp(heat_scale, std::max(-900, std::ilogb(mass)));
 }
 
-Inflow inflow_of(const Source& source, const TangentGraph& graph, const HeatOperators& operators) {
+Inflow inflow_of(const Source& source, const TangentGraph& graph, const HeatOperators& operators, Variant variant) {
   const auto d = static_cast<std::size_t>(graph.dimension());
-  const bool is_complex = graph.transport_kind() == TransportKind::rotation2;
+  const TransportLayout layout = graph.transport_layout();
+  const VariantSystem& system = system_of(variant);
   const double largest = *std::max_element(source.weights().begin(), source.weights().end());
   const double scale = source_heat(graph, operators, source.vertices()), unit = solution_unit(graph);
-  std::vector<double> identity(d * d, 0.0), zero(d, 0.0);
+  std::vector<double> identity(d * d, 0.0), z(d, 0.0);
   for (std::size_t a = 0; a < d; ++a) identity[a * (d + 1)] = 1.0;
   Inflow in;
   for (std::size_t k = 0; k < source.vertices().size(); ++k) {
     if (!(source.weights()[k] > 0)) continue;
     const double b = source.weights()[k] / largest * scale;
-    const auto z = source.offsets().empty() ? std::span<const double>(zero) : source.offsets().subspan(k * d, d);
+    for (std::size_t a = 0; a < d && !source.offsets().empty(); ++a) z[a] = source.offsets()[k * d + a] / unit;
     const auto U = source.axes().empty() ? std::span<const double>(identity) : source.axes().subspan(k * d * d, d * d);
     in.vertices.push_back(source.vertices()[k].index);
     in.heat.push_back(b);
-    if (is_complex)
-      in.frames.insert(in.frames.end(), {b * U[0], b * U[2]});
-    else
-      for (double entry : U) in.frames.push_back(b * entry);
-    for (std::size_t a = 0; a < d; ++a) in.coordinates.push_back(b * (z[a] / unit));
-    for (std::size_t c = 0; c < d; ++c) {
-      double sum = 0;
-      for (std::size_t a = 0; a < d; ++a) sum += b * U[c * d + a] * (z[a] / unit);
-      in.vectors.push_back(sum);
-    }
+    const std::size_t first = in.frames.size();
+    in.frames.resize(first + layout.width());
+    layout.store(U, in.frames.data() + first);
+    for (std::size_t c = first; c < in.frames.size(); ++c) in.frames[c] *= b;
+    in.values.resize(in.values.size() + d);
+    system.add_sample(b, U, z, in.values.data() + in.values.size() - d);
   }
   in.translations.assign(in.vertices.size() * d, 0.0);
   return in;
 }
 
 std::vector<Inflow> inflow_of(std::span<const Source> sources, const TangentGraph& graph,
-                              const HeatOperators& operators) {
+                              const HeatOperators& operators, Variant variant) {
   std::vector<Inflow> result;
-  for (const Source& source : sources) result.push_back(inflow_of(source, graph, operators));
+  for (const Source& source : sources) result.push_back(inflow_of(source, graph, operators, variant));
   return result;
+}
+
+SourceComponents::SourceComponents(const Source& source, std::span<const Index> component_of_vertex)
+    : component_(component_of_vertex), has_source_(component_of_vertex.size(), 0) {
+  for (std::size_t k = 0; k < source.vertices().size(); ++k)
+    if (source.weights()[k] > 0) has_source_[component_[source.vertices()[k].index]] = 1;
 }
 
 }  // namespace ahm

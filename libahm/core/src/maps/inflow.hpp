@@ -8,6 +8,7 @@
 
 #include "ahm/graph/tangent_graph.hpp"
 #include "ahm/heat/heat_operators.hpp"
+#include "ahm/maps/log_map.hpp"
 #include "ahm/maps/source.hpp"
 
 namespace ahm {
@@ -15,11 +16,10 @@ namespace ahm {
 /// Right-hand sides at `vertices`; parallel arrays, d the dimension.
 struct Inflow {
   std::vector<Index> vertices;
-  std::vector<double> heat;    ///< b: enters A lambda
-  std::vector<double> frames;  ///< b U: enters B U~; 2 (complex) or d x d numbers (row major) in the vertex's frame
-  std::vector<double> coordinates;   ///< b z: enters A x; d numbers in the source's frame
-  std::vector<double> vectors;       ///< b U z: enters B Y; d numbers in the vertex's frame
-  std::vector<double> translations;  ///< enters rho, hence both variants; d numbers in the vertex's frame
+  std::vector<double> heat;          ///< b: enters A lambda
+  std::vector<double> frames;        ///< b U: enters B U~; stored as transports are
+  std::vector<double> values;        ///< of the variant's own: enters its system; d numbers
+  std::vector<double> translations;  ///< enters rho, hence every variant; d numbers in the vertex's frame
 };
 
 /// @throws InvalidArgument when the source does not fit the graph
@@ -35,8 +35,20 @@ double source_heat(const TangentGraph& graph, const HeatOperators& operators, st
 
 /// The samples of positive weight of a checked source. The largest b becomes `source_heat`; the factor cancels in every
 /// quotient by lambda.
-Inflow inflow_of(const Source& source, const TangentGraph& graph, const HeatOperators& operators);
+Inflow inflow_of(const Source& source, const TangentGraph& graph, const HeatOperators& operators, Variant variant);
 std::vector<Inflow> inflow_of(std::span<const Source> sources, const TangentGraph& graph,
-                              const HeatOperators& operators);
+                              const HeatOperators& operators, Variant variant);
+
+/// Whether the component of a vertex holds a sample of positive weight.
+class SourceComponents {
+ public:
+  /// @param component_of_vertex  as `HeatOperators::components`; must outlive this object
+  SourceComponents(const Source& source, std::span<const Index> component_of_vertex);
+  bool hold(Index vertex) const { return has_source_[component_[vertex]] != 0; }
+
+ private:
+  std::span<const Index> component_;
+  std::vector<char> has_source_;
+};
 
 }  // namespace ahm

@@ -3,13 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <functional>
 #include <limits>
 #include <memory>
 #include <mutex>
 #include <new>
-#include <numeric>
-#include <queue>
 #include <string>
 
 #include "ahm/error.hpp"
@@ -19,6 +16,7 @@
 #include "ahm/util/small_math.hpp"
 #include "ahm/util/text.hpp"
 #include "graph/patch.hpp"
+#include "graph/shortest_paths.hpp"
 #include "heat/blas_control.hpp"
 #include "heat/check_options.hpp"
 #include "maps/affine_heat.hpp"
@@ -49,7 +47,7 @@ class SparseArray {
   std::unique_ptr<T[], Free> values_;
 };
 
-/// Dijkstra's algorithm along edges from many starts, to a limit; leaves no trace behind.
+/// Shortest paths along edges from many starts, to a limit; leaves no trace behind.
 class Ball {
  public:
   explicit Ball(const TangentGraph& graph) : graph_(graph), known_(static_cast<std::size_t>(graph.size())) {}
@@ -60,33 +58,26 @@ class Ball {
   void grow(std::span<const Vertex> starts, double limit, const Visit& visit) {
     for (Vertex start : starts) offer(start.index, 0);
     bool more = true;
-    while (!queue_.empty()) {
-      const auto [key, vertex] = queue_.top();
-      queue_.pop();
-      if (!more || key != known_[vertex]) continue;
-      if (!(more = visit(vertex))) continue;
+    paths_.run([&](Index vertex, double key) {
+      if (!more || !(more = visit(vertex))) return;
       const Star star = graph_.star(vertex);
       for (std::size_t e = 0; e < star.degree(); ++e)
         if (const double next = key - 1 + length(star.log(e)); star.weights[e] != 0 && next <= limit)
           offer(star.neighbors[e], next);
-    }
+    });
     for (Index vertex : touched_) known_[vertex] = 0;
     touched_.clear();
   }
 
  private:
   void offer(Index vertex, double distance) {
-    double& known = known_[vertex];
-    const double offered = 1 + distance;
-    if (known == 0) touched_.push_back(vertex);
-    if (known != 0 && known <= offered) return;
-    queue_.push({known = offered, vertex});
+    if (known_[vertex] == 0) touched_.push_back(vertex);
+    paths_.offer(vertex, 1 + distance);
   }
 
-  using Entry = std::pair<double, Index>;
   const TangentGraph& graph_;
   SparseArray<double> known_;  ///< 1 + distance, 0: none
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue_;
+  ShortestPaths<double, SparseArray<double>, 0.0> paths_{known_};
   std::vector<Index> touched_;
 };
 
@@ -189,13 +180,13 @@ class Worker {
     const HeatOperators operators(patch, operators_);
     std::vector<Inflow> inflows;
     for (Index s : members) {
-      inflows.push_back(inflow_of(sources_[s], graph_, operators));
+      inflows.push_back(inflow_of(sources_[s], graph_, operators, options_.variant));
       for (Index& vertex : inflows.back().vertices) vertex = place_[vertex] - 1;
     }
     for (Index vertex : vertices) place_[vertex] = 0;
-    AffineHeat heat(patch, operators, std::move(inflows));
+    AffineHeat heat(patch, operators, options_.variant, std::move(inflows));
     heat.diffuse();
-    const std::vector<double> solution = heat.solve(options_.variant);
+    const std::vector<double> solution = heat.solve();
     const std::size_t size = solution.size() / members.size();
     for (std::size_t m = 0; m < members.size(); ++m)
       if (!collect(heat, m, std::span(solution).subspan(m * size, size), vertices, edge, wanted, result[members[m]]))
@@ -213,7 +204,7 @@ class Worker {
     for (std::size_t k = 0; k < n; ++k) {
       const auto vertex = static_cast<Index>(k);
       double* phi = phi_.data() + k * d_;
-      heat.coordinates_at(options_.variant, m, solution, vertex, phi);
+      heat.coordinates_at(m, solution, vertex, phi);
       if (!heat.reached(m, vertex) || !all_finite(std::span(phi, d_))) continue;
       distance_[k] = length(std::span<const double>(phi, d_));
       if (distance_[k] <= options_.radius) order_.push_back(vertex);
@@ -230,19 +221,16 @@ class Worker {
     entries.vertices.reserve(size);
     entries.distances.reserve(size);
     entries.logs.reserve(size * d_);
-    entries.transports.reserve(size * (graph_.transport_kind() == TransportKind::rotation2 ? 2 : d_ * d_));
+    entries.transports.reserve(size * graph_.transport_layout().width());
     const FrameField frames = heat.frames(m);
-    std::vector<double> axes(d_ * d_);
+    std::vector<double> U(graph_.transport_layout().width());
     for (Index k : order_) {
       entries.vertices.push_back(vertices[k]);
       entries.distances.push_back(distance_[k]);
       entries.logs.insert(entries.logs.end(), phi_.begin() + static_cast<std::ptrdiff_t>(k * d_),
                           phi_.begin() + static_cast<std::ptrdiff_t>((k + 1) * d_));
-      frames.axes(k, axes.data());
-      if (graph_.transport_kind() == TransportKind::rotation2)
-        entries.transports.insert(entries.transports.end(), {axes[0], axes[2]});
-      else
-        entries.transports.insert(entries.transports.end(), axes.begin(), axes.end());
+      frames.frame(k, U.data());
+      entries.transports.insert(entries.transports.end(), U.begin(), U.end());
     }
     return true;
   }

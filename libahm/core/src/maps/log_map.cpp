@@ -23,8 +23,6 @@ std::string_view to_string(Status status) noexcept {
   return "unknown";
 }
 
-std::string_view to_string(Variant variant) noexcept { return variant == Variant::adaptive ? "adaptive" : "localized"; }
-
 std::string_view to_string(Strategy strategy) noexcept {
   switch (strategy) {
     case Strategy::automatic:

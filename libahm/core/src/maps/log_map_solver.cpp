@@ -89,9 +89,12 @@ struct LogMapSolver::Impl {
   March front(std::size_t time, const MapOptions& map, unsigned threads) const {
     return March(graph, times[time].options, map.variant, options.accuracy, map.radius, threads, map.progress);
   }
-  LogMap map_of(March&& front, const Source& source, const MapOptions& map) const;
-  LogMap map_of(const AffineHeat& heat, std::size_t time, std::size_t s, const Source& source,
-                std::span<const double> solution, const MapOptions& map, unsigned threads) const;
+  template <class Values>
+  LogMap map_of(const Values& values, Strategy how, const MarchStatistics& march, const Source& source,
+                const MapOptions& map, unsigned threads) const;
+  LogMap marched(const March& front, const Source& source, const MapOptions& map, unsigned threads) const;
+  LogMap finished(const AffineHeat& heat, std::size_t time, std::size_t s, const Source& source,
+                  std::span<const double> solution, const MapOptions& map, unsigned threads) const;
   std::vector<LogMap> solve_block(std::size_t time, std::span<const Source> sources, const MapOptions& map,
                                   unsigned threads) const;
   std::vector<LogMap> solve_block(std::span<const Source> sources, const MapOptions& map, unsigned threads) const;
@@ -115,65 +118,88 @@ LogMapSolver::Impl::Impl(const TangentGraph& graph, const OperatorOptions& opera
   }
 }
 
-/// The result of a march.
-LogMap LogMapSolver::Impl::map_of(March&& front, const Source& source, const MapOptions& map) const {
-  const auto n = static_cast<std::size_t>(graph.size()), d = static_cast<std::size_t>(graph.dimension());
-  std::vector<double> coordinates = std::move(front.coordinates());
-  std::vector<Status> status(n, Status::ok);
-  std::vector<char> with_source;  // per component; only needed where the march did not come
-  for (std::size_t i = 0; i < n; ++i) {
-    const std::span phi = std::span(coordinates).subspan(i * d, d);
-    if (front.accepted(static_cast<Index>(i))) {
-      status[i] = status_of(phi, true, map.radius);
-    } else {
-      const auto component = components();
-      if (with_source.empty()) {
-        with_source.assign(n, 0);
-        for (Vertex k : source.vertices()) with_source[component[k.index]] = 1;
-      }
-      status[i] = !with_source[component[i]] ? Status::disconnected
-                  : std::isinf(map.radius)   ? Status::unreached
-                                             : Status::beyond_radius;
-    }
-    if (status[i] != Status::ok) std::fill(phi.begin(), phi.end(), NAN);
-  }
-  MapExtras extras{front.statistics(), {}, {}};
-  if (map.frames) {
-    extras.frames.resize(n * d * d);
-    for (std::size_t i = 0; i < n; ++i) front.axes(static_cast<Index>(i), extras.frames.data() + i * d * d);
-  }
-  return LogMap(static_cast<int>(d), map.variant, Strategy::march, source, std::move(coordinates), std::move(status),
-                std::move(extras));
-}
+/// What a march found, vertex by vertex.
+class MarchedValues {
+ public:
+  MarchedValues(const March& front, const Source& source, std::span<const Index> components, double radius)
+      : front_(front), components_(source, components), radius_(radius) {}
 
-/// Coordinates and status of one source from its x (adaptive) or Y (localized).
-LogMap LogMapSolver::Impl::map_of(const AffineHeat& heat, std::size_t time, std::size_t s, const Source& source,
-                                  std::span<const double> solution, const MapOptions& map, unsigned threads) const {
+  Status read(Index vertex, std::span<double> phi) const {
+    const auto found = front_.coordinates(vertex);
+    std::copy(found.begin(), found.end(), phi.begin());
+    if (front_.accepted(vertex)) return status_of(phi, true, radius_);
+    if (!components_.hold(vertex)) return Status::disconnected;
+    return std::isinf(radius_) ? Status::unreached : Status::beyond_radius;
+  }
+  void axes(Index vertex, double* out) const { front_.axes(vertex, out); }
+
+ private:
+  const March& front_;
+  SourceComponents components_;
+  double radius_;
+};
+
+/// What a global solve found for source number s of a block.
+class GlobalValues {
+ public:
+  GlobalValues(const AffineHeat& heat, std::size_t s, std::span<const double> solution, const Source& source,
+               std::span<const Index> components, double radius)
+      : heat_(heat),
+        s_(s),
+        solution_(solution),
+        frames_(heat.frames(s)),
+        components_(source, components),
+        radius_(radius) {}
+
+  Status read(Index vertex, std::span<double> phi) const {
+    heat_.coordinates_at(s_, solution_, vertex, phi.data());
+    return components_.hold(vertex) ? status_of(phi, heat_.reached(s_, vertex), radius_) : Status::disconnected;
+  }
+  void axes(Index vertex, double* out) const { frames_.axes(vertex, out); }
+
+ private:
+  const AffineHeat& heat_;
+  std::size_t s_;
+  std::span<const double> solution_;
+  FrameField frames_;
+  SourceComponents components_;
+  double radius_;
+};
+
+/// The map that `values` tell of.
+template <class Values>
+LogMap LogMapSolver::Impl::map_of(const Values& values, Strategy how, const MarchStatistics& march,
+                                  const Source& source, const MapOptions& map, unsigned threads) const {
   const auto n = static_cast<std::size_t>(graph.size()), d = static_cast<std::size_t>(graph.dimension());
   std::vector<double> coordinates(n * d);
   std::vector<Status> status(n, Status::ok);
-  const std::vector<bool> connected = heat.connected(s);
+  MapExtras extras{march, {}, {}};
+  if (map.frames) extras.frames.resize(n * d * d);
   detail::for_each_index(n, threads, [&](std::size_t i) {
-    const auto vertex = static_cast<Index>(i);
     const std::span phi = std::span(coordinates).subspan(i * d, d);
-    heat.coordinates_at(map.variant, s, solution, vertex, phi.data());
-    status[i] = connected[i] ? status_of(phi, heat.reached(s, vertex), map.radius) : Status::disconnected;
+    status[i] = values.read(static_cast<Index>(i), phi);
     if (status[i] != Status::ok) std::fill(phi.begin(), phi.end(), NAN);
+    if (map.frames) values.axes(static_cast<Index>(i), extras.frames.data() + i * d * d);
   });
-  if (options.strategy == Strategy::automatic && std::ranges::count(status, Status::unreached) > 0) {
-    March on = front(time, map, threads);
-    on.run_on(heat, s, solution);
-    return map_of(std::move(on), source, map);
-  }
-  MapExtras extras;
-  if (map.frames) {
-    extras.frames.resize(n * d * d);
-    const FrameField U = heat.frames(s);
-    detail::for_each_index(n, threads,
-                           [&](std::size_t i) { U.axes(static_cast<Index>(i), extras.frames.data() + i * d * d); });
-  }
-  return LogMap(static_cast<int>(d), map.variant, Strategy::global, source, std::move(coordinates), std::move(status),
+  return LogMap(static_cast<int>(d), map.variant, how, source, std::move(coordinates), std::move(status),
                 std::move(extras));
+}
+
+LogMap LogMapSolver::Impl::marched(const March& front, const Source& source, const MapOptions& map,
+                                   unsigned threads) const {
+  return map_of(MarchedValues(front, source, components(), map.radius), Strategy::march, front.statistics(), source,
+                map, threads);
+}
+
+/// Where a global solve leaves vertices beyond its reach, strategy `automatic` marches on.
+LogMap LogMapSolver::Impl::finished(const AffineHeat& heat, std::size_t time, std::size_t s, const Source& source,
+                                    std::span<const double> solution, const MapOptions& map, unsigned threads) const {
+  LogMap result = map_of(GlobalValues(heat, s, solution, source, components(), map.radius), Strategy::global, {},
+                         source, map, threads);
+  if (options.strategy != Strategy::automatic || result.count(Status::unreached) == 0) return result;
+  March on = front(time, map, threads);
+  on.run_on(heat, s, solution);
+  return marched(on, source, map, threads);
 }
 
 /// Solves one block of sources at one diffusion time.
@@ -184,17 +210,18 @@ std::vector<LogMap> LogMapSolver::Impl::solve_block(std::size_t time, std::span<
     for (const Source& source : sources) {
       March on = front(time, map, threads);
       on.run(source);
-      maps.push_back(map_of(std::move(on), source, map));
+      maps.push_back(marched(on, source, map, threads));
     }
     return maps;
   }
-  AffineHeat heat(graph, operators(time), inflow_of(sources, graph, operators(time)), threads);
+  AffineHeat heat(graph, operators(time), map.variant, inflow_of(sources, graph, operators(time), map.variant),
+                  threads);
   heat.diffuse();
   if (map.progress.stop.stop_requested()) throw Cancelled("cancelled during solve");
-  const std::vector<double> solution = heat.solve(map.variant);
+  const std::vector<double> solution = heat.solve();
   const std::size_t size = solution.size() / sources.size();
   for (std::size_t s = 0; s < sources.size(); ++s)
-    maps.push_back(map_of(heat, time, s, sources[s], std::span(solution).subspan(s * size, size), map, threads));
+    maps.push_back(finished(heat, time, s, sources[s], std::span(solution).subspan(s * size, size), map, threads));
   return maps;
 }
 

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <queue>
+#include <limits>
 
+#include "ahm/util/small_math.hpp"
 #include "graph/patch.hpp"
+#include "graph/shortest_paths.hpp"
 #include "heat/blas_control.hpp"
+#include "heat/heat_system.hpp"
 
 namespace ahm {
 namespace {
@@ -20,6 +22,22 @@ constexpr double default_step = 24;
 constexpr double iterative_step = 8;
 
 constexpr float far_away = std::numeric_limits<float>::infinity();
+
+/// An edge to a vertex that is not accepted yet.
+struct Ahead {
+  Index vertex;
+  double weight, length;
+};
+
+/// How much of the decay exp(-x) of heat an edge brings: its length over sqrt(tau), or what the one edge lets through at
+/// the least, where it is far longer than sqrt(tau). An upper bound, for ordering vertices.
+/// @param diagonal  called for the diagonal entry m + tau sum w of A at the edge's end, if it is needed
+template <class Diagonal>
+double heat_distance(double length, double weight, double tau, const Diagonal& diagonal) {
+  const double by_length = length / std::sqrt(tau);
+  if (by_length <= 3 || !(weight > 0)) return by_length;
+  return std::min(by_length, std::log(diagonal() / (tau * weight)));
+}
 
 }  // namespace
 
@@ -38,7 +56,7 @@ March::March(const TangentGraph& graph, const OperatorOptions& operators, Varian
       progress_(std::move(progress)),
       threads_(threads),
       d_(static_cast<std::size_t>(graph.dimension())),
-      width_(FrameField(graph.size(), graph.dimension(), graph.transport_kind()).width()) {
+      known_(graph, system_of(variant)) {
   options_.check_graph = false;
   options_.progress = {};
   options_.threads = threads;
@@ -46,11 +64,6 @@ March::March(const TangentGraph& graph, const OperatorOptions& operators, Varian
   accepted_.assign(n, 0);
   place_.assign(n, -1);
   tentative_.assign(n, far_away);
-  at_.lambda.resize(n);
-  at_.solution.resize(n * d_);
-  at_.frame.resize(n * width_);
-  at_.heat_exponent.resize(n);
-  at_.frame_exponent.resize(n);
   coordinates_.assign(n * d_, NAN);
 }
 
@@ -60,7 +73,7 @@ void March::run_on(const AffineHeat& heat, std::size_t s, std::span<const double
   std::vector<Index> reached;
   for (Index i = 0; i < graph_.size(); ++i)
     if (heat.reached(s, i)) reached.push_back(i);
-  for (Index i : reached) accept(i, i, heat, s, solution, 0, 0);
+  for (Index i : reached) accept(i, i, heat, s, solution, {});
   update_front(reached);
   march(nullptr);
 }
@@ -100,21 +113,23 @@ bool March::advance(const Source* source, double depth) {
         links.push_back({static_cast<Index>(k), e});
         return tau_ * star.weights[e];
       });
-  const HeatOperators operators(patch, options_, iterative_);
+  const HeatOperators operators(iterative_ ? iterative_system(patch, options_) : factored_system(patch, options_),
+                                patch);
 
-  std::int32_t heat_exponent = 0, frame_exponent = 0;
+  HeatExponents exponents;
   Inflow inflow;
   if (source) {
-    inflow = inflow_of(*source, graph_, operators);
+    inflow = inflow_of(*source, graph_, operators, variant_);
     for (Index& vertex : inflow.vertices) vertex = place_[vertex];
   } else {
-    inflow = inflow_behind(band, links, operators.scaling(), heat_exponent, frame_exponent);
+    exponents = exponents_behind(band, links);
+    inflow = inflow_behind(band, links, operators.scaling(), exponents);
   }
   for (Index vertex : band.vertices) place_[vertex] = -1;
 
-  AffineHeat heat(patch, operators, {std::move(inflow)}, threads_);
+  AffineHeat heat(patch, operators, variant_, {std::move(inflow)}, threads_);
   heat.diffuse();
-  const std::vector<double> solution = heat.solve(variant_);
+  const std::vector<double> solution = heat.solve();
 
   // Accept what is farther than the margin from all that was left out, by the heat just found.
   const auto lambda = heat.lambda(0);
@@ -132,7 +147,7 @@ bool March::advance(const Source* source, double depth) {
     return false;
   for (Index k : near) {
     added.push_back(band.vertices[k]);
-    accept(added.back(), k, heat, 0, solution, heat_exponent, frame_exponent);
+    accept(added.back(), k, heat, 0, solution, exponents);
   }
   update_front(added);
   return true;
@@ -141,51 +156,38 @@ bool March::advance(const Source* source, double depth) {
 /// The vertices ahead of the front within `depth` of heat distance (Dijkstra's algorithm, the levels on the front being
 /// those of the heat that was found there), in the order of the graph.
 March::Band March::find_band(const Source* source, double depth) {
-  using Entry = std::pair<float, Index>;
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
-  auto offer = [&](Index vertex, double distance) {
-    float& known = tentative_[vertex];
-    if (static_cast<float>(distance) < known) queue.push({known = static_cast<float>(distance), vertex});
-  };
+  ShortestPaths<float, std::vector<float>, far_away> paths(tentative_);
+  std::vector<Ahead> ahead;
   auto spread = [&](Index from, double distance) {
-    Star star = graph_.star(from);
-    auto diagonal_at = [&](Index vertex) {
-      const double a = diagonal(vertex);
-      star = graph_.star(from);  // the call above may have ended its life
-      return a;
-    };
-    for (std::size_t e = 0; e < star.degree(); ++e) {
-      const Index to = star.neighbors[e];
-      if (star.weights[e] == 0 || accepted_[to]) continue;
-      offer(to, distance + heat_distance(star, e, tau_, [&] { return diagonal_at(to); }));
-    }
+    const Star star = graph_.star(from);
+    ahead.clear();  // a copy: the star's life may end when another one is asked for
+    for (std::size_t e = 0; e < star.degree(); ++e)
+      if (star.weights[e] != 0 && !accepted_[star.neighbors[e]])
+        ahead.push_back({star.neighbors[e], star.weights[e], length(star.log(e))});
+    for (const Ahead& edge : ahead)
+      paths.offer(edge.vertex, static_cast<float>(distance + heat_distance(edge.length, edge.weight, tau_,
+                                                                           [&] { return diagonal(edge.vertex); })));
   };
   if (source) {
     for (std::size_t k = 0; k < source->vertices().size(); ++k)
-      if (source->weights()[k] > 0) offer(source->vertices()[k].index, 0);
+      if (source->weights()[k] > 0) paths.offer(source->vertices()[k].index, 0);
   } else {
     double base = std::numeric_limits<double>::infinity();
-    for (Index vertex : front_) base = std::min(base, level(vertex));
+    for (Index vertex : front_) base = std::min(base, known_.level(vertex));
     for (Index vertex : front_)
-      if (const double ahead = level(vertex) - base; ahead <= depth) spread(vertex, ahead);
+      if (const double beyond = known_.level(vertex) - base; beyond <= depth) spread(vertex, beyond);
   }
 
   Band band;
   std::vector<Index> touched;
-  const double limit = queue.empty() ? 0 : queue.top().first + depth;
-  while (!queue.empty()) {
-    const auto [distance, vertex] = queue.top();
-    queue.pop();
-    Index& place = place_[vertex];
-    if (place >= 0) continue;
-    if (distance > limit) {
-      touched.push_back(vertex);
-      continue;
-    }
-    place = static_cast<Index>(band.vertices.size());
+  const double limit = paths.empty() ? 0 : paths.least() + depth;
+  paths.run([&](Index vertex, float distance) {
+    if (place_[vertex] >= 0) return;
+    if (distance > limit) return touched.push_back(vertex);
+    place_[vertex] = static_cast<Index>(band.vertices.size());
     band.vertices.push_back(vertex);
     spread(vertex, distance);
-  }
+  });
   for (Index vertex : touched) tentative_[vertex] = far_away;
   // The graph's own order keeps neighbours close in memory; that of the distance scatters them all around the front.
   std::sort(band.vertices.begin(), band.vertices.end());
@@ -203,83 +205,39 @@ March::Band March::find_band(const Source* source, double depth) {
   return band;
 }
 
-/// Dirichlet data: for an accepted neighbour j of i, A gives tau w_ij lambda_j to the right-hand side of i, B gives
-/// tau w_ij R_ji U~_j, and so on for the other two systems.
-Inflow March::inflow_behind(const Band& band, std::span<const Link> links, double scaling, std::int32_t& heat_exponent,
-                            std::int32_t& frame_exponent) const {
-  // Scale the largest accepted value to `heat_scale`.
-  heat_exponent = frame_exponent = std::numeric_limits<std::int32_t>::min();
-  auto neighbor = [&](const Link& link) {
-    return static_cast<std::size_t>(graph_.star(band.vertices[link.place]).neighbors[link.edge]);
-  };
-  for (const Link& link : links) {
-    const std::size_t j = neighbor(link);
-    if (at_.lambda[j] != 0) heat_exponent = std::max(heat_exponent, at_.heat_exponent[j] + std::ilogb(at_.lambda[j]));
-    for (std::size_t a = 0; a < width_; ++a)
-      if (const double u = at_.frame[j * width_ + a]; u != 0)
-        frame_exponent = std::max(frame_exponent, at_.frame_exponent[j] + std::ilogb(u));
-  }
-  heat_exponent -= std::ilogb(heat_scale);
-  frame_exponent -= std::ilogb(heat_scale);
+HeatExponents March::exponents_behind(const Band& band, std::span<const Link> links) const {
+  std::vector<Index> behind;
+  for (const Link& link : links) behind.push_back(graph_.star(band.vertices[link.place]).neighbors[link.edge]);
+  return known_.exponents_for(behind);
+}
 
-  const bool is_complex = graph_.transport_kind() == TransportKind::rotation2;
-  const double to_units = graph_.length_unit() / solution_unit(graph_);
+/// Dirichlet data: what the accepted neighbours give to the band's right-hand sides.
+Inflow March::inflow_behind(const Band& band, std::span<const Link> links, double scaling,
+                            HeatExponents exponents) const {
+  const std::size_t width = graph_.transport_layout().width();
   Inflow in;
   for (const Link& link : links) {
     if (in.vertices.empty() || in.vertices.back() != link.place) {
       in.vertices.push_back(link.place);
       in.heat.push_back(0);
-      in.frames.resize(in.frames.size() + width_);
-      in.coordinates.resize(in.coordinates.size() + d_);
-      in.vectors.resize(in.vectors.size() + d_);
+      in.frames.resize(in.frames.size() + width);
+      in.values.resize(in.values.size() + d_);
       in.translations.resize(in.translations.size() + d_);
     }
     const Star star = graph_.star(band.vertices[link.place]);
-    const auto j = static_cast<std::size_t>(star.neighbors[link.edge]);
-    const double conductance = scaling * tau_ * star.weights[link.edge];
-    const double heat = std::ldexp(conductance, at_.heat_exponent[j] - heat_exponent);
-    const double turn = std::ldexp(conductance, at_.frame_exponent[j] - frame_exponent);
-    in.heat.back() += heat * at_.lambda[j];
-    const double *x = at_.solution.data() + j * d_, *u = at_.frame.data() + j * width_;
-    double *coordinates = in.coordinates.data() + in.coordinates.size() - d_,
-           *vectors = in.vectors.data() + in.vectors.size() - d_,
-           *frames = in.frames.data() + in.frames.size() - width_,
-           *translations = in.translations.data() + in.translations.size() - d_;
-    for (std::size_t a = 0; a < d_; ++a) {
-      coordinates[a] += heat * x[a];
-      translations[a] -= heat * at_.lambda[j] * (to_units * star.logs[link.edge * d_ + a]);
-    }
-    if (is_complex) {
-      const double* R = star.transports.data() + link.edge * 2;
-      frames[0] += turn * (R[0] * u[0] - R[1] * u[1]);
-      frames[1] += turn * (R[0] * u[1] + R[1] * u[0]);
-      vectors[0] += heat * (R[0] * x[0] - R[1] * x[1]);
-      vectors[1] += heat * (R[0] * x[1] + R[1] * x[0]);
-      continue;
-    }
-    const double* R = star.transports.data() + link.edge * d_ * d_;
-    for (std::size_t c = 0; c < d_; ++c)
-      for (std::size_t b = 0; b < d_; ++b) {
-        vectors[c] += heat * R[c * d_ + b] * x[b];
-        for (std::size_t a = 0; a < d_; ++a) frames[c * d_ + a] += turn * R[c * d_ + b] * u[b * d_ + a];
-      }
+    known_.add_to(in, star, link.edge, scaling * tau_ * star.weights[link.edge], exponents);
   }
   return in;
 }
 
 void March::accept(Index vertex, Index place, const AffineHeat& heat, std::size_t s, std::span<const double> solution,
-                   std::int32_t heat_exponent, std::int32_t frame_exponent) {
-  const auto i = static_cast<std::size_t>(vertex);
-  accepted_[i] = 1;
+                   HeatExponents exponents) {
+  accepted_[vertex] = 1;
   ++accepted_count_;
-  at_.lambda[i] = heat.lambda(s)[place];
-  heat.solution_at(variant_, solution, place, at_.solution.data() + i * d_);
-  heat.frames(s).raw(place, at_.frame.data() + i * width_);
-  at_.heat_exponent[i] = heat_exponent;
-  at_.frame_exponent[i] = frame_exponent;
-  const std::span phi = std::span(coordinates_).subspan(i * d_, d_);
-  heat.coordinates_at(variant_, s, solution, place, phi.data());
-  const bool good = at_.lambda[i] > 0 && heat.frames(s).heat(place) > 0 && all_finite(phi);
+  known_.take(vertex, place, heat, s, solution, exponents);
+  const std::span phi = std::span(coordinates_).subspan(vertex * d_, d_);
+  heat.coordinates_at(s, solution, place, phi.data());
+  const bool good = known_.heat(vertex) > 0 && heat.frames(s).heat(place) > 0 && all_finite(phi);
   if (!good) std::fill(phi.begin(), phi.end(), NAN);
 }
 
@@ -297,23 +255,6 @@ bool March::sends_heat(Index vertex) const {
   for (std::size_t e = 0; e < star.degree(); ++e)
     if (star.weights[e] != 0 && !accepted_[star.neighbors[e]]) return true;
   return false;
-}
-
-/// -log lambda
-double March::level(Index vertex) const {
-  const auto i = static_cast<std::size_t>(vertex);
-  return -std::log(at_.lambda[i]) - std::log(2.0) * at_.heat_exponent[i];
-}
-
-void March::axes(Index vertex, double* out) const {
-  // One vertex is a field of its own; in block graphs its columns are then the rows of the transposed matrix.
-  std::vector<double> U(
-      at_.frame.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(vertex) * width_),
-      at_.frame.begin() + static_cast<std::ptrdiff_t>((static_cast<std::size_t>(vertex) + 1) * width_));
-  if (graph_.transport_kind() == TransportKind::block)
-    for (std::size_t a = 0; a < d_; ++a)
-      for (std::size_t c = 0; c < a; ++c) std::swap(U[a * d_ + c], U[c * d_ + a]);
-  FrameField(1, graph_.dimension(), graph_.transport_kind(), U).axes(0, out);
 }
 
 /// m + tau sum w: the diagonal of A.

@@ -12,6 +12,7 @@
 
 #include "ahm/maps/log_map_solver.hpp"
 #include "maps/affine_heat.hpp"
+#include "maps/known_values.hpp"
 
 namespace ahm {
 
@@ -26,21 +27,15 @@ class March {
   /// Marches on from where a solve on the whole graph ended, source number `s` of `heat`.
   void run_on(const AffineHeat& heat, std::size_t s, std::span<const double> solution);
 
-  /// Coordinates, n x d in world units; NaN where `accepted` is false or too little heat arrived.
-  std::vector<double>& coordinates() { return coordinates_; }
+  /// phi_i in world units; NaN where `accepted` is false or too little heat arrived.
+  std::span<const double> coordinates(Index vertex) const { return std::span(coordinates_).subspan(vertex * d_, d_); }
   /// Whether the march came to the vertex.
   bool accepted(Index vertex) const { return accepted_[vertex] != 0; }
   /// U_i as d x d numbers, row major.
-  void axes(Index vertex, double* out) const;
+  void axes(Index vertex, double* out) const { known_.axes(vertex, out); }
   const MarchStatistics& statistics() const { return statistics_; }
 
  private:
-  /// lambda, U~ and x or Y of a vertex, as mantissas with exponents of their own: lambda and x are to be multiplied by
-  /// 2^heat_exponent, U~ by 2^frame_exponent.
-  struct Solutions {
-    std::vector<double> lambda, solution, frame;  ///< 1, d, and 2 or d x d numbers per vertex
-    std::vector<std::int32_t> heat_exponent, frame_exponent;
-  };
   struct Band {
     std::vector<Index> vertices;
     std::vector<Index> edge;  ///< places in `vertices` at the far end: with neighbours ahead of the band
@@ -53,12 +48,11 @@ class March {
   void march(const Source* source);
   bool advance(const Source* source, double depth);
   Band find_band(const Source* source, double depth);
-  Inflow inflow_behind(const Band& band, std::span<const Link> links, double scaling, std::int32_t& heat_exponent,
-                       std::int32_t& frame_exponent) const;
+  HeatExponents exponents_behind(const Band& band, std::span<const Link> links) const;
+  Inflow inflow_behind(const Band& band, std::span<const Link> links, double scaling, HeatExponents exponents) const;
   void accept(Index vertex, Index place, const AffineHeat& heat, std::size_t s, std::span<const double> solution,
-              std::int32_t heat_exponent, std::int32_t frame_exponent);
+              HeatExponents exponents);
   void update_front(std::span<const Index> added);
-  double level(Index vertex) const;
   bool sends_heat(Index vertex) const;
   double diagonal(Index vertex) const;
 
@@ -69,13 +63,13 @@ class March {
   double margin_, step_, radius_, tau_;
   Progress progress_;
   unsigned threads_;
-  std::size_t d_, width_;
+  std::size_t d_;
 
   std::vector<std::uint8_t> accepted_;
   std::vector<Index> place_;      ///< in the band at hand, or -1
   std::vector<float> tentative_;  ///< heat distance on the way, less that of the front
   std::vector<Index> front_;      ///< accepted vertices with neighbours that are not
-  Solutions at_;
+  KnownValues known_;             ///< of the accepted vertices
   std::vector<double> coordinates_;
   MarchStatistics statistics_;
   Offset accepted_count_ = 0;

@@ -38,7 +38,7 @@ double gauss_residual(const TangentGraph& graph, const LogMap& map, Index i) {
 
 }  // namespace
 
-std::vector<double> map_quality(const TangentGraph& graph, const LogMap& map) {
+std::vector<double> map_quality(const TangentGraph& graph, const LogMap& map, unsigned threads) {
   const auto n = static_cast<std::size_t>(graph.size()), d = static_cast<std::size_t>(graph.dimension());
   if (map.size() != graph.size() || map.dimension() != graph.dimension())
     throw InvalidArgument("map_quality: the map has " + std::to_string(map.size()) + " vertices, the graph " +
@@ -46,7 +46,7 @@ std::vector<double> map_quality(const TangentGraph& graph, const LogMap& map) {
   if (map.frames().size() != n * d * d)
     throw InvalidArgument("map_quality: the map has no frames; solve with MapOptions::frames = true");
   std::vector<double> quality(n, std::numeric_limits<double>::quiet_NaN());
-  detail::for_each_index(n, 0, [&](std::size_t k) {
+  detail::for_each_index(n, threads, [&](std::size_t k) {
     const auto i = static_cast<Index>(k);
     if (map.status(Vertex(i)) != Status::ok) return;
     const double g = gauss_residual(graph, map, i) / 0.4;

@@ -26,11 +26,12 @@ Source::Source(int dimension) : dimension_(dimension) {
   if (dimension < 1) throw InvalidArgument("Source: dimension " + std::to_string(dimension) + " must be at least 1");
 }
 
-Source Source::at_vertex(Vertex vertex) {
-  Source source(1);
-  source.dimension_ = 0;
-  source.vertices_ = {vertex};
-  source.weights_ = {1.0};
+Source Source::at_vertex(Vertex vertex) { return at_vertices({&vertex, 1}); }
+
+Source Source::at_vertices(std::span<const Vertex> vertices) {
+  Source source;
+  source.vertices_.assign(vertices.begin(), vertices.end());
+  source.weights_.assign(vertices.size(), 1.0);
   return source;
 }
 
@@ -46,20 +47,21 @@ Source Source::at_vertex(Vertex vertex, std::span<const double> direction) {
 }
 
 Source& Source::add(Vertex vertex, double weight, std::span<const double> offset, std::span<const double> axes) {
-  const auto d = static_cast<std::size_t>(dimension_);
+  const auto d = static_cast<std::size_t>(dimension_.value_or(0));
   const std::string where = "Source::add, vertex " + std::to_string(vertex.index) + ": ";
   if (d == 0) throw InvalidArgument(where + "a source made by at_vertex(vertex) takes no further samples");
   if (!(weight >= 0) || !std::isfinite(weight))
     throw InvalidArgument(where + "weight " + detail::number(weight) + " must be finite and >= 0");
   if (offset.size() != d || !all_finite(offset))
     throw InvalidArgument(where + "'offset' must be " + std::to_string(d) + " finite numbers");
-  if (axes.size() != d * d || !all_finite(axes) || !is_orthogonal(axes, d))
+  if (!axes.empty() && (axes.size() != d * d || !all_finite(axes) || !is_orthogonal(axes, d)))
     throw InvalidArgument(where + "'axes' must be an orthogonal " + std::to_string(d) + " x " + std::to_string(d) +
                           " matrix");
   vertices_.push_back(vertex);
   weights_.push_back(weight);
   offsets_.insert(offsets_.end(), offset.begin(), offset.end());
   axes_.insert(axes_.end(), axes.begin(), axes.end());
+  for (std::size_t k = 0; axes.empty() && k < d * d; ++k) axes_.push_back(k % (d + 1) == 0 ? 1.0 : 0.0);
   return *this;
 }
 

@@ -1,3 +1,4 @@
+#include "ahm/util/disjoint_sets.hpp"
 #include "ahm/surface/exact/polyhedral_surface.hpp"
 
 #include <algorithm>

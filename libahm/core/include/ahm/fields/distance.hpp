@@ -24,7 +24,8 @@ struct DistanceField {
 /// The distance is that of the localized variant. Within a few edges of the cut locus heat from both sides mixes:
 /// distances are too short there, and directions blended.
 /// @param source  in one place; or any set of samples with offset 0: the distance to the nearest of them
+/// @param options  threads
 /// @throws InvalidArgument when the source does not fit the graph; as `radial_field`
-DistanceField distance_and_gradient(const LogMapSolver& solver, const Source& source);
+DistanceField distance_and_gradient(const LogMapSolver& solver, const Source& source, const MapOptions& options = {});
 
 }  // namespace ahm

@@ -13,15 +13,10 @@
 #include <optional>
 #include <span>
 
+#include "ahm/graph/transport.hpp"
 #include "ahm/types.hpp"
 
 namespace ahm {
-
-/// How the transports of a graph are stored.
-enum class TransportKind {
-  rotation2,  ///< d = 2, rotations only: (cos, sin), the complex number R_ji
-  block,      ///< any d, rotations and reflections: d x d orthogonal matrix, row major
-};
 
 /// The out-edges of one vertex i. A neighbour may appear more than once (parallel edges).
 struct Star {
@@ -35,6 +30,12 @@ struct Star {
   std::size_t degree() const { return neighbors.size(); }
   /// e_ij of edge number `edge`, d numbers.
   std::span<const double> log(std::size_t edge) const { return logs.subspan(edge * dimension, dimension); }
+  /// R_ji of edge number `edge`. No square is 2, so that the number of numbers tells how they are stored.
+  Transport transport(std::size_t edge) const {
+    const bool is_complex = transports.size() == 2 * degree();
+    const TransportLayout layout{is_complex ? TransportKind::rotation2 : TransportKind::block, dimension};
+    return {layout, transports.data() + edge * layout.width()};
+  }
 };
 
 /// Tangent axes at a vertex in ambient 3-space, for input and display. The solver never asks for them.
@@ -58,11 +59,13 @@ class TangentGraph {
   /// Dimension d >= 1 of the tangent spaces.
   virtual int dimension() const noexcept = 0;
   virtual TransportKind transport_kind() const noexcept = 0;
+  TransportLayout transport_layout() const noexcept { return {transport_kind(), dimension()}; }
   /// Mean edge length h > 0; the diffusion time is tau = t_coef h^2.
   virtual double mean_edge_length() const noexcept = 0;
   /// Lumped mass (dual area or volume) m_i > 0.
   virtual double mass(Index vertex) const = 0;
-  /// The out-edges of `vertex`; valid until the next call on the same thread at the least.
+  /// The out-edges of `vertex`. A star lives until the next call on the same thread, no longer: whoever needs two at a
+  /// time copies one.
   virtual Star star(Index vertex) const = 0;
   /// Number of directed edges, to size arrays.
   virtual Offset edge_count() const noexcept = 0;

@@ -48,6 +48,8 @@ struct FactorStatistics {
   std::size_t bytes = 0;  ///< memory of both factors
 };
 
+class HeatSystem;
+
 /// A and B of one graph, factored. Immutable: all member functions may be called from many threads at once.
 class HeatOperators {
  public:
@@ -56,6 +58,8 @@ class HeatOperators {
   /// fails
   ///         its residual check), ResourceExhausted (memory), Cancelled
   HeatOperators(const TangentGraph& graph, const OperatorOptions& options = {});
+  /// The same by what already solves with A and B of this graph; a type of this library alone.
+  HeatOperators(std::unique_ptr<const HeatSystem> system, const TangentGraph& graph);
   ~HeatOperators();
   HeatOperators(HeatOperators&&) noexcept;
   HeatOperators& operator=(HeatOperators&&) noexcept;
@@ -81,11 +85,6 @@ class HeatOperators {
   Index component_count() const noexcept;
 
  private:
-  friend class March;
-  /// @param iterative  conjugate gradients instead of factors; block graphs only. Errors are then relative to the largest
-  ///                   value of a solution, which is enough for the thin bands of a march.
-  HeatOperators(const TangentGraph& graph, const OperatorOptions& options, bool iterative);
-
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };

@@ -52,9 +52,7 @@ struct LocalMaps {
   std::vector<double> transports;  ///< 2 numbers (cos, sin) or d x d, row major, per entry
 
   Index sources() const noexcept { return static_cast<Index>(indptr.size()) - 1; }
-  std::size_t transport_width() const {
-    return kind == TransportKind::rotation2 ? 2 : static_cast<std::size_t>(dimension) * dimension;
-  }
+  std::size_t transport_width() const { return TransportLayout{kind, dimension}.width(); }
 };
 
 /// The local maps of these sources. Sources close to each other share one small factorization; time and memory depend on

@@ -28,8 +28,9 @@ inline constexpr double trusted_quality = 0.5;
 /// sees jumps and folds; a smooth bias, such as that of a mesh too coarse for its features, it cannot see
 /// (`LogMap::error_estimate` does). Measured in docs/accuracy.md. Meant for sources in one place: |phi| is not a distance
 /// from a curve that carries coordinates of its own.
+/// @param threads  0: one per core
 /// @return n numbers in (0, 1]; NaN where the map is not ok
 /// @throws InvalidArgument when the map has no frames or belongs to another graph
-std::vector<double> map_quality(const TangentGraph& graph, const LogMap& map);
+std::vector<double> map_quality(const TangentGraph& graph, const LogMap& map, unsigned threads = 0);
 
 }  // namespace ahm

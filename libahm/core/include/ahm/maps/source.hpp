@@ -11,6 +11,7 @@
 /// \endcode
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -32,24 +33,31 @@ class Source {
   /// @throws InvalidArgument when the direction is zero or not finite
   static Source at_vertex(Vertex vertex, std::span<const double> direction);
 
+  /// All these vertices at once, weight 1 each: every vertex gets the coordinates that it has from the nearest of them,
+  /// with the axes of that vertex's frame; in any dimension.
+  static Source at_vertices(std::span<const Vertex> vertices);
+
   /// Adds a sample.
   /// @param weight  b_k >= 0, finite: barycentric or quadrature weight
   /// @param offset  z_k, d numbers in world units: where the vertex lies in the source's frame
   /// @param axes    U_k, d x d orthogonal, row major: column a is source axis a in the frame of `vertex`
   /// @throws InvalidArgument
-  Source& add(Vertex vertex, double weight, std::span<const double> offset, std::span<const double> axes);
+  ///                Empty: those of the frame itself
+  Source& add(Vertex vertex, double weight, std::span<const double> offset, std::span<const double> axes = {});
 
-  /// 0 for `at_vertex(vertex)`, which fits every dimension.
-  int dimension() const noexcept { return dimension_; }
+  /// None for `at_vertex(vertex)` and `at_vertices`, which fit every dimension.
+  std::optional<int> dimension() const noexcept { return dimension_; }
   std::span<const Vertex> vertices() const noexcept { return vertices_; }
   std::span<const double> weights() const noexcept { return weights_; }
-  /// z_k; empty for `at_vertex`: all zero.
+  /// z_k; empty without a dimension: all zero.
   std::span<const double> offsets() const noexcept { return offsets_; }
-  /// U_k; empty for `at_vertex(vertex)`: identity.
+  /// U_k; empty without a dimension: identity.
   std::span<const double> axes() const noexcept { return axes_; }
 
  private:
-  int dimension_ = 0;
+  Source() = default;
+
+  std::optional<int> dimension_;
   std::vector<Vertex> vertices_;
   std::vector<double> weights_;
   std::vector<double> offsets_;

@@ -50,8 +50,9 @@ struct PrincipalCurvatures {
 /// Eigenvalues and eigenvectors of the shape operator S of a paraboloid fitted to each vertex, its neighbours and
 /// theirs: over the tangent plane of the vertex heights are z = t . x - (x . S x) / 2, in the sense of least squares of
 /// z / |x|^2 [CP05]. First order in h on smooth surfaces; noise of the positions grows by 1 / h^2.
+/// @param threads  0: one per core; the result does not depend on it
 /// @throws InvalidArgument (d is not 2, no frames)
-PrincipalCurvatures curvature_directions(const TangentGraph& graph);
+PrincipalCurvatures curvature_directions(const TangentGraph& graph, unsigned threads = 0);
 
 /// Unit vector of space along which the surface bends most at a vertex, up to its sign.
 /// @throws InvalidArgument (as `curvature_directions`; fault "no_bending_direction" where there are too few neighbours to

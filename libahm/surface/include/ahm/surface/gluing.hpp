@@ -55,25 +55,6 @@ std::vector<std::pair<Index, Index>> find_duplicates(Index vertices, const FaceL
 /// @throws InvalidGeometry
 Gluing glue(Index vertices, const FaceList& faces, NonManifold non_manifold);
 
-/// Sets of numbers joined step by step; a set goes by its smallest member.
-class DisjointSets {
- public:
-  explicit DisjointSets(std::size_t n) : parent_(n) {
-    for (std::size_t i = 0; i < n; ++i) parent_[i] = static_cast<Index>(i);
-  }
-  Index root(Index v) {
-    while (parent_[v] != v) v = parent_[v] = parent_[parent_[v]];
-    return v;
-  }
-  void join(Index a, Index b) {
-    a = root(a), b = root(b);
-    if (a != b) parent_[a > b ? a : b] = a > b ? b : a;
-  }
-
- private:
-  std::vector<Index> parent_;
-};
-
 /// @throws InvalidGeometry (more than 2^30 positions, a coordinate that is not finite)
 void check_positions(std::span<const Vec3> positions);
 

@@ -1,0 +1,134 @@
+#include "heat/heat_system.hpp"
+
+#include <cmath>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "ahm/error.hpp"
+#include "ahm/graph/validate.hpp"
+#include "ahm/util/parallel.hpp"
+#include "ahm/util/stopwatch.hpp"
+#include "ahm/util/text.hpp"
+#include "heat/assemble.hpp"
+#include "heat/blas_control.hpp"
+#include "heat/check_options.hpp"
+#include "heat/cholesky.hpp"
+#include "heat/conjugate_gradient.hpp"
+
+namespace ahm {
+namespace {
+
+constexpr const char *name_A = "A = M + tau L", *name_B = "B = M + tau L^nabla";
+
+/// The power of two that brings the mean mass to order one. A power of two, so that scaled models give the same bits.
+/// @throws InvalidGraph
+double scaling_for(const TangentGraph& graph) {
+  double mean = 0;
+  for (Index i = 0; i < graph.size(); ++i) mean += graph.mass(i) / graph.size();
+  if (!(mean > 0) || !std::isfinite(mean))
+    throw InvalidGraph("the mean mass is " + detail::number(mean) + "; masses must be finite and > 0");
+  return std::ldexp(1.0, -std::ilogb(mean));
+}
+
+/// @throws InvalidArgument
+double checked_tau(const TangentGraph& graph, double t_coef) {
+  const double tau = t_coef * graph.mean_edge_length() * graph.mean_edge_length();
+  if (!(t_coef > 0) || !std::isfinite(t_coef))
+    throw InvalidArgument("t_coef is " + detail::number(t_coef) + "; it must be finite and > 0 (default 1)");
+  if (!(tau >= 1e-290) || !(tau <= 1e290))
+    throw InvalidArgument("tau = t_coef h^2 leaves the range of double precision (t_coef " + detail::number(t_coef) +
+                          ", mean edge length " + detail::number(graph.mean_edge_length()) +
+                          "): give the graph a length_unit near its edge length");
+  return tau;
+}
+
+/// Constants are in the kernel of L, so A 1 = m: how far A^-1 m is from 1 tells what conditioning leaves of the digits.
+void check_conservation(const HeatSystem& system, const TangentGraph& graph) {
+  std::vector<double> x(static_cast<std::size_t>(graph.size()));
+  for (Index i = 0; i < graph.size(); ++i) x[i] = system.scaling() * graph.mass(i);
+  system.solve_A(x, 1);
+  double worst = 0;
+  for (double value : x) worst = std::isfinite(value) ? std::max(worst, std::abs(value - 1)) : INFINITY;
+  if (!(worst <= 1e-9))
+    throw NotPositiveDefinite("operator A = M + tau L loses heat (" + detail::number(worst) +
+                              " relative): t_coef is too large for this graph, or its weights differ too much");
+}
+
+/// A and B as two objects of one kind that solve: CholeskyFactor or ConjugateGradient.
+template <class Solver>
+class SystemOf final : public HeatSystem {
+ public:
+  SystemOf(double tau, double scaling) : HeatSystem(tau, scaling) {}
+
+  void solve_A(std::span<double> X, Offset columns) const override { A->solve(X, columns); }
+  void solve_B(std::span<double> X, Offset columns) const override { B->solve(X, columns); }
+
+  FactorStatistics& statistics_to_fill() { return statistics_; }
+  void finish(const TangentGraph& graph) {
+    check_conservation(*this, graph);
+    statistics_.bytes = A->bytes() + B->bytes();
+    statistics_.nonzeros_A = A->nonzeros();
+    statistics_.nonzeros_B = B->nonzeros();
+  }
+
+  std::optional<Solver> A, B;
+};
+
+/// The checks and the assembly that every system begins with.
+template <class Solver>
+std::pair<std::unique_ptr<SystemOf<Solver>>, AssembledOperators> begin(const TangentGraph& graph,
+                                                                       const OperatorOptions& options) {
+  const double tau = check_operator_options(graph, options);
+  auto system = std::make_unique<SystemOf<Solver>>(tau, scaling_for(graph));
+  options.progress.step("assemble", 0.0);
+  detail::Stopwatch stopwatch;
+  AssembledOperators matrices = assemble(graph, tau, system->scaling());
+  system->statistics_to_fill().assemble_seconds = stopwatch.lap();
+  return {std::move(system), std::move(matrices)};
+}
+
+}  // namespace
+
+double check_operator_options(const TangentGraph& graph, const OperatorOptions& options) {
+  if (options.check_graph) {
+    options.progress.step("check", 0.0);
+    validate(graph);
+  }
+  return checked_tau(graph, options.t_coef);
+}
+
+std::unique_ptr<const HeatSystem> factored_system(const TangentGraph& graph, const OperatorOptions& options) {
+  std::unique_ptr<SystemOf<CholeskyFactor>> system;
+  AssembledOperators matrices;
+  std::tie(system, matrices) = begin<CholeskyFactor>(graph, options);
+  detail::Stopwatch stopwatch;
+  options.progress.step("analyze", 0.0);
+
+  const SymbolicCholesky scalar(matrices.A, options.ordering, options.supernodal);
+  std::optional<SymbolicCholesky> blocks;
+  if (!matrices.B.is_complex) blocks.emplace(matrices.B, scalar, graph.dimension());
+  system->statistics_to_fill().analyze_seconds = stopwatch.lap();
+  options.progress.step("factor", 0.0);
+
+  detail::run_both(
+      options.threads != 1,
+      [&] { without_openmp_regions([&] { system->B.emplace(matrices.B, blocks ? *blocks : scalar, name_B); }); },
+      [&] { without_openmp_regions([&] { system->A.emplace(matrices.A, scalar, name_A); }); });
+  system->statistics_to_fill().factor_seconds = stopwatch.lap();
+  options.progress.step("factor", 1.0);
+  system->finish(graph);
+  return system;
+}
+
+std::unique_ptr<const HeatSystem> iterative_system(const TangentGraph& graph, const OperatorOptions& options) {
+  auto [system, matrices] = begin<ConjugateGradient>(graph, options);
+  system->A.emplace(matrices.A, name_A);
+  system->B.emplace(matrices.B, name_B);
+  system->finish(graph);
+  return std::move(system);
+}
+
+}  // namespace ahm

@@ -1,0 +1,49 @@
+/// \file
+/// What a variant of the method puts into its linear system and reads out of it. All else is common: AffineHeat, March
+/// and local maps ask the object, never for its name. A further variant is one file beside these, and its line in
+/// variants.cpp.
+#pragma once
+
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "ahm/graph/transport.hpp"
+#include "ahm/heat/heat_operators.hpp"
+#include "ahm/maps/log_map.hpp"
+#include "maps/frame_field.hpp"
+
+namespace ahm {
+
+/// The unknown of one source is n vectors of d numbers, laid out as its operator wants them (`place`).
+class VariantSystem {
+ public:
+  virtual ~VariantSystem() = default;
+
+  virtual std::string_view name() const noexcept = 0;
+
+  /// A sample of the source, heat b at z (d numbers), whose axes are U (d x d, row major): adds to out, d numbers.
+  virtual void add_sample(double b, std::span<const double> U, std::span<const double> z, double* out) const = 0;
+  /// A vertex of known value (Dirichlet data), seen along R: adds to out, d numbers.
+  virtual void add_known(double heat, const Transport& R, std::span<const double> value, double* out) const = 0;
+
+  /// Where the system has component a of vertex i.
+  virtual std::size_t place(std::size_t i, std::size_t a, std::size_t n, std::size_t d) const = 0;
+  /// Puts rho of a vertex (Eq. 9, d numbers in its frame) into the right-hand side of one source.
+  virtual void put(const FrameField& U, Index vertex, std::span<const double> rho, double* right_side,
+                   std::size_t n) const = 0;
+  /// X <- solution, for all sources.
+  virtual void solve(const HeatOperators& operators, std::span<double> X, std::size_t sources) const = 0;
+  /// lambda phi of a vertex, d numbers in the source's frame.
+  virtual void read(const FrameField& U, Index vertex, std::span<const double> solution, std::size_t n,
+                    double* out) const = 0;
+};
+
+/// @throws InvalidArgument when it is none of the table's
+const VariantSystem& system_of(Variant variant);
+
+/// The table's entries, one per file.
+const VariantSystem& adaptive_system();
+const VariantSystem& localized_system();
+
+}  // namespace ahm
