@@ -5,6 +5,7 @@
 
 #include "ahm/error.hpp"
 #include "ahm/surface/gluing.hpp"
+#include "ahm/util/disjoint_sets.hpp"
 
 namespace ahm::detail {
 namespace {
