@@ -69,7 +69,7 @@ void mesh_logs_transports(benchmark::State& state) {
   ahm::trimesh::IntrinsicTriangulation triangulation(mesh, false, 1);
   triangulation.flip_to_delaunay({});
   const ahm::trimesh::VertexFrames frames = ahm::trimesh::find_frames(mesh, triangulation, 1);
-  ahm::trimesh::MeshReport report;
+  ahm::trimesh::MeshDetails report;
   auto work = [&] { return ahm::trimesh::mesh_edges(mesh, triangulation, frames, true, 1, report); };
   const double seconds = run(state, [&] { benchmark::DoNotOptimize(work()); });
   const ahm::CsrGraphData g = work();
@@ -83,7 +83,7 @@ void polygon_logs_transports(benchmark::State& state) {
   const auto quads = ahm::bench::quads_of(ahm::bench::torus_mesh(static_cast<Index>(state.range(0))));
   const auto mesh = ahm::polymesh::PolygonMesh::from_faces(quads.points, quads.begin, quads.corners);
   const ahm::polymesh::Frames frames = ahm::polymesh::find_frames(mesh, 1);
-  ahm::polymesh::PolygonReport report;
+  ahm::polymesh::PolygonDetails report;
   auto work = [&] { return ahm::polymesh::polygon_edges(mesh, frames, {.threads = 1}, report); };
   const double seconds = run(state, [&] { benchmark::DoNotOptimize(work()); });
   report_points(state, mesh.vertex_count());
@@ -95,7 +95,7 @@ void polygon_logs_transports(benchmark::State& state) {
 /// Everything on the way from points to edges.
 struct CloudSteps {
   ahm::pointcloud::CloudOptions options{.threads = 1};
-  ahm::pointcloud::CloudReport report;
+  ahm::pointcloud::CloudDetails report;
   ahm::pointcloud::CleanPoints cloud;
   std::unique_ptr<ahm::pointcloud::NeighborSearch> search;
   ahm::pointcloud::Neighborhoods neighborhoods;
@@ -104,7 +104,9 @@ struct CloudSteps {
   ahm::pointcloud::WeightedEdges edges;
   std::vector<Index> vertices;
 
-  explicit CloudSteps(const std::vector<ahm::Vec3>& points) : cloud(clean_points(points, options, report)) {
+  explicit CloudSteps(const std::vector<ahm::Vec3>& points)
+      : cloud(clean_points(
+            points, [](std::size_t i) { return static_cast<Index>(i); }, options, report)) {
     search = options.search(cloud.points);
     find_neighbors();
     find_planes();

@@ -122,7 +122,7 @@ TEST(Atlas, GivesFacesToTheSourceNearestToTheirMiddle) {
   const auto sources = farthest_points(surface.solver(), Vertex{5}, 12);
   const Atlas atlas = make_atlas(surface.solver(), sources, surface.faces());
   std::vector<LogMap> maps;
-  for (Index s : sources) maps.push_back(surface.solver().solve(Source::at_vertex(Vertex(s))));
+  for (Vertex s : sources) maps.push_back(surface.solver().solve(Source::at_vertex(s)));
   const auto sum = [&](std::size_t source, std::size_t f) {
     double total = 0;
     for (Index v : surface.faces()[f]) total += maps[source].distance(Vertex(v));

@@ -134,7 +134,7 @@ TEST(GeometricMedian, OfPointsOnALineIsTheirMedian) {
 
 /// A center as a point of space.
 Vec3 in_space(const TangentGraph& graph, const Center& center) {
-  const Frame frame = *graph.frame(center.vertex);
+  const Frame frame = *graph.frame(center.vertex.index);
   Vec3 p;
   for (int a = 0; a < 3; ++a) p[a] = frame.origin[a] + center.offset[0] * frame.x[a] + center.offset[1] * frame.y[a];
   return p;
@@ -228,7 +228,7 @@ TEST(Center, OfThreeCornersOfAnIcosahedronIsTheMiddleOfTheirFace) {
   const auto& graph = sphere.surface.graph();
   const double h = graph.mean_edge_length() * graph.length_unit();
   for (const FindCenter& find : {find_mean, find_median}) {
-    const Center center = find(sphere.solver, corners, {});
+    const Center center = find(sphere.solver, std::vector<Vertex>(corners.begin(), corners.end()), {});
     EXPECT_TRUE(center.converged);
     EXPECT_LT(apart(in_space(graph, center), middle), h);
   }

@@ -27,8 +27,8 @@ inline double plane_error(const Mesh& mesh, const RowLogMap& map, const Vec2& or
   return plane_error(mesh.plane, map.u, map.v, origin, axis);
 }
 
-inline Vec2 plane_point(const Mesh& mesh, const trimesh::SurfacePoint& point) {
-  return mesh.plane_point(point.face, point.barycentric);
+inline Vec2 plane_point(const Mesh& mesh, const FacePoint& point) {
+  return mesh.plane_point(point.face, {point.barycentric[0], point.barycentric[1], point.barycentric[2]});
 }
 
 }  // namespace ahm::test

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <string>
 
-#include "ahm/util/disjoint_sets.hpp"
 #include "ahm/error.hpp"
 #include "ahm/surface/gluing.hpp"
+#include "ahm/util/disjoint_sets.hpp"
 #include "polygon.hpp"
 
 namespace ahm::polymesh {

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <string>
 
-#include "ahm/util/disjoint_sets.hpp"
 #include "ahm/error.hpp"
 #include "ahm/surface/gluing.hpp"
+#include "ahm/util/disjoint_sets.hpp"
 #include "ahm/util/text.hpp"
 #include "face_layout.hpp"
 #include "vec.hpp"

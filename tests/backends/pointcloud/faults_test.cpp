@@ -197,7 +197,7 @@ TEST(CloudFaults, DensityThatVariesAHundredfold) {
   }
   cloud.normals = cloud.points;
   const Solved solved(cloud);
-  EXPECT_EQ(solved.graph.report().components, 1);
+  EXPECT_EQ(solved.graph.details().components, 1);
   EXPECT_LT(sphere_error(cloud, solved.graph, solved.map(5), 5).angle, 0.11);  // measured 0.095
 }
 

@@ -28,10 +28,10 @@ struct Solved {
 };
 
 /// Errors from input point p, in the axes of the solver made tangent to the true sphere; all points must be ok.
-inline SphereError sphere_error(const Cloud& sphere, const pointcloud::PointCloudSurface& graph,
-                                const RowLogMap& map, Index p) {
+inline SphereError sphere_error(const Cloud& sphere, const pointcloud::PointCloudSurface& graph, const RowLogMap& map,
+                                Index p) {
   for (std::size_t i = 0; i < sphere.points.size(); ++i) EXPECT_EQ(map.status[i], Status::ok) << "point " << i;
-  const Frame frame = *graph.graph().frame(graph.vertex_of_point()[p]);
+  const Frame frame = *graph.graph().frame(graph.vertex(Row(p)).index);
   return sphere_error(sphere.normals, map.u, map.v, p, tangential(frame.x, sphere.normals[p]),
                       tangential(frame.y, sphere.normals[p]));
 }

@@ -77,7 +77,7 @@ TEST(PolygonFaults, EdgesOfThreeFacesAndBowTies) {
   fin.add({5, 6, fin.vertices() - 1, fin.vertices() - 2});
   expect_error<InvalidGeometry>(fin, "1 edges have more than two faces: (5, 6) with 3 faces");
   const auto split = build(fin, {.non_manifold = NonManifold::split});
-  EXPECT_EQ(split.report().topology.non_manifold_edges, 1);
+  EXPECT_EQ(split.details().topology.non_manifold_edges, 1);
   EXPECT_NO_THROW(validate(split.graph()));
   const auto rows = split.on_rows(map_of(split));
   EXPECT_EQ(rows.status.size(), fin.positions.size());
@@ -87,7 +87,7 @@ TEST(PolygonFaults, EdgesOfThreeFacesAndBowTies) {
                      {0, 1, 2, 3, 0, 4, 5, 6},
                      {}};
   expect_error<InvalidGeometry>(bow, "1 vertices join several fans of faces (bow ties): 0");
-  EXPECT_EQ(build(bow, {.non_manifold = NonManifold::split}).report().topology.components, 2);
+  EXPECT_EQ(build(bow, {.non_manifold = NonManifold::split}).details().topology.components, 2);
 }
 
 TEST(PolygonFaults, UnreferencedVerticesAndOtherComponentsAreMasked) {
@@ -97,8 +97,8 @@ TEST(PolygonFaults, UnreferencedVerticesAndOtherComponentsAreMasked) {
   for (const Vec3& p : {Vec3{5, 5, 5}, Vec3{6, 5, 5}, Vec3{6, 6, 5}, Vec3{5, 6, 5}}) mesh.positions.push_back(p);
   mesh.add({n + 1, n + 2, n + 3, n + 4});
   const auto surface = build(mesh);
-  EXPECT_EQ(surface.report().topology.components, 2);
-  EXPECT_EQ(surface.report().topology.unreferenced, 1);
+  EXPECT_EQ(surface.details().topology.components, 2);
+  EXPECT_EQ(surface.details().topology.unreferenced, 1);
   const auto rows = surface.on_rows(map_of(surface));
   EXPECT_EQ(rows.status[n], Status::removed);
   EXPECT_EQ(rows.status[n + 1], Status::disconnected);
@@ -109,8 +109,8 @@ TEST(PolygonFaults, UnreferencedVerticesAndOtherComponentsAreMasked) {
 TEST(PolygonFaults, MoebiusBandsAreSolvedWithReflections) {
   const Polygons mesh = moebius_quads(60, 6);
   const auto surface = build(mesh);
-  EXPECT_FALSE(surface.report().topology.orientable);
-  EXPECT_EQ(surface.report().topology.boundary_loops, 1);
+  EXPECT_FALSE(surface.details().topology.orientable);
+  EXPECT_EQ(surface.details().topology.boundary_loops, 1);
   EXPECT_EQ(surface.graph().transport_kind(), TransportKind::block);
   EXPECT_NO_THROW(validate(surface.graph()));
   const LogMap map = map_of(surface, 3);
@@ -167,12 +167,13 @@ TEST(PolygonFaults, AnyScaleAndAnyPlace) {
 TEST(PolygonFaults, SourcesThatAreNotThere) {
   const Polygons mesh = cube_sphere(3);
   const auto surface = build(mesh);
-  EXPECT_THROW(surface.source(Row(-1)).source, InvalidArgument);
-  EXPECT_THROW(surface.source(Row(mesh.vertices())).source, InvalidArgument);
-  EXPECT_THROW(surface.source(Row(0), {0, 0, 0}).source, InvalidArgument);
-  EXPECT_THROW(surface.source(Row(0), mesh.positions[0]).source, InvalidArgument);  // along the normal
-  EXPECT_THROW(surface.source_at_face(-1), InvalidArgument);
-  EXPECT_THROW(surface.source_at_face(mesh.faces()), InvalidArgument);
+  EXPECT_THROW(surface.source(Row(-1)), InvalidArgument);
+  EXPECT_THROW(surface.source(Row(mesh.vertices())), InvalidArgument);
+  EXPECT_THROW(surface.source(Row(0), Vec3{0, 0, 0}), InvalidArgument);
+  EXPECT_THROW(surface.source(Row(0), mesh.positions[0]), InvalidArgument);  // along the normal
+  const std::vector<double> mean(4, 0.25);
+  EXPECT_THROW(surface.source(FacePoint{-1, mean}), InvalidArgument);
+  EXPECT_THROW(surface.source(FacePoint{mesh.faces(), mean}), InvalidArgument);
   const std::vector<double> three{0.5, 0.25, 0.25}, more{0.5, 0.5, 0.5, 0}, negative{0.5, 0.7, -0.2, 0},
       bad{NAN, 0.5, 0.5, 0};
   for (const auto& weights : {three, more, negative, bad})

@@ -70,7 +70,7 @@ TEST(PolygonLaplacian, IsTheCotanLaplacianOnTriangles) {
     std::vector<Triangle> triangles;
     for (Index f = 0; f < mesh.faces(); ++f) triangles.push_back({mesh.face(f)[0], mesh.face(f)[1], mesh.face(f)[2]});
     const auto cotan = trimesh::TriangleMeshSurface::build(mesh.positions, triangles,
-                                                         {.intrinsic_delaunay = false, .clamp_weights = false});
+                                                           {.intrinsic_delaunay = false, .clamp_weights = false});
     const auto surface = build(mesh, {.clamp_weights = false});
     const Eigen::MatrixXd K = stiffness(surface.graph()), L = stiffness(cotan.graph());
     EXPECT_LT((K - L).cwiseAbs().maxCoeff(), 1e-11 * L.cwiseAbs().maxCoeff());

@@ -76,8 +76,8 @@ TEST(PolygonPlane, DoesNotDependOnTheOrderOfCorners) {
   Polygons mesh = voronoi_square(80);
   for (Index f = 0; f < mesh.faces(); f += 3) mesh.reverse(f);
   const auto surface = build(mesh);
-  EXPECT_GT(surface.report().topology.reoriented, 0);
-  EXPECT_TRUE(surface.report().topology.orientable);
+  EXPECT_GT(surface.details().topology.reoriented, 0);
+  EXPECT_TRUE(surface.details().topology.orientable);
   const LogMapSolver solver(surface.graph());
   for (Index face : {0, 1, 2, 3}) {  // some of them turned over
     const auto corners = mesh.face(face);

@@ -63,9 +63,9 @@ TEST(PolygonSphere, StartsInsideAFaceToo) {
   const auto surface = build(mesh);
   const Index face = 300;
   const std::vector<double> weights(4, 0.25);
-  const Frame frame = surface.frame_at_face(face, weights);
-  const Vec3 p = unit(frame.origin);
-  const LogMap map = LogMapSolver(surface.graph()).solve(surface.source_at_face(face));
+  const PlacedSource middle = surface.source(FacePoint{face, weights});
+  const Vec3 p = unit(middle.frame->origin);
+  const LogMap map = LogMapSolver(surface.graph()).solve(middle.source);
   const double h = surface.graph().mean_edge_length() * surface.graph().length_unit();
   for (Index i = 0; i < mesh.vertices(); ++i) {
     const double r = sphere_distance(p, mesh.positions[i]);

@@ -90,12 +90,12 @@ TEST(MeshPlane, IsTheIdentityFromPointsInFacesAndOnEdges) {
         point.barycentric[2] = 1 - point.barycentric[0] - point.barycentric[1];
         const auto& [a, b, c] = mesh.faces[f];
         const Variant variant = trial % 2 ? Variant::adaptive : Variant::localized;
-        EXPECT_LT(plane_error(mesh, solved.map(solved.surface.source_at(point), variant), plane_point(mesh, point),
+        EXPECT_LT(plane_error(mesh, solved.map(solved.surface.source(point).source, variant), plane_point(mesh, point),
                               direction(mesh.plane[a], mesh.plane[b])),
                   tolerance * mesh.diameter())
             << name << (flips ? " flipped" : "") << ", face " << f;
         const double t = uniform(random);
-        EXPECT_LT(plane_error(mesh, solved.map(solved.surface.source_at_edge(c, a, t), variant),
+        EXPECT_LT(plane_error(mesh, solved.map(solved.surface.source(EdgePoint{Row(c), Row(a), t}).source, variant),
                               mesh.plane_point(f, {t, 0, 1 - t}), direction(mesh.plane[c], mesh.plane[a])),
                   tolerance * mesh.diameter())
             << name << (flips ? " flipped" : "") << ", edge of face " << f;
@@ -127,8 +127,8 @@ TEST(MeshPlane, NeedsNoPositions) {
   EXPECT_FALSE(surface.graph().frame(0).has_value());
   const LogMapSolver solver(surface.graph());
   EXPECT_LT(vertex_error(mesh, surface.on_rows(solver.solve(surface.source(Row(7)).source)), 7), tolerance);
-  const SurfacePoint point{11, {0.2, 0.3, 0.5}};
-  const auto map = surface.on_rows(solver.solve(surface.source_at(point)));
+  const FacePoint point{11, {0.2, 0.3, 0.5}};
+  const auto map = surface.on_rows(solver.solve(surface.source(point).source));
   EXPECT_LT(plane_error(mesh, map, plane_point(mesh, point),
                         direction(mesh.plane[mesh.faces[11][0]], mesh.plane[mesh.faces[11][1]])),
             tolerance);

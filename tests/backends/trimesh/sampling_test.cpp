@@ -10,13 +10,12 @@
 namespace ahm::test {
 namespace {
 
-
 TEST(MeshSampling, IsExactOnThePlane) {
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
   for (const Mesh& mesh : {sliver_square(600), holed_square(20), maze(5)}) {
     const SolvedMesh solved(mesh);
-    const LogMap map = solved.solver.solve(solved.surface.source_at({5, {0.25, 0.25, 0.5}}));
+    const LogMap map = solved.solver.solve(solved.surface.source(FacePoint{5, {0.25, 0.25, 0.5}}).source);
     const auto origin = mesh.plane_point(5, {0.25, 0.25, 0.5});
     const auto &a = mesh.plane[mesh.faces[5][0]], &b = mesh.plane[mesh.faces[5][1]];
     const double r = std::hypot(b[0] - a[0], b[1] - a[1]), c = (b[0] - a[0]) / r, s = (b[1] - a[1]) / r;
@@ -88,7 +87,7 @@ TEST(MeshSampling, CutsTheTextureOpenAlongTheCutLocus) {
   EXPECT_LE(stretch, 1.6);
   std::vector<std::array<double, 2>> joined(corners.size());
   for (std::size_t k = 0; k < joined.size(); ++k) {
-    const auto phi = map.coordinates(solved.surface.vertex(Row(mesh.faces[k / 3][k % 3])).index);
+    const auto phi = map.coordinates(solved.surface.vertex(Row(mesh.faces[k / 3][k % 3])));
     joined[k] = {phi[0], phi[1]};
   }
   EXPECT_GT(worst_stretch(mesh, joined, torn), 5);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "ahm/error.hpp"
+#include "ahm/surface/directions.hpp"
 #include "ahm/testing/closed_forms.hpp"
 #include "ahm/testing/vectors.hpp"
 #include "support/solved_mesh.hpp"

@@ -69,8 +69,7 @@ TEST(DistanceGradient, PointsAwayFromTheSourceOnTheSphere) {
     const Mesh mesh = icosphere(parts);
     const SolvedMesh sphere(mesh);
     const CsrGraph& graph = sphere.surface.graph();
-    const DistanceField field =
-        distance_and_gradient(sphere.solver, Source::at_vertex(sphere.surface.vertex(Row(0)).index));
+    const DistanceField field = distance_and_gradient(sphere.solver, Source::at_vertex(sphere.surface.vertex(Row(0))));
     double worst = 0;
     for (Index i = 0; i < mesh.vertices(); ++i) {
       const double cosine = dot(mesh.positions[i], mesh.positions[0]);

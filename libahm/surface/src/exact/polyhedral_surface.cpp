@@ -1,4 +1,3 @@
-#include "ahm/util/disjoint_sets.hpp"
 #include "ahm/surface/exact/polyhedral_surface.hpp"
 
 #include <algorithm>
@@ -8,6 +7,7 @@
 
 #include "ahm/error.hpp"
 #include "ahm/surface/gluing.hpp"
+#include "ahm/util/disjoint_sets.hpp"
 #include "ahm/util/text.hpp"
 
 namespace ahm::exact {
