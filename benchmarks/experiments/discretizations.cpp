@@ -74,7 +74,8 @@ void measure_cloud(const char* name, const std::vector<Vec3>& points, Table& tab
 }
 
 void measure_polygons(const std::string& name, const test::Polygons& mesh, Table& table) {
-  auto graph = [&](const polymesh::PolygonOptions& options) {
+  auto graph = [&](polymesh::PolygonOptions options) {
+    options.discretization = polymesh::Discretization::polygons;
     return polymesh::PolygonMeshSurface::build(mesh.positions, mesh.begin, mesh.corners, options);
   };
   measure_mesh(name.c_str(), mesh.positions, graph({}), table);

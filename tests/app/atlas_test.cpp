@@ -162,7 +162,7 @@ TEST(AtlasCommand, RefusesWhatItCannotDo) {
     EXPECT_NE(outcome.err.find(part), std::string::npos) << outcome.err;
   };
   const std::string out = folder / "out.obj";
-  refuses({"-o", folder / "out.stl"}, ".obj, .glb");
+  refuses({"-o", folder / "out.stl"}, ".obj or .glb");
   refuses({"-o", out, "--charts", "0"}, "--charts");
   refuses({"-o", out, "--max-distortion", "1"}, "--max-distortion");
   refuses({"-o", out, "--charts", "3", "--sources", "1 2"}, "--sources");

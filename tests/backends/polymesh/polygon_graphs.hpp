@@ -11,7 +11,9 @@
 
 namespace ahm::test {
 
-inline polymesh::PolygonMeshSurface build(const Polygons& mesh, const polymesh::PolygonOptions& options = {}) {
+/// The polygons as they are, without refinement.
+inline polymesh::PolygonMeshSurface build(const Polygons& mesh, polymesh::PolygonOptions options = {}) {
+  options.discretization = polymesh::Discretization::polygons;
   return polymesh::PolygonMeshSurface::build(mesh.positions, mesh.begin, mesh.corners, options);
 }
 
