@@ -22,15 +22,21 @@ void all_neighbors(benchmark::State& state, const ahm::pointcloud::NeighborSearc
 }
 
 BENCHMARK_CAPTURE(all_neighbors, nanoflann, ahm::pointcloud::nanoflann_search)
+    ->ArgName("n")
+    ->Arg(2500)
     ->Arg(10000)
     ->Arg(100000)
     ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(all_neighbors, flann, ahm::pointcloud::flann_search)
+    ->ArgName("n")
+    ->Arg(2500)
     ->Arg(10000)
     ->Arg(100000)
     ->Unit(benchmark::kMillisecond);
 #ifdef AHM_WITH_PCL
 BENCHMARK_CAPTURE(all_neighbors, pcl, ahm::pcl_bridge::kdtree_search)
+    ->ArgName("n")
+    ->Arg(2500)
     ->Arg(10000)
     ->Arg(100000)
     ->Unit(benchmark::kMillisecond);

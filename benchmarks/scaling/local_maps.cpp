@@ -40,7 +40,7 @@ trimesh::TriangleMeshSurface torus_graph(Index n) {
 
 Table margins(const Settings& settings) {
   Table table({"vertices", "variant", "R / h", "margin", "difference / R"});
-  for (Index n : sizes(settings, 1500, {10000})) {
+  for (Index n : sizes(settings, 6000, {10000})) {
     const auto surface = torus_graph(n);
     const double h = surface.graph().mean_edge_length() * surface.graph().length_unit();
     for (Variant variant : {Variant::adaptive, Variant::localized})
@@ -57,7 +57,7 @@ Table margins(const Settings& settings) {
 Table local_maps(const Settings& settings) {
   Table table({"vertices", "R / h", "variant", "neighbours", "s", "maps per second", "times a loop of global solves",
                "peak MB"});
-  for (Index n : sizes(settings, 1500, {100000})) {
+  for (Index n : sizes(settings, 600, {100000})) {
     const auto surface = torus_graph(n);
     const CsrGraph& graph = surface.graph();
     const double edge = graph.mean_edge_length() * graph.length_unit();
@@ -76,7 +76,7 @@ Table local_maps(const Settings& settings) {
                    graph.size() / s, single * graph.size() / s, peak_megabytes()});
       }
   }
-  table.seen = fmt::format("{:.0f} to {:.0f} maps per second, at least {:.0f} times as many as one after the other.",
+  table.seen = fmt::format("{:.0f} to {:.0f} maps per second, at least {:.2g} times as many as one after the other.",
                            table.smallest("maps per second"), table.largest("maps per second"),
                            table.smallest("times a loop of global solves"));
   return table;
