@@ -5,14 +5,16 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "ahm/applications/surface_curve.hpp"
+#include "ahm/error.hpp"
 #include "cli/numbers.hpp"
 #include "cli/option_adders.hpp"
 #include "cli/source_list.hpp"
 #include "commands/solve.hpp"
 #include "commands/subcommand.hpp"
-#include "input/curve.hpp"
 #include "output/results.hpp"
 #include "output/summary.hpp"
+#include "output/wording.hpp"
 
 namespace ahm::app {
 namespace {
@@ -48,7 +50,26 @@ double distance_from_curve(double u, double v, double length, const StrokeOption
   return shape.closed ? std::abs(v) : std::hypot(std::max({0.0, -u, u - length}), v);
 }
 
-void comment_on_curve(const Curve& curve, double edge, Journal& journal) {
+CurvePoint curve_point(const SourceSpec& spec) {
+  if (const auto* position = std::get_if<SourcePosition>(&spec)) return position->position;
+  if (const auto* face = std::get_if<SourceFace>(&spec)) return SurfacePoint(FacePoint{face->face, face->weights});
+  return SurfacePoint(Row(std::get<SourceVertex>(spec).index));
+}
+
+SurfaceCurve draw_curve(const Input& input, const std::vector<SourceSpec>& given, const StrokeOptions& options) {
+  std::vector<CurvePoint> points;
+  for (const SourceSpec& spec : given) {
+    position_in(input.geometry, spec, "--curve");
+    points.push_back(curve_point(spec));
+  }
+  try {
+    return ahm::draw_curve(input.surface->surface(), points, options);
+  } catch (const InvalidArgument& e) {
+    throw InvalidArgument(fmt::format("--curve: {}", worded(e)));
+  }
+}
+
+void comment_on_curve(const SurfaceCurve& curve, double edge, Journal& journal) {
   if (curve.gap > 2 * edge)
     journal.add_warning(fmt::format(
         "--curve: the straight lines between its points leave the surface by up to {:.4g}, {:.0f} mean edge lengths; "
@@ -60,7 +81,7 @@ void comment_on_curve(const Curve& curve, double edge, Journal& journal) {
         curve.jump, curve.jump / edge));
 }
 
-void write_results(const Curve& curve, const StrokeOptions& shape, const MapRows& rows,
+void write_results(const SurfaceCurve& curve, const StrokeOptions& shape, const MapRows& rows,
                    const std::vector<double>& distance, Results& results, Journal& journal) {
   io::Table table = results.table();
   table.add("u", rows.u);
@@ -81,7 +102,7 @@ void write_results(const Curve& curve, const StrokeOptions& shape, const MapRows
   results.write(table, scene, journal, picture);
 }
 
-void report(const StrokeCommandOptions& options, const Input& input, const Curve& curve, const MapRows& rows,
+void report(const StrokeCommandOptions& options, const Input& input, const SurfaceCurve& curve, const MapRows& rows,
             const std::vector<double>& distance, Journal& journal) {
   const auto mapped = std::count(rows.status.begin(), rows.status.end(), Status::ok);
   double farthest = 0;
@@ -109,7 +130,7 @@ void run(const StrokeCommandOptions& options) {
   check_results(options.input.path, options.output);
   Journal journal(options.output.verbose);
   const Input input = open_input(options.input, journal);
-  const Curve curve = draw_curve(input, options.curve, options.shape);
+  const SurfaceCurve curve = draw_curve(input, options.curve, options.shape);
   comment_on_curve(curve, input.mean_edge_length(), journal);
 
   const LogMapSolver solver = make_solver(options.solve, input.graph(), journal);

@@ -15,6 +15,7 @@
 #include "ahm/maps/log_map.hpp"
 #include "ahm/maps/source.hpp"
 #include "ahm/progress.hpp"
+#include "ahm/surface/surface.hpp"
 #include "cli/options.hpp"
 
 namespace ahm::app {
@@ -38,6 +39,7 @@ class Model {
   virtual ~Model() = default;
 
   virtual const TangentGraph& graph() const = 0;
+  virtual const Surface& surface() const = 0;
   /// @throws InvalidArgument, in the user's terms: row numbers are those of the input
   virtual ResolvedSource source(const SourceSpec& spec, const std::optional<Vec3>& u_axis) const = 0;
   virtual std::vector<RowVertex> row_vertices() const = 0;

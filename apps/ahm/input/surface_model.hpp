@@ -12,6 +12,7 @@ class SurfaceModel : public Model {
   explicit SurfaceModel(std::unique_ptr<const ahm::Surface> surface) : surface_(std::move(surface)) {}
 
   const TangentGraph& graph() const override { return surface_->graph(); }
+  const Surface& surface() const override { return *surface_; }
   ResolvedSource source(const SourceSpec& spec, const std::optional<Vec3>& u_axis) const override;
   std::vector<RowVertex> row_vertices() const override;
   std::vector<Index> corner_vertices() const override;
