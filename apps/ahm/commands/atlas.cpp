@@ -65,21 +65,21 @@ struct Made {
   std::size_t faces = 0, uncharted = 0;
   std::vector<Vec3> sources;
 
-  Made(Atlas made, const Skin& skin, const TangentGraph& graph, const std::vector<Vec3>& positions,
+  Made(Atlas made, const SurfaceFaces& polygons, const TangentGraph& graph, const std::vector<Vec3>& positions,
        const PackOptions& options)
       : atlas(std::move(made)),
-        distortion(ahm::distortion(atlas, skin.faces(), positions)),
-        packed(ahm::pack(atlas, skin.faces(), options)),
+        distortion(ahm::distortion(atlas, polygons.of_vertices(), positions)),
+        packed(ahm::pack(atlas, polygons.of_vertices(), options)),
         faces(atlas.chart_of_face.size()),
         uncharted(static_cast<std::size_t>(std::count(atlas.chart_of_face.begin(), atlas.chart_of_face.end(), -1))) {
     for (Vertex vertex : atlas.sources) sources.push_back(graph.frame(vertex.index)->origin);
   }
 };
 
-std::vector<Vec3> positions_of(const Skin& skin, Index vertices) {
+std::vector<Vec3> positions_of(const SurfaceFaces& faces, Index vertices) {
   std::vector<Vec3> positions(static_cast<std::size_t>(vertices));
-  for (std::size_t c = 0; c < skin.corner_vertices.size(); ++c)
-    positions[skin.corner_vertices[c]] = skin.points[skin.corner_points[c]];
+  for (std::size_t c = 0; c < faces.corner_vertices.size(); ++c)
+    positions[faces.corner_vertices[c]] = faces.points[faces.corner_points[c]];
   return positions;
 }
 
@@ -102,11 +102,11 @@ void comment(const AtlasCommandOptions& options, const Made& made, const Tangent
                                : "raise --charts, or let --max-distortion 2 add sources"));
 }
 
-void write_files(const AtlasCommandOptions& options, const Skin& skin, const Made& made) {
+void write_files(const AtlasCommandOptions& options, const SurfaceFaces& faces, const Made& made) {
   const Image texture = options.texture.empty() ? checkerboard(made.packed) : io::read_image(options.texture);
   const auto is_charted = [&](std::size_t f) { return made.atlas.chart_of_face[f] >= 0; };
-  const SkinPart charted(skin, is_charted, made.packed.coordinates);
-  const SkinPart rest(skin, [&](std::size_t f) { return !is_charted(f); });
+  const FacesPart charted(faces, is_charted, made.packed.coordinates);
+  const FacesPart rest(faces, [&](std::size_t f) { return !is_charted(f); });
   std::vector<io::MeshPart> parts{charted.view("atlas")};
   parts.front().texture = &texture;
   if (!rest.empty()) parts.push_back(rest.view("rest"));
@@ -162,18 +162,18 @@ void run(const AtlasCommandOptions& options) {
   map.variant = options.solve.variant;
   map.threads = options.solve.threads;
   const std::vector<Vertex> sources = choose_sources(options, input, solver, map);
-  const Skin skin = skin_of(input, solver, sources);
-  const std::vector<Vec3> positions = positions_of(skin, graph.size());
+  const SurfaceFaces faces = surface_faces(input.surface->surface(), solver, sources);
+  const std::vector<Vec3> positions = positions_of(faces, graph.size());
   journal.start("charts");
   RefineOptions refine;
   if (options.max_distortion) refine.max_distortion = *options.max_distortion;
-  const Made made(options.max_distortion ? make_atlas(solver, sources, skin.faces(), positions, refine, map)
-                                         : make_atlas(solver, sources, skin.faces(), map),
-                  skin, graph, positions, options.pack);
+  const Made made(options.max_distortion ? make_atlas(solver, sources, faces.of_vertices(), positions, refine, map)
+                                         : make_atlas(solver, sources, faces.of_vertices(), map),
+                  faces, graph, positions, options.pack);
   comment(options, made, graph, journal);
 
   journal.start("write");
-  write_files(options, skin, made);
+  write_files(options, faces, made);
   report(options, input, made, journal);
 }
 

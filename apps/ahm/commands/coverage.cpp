@@ -11,7 +11,7 @@
 #include "cli/option_adders.hpp"
 #include "commands/solve.hpp"
 #include "commands/subcommand.hpp"
-#include "input/skin.hpp"
+#include "input/inverse.hpp"
 #include "output/output_paths.hpp"
 #include "output/results.hpp"
 #include "output/summary.hpp"

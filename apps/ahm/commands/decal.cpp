@@ -13,6 +13,7 @@
 #include "cli/option_adders.hpp"
 #include "commands/solve.hpp"
 #include "commands/subcommand.hpp"
+#include "input/inverse.hpp"
 #include "output/output_paths.hpp"
 #include "output/summary.hpp"
 #include "output/texture_output.hpp"
@@ -77,15 +78,15 @@ struct Amount {
   }
 };
 
-Skin skin_behind(const DecalCommandOptions& options, const Input& input, const LogMapSolver& solver) {
+SurfaceFaces faces_behind(const DecalCommandOptions& options, const Input& input, const LogMapSolver& solver) {
   if (options.alone || !input.backend->has_faces) return {};
-  return skin_of(input, solver, {});
+  return surface_faces(input.surface->surface(), solver, {});
 }
 
 void write_mesh(const DecalCommandOptions& options, const Input& input, const LogMapSolver& solver, const Decal& decal,
                 const Image& image, const Vec3& source) {
-  const Skin skin = skin_behind(options, input, solver);
-  const SkinPart behind(skin, [](std::size_t) { return true; });
+  const SurfaceFaces faces = faces_behind(options, input, solver);
+  const FacesPart behind(faces, [](std::size_t) { return true; });
   std::vector<double> corners;
   for (Index v : decal.face_vertices)
     for (std::size_t c : {0, 1}) corners.push_back(decal.image_coordinates[2 * static_cast<std::size_t>(v) + c]);

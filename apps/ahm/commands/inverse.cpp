@@ -1,3 +1,5 @@
+#include "input/inverse.hpp"
+
 #include <fmt/format.h>
 
 #include <cmath>
@@ -9,7 +11,6 @@
 #include "cli/source_list.hpp"
 #include "commands/solve.hpp"
 #include "commands/subcommand.hpp"
-#include "input/skin.hpp"
 #include "output/results.hpp"
 #include "output/summary.hpp"
 

@@ -7,7 +7,8 @@
 #include <vector>
 
 #include "ahm/io/textured_mesh.hpp"
-#include "input/skin.hpp"
+#include "ahm/surface/surface_faces.hpp"
+#include "cli/options.hpp"
 
 namespace ahm::app {
 
@@ -18,17 +19,17 @@ void check_texture_output(const std::string& input, const OutputOptions& output,
                           const std::vector<std::string>& extensions, const std::vector<std::string>& parts,
                           const std::string& image);
 
-/// Some faces of a skin, with or without texture coordinates, as a part of a textured mesh.
-class SkinPart {
+/// Some faces of a surface, with or without texture coordinates, as a part of a textured mesh.
+class FacesPart {
  public:
   /// @param keep         whether to take face f
-  /// @param coordinates  of all corners of the skin, or empty
+  /// @param coordinates  of all corners of the faces, or empty
   template <class Keep>
-  SkinPart(const Skin& skin, const Keep& keep, const std::vector<double>& coordinates = {}) : skin_(skin) {
-    for (std::size_t f = 0; f + 1 < skin.face_begin.size(); ++f) {
+  FacesPart(const SurfaceFaces& faces, const Keep& keep, const std::vector<double>& coordinates = {}) : faces_(faces) {
+    for (std::size_t f = 0; f + 1 < faces.begin.size(); ++f) {
       if (!keep(f)) continue;
-      for (Offset c = skin.face_begin[f]; c < skin.face_begin[f + 1]; ++c) {
-        vertices_.push_back(skin.corner_points[c]);
+      for (Offset c = faces.begin[f]; c < faces.begin[f + 1]; ++c) {
+        vertices_.push_back(faces.corner_points[c]);
         if (!coordinates.empty())
           coordinates_.insert(coordinates_.end(), coordinates.begin() + 2 * c, coordinates.begin() + 2 * c + 2);
       }
@@ -39,14 +40,14 @@ class SkinPart {
   io::MeshPart view(const std::string& name) const {
     io::MeshPart part;
     part.name = name;
-    part.points = skin_.points, part.normals = skin_.normals;
+    part.points = faces_.points, part.normals = faces_.normals;
     part.faces = {begin_, vertices_};
     part.texture_coordinates = coordinates_;
     return part;
   }
 
  private:
-  const Skin& skin_;
+  const SurfaceFaces& faces_;
   std::vector<Offset> begin_{0};
   std::vector<Index> vertices_;
   std::vector<double> coordinates_;
