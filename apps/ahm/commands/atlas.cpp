@@ -50,7 +50,7 @@ struct AtlasCommandOptions {
 
 std::vector<Vertex> choose_sources(const AtlasCommandOptions& options, const Input& input, const LogMapSolver& solver) {
   if (options.sources.empty())
-    return farthest_points(solver, Vertex{0}, std::min(options.charts, solver.graph().size()));
+    return farthest_points(solver.graph(), Vertex{0}, std::min(options.charts, solver.graph().size()));
   std::vector<Vertex> result;
   for (const SourceSpec& spec : options.sources) result.push_back(vertex_at(input, spec, "--sources"));
   return result;
