@@ -162,7 +162,7 @@ void run(const AtlasCommandOptions& options) {
   map.variant = options.solve.variant;
   map.threads = options.solve.threads;
   const std::vector<Vertex> sources = choose_sources(options, input, solver, map);
-  const SurfaceFaces faces = surface_faces(input.surface->surface(), solver, sources);
+  const SurfaceFaces faces = surface_faces(input.surface(), solver, sources);
   const std::vector<Vec3> positions = positions_of(faces, graph.size());
   journal.start("charts");
   RefineOptions refine;

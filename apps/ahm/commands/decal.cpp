@@ -7,13 +7,13 @@
 #include <nlohmann/json.hpp>
 
 #include "ahm/applications/distortion.hpp"
+#include "ahm/applications/inverse_map.hpp"
 #include "ahm/io/write.hpp"
 #include "ahm/view/textured_picture.hpp"
 #include "cli/numbers.hpp"
 #include "cli/option_adders.hpp"
 #include "commands/solve.hpp"
 #include "commands/subcommand.hpp"
-#include "input/inverse.hpp"
 #include "output/output_paths.hpp"
 #include "output/summary.hpp"
 #include "output/texture_output.hpp"
@@ -79,8 +79,8 @@ struct Amount {
 };
 
 SurfaceFaces faces_behind(const DecalCommandOptions& options, const Input& input, const LogMapSolver& solver) {
-  if (options.alone || !input.backend->has_faces) return {};
-  return surface_faces(input.surface->surface(), solver, {});
+  if (options.alone || input.surface().faces().size() == 0) return {};
+  return surface_faces(input.surface(), solver, {});
 }
 
 void write_mesh(const DecalCommandOptions& options, const Input& input, const LogMapSolver& solver, const Decal& decal,
@@ -112,13 +112,16 @@ std::vector<std::array<std::uint8_t, 3>> painted(const Input& input, const std::
                                                  const Image& image) {
   std::vector<std::array<std::uint8_t, 3>> colors = input.geometry.colors;
   colors.resize(input.rows(), {200, 200, 200});
-  const bool by_row = input.backend->has_faces;
-  for (const auto& [row, vertex] : input.surface->row_vertices()) {
-    const auto k = static_cast<std::size_t>(by_row ? row : vertex);
+  const RowMap& rows = input.surface().rows();
+  for (std::size_t r = 0; r < colors.size(); ++r) {
+    const auto vertex = rows.vertex(Row(static_cast<Index>(r)));
+    if (!vertex) continue;
+    // Of equal points the first one is in the inverse.
+    const auto k = static_cast<std::size_t>(rows.row(*vertex)->index);
     if (std::isnan(places[2 * k])) continue;
     const auto texel = image.sample(places[2 * k], places[2 * k + 1]);
     for (std::size_t c = 0; c < 3; ++c) {
-      std::uint8_t& color = colors[row][c];
+      std::uint8_t& color = colors[r][c];
       color = static_cast<std::uint8_t>(std::lround((1 - texel[3]) * color + texel[3] * 255 * texel[c]));
     }
   }
@@ -128,7 +131,7 @@ std::vector<std::array<std::uint8_t, 3>> painted(const Input& input, const std::
 void write_points(const DecalCommandOptions& options, const Input& input, const InverseMap& inverse, const Image& image,
                   const Vec3& source) {
   const auto colors = painted(input, image_coordinates_of_vertices(inverse, options.decal), image);
-  const std::vector<Vec3> normals = input.surface->normals();
+  const std::vector<Vec3> normals = input.surface().normals();
   const io::Geometry& given = input.geometry;
   io::Table table{.title = "coloured by libahm"};
   table.add({"x", "y", "z"}, given.points);
@@ -174,14 +177,14 @@ void run(const DecalCommandOptions& given) {
 
   Journal journal(options.output.verbose);
   const Input input = open_input(options.input, journal, options.source.spec);
-  const ResolvedSource source = resolve(options.source, input);
+  const PlacedSource source = resolve(options.source, input);
   const LogMapSolver solver = make_solver(options.solve, input.graph(), journal);
   SolveOptions near = options.solve;
   near.radius = map_radius(options.decal, input.graph());
   const LogMap map = solve(near, solver, source.source, journal);
 
   journal.start("decal");
-  const InverseMap inverse = inverse_of(input, map, options.min_quality);
+  const InverseMap inverse = inverse_map(input.surface(), map, {.min_quality = options.min_quality});
   const Decal decal = make_decal(inverse, options.decal);
   if (decal.face_begin.size() < 2)
     throw InvalidArgument(fmt::format(

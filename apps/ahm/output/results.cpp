@@ -49,7 +49,7 @@ Results::Results(const OutputOptions& output, const Input& input, const std::str
     : output_(output),
       input_(input.geometry),
       title_(std::filesystem::path(path).filename().string()),
-      normals_(input.surface->normals()) {}
+      normals_(input.surface().normals()) {}
 
 Results::~Results() {
   std::error_code ignored;

@@ -8,7 +8,6 @@
 #include "ahm/io/write.hpp"
 #include "ahm/view/picture.hpp"
 #include "input/open.hpp"
-#include "output/map_rows.hpp"
 
 namespace ahm::app {
 

@@ -31,6 +31,8 @@ constexpr Sentence sentences[] = {
     {"negative_weights", "{0:.0f} edges have negative weights; far from the source heat may lose its sign"},
     {"twisted_faces", "{0:.0f} faces are twisted, the first is face {1:.0f}, so the polygons are not refined"},
     // clouds
+    {"faces_ignored", "the {0:.0f} faces are ignored: the vertices are mapped as a point cloud"},
+    {"non_finite_dropped", "{0:.0f} points with nan or infinite coordinates were dropped"},
     {"normals_estimated", "{0:.0f} given normals are zero or not finite and were estimated"},
     {"cover_not_delaunay",
      "the intrinsic Delaunay flips did not come to an end: some edges of degenerate triangles were left out"},
@@ -52,6 +54,7 @@ constexpr Advice advices[] = {
     {"non_manifold_edges", "repair them, or cut the mesh there with --non-manifold split"},
     {"non_manifold_vertices", "repair them, or split them with --non-manifold split"},
     {"twisted_faces", "use --discretization polygons"},
+    {"no_bending_direction", "give the axis as X,Y,Z"},
     {"row_left_out", "--voxel, --outliers, --drop-nan or --local removed it; choose another one, or write x,y,z"},
 };
 
