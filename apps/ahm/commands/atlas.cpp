@@ -115,7 +115,7 @@ void write_files(const AtlasCommandOptions& options, const SurfaceFaces& faces, 
   view::TexturedScene scene;
   scene.parts = parts;
   scene.towards = made.sources.front();
-  view::write_textured_png(options.output.view, scene, picture_options(options.output.picture));
+  view::write_textured_png(options.output.view, scene, picture_options(options.output.picture, options.input.threads));
 }
 
 nlohmann::ordered_json as_json(const DistortionSummary& s) {

@@ -197,7 +197,7 @@ void run(const CellsOptions& options) {
   }
   double farthest = 0;
   for (double d : rows.distance) farthest = std::max(farthest, std::isnan(d) ? 0 : d);
-  Results results(options.output, input, options.input.path);
+  Results results(options.output, input, options.input);
   write_results(rows, positions, results, journal);
   report(options, input, source_rows, positions, sizes(graph, labels, sources.size()), farthest, journal);
   results.keep();

@@ -63,10 +63,7 @@ void write_path(const std::string& name, const CoveragePath& path) {
 }
 
 /// The path on the map, as a picture.
-void write_view(const Input& input, const PlacedSource& source, const LogMap& map, const CoveragePath& path,
-                const std::vector<double>& quality, Results& results, Journal& journal) {
-  const RowLogMap rows = input.surface().on_rows(map);
-  const std::vector<double> row_quality = on_rows(rows, quality);
+void write_view(view::Scene scene, const CoveragePath& path, Results& results, Journal& journal) {
   std::vector<Vec3> curve;
   std::vector<Index> pieces;
   for (const CoveragePoint& point : path.points) {
@@ -74,15 +71,16 @@ void write_view(const Input& input, const PlacedSource& source, const LogMap& ma
       pieces.push_back(static_cast<Index>(curve.size()));
     curve.push_back(point.position);
   }
-  view::Scene scene = results.scene();
-  scene.u = rows.u;
-  scene.v = rows.v;
-  scene.quality = row_quality;
-  scene.source = source.position;
-  if (source.frame) scene.source_axes = {source.frame->x, source.frame->y, source.frame->normal};
   scene.curve = curve;
   scene.curve_pieces = pieces;
   results.write_view(scene, journal);
+}
+
+/// Of the rows within the radius; NaN elsewhere.
+std::vector<double> quality_within(double radius, const RowLogMap& rows, std::vector<double> quality) {
+  for (std::size_t r = 0; r < quality.size(); ++r)
+    if (!(rows.distance[r] <= radius)) quality[r] = NAN;
+  return quality;
 }
 
 /// Of the area within the radius, the share whose vertices are trusted.
@@ -163,8 +161,13 @@ void run(const CoverageCommandOptions& options) {
         amount.spacing_high, options.path.spacing));
 
   const std::vector<double> quality = map_quality(input.graph(), map, options.solve.threads);
-  Results results(options.output, input, options.input.path);
-  write_view(input, source, map, path, quality, results, journal);
+  const RowLogMap rows = input.surface().on_rows(map);
+  const std::vector<double> row_quality = on_rows(rows, quality);
+  comment_on_quality(quality_within(options.path.radius, rows, row_quality),
+                     "no path leads there; lower --radius, or start elsewhere", journal);
+
+  Results results(options.output, input, options.input);
+  write_view(results.scene(rows, row_quality, source), path, results, journal);
   journal.start("write");
   write_path(options.output.output, path);
   report(options, input, source, path, trusted_share(input.graph(), map, quality, options), amount, journal);

@@ -15,6 +15,7 @@
 #include "commands/solve.hpp"
 #include "commands/subcommand.hpp"
 #include "output/output_paths.hpp"
+#include "output/results.hpp"
 #include "output/summary.hpp"
 #include "output/texture_output.hpp"
 
@@ -104,7 +105,7 @@ void write_mesh(const DecalCommandOptions& options, const Input& input, const Lo
   view::TexturedScene scene;
   scene.parts = parts;
   scene.towards = source;
-  view::write_textured_png(options.output.view, scene, picture_options(options.output.picture));
+  view::write_textured_png(options.output.view, scene, picture_options(options.output.picture, options.input.threads));
 }
 
 /// The colours of the input, light grey where there are none, under the image.
@@ -143,7 +144,7 @@ void write_points(const DecalCommandOptions& options, const Input& input, const 
   view::TexturedScene scene;
   scene.points = given.points, scene.colors = colors, scene.normals = normals;
   scene.towards = source;
-  view::write_textured_png(options.output.view, scene, picture_options(options.output.picture));
+  view::write_textured_png(options.output.view, scene, picture_options(options.output.picture, options.input.threads));
 }
 
 void report(const DecalCommandOptions& options, const Input& input, const Decal& decal, const Amount& amount,
@@ -182,6 +183,9 @@ void run(const DecalCommandOptions& given) {
   SolveOptions near = options.solve;
   near.radius = map_radius(options.decal, input.graph());
   const LogMap map = solve(near, solver, source.source, journal);
+
+  comment_on_quality(quality_of(input, map, input.surface().on_rows(map), options.solve),
+                     "the image is left out there; lower --size, or choose another source", journal);
 
   journal.start("decal");
   const InverseMap inverse = inverse_map(input.surface(), map, {.min_quality = options.min_quality});

@@ -67,6 +67,9 @@ void run(const InverseCommandOptions& options) {
   const LogMapSolver solver = make_solver(options.solve, input.graph(), journal);
   const LogMap map = solve(options.solve, solver, source.source, journal);
 
+  comment_on_quality(quality_of(input, map, input.surface().on_rows(map), options.solve),
+                     "points with coordinates there are not found; start elsewhere, nearer to them", journal);
+
   journal.start("write");
   const std::size_t found = write(options, inverse_map(input.surface(), map, {.min_quality = options.min_quality}));
   nlohmann::ordered_json j = summary("ahm inverse", options.input.path, options.output, input);

@@ -6,7 +6,6 @@
 
 #include "ahm/error.hpp"
 #include "ahm/maps/log_map_solver.hpp"
-#include "ahm/maps/quality.hpp"
 #include "ahm/util/vec.hpp"
 #include "cli/numbers.hpp"
 #include "cli/option_adders.hpp"
@@ -84,13 +83,7 @@ void write_results(const PlacedSource& source, const RowLogMap& rows, const std:
   table.add("quality", quality);
   if (!rows.error_estimate.empty()) table.add("error_estimate", rows.error_estimate);
   if (!away.empty()) table.add({"gx", "gy", "gz"}, away);
-  view::Scene scene = results.scene();
-  scene.u = rows.u;
-  scene.v = rows.v;
-  scene.quality = quality;
-  scene.source = source.position;
-  if (source.frame) scene.source_axes = {source.frame->x, source.frame->y, source.frame->normal};
-  results.write(table, scene, journal);
+  results.write(table, results.scene(rows, quality, source), journal);
 }
 
 void run(const LogmapOptions& options) {
@@ -106,12 +99,12 @@ void run(const LogmapOptions& options) {
   const LogMapSolver solver = make_solver(options.solve, input.graph(), journal);
   const LogMap map = solve(options.solve, solver, source.source, journal);
   RowLogMap rows = input.surface().on_rows(map);
-  const std::vector<double> quality = on_rows(rows, map_quality(input.graph(), map, options.solve.threads));
+  const std::vector<double> quality = quality_of(input, map, rows, options.solve);
   if (opened.local) mark_beyond(input.geometry.points, source.position, *opened.local, rows);
   comment_on_statuses(rows.status, options.input.path, journal);
-  comment_on_quality(quality, journal);
+  comment_on_quality(quality, "keep to what is near with --radius, or start elsewhere", journal);
 
-  Results results(options.output, input, options.input.path);
+  Results results(options.output, input, options.input);
   const std::vector<Vec3> away =
       options.gradient ? distance_gradients(input.surface(), map, rows) : std::vector<Vec3>();
   write_results(source, rows, quality, away, results, journal);

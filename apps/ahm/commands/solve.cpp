@@ -4,6 +4,7 @@
 
 #include "ahm/error.hpp"
 #include "ahm/maps/cost.hpp"
+#include "ahm/maps/quality.hpp"
 #include "cli/system_info.hpp"
 
 namespace ahm::app {
@@ -60,6 +61,11 @@ LogMap solve(const SolveOptions& options, const LogMapSolver& solver, const Sour
   LogMap map = solver.solve(source, map_options(options, journal));
   journal.tell(strategy_as_text(map));
   return map;
+}
+
+std::vector<double> quality_of(const Input& input, const LogMap& map, const RowLogMap& rows,
+                               const SolveOptions& options) {
+  return on_rows(rows, map_quality(input.graph(), map, options.threads));
 }
 
 }  // namespace ahm::app

@@ -140,7 +140,7 @@ void run(const StrokeCommandOptions& options) {
   for (std::size_t i = 0; i < rows.u.size(); ++i)
     distance.push_back(distance_from_curve(rows.u[i], rows.v[i], curve.length, options.shape));
   comment_on_statuses(rows.status, options.input.path, journal);
-  Results results(options.output, input, options.input.path);
+  Results results(options.output, input, options.input);
   write_results(curve, options.shape, rows, distance, results, journal);
   report(options, input, curve, rows, distance, journal);
   results.keep();

@@ -37,7 +37,7 @@ Input open_input(const InputOptions& options, Journal& journal, const std::optio
   journal.start("graph");
   const Backend& backend = choose_backend(geometry, options.backend);
   Built built = backend.build(geometry, options, source, journal.progress());
-  for (const Warning& warning : built.warnings) journal.add_warning(worded(warning));
+  journal.add_warnings(built.warnings);
   return {std::move(geometry), &backend, std::move(built)};
 }
 

@@ -16,6 +16,10 @@
 namespace ahm::app {
 namespace {
 
+void add_warnings(const std::vector<Warning>& warnings, Survey& s) {
+  for (const Warning& warning : warnings) s.warnings.push_back(worded(warning));
+}
+
 void find_bounds(const std::vector<Vec3>& points, Survey& s) {
   if (points.empty()) return;
   s.low = s.high = points[0];
@@ -112,7 +116,7 @@ void try_surface(const io::Geometry& input, InputOptions options, const Progress
       can_remove_outliers(input, options, s.surface->central_row, progress))
     flags += " --outliers";
   s.surface->options = flags;
-  for (const Warning& warning : built.surface->warnings()) s.warnings.push_back(worded(warning));
+  add_warnings(built.surface->warnings(), s);
 }
 
 /// As a mesh where there are faces; where that fails, and without faces, as a cloud.
@@ -139,7 +143,7 @@ Survey survey(const io::Geometry& input, const InputOptions& options, const Prog
   s.normals = !input.normals.empty();
   s.colors = !input.colors.empty();
   s.format = input.format;
-  s.warnings = input.warnings;
+  add_warnings(input.warnings, s);
   for (const Vec3& n : input.normals)
     if (!is_finite(n) || n == Vec3{0, 0, 0}) ++s.bad_normals;
   std::vector<Vec3> points;

@@ -11,12 +11,22 @@
 namespace ahm::app {
 namespace {
 
-/// {0}, {1}, {2} are the warning's numbers, {3} is the list of its rows.
+/// {0}, {1}, {2} are the warning's numbers, {3} is the list of its rows, {4} its name.
 struct Sentence {
   std::string_view id, format;
 };
 
 constexpr Sentence sentences[] = {
+    // files
+    {"goes_on_after_faces", "the file goes on behind the last face; the rest is ignored"},
+    {"goes_on_after_elements", "the file goes on behind the last element; the rest is ignored"},
+    {"element_ignored", "element '{4}' is ignored"},
+    {"colors_not_uchar", "colours are ignored: they are not stored as uchar"},
+    {"colors_not_packed", "colours are ignored: they are not packed into four bytes"},
+    {"normals_not_by_vertex", "normals are ignored: they are not numbered like the vertices"},
+    {"vertex_extras", "numbers behind x, y, z of a vertex are ignored"},
+    {"columns_as_colors", "columns 4 to 6 are taken as colours: whole numbers from 0 to 255"},
+    {"columns_ignored", "columns 4 to {0:.0f} are ignored"},
     // meshes
     {"unreferenced", "{0:.0f} vertices are used by no face and were left out"},
     {"reoriented", "{0:.0f} faces were turned over to orient the mesh consistently"},
@@ -72,7 +82,8 @@ std::string worded(const Warning& warning) {
   std::array<double, 3> numbers{};
   std::copy_n(warning.numbers.begin(), std::min<std::size_t>(warning.numbers.size(), 3), numbers.begin());
   for (const auto& [id, format] : sentences)
-    if (warning.id == id) return fmt::format(fmt::runtime(format), numbers[0], numbers[1], numbers[2], list(warning));
+    if (warning.id == id)
+      return fmt::format(fmt::runtime(format), numbers[0], numbers[1], numbers[2], list(warning), warning.name);
   return fmt::format("{} {}", warning.id, fmt::join(warning.numbers, " "));
 }
 
