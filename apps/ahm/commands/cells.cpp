@@ -80,10 +80,7 @@ std::vector<Vertex> spread(const CellsOptions& options, const Input& input, cons
   if (const Index size = input.graph().size(); options.count > size)
     throw InvalidArgument(fmt::format("--count {}: the graph has {} vertices only", options.count, size));
   const Vertex first = options.start ? vertex_at(input, *options.start, "--start") : Vertex{0};
-  MapOptions map;
-  map.variant = options.solve.variant;
-  map.threads = options.solve.threads;
-  std::vector<Vertex> result = farthest_points(solver, first, options.count, map);
+  std::vector<Vertex> result = farthest_points(solver, first, options.count);
   move_to_rows(input.surface(), result);
   return result;
 }

@@ -169,10 +169,8 @@ void run(const LocalMapsOptions& options) {
   bool has_virtual = false;
   for (Vertex v(0); v.index < rows.vertex_count(); ++v.index) has_virtual = has_virtual || !rows.row(v);
   map_options.nearest = has_virtual ? 0 : options.nearest;
-  map_options.variant = options.solve.variant;
-  map_options.t_coef = options.solve.t_coef;
-  map_options.threads = options.solve.threads;
-  map_options.progress = journal.progress();
+  map_options.heat = options.solve;
+  map_options.heat.progress = journal.progress();
   LocalMaps maps = local_maps(input.graph(), vertices, map_options);
   keep_rows(maps, rows, options.nearest);
 
