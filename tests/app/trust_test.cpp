@@ -45,7 +45,7 @@ TEST(Trust, IsNoWarningOnAPlane) {
 
 TEST(Trust, OfACoverageIsThatWithinTheRadius) {
   Folder folder;
-  const auto input = folder.write("points.xyz", xyz(torus(900).positions));
+  const auto input = folder.write("points.xyz", xyz(torus(4000).positions));
   const auto outcome =
       run({"coverage", input, "--source", "0", "--radius", "0.4", "--spacing", "0.1", "-o", folder / "path.csv"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;

@@ -163,8 +163,8 @@ void run(const CoverageCommandOptions& options) {
   const std::vector<double> quality = map_quality(input.graph(), map, options.solve.threads);
   const RowLogMap rows = input.surface().on_rows(map);
   const std::vector<double> row_quality = on_rows(rows, quality);
-  comment_on_quality(quality_within(options.path.radius, rows, row_quality),
-                     "no path leads there; lower --radius, or start elsewhere", journal);
+  comment_on_quality(quality_within(options.path.radius, rows, row_quality), "lower --radius, or start elsewhere",
+                     journal);
 
   Results results(options.output, input, options.input);
   write_view(results.scene(rows, row_quality, source), path, results, journal);

@@ -185,7 +185,7 @@ void run(const DecalCommandOptions& given) {
   const LogMap map = solve(near, solver, source.source, journal);
 
   comment_on_quality(quality_of(input, map, input.surface().on_rows(map), options.solve),
-                     "the image is left out there; lower --size, or choose another source", journal);
+                     "lower --size, or choose another source", journal);
 
   journal.start("decal");
   const InverseMap inverse = inverse_map(input.surface(), map, {.min_quality = options.min_quality});

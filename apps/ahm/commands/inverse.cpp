@@ -68,7 +68,7 @@ void run(const InverseCommandOptions& options) {
   const LogMap map = solve(options.solve, solver, source.source, journal);
 
   comment_on_quality(quality_of(input, map, input.surface().on_rows(map), options.solve),
-                     "points with coordinates there are not found; start elsewhere, nearer to them", journal);
+                     "start nearer to the points that are looked up", journal);
 
   journal.start("write");
   const std::size_t found = write(options, inverse_map(input.surface(), map, {.min_quality = options.min_quality}));
