@@ -147,7 +147,8 @@ void run(const CoverageCommandOptions& options) {
   const LogMap map = solve(options.solve, solver, source.source, journal);
 
   journal.start("path");
-  const InverseMap inverse = inverse_map(input.surface(), map, {.min_quality = options.min_quality});
+  const InverseMap inverse =
+      inverse_map(input.surface(), map, {.min_quality = options.min_quality, .threads = options.solve.threads});
   const CoveragePath path = coverage_path(inverse, options.path);
   if (path.points.empty())
     throw InvalidArgument(fmt::format(

@@ -188,7 +188,8 @@ void run(const DecalCommandOptions& given) {
                      "lower --size, or choose another source", journal);
 
   journal.start("decal");
-  const InverseMap inverse = inverse_map(input.surface(), map, {.min_quality = options.min_quality});
+  const InverseMap inverse =
+      inverse_map(input.surface(), map, {.min_quality = options.min_quality, .threads = options.solve.threads});
   const Decal decal = make_decal(inverse, options.decal);
   if (decal.face_begin.size() < 2)
     throw InvalidArgument(fmt::format(

@@ -71,7 +71,9 @@ void run(const InverseCommandOptions& options) {
                      "start nearer to the points that are looked up", journal);
 
   journal.start("write");
-  const std::size_t found = write(options, inverse_map(input.surface(), map, {.min_quality = options.min_quality}));
+  const std::size_t found =
+      write(options,
+            inverse_map(input.surface(), map, {.min_quality = options.min_quality, .threads = options.solve.threads}));
   nlohmann::ordered_json j = summary("ahm inverse", options.input.path, options.output, input);
   j["source"] = {{"spec", to_string(options.source.spec)}, {"position", source.position}};
   j["points"] = options.points.size();

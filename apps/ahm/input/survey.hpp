@@ -2,7 +2,6 @@
 /// What `ahm info` finds out about a file.
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -40,11 +39,5 @@ struct Survey {
 /// Looks at everything. Failures to build a surface are findings, not errors.
 /// @throws Cancelled, std::bad_alloc
 Survey survey(const io::Geometry& input, const InputOptions& options, const Progress& progress);
-
-/// The command line to run on this file, or empty when nothing can be run.
-std::string suggestion(const Survey& survey, const std::string& path);
-
-std::string as_text(const Survey& survey, const std::string& path);
-nlohmann::ordered_json as_json(const Survey& survey, const std::string& path);
 
 }  // namespace ahm::app

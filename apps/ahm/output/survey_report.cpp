@@ -1,3 +1,5 @@
+#include "output/survey_report.hpp"
+
 #include <fmt/format.h>
 
 #include <cmath>
@@ -5,7 +7,6 @@
 #include <nlohmann/json.hpp>
 
 #include "ahm/view/picture.hpp"
-#include "input/survey.hpp"
 #include "output/wording.hpp"
 
 namespace ahm::app {
