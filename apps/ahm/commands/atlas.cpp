@@ -114,7 +114,7 @@ void write_files(const AtlasCommandOptions& options, const SurfaceFaces& faces, 
   view::TexturedScene scene;
   scene.parts = parts;
   scene.towards = made.sources.front();
-  view::write_textured_png(options.output.view, scene, picture_options(options.output.picture));
+  view::write_textured_png(options.output.view, scene, picture_options(options.output.picture, options.input.threads));
 }
 
 nlohmann::ordered_json as_json(const DistortionSummary& s) {
@@ -158,7 +158,7 @@ void run(const AtlasCommandOptions& options) {
 
   journal.start("sources");
   const std::vector<Vertex> sources = choose_sources(options, input, solver);
-  const SurfaceFaces faces = surface_faces(input.surface->surface(), solver, sources);
+  const SurfaceFaces faces = surface_faces(input.surface(), solver, sources);
   const std::vector<Vec3> positions = positions_of(faces, graph.size());
   journal.start("charts");
   RefineOptions refine;

@@ -54,24 +54,19 @@ std::vector<Vertex> vertices_of(const Input& input, const std::vector<SourceSpec
   return result;
 }
 
-std::vector<Index> rows_of_vertices(const Input& input) {
-  std::vector<Index> result(static_cast<std::size_t>(input.graph().size()), -1);
-  for (const auto& [row, vertex] : input.surface->row_vertices()) result[vertex] = row;
-  return result;
-}
-
 /// A vertex that is none of the input's (inside a polygon) gives way to its nearest neighbour that is one and is free.
-void move_to_rows(const TangentGraph& graph, const std::vector<Index>& row_of_vertex, std::vector<Vertex>& vertices) {
-  for (auto& [vertex] : vertices) {
-    if (row_of_vertex[vertex] >= 0) continue;
-    const Star star = graph.star(vertex);
+void move_to_rows(const Surface& surface, std::vector<Vertex>& vertices) {
+  const RowMap& rows = surface.rows();
+  for (auto& vertex : vertices) {
+    if (rows.row(vertex)) continue;
+    const Star star = surface.graph().star(vertex.index);
     double least = std::numeric_limits<double>::infinity();
-    Index nearest = vertex;
+    Vertex nearest = vertex;
     for (std::size_t e = 0; e < star.degree(); ++e) {
-      const Index j = star.neighbors[e];
+      const Vertex j(star.neighbors[e]);
       const double away = std::hypot(star.log(e)[0], star.log(e)[1]);
-      if (row_of_vertex[j] < 0 || !(away < least)) continue;
-      if (std::find(vertices.begin(), vertices.end(), Vertex(j)) != vertices.end()) continue;
+      if (!rows.row(j) || !(away < least)) continue;
+      if (std::find(vertices.begin(), vertices.end(), j) != vertices.end()) continue;
       least = away;
       nearest = j;
     }
@@ -82,12 +77,11 @@ void move_to_rows(const TangentGraph& graph, const std::vector<Index>& row_of_ve
 std::vector<Vertex> spread(const CellsOptions& options, const Input& input, const LogMapSolver& solver,
                            Journal& journal) {
   journal.start("spread");
-  const TangentGraph& graph = input.graph();
-  if (options.count > graph.size())
-    throw InvalidArgument(fmt::format("--count {}: the graph has {} vertices only", options.count, graph.size()));
+  if (const Index size = input.graph().size(); options.count > size)
+    throw InvalidArgument(fmt::format("--count {}: the graph has {} vertices only", options.count, size));
   const Vertex first = options.start ? vertex_at(input, *options.start, "--start") : Vertex{0};
   std::vector<Vertex> result = farthest_points(solver, first, options.count);
-  move_to_rows(graph, rows_of_vertices(input), result);
+  move_to_rows(input.surface(), result);
   return result;
 }
 
@@ -100,22 +94,22 @@ struct CellRows {
 
 /// Of several vertices of a row, the one nearest to its source counts.
 CellRows rows_of(const Input& input, const std::vector<Index>& labels, const std::vector<double>& distance) {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
+  const auto away = [&](Vertex v) {
+    return labels[v.index] < 0 ? nan : std::isnan(distance[v.index]) ? infinity : distance[v.index];
+  };
   const std::size_t n = input.rows();
-  const std::vector<double> none(n, std::numeric_limits<double>::quiet_NaN());
-  CellRows rows{none, none, std::vector<Index>(n, -1), std::vector<Status>(n, Status::removed)};
-  for (const auto& [row, vertex] : input.surface->row_vertices()) {
-    const auto r = static_cast<std::size_t>(row), v = static_cast<std::size_t>(vertex);
-    if (rows.status[r] == Status::ok && !(distance[v] < rows.distance[r])) continue;
-    if (labels[v] < 0) {
-      rows.status[r] = Status::disconnected;
-      continue;
-    }
-    rows.status[r] = Status::ok;
-    rows.labels[r] = labels[v];
-    rows.label[r] = labels[v];
-    rows.distance[r] = distance[v];
+  CellRows cells{std::vector<double>(n, nan), std::vector<double>(n, nan), std::vector<Index>(n, -1), {}};
+  const RowMap& rows = input.surface().rows();
+  for (std::size_t r = 0; r < n; ++r) {
+    const Row row(static_cast<Index>(r));
+    const std::optional<Vertex> vertex = rows.least(row, away);
+    cells.status.push_back(vertex ? Status::ok : rows.vertex(row) ? Status::disconnected : Status::removed);
+    if (!vertex) continue;
+    cells.distance[r] = distance[vertex->index];
+    cells.label[r] = cells.labels[r] = labels[vertex->index];
   }
-  return rows;
+  return cells;
 }
 
 struct Cell {
@@ -192,16 +186,15 @@ void run(const CellsOptions& options) {
         "sources",
         far));
 
-  const std::vector<Index> row_of_vertex = rows_of_vertices(input);
   std::vector<Index> source_rows;
   std::vector<Vec3> positions;
-  for (const auto [vertex] : sources) {
-    source_rows.push_back(row_of_vertex[vertex]);
-    positions.push_back(graph.frame(vertex)->origin);
+  for (Vertex vertex : sources) {
+    source_rows.push_back(input.surface().rows().row(vertex).value_or(Row(-1)).index);
+    positions.push_back(graph.frame(vertex.index)->origin);
   }
   double farthest = 0;
   for (double d : rows.distance) farthest = std::max(farthest, std::isnan(d) ? 0 : d);
-  Results results(options.output, input, options.input.path);
+  Results results(options.output, input, options.input);
   write_results(rows, positions, results, journal);
   report(options, input, source_rows, positions, sizes(graph, labels, sources.size()), farthest, journal);
   results.keep();
