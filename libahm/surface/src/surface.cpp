@@ -57,7 +57,7 @@ Surface::Surface(Surface&&) noexcept = default;
 Surface& Surface::operator=(Surface&&) noexcept = default;
 
 std::vector<Vec3> Surface::normals() const {
-  std::vector<Vec3> result(static_cast<std::size_t>(rows().row_count()), Vec3{nan, nan, nan});
+  std::vector<Vec3> result(rows().row_count(), Vec3{nan, nan, nan});
   for (std::size_t r = 0; r < result.size(); ++r)
     if (const auto vertex = rows().vertex(Row(static_cast<Index>(r))))
       if (const auto frame = graph().frame(vertex->index)) result[r] = frame->normal;
@@ -117,7 +117,7 @@ Vec3 Surface::position(const SurfacePoint& point) const {
                  [&](const FacePoint& inside) {
                    check(inside);
                    Vec3 sum{};
-                   const auto corners = faces()[static_cast<std::size_t>(inside.face)];
+                   const auto corners = faces()[inside.face];
                    for (std::size_t c = 0; c < corners.size(); ++c)
                      sum = sum + inside.barycentric[c] * points[corners[c]];
                    return sum;
@@ -281,8 +281,8 @@ Sample Surface::sample_in_face(const LogMap& map, const FacePoint& point) const 
 
 Vertex Surface::corner_vertex(Index face, std::size_t corner) const {
   const FaceList all = faces();
-  const auto given = all[static_cast<std::size_t>(face)];
-  const auto stored = corner_vertices().subspan(static_cast<std::size_t>(all.begin[face]), given.size());
+  const auto given = all[face];
+  const auto stored = corner_vertices().subspan(all.begin[face], given.size());
   const std::optional<Row> second = rows().row(Vertex(stored[1]));
   const bool reversed = !second || second->index != given[1];
   return Vertex(stored[reversed ? (given.size() - corner) % given.size() : corner]);
@@ -299,7 +299,7 @@ void Surface::check(const FacePoint& point) const {
   const FaceList all = faces();
   if (point.face < 0 || static_cast<std::size_t>(point.face) >= all.size())
     throw InvalidArgument("face " + std::to_string(point.face) + " is outside [0, " + std::to_string(all.size()) + ")");
-  const std::size_t m = all[static_cast<std::size_t>(point.face)].size();
+  const std::size_t m = all[point.face].size();
   const std::string where = "face " + std::to_string(point.face);
   if (point.barycentric.size() != m)
     throw InvalidArgument(where + " has " + std::to_string(m) + " corners, but there are " +
