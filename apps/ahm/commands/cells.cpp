@@ -11,7 +11,6 @@
 #include "cli/numbers.hpp"
 #include "cli/option_adders.hpp"
 #include "cli/source_list.hpp"
-#include "commands/solve.hpp"
 #include "commands/subcommand.hpp"
 #include "output/results.hpp"
 #include "output/summary.hpp"
@@ -34,7 +33,6 @@ constexpr const char* cells_footer =
 
 struct CellsOptions {
   InputOptions input;
-  SolveOptions solve;
   OutputOptions output;
   std::vector<SourceSpec> sources;
   Index count = 0;  ///< of spread sources; 0: `sources`
@@ -74,13 +72,12 @@ void move_to_rows(const Surface& surface, std::vector<Vertex>& vertices) {
   }
 }
 
-std::vector<Vertex> spread(const CellsOptions& options, const Input& input, const LogMapSolver& solver,
-                           Journal& journal) {
+std::vector<Vertex> spread(const CellsOptions& options, const Input& input, Journal& journal) {
   journal.start("spread");
   if (const Index size = input.graph().size(); options.count > size)
     throw InvalidArgument(fmt::format("--count {}: the graph has {} vertices only", options.count, size));
   const Vertex first = options.start ? vertex_at(input, *options.start, "--start") : Vertex{0};
-  std::vector<Vertex> result = farthest_points(solver, first, options.count);
+  std::vector<Vertex> result = farthest_points(input.graph(), first, options.count);
   move_to_rows(input.surface(), result);
   return result;
 }
@@ -93,11 +90,9 @@ struct CellRows {
 };
 
 /// Of several vertices of a row, the one nearest to its source counts.
-CellRows rows_of(const Input& input, const std::vector<Index>& labels, const std::vector<double>& distance) {
-  constexpr double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
-  const auto away = [&](Vertex v) {
-    return labels[v.index] < 0 ? nan : std::isnan(distance[v.index]) ? infinity : distance[v.index];
-  };
+CellRows rows_of(const Input& input, const VoronoiCells& of_vertices) {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  const auto away = [&](Vertex v) { return of_vertices.distances[v.index]; };
   const std::size_t n = input.rows();
   CellRows cells{std::vector<double>(n, nan), std::vector<double>(n, nan), std::vector<Index>(n, -1), {}};
   const RowMap& rows = input.surface().rows();
@@ -106,8 +101,8 @@ CellRows rows_of(const Input& input, const std::vector<Index>& labels, const std
     const std::optional<Vertex> vertex = rows.least(row, away);
     cells.status.push_back(vertex ? Status::ok : rows.vertex(row) ? Status::disconnected : Status::removed);
     if (!vertex) continue;
-    cells.distance[r] = distance[vertex->index];
-    cells.label[r] = cells.labels[r] = labels[vertex->index];
+    cells.distance[r] = of_vertices.distances[vertex->index];
+    cells.label[r] = cells.labels[r] = of_vertices.labels[vertex->index];
   }
   return cells;
 }
@@ -172,19 +167,12 @@ void run(const CellsOptions& options) {
   const Input input = open_input(options.input, journal);
   const TangentGraph& graph = input.graph();
   std::vector<Vertex> sources = vertices_of(input, options.sources);
-  const LogMapSolver solver = make_solver(options.solve, graph, journal, 0);
-  if (options.count > 0) sources = spread(options, input, solver, journal);
+  if (options.count > 0) sources = spread(options, input, journal);
 
   journal.start("cells");
-  const std::vector<Index> labels = nearest_source(solver, sources);
-  const VertexField field = distance_in_cells(solver, sources, labels);
-  const CellRows rows = rows_of(input, labels, field.values);
+  const VoronoiCells cells = voronoi_cells(graph, sources);
+  const CellRows rows = rows_of(input, cells);
   comment_on_statuses(rows.status, options.input.path, journal);
-  if (const auto far = std::count(field.status.begin(), field.status.end(), Status::unreached); far > 0)
-    journal.add_warning(fmt::format(
-        "{} vertices are about 700 edges or more from every source: they have a label, but no distance; give more "
-        "sources",
-        far));
 
   std::vector<Index> source_rows;
   std::vector<Vec3> positions;
@@ -196,7 +184,7 @@ void run(const CellsOptions& options) {
   for (double d : rows.distance) farthest = std::max(farthest, std::isnan(d) ? 0 : d);
   Results results(options.output, input, options.input);
   write_results(rows, positions, results, journal);
-  report(options, input, source_rows, positions, sizes(graph, labels, sources.size()), farthest, journal);
+  report(options, input, source_rows, positions, sizes(graph, cells.labels, sources.size()), farthest, journal);
   results.keep();
 }
 
@@ -211,7 +199,10 @@ void offer(CLI::App& app, CellsOptions& o) {
       throw CLI::ValidationError("--sources", "give either --sources or --count");
   });
   add_output(app, o.output)->required();
-  add_graph_options(app, o.input, o.solve);
+  add_backend(app, o.input);
+  add_threads(app, o.input);
+  add_cloud_options(app, o.input);
+  add_mesh_options(app, o.input);
   add_json(app, o.output);
   add_view(app, o.output);
   add_map_picture(app, o.output.picture);
