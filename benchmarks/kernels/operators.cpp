@@ -14,7 +14,8 @@ using ahm::Ordering, ahm::SparseUpper, ahm::bench::report_bandwidth, ahm::bench:
 
 ahm::AssembledOperators operators(const ahm::TangentGraph& graph) {
   const double h = graph.mean_edge_length();
-  return ahm::assemble(graph, h * h, 1.0 / (h * h));
+  const std::vector<double> tau(static_cast<std::size_t>(graph.size()), h * h);
+  return ahm::assemble(graph, tau, 1.0 / (h * h));
 }
 
 double bytes(const SparseUpper& matrix) {

@@ -25,7 +25,8 @@ const ahm::CholeskyFactor& factor_of(const ahm::TangentGraph& graph, Shape shape
   if (!kept || kept->shape != shape || kept->n != graph.size() || kept->scalar != scalar) {
     kept.reset();
     const double h = graph.mean_edge_length();
-    const ahm::AssembledOperators matrices = ahm::assemble(graph, h * h, 1.0 / (h * h));
+    const std::vector<double> tau(static_cast<std::size_t>(graph.size()), h * h);
+    const ahm::AssembledOperators matrices = ahm::assemble(graph, tau, 1.0 / (h * h));
     const ahm::SymbolicCholesky symbolic(matrices.A, Ordering::amd, true);
     kept = std::make_unique<Kept>(shape, graph.size(), scalar,
                                   ahm::CholeskyFactor(scalar ? matrices.A : matrices.B, symbolic, "benchmark"));

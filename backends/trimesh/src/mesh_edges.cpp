@@ -27,17 +27,16 @@ class Rows {
            (t >= 0 ? triangulation_.cotangent(side) + triangulation_.cotangent(t) : triangulation_.cotangent(side));
   }
 
-  /// w_ij
+  /// w_ij; no less than what counts, so that squares and rectangles have no diagonal in the operators.
   double weight(Half side) const {
-    return clamp_ ? std::clamp(cotangents(side), 0.0, largest_weight) : cotangents(side);
+    const double w = clamp_ ? std::clamp(cotangents(side), 0.0, largest_weight) : cotangents(side);
+    return std::abs(w) > least_weight ? w : 0;
   }
 
   /// An edge from a vertex to itself is left out. On a flat surface it contributes nothing: its two logarithms are
   /// opposite, and its holonomy is the identity. Elsewhere its sole effect would be a damping of vectors at a vertex
   /// too coarse to resolve them.
-  bool is_edge(Half side) const {
-    return edges_.tail[side] != edges_.head(side) && std::abs(weight(side)) > least_weight;
-  }
+  bool is_edge(Half side) const { return edges_.tail[side] != edges_.head(side); }
 
   /// Calls visit(side, from_tail, forward) for every edge of the graph that leaves the vertex, counter-clockwise.
   template <class Visit>
@@ -90,7 +89,6 @@ class Rows {
       report.capped_weights += clamp_ && cotangents(h) > largest_weight;
     }
     g.mean_edge_length = sum / static_cast<double>(report.edges);
-    g.is_triangulation = true;
   }
 
  private:

@@ -108,6 +108,7 @@ TriangleMeshSurface TriangleMeshSurface::build(TriangleMesh mesh, const MeshOpti
 
   VertexFrames frames = find_frames(mesh, triangulation, options.threads);
   CsrGraphData data = mesh_edges(mesh, triangulation, frames, options.clamp_weights, options.threads, details);
+  data.is_delaunay = options.intrinsic_delaunay;
   data.frames = frames_in_space(mesh, options.threads);
   options.progress.step("graph", 1.0);
   details.seconds_graph = stopwatch.lap();

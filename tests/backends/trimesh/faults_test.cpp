@@ -236,8 +236,9 @@ TEST(MeshFaults, CoincidentVerticesAreMollified) {
     expect_nan_exactly_where_not_ok(map);
     for (Index i = 0; i < mesh.vertices(); ++i) {
       ASSERT_EQ(map.status[i], Status::ok);
-      ASSERT_NEAR(map.distance[i], std::hypot(mesh.plane[i][0] - mesh.plane[c][0], mesh.plane[i][1] - mesh.plane[c][1]),
-                  0.05);
+      const double straight = std::hypot(mesh.plane[i][0] - mesh.plane[c][0], mesh.plane[i][1] - mesh.plane[c][1]);
+      ASSERT_NEAR(std::hypot(map.u[i], map.v[i]), straight, 0.05);
+      ASSERT_GT(map.distance[i], straight - 0.05);  // longer around the hole
     }
   }
 }

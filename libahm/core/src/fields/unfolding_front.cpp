@@ -14,6 +14,8 @@ namespace {
 constexpr Index none = -1;
 /// Less than this is rounding.
 constexpr double least_gain = 1e-12;
+/// An entry is bettered no more often: where triangles contradict each other they could go on for ever.
+constexpr Index most_gains = 40;
 /// Sides that are shorter than this share of a distance no longer tell where its point lies.
 constexpr double shortest_side = 1e-6;
 
@@ -73,7 +75,13 @@ Index UnfoldingFront::add(const Source& source) {
       for (std::size_t a = 0; a < d_ && !source.offsets().empty(); ++a)
         back.data()[c] -= source.axes()[(k * d_ + c) * d_ + a] * source.offsets()[k * d_ + a] / unit;
     }
-    offer(source.vertices()[k].index, first + point, away / unit, 0, back.span());
+    const Index vertex = source.vertices()[k].index;
+    offer(vertex, first + point, away / unit, 0, back.span());
+    if (d_ != 2 || away == 0 || source.is_curve() || source.vertices().size() > 1) continue;
+    // A point beside its only vertex, in whose tangent plane the neighbours lie too.
+    look_around(vertex);
+    for (const Neighbor& n : around_)
+      offer(n.vertex, first + point, std::hypot(n.log[0] - back.data()[0], n.log[1] - back.data()[1]), 0, {});
   }
   return first;
 }
@@ -112,13 +120,14 @@ bool UnfoldingFront::offer(Index vertex, Index point, double distance, double sl
   while (own != none && entries_[own].point != point) before = own, own = entries_[own].next;
   if (own == none) {
     own = static_cast<Index>(entries_.size());
-    entries_.push_back({distance, point, head_[vertex]});
+    entries_.push_back({distance, point, head_[vertex], 0});
     if (d_ != 2) displacements_.resize(displacements_.size() + d_);
     before = none;
     head_[vertex] = own;
-  } else if (!(distance < entries_[own].distance * (1 - least_gain))) {
+  } else if (!(distance < entries_[own].distance * (1 - least_gain)) || entries_[own].gains == most_gains) {
     return false;
   }
+  ++entries_[own].gains;
   entries_[own].distance = distance;
   if (d_ != 2)
     std::copy(displacement.begin(), displacement.end(), displacements_.begin() + static_cast<std::ptrdiff_t>(own * d_));
@@ -141,8 +150,10 @@ bool UnfoldingFront::offer(Index vertex, Index point, double distance, double sl
 void UnfoldingFront::spread(Index from, Index point, double distance) {
   if (d_ != 2) return carry(from, point);
   look_around(from);
-  for (const Neighbor& c : around_) offer(c.vertex, point, distance + c.length, 2 * c.length, {});
-  unfold(point, distance);
+  double longest = 0;
+  for (const Neighbor& c : around_) longest = std::max(longest, c.length);
+  for (const Neighbor& c : around_) offer(c.vertex, point, distance + c.length, 2 * longest, {});
+  unfold(point, distance, 2 * longest);
 }
 
 /// The neighbours of a vertex, counterclockwise.
@@ -158,7 +169,7 @@ void UnfoldingFront::look_around(Index vertex) {
 }
 
 /// Across the triangles of the star of a, from its own distance and that of one neighbour to the other.
-void UnfoldingFront::unfold(Index point, double distance) {
+void UnfoldingFront::unfold(Index point, double distance, double slack) {
   for (std::size_t k = 0; k < around_.size(); ++k) {
     const Neighbor &right = around_[k], &left = around_[k + 1 < around_.size() ? k + 1 : 0];
     const Entry *of_right = find(right.vertex, point), *of_left = find(left.vertex, point);
@@ -167,7 +178,6 @@ void UnfoldingFront::unfold(Index point, double distance) {
     if (!side) continue;
     // `offer` may move the entries.
     const double to_right = of_right ? of_right->distance : 0, to_left = of_left ? of_left->distance : 0;
-    const double slack = 2 * std::max(right.length, left.length);
     if (of_right)
       if (const auto found = across(distance, to_right, right.length, left.length, *side))
         offer(left.vertex, point, *found, slack, {});

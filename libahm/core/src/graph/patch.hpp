@@ -26,7 +26,7 @@ CsrGraph cut_out(const TangentGraph& graph, std::span<const Index> vertices, con
   patch.kind = graph.transport_kind();
   patch.length_unit = graph.length_unit();
   patch.mean_edge_length = graph.mean_edge_length();
-  patch.is_triangulation = graph.is_triangulation();
+  patch.is_delaunay = graph.is_delaunay();
   patch.row_begin.reserve(vertices.size() + 1);
   patch.masses.reserve(vertices.size());
   const std::size_t expected =

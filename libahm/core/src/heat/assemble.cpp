@@ -61,6 +61,7 @@ class ColumnWriter {
     for (int e : order_) {
       const Index j = star.neighbors[e];
       if (j >= i) break;
+      if (star.weights[e] == 0) continue;
       if (columns_.empty() || columns_.back() != j) {
         columns_.push_back(j);
         scalar_.push_back(0);

@@ -201,7 +201,7 @@ class Worker {
     AffineHeat heat(patch, operators, options_.heat.variant, std::move(inflows));
     heat.diffuse();
     heat.solve();
-    if (!graph_.is_triangulation()) heat.solve_squares();
+    if (!graph_.is_delaunay()) heat.solve_squares();
     for (std::size_t m = 0; m < members.size(); ++m)
       if (!collect(heat, m, patch, local[m], vertices, edge, wanted, result[members[m]])) return false;
     return true;
@@ -225,7 +225,7 @@ class Worker {
                double wanted) {
     const auto n = static_cast<std::size_t>(patch.size());
     distance_.resize(n);
-    if (graph_.is_triangulation()) {
+    if (graph_.is_delaunay()) {
       UnfoldingFront front(patch);
       front.add(source);
       front.run(std::max(wanted, options_.radius));

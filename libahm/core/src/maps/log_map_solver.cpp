@@ -62,7 +62,7 @@ struct Found {
 
 /// Distances unfolded from a source, where that is how they are measured: on triangulations, and from curves.
 std::vector<double> unfolded(const TangentGraph& graph, const Source& source, double radius) {
-  if (!graph.is_triangulation() && !source.is_curve()) return {};
+  if (!graph.is_delaunay() && !source.is_curve()) return {};
   UnfoldingFront front(graph);
   front.add(source);
   front.run(radius);

@@ -51,7 +51,7 @@ class UnfoldingFront {
   /// A distance from one point. Beside a border between points both sides are known, so that both can unfold across it.
   struct Entry {
     double distance;
-    Index point, next;
+    Index point, next, gains;
   };
   struct Neighbor {
     Index vertex;
@@ -71,7 +71,7 @@ class UnfoldingFront {
   const Entry* find(Index vertex, Index point) const;
   bool offer(Index vertex, Index point, double distance, double slack, std::span<const double> displacement);
   void spread(Index from, Index point, double distance);
-  void unfold(Index point, double distance);
+  void unfold(Index point, double distance, double slack);
   void carry(Index from, Index point);
   void look_around(Index vertex);
 
