@@ -59,7 +59,7 @@ void expect_cells_of_the_plane(const Surface& surface, Index count, double toler
 TEST(Cells, AreThoseOfDistanceOnGradedPlanes) {
   for (double power : {1.0, 2.0, 3.0})
     for (Index count : {1, 2, 5, 40})
-      // Triangles of x^3 are thinner than 1e-4, those of x^2 than 1e-3, which costs digits.
+      // Where triangles are thinner than 1e-3 the sides no longer tell all digits of where a source lies.
       expect_cells_of_the_plane(trimesh::TriangleMeshSurface::build(graded_square(40, power), square_faces(40)), count,
                                 power < 2   ? 1e-11
                                 : power < 3 ? 1e-8
