@@ -90,6 +90,7 @@ class Rows {
       report.capped_weights += clamp_ && cotangents(h) > largest_weight;
     }
     g.mean_edge_length = sum / static_cast<double>(report.edges);
+    g.is_triangulation = true;
   }
 
  private:

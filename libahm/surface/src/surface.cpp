@@ -35,15 +35,12 @@ struct Best {
   std::optional<Vertex> vertex;
   Status status = Status::removed;
 
-  Best(const LogMap& map, std::span<const Vertex> vertices) {
-    for (Vertex v : vertices) {
-      if (map.status(v) != Status::ok) {
-        if (status != Status::ok) status = map.status(v);
-      } else if (!vertex || map.distance(v) < map.distance(*vertex)) {
-        vertex = v;
-        status = Status::ok;
-      }
-    }
+  Best(const LogMap& map, const RowMap& rows, Row row)
+      : vertex(rows.least(row, [&](Vertex v) { return map.distance(v); })) {
+    if (vertex)
+      status = Status::ok;
+    else if (const auto all = rows.vertices(row); !all.empty())
+      status = map.status(all.back());
   }
 };
 
@@ -207,7 +204,7 @@ RowLogMap Surface::on_rows(const LogMap& map) const {
   const std::span<const double> error = map.error_estimate();
   if (!error.empty()) result.error_estimate = none;
   for (std::size_t r = 0; r < n; ++r) {
-    const Best best(map, rows().vertices(Row(static_cast<Index>(r))));
+    const Best best(map, rows(), Row(static_cast<Index>(r)));
     result.status[r] = best.status;
     if (!best.vertex) continue;
     const Vertex v = *best.vertex;
@@ -239,7 +236,7 @@ std::vector<Vec2> Surface::on_corners(const LogMap& map) const {
 Sample Surface::at(const LogMap& map, const SurfacePoint& point) const {
   check_map(map);
   const auto at_row = [&](Row row) -> std::pair<Sample, Index> {
-    const Best best(map, rows().vertices(row));
+    const Best best(map, rows(), row);
     if (!best.vertex) return {{nan, nan, best.status}, -1};
     const auto phi = map.coordinates(*best.vertex);
     return {{phi[0], phi[1], Status::ok}, best.vertex->index};
@@ -322,6 +319,18 @@ void Surface::check(const EdgePoint& point) const {
   vertex(point.from), vertex(point.to);
   if (!(point.t >= 0 && point.t <= 1))
     throw InvalidArgument("t is " + detail::number(point.t) + " on an edge; it must be in [0, 1]");
+}
+
+std::vector<double> on_rows(const RowLogMap& rows, std::span<const double> values) {
+  std::vector<double> result;
+  result.reserve(rows.vertex.size());
+  for (const std::optional<Vertex>& vertex : rows.vertex) {
+    if (vertex && static_cast<std::size_t>(vertex->index) >= values.size())
+      throw InvalidArgument("on_rows: there are " + std::to_string(values.size()) +
+                            " values, but the map has a vertex " + std::to_string(vertex->index));
+    result.push_back(vertex ? values[vertex->index] : nan);
+  }
+  return result;
 }
 
 std::vector<Vec3> distance_gradients(const Surface& surface, const LogMap& map, const RowLogMap& rows) {
