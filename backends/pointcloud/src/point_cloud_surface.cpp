@@ -12,6 +12,7 @@
 #include "ahm/util/stopwatch.hpp"
 #include "ahm/util/text.hpp"
 #include "clean_points.hpp"
+#include "edge_unfolding.hpp"
 #include "local_delaunay.hpp"
 #include "orientation.hpp"
 #include "plane_axes.hpp"
@@ -161,9 +162,11 @@ PointCloudSurface PointCloudSurface::build(std::span<const Vec3> input, std::spa
   if (!normals.empty()) details.estimated = planes.estimated;
   if (planes.estimated == static_cast<Index>(cloud.points.size())) normals = {};
   const bool cut = cut_between_sheets(normals, cloud, planes, neighborhoods, options);
+  const double noise = offset_noise(cloud, neighborhoods, planes, options.threads);
+  details.noise = noise * cloud.unit;
   details.seconds_normals = stopwatch.lap();
 
-  std::vector<Triangle> triangles = local_delaunay(cloud, neighborhoods, planes, cut, options, details);
+  std::vector<Triangle> triangles = local_delaunay(cloud, neighborhoods, planes, cut, noise, options, details);
   details.seconds_delaunay = stopwatch.lap();
   neighborhoods = {};
 
@@ -177,8 +180,8 @@ PointCloudSurface PointCloudSurface::build(std::span<const Vec3> input, std::spa
 
   const std::vector<Index> vertex_of_clean = number_vertices(cloud, edges, kept, details);
   orient(cloud, edges, normals, cut, options, planes, details);
-  CsrGraphData data = tangent_edges(cloud, planes, edges, vertex_of_clean, details.vertices, details.oriented,
-                                    options.edge_length, options.threads, details);
+  CsrGraphData data = tangent_edges(cloud, planes, edges, vertex_of_clean, details.vertices, details.oriented, noise,
+                                    options.threads, details);
   fill_vertex_data(data, points, cloud, planes, edges, vertex_of_clean);
   CsrGraph graph(std::move(data));
   details.components = connected_components(graph).count;
@@ -216,9 +219,11 @@ Report PointCloudSurface::report() const {
           {"flips", d.flips},
           {"rejected_long", d.rejected_long},
           {"rejected_normals", d.rejected_normals},
+          {"rejected_steep", d.rejected_steep},
           {"reflections", d.reflections},
           {"normals_given", d.normals_given},
           {"oriented", d.oriented},
+          {"noise", d.noise},
           {"mollification", d.mollification},
           {"seconds.normals", d.seconds_normals},
           {"seconds.delaunay", d.seconds_delaunay},

@@ -1,6 +1,7 @@
 #include "tangent_planes.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <iterator>
 #include <string>
@@ -19,6 +20,9 @@ constexpr Offset chunk = 4096;  // points per task
 /// Neighbours are narrow, and more of them are wanted, when their second principal variance is below this share of the
 /// first.
 constexpr double narrow_ratio = 1e-3;
+/// Dropping neighbours shrinks a neighbourhood, which may drop others; what is left after these rounds is not joined either.
+constexpr int reach_rounds = 3;
+
 /// Buffers of one thread's queries.
 struct QueryBuffers {
   std::vector<Index> indices;
@@ -44,17 +48,63 @@ std::span<const Index> neighbors_of(std::span<const Vec3> points, Index i, const
   return buffers.indices;
 }
 
+/// The neighbours, nearest first, up to the first gap behind half of k.
+std::span<const Index> before_gap(std::span<const Vec3> points, Index i, std::span<const Index> neighbors, Index k,
+                                  double ratio) {
+  for (auto m = static_cast<std::size_t>((k + 1) / 2); m < neighbors.size(); ++m)
+    if (norm(points[neighbors[m]] - points[i]) > ratio * norm(points[neighbors[m - 1]] - points[i]))
+      return neighbors.first(m);
+  return neighbors;
+}
+
+/// Of `counts[i]` neighbours at i * k, keeps those whose own neighbourhood reaches point i, and its radius.
+/// @return whether all were kept
+bool drop_unreachable(const CleanPoints& cloud, const CloudOptions& options, std::vector<Index>& counts,
+                      Neighborhoods& result) {
+  std::vector<double> radius = result.radius;
+  std::atomic<bool> all{true};
+  detail::parallel_chunks(static_cast<Offset>(counts.size()), chunk, options.threads, [&](Offset begin, Offset end) {
+    for (Offset i = begin; i < end; ++i) {
+      const auto first = result.indices.begin() + i * result.k;
+      const auto last = std::remove_if(first, first + counts[i], [&](Index j) {
+        return norm(cloud.points[j] - cloud.points[i]) > options.max_edge_ratio * result.radius[j];
+      });
+      if (last == first + counts[i]) continue;
+      all = false;
+      counts[i] = static_cast<Index>(last - first);
+      if (counts[i] > 0) radius[i] = norm(cloud.points[*(last - 1)] - cloud.points[i]);
+    }
+  });
+  result.radius = std::move(radius);
+  return all;
+}
+
+/// Closes the gaps that dropped neighbours left.
+void compact(const std::vector<Index>& counts, Neighborhoods& result) {
+  const auto n = static_cast<Offset>(counts.size()), k = static_cast<Offset>(result.k);
+  result.begin.assign(static_cast<std::size_t>(n) + 1, 0);
+  for (Offset i = 0; i < n; ++i) {
+    result.begin[i + 1] = result.begin[i] + counts[i];
+    if (result.begin[i] < i * k)
+      std::copy_n(result.indices.begin() + i * k, counts[i], result.indices.begin() + result.begin[i]);
+  }
+  result.unreachable = n * k - result.begin[n];
+  result.indices.resize(static_cast<std::size_t>(result.begin[n]));
+}
+
 struct WiderNeighborhood {
   Index point;
   std::vector<Index> neighbors;
 };
 
 /// Fits a plane to more and more neighbours until they are no longer narrow; the widest fit wins if they stay so.
-PlaneFit fit_wider(std::span<const Vec3> points, const NeighborSearch& search, Index k, WiderNeighborhood& wider) {
+PlaneFit fit_wider(std::span<const Vec3> points, const NeighborSearch& search, Index k, double max_edge_ratio,
+                   WiderNeighborhood& wider) {
   PlaneFit fit;
   QueryBuffers buffers;
   for (Index factor : {2, 4}) {
-    const auto neighbors = neighbors_of(points, wider.point, search, factor * k, buffers);
+    const auto neighbors = before_gap(
+        points, wider.point, neighbors_of(points, wider.point, search, factor * k, buffers), k, max_edge_ratio);
     wider.neighbors.assign(neighbors.begin(), neighbors.end());
     fit = fit_plane(points, wider.point, wider.neighbors);
     if (fit.ratio > narrow_ratio) break;
@@ -95,19 +145,24 @@ Neighborhoods find_neighborhoods(const CleanPoints& cloud, const NeighborSearch&
   Neighborhoods result;
   result.k = static_cast<Index>(std::min<Offset>(options.k, n - 1));
   const Offset k = result.k;
-  result.begin.resize(static_cast<std::size_t>(n) + 1);
-  for (Offset i = 0; i <= n; ++i) result.begin[i] = i * k;
+  std::vector<Index> counts(static_cast<std::size_t>(n));
   result.indices.resize(static_cast<std::size_t>(n * k));
   result.radius.resize(static_cast<std::size_t>(n));
   detail::parallel_chunks(n, chunk, options.threads, [&](Offset begin, Offset end) {
     QueryBuffers buffers;
     for (Offset i = begin; i < end; ++i) {
-      const auto neighbors = neighbors_of(cloud.points, static_cast<Index>(i), search, result.k, buffers);
+      const auto point = static_cast<Index>(i);
+      const auto neighbors =
+          before_gap(cloud.points, point, neighbors_of(cloud.points, point, search, result.k, buffers), result.k,
+                     options.max_edge_ratio);
       std::copy(neighbors.begin(), neighbors.end(), result.indices.begin() + i * k);
+      counts[i] = static_cast<Index>(neighbors.size());
       result.radius[i] = norm(cloud.points[neighbors.back()] - cloud.points[i]);
     }
     if (options.progress.stop.stop_requested()) throw Cancelled("cancelled during the neighbour search");
   });
+  for (int round = 0; round < reach_rounds && !drop_unreachable(cloud, options, counts, result); ++round) continue;
+  compact(counts, result);
   options.progress.step("neighbours", 1.0);
   return result;
 }
@@ -125,7 +180,7 @@ TangentPlanes find_tangent_planes(const CleanPoints& cloud, std::span<const Vec3
       PlaneFit fit = fit_plane(cloud.points, point, neighborhoods.of(point));
       if (!(fit.ratio > narrow_ratio) && n > neighborhoods.k + 1) {
         WiderNeighborhood candidate{point, {}};
-        fit = fit_wider(cloud.points, search, neighborhoods.k, candidate);
+        fit = fit_wider(cloud.points, search, neighborhoods.k, options.max_edge_ratio, candidate);
         wider[begin / chunk].push_back(std::move(candidate));
       }
       if (!given.empty()) planes.normals[i] = direction(given[cloud.input[i]]);

@@ -11,10 +11,11 @@
 namespace ahm::pointcloud {
 
 struct Neighborhoods {
-  Index k = 0;                 ///< neighbours per point, but for points that needed more
+  Index k = 0;                 ///< neighbours per point, but for points that needed more or reach fewer
   std::vector<Offset> begin;   ///< n + 1
   std::vector<Index> indices;  ///< of each point: nearest first, the point itself left out
   std::vector<double> radius;  ///< distance to the last of them
+  Offset unreachable = 0;      ///< neighbours found but left out, too far away to be joined
   std::span<const Index> of(Index i) const {
     return std::span(indices).subspan(static_cast<std::size_t>(begin[i]),
                                       static_cast<std::size_t>(begin[i + 1] - begin[i]));
@@ -27,6 +28,9 @@ struct TangentPlanes {
   bool has_plane(Index i) const { return normals[i] != Vec3{0, 0, 0}; }
 };
 
+/// The k nearest, less those beyond a gap (a step to more than `max_edge_ratio` times the distance behind half of them),
+/// and those whose own neighbourhood is so much smaller that they will not be joined: planes are made of what the surface
+/// is made of, and an island takes nothing from the next one.
 Neighborhoods find_neighborhoods(const CleanPoints& cloud, const NeighborSearch& search, const CloudOptions& options);
 
 /// Normals as given (zero and non-finite ones are estimated, and turned to the side of their neighbours) or by

@@ -30,18 +30,10 @@ enum class NormalSigns {
   unoriented,  ///< only the planes are used
 };
 
-/// How long the logarithm of an edge is; its direction is that of the neighbour projected to the tangent plane.
-enum class EdgeLength {
-  projected,  ///< the length of the projection: as accurate as the chord on clean clouds, and blind to noise across the
-              ///< surface
-  chord,      ///< the distance in space: noise of 30 % of the spacing makes every distance 12 % too long
-};
-
 struct CloudOptions {
   Index k = 30;  ///< neighbours per point, the point itself not counted; clamped to n - 1 and reported
   NeighborSearchFactory search = nanoflann_search;
   NormalSigns normal_signs = NormalSigns::automatic;
-  EdgeLength edge_length = EdgeLength::projected;
   /// Two points are joined only if their distance is at most this multiple of the distance to the k-th neighbour of
   /// either.
   double max_edge_ratio = 3.0;
@@ -72,16 +64,18 @@ struct CloudDetails {
   bool flips_stopped = false;         ///< before all edges were Delaunay
   Offset rejected_long = 0;           ///< neighbour pairs not joined: too long for the local spacing
   Offset rejected_normals = 0;        ///< neighbour pairs not joined: oriented normals disagree (thin wall)
-  Offset reflections = 0;             ///< edges between oppositely oriented frames
-  bool normals_given = false;         ///< one per point
-  Index estimated = 0;                ///< given normals that are zero or not finite and were estimated
-  Index turned = 0;                   ///< given normals that pointed to the other side than the majority around them
-  bool oriented = false;              ///< given normals fix which side is up, everywhere
-  double mollification = 0;           ///< length added to every edge of the tufted cover, world units
-  double seconds_normals = 0;         ///< neighbours and tangent planes
-  double seconds_delaunay = 0;        ///< local triangulations
-  double seconds_laplacian = 0;       ///< tufted cover, flips, weights
-  double seconds_graph = 0;           ///< orientation, logs, transports
+  Offset rejected_steep = 0;     ///< neighbour pairs not joined: steeply above each other, beyond noise (other sheets)
+  Offset reflections = 0;        ///< edges between oppositely oriented frames
+  bool normals_given = false;    ///< one per point
+  Index estimated = 0;           ///< given normals that are zero or not finite and were estimated
+  Index turned = 0;              ///< given normals that pointed to the other side than the majority around them
+  bool oriented = false;         ///< given normals fix which side is up, everywhere
+  double noise = 0;              ///< standard deviation of neighbours' offsets across the surface, world units
+  double mollification = 0;      ///< length added to every edge of the tufted cover, world units
+  double seconds_normals = 0;    ///< neighbours and tangent planes
+  double seconds_delaunay = 0;   ///< local triangulations
+  double seconds_laplacian = 0;  ///< tufted cover, flips, weights
+  double seconds_graph = 0;      ///< orientation, logs, transports
 };
 
 /// A point cloud as a surface. Rows are the points given; vertices are sorted along a space-filling curve, equal points
@@ -89,7 +83,7 @@ struct CloudDetails {
 /// axis, u is x of `graph().frame(vertex)`.
 ///
 /// Its report: points, vertices, non_finite, duplicates, degenerate, k, components, triangles, flips, rejected_long,
-/// rejected_normals, reflections, normals_given, oriented, mollification, seconds.normals, seconds.delaunay,
+/// rejected_normals, rejected_steep, reflections, normals_given, oriented, noise, mollification, seconds.normals, seconds.delaunay,
 /// seconds.laplacian, seconds.graph.
 /// Its warnings, each with a count unless said otherwise: normals_estimated; cover_not_delaunay (no number);
 /// degenerate (with rows); normals_turned; k_reduced (asked for, used, distinct points); non_finite; duplicates; thin_walls (pairs of
