@@ -76,7 +76,7 @@ struct Setup {
   pointcloud::NeighborSearchFactory search = pointcloud::nanoflann_search;
 
   LogMapSolver solver(const TangentGraph& graph) const {
-    return LogMapSolver(graph, {.ordering = ordering, .threads = threads}, {.strategy = strategy});
+    return LogMapSolver(graph, {.strategy = strategy, .ordering = ordering, .threads = threads});
   }
 };
 

@@ -30,7 +30,7 @@ void measure(const char* name, std::span<const Vec3> points, const Backend& back
     for (Variant variant : {Variant::adaptive, Variant::localized}) {
       std::vector<Cell> row{name, points.size(), t_coef, to_string(variant)};
       try {
-        const LogMapSolver solver(backend.graph, {.t_coef = t_coef}, {.strategy = Strategy::global});
+        const LogMapSolver solver(backend.graph, {.t_coef = t_coef, .strategy = Strategy::global});
         test::SphereError mean;
         for (Index s = 0; s < source_count; ++s) {
           const Index p = 7 + s * static_cast<Index>(points.size() / source_count);

@@ -46,7 +46,7 @@ void add_angles(const Surface& surface, Index source, Radial radial, std::span<c
 void measure(const char* name, double stretch, const Mesh& mesh, Radial radial, Table& table) {
   for (const bool flips : {true, false}) {
     const Surface surface(name, mesh, {.intrinsic_delaunay = flips});
-    const LogMapSolver solver(surface.graph(), {}, {.strategy = Strategy::global});
+    const LogMapSolver solver(surface.graph(), {.strategy = Strategy::global});
     std::vector<double> affine, vector;
     for (int s = 0; s < source_count; ++s) {
       const Index source = surface.size() / 11 + s * (surface.size() / source_count);

@@ -19,8 +19,7 @@ void measure(const std::string& name, const Mesh& mesh, unsigned threads, Table&
   const double build = least_seconds([&] { surface.emplace(name, mesh, trimesh::MeshOptions{.threads = threads}); });
   const TangentGraph& graph = surface->graph();
   const double factor = least_seconds([&] {
-    solver.emplace(graph, OperatorOptions{.check_graph = false, .threads = threads},
-                   SolverOptions{.strategy = Strategy::global});
+    solver.emplace(graph, HeatOptions{.strategy = Strategy::global, .check_graph = false, .threads = threads});
   });
   const Index source = graph.size() / 2;
   auto further = [&](Variant variant) {

@@ -23,8 +23,7 @@ const ahm::LogMapSolver& solver_of(const ahm::TangentGraph& graph) {
   static const ahm::TangentGraph* kept = nullptr;
   static std::optional<ahm::LogMapSolver> solver;
   if (kept != &graph || solver->operators().size() != graph.size()) {
-    solver.emplace(graph, ahm::OperatorOptions{.check_graph = false, .threads = 1},
-                   ahm::SolverOptions{.strategy = ahm::Strategy::global});
+    solver.emplace(graph, ahm::HeatOptions{.strategy = ahm::Strategy::global, .check_graph = false, .threads = 1});
     kept = &graph;
   }
   return *solver;
@@ -60,7 +59,7 @@ void map(benchmark::State& state, Shape shape, Variant variant) {
 /// A whole map by march, with nothing factored before.
 void march(benchmark::State& state, Shape shape) {
   const ahm::CsrGraph& graph = graph_for(state, shape);
-  const ahm::LogMapSolver solver(graph, {.check_graph = false, .threads = 1}, {.strategy = ahm::Strategy::march});
+  const ahm::LogMapSolver solver(graph, {.strategy = ahm::Strategy::march, .check_graph = false, .threads = 1});
   const ahm::Source source = ahm::Source::at_vertex(ahm::Vertex(graph.size() / 2));
   ahm::MarchStatistics statistics;
   for (auto _ : state) statistics = solver.solve(source, {.threads = 1}).march();
@@ -88,7 +87,8 @@ void local_maps(benchmark::State& state, Shape shape) {
   for (Index v = 0; v < std::min<Index>(graph.size(), 1000); ++v) vertices.emplace_back(v);
   std::size_t entries = 0;
   for (auto _ : state)
-    entries = ahm::local_maps(graph, vertices, {.radius = radius, .check_graph = false, .threads = 1}).indices.size();
+    entries = ahm::local_maps(graph, vertices, {.radius = radius, .heat = {.check_graph = false, .threads = 1}})
+                  .indices.size();
   state.counters["vertices/map"] = static_cast<double>(entries) / static_cast<double>(vertices.size());
   state.counters["maps/s"] =
       benchmark::Counter(static_cast<double>(vertices.size()), benchmark::Counter::kIsIterationInvariantRate);

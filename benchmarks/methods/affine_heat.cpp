@@ -9,7 +9,7 @@ namespace {
 class AffineHeat final : public Baseline {
  public:
   AffineHeat(const TangentGraph& graph, Variant variant, double t_coef, int order)
-      : solver_(graph, {.t_coef = t_coef}, {.order = order}), variant_(variant) {}
+      : solver_(graph, {.t_coef = t_coef, .order = order}), variant_(variant) {}
 
   std::string_view name() const noexcept override { return variant_ == Variant::adaptive ? "AHM_a" : "AHM_l"; }
 

@@ -19,8 +19,8 @@ std::vector<double> measure(Index n, Ordering ordering, const Settings& settings
   const double build =
       seconds([&] { cloud.emplace(pointcloud::PointCloudSurface::build(points, {}, {.threads = settings.threads})); });
   const double factor = seconds([&] {
-    solver.emplace(cloud->graph(), OperatorOptions{.ordering = ordering, .threads = settings.threads},
-                   SolverOptions{.strategy = Strategy::global});
+    solver.emplace(cloud->graph(),
+                   HeatOptions{.strategy = Strategy::global, .ordering = ordering, .threads = settings.threads});
   });
   const Source source = cloud->source(Row(0)).source;
   Index ok = 0;

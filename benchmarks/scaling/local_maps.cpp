@@ -17,10 +17,11 @@ namespace {
 
 /// Largest difference to the maps of the whole graph, relative to the radius, over some sources.
 double difference(const TangentGraph& graph, double radius, double margin, Variant variant) {
-  const LogMapSolver solver(graph, {}, {.strategy = Strategy::global});
+  const LogMapSolver solver(graph, {.strategy = Strategy::global});
   std::vector<Vertex> sources;
   for (Index s = 0; s < graph.size(); s += graph.size() / 40) sources.emplace_back(s);
-  const LocalMaps maps = ahm::local_maps(graph, sources, {.radius = radius, .variant = variant, .margin = margin});
+  const LocalMaps maps =
+      ahm::local_maps(graph, sources, {.radius = radius, .margin = margin, .heat = {.variant = variant}});
   double worst = 0;
   for (std::size_t s = 0; s < sources.size(); ++s) {
     const LogMap whole = solver.solve(Source::at_vertex(sources[s]), {.variant = variant});
@@ -61,7 +62,7 @@ Table local_maps(const Settings& settings) {
     const auto surface = torus_graph(n);
     const CsrGraph& graph = surface.graph();
     const double edge = graph.mean_edge_length() * graph.length_unit();
-    const LogMapSolver solver(graph, {.check_graph = false}, {.strategy = Strategy::global});
+    const LogMapSolver solver(graph, {.strategy = Strategy::global, .check_graph = false});
     const double single =
         median_of_five([&] { solver.solve(Source::at_vertex(Vertex(n / 2)), {.threads = settings.threads}); });
     for (double radius : {5.4, 12.0})
@@ -69,7 +70,7 @@ Table local_maps(const Settings& settings) {
         Offset entries = 0;
         const double s = seconds([&] {
           const LocalMapOptions options{
-              .radius = radius * edge, .variant = variant, .check_graph = false, .threads = settings.threads};
+              .radius = radius * edge, .heat = {.variant = variant, .check_graph = false, .threads = settings.threads}};
           entries = ahm::local_maps(graph, options).indptr.back();
         });
         table.add({graph.size(), radius, to_string(variant), static_cast<double>(entries) / graph.size(), s,

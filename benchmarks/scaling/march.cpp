@@ -18,8 +18,7 @@ std::vector<double> solve(const TangentGraph& graph, Strategy strategy, double b
   std::optional<LogMapSolver> solver;
   std::optional<LogMap> map;
   const double prepare = seconds([&] {
-    solver.emplace(graph, OperatorOptions{.check_graph = false, .threads = settings.threads},
-                   SolverOptions{.strategy = strategy});
+    solver.emplace(graph, HeatOptions{.strategy = strategy, .check_graph = false, .threads = settings.threads});
   });
   const double first = seconds([&] { map.emplace(solver->solve(Source::at_vertex(Vertex{0}), options)); });
   const double again = seconds([&] { solver->solve(Source::at_vertex(Vertex(graph.size() / 2)), options); });

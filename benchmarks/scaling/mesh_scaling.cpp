@@ -21,8 +21,7 @@ std::vector<double> measure(Index n, const Settings& settings) {
   });
   const Source source = surface->source(Row(0)).source;
   const double first = seconds([&] {
-    solver.emplace(surface->graph(), OperatorOptions{.threads = settings.threads},
-                   SolverOptions{.strategy = Strategy::global});
+    solver.emplace(surface->graph(), HeatOptions{.strategy = Strategy::global, .threads = settings.threads});
     solver->solve(source, options);
   });
   const double peak = peak_megabytes();

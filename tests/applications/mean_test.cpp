@@ -340,7 +340,7 @@ TEST(Center, RefusesWhatHasNone) {
   EXPECT_THROW(karcher_mean(solver, pair, weights, {.start = Vertex{-1}}), InvalidArgument);
   EXPECT_THROW(karcher_mean(solver, pair, weights, {.start = Vertex{flat.size()}}), InvalidArgument);
   EXPECT_THROW(karcher_mean(solver, pair, weights, {.max_maps = 0}), InvalidArgument);
-  EXPECT_THROW(karcher_mean(solver, pair, weights, {.map = {.radius = 0.01}}), InvalidArgument);
+  EXPECT_THROW(karcher_mean(solver, pair, weights, {.radius = 0.01}), InvalidArgument);
 }
 
 }  // namespace

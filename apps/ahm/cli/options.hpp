@@ -41,7 +41,7 @@ struct SolveOptions {
   Ordering ordering = Ordering::amd;
   Strategy strategy = Strategy::automatic;
   int order = 1;
-  double accuracy = SolverOptions{}.accuracy;
+  double accuracy = HeatOptions{}.accuracy;
   unsigned threads = 0;
 };
 

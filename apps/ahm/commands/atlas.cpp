@@ -48,10 +48,9 @@ struct AtlasCommandOptions {
   std::string texture;
 };
 
-std::vector<Vertex> choose_sources(const AtlasCommandOptions& options, const Input& input, const LogMapSolver& solver,
-                                   const MapOptions& map) {
+std::vector<Vertex> choose_sources(const AtlasCommandOptions& options, const Input& input, const LogMapSolver& solver) {
   if (options.sources.empty())
-    return farthest_points(solver, Vertex{0}, std::min(options.charts, solver.graph().size()), map);
+    return farthest_points(solver, Vertex{0}, std::min(options.charts, solver.graph().size()));
   std::vector<Vertex> result;
   for (const SourceSpec& spec : options.sources) result.push_back(vertex_at(input, spec, "--sources"));
   return result;
@@ -158,17 +157,14 @@ void run(const AtlasCommandOptions& options) {
   const LogMapSolver solver = make_solver(options.solve, input.graph(), journal, 0);
 
   journal.start("sources");
-  MapOptions map;
-  map.variant = options.solve.variant;
-  map.threads = options.solve.threads;
-  const std::vector<Vertex> sources = choose_sources(options, input, solver, map);
+  const std::vector<Vertex> sources = choose_sources(options, input, solver);
   const SurfaceFaces faces = surface_faces(input.surface->surface(), solver, sources);
   const std::vector<Vec3> positions = positions_of(faces, graph.size());
   journal.start("charts");
   RefineOptions refine;
   if (options.max_distortion) refine.max_distortion = *options.max_distortion;
-  const Made made(options.max_distortion ? make_atlas(solver, sources, faces.of_vertices(), positions, refine, map)
-                                         : make_atlas(solver, sources, faces.of_vertices(), map),
+  const Made made(options.max_distortion ? make_atlas(solver, sources, faces.of_vertices(), positions, refine)
+                                         : make_atlas(solver, sources, faces.of_vertices()),
                   faces, graph, positions, options.pack);
   comment(options, made, graph, journal);
 

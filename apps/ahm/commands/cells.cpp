@@ -86,10 +86,7 @@ std::vector<Vertex> spread(const CellsOptions& options, const Input& input, cons
   if (options.count > graph.size())
     throw InvalidArgument(fmt::format("--count {}: the graph has {} vertices only", options.count, graph.size()));
   const Vertex first = options.start ? vertex_at(input, *options.start, "--start") : Vertex{0};
-  MapOptions map;
-  map.variant = options.solve.variant;
-  map.threads = options.solve.threads;
-  std::vector<Vertex> result = farthest_points(solver, first, options.count, map);
+  std::vector<Vertex> result = farthest_points(solver, first, options.count);
   move_to_rows(graph, rows_of_vertices(input), result);
   return result;
 }

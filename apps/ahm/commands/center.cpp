@@ -46,9 +46,6 @@ Center find_center(const CenterCommandOptions& options, const Input& input, cons
     throw InvalidArgument(fmt::format("--weights: {} numbers for {} points", options.weights.size(), vertices.size()));
   CenterOptions center;
   if (options.start) center.start = vertex_at(input, *options.start, "--start");
-  center.map.variant = options.solve.variant;
-  center.map.threads = options.solve.threads;
-  center.map.progress = journal.progress();
   journal.start("search");
   const auto find = options.median ? geometric_median : karcher_mean;
   return find(solver, vertices, options.weights, center);

@@ -35,7 +35,7 @@ void run_estimate(const InputOptions& options, const SolveOptions& solve, const 
   const io::Geometry input = io::read(options.path);
   const Backend& backend = choose_backend(input, options.backend);
   const GraphSize size{static_cast<Index>(input.points.size())};
-  const SolverOptions solver{.strategy = solve.strategy, .expected_maps = 1};
+  const HeatOptions solver{.strategy = solve.strategy, .expected_maps = 1};
   const Strategy chosen = choose_strategy(size, solver);
 
   nlohmann::ordered_json j{{"program", "ahm logmap --estimate"},

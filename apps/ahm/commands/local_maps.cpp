@@ -179,10 +179,10 @@ void run(const LocalMapsOptions& options) {
   map_options.radius = options.radius;
   const bool has_virtual = std::count(rows.row_of_vertex.begin(), rows.row_of_vertex.end(), -1) > 0;
   map_options.nearest = has_virtual ? 0 : options.nearest;
-  map_options.variant = options.solve.variant;
-  map_options.t_coef = options.solve.t_coef;
-  map_options.threads = options.solve.threads;
-  map_options.progress = journal.progress();
+  map_options.heat = {.t_coef = options.solve.t_coef,
+                      .variant = options.solve.variant,
+                      .threads = options.solve.threads,
+                      .progress = journal.progress()};
   LocalMaps maps = local_maps(input.graph(), vertices, map_options);
   keep_rows(maps, rows, options.nearest);
 

@@ -33,31 +33,27 @@ std::string strategy_as_text(const LogMap& map) {
 LogMapSolver make_solver(const SolveOptions& options, const TangentGraph& graph, Journal& journal, int maps) {
   check_memory(options, graph);
   journal.start("factor");
-  OperatorOptions operators;
-  operators.t_coef = options.t_coef;
-  operators.ordering = options.ordering;
-  operators.progress = journal.progress();
-  SolverOptions solver;
-  solver.strategy = options.strategy;
-  solver.expected_maps = maps;
-  solver.order = options.order;
-  solver.accuracy = options.accuracy;
-  return LogMapSolver(graph, operators, solver);
+  return LogMapSolver(graph, {.t_coef = options.t_coef,
+                              .variant = options.variant,
+                              .order = options.order,
+                              .strategy = options.strategy,
+                              .expected_maps = maps,
+                              .accuracy = options.accuracy,
+                              .ordering = options.ordering,
+                              .threads = options.threads,
+                              .progress = journal.progress()});
 }
 
-MapOptions map_options(const SolveOptions& options, Journal& journal) {
+MapOptions map_options(const SolveOptions& options) {
   MapOptions map;
-  map.variant = options.variant;
   if (options.radius) map.radius = *options.radius;
-  map.threads = options.threads;
   map.frames = true;
-  map.progress = journal.progress();
   return map;
 }
 
 LogMap solve(const SolveOptions& options, const LogMapSolver& solver, const Source& source, Journal& journal) {
   journal.start("solve");
-  LogMap map = solver.solve(source, map_options(options, journal));
+  LogMap map = solver.solve(source, map_options(options));
   journal.tell(strategy_as_text(map));
   return map;
 }

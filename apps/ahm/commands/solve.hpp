@@ -8,13 +8,13 @@
 
 namespace ahm::app {
 
-/// The solver of the options: t_coef, ordering, strategy, order, accuracy.
+/// The solver of the options, which also sets variant and threads of all maps.
 /// @param maps  how many are expected; 0: many
 /// @throws ResourceExhausted where a global solve would swap
 LogMapSolver make_solver(const SolveOptions& options, const TangentGraph& graph, Journal& journal, int maps = 1);
 
-/// What the options say of single maps: variant, radius, threads. With frames, for `map_quality` and transport.
-MapOptions map_options(const SolveOptions& options, Journal& journal);
+/// What the options say of single maps: the radius. With frames, for `map_quality` and transport.
+MapOptions map_options(const SolveOptions& options);
 
 /// One map; the journal tells the strategy.
 LogMap solve(const SolveOptions& options, const LogMapSolver& solver, const Source& source, Journal& journal);

@@ -181,7 +181,7 @@ VertexField distance_in_cells(const LogMapSolver& solver, std::span<const Vertex
   return result;
 }
 
-std::vector<Vertex> farthest_points(const LogMapSolver& solver, Vertex first, Index count, const MapOptions& options) {
+std::vector<Vertex> farthest_points(const LogMapSolver& solver, Vertex first, Index count) {
   const Index n = solver.graph().size();
   if (first.index < 0 || first.index >= n)
     throw InvalidArgument("farthest_points: 'first' " + std::to_string(first.index) + " is outside [0, " +
@@ -192,7 +192,7 @@ std::vector<Vertex> farthest_points(const LogMapSolver& solver, Vertex first, In
   std::vector<Vertex> points{first};
   std::vector<double> away(static_cast<std::size_t>(n), std::numeric_limits<double>::infinity());
   while (points.size() < static_cast<std::size_t>(count)) {
-    const LogMap map = solver.solve(Source::at_vertex(points.back()), options);
+    const LogMap map = solver.solve(Source::at_vertex(points.back()));
     for (Index i = 0; i < n; ++i)
       if (map.status(Vertex(i)) == Status::ok) {
         double& d = away[i];

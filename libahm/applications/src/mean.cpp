@@ -58,15 +58,15 @@ struct View {
   std::vector<double> center;
 };
 
-View look(const Problem& problem, Vertex from, const MapOptions& options) {
+View look(const Problem& problem, Vertex from, double radius) {
   const TangentGraph& graph = problem.solver.graph();
-  View view{problem.solver.solve(Source::at_vertex(from), options), {}, {}};
+  View view{problem.solver.solve(Source::at_vertex(from), {.radius = radius}), {}, {}};
   view.points.dimension = static_cast<std::size_t>(graph.dimension());
   view.points.weights = problem.weights;
   for (Vertex vertex : problem.vertices) {
     if (const Status status = view.map.status(vertex); status != Status::ok) {
       const char* what = status == Status::disconnected    ? "' (take one center per component)"
-                         : status == Status::beyond_radius ? "' (raise map.radius)"
+                         : status == Status::beyond_radius ? "' (raise radius)"
                                                            : "' (let the solver march: Strategy::automatic)";
       throw InvalidArgument(std::string(problem.name) + ": seen from vertex " + std::to_string(from.index) +
                             ", the point at vertex " + std::to_string(vertex.index) + " has status '" +
@@ -124,7 +124,7 @@ Center search(const Problem& problem, double power, const CenterOptions& options
   std::vector<Vertex> visited;
   double remaining = std::numeric_limits<double>::infinity(), share = 1;
   for (Index maps = 1; maps <= options.max_maps; ++maps) {
-    const View here = look(problem, x, options.map);
+    const View here = look(problem, x, options.radius);
     visited.push_back(x);
     if (const double r = length(here.center); r < remaining) {
       remaining = r;

@@ -108,7 +108,7 @@ TEST_P(GridMap, HasTheRadialFieldOfFlatSpace) {
 TEST(GridMarch, IsTheIdentityInSpace) {
   const GridGraph grid({.shape = {34, 28, 30}, .spacing = {1, 1.3, 0.8}});
   const Vertex p = grid.vertex(std::array<Index, 3>{3, 14, 11});
-  const LogMapSolver solver(grid, {}, {.strategy = Strategy::march});
+  const LogMapSolver solver(grid, {.strategy = Strategy::march});
   for (Variant variant : {Variant::adaptive, Variant::localized}) {
     const LogMap map = solver.solve(Source::at_vertex(Vertex(p)), {.variant = variant});
     EXPECT_GT(map.march().bands, 3);

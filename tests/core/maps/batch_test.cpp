@@ -48,8 +48,8 @@ TEST_F(Batch, AcceptsNoSourcesAtAll) { EXPECT_TRUE(solver.solve(std::span<const 
 
 TEST_F(Batch, ReportsProgressUpToTheEnd) {
   double last = -1;
-  MapOptions options;
-  options.progress.report = [&](std::string_view stage, double fraction) {
+  MapOptions options{.progress = Progress{}};
+  options.progress->report = [&](std::string_view stage, double fraction) {
     EXPECT_EQ(stage, "solve");
     EXPECT_GE(fraction, last);
     last = fraction;
@@ -61,21 +61,21 @@ TEST_F(Batch, ReportsProgressUpToTheEnd) {
 TEST_F(Batch, StopsWhenAsked) {
   std::stop_source stop;
   stop.request_stop();
-  MapOptions options;
-  options.progress.stop = stop.get_token();
+  MapOptions options{.progress = Progress{}};
+  options.progress->stop = stop.get_token();
   EXPECT_THROW(solver.solve(sources, options), Cancelled);
 
-  OperatorOptions operator_options;
+  HeatOptions operator_options;
   operator_options.progress.stop = stop.get_token();
   EXPECT_THROW(LogMapSolver(graph, operator_options), Cancelled);
 }
 
 TEST_F(Batch, StopsInTheMiddle) {
   std::stop_source stop;
-  MapOptions options;
+  MapOptions options{.progress = Progress{}};
   options.threads = 1;
-  options.progress.stop = stop.get_token();
-  options.progress.report = [&](std::string_view, double fraction) {
+  options.progress->stop = stop.get_token();
+  options.progress->report = [&](std::string_view, double fraction) {
     if (fraction > 0) stop.request_stop();
   };
   EXPECT_THROW(solver.solve(sources, options), Cancelled);
@@ -83,7 +83,7 @@ TEST_F(Batch, StopsInTheMiddle) {
 
 TEST_F(Batch, ReportsTheStagesOfTheFactorization) {
   std::vector<std::string> stages;
-  OperatorOptions options;
+  HeatOptions options;
   options.progress.report = [&](std::string_view stage, double) { stages.emplace_back(stage); };
   const HeatOperators heat(graph, options);
   EXPECT_EQ(stages, (std::vector<std::string>{"check", "assemble", "analyze", "factor", "factor"}));

@@ -32,7 +32,7 @@ TEST(LocalMaps, AreExactOnFlatGeometryAndComplete) {
     const double radius = flat.dimension == 2 ? 0.15 : 0.3;
     const std::vector<Vertex> sources = every(7, graph);
     for (Variant variant : variants) {
-      const LocalMaps maps = local_maps(graph, sources, {.radius = radius, .variant = variant});
+      const LocalMaps maps = local_maps(graph, sources, {.radius = radius, .heat = {.variant = variant}});
       ASSERT_EQ(maps.sources(), static_cast<Index>(sources.size()));
       for (std::size_t s = 0; s < sources.size(); ++s) {
         std::set<Index> found;
@@ -63,7 +63,8 @@ TEST(LocalMaps, ApproachTheMapOfTheWholeGraphWithTheMargin) {
   for (Variant variant : variants) {
     double before = INFINITY;
     for (double margin : {0.0, 1.5, 3.0}) {
-      const LocalMaps maps = local_maps(graph, sources, {.radius = radius, .variant = variant, .margin = margin});
+      const LocalMaps maps =
+          local_maps(graph, sources, {.radius = radius, .margin = margin, .heat = {.variant = variant}});
       double worst = 0;
       for (std::size_t s = 0; s < sources.size(); ++s) {
         const LogMap whole = solver.solve(Source::at_vertex(sources[s]), {.variant = variant});
@@ -97,8 +98,8 @@ TEST(LocalMaps, CarryTheSourcesFrame) {
 TEST(LocalMaps, DoNotDependOnThreadsOrOnCompany) {
   const CsrGraph graph(sphere_graph(3000));
   const double radius = 4 * graph.mean_edge_length();
-  const LocalMaps one = local_maps(graph, {.radius = radius, .threads = 1}),
-                  many = local_maps(graph, {.radius = radius, .threads = 3});
+  const LocalMaps one = local_maps(graph, {.radius = radius, .heat = {.threads = 1}}),
+                  many = local_maps(graph, {.radius = radius, .heat = {.threads = 3}});
   EXPECT_EQ(one.indptr, many.indptr);
   EXPECT_EQ(one.indices, many.indices);
   EXPECT_EQ(one.logs, many.logs);
@@ -167,7 +168,7 @@ TEST(LocalMaps, RefuseNonsense) {
   for (double radius : {0.0, -1.0, double(NAN), double(INFINITY)})
     EXPECT_THROW(local_maps(graph, {.radius = radius}), InvalidArgument);
   EXPECT_THROW(local_maps(graph, {.radius = 1, .nearest = -1}), InvalidArgument);
-  EXPECT_THROW(local_maps(graph, {.radius = 1, .t_coef = 0}), InvalidArgument);
+  EXPECT_THROW(local_maps(graph, {.radius = 1, .heat = {.t_coef = 0}}), InvalidArgument);
   EXPECT_THROW(local_maps(graph, {.radius = 1, .margin = -1}), InvalidArgument);
   EXPECT_THROW(local_maps(graph, std::array{Vertex{200}}, {.radius = 1}), InvalidArgument);
   EXPECT_EQ(local_maps(graph, std::vector<Vertex>{}, {.radius = 1}).indptr, std::vector<Offset>{0});

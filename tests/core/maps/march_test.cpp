@@ -15,7 +15,7 @@
 namespace ahm::test {
 namespace {
 
-constexpr SolverOptions global{.strategy = Strategy::global}, marching{.strategy = Strategy::march};
+const HeatOptions global{.strategy = Strategy::global}, marching{.strategy = Strategy::march};
 constexpr std::array variants{Variant::adaptive, Variant::localized};
 
 /// Largest difference of two maps, relative to the largest distance; infinite where only one is ok.
@@ -49,7 +49,7 @@ Source blended(const TangentGraph& graph) {
 TEST(March, AgreesWithTheGlobalSolve) {
   for (const CsrGraphData& data : {sphere_graph(6000), as_blocks(sphere_graph(6000)), bent_lattice(16)}) {
     const CsrGraph graph(data);
-    const LogMapSolver whole(graph, {}, global), march(graph, {}, marching);
+    const LogMapSolver whole(graph, global), march(graph, marching);
     for (const Source& source : {Source::at_vertex(Vertex{5}), blended(graph)})
       for (Variant variant : variants) {
         const LogMap expected = whole.solve(source, {.variant = variant}),
@@ -62,17 +62,17 @@ TEST(March, AgreesWithTheGlobalSolve) {
 
 TEST(March, TakesSeveralBands) {
   const CsrGraph graph(sphere_graph(20000));
-  const LogMap map = LogMapSolver(graph, {}, marching).solve(Source::at_vertex(Vertex{0}));
+  const LogMap map = LogMapSolver(graph, marching).solve(Source::at_vertex(Vertex{0}));
   EXPECT_GT(map.march().bands, 4);
   EXPECT_LT(map.march().largest_band, 15000);
-  EXPECT_LT(difference(LogMapSolver(graph, {}, global).solve(Source::at_vertex(Vertex{0})), map), 1e-9);
+  EXPECT_LT(difference(LogMapSolver(graph, global).solve(Source::at_vertex(Vertex{0})), map), 1e-9);
 }
 
 TEST(March, IsAsAccurateAsWanted) {
   const CsrGraph graph(sphere_graph(8000));
-  const LogMap expected = LogMapSolver(graph, {}, global).solve(Source::at_vertex(Vertex{0}));
+  const LogMap expected = LogMapSolver(graph, global).solve(Source::at_vertex(Vertex{0}));
   for (double accuracy : {1e-3, 1e-6, 1e-9, 1e-11}) {
-    const LogMapSolver march(graph, {}, {.strategy = Strategy::march, .accuracy = accuracy});
+    const LogMapSolver march(graph, {.strategy = Strategy::march, .accuracy = accuracy});
     EXPECT_LT(difference(expected, march.solve(Source::at_vertex(Vertex{0}))), accuracy);
   }
 }
@@ -80,8 +80,10 @@ TEST(March, IsAsAccurateAsWanted) {
 TEST(March, AgreesAtOtherDiffusionTimes) {
   const CsrGraph graph(sphere_graph(8000));
   for (double t_coef : {0.1, 0.5, 4.0, 16.0}) {
-    const LogMap expected = LogMapSolver(graph, {.t_coef = t_coef}, global).solve(Source::at_vertex(Vertex{3}));
-    const LogMap map = LogMapSolver(graph, {.t_coef = t_coef}, marching).solve(Source::at_vertex(Vertex{3}));
+    const LogMap expected =
+        LogMapSolver(graph, {.t_coef = t_coef, .strategy = Strategy::global}).solve(Source::at_vertex(Vertex{3}));
+    const LogMap map =
+        LogMapSolver(graph, {.t_coef = t_coef, .strategy = Strategy::march}).solve(Source::at_vertex(Vertex{3}));
     EXPECT_LT(difference(expected, map), 1e-9) << "t_coef " << t_coef;
   }
 }
@@ -89,7 +91,7 @@ TEST(March, AgreesAtOtherDiffusionTimes) {
 TEST(March, IsExactOnThePlane) {
   const FlatGraph flat = planar_triangulation(150);
   const CsrGraph graph(flat.data);
-  const LogMapSolver solver(graph, {}, marching);
+  const LogMapSolver solver(graph, marching);
   for (Variant variant : variants) {
     const LogMap map = solver.solve(Source::at_vertex(Vertex{77}), {.variant = variant});
     EXPECT_GT(map.march().bands, 1);
@@ -102,7 +104,7 @@ TEST(March, IsExactOnThePlane) {
 TEST(March, HasNoHorizon) {
   const CsrGraph graph(tube(20000, 6));
   for (Variant variant : variants) {
-    const LogMap map = LogMapSolver(graph, {}, marching).solve(Source::at_vertex(Vertex{0}), {.variant = variant});
+    const LogMap map = LogMapSolver(graph, marching).solve(Source::at_vertex(Vertex{0}), {.variant = variant});
     EXPECT_EQ(map.count(Status::ok), graph.size());
     for (Index r = 1; r < 20000; r += 97) ASSERT_NEAR(map.distance(Vertex(r * 6)) / r, 1.0, 1e-3) << "ring " << r;
     EXPECT_NEAR(map.distance(Vertex(19999 * 6)) / 19999, 1.0, 1e-3);
@@ -111,18 +113,18 @@ TEST(March, HasNoHorizon) {
 
 TEST(March, GoesOnWhereTheGlobalSolveEnds) {
   const CsrGraph graph(tube(2000, 6));
-  const LogMap masked = LogMapSolver(graph, {}, global).solve(Source::at_vertex(Vertex{0}));
+  const LogMap masked = LogMapSolver(graph, global).solve(Source::at_vertex(Vertex{0}));
   EXPECT_GT(masked.count(Status::unreached), 0);
   const LogMap map = LogMapSolver(graph).solve(Source::at_vertex(Vertex{0}));
   EXPECT_EQ(map.strategy(), Strategy::march);
   EXPECT_EQ(map.count(Status::ok), graph.size());
-  EXPECT_LT(difference(LogMapSolver(graph, {}, marching).solve(Source::at_vertex(Vertex{0})), map), 1e-9);
+  EXPECT_LT(difference(LogMapSolver(graph, marching).solve(Source::at_vertex(Vertex{0})), map), 1e-9);
 }
 
 TEST(March, MasksOtherComponents) {
   const FlatGraph flat = planar_triangulation(60);
   const CsrGraph graph(doubled(flat.data));
-  const LogMap map = LogMapSolver(graph, {}, marching).solve(Source::at_vertex(Vertex(7 + flat.size())));
+  const LogMap map = LogMapSolver(graph, marching).solve(Source::at_vertex(Vertex(7 + flat.size())));
   EXPECT_EQ(map.count(Status::disconnected), flat.size());
   EXPECT_EQ(map.count(Status::ok), flat.size());
   EXPECT_EQ(map.status(Vertex{7}), Status::disconnected);
@@ -135,14 +137,14 @@ TEST(March, TakesSourcesInSeveralComponents) {
   const std::array identity{1.0, 0.0, 0.0, 1.0};
   Source source(2);
   source.add(Vertex{7}, 1, zero, identity).add(Vertex(9 + flat.size()), 1, one, identity);
-  const LogMap expected = LogMapSolver(graph, {}, global).solve(source);
-  EXPECT_LT(difference(expected, LogMapSolver(graph, {}, marching).solve(source)), 1e-9);
+  const LogMap expected = LogMapSolver(graph, global).solve(source);
+  EXPECT_LT(difference(expected, LogMapSolver(graph, marching).solve(source)), 1e-9);
 }
 
 TEST(March, EndsAtTheRadius) {
   const FlatGraph flat = planar_triangulation(150);
   const CsrGraph graph(flat.data);
-  const LogMapSolver march(graph, {}, marching);
+  const LogMapSolver march(graph, marching);
   const LogMap whole = march.solve(Source::at_vertex(Vertex{75})),
                local = march.solve(Source::at_vertex(Vertex{75}), {.radius = 0.2});
   EXPECT_LT(local.march().solved, whole.march().solved / 2);
@@ -156,7 +158,7 @@ TEST(March, EndsAtTheRadius) {
 
 TEST(March, DoesNotDependOnThreads) {
   const CsrGraph graph(sphere_graph(20000));
-  const LogMapSolver march(graph, {}, marching);
+  const LogMapSolver march(graph, marching);
   const std::vector sources{Source::at_vertex(Vertex{0}), Source::at_vertex(Vertex{9}),
                             Source::at_vertex(Vertex{1000})};
   const auto one = march.solve(sources, {.threads = 1}), four = march.solve(sources, {.threads = 4});
@@ -174,13 +176,13 @@ TEST(March, CanBeStopped) {
   std::stop_source stop;
   stop.request_stop();
   EXPECT_THROW(
-      LogMapSolver(graph, {}, marching).solve(Source::at_vertex(Vertex{0}), {.progress = {{}, stop.get_token()}}),
+      LogMapSolver(graph, marching).solve(Source::at_vertex(Vertex{0}), {.progress = Progress{{}, stop.get_token()}}),
       Cancelled);
 }
 
 TEST(March, StillGivesTheOperatorsOfTheWholeGraph) {
   const CsrGraph graph(sphere_graph(3000));
-  const LogMapSolver march(graph, {}, marching), whole(graph, {}, global);
+  const LogMapSolver march(graph, marching), whole(graph, global);
   const auto a = parallel_transport(march, Source::at_vertex(Vertex{4})),
              b = parallel_transport(whole, Source::at_vertex(Vertex{4}));
   EXPECT_EQ(a.values, b.values);
@@ -188,15 +190,15 @@ TEST(March, StillGivesTheOperatorsOfTheWholeGraph) {
 
 TEST(March, RefusesFactorsBeyondTheMemory) {
   const CsrGraph graph(sphere_graph(3000));
-  const LogMapSolver small_memory(graph, {}, {.memory = 1 << 20});
+  const LogMapSolver small_memory(graph, {.memory = 1 << 20});
   EXPECT_EQ(small_memory.solve(Source::at_vertex(Vertex{4})).count(Status::ok), graph.size());
   EXPECT_THROW(parallel_transport(small_memory, Source::at_vertex(Vertex{4})), ResourceExhausted);
 }
 
 TEST(Strategy, IsChosenFromTheNumberOfMapsAndTheMemory) {
   const CsrGraph small(sphere_graph(2000)), large(sphere_graph(60000));
-  auto chosen = [](const TangentGraph& graph, const SolverOptions& options) {
-    return LogMapSolver(graph, {}, options).strategy();
+  auto chosen = [](const TangentGraph& graph, const HeatOptions& options) {
+    return LogMapSolver(graph, options).strategy();
   };
   EXPECT_EQ(chosen(small, {.expected_maps = 1}), Strategy::global);
   EXPECT_EQ(chosen(large, {.expected_maps = 1}), Strategy::march);

@@ -11,7 +11,7 @@
 namespace ahm::test {
 namespace {
 
-std::vector<double> solve(const CsrGraphData& data, Index p, Variant variant, OperatorOptions options = {}) {
+std::vector<double> solve(const CsrGraphData& data, Index p, Variant variant, HeatOptions options = {}) {
   const CsrGraph graph(data);
   const LogMap map = LogMapSolver(graph, options).solve(Source::at_vertex(Vertex(p)), {.variant = variant});
   return {map.coordinates().begin(), map.coordinates().end()};

@@ -102,13 +102,12 @@ AtlasDistortion distortion(const Atlas& atlas, const FaceList& faces, std::span<
   });
 }
 
-Atlas make_atlas(const LogMapSolver& solver, std::span<const Vertex> sources, const FaceList& faces,
-                 const MapOptions& options) {
-  return detail::with_memory_check("making an atlas", [&] { return AtlasMaker(solver, faces, options).make(sources); });
+Atlas make_atlas(const LogMapSolver& solver, std::span<const Vertex> sources, const FaceList& faces) {
+  return detail::with_memory_check("making an atlas", [&] { return AtlasMaker(solver, faces).make(sources); });
 }
 
 Atlas make_atlas(const LogMapSolver& solver, std::span<const Vertex> sources, const FaceList& faces,
-                 std::span<const Vec3> positions, const RefineOptions& refine, const MapOptions& options) {
+                 std::span<const Vec3> positions, const RefineOptions& refine) {
   if (!(refine.max_distortion > 1))
     throw InvalidArgument("make_atlas: max_distortion is " + detail::number(refine.max_distortion) +
                           "; it must be > 1");
@@ -118,7 +117,7 @@ Atlas make_atlas(const LogMapSolver& solver, std::span<const Vertex> sources, co
     throw InvalidArgument("make_atlas: 'positions' has " + std::to_string(positions.size()) + " entries, not " +
                           std::to_string(solver.graph().size()));
   return detail::with_memory_check("making an atlas", [&] {
-    AtlasMaker maker(solver, faces, options);
+    AtlasMaker maker(solver, faces);
     Atlas atlas = maker.make(one_per_component(solver.graph(), sources, faces, refine.max_sources));
     std::vector<bool> is_source(positions.size(), false);
     for (Vertex vertex : atlas.sources) is_source[vertex.index] = true;

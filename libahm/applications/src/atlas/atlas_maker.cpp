@@ -184,13 +184,8 @@ Atlas assemble(const FaceNeighbors& neighbors, const FaceList& faces, const Regi
 
 }  // namespace
 
-AtlasMaker::AtlasMaker(const LogMapSolver& solver, const FaceList& faces, const MapOptions& options)
-    : solver_(solver),
-      faces_(faces),
-      options_(options),
-      neighbors_((check(solver.graph(), faces), FaceNeighbors(faces))) {
-  options_.frames = false;
-}
+AtlasMaker::AtlasMaker(const LogMapSolver& solver, const FaceList& faces)
+    : solver_(solver), faces_(faces), neighbors_((check(solver.graph(), faces), FaceNeighbors(faces))) {}
 
 Atlas AtlasMaker::make(std::span<const Vertex> sources) {
   const std::vector<Index> label = nearest_source(solver_, sources);
@@ -200,7 +195,7 @@ Atlas AtlasMaker::make(std::span<const Vertex> sources) {
     const auto block = std::span(missing).subspan(first, std::min(block_size, missing.size() - first));
     std::vector<Source> starts;
     for (Index s : block) starts.push_back(Source::at_vertex(sources[s]));
-    const std::vector<LogMap> maps = solver_.solve(starts, options_);
+    const std::vector<LogMap> maps = solver_.solve(starts);
     for (std::size_t k = 0; k < maps.size(); ++k) regions.keep(to_size(block[k]), maps[k]);
   }
   regions_ = std::move(regions);

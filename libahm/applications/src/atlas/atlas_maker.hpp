@@ -13,7 +13,7 @@ namespace ahm {
 class AtlasMaker {
  public:
   /// @throws as `make_atlas`
-  AtlasMaker(const LogMapSolver& solver, const FaceList& faces, const MapOptions& options);
+  AtlasMaker(const LogMapSolver& solver, const FaceList& faces);
 
   /// @param sources  begin with those of the call before: their cells have only shrunk since, so that their maps need
   /// not be made again
@@ -22,7 +22,6 @@ class AtlasMaker {
  private:
   const LogMapSolver& solver_;
   FaceList faces_;
-  MapOptions options_;
   FaceNeighbors neighbors_;
   Regions regions_;
 };

@@ -22,11 +22,14 @@ Source plain_source(const LogMapSolver& solver, std::span<const Vertex> vertices
   return source;
 }
 
+unsigned threads_of(const LogMapSolver& solver, const MapOptions& options) {
+  return detail::thread_count(options.threads.value_or(solver.options().threads));
+}
+
 AffineHeat affine_heat(const LogMapSolver& solver, const Source& source, const MapOptions& options) {
   constexpr Variant variant = Variant::localized;  // Y is the radial field
   return AffineHeat(solver.graph(), solver.operators(), variant,
-                    {inflow_of(source, solver.graph(), solver.operators(), variant)},
-                    detail::thread_count(options.threads));
+                    {inflow_of(source, solver.graph(), solver.operators(), variant)}, threads_of(solver, options));
 }
 
 /// Status of every vertex, and NaN where it is not ok. `reached(i)`: whether the value at vertex i can be trusted.
@@ -137,7 +140,7 @@ VertexField parallel_transport(const LogMapSolver& solver, const Source& source,
     heat.diffuse();
     VertexField field{static_cast<int>(width), std::vector<double>(static_cast<std::size_t>(n) * width), {}};
     const FrameField U = heat.frames(0);
-    detail::for_each_index(static_cast<std::size_t>(n), options.threads,
+    detail::for_each_index(static_cast<std::size_t>(n), threads_of(solver, options),
                            [&](std::size_t i) { U.axes(static_cast<Index>(i), field.values.data() + i * width); });
     finish(field, solver, source, [&](std::size_t i) { return heat.reached(0, static_cast<Index>(i)); });
     return field;

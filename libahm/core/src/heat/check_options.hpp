@@ -9,6 +9,6 @@ namespace ahm {
 /// Checks the graph, if the options say so, and t_coef.
 /// @return tau
 /// @throws InvalidGraph, InvalidArgument
-double check_operator_options(const TangentGraph& graph, const OperatorOptions& options);
+double check_heat_options(const TangentGraph& graph, const HeatOptions& options);
 
 }  // namespace ahm

@@ -20,7 +20,7 @@ struct HeatOperators::Impl {
   std::unique_ptr<const HeatSystem> system;
 };
 
-HeatOperators::HeatOperators(const TangentGraph& graph, const OperatorOptions& options) try
+HeatOperators::HeatOperators(const TangentGraph& graph, const HeatOptions& options) try
     : HeatOperators(factored_system(graph, options), graph) {
 } catch (const std::bad_alloc&) {
   throw ResourceExhausted("out of memory while factoring a graph of " + std::to_string(graph.size()) + " vertices");

@@ -80,8 +80,8 @@ class SystemOf final : public HeatSystem {
 /// The checks and the assembly that every system begins with.
 template <class Solver>
 std::pair<std::unique_ptr<SystemOf<Solver>>, AssembledOperators> begin(const TangentGraph& graph,
-                                                                       const OperatorOptions& options) {
-  const double tau = check_operator_options(graph, options);
+                                                                       const HeatOptions& options) {
+  const double tau = check_heat_options(graph, options);
   auto system = std::make_unique<SystemOf<Solver>>(tau, scaling_for(graph));
   options.progress.step("assemble", 0.0);
   detail::Stopwatch stopwatch;
@@ -92,7 +92,7 @@ std::pair<std::unique_ptr<SystemOf<Solver>>, AssembledOperators> begin(const Tan
 
 }  // namespace
 
-double check_operator_options(const TangentGraph& graph, const OperatorOptions& options) {
+double check_heat_options(const TangentGraph& graph, const HeatOptions& options) {
   if (options.check_graph) {
     options.progress.step("check", 0.0);
     validate(graph);
@@ -100,7 +100,7 @@ double check_operator_options(const TangentGraph& graph, const OperatorOptions& 
   return checked_tau(graph, options.t_coef);
 }
 
-std::unique_ptr<const HeatSystem> factored_system(const TangentGraph& graph, const OperatorOptions& options) {
+std::unique_ptr<const HeatSystem> factored_system(const TangentGraph& graph, const HeatOptions& options) {
   std::unique_ptr<SystemOf<CholeskyFactor>> system;
   AssembledOperators matrices;
   std::tie(system, matrices) = begin<CholeskyFactor>(graph, options);
@@ -123,7 +123,7 @@ std::unique_ptr<const HeatSystem> factored_system(const TangentGraph& graph, con
   return system;
 }
 
-std::unique_ptr<const HeatSystem> iterative_system(const TangentGraph& graph, const OperatorOptions& options) {
+std::unique_ptr<const HeatSystem> iterative_system(const TangentGraph& graph, const HeatOptions& options) {
   auto [system, matrices] = begin<ConjugateGradient>(graph, options);
   system->A.emplace(matrices.A, name_A);
   system->B.emplace(matrices.B, name_B);

@@ -32,11 +32,11 @@ class HeatSystem {
 
 /// By Cholesky factors.
 /// @throws as `HeatOperators`
-std::unique_ptr<const HeatSystem> factored_system(const TangentGraph& graph, const OperatorOptions& options);
+std::unique_ptr<const HeatSystem> factored_system(const TangentGraph& graph, const HeatOptions& options);
 
 /// By conjugate gradients; block graphs only. Errors are relative to the largest value of a solution, which is enough for
 /// the thin bands of a march.
 /// @throws as `HeatOperators`
-std::unique_ptr<const HeatSystem> iterative_system(const TangentGraph& graph, const OperatorOptions& options);
+std::unique_ptr<const HeatSystem> iterative_system(const TangentGraph& graph, const HeatOptions& options);
 
 }  // namespace ahm

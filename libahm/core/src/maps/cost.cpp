@@ -39,7 +39,7 @@ Cost estimate_cost(const GraphSize& size, Strategy strategy) {
   return strategy == Strategy::global ? global(n, size.dimension, numbers) : march(n, size.dimension, numbers);
 }
 
-Strategy choose_strategy(const GraphSize& size, const SolverOptions& options) {
+Strategy choose_strategy(const GraphSize& size, const HeatOptions& options) {
   if (options.strategy != Strategy::automatic) return options.strategy;
   if (options.expected_maps == 1 && size.vertices >= (size.dimension > 2 ? march_volumes_from : march_from))
     return Strategy::march;

@@ -88,10 +88,9 @@ void check(const TangentGraph& graph, std::span<const Source> sources, const Loc
     throw InvalidArgument("nearest is " + std::to_string(options.nearest) + "; it must be >= 0 (0: all)");
   if (!(options.margin >= 0) || !std::isfinite(options.margin))
     throw InvalidArgument("margin is " + detail::number(options.margin) + "; it must be finite and >= 0");
-  OperatorOptions operators;
-  operators.t_coef = options.t_coef;
-  operators.check_graph = options.check_graph;
-  check_operator_options(graph, operators);
+  if (options.heat.order != 1)
+    throw InvalidArgument("order is " + std::to_string(options.heat.order) + "; local maps have order 1");
+  check_heat_options(graph, options.heat);
   for (const Source& source : sources) check_source(source, graph);
 }
 
@@ -137,17 +136,18 @@ class Worker {
       : graph_(graph),
         sources_(sources),
         options_(options),
+        operators_(options.heat),
         ball_(graph),
         place_(static_cast<std::size_t>(graph.size())),
         d_(static_cast<std::size_t>(graph.dimension())) {
-    operators_.t_coef = options.t_coef;
+    operators_.progress = {};
     operators_.check_graph = false;
     operators_.threads = 1;
   }
 
   /// Solves for the sources of one group on one patch; result[s] for source s.
   void solve(std::span<const Index> members, std::vector<Entries>& result) {
-    const double unit = graph_.length_unit(), sqrt_tau = std::sqrt(options_.t_coef) * graph_.mean_edge_length();
+    const double unit = graph_.length_unit(), sqrt_tau = std::sqrt(options_.heat.t_coef) * graph_.mean_edge_length();
     const double reach = options_.radius / unit + options_.margin * sqrt_tau;  // graph units
     for (double detour = usual_detour; detour < largest_detour; detour *= 1.3)
       if (solve(members, detour * reach, reach * unit, result)) return;
@@ -180,11 +180,11 @@ class Worker {
     const HeatOperators operators(patch, operators_);
     std::vector<Inflow> inflows;
     for (Index s : members) {
-      inflows.push_back(inflow_of(sources_[s], graph_, operators, options_.variant));
+      inflows.push_back(inflow_of(sources_[s], graph_, operators, options_.heat.variant));
       for (Index& vertex : inflows.back().vertices) vertex = place_[vertex] - 1;
     }
     for (Index vertex : vertices) place_[vertex] = 0;
-    AffineHeat heat(patch, operators, options_.variant, std::move(inflows));
+    AffineHeat heat(patch, operators, options_.heat.variant, std::move(inflows));
     heat.diffuse();
     const std::vector<double> solution = heat.solve();
     const std::size_t size = solution.size() / members.size();
@@ -238,7 +238,7 @@ class Worker {
   const TangentGraph& graph_;
   std::span<const Source> sources_;
   const LocalMapOptions& options_;
-  OperatorOptions operators_;
+  HeatOptions operators_;
   Ball ball_;
   SparseArray<Index> place_;  ///< 1 + place in the patch at hand, 0: outside
   std::size_t d_;
@@ -275,17 +275,17 @@ LocalMaps joined(const TangentGraph& graph, std::vector<Entries>& entries) {
 LocalMaps local_maps(const TangentGraph& graph, std::span<const Source> sources, const LocalMapOptions& options) {
   return detail::with_memory_check("solving for local maps", [&] {
     check(graph, sources, options);
-    options.progress.step("group", 0.0);
+    options.heat.progress.step("group", 0.0);
     // Sources whose patches overlap anyway.
     const double reach = options.radius / graph.length_unit() +
-                         (options.margin + 4) * std::sqrt(options.t_coef) * graph.mean_edge_length();
+                         (options.margin + 4) * std::sqrt(options.heat.t_coef) * graph.mean_edge_length();
     const auto groups = group(graph, sources, reach);
     std::vector<Entries> entries(sources.size());
     const OneBlasThread one_thread;
     std::mutex mutex;
     std::vector<std::unique_ptr<Worker>> idle;
     Offset done = 0;
-    detail::parallel_chunks(static_cast<Offset>(groups.size()), 8, options.threads, [&](Offset begin, Offset end) {
+    detail::parallel_chunks(static_cast<Offset>(groups.size()), 8, options.heat.threads, [&](Offset begin, Offset end) {
       std::unique_ptr<Worker> worker;
       {
         std::scoped_lock lock(mutex);
@@ -298,7 +298,7 @@ LocalMaps local_maps(const TangentGraph& graph, std::span<const Source> sources,
       std::scoped_lock lock(mutex);
       idle.push_back(std::move(worker));
       done += end - begin;
-      options.progress.step("solve", static_cast<double>(done) / static_cast<double>(groups.size()));
+      options.heat.progress.step("solve", static_cast<double>(done) / static_cast<double>(groups.size()));
     });
     return joined(graph, entries);
   });

@@ -29,13 +29,21 @@ std::size_t sources_per_block(Index n) {
   return static_cast<std::size_t>(std::clamp<Offset>((Offset{1} << 24) / std::max<Index>(n, 1), 1, 16));
 }
 
-void check_options(const MapOptions& options) {
-  if (!(options.radius > 0))
-    throw InvalidArgument("radius is " + detail::number(options.radius) +
-                          "; it must be > 0 (infinity: the whole graph)");
+/// A map's options, with the solver's where the map has none of its own.
+struct MapSettings {
+  Variant variant;
+  double radius;
+  bool frames;
+  Progress progress;
+};
+
+MapSettings settings_of(const MapOptions& map, const HeatOptions& options) {
+  if (!(map.radius > 0))
+    throw InvalidArgument("radius is " + detail::number(map.radius) + "; it must be > 0 (infinity: the whole graph)");
+  return {map.variant.value_or(options.variant), map.radius, map.frames, map.progress.value_or(options.progress)};
 }
 
-void check_options(const SolverOptions& options) {
+void check_options(const HeatOptions& options) {
   if (!(options.accuracy >= 1e-14 && options.accuracy <= 0.1))
     throw InvalidArgument("accuracy is " + detail::number(options.accuracy) + "; it must be in [1e-14, 0.1]");
   if (options.order != 1 && options.order != 2)
@@ -52,7 +60,7 @@ Status status_of(std::span<const double> phi, bool reached, double radius) {
 
 /// One diffusion time.
 struct Time {
-  OperatorOptions options;
+  HeatOptions options;
   std::once_flag factored;
   std::optional<HeatOperators> operators;
 };
@@ -61,15 +69,14 @@ struct Time {
 
 struct LogMapSolver::Impl {
   const TangentGraph& graph;
-  SolverOptions options;
-  double t_coef;
+  HeatOptions options;
   Strategy strategy;
   std::vector<double> factors;  ///< of t_coef, ascending from 1
   mutable std::vector<Time> times;
   mutable std::once_flag numbered;
   mutable Components parts;
 
-  Impl(const TangentGraph& graph, const OperatorOptions& operator_options, const SolverOptions& options);
+  Impl(const TangentGraph& graph, const HeatOptions& options);
 
   const HeatOperators& operators(std::size_t time) const {
     Time& t = times[time];
@@ -86,31 +93,29 @@ struct LogMapSolver::Impl {
     return parts.of_vertex;
   }
 
-  March front(std::size_t time, const MapOptions& map, unsigned threads) const {
+  March front(std::size_t time, const MapSettings& map, unsigned threads) const {
     return March(graph, times[time].options, map.variant, options.accuracy, map.radius, threads, map.progress);
   }
   template <class Values>
   LogMap map_of(const Values& values, Strategy how, const MarchStatistics& march, const Source& source,
-                const MapOptions& map, unsigned threads) const;
-  LogMap marched(const March& front, const Source& source, const MapOptions& map, unsigned threads) const;
+                const MapSettings& map, unsigned threads) const;
+  LogMap marched(const March& front, const Source& source, const MapSettings& map, unsigned threads) const;
   LogMap finished(const AffineHeat& heat, std::size_t time, std::size_t s, const Source& source,
-                  std::span<const double> solution, const MapOptions& map, unsigned threads) const;
-  std::vector<LogMap> solve_block(std::size_t time, std::span<const Source> sources, const MapOptions& map,
+                  std::span<const double> solution, const MapSettings& map, unsigned threads) const;
+  std::vector<LogMap> solve_block(std::size_t time, std::span<const Source> sources, const MapSettings& map,
                                   unsigned threads) const;
-  std::vector<LogMap> solve_block(std::span<const Source> sources, const MapOptions& map, unsigned threads) const;
+  std::vector<LogMap> solve_block(std::span<const Source> sources, const MapSettings& map, unsigned threads) const;
 };
 
-LogMapSolver::Impl::Impl(const TangentGraph& graph, const OperatorOptions& operator_options,
-                         const SolverOptions& options)
+LogMapSolver::Impl::Impl(const TangentGraph& graph, const HeatOptions& options)
     : graph(graph),
       options(options),
-      t_coef(operator_options.t_coef),
       strategy(choose_strategy({graph.size(), graph.dimension(), graph.transport_kind()}, options)),
       factors(diffusion_times(options.order, graph)),
       times(factors.size()) {
-  if (strategy == Strategy::march) check_operator_options(graph, operator_options);
+  if (strategy == Strategy::march) check_heat_options(graph, options);
   for (std::size_t k = 0; k < times.size(); ++k) {
-    times[k].options = operator_options;
+    times[k].options = options;
     times[k].options.t_coef *= factors[k];
     times[k].options.check_graph &= k == 0 && strategy == Strategy::global;  // once is enough
     if (strategy == Strategy::global) operators(k);
@@ -169,7 +174,7 @@ class GlobalValues {
 /// The map that `values` tell of.
 template <class Values>
 LogMap LogMapSolver::Impl::map_of(const Values& values, Strategy how, const MarchStatistics& march,
-                                  const Source& source, const MapOptions& map, unsigned threads) const {
+                                  const Source& source, const MapSettings& map, unsigned threads) const {
   const auto n = static_cast<std::size_t>(graph.size()), d = static_cast<std::size_t>(graph.dimension());
   std::vector<double> coordinates(n * d);
   std::vector<Status> status(n, Status::ok);
@@ -185,7 +190,7 @@ LogMap LogMapSolver::Impl::map_of(const Values& values, Strategy how, const Marc
                 std::move(extras));
 }
 
-LogMap LogMapSolver::Impl::marched(const March& front, const Source& source, const MapOptions& map,
+LogMap LogMapSolver::Impl::marched(const March& front, const Source& source, const MapSettings& map,
                                    unsigned threads) const {
   return map_of(MarchedValues(front, source, components(), map.radius), Strategy::march, front.statistics(), source,
                 map, threads);
@@ -193,7 +198,7 @@ LogMap LogMapSolver::Impl::marched(const March& front, const Source& source, con
 
 /// Where a global solve leaves vertices beyond its reach, strategy `automatic` marches on.
 LogMap LogMapSolver::Impl::finished(const AffineHeat& heat, std::size_t time, std::size_t s, const Source& source,
-                                    std::span<const double> solution, const MapOptions& map, unsigned threads) const {
+                                    std::span<const double> solution, const MapSettings& map, unsigned threads) const {
   LogMap result = map_of(GlobalValues(heat, s, solution, source, components(), map.radius), Strategy::global, {},
                          source, map, threads);
   if (options.strategy != Strategy::automatic || result.count(Status::unreached) == 0) return result;
@@ -204,7 +209,7 @@ LogMap LogMapSolver::Impl::finished(const AffineHeat& heat, std::size_t time, st
 
 /// Solves one block of sources at one diffusion time.
 std::vector<LogMap> LogMapSolver::Impl::solve_block(std::size_t time, std::span<const Source> sources,
-                                                    const MapOptions& map, unsigned threads) const {
+                                                    const MapSettings& map, unsigned threads) const {
   std::vector<LogMap> maps;
   if (strategy == Strategy::march) {
     for (const Source& source : sources) {
@@ -238,10 +243,10 @@ void LogMapSolver::Impl::check_memory() const {
 }
 
 /// The same at all times, extrapolated.
-std::vector<LogMap> LogMapSolver::Impl::solve_block(std::span<const Source> sources, const MapOptions& map,
+std::vector<LogMap> LogMapSolver::Impl::solve_block(std::span<const Source> sources, const MapSettings& map,
                                                     unsigned threads) const {
   if (factors.size() == 1) return solve_block(0, sources, map, threads);
-  MapOptions wider = map;  // the maps of different times differ a little at the radius
+  MapSettings wider = map;  // the maps of different times differ a little at the radius
   wider.radius += 8 * graph.mean_edge_length() * graph.length_unit();
   std::vector<std::vector<LogMap>> at_times;
   for (std::size_t time = 0; time < factors.size(); ++time) {
@@ -252,14 +257,14 @@ std::vector<LogMap> LogMapSolver::Impl::solve_block(std::span<const Source> sour
   for (std::size_t s = 0; s < sources.size(); ++s) {
     std::vector<const LogMap*> maps;
     for (const auto& at_time : at_times) maps.push_back(&at_time[s]);
-    result.push_back(extrapolate(graph, t_coef, factors, maps, map.radius));
+    result.push_back(extrapolate(graph, options.t_coef, factors, maps, map.radius));
   }
   return result;
 }
 
-LogMapSolver::LogMapSolver(const TangentGraph& graph, const OperatorOptions& options, const SolverOptions& solver) {
-  check_options(solver);
-  impl_ = std::make_unique<const Impl>(graph, options, solver);
+LogMapSolver::LogMapSolver(const TangentGraph& graph, const HeatOptions& options) {
+  check_options(options);
+  impl_ = std::make_unique<const Impl>(graph, options);
 }
 
 LogMapSolver::~LogMapSolver() = default;
@@ -267,6 +272,7 @@ LogMapSolver::LogMapSolver(LogMapSolver&&) noexcept = default;
 LogMapSolver& LogMapSolver::operator=(LogMapSolver&&) noexcept = default;
 
 const TangentGraph& LogMapSolver::graph() const noexcept { return impl_->graph; }
+const HeatOptions& LogMapSolver::options() const noexcept { return impl_->options; }
 Strategy LogMapSolver::strategy() const noexcept { return impl_->strategy; }
 const HeatOperators& LogMapSolver::operators() const { return impl_->operators(0); }
 
@@ -275,29 +281,30 @@ LogMap LogMapSolver::solve(const Source& source, const MapOptions& options) cons
 }
 
 std::vector<LogMap> LogMapSolver::solve(std::span<const Source> sources, const MapOptions& options) const {
-  check_options(options);
+  MapSettings settings = settings_of(options, impl_->options);
+  const unsigned threads = options.threads.value_or(impl_->options.threads);
   for (const Source& source : sources) check_source(source, impl_->graph);
   const std::size_t block = impl_->strategy == Strategy::global ? sources_per_block(impl_->graph.size()) : 1;
   const auto count = static_cast<Offset>(sources.size());
   // A single block cannot be shared out: its own steps use the threads instead, where that pays.
   const bool single = sources.size() <= block && impl_->graph.size() > 5000;
-  const unsigned threads_per_block = single ? detail::thread_count(options.threads) : 1;
+  const unsigned threads_per_block = single ? detail::thread_count(threads) : 1;
 
   return detail::with_memory_check("solving for log maps", [&] {
     std::vector<std::optional<LogMap>> maps(sources.size());
     std::mutex report_mutex;
     Offset done = 0;
-    options.progress.step("solve", 0.0);
-    MapOptions quiet = options;
-    if (count > 1) quiet.progress.report = nullptr;  // the blocks report
-    detail::parallel_chunks(count, static_cast<Offset>(block), options.threads, [&](Offset begin, Offset end) {
+    const Progress progress = settings.progress;
+    progress.step("solve", 0.0);
+    if (count > 1) settings.progress.report = nullptr;  // the blocks report
+    detail::parallel_chunks(count, static_cast<Offset>(block), threads, [&](Offset begin, Offset end) {
       const auto first = static_cast<std::size_t>(begin);
-      auto solved =
-          impl_->solve_block(sources.subspan(first, static_cast<std::size_t>(end - begin)), quiet, threads_per_block);
+      auto solved = impl_->solve_block(sources.subspan(first, static_cast<std::size_t>(end - begin)), settings,
+                                       threads_per_block);
       for (std::size_t s = 0; s < solved.size(); ++s) maps[first + s] = std::move(solved[s]);
       std::scoped_lock lock(report_mutex);
       done += end - begin;
-      options.progress.step("solve", static_cast<double>(done) / static_cast<double>(count));
+      progress.step("solve", static_cast<double>(done) / static_cast<double>(count));
     });
 
     std::vector<LogMap> result;

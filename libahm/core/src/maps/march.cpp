@@ -41,8 +41,8 @@ double heat_distance(double length, double weight, double tau, const Diagonal& d
 
 }  // namespace
 
-March::March(const TangentGraph& graph, const OperatorOptions& operators, Variant variant, double accuracy,
-             double radius, unsigned threads, Progress progress)
+March::March(const TangentGraph& graph, const HeatOptions& operators, Variant variant, double accuracy, double radius,
+             unsigned threads, Progress progress)
     : graph_(graph),
       options_(operators),
       variant_(variant),

@@ -19,7 +19,7 @@ namespace ahm {
 class March {
  public:
   /// @param operators  t_coef, ordering, kind of factorization; the graph must have been checked
-  March(const TangentGraph& graph, const OperatorOptions& operators, Variant variant, double accuracy, double radius,
+  March(const TangentGraph& graph, const HeatOptions& operators, Variant variant, double accuracy, double radius,
         unsigned threads, Progress progress);
 
   /// Marches from a checked source.
@@ -57,7 +57,7 @@ class March {
   double diagonal(Index vertex) const;
 
   const TangentGraph& graph_;
-  OperatorOptions options_;
+  HeatOptions options_;
   Variant variant_;
   bool iterative_;  ///< volumes: the factors of a band would fill the memory
   double margin_, step_, radius_, tau_;

@@ -45,10 +45,8 @@ struct Atlas {
 /// O(n + corners), whatever the number of sources.
 /// @param sources  vertices; their order is that of the charts
 /// @param faces    of the graph's vertices, in any order
-/// @param options  variant, threads, progress; `frames` is not used
 /// @throws InvalidArgument (dimension, sources, faces), as LogMapSolver::solve
-Atlas make_atlas(const LogMapSolver& solver, std::span<const Vertex> sources, const FaceList& faces,
-                 const MapOptions& options = {});
+Atlas make_atlas(const LogMapSolver& solver, std::span<const Vertex> sources, const FaceList& faces);
 
 struct RefineOptions {
   double max_distortion = 2;       ///< of a good triangle, which is not flipped; > 1
@@ -62,7 +60,7 @@ struct RefineOptions {
 /// one. One log map per source.
 /// @param positions  n, of the graph's vertices, world units
 Atlas make_atlas(const LogMapSolver& solver, std::span<const Vertex> sources, const FaceList& faces,
-                 std::span<const Vec3> positions, const RefineOptions& refine, const MapOptions& options = {});
+                 std::span<const Vec3> positions, const RefineOptions& refine);
 
 /// Distortion of an atlas, faces cut into fans of triangles.
 struct AtlasDistortion {

@@ -36,7 +36,6 @@ VertexField distance_in_cells(const LogMapSolver& solver, std::span<const Vertex
 /// `count` vertices, each the farthest from those before it, beginning with `first`; vertices of components without one
 /// count as infinitely far. One solve per vertex; distances are lengths of log maps.
 /// @throws InvalidArgument (index, count not in [1, n]); as LogMapSolver::solve
-std::vector<Vertex> farthest_points(const LogMapSolver& solver, Vertex first, Index count,
-                                    const MapOptions& options = {});
+std::vector<Vertex> farthest_points(const LogMapSolver& solver, Vertex first, Index count);
 
 }  // namespace ahm

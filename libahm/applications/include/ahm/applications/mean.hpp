@@ -9,6 +9,7 @@
 /// \endcode
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -22,7 +23,8 @@ struct CenterOptions {
   /// closed surface may have several centers: begin at several vertices and keep the least `spread`.
   std::optional<Vertex> start = {};
   Index max_maps = 50;  ///< each step is one log map
-  MapOptions map = {};  ///< a radius, if any, must reach from the center and the start to every point
+  /// Of the maps; must reach from the center and the start to every point. World units; > 0.
+  double radius = std::numeric_limits<double>::infinity();
 };
 
 /// A point of the surface, given by a vertex near it.

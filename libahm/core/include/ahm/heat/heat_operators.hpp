@@ -17,26 +17,9 @@
 #include <string>
 
 #include "ahm/graph/tangent_graph.hpp"
-#include "ahm/progress.hpp"
+#include "ahm/heat/heat_options.hpp"
 
 namespace ahm {
-
-/// Fill-reducing ordering of the factorization.
-enum class Ordering {
-  amd,               ///< approximate minimum degree: cheapest ordering, best for a few maps
-  nested_dissection  ///< METIS: slower to compute, smaller factors, best when the factors serve many maps
-};
-
-struct OperatorOptions {
-  double t_coef = 1.0;  ///< tau = t_coef h^2; > 0
-  Ordering ordering = Ordering::amd;
-  /// Supernodal LL^T (fast; SuiteSparse's GPL module). false: simplicial (LGPL), the only choice in a build with
-  /// AHM_SUPERNODAL=OFF.
-  bool supernodal = true;
-  bool check_graph = true;  ///< run `validate(graph)` first
-  unsigned threads = 0;     ///< 1: factorize A and B one after the other; else concurrently on two threads
-  Progress progress;
-};
 
 /// What the factorization cost.
 struct FactorStatistics {
@@ -53,11 +36,12 @@ class HeatSystem;
 /// A and B of one graph, factored. Immutable: all member functions may be called from many threads at once.
 class HeatOperators {
  public:
-  /// Assembles and factorizes A and B.
+  /// Assembles and factorizes A and B, for one diffusion time.
+  /// @param options  t_coef, ordering, supernodal, check_graph, threads (1: A and B one after the other), progress
   /// @throws InvalidGraph, InvalidArgument (t_coef), NotPositiveDefinite (an operator is not positive definite, or
   /// fails
   ///         its residual check), ResourceExhausted (memory), Cancelled
-  HeatOperators(const TangentGraph& graph, const OperatorOptions& options = {});
+  HeatOperators(const TangentGraph& graph, const HeatOptions& options = {});
   /// The same by what already solves with A and B of this graph; a type of this library alone.
   HeatOperators(std::unique_ptr<const HeatSystem> system, const TangentGraph& graph);
   ~HeatOperators();

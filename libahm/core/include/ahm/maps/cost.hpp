@@ -34,7 +34,7 @@ Cost estimate_cost(const GraphSize& size, Strategy strategy);
 
 /// The strategy itself, or for `automatic`: `march` for a single map of a large graph, and wherever the factors would
 /// need more than the allowed memory; else `global`.
-Strategy choose_strategy(const GraphSize& size, const SolverOptions& options);
+Strategy choose_strategy(const GraphSize& size, const HeatOptions& options);
 
 /// Bytes of memory this machine has; 0 when the system does not say.
 double machine_memory();

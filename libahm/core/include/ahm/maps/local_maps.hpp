@@ -17,23 +17,19 @@
 #include "ahm/graph/tangent_graph.hpp"
 #include "ahm/maps/log_map.hpp"
 #include "ahm/maps/source.hpp"
-#include "ahm/progress.hpp"
 
 namespace ahm {
 
 struct LocalMapOptions {
   double radius = 0;  ///< world units, > 0, finite
-  Index nearest =
-      0;  ///< keep only so many nearest neighbours within the radius, the source's own vertex included; 0: all
-  Variant variant = Variant::adaptive;
-  double t_coef = 1.0;  ///< tau = t_coef h^2, h that of the whole graph
+  /// Keep only so many nearest neighbours within the radius, the source's own vertex included; 0: all.
+  Index nearest = 0;
   /// How far beyond the radius each patch reaches, in units of sqrt(tau). Flat pieces are exact at any margin; elsewhere
   /// this is what the difference to the map of the whole graph depends on: about 1e-5 of the radius at 2, and ten times
   /// less for each further 1 (docs/local_maps.md).
   double margin = 2;
-  bool check_graph = true;  ///< run `validate(graph)` first: O(n)
-  unsigned threads = 0;     ///< 0: one per core; the result does not depend on it
-  Progress progress;
+  /// t_coef, variant, check_graph, threads, progress; h is that of the whole graph.
+  HeatOptions heat = {};
 };
 
 /// Local maps of many sources in compressed rows: source s has the entries indptr[s] .. indptr[s + 1], nearest first.

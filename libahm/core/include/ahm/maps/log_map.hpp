@@ -12,20 +12,11 @@
 #include <string_view>
 #include <vector>
 
+#include "ahm/heat/heat_options.hpp"
 #include "ahm/maps/source.hpp"
 #include "ahm/types.hpp"
 
 namespace ahm {
-
-/// Alg. 2 (adaptive) or Alg. 1 (localized) of [SS25].
-enum class Variant { adaptive, localized };
-
-/// How the linear systems are solved (docs/march.md).
-enum class Strategy {
-  automatic,  ///< one of the others, as size, number of maps and memory suggest
-  global,     ///< one factorization of the whole graph, which serves every source; reaches about 700 edges
-  march,      ///< a banded solve, outwards from the source: time and memory linear in n, any distance
-};
 
 /// What a march did.
 struct MarchStatistics {
@@ -76,7 +67,7 @@ class LogMap {
   /// With MapOptions::frames: the source's axes carried to every vertex (Eq. 11 and 12), n x d x d, row major: column a is
   /// source axis a in the frame of the vertex. Identity where no heat arrived.
   std::span<const double> frames() const noexcept { return extras_.frames; }
-  /// With SolverOptions::order = 2: an estimate of |error of phi_i| in world units, from the disagreement of the
+  /// With HeatOptions::order = 2: an estimate of |error of phi_i| in world units, from the disagreement of the
   /// diffusion times; NaN where not ok. Good to a factor of about three inside the cut locus (docs/accuracy.md).
   std::span<const double> error_estimate() const noexcept { return extras_.error_estimate; }
   /// The source whose frame the coordinates refer to.

@@ -5,12 +5,13 @@
 /// ahm::LogMapSolver solver(graph);                                  // factors once
 /// ahm::LogMap map = solver.solve(ahm::Source::at_vertex(ahm::Vertex{42}));      // then each map costs a few triangular solves
 ///
-/// ahm::LogMapSolver once(huge_graph, {}, {.expected_maps = 1});    // nothing is factored: one map by marching
+/// ahm::LogMapSolver once(huge_graph, {.expected_maps = 1});    // nothing is factored: one map by marching
 /// \endcode
 #pragma once
 
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -20,29 +21,14 @@
 
 namespace ahm {
 
-/// How a solver goes about its maps.
-struct SolverOptions {
-  Strategy strategy = Strategy::automatic;
-  /// For `automatic`: the number of maps to be made; 0: many. A single map of a large graph is faster by march.
-  Index expected_maps = 0;
-  /// For `automatic`: bytes that factors may take; 0: half of the machine's memory. A graph whose factors would need more
-  /// is marched.
-  std::size_t memory = 0;
-  /// 1: the method as published. 2: extrapolates from maps of two or three diffusion times (docs/accuracy.md), which take
-  /// as many factorizations and solves; several times more accurate on smooth surfaces, with an error estimate per vertex.
-  int order = 1;
-  /// For marches: the largest difference to a global solve, relative; in [1e-14, 0.1].
-  double accuracy = 1e-9;
-};
-
+/// What may differ from map to map; what is not given is the solver's.
 struct MapOptions {
-  Variant variant = Variant::adaptive;
+  std::optional<Variant> variant = {};
   /// Vertices farther than this from the source get `Status::beyond_radius`, and a march ends there. World units; > 0.
   double radius = std::numeric_limits<double>::infinity();
-  /// Threads for a batch; 0: one per core. The result does not depend on it.
-  unsigned threads = 0;
+  std::optional<unsigned> threads = {};
   bool frames = false;  ///< keep the transported frames, for `map_quality` and transport
-  Progress progress;
+  std::optional<Progress> progress = {};
 };
 
 /// Solves for log maps on one graph. Immutable: `solve` is const and may be called from many threads at once.
@@ -51,9 +37,8 @@ class LogMapSolver {
   /// Chooses the strategy, and for a global one factors the graph's two operators.
   /// @param graph  must outlive the solver
   /// @throws as `HeatOperators`; InvalidArgument (order, accuracy, expected_maps)
-  explicit LogMapSolver(const TangentGraph& graph, const OperatorOptions& options = {},
-                        const SolverOptions& solver = {});
-  explicit LogMapSolver(TangentGraph&&, const OperatorOptions& = {}, const SolverOptions& = {}) = delete;
+  explicit LogMapSolver(const TangentGraph& graph, const HeatOptions& options = {});
+  explicit LogMapSolver(TangentGraph&&, const HeatOptions& = {}) = delete;
   ~LogMapSolver();
   LogMapSolver(LogMapSolver&&) noexcept;
   LogMapSolver& operator=(LogMapSolver&&) noexcept;
@@ -70,6 +55,7 @@ class LogMapSolver {
   std::vector<LogMap> solve(std::span<const Source> sources, const MapOptions& options = {}) const;
 
   const TangentGraph& graph() const noexcept;
+  const HeatOptions& options() const noexcept;
   /// What was chosen: `global` or `march`.
   Strategy strategy() const noexcept;
   /// The factored operators of the whole graph (at t_coef, whatever the order). Under strategy `march` the first call factors them.

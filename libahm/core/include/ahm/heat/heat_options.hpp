@@ -1,0 +1,60 @@
+/// \file
+/// What every computation by heat shares: one object, honoured by all of them.
+///
+/// \code
+/// ahm::LogMapSolver solver(graph, {.t_coef = 2, .order = 2, .threads = 4});
+/// ahm::LocalMaps maps = ahm::local_maps(graph, {.radius = 0.05, .heat = {.variant = ahm::Variant::localized}});
+/// \endcode
+#pragma once
+
+#include <cstddef>
+
+#include "ahm/progress.hpp"
+#include "ahm/types.hpp"
+
+namespace ahm {
+
+/// Alg. 2 (adaptive) or Alg. 1 (localized) of [SS25].
+enum class Variant { adaptive, localized };
+
+/// How the linear systems are solved (docs/march.md).
+enum class Strategy {
+  automatic,  ///< one of the others, as size, number of maps and memory suggest
+  global,     ///< one factorization of the whole graph, which serves every source; reaches about 700 edges
+  march,      ///< a banded solve, outwards from the source: time and memory linear in n, any distance
+};
+
+/// Fill-reducing ordering of the factorization.
+enum class Ordering {
+  amd,               ///< approximate minimum degree: cheapest ordering, best for a few maps
+  nested_dissection  ///< METIS: slower to compute, smaller factors, best when the factors serve many maps
+};
+
+struct HeatOptions {
+  double t_coef = 1.0;  ///< tau = t_coef h^2; > 0
+  Variant variant = Variant::adaptive;
+  /// 1: the method as published. 2: extrapolates from maps of two or three diffusion times (docs/accuracy.md), which take
+  /// as many factorizations and solves; several times more accurate on smooth surfaces, with an error estimate per vertex.
+  int order = 1;
+
+  Strategy strategy = Strategy::automatic;
+  /// For `automatic`: the number of maps to be made; 0: many. A single map of a large graph is faster by march.
+  Index expected_maps = 0;
+  /// For `automatic`: bytes that factors may take; 0: half of the machine's memory. A graph whose factors would need more
+  /// is marched.
+  std::size_t memory = 0;
+  /// For marches: the largest difference to a global solve, relative; in [1e-14, 0.1].
+  double accuracy = 1e-9;
+
+  Ordering ordering = Ordering::amd;
+  /// Supernodal LL^T (fast; SuiteSparse's GPL module). false: simplicial (LGPL), the only choice in a build with
+  /// AHM_SUPERNODAL=OFF.
+  bool supernodal = true;
+  bool check_graph = true;  ///< run `validate(graph)` first: O(n)
+
+  /// 0: one per core. No result depends on it.
+  unsigned threads = 0;
+  Progress progress = {};
+};
+
+}  // namespace ahm
