@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 #include <iterator>
+#include <numbers>
 #include <string>
 #include <utility>
 
@@ -11,6 +12,7 @@
 #include "ahm/pointcloud/plane_fit.hpp"
 #include "ahm/util/parallel.hpp"
 #include "ahm/util/vec.hpp"
+#include "given_planes.hpp"
 
 namespace ahm::pointcloud {
 namespace {
@@ -20,6 +22,10 @@ constexpr Offset chunk = 4096;  // points per task
 /// Neighbours are narrow, and more of them are wanted, when their second principal variance is below this share of the
 /// first.
 constexpr double narrow_ratio = 1e-3;
+
+/// Neighbours are as thick as wide when their third principal variance is above this share of the second.
+constexpr double thick_ratio = 0.25;
+
 /// Dropping neighbours shrinks a neighbourhood, which may drop others; what is left after these rounds is not joined either.
 constexpr int reach_rounds = 3;
 
@@ -138,12 +144,42 @@ Vec3 direction(const Vec3& given) {
   return normalized((1.0 / largest) * given);
 }
 
+/// Fits a plane to the neighbours of every point, to wider neighbourhoods where they are narrow.
+void fit_planes(const CleanPoints& cloud, const NeighborSearch& search, const CloudOptions& options,
+                Neighborhoods& neighborhoods, TangentPlanes& planes) {
+  const auto n = static_cast<Offset>(cloud.points.size());
+  planes.normals.assign(static_cast<std::size_t>(n), Vec3{0, 0, 0});
+  std::vector<std::vector<WiderNeighborhood>> wider(static_cast<std::size_t>((n + chunk - 1) / chunk));
+  std::atomic<Index> thick{0};
+  detail::parallel_chunks(n, chunk, options.threads, [&](Offset begin, Offset end) {
+    Index thick_here = 0;
+    for (Offset i = begin; i < end; ++i) {
+      const auto point = static_cast<Index>(i);
+      PlaneFit fit = fit_plane(cloud.points, point, neighborhoods.of(point));
+      if (!(fit.ratio > narrow_ratio) && n > neighborhoods.k + 1) {
+        WiderNeighborhood candidate{point, {}};
+        fit = fit_wider(cloud.points, search, neighborhoods.k, options.max_edge_ratio, candidate);
+        wider[begin / chunk].push_back(std::move(candidate));
+      }
+      planes.normals[i] = fit.normal;
+      thick_here += fit.thickness > thick_ratio;
+    }
+    thick += thick_here;
+    if (options.progress.stop.stop_requested()) throw Cancelled("cancelled during normal estimation");
+  });
+  planes.thick = thick;
+  std::vector<WiderNeighborhood> all;
+  for (auto& part : wider) std::move(part.begin(), part.end(), std::back_inserter(all));
+  replace(neighborhoods, all, cloud.points);
+}
+
 }  // namespace
 
-Neighborhoods find_neighborhoods(const CleanPoints& cloud, const NeighborSearch& search, const CloudOptions& options) {
+Neighborhoods find_neighborhoods(const CleanPoints& cloud, const NeighborSearch& search, Index wanted,
+                                 const CloudOptions& options) {
   const auto n = static_cast<Offset>(cloud.points.size());
   Neighborhoods result;
-  result.k = static_cast<Index>(std::min<Offset>(options.k, n - 1));
+  result.k = static_cast<Index>(std::min<Offset>(wanted, n - 1));
   const Offset k = result.k;
   std::vector<Index> counts(static_cast<std::size_t>(n));
   result.indices.resize(static_cast<std::size_t>(n * k));
@@ -167,38 +203,35 @@ Neighborhoods find_neighborhoods(const CleanPoints& cloud, const NeighborSearch&
   return result;
 }
 
+double spacing(const Neighborhoods& neighborhoods) {
+  std::vector<double> spacings(neighborhoods.radius.size());
+  for (std::size_t i = 0; i < spacings.size(); ++i) {
+    const auto count = static_cast<double>(neighborhoods.begin[i + 1] - neighborhoods.begin[i]);
+    spacings[i] = neighborhoods.radius[i] * std::sqrt(std::numbers::pi / std::max(1.0, count));
+  }
+  const auto middle = spacings.begin() + static_cast<std::ptrdiff_t>(spacings.size() / 2);
+  std::nth_element(spacings.begin(), middle, spacings.end());
+  return *middle;
+}
+
 TangentPlanes find_tangent_planes(const CleanPoints& cloud, std::span<const Vec3> given, const NeighborSearch& search,
                                   Neighborhoods& neighborhoods, const CloudOptions& options) {
   const auto n = static_cast<Offset>(cloud.points.size());
   TangentPlanes planes;
-  planes.normals.assign(static_cast<std::size_t>(n), Vec3{0, 0, 0});
-  std::vector<char> is_estimated(static_cast<std::size_t>(n), 0);
-  std::vector<std::vector<WiderNeighborhood>> wider(static_cast<std::size_t>((n + chunk - 1) / chunk));
-  detail::parallel_chunks(n, chunk, options.threads, [&](Offset begin, Offset end) {
-    for (Offset i = begin; i < end; ++i) {
-      const auto point = static_cast<Index>(i);
-      PlaneFit fit = fit_plane(cloud.points, point, neighborhoods.of(point));
-      if (!(fit.ratio > narrow_ratio) && n > neighborhoods.k + 1) {
-        WiderNeighborhood candidate{point, {}};
-        fit = fit_wider(cloud.points, search, neighborhoods.k, options.max_edge_ratio, candidate);
-        wider[begin / chunk].push_back(std::move(candidate));
-      }
-      if (!given.empty()) planes.normals[i] = direction(given[cloud.input[i]]);
-      is_estimated[i] = planes.normals[i] == Vec3{0, 0, 0};
-      if (is_estimated[i]) planes.normals[i] = fit.normal;
-    }
-    if (options.progress.stop.stop_requested()) throw Cancelled("cancelled during normal estimation");
-  });
-  std::vector<WiderNeighborhood> all;
-  for (auto& part : wider) std::move(part.begin(), part.end(), std::back_inserter(all));
-  replace(neighborhoods, all, cloud.points);
-
-  for (Index i = 0; i < static_cast<Index>(n); ++i) {
-    if (!is_estimated[i]) continue;
-    ++planes.estimated;
+  fit_planes(cloud, search, options, neighborhoods, planes);
+  std::vector<char> missing(static_cast<std::size_t>(n), 1);
+  if (given.empty()) {
+    planes.estimated = static_cast<Index>(n);
+  } else {
+    std::vector<Vec3> directions(static_cast<std::size_t>(n));
+    for (Offset i = 0; i < n; ++i) directions[i] = direction(given[cloud.input[i]]);
+    missing = take_given_planes(cloud, neighborhoods, directions, options.threads, planes);
+  }
+  for (Index i = 0; planes.estimated < static_cast<Index>(n) && i < static_cast<Index>(n); ++i) {
+    if (!missing[i]) continue;
     double agreement = 0;
     for (Index j : neighborhoods.of(i))
-      if (!is_estimated[j]) agreement += dot(planes.normals[i], planes.normals[j]);
+      if (!missing[j]) agreement += dot(planes.normals[i], planes.normals[j]);
     if (agreement < 0) planes.normals[i] = -1.0 * planes.normals[i];
   }
   options.progress.step("normals", 1.0);
