@@ -19,8 +19,8 @@ int main() {
   const auto phi = map.coordinates(at(20, 14));
   std::printf("the point lies %.3f along the stroke and %.3f to its left\n", phi[0], phi[1]);
 
-  const auto seeds = ahm::farthest_points(solver, at(0, 0), 4);
-  const auto cell = ahm::nearest_source(solver, seeds);
+  const auto seeds = ahm::farthest_points(solver.graph(), at(0, 0), 4);
+  const auto cell = ahm::voronoi_cells(solver.graph(), seeds).labels;
   std::printf("vertex (35, 3) belongs to cell %d of %zu\n", static_cast<int>(cell[at(35, 3).index]), seeds.size());
   return std::hypot(phi[0] - 1.5, phi[1] - 0.4) < 1e-9 && cell[seeds[2].index] == 2 ? 0 : 1;
 }

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs Debian packages for what is to be done, and does nothing where all are there:
+# Installs Debian packages for what is to be done, and says and does nothing where all are there:
 #   install_packages.sh [program|tests|checks]
 # program: the program without PCL, all that scripts/demo.sh needs; tests (default): everything, tests and benchmarks
 # included; checks: that, and clang's tools.
@@ -32,10 +32,7 @@ missing=()
 for package in "${packages[@]}"; do
   dpkg-query -W -f '${db:Status-Status}\n' "$package" 2>/dev/null | grep -qx installed || missing+=("$package")
 done
-if [ "${#missing[@]}" -eq 0 ]; then
-  echo "All Debian packages are installed."
-  exit 0
-fi
+[ "${#missing[@]}" -gt 0 ] || exit 0
 
 echo "Installing ${#missing[@]} Debian packages and what they need: ${missing[*]}"
 as_root=()

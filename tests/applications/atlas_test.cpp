@@ -93,7 +93,7 @@ TEST(Atlas, OfAPlaneIsIsometricWhateverTheTriangles) {
   const Surface surface(sliver_square(500));
   for (Index count : {1, 7}) {
     const Atlas atlas =
-        make_atlas(surface.solver(), farthest_points(surface.solver(), Vertex{3}, count), surface.faces());
+        make_atlas(surface.solver(), farthest_points(surface.solver().graph(), Vertex{3}, count), surface.faces());
     expect_partition(atlas, surface.faces());
     EXPECT_EQ(std::count(atlas.chart_of_face.begin(), atlas.chart_of_face.end(), -1), 0);
     const AtlasDistortion d = distortion(atlas, surface.faces(), surface.positions);
@@ -104,7 +104,7 @@ TEST(Atlas, OfAPlaneIsIsometricWhateverTheTriangles) {
 
 TEST(Atlas, CoordinatesAreTheLogMapsOfTheirSources) {
   const Surface surface(icosphere(12));
-  const auto sources = farthest_points(surface.solver(), Vertex{0}, 9);
+  const auto sources = farthest_points(surface.solver().graph(), Vertex{0}, 9);
   const Atlas atlas = make_atlas(surface.solver(), sources, surface.faces());
   expect_partition(atlas, surface.faces());
   EXPECT_EQ(atlas.sources, sources);
@@ -119,7 +119,7 @@ TEST(Atlas, CoordinatesAreTheLogMapsOfTheirSources) {
 
 TEST(Atlas, GivesFacesToTheSourceNearestToTheirMiddle) {
   const Surface surface(icosphere(16));
-  const auto sources = farthest_points(surface.solver(), Vertex{5}, 12);
+  const auto sources = farthest_points(surface.solver().graph(), Vertex{5}, 12);
   const Atlas atlas = make_atlas(surface.solver(), sources, surface.faces());
   std::vector<LogMap> maps;
   for (Vertex s : sources) maps.push_back(surface.solver().solve(Source::at_vertex(s)));
@@ -145,7 +145,7 @@ TEST(Atlas, OfASphereIsAsGoodAsItsCellsAreSmall) {
   const Surface surface(icosphere(20));
   double before = std::numeric_limits<double>::infinity();
   for (Index count : {4, 12, 40}) {
-    const auto sources = farthest_points(surface.solver(), Vertex{0}, count);
+    const auto sources = farthest_points(surface.solver().graph(), Vertex{0}, count);
     const Atlas atlas = make_atlas(surface.solver(), sources, surface.faces());
     double radius = 0;
     for (std::size_t c = 0; c < surface.vertices.size(); ++c)
@@ -173,7 +173,7 @@ TEST(Atlas, ChartsAreCounterClockwiseAlsoWhereFramesAreMirrored) {
   std::vector<Vec3> positions;
   for (std::size_t i = 0; i < to_size(graph.size()); ++i)
     positions.push_back({flat.positions[2 * i], flat.positions[2 * i + 1], 0});
-  const auto sources = farthest_points(solver, Vertex{0}, 10);
+  const auto sources = farthest_points(solver.graph(), Vertex{0}, 10);
   const Atlas atlas = make_atlas(solver, sources, {begin, vertices});
   expect_partition(atlas, {begin, vertices});
   const AtlasDistortion d = distortion(atlas, {begin, vertices}, positions);
@@ -197,7 +197,7 @@ TEST(Atlas, OfPolygonsKeepsThemWhole) {
   const auto mesh = polymesh::PolygonMeshSurface::build(positions, begin, vertices,
                                                         {.discretization = polymesh::Discretization::polygons});
   const LogMapSolver solver(mesh.graph());
-  const Atlas atlas = make_atlas(solver, farthest_points(solver, Vertex{0}, 6), {begin, vertices});
+  const Atlas atlas = make_atlas(solver, farthest_points(solver.graph(), Vertex{0}, 6), {begin, vertices});
   expect_partition(atlas, {begin, vertices});
   const AtlasDistortion d = distortion(atlas, {begin, vertices}, positions);
   EXPECT_NEAR(d.all.largest, 1, 1e-9);
@@ -260,7 +260,7 @@ TEST(AtlasRefinement, AddsNothingToAGoodAtlasAndNoMoreThanAllowed) {
 
 TEST(ChartBoxes, AreTheLeastOfAllTurns) {
   const Surface surface(icosphere(10));
-  const Atlas atlas = make_atlas(surface.solver(), farthest_points(surface.solver(), Vertex{0}, 8), surface.faces());
+  const Atlas atlas = make_atlas(surface.solver(), farthest_points(surface.solver().graph(), Vertex{0}, 8), surface.faces());
   const auto boxes = chart_boxes(atlas, surface.faces());
   ASSERT_EQ(boxes.size(), atlas.charts.size());
   for (std::size_t k = 0; k < boxes.size(); ++k) {

@@ -1,104 +1,82 @@
-// Geodesic Voronoi cells and farthest points.
+// Voronoi cells and farthest points by geodesic distance.
 #include "ahm/applications/cells.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <numbers>
+#include <limits>
+#include <vector>
 
 #include "ahm/error.hpp"
-#include "ahm/testing/curved_graphs.hpp"
+#include "ahm/graph/csr_graph.hpp"
+#include "ahm/pointcloud/point_cloud_surface.hpp"
 #include "ahm/testing/flat_graphs.hpp"
-#include "ahm/testing/graph_changes.hpp"
+#include "ahm/trimesh/triangle_mesh_surface.hpp"
 
 namespace ahm::test {
 namespace {
 
-/// Heat from each source alone: n x k.
-std::vector<std::vector<double>> separate_heats(const LogMapSolver& solver, const std::vector<Vertex>& sources) {
-  std::vector<std::vector<double>> heats;
-  for (const auto [source] : sources) {
-    std::vector<double> heat(static_cast<std::size_t>(solver.graph().size()), 0.0);
-    heat[source] = 1;
-    solver.operators().solve_scalar(heat, 1);
-    heats.push_back(heat);
-  }
-  return heats;
+/// A square of side 1 whose points crowd at x = 0 and y = 0 as the given power.
+std::vector<Vec3> graded_square(Index side, double power) {
+  std::vector<Vec3> points;
+  for (Index y = 0; y < side; ++y)
+    for (Index x = 0; x < side; ++x)
+      points.push_back({std::pow(x / (side - 1.0), power), std::pow(y / (side - 1.0), power), 0});
+  return points;
 }
 
-TEST(Cells, AreThoseOfSeparateHeatsWhereverOneHasTheMajority) {
-  const CsrGraph graph(sphere_graph(3000));
-  const LogMapSolver solver(graph);
-  const std::vector<Vertex> sources = farthest_points(solver, Vertex{0}, 23);
-  const auto label = nearest_source(solver, sources);
-  const auto heats = separate_heats(solver, sources);
-  Index doubtful = 0, differ = 0;
-  for (std::size_t i = 0; i < label.size(); ++i) {
-    double all = 0;
-    std::size_t best = 0;
-    for (std::size_t k = 0; k < heats.size(); ++k) {
-      all += heats[k][i];
-      if (heats[k][i] > heats[best][i]) best = k;
+std::vector<Triangle> square_faces(Index side) {
+  std::vector<Triangle> faces;
+  for (Index y = 0; y + 1 < side; ++y)
+    for (Index x = 0; x + 1 < side; ++x) {
+      const Index a = y * side + x;
+      faces.push_back({a, a + 1, a + side + 1});
+      faces.push_back({a, a + side + 1, a + side});
     }
-    differ += label[i] != static_cast<Index>(best);
-    if (heats[best][i] < 0.5001 * all)
-      ++doubtful;
-    else
-      EXPECT_EQ(label[i], static_cast<Index>(best)) << "vertex " << i;
-  }
-  RecordProperty("doubtful", doubtful), RecordProperty("differ", differ);
-  // k cells on a sphere meet in 2 (k - 2) points. Near one of them, with heats exp(-distance / sqrt(tau)), no source has
-  // the majority on an area of 6 / (1.5 sqrt(3)) tau; random weights make tau uneven, hence the factor 2.
-  const double h = graph.mean_edge_length(), pi = std::numbers::pi;
-  const double area = 2.0 * static_cast<double>(sources.size() - 2) * 6 / (1.5 * std::sqrt(3.0)) * h * h;
-  EXPECT_LT(doubtful, 2 * area * graph.size() / (4 * pi));
+  return faces;
 }
 
-TEST(Cells, HaveTheirDistancesUpToTheBorder) {
-  const FlatGraph flat = planar_triangulation(30);
-  const CsrGraph graph(flat.data);
-  const LogMapSolver solver(graph);
-  for (const Index count : {1, 2, 5, 40}) {
-    const std::vector<Vertex> sources = farthest_points(solver, Vertex{17}, count);
-    const auto labels = nearest_source(solver, sources);
-    const VertexField away = distance_in_cells(solver, sources, labels);
-    const std::vector<LogMap> separate = solver.solve([&] {
-      std::vector<Source> all;
-      for (Vertex vertex : sources) all.push_back(Source::at_vertex(vertex));
-      return all;
-    }());
-    for (Index i = 0; i < graph.size(); ++i) {
-      const auto own = static_cast<std::size_t>(labels[i]);
-      // Few cells all touch or nearly so, and each is solved for alone: exact. Of many, sources of a group are a cell of
-      // several edges farther away than the own one, and add a little of their heat.
-      const double exact = separate[own].distance(Vertex(i));
-      EXPECT_NEAR(away.values[i], exact, count <= 5 ? 1e-11 : graph.mean_edge_length() / 4);
-      EXPECT_EQ(away.status[i], Status::ok);
+/// Every label is that of the nearest source, but for ties, and every distance is the straight line.
+void expect_exact_cells(const Surface& surface, Index count) {
+  const std::span<const Vec3> points = surface.positions();
+  const std::vector<Vertex> sources = farthest_points(surface.graph(), Vertex{7}, count);
+  const VoronoiCells cells = voronoi_cells(surface.graph(), sources);
+  for (Index i = 0; i < surface.graph().size(); ++i) {
+    const auto away = [&](Vertex source) {
+      const Vec3 &p = points[surface.rows().row(source)->index], &q = points[surface.rows().row(Vertex(i))->index];
+      return std::hypot(p[0] - q[0], p[1] - q[1]);
+    };
+    double least = std::numeric_limits<double>::infinity();
+    for (Vertex source : sources) least = std::min(least, away(source));
+    ASSERT_NEAR(away(sources[cells.labels[i]]), least, 1e-11) << "vertex " << i;
+    ASSERT_NEAR(cells.distances[i], least, 1e-11) << "vertex " << i;
+  }
+}
+
+TEST(Cells, AreThoseOfDistanceOnGradedPlanes) {
+  for (double power : {1.0, 2.0, 3.0})
+    for (Index count : {1, 2, 5, 40})
+      expect_exact_cells(
+          trimesh::TriangleMeshSurface::build(graded_square(40, power), square_faces(40)), count);
+}
+
+TEST(Cells, AreThoseOfDistanceOnCloudsWithASparseBoundary) {
+  std::vector<Vec3> points;
+  for (Index y = 0; y < 41; ++y)
+    for (Index x = 0; x < 41; ++x) {
+      const bool dense = x > 8 && x < 32 && y > 8 && y < 32;
+      if (dense || (x % 4 == 0 && y % 4 == 0))
+        points.push_back({x + 0.1 * std::sin(7.0 * x + 3 * y), y + 0.1 * std::cos(5.0 * x - y), 0});
     }
-  }
-}
-
-TEST(Cells, DistancesNeedLabelsThatFit) {
-  const CsrGraph graph(planar_triangulation(8).data);
-  const LogMapSolver solver(graph);
-  const std::vector sources{Vertex{3}, Vertex{40}};
-  std::vector<Index> labels = nearest_source(solver, sources);
-  EXPECT_THROW(distance_in_cells(solver, std::span(sources).first(0), labels), InvalidArgument);
-  EXPECT_THROW(distance_in_cells(solver, sources, std::span(labels).first(5)), InvalidArgument);
-  labels[0] = 2;
-  EXPECT_THROW(distance_in_cells(solver, sources, labels), InvalidArgument);
-  labels[0] = -1;
-  const VertexField away = distance_in_cells(solver, sources, labels);
-  EXPECT_EQ(away.status[0], Status::disconnected);
-  EXPECT_TRUE(std::isnan(away.values[0]));
+  expect_exact_cells(pointcloud::PointCloudSurface::build(points), 12);
 }
 
 TEST(Cells, ContainTheirSourcesAndAreConnected) {
   const CsrGraph graph(planar_triangulation(30).data);
-  const LogMapSolver solver(graph);
-  const std::vector<Vertex> sources = farthest_points(solver, Vertex{17}, 12);
-  const auto label = nearest_source(solver, sources);
+  const std::vector<Vertex> sources = farthest_points(graph, Vertex{17}, 12);
+  const std::vector<Index> label = voronoi_cells(graph, sources).labels;
   for (std::size_t k = 0; k < sources.size(); ++k) {
     std::vector<Index> stack{sources[k].index};
     std::vector<bool> seen(label.size(), false);
@@ -118,14 +96,14 @@ TEST(Cells, ContainTheirSourcesAndAreConnected) {
 TEST(Cells, LeaveComponentsWithoutASourceUnlabelled) {
   const FlatGraph flat = planar_triangulation(8);
   const CsrGraph graph(doubled(flat.data));
-  const auto label = nearest_source(LogMapSolver(graph), std::array{Vertex{3}});
+  const auto label = voronoi_cells(graph, std::array{Vertex{3}}).labels;
   for (Index i = 0; i < graph.size(); ++i) EXPECT_EQ(label[i], i < flat.size() ? 0 : -1);
 }
 
 TEST(Cells, OfALineOfAnyLengthMeetHalfWay) {
-  const Index n = 6001;  // farther than heat reaches
+  const Index n = 6001;
   const CsrGraph graph(line_graph(n).data);
-  const auto label = nearest_source(LogMapSolver(graph), std::array{Vertex{0}, Vertex(n - 1)});
+  const auto label = voronoi_cells(graph, std::array{Vertex{0}, Vertex(n - 1)}).labels;
   for (Index i = 0; i < n; ++i)
     if (i != n / 2) EXPECT_EQ(label[i], i < n / 2 ? 0 : 1);
 }
@@ -133,8 +111,7 @@ TEST(Cells, OfALineOfAnyLengthMeetHalfWay) {
 TEST(FarthestPoints, AreSpreadAsAGreedyCoverOfThePlane) {
   const FlatGraph flat = planar_triangulation(24);
   const CsrGraph graph(flat.data);
-  const LogMapSolver solver(graph);
-  const auto points = farthest_points(solver, Vertex{5}, 20);
+  const auto points = farthest_points(graph, Vertex{5}, 20);
   const auto between = [&](Index a, Index b) { return std::hypot(flat.exact(a, b)[0], flat.exact(a, b)[1]); };
   std::vector<double> away(static_cast<std::size_t>(flat.size()), 1e300);
   for (std::size_t k = 0; k + 1 < points.size(); ++k) {
@@ -146,17 +123,16 @@ TEST(FarthestPoints, AreSpreadAsAGreedyCoverOfThePlane) {
 TEST(FarthestPoints, VisitEveryComponentFirst) {
   const FlatGraph flat = planar_triangulation(6);
   const CsrGraph graph(doubled(flat.data));
-  EXPECT_GE(farthest_points(LogMapSolver(graph), Vertex{0}, 2)[1], Vertex{flat.size()});
+  EXPECT_GE(farthest_points(graph, Vertex{0}, 2)[1], Vertex{flat.size()});
 }
 
 TEST(Cells, RefuseBadArguments) {
   const CsrGraph graph(planar_triangulation(5).data);
-  const LogMapSolver solver(graph);
-  EXPECT_THROW(nearest_source(solver, {}), InvalidArgument);
-  EXPECT_THROW(nearest_source(solver, std::array{Vertex{1}, Vertex{1}}), InvalidArgument);
-  EXPECT_THROW(nearest_source(solver, std::array{Vertex{25}}), InvalidArgument);
-  EXPECT_THROW(farthest_points(solver, Vertex{-1}, 2), InvalidArgument);
-  EXPECT_THROW(farthest_points(solver, Vertex{0}, 26), InvalidArgument);
+  EXPECT_THROW(voronoi_cells(graph, {}), InvalidArgument);
+  EXPECT_THROW(voronoi_cells(graph, std::array{Vertex{1}, Vertex{1}}), InvalidArgument);
+  EXPECT_THROW(voronoi_cells(graph, std::array{Vertex{25}}), InvalidArgument);
+  EXPECT_THROW(farthest_points(graph, Vertex{-1}, 2), InvalidArgument);
+  EXPECT_THROW(farthest_points(graph, Vertex{0}, 26), InvalidArgument);
 }
 
 }  // namespace

@@ -3,7 +3,8 @@
 #include <gtest/gtest.h>
 #include <minizip/unzip.h>
 
-#include <cstring>
+#include <algorithm>
+#include <span>
 
 #include "files.hpp"
 
@@ -35,7 +36,7 @@ std::vector<Stored> values_of(const std::string& npy, const std::string& type, c
   EXPECT_EQ(npy[begin - 1], '\n');
   EXPECT_NE(npy.find("{'descr': '" + type + "', 'fortran_order': False, 'shape': " + shape + ", }"), npy.npos) << npy;
   std::vector<Stored> values((npy.size() - begin) / sizeof(Stored));
-  std::memcpy(values.data(), npy.data() + begin, npy.size() - begin);
+  std::ranges::copy(std::as_bytes(std::span(npy).subspan(begin)), std::as_writable_bytes(std::span(values)).begin());
   return values;
 }
 

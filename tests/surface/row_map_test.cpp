@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+#include <vector>
+
 #include "ahm/error.hpp"
 
 namespace ahm::test {
@@ -30,6 +33,21 @@ TEST(RowMap, NamesTheFirstRowOfAVertex) {
   EXPECT_EQ(map.row(Vertex(3)), std::nullopt);
   EXPECT_EQ(map.row_count(), 4);
   EXPECT_EQ(map.vertex_count(), 4);
+}
+
+TEST(RowMap, TheLeastVertexOfARowIsTheFirstOfEqualOnesAndNeverNaN) {
+  const RowMap map = example();
+  const auto least = [&](Row row, std::vector<double> values) {
+    return map.least(row, [&](Vertex v) { return values[v.index]; });
+  };
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(least(Row(0), {0, 1, 2, 0}), Vertex(1));
+  EXPECT_EQ(least(Row(0), {0, 2, 1, 0}), Vertex(2));
+  EXPECT_EQ(least(Row(0), {0, 5, 5, 0}), Vertex(2));
+  EXPECT_EQ(least(Row(0), {0, 5, nan, 0}), Vertex(1));
+  EXPECT_EQ(least(Row(0), {0, nan, infinity, 0}), Vertex(2));
+  EXPECT_EQ(least(Row(0), {0, nan, nan, 0}), std::nullopt);
+  EXPECT_EQ(least(Row(1), {0, 0, 0, 0}), std::nullopt);
 }
 
 TEST(RowMap, RefusesNumbersOutOfRange) {

@@ -139,6 +139,27 @@ TEST(Surface, OfTheCopiesOfACutRowTheOneNearestToTheSourceCounts) {
   }
 }
 
+TEST(Surface, NumbersOfVerticesFollowTheCoordinatesToTheRows) {
+  const Mesh mesh = three_pages();
+  const auto surface = TriangleMeshSurface::build(mesh.positions, mesh.faces, {.non_manifold = NonManifold::split});
+  const LogMap map = LogMapSolver(surface.graph()).solve(surface.source(Row(2)).source);
+  const RowLogMap rows = surface.on_rows(map);
+  std::vector<double> distances;
+  for (Vertex v(0); v.index < map.size(); ++v.index) distances.push_back(map.distance(v));
+  const std::vector<double> by_row = on_rows(rows, distances);
+  ASSERT_EQ(by_row.size(), mesh.positions.size());
+  Index mapped = 0;
+  for (std::size_t r = 0; r < by_row.size(); ++r) {
+    EXPECT_EQ(std::isnan(by_row[r]), rows.status[r] != Status::ok);
+    if (rows.status[r] != Status::ok) continue;
+    EXPECT_EQ(by_row[r], rows.distance[r]);
+    ++mapped;
+  }
+  EXPECT_GT(mapped, 2);
+  EXPECT_LT(mapped, static_cast<Index>(by_row.size()));  // the other pages are apart
+  EXPECT_THROW(on_rows(rows, std::span(distances).first(1)), InvalidArgument);
+}
+
 TEST(Surface, TheClosestPointIsTheNearestOfManyInAllFaces) {
   const Mesh mesh = icosphere(4);
   const auto surface = TriangleMeshSurface::build(mesh.positions, mesh.faces);

@@ -109,6 +109,30 @@ TEST_F(Html, LeavesNoPlaceholder) {
   EXPECT_EQ(text.find("@VIEWER@"), std::string::npos);
 }
 
+TEST_F(Html, HasEveryElementThatItsScriptAsksFor) {
+  const Patch patch(4, true);
+  const std::string text = page(patch.scene());
+  const std::regex asked("element\\(\"([a-z_]+)\"\\)");
+  std::size_t count = 0;
+  for (std::sregex_iterator match(text.begin(), text.end(), asked), end; match != end; ++match, ++count)
+    EXPECT_NE(text.find("id=\"" + (*match)[1].str() + "\""), std::string::npos) << (*match)[1];
+  EXPECT_GT(count, 5U);
+}
+
+TEST_F(Html, TellsWhatTheColoursOfDistanceStandFor) {
+  const Patch patch(10, true);
+  PictureOptions options;
+  options.pattern = Pattern::distance;
+  options.ring_width = 0.25;
+  write_html(folder / "distance.html", patch.scene(), options);
+  const std::string meta = data(read(folder / "distance.html"), "meta");
+  EXPECT_NE(meta.find("\"pattern\":\"distance\""), std::string::npos);
+  EXPECT_NE(meta.find("\"ring_width\":0.25,"), std::string::npos);
+  std::smatch rings;
+  ASSERT_TRUE(std::regex_search(meta, rings, std::regex("\"rings\":([0-9.e+-]+)")));
+  EXPECT_GT(std::stod(rings[1]), 0);
+}
+
 TEST_F(Html, WritesScenesWithoutAMap) {
   Patch patch(10, true);
   patch.forget_map();

@@ -11,6 +11,7 @@
 #include "cli/progress_display.hpp"
 #include "cli/stage_times.hpp"
 #include "cli/system_info.hpp"
+#include "output/wording.hpp"
 
 namespace ahm::app {
 
@@ -45,8 +46,8 @@ class Journal {
     warnings_.push_back(text);
   }
 
-  void add_warnings(const std::vector<std::string>& texts) {
-    for (const std::string& text : texts) add_warning(text);
+  void add_warnings(const std::vector<Warning>& warnings) {
+    for (const Warning& warning : warnings) add_warning(worded(warning));
   }
 
   Progress progress() { return display_.progress(); }

@@ -10,6 +10,7 @@
 #include "cli/command_line.hpp"
 #include "cli/console.hpp"
 #include "cli/interrupt.hpp"
+#include "output/wording.hpp"
 
 namespace {
 
@@ -38,6 +39,8 @@ int main(int argc, char** argv) try {
   return report(out_of_memory, failed);
 } catch (const std::length_error&) {  // an array longer than any memory
   return report(out_of_memory, failed);
+} catch (const ahm::Error& e) {
+  return report(worded(e), failed);
 } catch (const std::exception& e) {
   return report(e.what(), failed);
 } catch (...) {

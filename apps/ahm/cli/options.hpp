@@ -34,15 +34,8 @@ struct InputOptions {
 };
 
 /// How maps are computed.
-struct SolveOptions {
-  Variant variant = Variant::adaptive;
-  double t_coef = 1.0;
+struct SolveOptions : HeatOptions {
   std::optional<double> radius;
-  Ordering ordering = Ordering::amd;
-  Strategy strategy = Strategy::automatic;
-  int order = 1;
-  double accuracy = HeatOptions{}.accuracy;
-  unsigned threads = 0;
 };
 
 /// Where the u axis points.

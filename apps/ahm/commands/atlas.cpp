@@ -50,7 +50,7 @@ struct AtlasCommandOptions {
 
 std::vector<Vertex> choose_sources(const AtlasCommandOptions& options, const Input& input, const LogMapSolver& solver) {
   if (options.sources.empty())
-    return farthest_points(solver, Vertex{0}, std::min(options.charts, solver.graph().size()));
+    return farthest_points(solver.graph(), Vertex{0}, std::min(options.charts, solver.graph().size()));
   std::vector<Vertex> result;
   for (const SourceSpec& spec : options.sources) result.push_back(vertex_at(input, spec, "--sources"));
   return result;
@@ -114,7 +114,7 @@ void write_files(const AtlasCommandOptions& options, const SurfaceFaces& faces, 
   view::TexturedScene scene;
   scene.parts = parts;
   scene.towards = made.sources.front();
-  view::write_textured_png(options.output.view, scene, picture_options(options.output.picture));
+  view::write_textured_png(options.output.view, scene, picture_options(options.output.picture, options.input.threads));
 }
 
 nlohmann::ordered_json as_json(const DistortionSummary& s) {
@@ -158,7 +158,7 @@ void run(const AtlasCommandOptions& options) {
 
   journal.start("sources");
   const std::vector<Vertex> sources = choose_sources(options, input, solver);
-  const SurfaceFaces faces = surface_faces(input.surface->surface(), solver, sources);
+  const SurfaceFaces faces = surface_faces(input.surface(), solver, sources);
   const std::vector<Vec3> positions = positions_of(faces, graph.size());
   journal.start("charts");
   RefineOptions refine;

@@ -11,7 +11,6 @@
 #include "cli/numbers.hpp"
 #include "cli/option_adders.hpp"
 #include "cli/source_list.hpp"
-#include "commands/solve.hpp"
 #include "commands/subcommand.hpp"
 #include "output/results.hpp"
 #include "output/summary.hpp"
@@ -34,7 +33,6 @@ constexpr const char* cells_footer =
 
 struct CellsOptions {
   InputOptions input;
-  SolveOptions solve;
   OutputOptions output;
   std::vector<SourceSpec> sources;
   Index count = 0;  ///< of spread sources; 0: `sources`
@@ -54,24 +52,19 @@ std::vector<Vertex> vertices_of(const Input& input, const std::vector<SourceSpec
   return result;
 }
 
-std::vector<Index> rows_of_vertices(const Input& input) {
-  std::vector<Index> result(static_cast<std::size_t>(input.graph().size()), -1);
-  for (const auto& [row, vertex] : input.surface->row_vertices()) result[vertex] = row;
-  return result;
-}
-
 /// A vertex that is none of the input's (inside a polygon) gives way to its nearest neighbour that is one and is free.
-void move_to_rows(const TangentGraph& graph, const std::vector<Index>& row_of_vertex, std::vector<Vertex>& vertices) {
-  for (auto& [vertex] : vertices) {
-    if (row_of_vertex[vertex] >= 0) continue;
-    const Star star = graph.star(vertex);
+void move_to_rows(const Surface& surface, std::vector<Vertex>& vertices) {
+  const RowMap& rows = surface.rows();
+  for (auto& vertex : vertices) {
+    if (rows.row(vertex)) continue;
+    const Star star = surface.graph().star(vertex.index);
     double least = std::numeric_limits<double>::infinity();
-    Index nearest = vertex;
+    Vertex nearest = vertex;
     for (std::size_t e = 0; e < star.degree(); ++e) {
-      const Index j = star.neighbors[e];
+      const Vertex j(star.neighbors[e]);
       const double away = std::hypot(star.log(e)[0], star.log(e)[1]);
-      if (row_of_vertex[j] < 0 || !(away < least)) continue;
-      if (std::find(vertices.begin(), vertices.end(), Vertex(j)) != vertices.end()) continue;
+      if (!rows.row(j) || !(away < least)) continue;
+      if (std::find(vertices.begin(), vertices.end(), j) != vertices.end()) continue;
       least = away;
       nearest = j;
     }
@@ -79,15 +72,13 @@ void move_to_rows(const TangentGraph& graph, const std::vector<Index>& row_of_ve
   }
 }
 
-std::vector<Vertex> spread(const CellsOptions& options, const Input& input, const LogMapSolver& solver,
-                           Journal& journal) {
+std::vector<Vertex> spread(const CellsOptions& options, const Input& input, Journal& journal) {
   journal.start("spread");
-  const TangentGraph& graph = input.graph();
-  if (options.count > graph.size())
-    throw InvalidArgument(fmt::format("--count {}: the graph has {} vertices only", options.count, graph.size()));
+  if (const Index size = input.graph().size(); options.count > size)
+    throw InvalidArgument(fmt::format("--count {}: the graph has {} vertices only", options.count, size));
   const Vertex first = options.start ? vertex_at(input, *options.start, "--start") : Vertex{0};
-  std::vector<Vertex> result = farthest_points(solver, first, options.count);
-  move_to_rows(graph, rows_of_vertices(input), result);
+  std::vector<Vertex> result = farthest_points(input.graph(), first, options.count);
+  move_to_rows(input.surface(), result);
   return result;
 }
 
@@ -99,23 +90,21 @@ struct CellRows {
 };
 
 /// Of several vertices of a row, the one nearest to its source counts.
-CellRows rows_of(const Input& input, const std::vector<Index>& labels, const std::vector<double>& distance) {
+CellRows rows_of(const Input& input, const VoronoiCells& of_vertices) {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  const auto away = [&](Vertex v) { return of_vertices.distances[v.index]; };
   const std::size_t n = input.rows();
-  const std::vector<double> none(n, std::numeric_limits<double>::quiet_NaN());
-  CellRows rows{none, none, std::vector<Index>(n, -1), std::vector<Status>(n, Status::removed)};
-  for (const auto& [row, vertex] : input.surface->row_vertices()) {
-    const auto r = static_cast<std::size_t>(row), v = static_cast<std::size_t>(vertex);
-    if (rows.status[r] == Status::ok && !(distance[v] < rows.distance[r])) continue;
-    if (labels[v] < 0) {
-      rows.status[r] = Status::disconnected;
-      continue;
-    }
-    rows.status[r] = Status::ok;
-    rows.labels[r] = labels[v];
-    rows.label[r] = labels[v];
-    rows.distance[r] = distance[v];
+  CellRows cells{std::vector<double>(n, nan), std::vector<double>(n, nan), std::vector<Index>(n, -1), {}};
+  const RowMap& rows = input.surface().rows();
+  for (std::size_t r = 0; r < n; ++r) {
+    const Row row(static_cast<Index>(r));
+    const std::optional<Vertex> vertex = rows.least(row, away);
+    cells.status.push_back(vertex ? Status::ok : rows.vertex(row) ? Status::disconnected : Status::removed);
+    if (!vertex) continue;
+    cells.distance[r] = of_vertices.distances[vertex->index];
+    cells.label[r] = cells.labels[r] = of_vertices.labels[vertex->index];
   }
-  return rows;
+  return cells;
 }
 
 struct Cell {
@@ -178,32 +167,24 @@ void run(const CellsOptions& options) {
   const Input input = open_input(options.input, journal);
   const TangentGraph& graph = input.graph();
   std::vector<Vertex> sources = vertices_of(input, options.sources);
-  const LogMapSolver solver = make_solver(options.solve, graph, journal, 0);
-  if (options.count > 0) sources = spread(options, input, solver, journal);
+  if (options.count > 0) sources = spread(options, input, journal);
 
   journal.start("cells");
-  const std::vector<Index> labels = nearest_source(solver, sources);
-  const VertexField field = distance_in_cells(solver, sources, labels);
-  const CellRows rows = rows_of(input, labels, field.values);
+  const VoronoiCells cells = voronoi_cells(graph, sources);
+  const CellRows rows = rows_of(input, cells);
   comment_on_statuses(rows.status, options.input.path, journal);
-  if (const auto far = std::count(field.status.begin(), field.status.end(), Status::unreached); far > 0)
-    journal.add_warning(fmt::format(
-        "{} vertices are about 700 edges or more from every source: they have a label, but no distance; give more "
-        "sources",
-        far));
 
-  const std::vector<Index> row_of_vertex = rows_of_vertices(input);
   std::vector<Index> source_rows;
   std::vector<Vec3> positions;
-  for (const auto [vertex] : sources) {
-    source_rows.push_back(row_of_vertex[vertex]);
-    positions.push_back(graph.frame(vertex)->origin);
+  for (Vertex vertex : sources) {
+    source_rows.push_back(input.surface().rows().row(vertex).value_or(Row(-1)).index);
+    positions.push_back(graph.frame(vertex.index)->origin);
   }
   double farthest = 0;
   for (double d : rows.distance) farthest = std::max(farthest, std::isnan(d) ? 0 : d);
-  Results results(options.output, input, options.input.path);
+  Results results(options.output, input, options.input);
   write_results(rows, positions, results, journal);
-  report(options, input, source_rows, positions, sizes(graph, labels, sources.size()), farthest, journal);
+  report(options, input, source_rows, positions, sizes(graph, cells.labels, sources.size()), farthest, journal);
   results.keep();
 }
 
@@ -218,7 +199,10 @@ void offer(CLI::App& app, CellsOptions& o) {
       throw CLI::ValidationError("--sources", "give either --sources or --count");
   });
   add_output(app, o.output)->required();
-  add_graph_options(app, o.input, o.solve);
+  add_backend(app, o.input);
+  add_threads(app, o.input);
+  add_cloud_options(app, o.input);
+  add_mesh_options(app, o.input);
   add_json(app, o.output);
   add_view(app, o.output);
   add_map_picture(app, o.output.picture);

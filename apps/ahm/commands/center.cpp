@@ -55,15 +55,13 @@ void report(const CenterCommandOptions& options, const Input& input, const Cente
   const Frame frame = *input.graph().frame(center.vertex.index);
   Vec3 position = frame.origin;
   for (std::size_t a = 0; a < 3; ++a) position[a] += center.offset[0] * frame.x[a] + center.offset[1] * frame.y[a];
-  Index row = -1;
-  for (const RowVertex& entry : input.surface->row_vertices())
-    if (entry.vertex == center.vertex.index) row = entry.row;
+  const std::optional<Row> row = input.surface().rows().row(center.vertex);
   const char* name = options.median ? "median" : "mean";
   nlohmann::ordered_json j = summary("ahm center", options.input.path, options.output, input);
   j.erase("output");
   j["center"] = {{"kind", name},
                  {"points", options.points.size()},
-                 {"row", row < 0 ? nlohmann::ordered_json() : nlohmann::ordered_json(row)},
+                 {"row", row ? nlohmann::ordered_json(row->index) : nlohmann::ordered_json()},
                  {"vertex_position", frame.origin},
                  {"position", position},
                  {"spread", center.spread},
@@ -73,8 +71,8 @@ void report(const CenterCommandOptions& options, const Input& input, const Cente
   const std::string text = fmt::format(
       "{} of {} points at {:.9g} {:.9g} {:.9g}\nnearest vertex {} at {:.9g} {:.9g} {:.9g}\n{} {:.6g}; maps used: {}, "
       "{}\n",
-      name, options.points.size(), p[0], p[1], p[2], row < 0 ? "(inside a face)" : fmt::format("{}", row), v[0], v[1],
-      v[2], options.median ? "mean distance" : "root mean squared distance", center.spread, center.maps,
+      name, options.points.size(), p[0], p[1], p[2], row ? fmt::format("{}", row->index) : "(inside a face)", v[0],
+      v[1], v[2], options.median ? "mean distance" : "root mean squared distance", center.spread, center.maps,
       center.converged ? "converged" : "not converged");
   deliver(std::move(j), text, options.output, journal);
 }

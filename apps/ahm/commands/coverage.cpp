@@ -11,7 +11,6 @@
 #include "cli/option_adders.hpp"
 #include "commands/solve.hpp"
 #include "commands/subcommand.hpp"
-#include "input/inverse.hpp"
 #include "output/output_paths.hpp"
 #include "output/results.hpp"
 #include "output/summary.hpp"
@@ -64,9 +63,7 @@ void write_path(const std::string& name, const CoveragePath& path) {
 }
 
 /// The path on the map, as a picture.
-void write_view(const Input& input, const ResolvedSource& source, const LogMap& map, const CoveragePath& path,
-                Results& results, Journal& journal) {
-  const MapRows rows = rows_of(map, *input.surface, input.rows());
+void write_view(view::Scene scene, const CoveragePath& path, Results& results, Journal& journal) {
   std::vector<Vec3> curve;
   std::vector<Index> pieces;
   for (const CoveragePoint& point : path.points) {
@@ -74,20 +71,21 @@ void write_view(const Input& input, const ResolvedSource& source, const LogMap& 
       pieces.push_back(static_cast<Index>(curve.size()));
     curve.push_back(point.position);
   }
-  view::Scene scene = results.scene();
-  scene.u = rows.u;
-  scene.v = rows.v;
-  scene.quality = rows.quality;
-  scene.source = source.position;
-  if (source.frame) scene.source_axes = {source.frame->x, source.frame->y, source.frame->normal};
   scene.curve = curve;
   scene.curve_pieces = pieces;
   results.write_view(scene, journal);
 }
 
+/// Of the rows within the radius; NaN elsewhere.
+std::vector<double> quality_within(double radius, const RowLogMap& rows, std::vector<double> quality) {
+  for (std::size_t r = 0; r < quality.size(); ++r)
+    if (!(rows.distance[r] <= radius)) quality[r] = NAN;
+  return quality;
+}
+
 /// Of the area within the radius, the share whose vertices are trusted.
-double trusted_share(const TangentGraph& graph, const LogMap& map, const CoverageCommandOptions& options) {
-  const std::vector<double> quality = map_quality(graph, map);
+double trusted_share(const TangentGraph& graph, const LogMap& map, const std::vector<double>& quality,
+                     const CoverageCommandOptions& options) {
   double all = 0, trusted = 0;
   for (Index i = 0; i < graph.size(); ++i) {
     if (!(map.distance(Vertex(i)) <= options.path.radius)) continue;
@@ -118,7 +116,7 @@ struct Summary {
   }
 };
 
-void report(const CoverageCommandOptions& options, const Input& input, const ResolvedSource& source,
+void report(const CoverageCommandOptions& options, const Input& input, const PlacedSource& source,
             const CoveragePath& path, double trusted, const Summary& amount, Journal& journal) {
   const std::string pattern = options.path.pattern == CoveragePattern::raster ? "raster" : "spiral";
   nlohmann::ordered_json j = summary("ahm coverage", options.input.path, options.output, input);
@@ -144,12 +142,13 @@ void run(const CoverageCommandOptions& options) {
   check_results(options.input.path, options.output, {".csv", ".ply"});
   Journal journal(options.output.verbose);
   const Input input = open_input(options.input, journal, options.source.spec);
-  const ResolvedSource source = resolve(options.source, input);
+  const PlacedSource source = resolve(options.source, input);
   const LogMapSolver solver = make_solver(options.solve, input.graph(), journal);
   const LogMap map = solve(options.solve, solver, source.source, journal);
 
   journal.start("path");
-  const InverseMap inverse = inverse_of(input, map, options.min_quality);
+  const InverseMap inverse =
+      inverse_map(input.surface(), map, {.min_quality = options.min_quality, .threads = options.solve.threads});
   const CoveragePath path = coverage_path(inverse, options.path);
   if (path.points.empty())
     throw InvalidArgument(fmt::format(
@@ -162,11 +161,17 @@ void run(const CoverageCommandOptions& options) {
         "lines lie up to {:.4g} apart in space, more than --spacing {}: the surface is saddle-shaped or rough",
         amount.spacing_high, options.path.spacing));
 
-  Results results(options.output, input, options.input.path);
-  write_view(input, source, map, path, results, journal);
+  const std::vector<double> quality = map_quality(input.graph(), map, options.solve.threads);
+  const RowLogMap rows = input.surface().on_rows(map);
+  const std::vector<double> row_quality = on_rows(rows, quality);
+  comment_on_quality(quality_within(options.path.radius, rows, row_quality), "lower --radius, or start elsewhere",
+                     journal);
+
+  Results results(options.output, input, options.input);
+  write_view(results.scene(rows, row_quality, source), path, results, journal);
   journal.start("write");
   write_path(options.output.output, path);
-  report(options, input, source, path, trusted_share(input.graph(), map, options), amount, journal);
+  report(options, input, source, path, trusted_share(input.graph(), map, quality, options), amount, journal);
   results.keep();
 }
 

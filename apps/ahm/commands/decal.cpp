@@ -7,14 +7,15 @@
 #include <nlohmann/json.hpp>
 
 #include "ahm/applications/distortion.hpp"
+#include "ahm/applications/inverse_map.hpp"
 #include "ahm/io/write.hpp"
 #include "ahm/view/textured_picture.hpp"
 #include "cli/numbers.hpp"
 #include "cli/option_adders.hpp"
 #include "commands/solve.hpp"
 #include "commands/subcommand.hpp"
-#include "input/inverse.hpp"
 #include "output/output_paths.hpp"
+#include "output/results.hpp"
 #include "output/summary.hpp"
 #include "output/texture_output.hpp"
 
@@ -79,8 +80,8 @@ struct Amount {
 };
 
 SurfaceFaces faces_behind(const DecalCommandOptions& options, const Input& input, const LogMapSolver& solver) {
-  if (options.alone || !input.backend->has_faces) return {};
-  return surface_faces(input.surface->surface(), solver, {});
+  if (options.alone || input.surface().faces().size() == 0) return {};
+  return surface_faces(input.surface(), solver, {});
 }
 
 void write_mesh(const DecalCommandOptions& options, const Input& input, const LogMapSolver& solver, const Decal& decal,
@@ -104,7 +105,7 @@ void write_mesh(const DecalCommandOptions& options, const Input& input, const Lo
   view::TexturedScene scene;
   scene.parts = parts;
   scene.towards = source;
-  view::write_textured_png(options.output.view, scene, picture_options(options.output.picture));
+  view::write_textured_png(options.output.view, scene, picture_options(options.output.picture, options.input.threads));
 }
 
 /// The colours of the input, light grey where there are none, under the image.
@@ -112,13 +113,16 @@ std::vector<std::array<std::uint8_t, 3>> painted(const Input& input, const std::
                                                  const Image& image) {
   std::vector<std::array<std::uint8_t, 3>> colors = input.geometry.colors;
   colors.resize(input.rows(), {200, 200, 200});
-  const bool by_row = input.backend->has_faces;
-  for (const auto& [row, vertex] : input.surface->row_vertices()) {
-    const auto k = static_cast<std::size_t>(by_row ? row : vertex);
+  const RowMap& rows = input.surface().rows();
+  for (std::size_t r = 0; r < colors.size(); ++r) {
+    const auto vertex = rows.vertex(Row(static_cast<Index>(r)));
+    if (!vertex) continue;
+    // Of equal points the first one is in the inverse.
+    const auto k = static_cast<std::size_t>(rows.row(*vertex)->index);
     if (std::isnan(places[2 * k])) continue;
     const auto texel = image.sample(places[2 * k], places[2 * k + 1]);
     for (std::size_t c = 0; c < 3; ++c) {
-      std::uint8_t& color = colors[row][c];
+      std::uint8_t& color = colors[r][c];
       color = static_cast<std::uint8_t>(std::lround((1 - texel[3]) * color + texel[3] * 255 * texel[c]));
     }
   }
@@ -128,7 +132,7 @@ std::vector<std::array<std::uint8_t, 3>> painted(const Input& input, const std::
 void write_points(const DecalCommandOptions& options, const Input& input, const InverseMap& inverse, const Image& image,
                   const Vec3& source) {
   const auto colors = painted(input, image_coordinates_of_vertices(inverse, options.decal), image);
-  const std::vector<Vec3> normals = input.surface->normals();
+  const std::vector<Vec3> normals = input.surface().normals();
   const io::Geometry& given = input.geometry;
   io::Table table{.title = "coloured by libahm"};
   table.add({"x", "y", "z"}, given.points);
@@ -140,7 +144,7 @@ void write_points(const DecalCommandOptions& options, const Input& input, const 
   view::TexturedScene scene;
   scene.points = given.points, scene.colors = colors, scene.normals = normals;
   scene.towards = source;
-  view::write_textured_png(options.output.view, scene, picture_options(options.output.picture));
+  view::write_textured_png(options.output.view, scene, picture_options(options.output.picture, options.input.threads));
 }
 
 void report(const DecalCommandOptions& options, const Input& input, const Decal& decal, const Amount& amount,
@@ -174,14 +178,18 @@ void run(const DecalCommandOptions& given) {
 
   Journal journal(options.output.verbose);
   const Input input = open_input(options.input, journal, options.source.spec);
-  const ResolvedSource source = resolve(options.source, input);
+  const PlacedSource source = resolve(options.source, input);
   const LogMapSolver solver = make_solver(options.solve, input.graph(), journal);
   SolveOptions near = options.solve;
   near.radius = map_radius(options.decal, input.graph());
   const LogMap map = solve(near, solver, source.source, journal);
 
+  comment_on_quality(quality_of(input, map, input.surface().on_rows(map), options.solve),
+                     "lower --size, or choose another source", journal);
+
   journal.start("decal");
-  const InverseMap inverse = inverse_of(input, map, options.min_quality);
+  const InverseMap inverse =
+      inverse_map(input.surface(), map, {.min_quality = options.min_quality, .threads = options.solve.threads});
   const Decal decal = make_decal(inverse, options.decal);
   if (decal.face_begin.size() < 2)
     throw InvalidArgument(fmt::format(

@@ -25,7 +25,7 @@ Estimate estimate(const GraphSize& size, Strategy strategy, const Backend& graph
   const Cost cost = estimate_cost(size, strategy);
   const double n = size.vertices;
   const double kept = strategy == Strategy::global ? times : 1;  // the factors of every diffusion time stay in memory
-  return {strategy, graph.bytes * n + kept * cost.bytes, graph.seconds * n + times * cost.first_map_seconds};
+  return {strategy, graph.cost.bytes * n + kept * cost.bytes, graph.cost.seconds * n + times * cost.first_map_seconds};
 }
 
 }  // namespace

@@ -5,9 +5,9 @@
 #include "cli/option_adders.hpp"
 #include "cli/progress_display.hpp"
 #include "commands/subcommand.hpp"
-#include "input/survey.hpp"
 #include "output/output_paths.hpp"
 #include "output/summary.hpp"
+#include "output/survey_report.hpp"
 
 namespace ahm::app {
 namespace {

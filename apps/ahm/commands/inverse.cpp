@@ -1,10 +1,9 @@
-#include "input/inverse.hpp"
-
 #include <fmt/format.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "ahm/applications/inverse_map.hpp"
 #include "ahm/io/write.hpp"
 #include "cli/numbers.hpp"
 #include "cli/option_adders.hpp"
@@ -64,12 +63,17 @@ void run(const InverseCommandOptions& options) {
   check_results(options.input.path, options.output, {".csv"});
   Journal journal(options.output.verbose);
   const Input input = open_input(options.input, journal, options.source.spec);
-  const ResolvedSource source = resolve(options.source, input);
+  const PlacedSource source = resolve(options.source, input);
   const LogMapSolver solver = make_solver(options.solve, input.graph(), journal);
   const LogMap map = solve(options.solve, solver, source.source, journal);
 
+  comment_on_quality(quality_of(input, map, input.surface().on_rows(map), options.solve),
+                     "start nearer to the points that are looked up", journal);
+
   journal.start("write");
-  const std::size_t found = write(options, inverse_of(input, map, options.min_quality));
+  const std::size_t found =
+      write(options,
+            inverse_map(input.surface(), map, {.min_quality = options.min_quality, .threads = options.solve.threads}));
   nlohmann::ordered_json j = summary("ahm inverse", options.input.path, options.output, input);
   j["source"] = {{"spec", to_string(options.source.spec)}, {"position", source.position}};
   j["points"] = options.points.size();

@@ -41,64 +41,51 @@ struct LocalMapsOptions {
   bool float32 = false;
 };
 
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
-
 void check_options(const LocalMapsOptions& options) {
   check_results(options.input.path, options.output, {".npz"});
   if (!io::has_npz()) throw InvalidArgument("this build of ahm cannot write .npz files; it was built without minizip");
 }
 
-/// Which vertex stands for a row, and the other way round; -1: none. The first counts.
-struct Rows {
-  std::vector<Index> vertex_of_row, row_of_vertex;
-
-  Rows(const Model& model, std::size_t rows) : vertex_of_row(rows, -1), row_of_vertex(at(model.graph().size()), -1) {
-    for (const auto& [row, vertex] : model.row_vertices()) {
-      if (vertex_of_row[row] < 0) vertex_of_row[row] = vertex;
-      if (row_of_vertex[vertex] < 0) row_of_vertex[vertex] = row;
-    }
-  }
-};
-
 /// Row numbers, one per line.
-std::vector<Index> read_rows(const std::string& path, std::size_t rows) {
+std::vector<Row> read_rows(const std::string& path, Index rows) {
   const std::string name = "--sources " + path;
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored))
     throw IoError(name + ": cannot be read; write all, or the name of a file of row numbers");
-  std::vector<Index> result;
+  std::vector<Row> result;
   for_each_line(path, name, "row numbers", [&](const std::string& line) {
-    result.push_back(static_cast<Index>(parse_integer(line, 0, static_cast<std::int64_t>(rows) - 1)));
+    result.emplace_back(static_cast<Index>(parse_integer(line, 0, rows - 1)));
   });
   return result;
 }
 
-std::vector<Index> wanted_rows(const LocalMapsOptions& options, const Rows& rows) {
+std::vector<Row> wanted_rows(const LocalMapsOptions& options, const RowMap& rows) {
   if (options.sources != "all") {
-    std::vector<Index> result = read_rows(options.sources, rows.vertex_of_row.size());
-    for (Index row : result)
-      if (rows.vertex_of_row[row] < 0)
-        throw InvalidArgument(fmt::format("--sources {}: row {} is no vertex of the surface", options.sources, row));
+    std::vector<Row> result = read_rows(options.sources, rows.row_count());
+    for (Row row : result)
+      if (!rows.vertex(row))
+        throw InvalidArgument(
+            fmt::format("--sources {}: row {} is no vertex of the surface", options.sources, row.index));
     return result;
   }
-  std::vector<Index> result;
-  for (std::size_t row = 0; row < rows.vertex_of_row.size(); ++row)
-    if (rows.vertex_of_row[row] >= 0) result.push_back(static_cast<Index>(row));
+  std::vector<Row> result;
+  for (Row row(0); row.index < rows.row_count(); ++row.index)
+    if (rows.vertex(row)) result.push_back(row);
   return result;
 }
 
 /// Entries on rows of the input, at most `most` per source (0: all): those on virtual vertices are left out.
-void keep_rows(LocalMaps& maps, const Rows& rows, Index most) {
+void keep_rows(LocalMaps& maps, const RowMap& rows, Index most) {
   const std::size_t width = maps.transport_width();
   std::size_t kept = 0;
   for (std::size_t s = 0; s + 1 < maps.indptr.size(); ++s) {
     const auto begin = static_cast<std::size_t>(maps.indptr[s]), end = static_cast<std::size_t>(maps.indptr[s + 1]);
     maps.indptr[s] = static_cast<Offset>(kept);
     for (std::size_t e = begin; e < end; ++e) {
-      const Index row = rows.row_of_vertex[maps.indices[e]];
+      const std::optional<Row> row = rows.row(Vertex(maps.indices[e]));
       const auto taken = static_cast<Offset>(kept) - maps.indptr[s];
-      if (row < 0 || (most > 0 && taken == most)) continue;
-      maps.indices[kept] = row;
+      if (!row || (most > 0 && taken == most)) continue;
+      maps.indices[kept] = row->index;
       maps.distances[kept] = maps.distances[e];
       maps.weights[kept] = maps.weights[e];
       std::copy_n(maps.logs.begin() + static_cast<std::ptrdiff_t>(2 * e), 2,
@@ -119,15 +106,15 @@ void keep_rows(LocalMaps& maps, const Rows& rows, Index most) {
 /// Rows of `count` entries: `values` has `width` numbers per entry, what is missing is 0.
 template <class T>
 std::vector<T> padded(const LocalMaps& maps, const std::vector<T>& values, std::size_t width, std::size_t count) {
-  std::vector<T> result(at(maps.sources()) * count * width, T{});
-  for (std::size_t s = 0; s < at(maps.sources()); ++s)
+  std::vector<T> result(static_cast<std::size_t>(maps.sources()) * count * width, T{});
+  for (std::size_t s = 0; s < static_cast<std::size_t>(maps.sources()); ++s)
     std::copy(values.begin() + maps.indptr[s] * static_cast<Offset>(width),
               values.begin() + maps.indptr[s + 1] * static_cast<Offset>(width),
               result.begin() + static_cast<std::ptrdiff_t>(s * count * width));
   return result;
 }
 
-void write(const LocalMapsOptions& options, const LocalMaps& maps, const std::vector<Index>& rows,
+void write(const LocalMapsOptions& options, const LocalMaps& maps, const std::vector<Row>& rows,
            const TangentGraph& graph, const std::vector<Vertex>& vertices) {
   const std::size_t sources = rows.size(), entries = maps.indices.size();
   const auto k = static_cast<std::size_t>(options.nearest);
@@ -135,7 +122,9 @@ void write(const LocalMapsOptions& options, const LocalMaps& maps, const std::ve
   const auto complex = options.float32 ? io::NpyType::complex64 : io::NpyType::complex128;
   const bool rotations = maps.kind == TransportKind::rotation2;
   io::NpzFile file(options.output.output);
-  file.add("sources", {sources}, std::span<const Index>(rows));
+  std::vector<Index> numbers;
+  for (Row row : rows) numbers.push_back(row.index);
+  file.add("sources", {sources}, std::span<const Index>(numbers));
   std::vector<double> frames;
   for (const auto [vertex] : vertices) {
     const Frame frame = *graph.frame(vertex);
@@ -169,20 +158,19 @@ void run(const LocalMapsOptions& options) {
   check_options(options);
   Journal journal(options.output.verbose);
   const Input input = open_input(options.input, journal);
-  const Rows rows(*input.surface, input.rows());
-  const std::vector<Index> wanted = wanted_rows(options, rows);
+  const RowMap& rows = input.surface().rows();
+  const std::vector<Row> wanted = wanted_rows(options, rows);
   std::vector<Vertex> vertices;
-  for (Index row : wanted) vertices.emplace_back(rows.vertex_of_row[row]);
+  for (Row row : wanted) vertices.push_back(*rows.vertex(row));
 
   journal.start("solve");
   LocalMapOptions map_options;
   map_options.radius = options.radius;
-  const bool has_virtual = std::count(rows.row_of_vertex.begin(), rows.row_of_vertex.end(), -1) > 0;
+  bool has_virtual = false;
+  for (Vertex v(0); v.index < rows.vertex_count(); ++v.index) has_virtual = has_virtual || !rows.row(v);
   map_options.nearest = has_virtual ? 0 : options.nearest;
-  map_options.heat = {.t_coef = options.solve.t_coef,
-                      .variant = options.solve.variant,
-                      .threads = options.solve.threads,
-                      .progress = journal.progress()};
+  map_options.heat = options.solve;
+  map_options.heat.progress = journal.progress();
   LocalMaps maps = local_maps(input.graph(), vertices, map_options);
   keep_rows(maps, rows, options.nearest);
 

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "ahm/error.hpp"
 #include "ahm/maps/log_map_solver.hpp"
+#include "ahm/util/vec.hpp"
 #include "cli/numbers.hpp"
 #include "cli/option_adders.hpp"
 #include "commands/estimate.hpp"
@@ -49,10 +49,8 @@ struct LogmapOptions {
   bool estimate = false;  ///< tell what the run would cost instead of running
 };
 
-double distance(const Vec3& a, const Vec3& b) { return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]); }
-
 /// Something the user should know about where the source ended up.
-void comment_on_source(const SourceSpec& spec, const Input& input, const ResolvedSource& source, Journal& journal) {
+void comment_on_source(const SourceSpec& spec, const Input& input, const PlacedSource& source, Journal& journal) {
   const auto* wanted = std::get_if<SourcePosition>(&spec);
   if (wanted == nullptr) return;
   const double away = distance(wanted->position, source.position), edge = input.mean_edge_length();
@@ -63,7 +61,7 @@ void comment_on_source(const SourceSpec& spec, const Input& input, const Resolve
 }
 
 /// What was left out because it is farther than the radius in a straight line already.
-void mark_beyond(const std::vector<Vec3>& points, const Vec3& source, double radius, MapRows& rows) {
+void mark_beyond(const std::vector<Vec3>& points, const Vec3& source, double radius, RowLogMap& rows) {
   for (std::size_t i = 0; i < points.size(); ++i)
     if (rows.status[i] == Status::removed && distance(points[i], source) > radius)
       rows.status[i] = Status::beyond_radius;
@@ -74,24 +72,18 @@ double radius_of_local(const LogmapOptions& options) {
   return *options.solve.radius;
 }
 
-void write_results(const ResolvedSource& source, const MapRows& rows, const std::vector<Vec3>& away, Results& results,
-                   Journal& journal) {
+void write_results(const PlacedSource& source, const RowLogMap& rows, const std::vector<double>& quality,
+                   const std::vector<Vec3>& away, Results& results, Journal& journal) {
   io::Table table = results.table();
   table.add("u", rows.u);
   table.add("v", rows.v);
   table.add("distance", rows.distance);
   table.add("angle", rows.angle);
   table.add("status", rows.status);
-  table.add("quality", rows.quality);
+  table.add("quality", quality);
   if (!rows.error_estimate.empty()) table.add("error_estimate", rows.error_estimate);
   if (!away.empty()) table.add({"gx", "gy", "gz"}, away);
-  view::Scene scene = results.scene();
-  scene.u = rows.u;
-  scene.v = rows.v;
-  scene.quality = rows.quality;
-  scene.source = source.position;
-  if (source.frame) scene.source_axes = {source.frame->x, source.frame->y, source.frame->normal};
-  results.write(table, scene, journal);
+  results.write(table, results.scene(rows, quality, source), journal);
 }
 
 void run(const LogmapOptions& options) {
@@ -101,21 +93,23 @@ void run(const LogmapOptions& options) {
   InputOptions opened = options.input;
   if (options.local) opened.local = radius_of_local(options);
   const Input input = open_input(opened, journal, options.source.spec);
-  const ResolvedSource source = resolve(options.source, input);
+  const PlacedSource source = resolve(options.source, input);
   comment_on_source(options.source.spec, input, source, journal);
 
   const LogMapSolver solver = make_solver(options.solve, input.graph(), journal);
   const LogMap map = solve(options.solve, solver, source.source, journal);
-  MapRows rows = rows_of(map, *input.surface, input.rows());
+  RowLogMap rows = input.surface().on_rows(map);
+  const std::vector<double> quality = quality_of(input, map, rows, options.solve);
   if (opened.local) mark_beyond(input.geometry.points, source.position, *opened.local, rows);
   comment_on_statuses(rows.status, options.input.path, journal);
-  comment_on_quality(rows.quality, journal);
+  comment_on_quality(quality, "keep to what is near with --radius, or start elsewhere", journal);
 
-  Results results(options.output, input, options.input.path);
-  const std::vector<Vec3> away = options.gradient ? gradients(map, *input.surface, rows) : std::vector<Vec3>();
-  write_results(source, rows, away, results, journal);
-  report({options.input.path, options.source.spec, options.solve, input, solver, source, map, rows}, options.output,
-         journal);
+  Results results(options.output, input, options.input);
+  const std::vector<Vec3> away =
+      options.gradient ? distance_gradients(input.surface(), map, rows) : std::vector<Vec3>();
+  write_results(source, rows, quality, away, results, journal);
+  report({options.input.path, options.source.spec, options.solve, input, solver, source, map, rows, quality},
+         options.output, journal);
   results.keep();
 }
 

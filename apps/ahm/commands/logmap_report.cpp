@@ -10,6 +10,7 @@
 #include "ahm/maps/quality.hpp"
 #include "cli/system_info.hpp"
 #include "output/summary.hpp"
+#include "output/wording.hpp"
 
 namespace ahm::app {
 namespace {
@@ -17,11 +18,11 @@ namespace {
 constexpr std::array all_statuses = {Status::ok, Status::disconnected, Status::beyond_radius, Status::unreached,
                                      Status::removed};
 
-std::size_t count(const MapRows& rows, Status status) {
+std::size_t count(const RowLogMap& rows, Status status) {
   return static_cast<std::size_t>(std::count(rows.status.begin(), rows.status.end(), status));
 }
 
-double largest_distance(const MapRows& rows) {
+double largest_distance(const RowLogMap& rows) {
   double largest = 0;
   for (double d : rows.distance)
     if (d > largest) largest = d;  // false for NaN
@@ -29,8 +30,8 @@ double largest_distance(const MapRows& rows) {
 }
 
 /// Mapped rows at a cut locus or in a fold.
-std::ptrdiff_t untrusted(const MapRows& rows) {
-  return std::count_if(rows.quality.begin(), rows.quality.end(), [](double q) { return q < trusted_quality; });
+std::ptrdiff_t untrusted(const std::vector<double>& quality) {
+  return std::count_if(quality.begin(), quality.end(), [](double q) { return q < trusted_quality; });
 }
 
 /// Of the numbers that are not NaN.
@@ -45,7 +46,7 @@ double median(std::vector<double> values) {
 nlohmann::ordered_json source_as_json(const LogmapRun& run) {
   nlohmann::ordered_json j;
   j["spec"] = to_string(run.spec);
-  j["index"] = run.source.row ? nlohmann::ordered_json(*run.source.row) : nlohmann::ordered_json(nullptr);
+  j["index"] = run.source.row ? nlohmann::ordered_json(run.source.row->index) : nlohmann::ordered_json(nullptr);
   j["position"] = run.source.position;
   if (run.source.frame)
     j["frame"] = {{"u", run.source.frame->x}, {"v", run.source.frame->y}, {"normal", run.source.frame->normal}};
@@ -72,10 +73,10 @@ nlohmann::ordered_json as_json(const LogmapRun& run, const OutputOptions& output
   j["mean_edge_length"] = run.input.mean_edge_length();
   j["largest_distance"] = largest_distance(run.rows);
   for (Status s : all_statuses) j["status"][std::string(to_string(s))] = count(run.rows, s);
-  j["untrusted"] = untrusted(run.rows);
+  j["untrusted"] = untrusted(run.quality);
   if (!run.rows.error_estimate.empty()) j["median_error_estimate"] = median(run.rows.error_estimate);
   j["source"] = source_as_json(run);
-  j[std::string(run.input.backend->name)] = run.input.surface->report();
+  j[std::string(run.input.backend->name)] = app::as_json(run.input.built.report);
   if (run.solver.strategy() == Strategy::global) j["factor"] = factor_as_json(run.solver.operators().statistics());
   if (const MarchStatistics& m = run.map.march(); m.bands > 0)
     j["march"] = {{"bands", m.bands}, {"largest_band", m.largest_band}, {"solved_vertices", m.solved}};
@@ -89,11 +90,11 @@ std::string as_text(const LogmapRun& run) {
       text += fmt::format(", {} {}", c, to_string(s));
   const Vec3& p = run.source.position;
   text += fmt::format("\nsource {} at {:.6g} {:.6g} {:.6g}, largest distance {:.6g}, mean edge length {:.4g}\n",
-                      run.source.row ? fmt::format("{}", *run.source.row) : to_string(run.spec), p[0], p[1], p[2],
+                      run.source.row ? fmt::format("{}", run.source.row->index) : to_string(run.spec), p[0], p[1], p[2],
                       largest_distance(run.rows), run.input.mean_edge_length());
   const auto ok = static_cast<double>(count(run.rows, Status::ok));
   text += fmt::format("quality above {} at {:.2f} % of the mapped vertices", trusted_quality,
-                      ok > 0 ? 100 - 100 * static_cast<double>(untrusted(run.rows)) / ok : 0.0);
+                      ok > 0 ? 100 - 100 * static_cast<double>(untrusted(run.quality)) / ok : 0.0);
   if (!run.rows.error_estimate.empty())
     text += fmt::format(", median error about {:.2g}", median(run.rows.error_estimate));
   return text + "\n";

@@ -6,7 +6,6 @@
 
 #include "ahm/maps/log_map_solver.hpp"
 #include "input/open.hpp"
-#include "output/map_rows.hpp"
 
 namespace ahm::app {
 
@@ -17,9 +16,10 @@ struct LogmapRun {
   const SolveOptions& options;
   const Input& input;
   const LogMapSolver& solver;
-  const ResolvedSource& source;
+  const PlacedSource& source;
   const LogMap& map;
-  const MapRows& rows;
+  const RowLogMap& rows;
+  const std::vector<double>& quality;  ///< by row
 };
 
 /// Delivers the summaries, for programs and for people.

@@ -4,6 +4,7 @@
 
 #include "ahm/error.hpp"
 #include "ahm/maps/cost.hpp"
+#include "ahm/maps/quality.hpp"
 #include "cli/system_info.hpp"
 
 namespace ahm::app {
@@ -33,15 +34,10 @@ std::string strategy_as_text(const LogMap& map) {
 LogMapSolver make_solver(const SolveOptions& options, const TangentGraph& graph, Journal& journal, int maps) {
   check_memory(options, graph);
   journal.start("factor");
-  return LogMapSolver(graph, {.t_coef = options.t_coef,
-                              .variant = options.variant,
-                              .order = options.order,
-                              .strategy = options.strategy,
-                              .expected_maps = maps,
-                              .accuracy = options.accuracy,
-                              .ordering = options.ordering,
-                              .threads = options.threads,
-                              .progress = journal.progress()});
+  HeatOptions heat = options;
+  heat.expected_maps = maps;
+  heat.progress = journal.progress();
+  return LogMapSolver(graph, heat);
 }
 
 MapOptions map_options(const SolveOptions& options) {
@@ -56,6 +52,11 @@ LogMap solve(const SolveOptions& options, const LogMapSolver& solver, const Sour
   LogMap map = solver.solve(source, map_options(options));
   journal.tell(strategy_as_text(map));
   return map;
+}
+
+std::vector<double> quality_of(const Input& input, const LogMap& map, const RowLogMap& rows,
+                               const SolveOptions& options) {
+  return on_rows(rows, map_quality(input.graph(), map, options.threads));
 }
 
 }  // namespace ahm::app

@@ -5,6 +5,7 @@
 #include "ahm/maps/log_map_solver.hpp"
 #include "cli/journal.hpp"
 #include "cli/options.hpp"
+#include "input/open.hpp"
 
 namespace ahm::app {
 
@@ -18,5 +19,9 @@ MapOptions map_options(const SolveOptions& options);
 
 /// One map; the journal tells the strategy.
 LogMap solve(const SolveOptions& options, const LogMapSolver& solver, const Source& source, Journal& journal);
+
+/// `map_quality` by row. @param rows  of the map
+std::vector<double> quality_of(const Input& input, const LogMap& map, const RowLogMap& rows,
+                               const SolveOptions& options);
 
 }  // namespace ahm::app

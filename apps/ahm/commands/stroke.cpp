@@ -63,7 +63,7 @@ SurfaceCurve draw_curve(const Input& input, const std::vector<SourceSpec>& given
     points.push_back(curve_point(spec));
   }
   try {
-    return ahm::draw_curve(input.surface->surface(), points, options);
+    return ahm::draw_curve(input.surface(), points, options);
   } catch (const InvalidArgument& e) {
     throw InvalidArgument(fmt::format("--curve: {}", worded(e)));
   }
@@ -81,7 +81,7 @@ void comment_on_curve(const SurfaceCurve& curve, double edge, Journal& journal) 
         curve.jump, curve.jump / edge));
 }
 
-void write_results(const SurfaceCurve& curve, const StrokeOptions& shape, const MapRows& rows,
+void write_results(const SurfaceCurve& curve, const StrokeOptions& shape, const RowLogMap& rows,
                    const std::vector<double>& distance, Results& results, Journal& journal) {
   io::Table table = results.table();
   table.add("u", rows.u);
@@ -102,7 +102,7 @@ void write_results(const SurfaceCurve& curve, const StrokeOptions& shape, const 
   results.write(table, scene, journal, picture);
 }
 
-void report(const StrokeCommandOptions& options, const Input& input, const SurfaceCurve& curve, const MapRows& rows,
+void report(const StrokeCommandOptions& options, const Input& input, const SurfaceCurve& curve, const RowLogMap& rows,
             const std::vector<double>& distance, Journal& journal) {
   const auto mapped = std::count(rows.status.begin(), rows.status.end(), Status::ok);
   double farthest = 0;
@@ -135,12 +135,12 @@ void run(const StrokeCommandOptions& options) {
 
   const LogMapSolver solver = make_solver(options.solve, input.graph(), journal);
   const LogMap map = solve(options.solve, solver, curve.source, journal);
-  const MapRows rows = rows_of(map, *input.surface, input.rows());
+  const RowLogMap rows = input.surface().on_rows(map);
   std::vector<double> distance;
   for (std::size_t i = 0; i < rows.u.size(); ++i)
     distance.push_back(distance_from_curve(rows.u[i], rows.v[i], curve.length, options.shape));
   comment_on_statuses(rows.status, options.input.path, journal);
-  Results results(options.output, input, options.input.path);
+  Results results(options.output, input, options.input);
   write_results(curve, options.shape, rows, distance, results, journal);
   report(options, input, curve, rows, distance, journal);
   results.keep();

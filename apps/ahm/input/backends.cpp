@@ -4,6 +4,9 @@
 #include <array>
 
 #include "ahm/error.hpp"
+#include "ahm/pointcloud/point_cloud_surface.hpp"
+#include "ahm/polymesh/polygon_mesh_surface.hpp"
+#include "ahm/trimesh/triangle_mesh_surface.hpp"
 #include "input/backend.hpp"
 
 namespace ahm::app {
@@ -20,9 +23,9 @@ bool has_triangles_only(const io::Geometry& input) {
 bool has_faces(const io::Geometry& input) { return !is_cloud(input); }
 
 constexpr std::array<Backend, 3> backends = {{
-    {"trimesh", true, has_triangles_only, 800, 3e-6, build_trimesh},
-    {"polymesh", true, has_faces, 800, 3e-6, build_polymesh},
-    {"pointcloud", false, is_cloud, 800, 5.5e-6, build_pointcloud},
+    {"trimesh", has_triangles_only, trimesh::build_cost, build_trimesh},
+    {"polymesh", has_faces, polymesh::build_cost, build_polymesh},
+    {"pointcloud", is_cloud, pointcloud::build_cost, build_pointcloud},
 }};
 
 }  // namespace

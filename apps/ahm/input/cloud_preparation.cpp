@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 
 #include "ahm/error.hpp"
 #include "ahm/pointcloud/surroundings.hpp"
+#include "ahm/util/vec.hpp"
 #include "cli/source_list.hpp"
 #ifdef AHM_WITH_PCL
 #include "ahm/pcl/filters.hpp"
@@ -16,15 +16,11 @@
 namespace ahm::app {
 namespace {
 
-bool is_finite(const Vec3& p) { return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]); }
-
 std::string list_first(const std::vector<Index>& indices) {
   const std::size_t shown = std::min<std::size_t>(indices.size(), 10);
   return fmt::format("{}{}", fmt::join(indices.begin(), indices.begin() + static_cast<std::ptrdiff_t>(shown), ", "),
                      indices.size() > shown ? ", ..." : "");
 }
-
-double distance(const Vec3& a, const Vec3& b) { return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]); }
 
 PreparedCloud finite_points(const io::Geometry& input, const InputOptions& options) {
   PreparedCloud cloud;

@@ -9,6 +9,7 @@
 #include "ahm/io/read.hpp"
 #include "ahm/surface/directions.hpp"
 #include "cli/source_list.hpp"
+#include "output/wording.hpp"
 
 namespace ahm::app {
 namespace {
@@ -32,45 +33,50 @@ io::Geometry read_input(const std::string& path, Journal& journal) {
 
 Input open_input(const InputOptions& options, Journal& journal, const std::optional<SourceSpec>& source) {
   comment_on_blas(journal);
-  Input input{read_input(options.path, journal), nullptr, nullptr};
+  io::Geometry geometry = read_input(options.path, journal);
   journal.start("graph");
-  input.backend = &choose_backend(input.geometry, options.backend);
-  input.surface = input.backend->build(input.geometry, options, source, journal.progress());
-  journal.add_warnings(input.surface->warnings());
-  return input;
+  const Backend& backend = choose_backend(geometry, options.backend);
+  Built built = backend.build(geometry, options, source, journal.progress());
+  journal.add_warnings(built.warnings);
+  return {std::move(geometry), &backend, std::move(built)};
 }
 
-ResolvedSource resolve(const Model& model, const SourceSpec& spec, const std::optional<Vec3>& u_axis,
-                       const std::string& option) try {
-  return model.source(spec, u_axis);
+PlacedSource place(const Surface& surface, const SourceSpec& spec, const std::optional<Vec3>& u_axis,
+                   const std::string& option) try {
+  if (const auto* face = std::get_if<SourceFace>(&spec))
+    return surface.source(FacePoint{face->face, face->weights}, u_axis);
+  if (const auto* position = std::get_if<SourcePosition>(&spec))
+    return surface.source(surface.nearest_row(position->position), u_axis);
+  return surface.source(Row(std::get<SourceVertex>(spec).index), u_axis);
 } catch (const InvalidArgument& e) {
-  std::string message = e.what();
-  const std::string own = "--source";
-  if (message.starts_with(own)) message.replace(0, own.size(), option);
-  throw InvalidArgument(message);
+  if (u_axis && e.fault() == "axis_along_normal")
+    throw InvalidArgument(fmt::format("--u-axis {},{},{}: is perpendicular to the surface at the source {}",
+                                      (*u_axis)[0], (*u_axis)[1], (*u_axis)[2], to_string(spec)));
+  throw InvalidArgument(fmt::format("{} {}: {}", option, to_string(spec), worded(e)));
 }
 
-ResolvedSource resolve(const SourceOptions& options, const Input& input) {
-  const Model& model = *input.surface;
+PlacedSource resolve(const SourceOptions& options, const Input& input) {
   const std::optional<UAxis>& axis = options.u_axis;
-  if (!axis || !axis->curvature)
-    return model.source(options.spec, axis ? std::optional(axis->direction) : std::nullopt);
-  const Source plain = model.source(options.spec, std::nullopt).source;
+  PlacedSource source =
+      place(input.surface(), options.spec, axis && !axis->curvature ? std::optional(axis->direction) : std::nullopt);
+  if (!axis || !axis->curvature) return source;
   // In a face: at the corner that has most of the source.
-  const auto most = std::max_element(plain.weights().begin(), plain.weights().end()) - plain.weights().begin();
+  const auto weights = source.source.weights();
+  const auto most = std::max_element(weights.begin(), weights.end()) - weights.begin();
+  Vec3 direction;
   try {
-    return model.source(options.spec, bending_direction(model.graph(), plain.vertices()[most]));
+    direction = bending_direction(input.graph(), source.source.vertices()[most]);
   } catch (const InvalidArgument& e) {
-    if (e.fault() != "no_bending_direction") throw;
-    throw InvalidArgument(fmt::format("--u-axis curvature: {}; give the axis as X,Y,Z", e.problem()));
+    throw InvalidArgument(fmt::format("--u-axis curvature: {}", worded(e)));
   }
+  return place(input.surface(), options.spec, direction);
 }
 
 Vertex vertex_at(const Input& input, const SourceSpec& spec, const std::string& option) {
   position_in(input.geometry, spec, option);
   if (std::holds_alternative<SourceFace>(spec))
     throw InvalidArgument(fmt::format("{} {}: must be a vertex; write its number or x,y,z", option, to_string(spec)));
-  return resolve(*input.surface, spec, std::nullopt, option).source.vertices().front();
+  return place(input.surface(), spec, std::nullopt, option).source.vertices().front();
 }
 
 std::vector<Vertex> vertices_at(const Input& input, const std::vector<SourceSpec>& specs, const std::string& option) {

@@ -15,9 +15,10 @@ namespace ahm::app {
 struct Input {
   io::Geometry geometry;
   const Backend* backend;
-  std::unique_ptr<Model> surface;
+  Built built;
 
-  const TangentGraph& graph() const { return surface->graph(); }
+  const Surface& surface() const { return *built.surface; }
+  const TangentGraph& graph() const { return surface().graph(); }
   std::size_t rows() const { return geometry.points.size(); }
   /// World units.
   double mean_edge_length() const { return graph().mean_edge_length() * graph().length_unit(); }
@@ -28,14 +29,15 @@ struct Input {
 /// @throws InvalidGeometry where there are no points; what the reader and the backend throw
 Input open_input(const InputOptions& options, Journal& journal, const std::optional<SourceSpec>& source = {});
 
-/// A source where the user wants it. @param option  that asked for it, for messages
+/// A source where the user wants it: at a row, at the row nearest to a position, in a face.
+/// @param option  that asked for it, for messages
 /// @throws InvalidArgument
-ResolvedSource resolve(const Model& model, const SourceSpec& spec, const std::optional<Vec3>& u_axis,
-                       const std::string& option);
+PlacedSource place(const Surface& surface, const SourceSpec& spec, const std::optional<Vec3>& u_axis = {},
+                   const std::string& option = "--source");
 
 /// The source of --source and --u-axis.
 /// @throws InvalidArgument, also where the surface bends alike in all directions, or its directions are noise
-ResolvedSource resolve(const SourceOptions& options, const Input& input);
+PlacedSource resolve(const SourceOptions& options, const Input& input);
 
 /// The vertex of the graph at a row of the input or nearest to a position.
 /// @throws InvalidArgument, also for a point in a face

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "ahm/error.hpp"
@@ -8,7 +7,6 @@
 #include "cli/source_list.hpp"
 #include "input/backend.hpp"
 #include "input/cloud_preparation.hpp"
-#include "input/surface_model.hpp"
 #ifdef AHM_WITH_PCL
 #include "ahm/pcl/search.hpp"
 #endif
@@ -51,57 +49,43 @@ CloudOptions cloud_options(const InputOptions& options, const Progress& progress
   return result;
 }
 
-/// A cloud, and what was done to it before.
-class PointcloudModel final : public SurfaceModel {
- public:
-  PointcloudModel(const io::Geometry& input, PreparedCloud prepared, std::unique_ptr<PointCloudSurface> cloud)
-      : SurfaceModel(std::move(cloud)), prepared_(std::move(prepared)), input_faces_(input.face_count()) {}
-
-  nlohmann::ordered_json report() const override;
-  std::vector<std::string> warnings() const override;
-
- private:
-  PreparedCloud prepared_;
-  std::size_t input_faces_;
-};
-
-nlohmann::ordered_json PointcloudModel::report() const {
-  const nlohmann::ordered_json own = SurfaceModel::report();
-  nlohmann::ordered_json j;
-  for (const auto& [key, value] : own.items()) {
-    j[key] = value;
-    if (key == "non_finite")
-      j.update({{"non_finite", prepared_.non_finite},
-                {"voxel_replaced", prepared_.voxel_replaced},
-                {"outliers", prepared_.outliers},
-                {"beyond", prepared_.beyond}});
+/// The surface's own report, with what was done to the cloud before.
+Report report_of(const PreparedCloud& prepared, const Report& own) {
+  Report result;
+  for (const Figure& figure : own) {
+    if (figure.id == "seconds.normals") result.push_back({"seconds.filters", prepared.seconds});
+    if (figure.id != "non_finite") {
+      result.push_back(figure);
+      continue;
+    }
+    result.insert(result.end(), {{"non_finite", prepared.non_finite},
+                                 {"voxel_replaced", prepared.voxel_replaced},
+                                 {"outliers", prepared.outliers},
+                                 {"beyond", prepared.beyond}});
   }
-  j["seconds"] = {{"filters", prepared_.seconds}};
-  j["seconds"].update(own["seconds"]);
-  return j;
+  return result;
 }
 
-std::vector<std::string> PointcloudModel::warnings() const {
-  std::vector<std::string> result;
-  if (input_faces_ > 0)
-    result.push_back(fmt::format("the {} faces are ignored: the vertices are mapped as a point cloud", input_faces_));
-  if (prepared_.non_finite > 0)
-    result.push_back(fmt::format("{} points with nan or infinite coordinates were dropped", prepared_.non_finite));
-  const std::vector<std::string> own = SurfaceModel::warnings();
-  result.insert(result.end(), own.begin(), own.end());
+std::vector<Warning> warnings_of(const PreparedCloud& prepared, std::size_t faces) {
+  std::vector<Warning> result;
+  if (faces > 0) result.push_back({"faces_ignored", {static_cast<double>(faces)}, {}});
+  if (prepared.non_finite > 0) result.push_back({"non_finite_dropped", {static_cast<double>(prepared.non_finite)}, {}});
   return result;
 }
 
 }  // namespace
 
-std::unique_ptr<Model> build_pointcloud(const io::Geometry& input, const InputOptions& options,
-                                        const std::optional<SourceSpec>& source, const Progress& progress) {
-  PreparedCloud prepared = prepare_cloud(input, options, checked_source(source, input));
+Built build_pointcloud(const io::Geometry& input, const InputOptions& options, const std::optional<SourceSpec>& source,
+                       const Progress& progress) {
+  const PreparedCloud prepared = prepare_cloud(input, options, checked_source(source, input));
   CloudOptions cloud = cloud_options(options, progress);
   cloud.rows = prepared.rows;
   const std::span<const Vec3> normals = options.normals == "estimate" ? std::span<const Vec3>() : input.normals;
-  auto surface = std::make_unique<PointCloudSurface>(PointCloudSurface::build(input.points, normals, cloud));
-  return std::make_unique<PointcloudModel>(input, std::move(prepared), std::move(surface));
+  Built result(std::make_unique<PointCloudSurface>(PointCloudSurface::build(input.points, normals, cloud)));
+  result.report = report_of(prepared, result.report);
+  const std::vector<Warning> before = warnings_of(prepared, input.face_count());
+  result.warnings.insert(result.warnings.begin(), before.begin(), before.end());
+  return result;
 }
 
 }  // namespace ahm::app

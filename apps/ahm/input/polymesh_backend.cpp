@@ -2,8 +2,6 @@
 #include "ahm/polymesh/polygon_mesh_surface.hpp"
 #include "input/backend.hpp"
 #include "input/mesh_input.hpp"
-#include "input/surface_model.hpp"
-#include "output/wording.hpp"
 
 namespace ahm::app {
 namespace {
@@ -24,13 +22,11 @@ polymesh::PolygonOptions polygon_options(const InputOptions& options, const Prog
 
 }  // namespace
 
-std::unique_ptr<Model> build_polymesh(const io::Geometry& input, const InputOptions& options,
-                                      const std::optional<SourceSpec>& source, const Progress& progress) try {
+Built build_polymesh(const io::Geometry& input, const InputOptions& options, const std::optional<SourceSpec>& source,
+                     const Progress& progress) {
   check_mesh_input("polymesh", input, options, source);
-  return std::make_unique<SurfaceModel>(std::make_unique<PolygonMeshSurface>(PolygonMeshSurface::build(
+  return Built(std::make_unique<PolygonMeshSurface>(PolygonMeshSurface::build(
       input.points, input.face_begin, input.face_vertices, polygon_options(options, progress))));
-} catch (const InvalidGeometry& e) {
-  throw InvalidGeometry(worded(e));
 }
 
 }  // namespace ahm::app

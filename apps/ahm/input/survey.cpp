@@ -1,5 +1,7 @@
 #include "input/survey.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -7,16 +9,16 @@
 #include "ahm/error.hpp"
 #include "ahm/graph/components.hpp"
 #include "ahm/pointcloud/neighbor_search.hpp"
+#include "ahm/util/vec.hpp"
+#include "input/backend.hpp"
 #include "output/wording.hpp"
 
 namespace ahm::app {
 namespace {
 
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
-
-bool is_finite(const Vec3& p) { return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]); }
-
-double distance(const Vec3& a, const Vec3& b) { return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]); }
+void add_warnings(const std::vector<Warning>& warnings, Survey& s) {
+  for (const Warning& warning : warnings) s.warnings.push_back(worded(warning));
+}
 
 void find_bounds(const std::vector<Vec3>& points, Survey& s) {
   if (points.empty()) return;
@@ -34,7 +36,7 @@ std::vector<Vec3> distinct_places(std::vector<Vec3> points) {
   return points;
 }
 
-std::optional<Spacing> find_spacing(const std::vector<Vec3>& places) {
+std::optional<LengthRange> find_spacing(const std::vector<Vec3>& places) {
   if (places.size() < 2) return std::nullopt;
   const auto search = pointcloud::nanoflann_search(places);
   constexpr std::size_t sample = 20000;
@@ -44,50 +46,92 @@ std::optional<Spacing> find_spacing(const std::vector<Vec3>& places) {
   std::array<double, 2> squared{};
   for (std::size_t i = 0; i < places.size(); i += step) {
     search->nearest(places[i], index, squared);
-    distances.push_back(distance(places[i], places[index[at(index[0]) == i ? 1 : 0]]));
+    distances.push_back(distance(places[i], places[index[static_cast<std::size_t>(index[0]) == i ? 1 : 0]]));
   }
-  std::sort(distances.begin(), distances.end());
-  return Spacing{distances.front(), distances[distances.size() / 2], distances.back(), distances.size()};
+  return range_of(std::move(distances));
 }
 
 /// The row in `component` nearest to the mean of its positions.
-Index central_row(const pointcloud::PointCloudSurface& cloud, const std::vector<Index>& component_of, Index component) {
-  const auto row = [&](std::size_t v) { return cloud.rows().row(Vertex(static_cast<Index>(v)))->index; };
+Index central_row(const Surface& surface, const std::vector<Index>& component_of, Index component) {
+  std::vector<Index> rows;
+  for (std::size_t v = 0; v < component_of.size(); ++v) {
+    const auto row = surface.rows().row(Vertex(static_cast<Index>(v)));
+    if (row && component_of[v] == component) rows.push_back(row->index);
+  }
   Vec3 mean{};
   double count = 0;
-  for (std::size_t v = 0; v < component_of.size(); ++v) {
-    if (component_of[v] != component) continue;
+  for (Index row : rows) {
     count += 1;
-    for (std::size_t a = 0; a < 3; ++a) mean[a] += (cloud.positions()[row(v)][a] - mean[a]) / count;
+    for (std::size_t a = 0; a < 3; ++a) mean[a] += (surface.positions()[row][a] - mean[a]) / count;
   }
-  Index best = 0;
-  double smallest = std::numeric_limits<double>::infinity();
-  for (std::size_t v = 0; v < component_of.size(); ++v) {
-    if (component_of[v] != component || !(distance(cloud.positions()[row(v)], mean) < smallest)) continue;
-    smallest = distance(cloud.positions()[row(v)], mean);
-    best = row(v);
-  }
-  return best;
+  return *std::min_element(rows.begin(), rows.end(), [&](Index a, Index b) {
+    return distance(surface.positions()[a], mean) < distance(surface.positions()[b], mean);
+  });
 }
 
-Connectivity find_connectivity(const io::Geometry& input, const std::vector<Index>& finite, const InputOptions& options,
-                               const Progress& progress) {
-  pointcloud::CloudOptions cloud_options;
-  cloud_options.k = options.k;
-  cloud_options.rows = finite;
-  cloud_options.threads = options.threads;
-  cloud_options.progress = progress;
-  const auto built = pointcloud::PointCloudSurface::build(input.points, input.normals, cloud_options);
-  const std::vector<Index> component = connected_components(built.graph()).of_vertex;
-  Connectivity result;
-  result.report = built.details();
-  for (const Warning& warning : built.warnings()) result.warnings.push_back(worded(warning));
-  result.component_sizes.resize(component.empty() ? 0 : at(*std::max_element(component.begin(), component.end())) + 1);
-  for (Index c : component) ++result.component_sizes[c];
-  const auto largest = std::max_element(result.component_sizes.begin(), result.component_sizes.end());
-  result.central_point = central_row(built, component, static_cast<Index>(largest - result.component_sizes.begin()));
-  std::sort(result.component_sizes.begin(), result.component_sizes.end(), std::greater<>());
+SurfaceSurvey survey_surface(const Built& built) {
+  const std::vector<Index> component = connected_components(built.surface->graph()).of_vertex;
+  SurfaceSurvey result;
+  result.report = built.report;
+  auto& sizes = result.part_sizes;
+  sizes.resize(static_cast<std::size_t>(*std::max_element(component.begin(), component.end())) + 1);
+  for (std::size_t v = 0; v < component.size(); ++v)
+    if (built.surface->rows().row(Vertex(static_cast<Index>(v)))) ++sizes[component[v]];
+  const auto largest = static_cast<Index>(std::max_element(sizes.begin(), sizes.end()) - sizes.begin());
+  result.central_row = central_row(*built.surface, component, largest);
+  std::sort(sizes.begin(), sizes.end(), std::greater<>());
   return result;
+}
+
+/// Whether the source can be mapped from without the outliers.
+bool can_remove_outliers(const io::Geometry& input, InputOptions options, Index source, const Progress& progress) {
+  options.outliers = true;
+  try {
+    build_pointcloud(input, options, SourceVertex{source}, progress).surface->vertex(Row(source));
+    return true;
+  } catch (const Cancelled&) {
+    throw;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+/// Builds the surface as the command that is suggested will.
+void try_surface(const io::Geometry& input, InputOptions options, const Progress& progress, Survey& s) {
+  std::string flags;
+  if (s.as_cloud) {
+    if (s.mesh) flags += " --backend pointcloud";
+    if (options.k != InputOptions{}.k) flags += fmt::format(" --k {}", options.k);
+    options.drop_nan = s.non_finite > 0;
+    if (options.drop_nan) flags += " --drop-nan";
+  } else if (!s.mesh->is_manifold()) {
+    options.non_manifold = "split";
+    flags += " --non-manifold split";
+  }
+  const Built built = s.as_cloud ? build_pointcloud(input, options, {}, progress)
+                                 : choose_backend(input, "auto").build(input, options, {}, progress);
+  s.surface = survey_surface(built);
+  // Many small components are stray points as a rule.
+  if (s.as_cloud && s.surface->part_sizes.size() > 20 &&
+      can_remove_outliers(input, options, s.surface->central_row, progress))
+    flags += " --outliers";
+  s.surface->options = flags;
+  add_warnings(built.surface->warnings(), s);
+}
+
+/// As a mesh where there are faces; where that fails, and without faces, as a cloud.
+void find_surface(const io::Geometry& input, const InputOptions& options, const Progress& progress, Survey& s) {
+  for (const bool as_cloud : {false, true}) {
+    if (!as_cloud && !s.mesh) continue;
+    s.as_cloud = as_cloud;
+    try {
+      return try_surface(input, options, progress, s);
+    } catch (const Cancelled&) {
+      throw;
+    } catch (const Error& e) {
+      if (s.problem.empty()) s.problem = worded(e);
+    }
+  }
 }
 
 }  // namespace
@@ -99,30 +143,22 @@ Survey survey(const io::Geometry& input, const InputOptions& options, const Prog
   s.normals = !input.normals.empty();
   s.colors = !input.colors.empty();
   s.format = input.format;
-  s.warnings = input.warnings;
+  add_warnings(input.warnings, s);
   for (const Vec3& n : input.normals)
     if (!is_finite(n) || n == Vec3{0, 0, 0}) ++s.bad_normals;
-  std::vector<Index> finite;
   std::vector<Vec3> points;
-  for (std::size_t i = 0; i < input.points.size(); ++i)
-    if (is_finite(input.points[i])) finite.push_back(static_cast<Index>(i)), points.push_back(input.points[i]);
+  for (const Vec3& p : input.points)
+    if (is_finite(p)) points.push_back(p);
   s.non_finite = s.points - points.size();
   find_bounds(points, s);
+  if (s.faces > 0) s.mesh = survey_mesh(input);
   {
     const std::vector<Vec3> places = distinct_places(points);
     s.duplicates = points.size() - places.size();
     progress.step("spacing", 0);
-    s.spacing = find_spacing(places);
+    if (!s.mesh) s.spacing = find_spacing(places);
   }
-  try {
-    s.connectivity = find_connectivity(input, finite, options, progress);
-    const auto& warnings = s.connectivity->warnings;
-    s.warnings.insert(s.warnings.end(), warnings.begin(), warnings.end());
-  } catch (const Cancelled&) {
-    throw;
-  } catch (const Error& e) {
-    s.problem = e.what();
-  }
+  find_surface(input, options, progress, s);
   return s;
 }
 

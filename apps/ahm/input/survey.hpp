@@ -2,30 +2,24 @@
 /// What `ahm info` finds out about a file.
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "ahm/io/geometry.hpp"
-#include "ahm/pointcloud/point_cloud_surface.hpp"
 #include "ahm/progress.hpp"
+#include "ahm/report.hpp"
 #include "cli/options.hpp"
+#include "input/mesh_survey.hpp"
 
 namespace ahm::app {
 
-/// Distances to the nearest other place of the cloud.
-struct Spacing {
-  double smallest = 0, median = 0, largest = 0;
-  std::size_t sample = 0;  ///< points it was measured at
-};
-
-/// The neighbour graph of the points, as far as it can be built.
-struct Connectivity {
-  pointcloud::CloudDetails report;
-  std::vector<std::string> warnings;
-  std::vector<Index> component_sizes;  ///< vertices, largest first
-  Index central_point = 0;             ///< input row in the largest component, near its middle: a source to start with
+/// The surface that maps are made on, as it was built.
+struct SurfaceSurvey {
+  Report report;
+  std::vector<Index> part_sizes;  ///< vertices of the input in each part, largest first
+  Index central_row = 0;          ///< in the largest part, near its middle: a source to start with
+  std::string options;            ///< that it takes, each after a blank
 };
 
 struct Survey {
@@ -34,20 +28,16 @@ struct Survey {
   bool normals = false, colors = false;
   std::string format;
   std::vector<std::string> warnings;
-  Vec3 low{}, high{};  ///< bounds of the finite points
-  std::optional<Spacing> spacing;
-  std::optional<Connectivity> connectivity;
-  std::string problem;  ///< why there is no connectivity
+  Vec3 low{}, high{};                    ///< bounds of the finite points
+  std::optional<MeshSurvey> mesh;        ///< where there are faces
+  std::optional<LengthRange> spacing;    ///< where there are none: to the nearest other place, of a sample
+  std::optional<SurfaceSurvey> surface;  ///< of the faces, or else of the points alone
+  bool as_cloud = false;                 ///< the surface has the points alone
+  std::string problem;                   ///< why there is no surface, or none of the faces
 };
 
-/// Looks at everything. Failures to build a graph are findings, not errors.
+/// Looks at everything. Failures to build a surface are findings, not errors.
 /// @throws Cancelled, std::bad_alloc
 Survey survey(const io::Geometry& input, const InputOptions& options, const Progress& progress);
-
-/// The command line to run on this file, or empty when nothing can be run.
-std::string suggestion(const Survey& survey, const std::string& path);
-
-std::string as_text(const Survey& survey, const std::string& path);
-nlohmann::ordered_json as_json(const Survey& survey, const std::string& path);
 
 }  // namespace ahm::app

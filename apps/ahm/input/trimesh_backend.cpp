@@ -4,8 +4,6 @@
 #include "ahm/trimesh/triangle_mesh_surface.hpp"
 #include "input/backend.hpp"
 #include "input/mesh_input.hpp"
-#include "input/surface_model.hpp"
-#include "output/wording.hpp"
 
 namespace ahm::app {
 namespace {
@@ -37,13 +35,11 @@ MeshOptions mesh_options(const InputOptions& options, const Progress& progress) 
 
 }  // namespace
 
-std::unique_ptr<Model> build_trimesh(const io::Geometry& input, const InputOptions& options,
-                                     const std::optional<SourceSpec>& source, const Progress& progress) try {
+Built build_trimesh(const io::Geometry& input, const InputOptions& options, const std::optional<SourceSpec>& source,
+                    const Progress& progress) {
   check_mesh_input("trimesh", input, options, source);
-  return std::make_unique<SurfaceModel>(std::make_unique<TriangleMeshSurface>(
+  return Built(std::make_unique<TriangleMeshSurface>(
       TriangleMeshSurface::build(input.points, triangles(input), mesh_options(options, progress))));
-} catch (const InvalidGeometry& e) {
-  throw InvalidGeometry(worded(e));
 }
 
 }  // namespace ahm::app

@@ -2,12 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <stdexcept>
 
-#include "ahm/maps/quality.hpp"
-#include "cli/journal.hpp"
 #include "cli/numbers.hpp"
 #include "cli/option_adders.hpp"
 
@@ -65,8 +61,9 @@ void add_texture_picture(CLI::App& app, PictureChoice& choice) {
   add_view_from(app, choice);
 }
 
-view::PictureOptions picture_options(const PictureChoice& choice) {
+view::PictureOptions picture_options(const PictureChoice& choice, unsigned threads) {
   view::PictureOptions options;
+  options.threads = threads;
   if (choice.size) options.width = (*choice.size)[0], options.height = (*choice.size)[1];
   options.view_direction = choice.from;
   options.ring_width = choice.rings;
@@ -74,25 +71,15 @@ view::PictureOptions picture_options(const PictureChoice& choice) {
   return options;
 }
 
-void draw(const std::string& path, const view::Scene& scene, view::Pattern usual, const PictureChoice& choice) {
-  view::PictureOptions options = picture_options(choice);
+void draw(const std::string& path, const view::Scene& scene, view::Pattern usual, const PictureChoice& choice,
+          unsigned threads) {
+  view::PictureOptions options = picture_options(choice, threads);
   options.pattern = choice.color == "distance" ? view::Pattern::distance
                     : choice.color == "none"   ? view::Pattern::none
                                                : usual;
   view::Scene shown = scene;
   if (options.pattern != view::Pattern::cells) shown.labels = {};
   view::write_picture(path, shown, options);
-}
-
-void comment_on_quality(std::span<const double> quality, Journal& journal) {
-  const auto mapped = std::count_if(quality.begin(), quality.end(), [](double q) { return std::isfinite(q); });
-  const auto poor = std::count_if(quality.begin(), quality.end(), [](double q) { return q < trusted_quality; });
-  if (5 * poor <= mapped) return;
-  journal.add_warning(fmt::format(
-      "at {:.0f} % of the mapped vertices the map is not to be trusted (quality below {}): they lie beyond a cut "
-      "locus, "
-      "in folds, or where the surface is too coarse; keep to what is near with --radius, or start elsewhere",
-      100.0 * static_cast<double>(poor) / static_cast<double>(mapped), trusted_quality));
 }
 
 }  // namespace ahm::app

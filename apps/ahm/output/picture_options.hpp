@@ -4,7 +4,6 @@
 
 #include <array>
 #include <optional>
-#include <span>
 #include <string>
 
 #include "ahm/view/picture.hpp"
@@ -14,8 +13,6 @@ class App;
 }
 
 namespace ahm::app {
-
-class Journal;
 
 /// The options that go with --view. Empty: as the picture chooses.
 struct PictureChoice {
@@ -31,12 +28,11 @@ void add_map_picture(CLI::App& app, PictureChoice& choice);
 /// --view-size, --view-from: for subcommands with a --size of their own
 void add_texture_picture(CLI::App& app, PictureChoice& choice);
 
-view::PictureOptions picture_options(const PictureChoice& choice);
+/// @param threads  0: one per core
+view::PictureOptions picture_options(const PictureChoice& choice, unsigned threads);
 
 /// Writes the picture of a map. @param usual  the subcommand's own pattern, where the colours are not chosen
-void draw(const std::string& path, const view::Scene& scene, view::Pattern usual, const PictureChoice& choice);
-
-/// Warns where more than a fifth of the mapped rows lie below `trusted_quality`.
-void comment_on_quality(std::span<const double> quality, Journal& journal);
+void draw(const std::string& path, const view::Scene& scene, view::Pattern usual, const PictureChoice& choice,
+          unsigned threads);
 
 }  // namespace ahm::app

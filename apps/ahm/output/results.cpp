@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include "ahm/error.hpp"
+#include "ahm/maps/quality.hpp"
 #include "output/output_paths.hpp"
 
 namespace ahm::app {
@@ -45,11 +47,22 @@ void comment_on_statuses(const std::vector<Status>& status, const std::string& i
                     unreached));
 }
 
-Results::Results(const OutputOptions& output, const Input& input, const std::string& path)
+void comment_on_quality(const std::vector<double>& quality, std::string_view advice, Journal& journal) {
+  const auto mapped = std::count_if(quality.begin(), quality.end(), [](double q) { return std::isfinite(q); });
+  const auto poor = std::count_if(quality.begin(), quality.end(), [](double q) { return q < trusted_quality; });
+  if (5 * poor <= mapped) return;
+  journal.add_warning(fmt::format(
+      "at {:.0f} % of the mapped vertices the map is not to be trusted (quality below {}): they lie beyond a cut "
+      "locus, in folds, or where the surface is too coarse; {}",
+      100.0 * static_cast<double>(poor) / static_cast<double>(mapped), trusted_quality, advice));
+}
+
+Results::Results(const OutputOptions& output, const Input& input, const InputOptions& options)
     : output_(output),
       input_(input.geometry),
-      title_(std::filesystem::path(path).filename().string()),
-      normals_(input.surface->normals()) {}
+      title_(std::filesystem::path(options.path).filename().string()),
+      threads_(options.threads),
+      normals_(input.surface().normals()) {}
 
 Results::~Results() {
   std::error_code ignored;
@@ -75,10 +88,21 @@ view::Scene Results::scene() const {
   return scene;
 }
 
+view::Scene Results::scene(const RowLogMap& rows, const std::vector<double>& quality,
+                           const PlacedSource& source) const {
+  view::Scene result = scene();
+  result.u = rows.u;
+  result.v = rows.v;
+  result.quality = quality;
+  result.source = source.position;
+  if (source.frame) result.source_axes = {source.frame->x, source.frame->y, source.frame->normal};
+  return result;
+}
+
 void Results::write_view(const view::Scene& scene, Journal& journal, const view::PictureOptions& picture) {
   if (output_.view.empty()) return;
   journal.start("view");
-  draw(output_.view, scene, picture.pattern, output_.picture);
+  draw(output_.view, scene, picture.pattern, output_.picture, threads_);
   written_.push_back(output_.view);
 }
 

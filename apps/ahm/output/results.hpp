@@ -3,12 +3,12 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "ahm/io/write.hpp"
 #include "ahm/view/picture.hpp"
 #include "input/open.hpp"
-#include "output/map_rows.hpp"
 
 namespace ahm::app {
 
@@ -20,11 +20,16 @@ void check_results(const std::string& input, const OutputOptions& output, const 
 /// Warns where many rows have no number.
 void comment_on_statuses(const std::vector<Status>& status, const std::string& input, Journal& journal);
 
+/// Warns where more than a fifth of the mapped rows lie below `trusted_quality`.
+/// @param quality  by row; NaN does not count
+/// @param advice   what to do about it in this subcommand
+void comment_on_quality(const std::vector<double>& quality, std::string_view advice, Journal& journal);
+
 /// The files of a run: all of them or, after a failure, none.
 class Results {
  public:
-  /// @param output, input  must outlive the results
-  Results(const OutputOptions& output, const Input& input, const std::string& path);
+  /// @param output, input  must outlive the results. @param options  that the input was opened with
+  Results(const OutputOptions& output, const Input& input, const InputOptions& options);
   ~Results();
   Results(const Results&) = delete;
   Results& operator=(const Results&) = delete;
@@ -33,6 +38,8 @@ class Results {
   io::Table table() const;
   /// Likewise, with a title.
   view::Scene scene() const;
+  /// A map from a source. What is given must outlive the scene.
+  view::Scene scene(const RowLogMap& rows, const std::vector<double>& quality, const PlacedSource& source) const;
   /// Writes --view where it was asked for.
   void write_view(const view::Scene& scene, Journal& journal, const view::PictureOptions& picture = {});
   /// Likewise, and --output.
@@ -45,6 +52,7 @@ class Results {
   const OutputOptions& output_;
   const io::Geometry& input_;
   std::string title_;
+  unsigned threads_;
   std::vector<Vec3> normals_;
   std::vector<std::string> written_;
 };

@@ -1,10 +1,13 @@
+#include "output/survey_report.hpp"
+
 #include <fmt/format.h>
 
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "input/survey.hpp"
+#include "ahm/view/picture.hpp"
+#include "output/wording.hpp"
 
 namespace ahm::app {
 namespace {
@@ -24,44 +27,123 @@ std::string quoted(const std::string& path) {
   return result + "'";
 }
 
+/// The entry of a report, or its type's zero.
+template <class Value>
+Value figure(const SurfaceSurvey& surface, std::string_view id) {
+  for (const Figure& entry : surface.report)
+    if (entry.id == id) return std::get<Value>(entry.value);
+  return {};
+}
+
 std::string normals_text(const Survey& s) {
+  if (s.mesh && !s.as_cloud)
+    return s.normals ? "yes (not needed: faces have their own)" : "none (not needed: faces have their own)";
   if (!s.normals) return "none (they will be estimated)";
   if (s.bad_normals > 0)
     return fmt::format("yes, but {} are zero or not finite (they will be estimated)", s.bad_normals);
-  if (!s.connectivity) return "yes";
-  return s.connectivity->report.oriented ? "yes, consistently oriented"
-                                         : "yes, signs not consistent: only their planes are used";
+  if (!s.surface) return "yes";
+  return figure<bool>(*s.surface, "oriented") ? "yes, consistently oriented"
+                                              : "yes, signs not consistent: only their planes are used";
 }
 
-std::string components_text(const Connectivity& c) {
-  const auto& sizes = c.component_sizes;
-  if (sizes.empty()) return "0";
+std::string parts_text(const Survey& s) {
+  const auto& sizes = s.surface->part_sizes;
   double total = 0;
   for (Index size : sizes) total += size;
-  return fmt::format("{} at k = {}; the largest holds {} vertices ({:.1f} %)", sizes.size(), c.report.k, sizes[0],
+  const std::string at = s.as_cloud ? fmt::format(" at k = {}", figure<std::int64_t>(*s.surface, "k")) : "";
+  return fmt::format("{}{}; the largest holds {} vertices ({:.1f} %)", sizes.size(), at, sizes[0],
                      100.0 * sizes[0] / total);
+}
+
+std::string range_text(const LengthRange& range, const char* what) {
+  return fmt::format("smallest {:.4g}, median {:.4g}, largest {:.4g} ({} {})", range.smallest, range.median,
+                     range.largest, what, range.count);
+}
+
+/// "3 of this, 2 of that": the counts that are not zero.
+std::string counts_text(std::initializer_list<std::pair<std::size_t, const char*>> counts) {
+  std::string text;
+  for (const auto& [count, what] : counts)
+    if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, what);
+  return text.empty() ? "none" : text;
+}
+
+std::string faces_text(const MeshSurvey& mesh) {
+  return counts_text({{mesh.triangles, "triangles"}, {mesh.quadrilaterals, "quadrilaterals"}, {mesh.others, "others"}});
+}
+
+std::string wrong_faces_text(const MeshInspection& found) {
+  return counts_text({{found.outside.size(), "with a vertex that there is not"},
+                      {found.small.size(), "of fewer than three corners"},
+                      {found.repeating.size(), "with a vertex twice"},
+                      {found.duplicates.size(), "given twice"}});
+}
+
+std::string boundary_text(const TopologyReport& t) {
+  return t.boundary_loops == 0 ? "none: closed"
+                               : fmt::format("{} edges in {} {}", t.boundary_edges, t.boundary_loops,
+                                             t.boundary_loops == 1 ? "loop" : "loops");
+}
+
+std::string genus_text(const TopologyReport& t) {
+  const std::string euler = fmt::format("Euler characteristic {}", t.euler_characteristic);
+  return t.genus() ? fmt::format("{} ({}{})", *t.genus(), t.components > 1 ? "of all parts together, " : "", euler)
+                   : "none (" + euler + ")";
+}
+
+std::string orientation_text(const TopologyReport& t) {
+  if (!t.orientable) return "not orientable: maps are made with reflections";
+  return t.reoriented > 0 ? fmt::format("{} faces are turned over to agree with the others", t.reoriented)
+                          : "consistent";
+}
+
+std::string non_manifold_text(const TopologyReport& t) {
+  if (t.non_manifold_edges == 0 && t.non_manifold_vertices == 0) return "nowhere";
+  return fmt::format(
+      "{} edges of more than two faces, {} vertices where fans of faces meet: --non-manifold split cuts there",
+      t.non_manifold_edges, t.non_manifold_vertices);
+}
+
+std::string mesh_text(const Survey& s) {
+  const MeshSurvey& mesh = *s.mesh;
+  const TopologyReport& t = mesh.inspection.topology;
+  std::string text;
+  if (mesh.edges) text += line("edge lengths", range_text(*mesh.edges, "edges:"));
+  text += line("wrong faces", wrong_faces_text(mesh.inspection));
+  if (s.surface && !s.as_cloud)
+    text += line("faces without area", fmt::format("{}", figure<std::int64_t>(*s.surface, "degenerate_faces")));
+  text += line("unused vertices", fmt::format("{}", t.unreferenced));
+  text += line("not a manifold", non_manifold_text(t));
+  if (t.faces == 0) return text;
+  text += line("boundary", boundary_text(t));
+  text += line("genus", genus_text(t));
+  return text + line("orientation", orientation_text(t));
 }
 
 }  // namespace
 
 std::string suggestion(const Survey& s, const std::string& path) {
-  if (!s.connectivity) return {};
-  const std::string stem = std::filesystem::path(path).stem().string();
-  std::string command = fmt::format("ahm logmap {} --source {}", quoted(path), s.connectivity->central_point);
-  if (s.non_finite > 0) command += " --drop-nan";
-  // Many small components are stray points as a rule.
-  if (s.connectivity->component_sizes.size() > 20) command += " --outliers";
-  return command + fmt::format(" -o {} --view {}", quoted(stem + "_map.csv"), quoted(stem + "_map.png"));
+  if (!s.surface) return {};
+  std::string stem = std::filesystem::path(path).stem().string();
+  if (stem.starts_with('-')) stem.insert(0, "./");
+  std::string command = fmt::format("ahm logmap {} --source {}{} -o {}", quoted(path), s.surface->central_row,
+                                    s.surface->options, quoted(stem + "_map.csv"));
+  if (view::can_write_png()) command += fmt::format(" --view {}", quoted(stem + "_map.png"));
+  return command;
 }
 
 std::string as_text(const Survey& s, const std::string& path) {
   std::string text = fmt::format("{} ({})\n", path, s.format);
   text += line("points", fmt::format("{}", s.points));
-  text += line("faces", fmt::format("{}", s.faces));
+  text += line("faces", s.mesh ? fmt::format("{}: {}", s.faces, faces_text(*s.mesh)) : "0");
   text += line("normals", normals_text(s));
   text += line("colours", s.colors ? "yes" : "none");
-  text += line("non-finite points", s.non_finite > 0 ? fmt::format("{}: use --drop-nan", s.non_finite) : "0");
-  text += line("exact duplicates", s.duplicates > 0 ? fmt::format("{} (they will be merged)", s.duplicates) : "0");
+  text += line("non-finite points",
+               s.non_finite == 0 ? "0" : fmt::format("{}{}", s.non_finite, s.as_cloud ? ": use --drop-nan" : ""));
+  text += line("exact duplicates",
+               s.duplicates == 0 ? "0"
+                                 : fmt::format("{} ({})", s.duplicates,
+                                               s.as_cloud ? "they will be merged" : "faces are not joined there"));
   if (s.points > s.non_finite) {
     text += line("bounds", fmt::format("{}  to  {}", triple(s.low), triple(s.high)));
     const Vec3 e = extent(s);
@@ -69,14 +151,67 @@ std::string as_text(const Survey& s, const std::string& path) {
   }
   if (s.spacing)
     text += line("spacing", fmt::format("smallest {:.4g}, median {:.4g}, largest {:.4g} (at {} points)",
-                                        s.spacing->smallest, s.spacing->median, s.spacing->largest, s.spacing->sample));
-  if (s.connectivity) text += line("components", components_text(*s.connectivity));
+                                        s.spacing->smallest, s.spacing->median, s.spacing->largest, s.spacing->count));
+  if (s.mesh) text += mesh_text(s);
+  if (s.surface) text += line("components", parts_text(s));
   for (const std::string& w : s.warnings) text += line("note", w);
   if (!s.problem.empty()) text += line("problem", s.problem);
   const std::string command = suggestion(s, path);
+  if (s.mesh && s.as_cloud && !command.empty()) text += "No map can be made of the faces, but one of the points. ";
   text += command.empty() ? "No map can be made of this file.\n" : "Try:\n  " + command + "\n";
   return text;
 }
+
+namespace {
+
+nlohmann::ordered_json as_json(const LengthRange& range, const char* count) {
+  return {{"smallest", range.smallest}, {"median", range.median}, {"largest", range.largest}, {count, range.count}};
+}
+
+nlohmann::ordered_json as_json(const MeshSurvey& mesh) {
+  const MeshInspection& found = mesh.inspection;
+  const TopologyReport& t = found.topology;
+  nlohmann::ordered_json j;
+  j["triangles"] = mesh.triangles;
+  j["quadrilaterals"] = mesh.quadrilaterals;
+  j["other_faces"] = mesh.others;
+  if (mesh.edges) j["edge_lengths"] = as_json(*mesh.edges, "edges");
+  j["wrong_faces"] = {{"outside", found.outside.size()},
+                      {"small", found.small.size()},
+                      {"repeating", found.repeating.size()},
+                      {"duplicates", found.duplicates.size()}};
+  j["parts"] = t.components;
+  j["edges"] = t.edges;
+  j["boundary_edges"] = t.boundary_edges;
+  j["boundary_loops"] = t.boundary_loops;
+  j["euler_characteristic"] = t.euler_characteristic;
+  j["genus"] = t.genus() ? nlohmann::ordered_json(*t.genus()) : nlohmann::ordered_json();
+  j["orientable"] = t.orientable;
+  j["reoriented"] = t.reoriented;
+  j["unreferenced"] = t.unreferenced;
+  j["non_manifold_edges"] = t.non_manifold_edges;
+  j["non_manifold_vertices"] = t.non_manifold_vertices;
+  return j;
+}
+
+void add_surface(const Survey& s, nlohmann::ordered_json& j) {
+  const SurfaceSurvey& surface = *s.surface;
+  const auto& sizes = surface.part_sizes;
+  j["components"] = sizes.size();
+  j["component_sizes"] = std::vector<Index>(
+      sizes.begin(), sizes.begin() + std::min<std::ptrdiff_t>(20, static_cast<std::ptrdiff_t>(sizes.size())));
+  if (s.as_cloud) {
+    j["k"] = figure<std::int64_t>(surface, "k");
+    j["oriented"] = figure<bool>(surface, "oriented");
+    j["degenerate"] = figure<std::int64_t>(surface, "degenerate");
+    j["rejected_normals"] = figure<std::int64_t>(surface, "rejected_normals");
+  } else {
+    j["mesh"]["degenerate_faces"] = figure<std::int64_t>(surface, "degenerate_faces");
+  }
+  j["central_point"] = surface.central_row;
+}
+
+}  // namespace
 
 nlohmann::ordered_json as_json(const Survey& s, const std::string& path) {
   nlohmann::ordered_json j;
@@ -94,24 +229,9 @@ nlohmann::ordered_json as_json(const Survey& s, const std::string& path) {
     j["bounds"] = {{"low", s.low}, {"high", s.high}};
     j["extent"] = extent(s);
   }
-  if (s.spacing)
-    j["spacing"] = {{"smallest", s.spacing->smallest},
-                    {"median", s.spacing->median},
-                    {"largest", s.spacing->largest},
-                    {"sample", s.spacing->sample}};
-  if (s.connectivity) {
-    const auto& c = *s.connectivity;
-    j["components"] = c.component_sizes.size();
-    j["component_sizes"] =
-        std::vector<Index>(c.component_sizes.begin(),
-                           c.component_sizes.begin() +
-                               std::min<std::ptrdiff_t>(20, static_cast<std::ptrdiff_t>(c.component_sizes.size())));
-    j["k"] = c.report.k;
-    j["oriented"] = c.report.oriented;
-    j["degenerate"] = c.report.degenerate;
-    j["rejected_normals"] = c.report.rejected_normals;
-    j["central_point"] = c.central_point;
-  }
+  if (s.spacing) j["spacing"] = as_json(*s.spacing, "sample");
+  if (s.mesh) j["mesh"] = as_json(*s.mesh);
+  if (s.surface) add_surface(s, j);
   j["warnings"] = s.warnings;
   j["problem"] = s.problem;
   j["suggestion"] = suggestion(s, path);

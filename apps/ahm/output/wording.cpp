@@ -11,12 +11,22 @@
 namespace ahm::app {
 namespace {
 
-/// {0}, {1}, {2} are the warning's numbers, {3} is the list of its rows.
+/// {0}, {1}, {2} are the warning's numbers, {3} is the list of its rows, {4} its name.
 struct Sentence {
   std::string_view id, format;
 };
 
 constexpr Sentence sentences[] = {
+    // files
+    {"goes_on_after_faces", "the file goes on behind the last face; the rest is ignored"},
+    {"goes_on_after_elements", "the file goes on behind the last element; the rest is ignored"},
+    {"element_ignored", "element '{4}' is ignored"},
+    {"colors_not_uchar", "colours are ignored: they are not stored as uchar"},
+    {"colors_not_packed", "colours are ignored: they are not packed into four bytes"},
+    {"normals_not_by_vertex", "normals are ignored: they are not numbered like the vertices"},
+    {"vertex_extras", "numbers behind x, y, z of a vertex are ignored"},
+    {"columns_as_colors", "columns 4 to 6 are taken as colours: whole numbers from 0 to 255"},
+    {"columns_ignored", "columns 4 to {0:.0f} are ignored"},
     // meshes
     {"unreferenced", "{0:.0f} vertices are used by no face and were left out"},
     {"reoriented", "{0:.0f} faces were turned over to orient the mesh consistently"},
@@ -31,6 +41,8 @@ constexpr Sentence sentences[] = {
     {"negative_weights", "{0:.0f} edges have negative weights; far from the source heat may lose its sign"},
     {"twisted_faces", "{0:.0f} faces are twisted, the first is face {1:.0f}, so the polygons are not refined"},
     // clouds
+    {"faces_ignored", "the {0:.0f} faces are ignored: the vertices are mapped as a point cloud"},
+    {"non_finite_dropped", "{0:.0f} points with nan or infinite coordinates were dropped"},
     {"normals_estimated", "{0:.0f} given normals are zero or not finite and were estimated"},
     {"cover_not_delaunay",
      "the intrinsic Delaunay flips did not come to an end: some edges of degenerate triangles were left out"},
@@ -58,6 +70,7 @@ constexpr Advice advices[] = {
     {"non_manifold_edges", "repair them, or cut the mesh there with --non-manifold split"},
     {"non_manifold_vertices", "repair them, or split them with --non-manifold split"},
     {"twisted_faces", "use --discretization polygons"},
+    {"no_bending_direction", "give the axis as X,Y,Z"},
     {"row_left_out", "--voxel, --outliers, --drop-nan or --local removed it; choose another one, or write x,y,z"},
 };
 
@@ -75,7 +88,8 @@ std::string worded(const Warning& warning) {
   std::array<double, 3> numbers{};
   std::copy_n(warning.numbers.begin(), std::min<std::size_t>(warning.numbers.size(), 3), numbers.begin());
   for (const auto& [id, format] : sentences)
-    if (warning.id == id) return fmt::format(fmt::runtime(format), numbers[0], numbers[1], numbers[2], list(warning));
+    if (warning.id == id)
+      return fmt::format(fmt::runtime(format), numbers[0], numbers[1], numbers[2], list(warning), warning.name);
   return fmt::format("{} {}", warning.id, fmt::join(warning.numbers, " "));
 }
 

@@ -27,9 +27,9 @@ class FaceMatrices {
       begin_.push_back(begin_.back() + m * m);
     }
     check_memory();
-    weights_.resize(static_cast<std::size_t>(begin_.back()));
+    weights_.resize(begin_.back());
     masses_.resize(mesh.corners().size());
-    shape_.resize(static_cast<std::size_t>(mesh.face_count()));
+    shape_.resize(mesh.face_count());
     detail::parallel_chunks(mesh.face_count(), 4096, options.threads, [&](Offset first, Offset last) {
       Polygon polygon;
       for (Offset f = first; f < last; ++f) fill(polygon, static_cast<Index>(f));

@@ -240,7 +240,7 @@ PolygonMeshSurface PolygonMeshSurface::build(std::span<const Vec3> positions, st
 PlacedSource PolygonMeshSurface::source_in_face(const FacePoint& point, const std::optional<Vec3>& u_axis) const {
   if (impl_->refined) {
     const Vec3 place = position(point);
-    const auto corners = faces()[static_cast<std::size_t>(point.face)];
+    const auto corners = faces()[point.face];
     const Vec3 u = u_axis ? *u_axis : positions()[corners[1]] - positions()[corners[0]];
     PlacedSource result = impl_->refined->source(locate(impl_->refinement, point.face, place), u);
     result.position = place;

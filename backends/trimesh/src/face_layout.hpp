@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "vec.hpp"
+#include "planar.hpp"
 
 namespace ahm::trimesh {
 

@@ -39,7 +39,7 @@ FlipHistory::Point FlipHistory::locate(Index face, const std::array<double, 3>& 
       j = p.weight[flip.side[1]];
       i = p.weight[(flip.side[1] + 1) % 3];
       m = p.weight[(flip.side[1] + 2) % 3];
-      p.map.turn = flip.turn * p.map.turn;
+      p.map.turn = product(flip.turn, p.map.turn);
     }
     // In the triangle at i if i / alpha >= j / beta: write j as (gamma k + delta m - alpha i) / beta; else the same
     // with i.
@@ -75,7 +75,7 @@ FlipHistory::Direction FlipHistory::locate(Half corner, Vec2 direction) const {
         direction = conj(direction);
         mirrored = !mirrored;
       }
-      direction = flip.turn * direction;
+      direction = product(flip.turn, direction);
       const int q = (s - flip.side[1] + 3) % 3;  // corner j, i or m
       // At m: from the diagonal counter-clockwise to m i lies the face at i.
       b = q == 0 ? 1 : q == 1 ? 0 : cross(flip.diagonal, direction) >= 0 ? 0 : 1;

@@ -16,7 +16,7 @@
 
 #include "ahm/surface/half_edges.hpp"
 #include "ahm/trimesh/triangle_mesh.hpp"
-#include "vec.hpp"
+#include "planar.hpp"
 
 namespace ahm::trimesh {
 
@@ -43,9 +43,9 @@ struct LayoutMap {
   Vec2 turn{1, 0};
   bool mirrored = false;
 
-  Vec2 operator()(Vec2 v) const { return turn * (mirrored ? conj(v) : v); }
+  Vec2 operator()(Vec2 v) const { return product(turn, mirrored ? conj(v) : v); }
   Vec2 inverse(Vec2 v) const {
-    const Vec2 w = conj(turn) * v;
+    const Vec2 w = product(conj(turn), v);
     return mirrored ? conj(w) : w;
   }
 };

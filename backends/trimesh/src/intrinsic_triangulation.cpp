@@ -23,7 +23,7 @@ IntrinsicTriangulation::IntrinsicTriangulation(const TriangleMesh& mesh, bool mo
       history_(mesh.tails().size() / 3) {
   detail::for_each_index(static_cast<std::size_t>(mesh.face_count()), threads, [&](std::size_t f) {
     const auto layout = mesh.layout(static_cast<Index>(f));
-    for (int s = 0; s < 3; ++s) side_[3 * f + s] = {layout[s][0], layout[s][1]};
+    for (int s = 0; s < 3; ++s) side_[3 * f + s] = layout[s];
   });
   if (mollify_now) mollify();
 }
@@ -75,8 +75,8 @@ bool IntrinsicTriangulation::is_delaunay(Half h) const {
     return Vec2{dot(a, b) * scale, std::max(0.0, cross(a, b)) * scale};  // cosine, sine
   };
   const Vec2 p = opposite(h), q = opposite(t);
-  if (p.x < 0 && q.x < 0) return false;
-  return p.x * q.y + p.y * q.x >= -1e-15 - 1e-10 * p.y * q.y;
+  if (p[0] < 0 && q[0] < 0) return false;
+  return p[0] * q[1] + p[1] * q[0] >= -1e-15 - 1e-10 * p[1] * q[1];
 }
 
 bool IntrinsicTriangulation::flip_to_delaunay(const Progress& progress) {
@@ -120,11 +120,11 @@ Half IntrinsicTriangulation::turn_over(Half h) {
 IntrinsicTriangulation::Quadrilateral IntrinsicTriangulation::unfold(Half h, Half t) const {
   Quadrilateral q;
   const Vec2 ij = side_[h];
-  q.turn = normalized(ij * conj(-side_[t]));
+  q.turn = normalized(product(ij, conj(-side_[t])));
   q.jk = side_[next(h)];
   q.ki = side_[previous(h)];
-  q.im = q.turn * side_[next(t)];
-  q.mj = q.turn * side_[previous(t)];
+  q.im = product(q.turn, side_[next(t)]);
+  q.mj = product(q.turn, side_[previous(t)]);
   // The diagonal by the shorter way round.
   const bool by_i = dot(q.im, q.im) + dot(q.ki, q.ki) < dot(q.mj, q.mj) + dot(q.jk, q.jk);
   q.mk = by_i ? -(q.im + q.ki) : q.mj + q.jk;

@@ -7,7 +7,7 @@
 
 #include "ahm/progress.hpp"
 #include "flip_history.hpp"
-#include "vec.hpp"
+#include "planar.hpp"
 
 namespace ahm::trimesh {
 

@@ -60,17 +60,17 @@ class Rows {
       const Vec2 u_ij = unit(frames_.angle[edges_.directed(side, from_tail)]);
       const Vec2 u_ji = unit(frames_.angle[edges_.directed(side, !from_tail)]);
       const double length = triangulation_.length(side);
-      g.logs[2 * at] = length * u_ij.x;
-      g.logs[2 * at + 1] = length * u_ij.y;
+      g.logs[2 * at] = length * u_ij[0];
+      g.logs[2 * at + 1] = length * u_ij[1];
       // The direction of the edge goes to itself: u_ji -> -u_ij, turning the same way or, between frames of opposite
       // orientation, the other way.
       const bool reflects = forward != frames_.forward(edges_, side, !from_tail);
-      const Vec2 R = reflects ? -(u_ij * u_ji) : -(u_ij * conj(u_ji));
+      const Vec2 R = reflects ? -product(u_ij, u_ji) : -product(u_ij, conj(u_ji));
       if (g.kind == TransportKind::rotation2) {
-        g.transports[2 * at] = R.x;
-        g.transports[2 * at + 1] = R.y;
+        g.transports[2 * at] = R[0];
+        g.transports[2 * at + 1] = R[1];
       } else {
-        const double block[] = {R.x, reflects ? R.y : -R.y, R.y, reflects ? -R.x : R.x};
+        const double block[] = {R[0], reflects ? R[1] : -R[1], R[1], reflects ? -R[0] : R[0]};
         std::copy_n(block, 4, g.transports.begin() + static_cast<std::ptrdiff_t>(4 * at));
       }
       ++at;
@@ -90,6 +90,7 @@ class Rows {
       report.capped_weights += clamp_ && cotangents(h) > largest_weight;
     }
     g.mean_edge_length = sum / static_cast<double>(report.edges);
+    g.is_triangulation = true;
   }
 
  private:

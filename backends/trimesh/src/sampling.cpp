@@ -17,7 +17,7 @@ Vec2 coordinates(const LogMap& map, Index vertex) {
 /// A face laid out in the plane, with the map at its corners.
 struct MappedFace {
   Vec2 side[3];  ///< in world units
-  Vec2 phi[3];
+  Vec2 phi[3]{};
 
   MappedFace(const TriangleMesh& mesh, const Vec2* sides) {
     for (int s = 0; s < 3; ++s) side[s] = mesh.length_unit() * sides[s];
@@ -35,8 +35,9 @@ struct MappedFace {
   /// Puts the third corner where the shape of the face asks for it, to the left or right of side s.
   void follow(int s, bool left) {
     const Vec2 a = phi[s], b = phi[(s + 1) % 3], along = normalized(b - a);
-    const Vec2 apex = conj(normalized(side[s])) * (-0.5 * side[s] - side[(s + 2) % 3]);  // from the middle of the side
-    phi[(s + 2) % 3] = 0.5 * (a + b) + along * (left ? apex : conj(apex));
+    // From the middle of the side.
+    const Vec2 apex = product(conj(normalized(side[s])), -0.5 * side[s] - side[(s + 2) % 3]);
+    phi[(s + 2) % 3] = 0.5 * (a + b) + product(along, left ? apex : conj(apex));
   }
 };
 
@@ -75,11 +76,7 @@ class Unfolding {
  private:
   enum : std::uint8_t { no, yes, masked };
 
-  MappedFace mapped(Index f) const {
-    const auto layout = mesh_.layout(f);
-    const Vec2 sides[3] = {{layout[0][0], layout[0][1]}, {layout[1][0], layout[1][1]}, {layout[2][0], layout[2][1]}};
-    return MappedFace(mesh_, sides);
-  }
+  MappedFace mapped(Index f) const { return MappedFace(mesh_, mesh_.layout(f).data()); }
 
   void unfold_across(Half h, std::vector<Index>& front) {
     const Half t = edges_.twin[h];
@@ -105,17 +102,14 @@ class Unfolding {
 
 }  // namespace
 
-std::vector<ahm::Vec2> TriangleMeshSurface::on_corners(const LogMap& map) const {
+std::vector<Vec2> TriangleMeshSurface::on_corners(const LogMap& map) const {
   check_map(map);
   const TriangleMesh& mesh = impl_->mesh;
   const Unfolding unfolding(mesh, map);
-  std::vector<ahm::Vec2> result(mesh.tails().size(), {nan, nan});
+  std::vector<Vec2> result(mesh.tails().size(), {nan, nan});
   for (Index f = 0; f < mesh.face_count(); ++f) {
     if (!unfolding.known(f)) continue;
-    for (int s = 0; s < 3; ++s) {
-      const Vec2 phi = unfolding.phi(3 * f + s);
-      result[3 * f + mesh.stored_corner(f, s)] = {phi.x, phi.y};
-    }
+    for (int s = 0; s < 3; ++s) result[3 * f + mesh.stored_corner(f, s)] = unfolding.phi(3 * f + s);
   }
   return result;
 }
@@ -137,7 +131,7 @@ Sample TriangleMeshSurface::sample_in_face(const LogMap& map, const FacePoint& p
     face.follow(side, true);
   }
   const Vec2 phi = p.weight[0] * face.phi[0] + p.weight[1] * face.phi[1] + p.weight[2] * face.phi[2];
-  return {phi.x, phi.y, Status::ok};
+  return {phi[0], phi[1], Status::ok};
 }
 
 TriangleMeshSurface::Located TriangleMeshSurface::locate(const FacePoint& point) const {

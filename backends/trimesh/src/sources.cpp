@@ -18,9 +18,7 @@ FlipHistory::Point TriangleMeshSurface::Impl::locate(const FacePoint& point) con
 Vec2 TriangleMeshSurface::Impl::input_side(Index face, int from, int to) const {
   const auto layout = mesh.layout(face);
   const int a = mesh.stored_corner(face, from), b = mesh.stored_corner(face, to);
-  const auto& side = layout[b == (a + 1) % 3 ? a : b];
-  const Vec2 v{side[0], side[1]};
-  return b == (a + 1) % 3 ? v : -v;
+  return b == (a + 1) % 3 ? layout[a] : -layout[b];
 }
 
 Source TriangleMeshSurface::Impl::source(const FacePoint& point, Vec2 u) const {
@@ -36,23 +34,23 @@ Source TriangleMeshSurface::Impl::source(const FacePoint& point, Vec2 u) const {
     if (!(p.weight[s] > 0)) continue;
     const Half h = 3 * p.face + s;
     const Vec2 offset = corner[s] - at;
-    const Vec2 z = conj(u_here) * offset;
-    const double position[] = {mesh.length_unit() * z.x, mesh.length_unit() * (p.map.mirrored ? -z.y : z.y)};
+    const Vec2 z = product(conj(u_here), offset);
+    const double position[] = {mesh.length_unit() * z[0], mesh.length_unit() * (p.map.mirrored ? -z[1] : z[1])};
 
     // Transport along the straight line to the corner: its direction has a known angle in the frame there.
     const double full = triangulation.angle(h);
     const bool at_corner = !(norm(offset) > 1e-14 * size);
     const double within = at_corner ? 0.5 * full : std::clamp(angle_between(side[s], -offset), 0.0, full);
-    const Vec2 back = at_corner ? unit(within) * normalized(side[s]) : normalized(-offset);
+    const Vec2 back = at_corner ? product(unit(within), normalized(side[s])) : normalized(-offset);
     const Index k = edges.tail[h];
     const bool forward = frames.forward(edges, h, true);
     const double angle = frames.angle[edges.directed(h, true)] + (forward ? within : -within) * frames.scale[k];
-    Vec2 axis = u_here * conj(back);
+    Vec2 axis = product(u_here, conj(back));
     if (!forward) axis = conj(axis);
-    axis = normalized(axis * unit(angle));
+    axis = normalized(product(axis, unit(angle)));
     // v is u turned left in the source's layout; every change of orientation on the way turns it right.
     const bool reflects = p.map.mirrored == forward;
-    const double axes[] = {axis.x, reflects ? axis.y : -axis.y, axis.y, reflects ? -axis.x : axis.x};
+    const double axes[] = {axis[0], reflects ? axis[1] : -axis[1], axis[1], reflects ? -axis[0] : axis[0]};
     source.add(Vertex(k), p.weight[s], position, axes);
   }
   return source;
@@ -85,7 +83,7 @@ PlacedSource TriangleMeshSurface::source_in_face(const FacePoint& point, const s
                             " has no plane in space (no positions, or no area), so a direction in space "
                             "has no meaning");
     const auto [x, y] = projected(frame->x, frame->y, *u_axis, where);
-    u = normalized(normalized(Vec2{x, y}) * u);
+    u = normalized(product(normalized(Vec2{x, y}), u));
     frame = turned(*frame, *u_axis);
   }
   return {impl_->source(point, u), impl_->mesh.has_positions() ? position(point) : Vec3{}, frame, std::nullopt};
@@ -95,7 +93,7 @@ PlacedSource TriangleMeshSurface::source_on_edge(const EdgePoint& edge, const st
   const FacePoint point = face_point(edge);
   PlacedSource result = source_in_face(point, u_axis);
   if (u_axis) return result;
-  const auto given = faces()[static_cast<std::size_t>(point.face)];
+  const auto given = faces()[point.face];
   const auto corner = [&](Row row) {
     return static_cast<int>(std::find(given.begin(), given.end(), row.index) - given.begin());
   };

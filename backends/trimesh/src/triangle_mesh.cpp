@@ -9,7 +9,6 @@
 #include "ahm/util/disjoint_sets.hpp"
 #include "ahm/util/text.hpp"
 #include "face_layout.hpp"
-#include "vec.hpp"
 
 namespace ahm::trimesh {
 namespace {
@@ -77,12 +76,11 @@ TriangleMesh TriangleMesh::from_edge_lengths(Index vertices, std::span<const Tri
   return mesh;
 }
 
-std::array<std::array<double, 2>, 3> TriangleMesh::layout(Index face) const {
+std::array<Vec2, 3> TriangleMesh::layout(Index face) const {
   const auto h = 3 * static_cast<std::size_t>(face);
-  const FaceLayout sides =
-      has_positions() ? layout_of_positions(position_[tails()[h]], position_[tails()[h + 1]], position_[tails()[h + 2]])
-                      : layout_of_lengths(length_[h], length_[h + 1], length_[h + 2]);
-  return {{{sides[0].x, sides[0].y}, {sides[1].x, sides[1].y}, {sides[2].x, sides[2].y}}};
+  return has_positions()
+             ? layout_of_positions(position_[tails()[h]], position_[tails()[h + 1]], position_[tails()[h + 2]])
+             : layout_of_lengths(length_[h], length_[h + 1], length_[h + 2]);
 }
 
 }  // namespace ahm::trimesh

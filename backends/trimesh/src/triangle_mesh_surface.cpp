@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <new>
 #include <utility>
 
 #include "ahm/error.hpp"
+#include "ahm/util/memory.hpp"
 #include "ahm/util/stopwatch.hpp"
 #include "ahm/util/text.hpp"
 #include "impl.hpp"
@@ -118,21 +118,20 @@ TriangleMeshSurface TriangleMeshSurface::build(TriangleMesh mesh, const MeshOpti
            std::move(rows), std::move(face_rows)}));
 }
 
-TriangleMeshSurface TriangleMeshSurface::build(TriangleMesh mesh, const MeshOptions& options) try {
-  return build(std::move(mesh), options, 0.0);
-} catch (const std::bad_alloc&) {
-  throw ResourceExhausted("out of memory while building the graph of a triangle mesh");
+TriangleMeshSurface TriangleMeshSurface::build(TriangleMesh mesh, const MeshOptions& options) {
+  return detail::with_memory_check("building the graph of a triangle mesh",
+                                   [&] { return build(std::move(mesh), options, 0.0); });
 }
 
 TriangleMeshSurface TriangleMeshSurface::build(std::span<const Vec3> positions, std::span<const Triangle> faces,
-                                               const MeshOptions& options) try {
-  detail::Stopwatch stopwatch;
-  options.progress.step("checks", 0.0);
-  TriangleMesh mesh = TriangleMesh::from_positions(positions, faces, options.non_manifold);
-  return build(std::move(mesh), options, stopwatch.lap());
-} catch (const std::bad_alloc&) {
-  throw ResourceExhausted("out of memory while building the graph of a mesh of " + std::to_string(faces.size()) +
-                          " faces");
+                                               const MeshOptions& options) {
+  const std::string what = "building the graph of a mesh of " + std::to_string(faces.size()) + " faces";
+  return detail::with_memory_check(what, [&] {
+    detail::Stopwatch stopwatch;
+    options.progress.step("checks", 0.0);
+    TriangleMesh mesh = TriangleMesh::from_positions(positions, faces, options.non_manifold);
+    return build(std::move(mesh), options, stopwatch.lap());
+  });
 }
 
 }  // namespace ahm::trimesh

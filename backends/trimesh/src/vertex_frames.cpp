@@ -24,9 +24,8 @@ struct Reference {
 Reference find_reference(const TriangleMesh& mesh, const HalfEdges& input, const IntrinsicTriangulation& triangulation,
                          Index v) {
   const Corner corner = reference_corner(mesh, input, v);
-  const auto layout = mesh.layout(corner.half / 3);
-  const auto& side = layout[input.right(corner) % 3];
-  const Vec2 out = corner.forward ? Vec2{side[0], side[1]} : Vec2{-side[0], -side[1]};
+  const Vec2 side = mesh.layout(corner.half / 3)[input.right(corner) % 3];
+  const Vec2 out = corner.forward ? side : -side;
   const auto found = triangulation.history().locate(corner.half, out);
   const Corner at{found.corner, corner.forward != found.mirrored};
   const Vec2 right = at.forward ? triangulation.side(at.half) : -triangulation.side(input.right(at));
@@ -120,10 +119,10 @@ Frame frame_in_space(const TriangleMesh& mesh, const HalfEdges& edges, Index v) 
 
   const double scale = closed && angle_sum > 0 ? 2 * pi / angle_sum : 1.0;
   double angle = 0;
-  Vec2 fit;
+  Vec2 fit{};
   auto add = [&](const Vec3& side, double weight) {
     const Vec2 p{dot(side, x), dot(side, y)};
-    if (norm(p) > 0) fit = fit + weight / norm(p) * (p * unit(-angle));
+    if (norm(p) > 0) fit = fit + weight / norm(p) * product(p, unit(-angle));
   };
   fan.for_each_face([&](const Vec3& a, const Vec3& b) {
     const double corner = scale * std::atan2(norm(cross(a, b)), dot(a, b));
@@ -132,7 +131,7 @@ Frame frame_in_space(const TriangleMesh& mesh, const HalfEdges& edges, Index v) 
     add(b, corner);
   });
   fit = norm(fit) > 1e-12 ? normalized(fit) : Vec2{1, 0};
-  const Vec3 fitted = fit.x * x + fit.y * y;
+  const Vec3 fitted = fit[0] * x + fit[1] * y;
   return {mesh.original_position(v), fitted, cross(normal, fitted), normal};
 }
 
@@ -161,7 +160,7 @@ VertexFrames find_frames(const TriangleMesh& mesh, const IntrinsicTriangulation&
 std::vector<Frame> frames_in_space(const TriangleMesh& mesh, unsigned threads) {
   std::vector<Frame> frames;
   if (!mesh.has_positions()) return frames;
-  frames.resize(static_cast<std::size_t>(mesh.vertex_count()));
+  frames.resize(mesh.vertex_count());
   const HalfEdges edges = mesh.topology().half_edges();
   detail::for_each_index(frames.size(), threads,
                          [&](std::size_t v) { frames[v] = frame_in_space(mesh, edges, static_cast<Index>(v)); });

@@ -64,7 +64,7 @@ class ObjReader {
                        std::to_string(g_.points.size()) + " vertices");
     }
     finish_normals();
-    if (vertex_extras_) g_.warnings.emplace_back("numbers behind x, y, z of a vertex are ignored");
+    if (vertex_extras_) g_.warnings.push_back({"vertex_extras", {}, {}});
     return std::move(g_);
   }
 
@@ -149,7 +149,7 @@ class ObjReader {
     if (normals_match_ && !g_.face_begin.empty() && normals_.size() == g_.points.size()) {
       g_.normals = std::move(normals_);
     } else {
-      g_.warnings.emplace_back("normals are ignored: they are not numbered like the vertices");
+      g_.warnings.push_back({"normals_not_by_vertex", {}, {}});
     }
   }
 

@@ -133,7 +133,7 @@ Geometry read(const Input& in) {
   const OffHeader header = parse_header(in, words);
   read_vertices(in, words, header, g);
   read_faces(in, words, header, g);
-  if (!words.at_end()) g.warnings.emplace_back("the file goes on behind the last face; the rest is ignored");
+  if (!words.at_end()) g.warnings.push_back({"goes_on_after_faces", {}, {}});
   return g;
 }
 

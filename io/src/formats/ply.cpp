@@ -153,7 +153,7 @@ std::vector<std::size_t> assign_roles(const Input& in, const PlyElement& vertex,
       }
       complete = complete && found[k];
       if (found[k] && group == 6 && vertex.properties[*found[k]].type != PlyType::uint8) {
-        if (complete) g.warnings.emplace_back("colours are ignored: they are not stored as uchar");
+        if (complete) g.warnings.push_back({"colors_not_uchar", {}, {}});
         complete = false;
       }
     }
@@ -248,7 +248,7 @@ void read_items(const Input& in, const PlyElement& element, Body& body, Geometry
     corners = find_corners(in, element);
     if (g.face_begin.empty()) g.face_begin.push_back(0);
   } else {
-    g.warnings.push_back("element '" + element.name + "' is ignored");
+    g.warnings.push_back({"element_ignored", {}, {}, element.name});
   }
   if (element.properties.empty()) return;
   for (std::uint64_t item = 0; item < element.count; ++item) {
@@ -283,7 +283,7 @@ Geometry read(const Input& in) {
       read_items(in, element, body, g);
     }
   }
-  if (!body.at_end()) g.warnings.emplace_back("the file goes on behind the last element; the rest is ignored");
+  if (!body.at_end()) g.warnings.push_back({"goes_on_after_elements", {}, {}});
   return g;
 }
 

@@ -62,7 +62,7 @@ void tell_colors_from_normals(Geometry& g) {
         {static_cast<std::uint8_t>(n[0]), static_cast<std::uint8_t>(n[1]), static_cast<std::uint8_t>(n[2])});
   }
   g.normals.clear();
-  g.warnings.emplace_back("columns 4 to 6 are taken as colours: whole numbers from 0 to 255");
+  g.warnings.push_back({"columns_as_colors", {}, {}});
 }
 
 Geometry read_rows(const Input& in, Lines& lines, char delimiter, Columns columns, Geometry g) {
@@ -76,7 +76,7 @@ Geometry read_rows(const Input& in, Lines& lines, char delimiter, Columns column
         fail_at_line(in, lines.number(), "expected at least three columns, found " + std::to_string(words.size()));
       }
       if (words.size() > 3 && !columns.six) {
-        g.warnings.push_back("columns 4 to " + std::to_string(words.size()) + " are ignored");
+        g.warnings.push_back({"columns_ignored", {static_cast<double>(words.size())}, {}});
       }
     }
     read_row(in, lines.number(), words, columns, g);

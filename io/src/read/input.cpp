@@ -46,7 +46,7 @@ Input load(const std::filesystem::path& path) {
   if (!S_ISREG(info.st_mode)) fail(in, "not a regular file (a pipe or device); copy its contents to a file first");
   if (info.st_size == 0) fail(in, "the file is empty (0 bytes)");
 
-  in.bytes.resize(static_cast<std::size_t>(info.st_size));
+  in.bytes.resize(info.st_size);
   std::size_t done = 0;
   while (done < in.bytes.size()) {
     const ssize_t got = ::read(fd.value, in.bytes.data() + done, in.bytes.size() - done);

@@ -115,7 +115,7 @@ void read_colors(const PCLPointCloud2& cloud, Geometry& g) {
   const PCLPointField* field = find(cloud, "rgb") ? find(cloud, "rgb") : find(cloud, "rgba");
   if (field == nullptr) return;
   if (pcl::getFieldSize(field->datatype) != 4) {
-    g.warnings.emplace_back("colours are ignored: they are not packed into four bytes");
+    g.warnings.push_back({"colors_not_packed", {}, {}});
     return;
   }
   g.colors.resize(g.points.size());

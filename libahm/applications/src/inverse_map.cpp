@@ -227,7 +227,8 @@ InverseMap inverse_map(const TangentGraph& graph, const LogMap& map, const Inver
   const std::size_t n = normals.size();
   std::vector<Vec3> positions(n);
   std::vector<std::uint8_t> valid(n);
-  const std::vector<double> quality = options.min_quality > 0 ? map_quality(graph, map) : std::vector<double>{};
+  const std::vector<double> quality =
+      options.min_quality > 0 ? map_quality(graph, map, options.threads) : std::vector<double>{};
   for (Index i = 0; i < graph.size(); ++i) {
     if (map.status(Vertex(i)) != Status::ok) continue;
     positions[i] = graph.frame(i)->origin;
@@ -243,7 +244,8 @@ InverseMap inverse_map(const Surface& surface, const LogMap& map, const InverseM
   const std::vector<Vec3> graph_normals = source_side_normals(graph, map);
   const RowLogMap rows = surface.on_rows(map);
   const std::size_t n = rows.vertex.size();
-  const std::vector<double> quality = options.min_quality > 0 ? map_quality(graph, map) : std::vector<double>{};
+  const std::vector<double> quality =
+      options.min_quality > 0 ? map_quality(graph, map, options.threads) : std::vector<double>{};
   std::vector<Vec3> normals(n);
   std::vector<double> coordinates(2 * n);
   std::vector<std::uint8_t> valid(n);

@@ -106,7 +106,7 @@ Source mirrored(const Source& source) {
         axes(source.axes().begin() + static_cast<std::ptrdiff_t>(4 * k),
              source.axes().begin() + static_cast<std::ptrdiff_t>(4 * k + 4));
     offset[1] = -offset[1], axes[1] = -axes[1], axes[3] = -axes[3];
-    result.add(source.vertices()[k], source.weights()[k], offset, axes);
+    result.add(source.vertices()[k], source.weights()[k], offset, axes, source.place(k));
   }
   return result;
 }

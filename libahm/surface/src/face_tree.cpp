@@ -71,7 +71,7 @@ FaceTree::FaceTree(std::span<const Vec3> positions, const FaceList& faces) : pos
 
 const Vec3& FaceTree::corner(const Piece& piece, int k) const {
   const Index c = k == 0 ? 0 : piece.corner + k - 1;
-  return positions_[faces_[static_cast<std::size_t>(piece.face)][c]];
+  return positions_[faces_[piece.face][c]];
 }
 
 void FaceTree::build(std::size_t begin, std::size_t end) {
@@ -124,10 +124,10 @@ void FaceTree::look_at(const Piece& piece, const Vec3& position, Hit& best) cons
   const Vec3 found = combined(t, weights);
   const double distance = norm(found - position);
   if (!(distance < best.distance)) return;
-  std::vector<double> of_corners(faces_[static_cast<std::size_t>(piece.face)].size(), 0.0);
+  std::vector<double> of_corners(faces_[piece.face].size(), 0.0);
   of_corners[0] = weights[0];
   of_corners[piece.corner] = weights[1];
-  of_corners[static_cast<std::size_t>(piece.corner) + 1] = weights[2];
+  of_corners[piece.corner + 1] = weights[2];
   best = {{piece.face, std::move(of_corners)}, found, distance};
 }
 

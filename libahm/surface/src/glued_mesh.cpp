@@ -22,7 +22,7 @@ struct Fans {
 Fans find_fans(const HalfEdges& edges, Index vertices) {
   Fans fans;
   fans.of_half.assign(edges.tail.size(), -1);
-  fans.first.assign(static_cast<std::size_t>(vertices), -1);
+  fans.first.assign(vertices, -1);
   for (Half h = 0; h < edges.size(); ++h) {
     if (fans.of_half[h] >= 0) continue;
     const auto number = static_cast<Index>(fans.corner.size());

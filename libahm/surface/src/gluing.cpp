@@ -29,7 +29,7 @@ void refuse(const std::vector<Index>& wrong, const FaceList& faces, const std::s
             const std::string& advice) {
   if (wrong.empty()) return;
   ItemList list;
-  for (Index f : wrong) list.add(name(f, faces[static_cast<std::size_t>(f)]));
+  for (Index f : wrong) list.add(name(f, faces[f]));
   throw InvalidGeometry(std::to_string(wrong.size()) + " faces " + what + ": " + list.text() + advice);
 }
 

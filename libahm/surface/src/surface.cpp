@@ -35,15 +35,12 @@ struct Best {
   std::optional<Vertex> vertex;
   Status status = Status::removed;
 
-  Best(const LogMap& map, std::span<const Vertex> vertices) {
-    for (Vertex v : vertices) {
-      if (map.status(v) != Status::ok) {
-        if (status != Status::ok) status = map.status(v);
-      } else if (!vertex || map.distance(v) < map.distance(*vertex)) {
-        vertex = v;
-        status = Status::ok;
-      }
-    }
+  Best(const LogMap& map, const RowMap& rows, Row row)
+      : vertex(rows.least(row, [&](Vertex v) { return map.distance(v); })) {
+    if (vertex)
+      status = Status::ok;
+    else if (const auto all = rows.vertices(row); !all.empty())
+      status = map.status(all.back());
   }
 };
 
@@ -60,7 +57,7 @@ Surface::Surface(Surface&&) noexcept = default;
 Surface& Surface::operator=(Surface&&) noexcept = default;
 
 std::vector<Vec3> Surface::normals() const {
-  std::vector<Vec3> result(static_cast<std::size_t>(rows().row_count()), Vec3{nan, nan, nan});
+  std::vector<Vec3> result(rows().row_count(), Vec3{nan, nan, nan});
   for (std::size_t r = 0; r < result.size(); ++r)
     if (const auto vertex = rows().vertex(Row(static_cast<Index>(r))))
       if (const auto frame = graph().frame(vertex->index)) result[r] = frame->normal;
@@ -120,7 +117,7 @@ Vec3 Surface::position(const SurfacePoint& point) const {
                  [&](const FacePoint& inside) {
                    check(inside);
                    Vec3 sum{};
-                   const auto corners = faces()[static_cast<std::size_t>(inside.face)];
+                   const auto corners = faces()[inside.face];
                    for (std::size_t c = 0; c < corners.size(); ++c)
                      sum = sum + inside.barycentric[c] * points[corners[c]];
                    return sum;
@@ -207,7 +204,7 @@ RowLogMap Surface::on_rows(const LogMap& map) const {
   const std::span<const double> error = map.error_estimate();
   if (!error.empty()) result.error_estimate = none;
   for (std::size_t r = 0; r < n; ++r) {
-    const Best best(map, rows().vertices(Row(static_cast<Index>(r))));
+    const Best best(map, rows(), Row(static_cast<Index>(r)));
     result.status[r] = best.status;
     if (!best.vertex) continue;
     const Vertex v = *best.vertex;
@@ -239,7 +236,7 @@ std::vector<Vec2> Surface::on_corners(const LogMap& map) const {
 Sample Surface::at(const LogMap& map, const SurfacePoint& point) const {
   check_map(map);
   const auto at_row = [&](Row row) -> std::pair<Sample, Index> {
-    const Best best(map, rows().vertices(row));
+    const Best best(map, rows(), row);
     if (!best.vertex) return {{nan, nan, best.status}, -1};
     const auto phi = map.coordinates(*best.vertex);
     return {{phi[0], phi[1], Status::ok}, best.vertex->index};
@@ -284,8 +281,8 @@ Sample Surface::sample_in_face(const LogMap& map, const FacePoint& point) const 
 
 Vertex Surface::corner_vertex(Index face, std::size_t corner) const {
   const FaceList all = faces();
-  const auto given = all[static_cast<std::size_t>(face)];
-  const auto stored = corner_vertices().subspan(static_cast<std::size_t>(all.begin[face]), given.size());
+  const auto given = all[face];
+  const auto stored = corner_vertices().subspan(all.begin[face], given.size());
   const std::optional<Row> second = rows().row(Vertex(stored[1]));
   const bool reversed = !second || second->index != given[1];
   return Vertex(stored[reversed ? (given.size() - corner) % given.size() : corner]);
@@ -302,7 +299,7 @@ void Surface::check(const FacePoint& point) const {
   const FaceList all = faces();
   if (point.face < 0 || static_cast<std::size_t>(point.face) >= all.size())
     throw InvalidArgument("face " + std::to_string(point.face) + " is outside [0, " + std::to_string(all.size()) + ")");
-  const std::size_t m = all[static_cast<std::size_t>(point.face)].size();
+  const std::size_t m = all[point.face].size();
   const std::string where = "face " + std::to_string(point.face);
   if (point.barycentric.size() != m)
     throw InvalidArgument(where + " has " + std::to_string(m) + " corners, but there are " +
@@ -322,6 +319,18 @@ void Surface::check(const EdgePoint& point) const {
   vertex(point.from), vertex(point.to);
   if (!(point.t >= 0 && point.t <= 1))
     throw InvalidArgument("t is " + detail::number(point.t) + " on an edge; it must be in [0, 1]");
+}
+
+std::vector<double> on_rows(const RowLogMap& rows, std::span<const double> values) {
+  std::vector<double> result;
+  result.reserve(rows.vertex.size());
+  for (const std::optional<Vertex>& vertex : rows.vertex) {
+    if (vertex && static_cast<std::size_t>(vertex->index) >= values.size())
+      throw InvalidArgument("on_rows: there are " + std::to_string(values.size()) +
+                            " values, but the map has a vertex " + std::to_string(vertex->index));
+    result.push_back(vertex ? values[vertex->index] : nan);
+  }
+  return result;
 }
 
 std::vector<Vec3> distance_gradients(const Surface& surface, const LogMap& map, const RowLogMap& rows) {

@@ -25,7 +25,7 @@ SurfaceFaces given_faces(const Surface& surface) {
 /// A map from the first source of every component, with frames.
 LogMap map_of_all(const LogMapSolver& solver, std::span<const Vertex> sources) {
   const Components components = connected_components(solver.graph());
-  std::vector<bool> has_source(static_cast<std::size_t>(components.count), false);
+  std::vector<bool> has_source(components.count, false);
   Source source(2);
   constexpr double offset[] = {0, 0}, axes[] = {1, 0, 0, 1};
   for (Vertex vertex : sources) {

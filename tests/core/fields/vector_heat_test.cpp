@@ -70,14 +70,6 @@ TEST_P(VectorHeat, HasTheRadialFieldOfThePlane) {
   }
 }
 
-TEST_P(VectorHeat, MeasuresDistance) {
-  const auto field = distance(solver.solve(Source::at_vertex(Vertex{20})));
-  for (Index i = 0; i < flat.size(); ++i) {
-    const auto exact = flat.exact(20, i);
-    ASSERT_NEAR(field.values[i], std::hypot(exact[0], exact[1]), 1e-11);
-  }
-}
-
 TEST_P(VectorHeat, MasksOtherComponents) {
   const CsrGraph two(doubled(flat.data));
   const LogMapSolver solver_of_two(two);

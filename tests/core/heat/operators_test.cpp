@@ -21,7 +21,7 @@ std::vector<double> apply(const CsrGraph& graph, const HeatOperators& heat, cons
     double sum[2] = {0, 0};
     for (std::size_t a = 0; a < width; ++a) sum[a] = graph.mass(i) * x[i * width + a];
     for (std::size_t e = 0; e < star.degree(); ++e) {
-      const double w = heat.tau() * star.weights[e];
+      const double w = heat.tau()[0] * star.weights[e];
       const double* other = x.data() + star.neighbors[e] * static_cast<Index>(width);
       const double c = star.transports[2 * e], s = star.transports[2 * e + 1];
       const double carried[2] = {vectors ? c * other[0] - s * other[1] : other[0],
@@ -36,7 +36,7 @@ std::vector<double> apply(const CsrGraph& graph, const HeatOperators& heat, cons
 TEST(HeatOperators, InvertTheirDefinition) {
   const CsrGraph graph(sphere_graph(300));
   const HeatOperators heat(graph, {.t_coef = 3.0});
-  EXPECT_DOUBLE_EQ(heat.tau(), 3.0 * graph.mean_edge_length() * graph.mean_edge_length());
+  EXPECT_DOUBLE_EQ(heat.tau()[0], 3.0 * graph.mean_edge_length() * graph.mean_edge_length());
   for (bool vectors : {false, true}) {
     std::vector<double> x(static_cast<std::size_t>(graph.size()) * (vectors ? 2 : 1));
     for (std::size_t k = 0; k < x.size(); ++k) x[k] = std::sin(1.0 + 3.7 * static_cast<double>(k));

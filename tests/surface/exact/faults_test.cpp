@@ -11,7 +11,6 @@
 namespace ahm::test {
 namespace {
 
-using exact::Connectivity;
 using exact::MeshPoint;
 using exact::PolyhedralSurface;
 

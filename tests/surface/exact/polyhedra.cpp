@@ -9,7 +9,7 @@ namespace ahm::test {
 exact::PolyhedralSurface surface_of(const trimesh::TriangleMesh& mesh) {
   std::vector<exact::FaceSides> sides;
   for (Index f = 0; f < mesh.face_count(); ++f) sides.push_back(mesh.layout(f));
-  return {{mesh.tails(), mesh.twins(), mesh.mirrored(), mesh.corners()}, sides};
+  return {mesh.topology().half_edges(), sides, mesh.corners()};
 }
 
 Polyhedron::Polyhedron(const Mesh& shape)

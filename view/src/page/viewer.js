@@ -173,10 +173,11 @@
     return group;
   }
 
-  // The pattern by itself, drawn in the lower left corner.
+  // The pattern by itself, drawn in the lower left corner: a wheel, or a bar from distance 0 upwards.
+  const bar = { left: 28, bottom: 24, width: 20, height: 240 };
   function make_legend() {
     const scene = new THREE.Scene();
-    const legend_uniforms = { pattern: uniforms.pattern, sectors: uniforms.sectors, ring_scale: { value: 1 }, pixel: { value: 0.05 } };
+    const legend_uniforms = Object.assign({ pixel: { value: 0.05 } }, uniforms);
     scene.add(new THREE.Mesh(new THREE.PlaneBufferGeometry(2, 2), new THREE.ShaderMaterial({
       uniforms: legend_uniforms, transparent: true,
       vertexShader: "varying vec2 at; void main() { at = position.xy; gl_Position = vec4(position.xy, 0.0, 1.0); }",
@@ -184,6 +185,12 @@
         varying vec2 at;
         uniform float pixel;
         void main() {
+          if (pattern == 3) {
+            float shown = rings * ring_scale;
+            vec3 colour = map_colour(pattern, vec2((0.5 * at.y + 0.5) * shown, 0.0), vec2(0.0), vec2(0.5 * pixel * shown, 0.0), sectors, shown);
+            gl_FragColor = vec4(to_srgb(colour), 1.0);
+            return;
+          }
           float cover = clamp((0.98 - length(at)) / pixel + 0.5, 0.0, 1.0);
           vec3 c = map_colour(pattern, at * 4.0, vec2(4.0 * pixel, 0.0), vec2(0.0, 4.0 * pixel), sectors, 1.0);
           if (length(at) < 0.06) c = vec3(0.75, 0.007, 0.013);
@@ -191,6 +198,19 @@
         }`
     })));
     return { scene: scene, camera: new THREE.OrthographicCamera(-1, 1, 1, -1, 0, 1), uniforms: legend_uniforms };
+  }
+
+  // About five numbers beside the bar, at its lines.
+  function label_bar(factor) {
+    const rings = meta.rings / factor, every = Math.max(1, Math.ceil(rings / 6)), numbers = element("bar");
+    numbers.textContent = "";
+    for (let ring = 0; ring <= rings; ring += every) {
+      const label = document.createElement("div");
+      label.textContent = Number((ring * meta.ring_width * factor).toPrecision(4));
+      label.style.bottom = bar.bottom + bar.height * ring / rings + "px";
+      label.style.left = bar.left + bar.width + "px";
+      numbers.appendChild(label);
+    }
   }
 
   function start() {
@@ -206,7 +226,7 @@
     camera.up.fromArray(meta.up);
     const controls = new THREE.OrbitControls(camera, renderer.domElement);
     const source_position = new THREE.Vector3().fromArray(meta.source);
-    const has_legend = meta.is_mapped && pattern < 2;
+    const has_wheel = meta.is_mapped && pattern < 2, has_bar = meta.is_mapped && pattern === 3 && meta.rings > 0;
     let pending = false;
 
     function draw() {
@@ -227,10 +247,11 @@
       renderer.setViewport(0, 0, width, height);
       renderer.clear();
       renderer.render(scene, camera);
-      if (!has_legend) return;
+      if (!has_wheel && !has_bar) return;
+      const box = has_bar ? bar : { left: 20, bottom: 20, width: 140, height: 140 };
       renderer.clearDepth();
-      renderer.setViewport(20, 20, 140, 140);
-      legend.uniforms.pixel.value = 2 / (140 * renderer.getPixelRatio());
+      renderer.setViewport(box.left, box.bottom, box.width, box.height);
+      legend.uniforms.pixel.value = 2 / (box.height * renderer.getPixelRatio());
       renderer.render(legend.scene, legend.camera);
     }
     function redraw() {
@@ -254,6 +275,7 @@
       const factor = Math.pow(2, Number(element("ring").value));
       uniforms.ring_scale.value = 1 / factor;
       element("ring_text").textContent = Number((meta.ring_width * factor).toPrecision(4));
+      if (has_bar) label_bar(factor);
       redraw();
     }
     controls.addEventListener("change", redraw);
@@ -262,7 +284,7 @@
     element("reset").addEventListener("click", reset);
     element("ring").addEventListener("input", set_ring);
     element("ring_name").textContent = meta.pattern === "grid" ? "square width" : "ring width";
-    if (!has_legend) for (const id of ["axis_u", "axis_v"]) element(id).style.display = "none";
+    if (!has_wheel) for (const id of ["axis_u", "axis_v"]) element(id).style.display = "none";
     resize();
     set_ring();
     reset();

@@ -3,7 +3,7 @@
 ///
 /// \code
 /// auto geometry = ahm::io::read("scan.pcd");
-/// for (const std::string& warning : geometry.warnings) std::cerr << warning << '\n';
+/// for (const ahm::Warning& warning : geometry.warnings) std::cerr << warning.id << '\n';
 /// \endcode
 #pragma once
 

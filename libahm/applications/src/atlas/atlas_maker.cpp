@@ -188,7 +188,7 @@ AtlasMaker::AtlasMaker(const LogMapSolver& solver, const FaceList& faces)
     : solver_(solver), faces_(faces), neighbors_((check(solver.graph(), faces), FaceNeighbors(faces))) {}
 
 Atlas AtlasMaker::make(std::span<const Vertex> sources) {
-  const std::vector<Index> label = nearest_source(solver_, sources);
+  const std::vector<Index> label = voronoi_cells(solver_.graph(), sources).labels;
   Regions regions(faces_, label, sources.size());
   const std::vector<Index> missing = regions.adopt(regions_);
   for (std::size_t first = 0; first < missing.size(); first += block_size) {

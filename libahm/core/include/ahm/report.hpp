@@ -9,6 +9,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
@@ -32,6 +33,7 @@ struct Warning {
   std::string_view id;          ///< snake_case, static storage
   std::vector<double> numbers;  ///< counts and lengths (world units), as the id says
   std::vector<Row> rows;        ///< the first ten rows concerned, where the id names rows
+  std::string name{};           ///< of a thing that is called by its name in the input, where the id says so
 };
 
 }  // namespace ahm

@@ -153,7 +153,8 @@ VertexField radial_field(const LogMapSolver& solver, const Source& source, const
     const auto d = static_cast<std::size_t>(solver.graph().dimension());
     AffineHeat heat = affine_heat(solver, source, options);
     heat.diffuse_heat();
-    VertexField field{static_cast<int>(d), heat.solve(), {}};
+    heat.solve();
+    VertexField field{static_cast<int>(d), {heat.unknown(0).begin(), heat.unknown(0).end()}, {}};
     const auto lambda = heat.lambda(0);
     for (std::size_t i = 0; i < lambda.size(); ++i)
       for (std::size_t a = 0; a < d; ++a)
@@ -161,13 +162,6 @@ VertexField radial_field(const LogMapSolver& solver, const Source& source, const
     finish(field, solver, source, [&](std::size_t i) { return lambda[i] >= heat.least_heat(0); });
     return field;
   });
-}
-
-VertexField distance(const LogMap& map) {
-  VertexField field{
-      1, std::vector<double>(static_cast<std::size_t>(map.size())), {map.status().begin(), map.status().end()}};
-  for (Index i = 0; i < map.size(); ++i) field.values[i] = map.distance(Vertex(i));
-  return field;
 }
 
 }  // namespace ahm

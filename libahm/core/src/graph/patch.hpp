@@ -11,7 +11,7 @@
 
 namespace ahm {
 
-/// Cuts the given vertices out of a graph, with its own mean edge length, so that tau stays the same. Edges to the
+/// Cuts the given vertices out of a graph, with its mean edge length. Edges to the
 /// outside are dropped, which leaves the natural boundary: affine maps stay exact on flat geometry.
 /// @param local_of    global vertex -> its place in `vertices`, or negative
 /// @param on_outside  called as (place in `vertices`, star, edge) for each dropped edge of weight other than 0; returns
@@ -26,6 +26,7 @@ CsrGraph cut_out(const TangentGraph& graph, std::span<const Index> vertices, con
   patch.kind = graph.transport_kind();
   patch.length_unit = graph.length_unit();
   patch.mean_edge_length = graph.mean_edge_length();
+  patch.is_triangulation = graph.is_triangulation();
   patch.row_begin.reserve(vertices.size() + 1);
   patch.masses.reserve(vertices.size());
   const std::size_t expected =

@@ -10,7 +10,7 @@ namespace {
 /// Column i of the upper triangles: the edges of star i that lead to smaller vertices, then the diagonal.
 class ColumnWriter {
  public:
-  ColumnWriter(const TangentGraph& graph, double tau, double scaling)
+  ColumnWriter(const TangentGraph& graph, std::span<const double> tau, double scaling)
       : d_(graph.dimension()),
         layout_(graph.transport_layout()),
         complex_(layout_.kind == TransportKind::rotation2),
@@ -33,7 +33,7 @@ class ColumnWriter {
   void add_column(Index i, double mass, const Star& star) {
     gather(i, star);
     double diagonal = mass;
-    for (double w : star.weights) diagonal += tau_ * w;
+    for (double w : star.weights) diagonal += tau_[i] * w;
     diagonal *= scaling_;
     A_.rows.insert(A_.rows.end(), columns_.begin(), columns_.end());
     A_.values.insert(A_.values.end(), scalar_.begin(), scalar_.end());
@@ -66,7 +66,7 @@ class ColumnWriter {
         scalar_.push_back(0);
         blocks_.insert(blocks_.end(), width, 0.0);
       }
-      const double entry = -scaling_ * tau_ * star.weights[e];
+      const double entry = -scaling_ * tau_[i] * star.weights[e];
       scalar_.back() += entry;
       // B_ji gains -tau w R_ij, the inverse of the star's R_ji.
       star.transport(e).add_inverse(entry, blocks_.data() + blocks_.size() - width);
@@ -97,7 +97,8 @@ class ColumnWriter {
   int d_;
   TransportLayout layout_;
   bool complex_;  ///< B is n x n complex, not n d x n d real: the matrices differ in kind
-  double tau_, scaling_;
+  std::span<const double> tau_;
+  double scaling_;
   SparseUpper A_, B_;
   std::vector<int> order_;
   std::vector<Offset> columns_;
@@ -106,7 +107,7 @@ class ColumnWriter {
 
 }  // namespace
 
-AssembledOperators assemble(const TangentGraph& graph, double tau, double scaling) {
+AssembledOperators assemble(const TangentGraph& graph, std::span<const double> tau, double scaling) {
   ColumnWriter writer(graph, tau, scaling);
   for (Index i = 0; i < graph.size(); ++i) writer.add_column(i, graph.mass(i), graph.star(i));
   return writer.take();

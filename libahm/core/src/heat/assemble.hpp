@@ -2,6 +2,8 @@
 /// The matrices c (M + tau L) and c (M + tau L^nabla) of a graph.
 #pragma once
 
+#include <span>
+
 #include "ahm/graph/tangent_graph.hpp"
 #include "heat/cholesky.hpp"
 
@@ -13,6 +15,7 @@ struct AssembledOperators {
 };
 
 /// Assembles both operators in one pass over the graph's stars; parallel edges are summed. Time and memory O(nnz).
-AssembledOperators assemble(const TangentGraph& graph, double tau, double scaling);
+/// @param tau  of each vertex, the same at both ends of an edge
+AssembledOperators assemble(const TangentGraph& graph, std::span<const double> tau, double scaling);
 
 }  // namespace ahm

@@ -7,8 +7,7 @@
 namespace ahm {
 
 /// Checks the graph, if the options say so, and t_coef.
-/// @return tau
 /// @throws InvalidGraph, InvalidArgument
-double check_heat_options(const TangentGraph& graph, const HeatOptions& options);
+void check_heat_options(const TangentGraph& graph, const HeatOptions& options);
 
 }  // namespace ahm

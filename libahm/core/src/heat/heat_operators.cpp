@@ -1,6 +1,5 @@
 #include "ahm/heat/heat_operators.hpp"
 
-#include <new>
 #include <string>
 #include <utility>
 
@@ -8,6 +7,8 @@
 #include "ahm/graph/components.hpp"
 #include "ahm/util/memory.hpp"
 #include "heat/blas_control.hpp"
+#include "heat/check_options.hpp"
+#include "heat/component_scales.hpp"
 #include "heat/heat_system.hpp"
 
 namespace ahm {
@@ -20,15 +21,27 @@ struct HeatOperators::Impl {
   std::unique_ptr<const HeatSystem> system;
 };
 
-HeatOperators::HeatOperators(const TangentGraph& graph, const HeatOptions& options) try
-    : HeatOperators(factored_system(graph, options), graph) {
-} catch (const std::bad_alloc&) {
-  throw ResourceExhausted("out of memory while factoring a graph of " + std::to_string(graph.size()) + " vertices");
+namespace {
+
+/// The checks come before anything else is asked of the graph.
+ComponentScales checked_scales(const TangentGraph& graph, const HeatOptions& options) {
+  check_heat_options(graph, options);
+  return ComponentScales(graph);
 }
 
-HeatOperators::HeatOperators(std::unique_ptr<const HeatSystem> system, const TangentGraph& graph)
-    : impl_(std::make_unique<Impl>(Impl{graph.size(), graph.dimension(), graph.transport_kind(),
-                                        connected_components(graph), std::move(system)})) {}
+}  // namespace
+
+HeatOperators::HeatOperators(const TangentGraph& graph, const HeatOptions& options) {
+  detail::with_memory_check("factoring a graph of " + std::to_string(graph.size()) + " vertices", [&] {
+    ComponentScales scales = checked_scales(graph, options);
+    auto system = factored_system(graph, diffusion_times(scales, options.t_coef), options);
+    *this = HeatOperators(std::move(system), graph, std::move(scales.components));
+  });
+}
+
+HeatOperators::HeatOperators(std::unique_ptr<const HeatSystem> system, const TangentGraph& graph, Components components)
+    : impl_(std::make_unique<Impl>(
+          Impl{graph.size(), graph.dimension(), graph.transport_kind(), std::move(components), std::move(system)})) {}
 
 HeatOperators::~HeatOperators() = default;
 HeatOperators::HeatOperators(HeatOperators&&) noexcept = default;
@@ -37,7 +50,7 @@ HeatOperators& HeatOperators::operator=(HeatOperators&&) noexcept = default;
 Index HeatOperators::size() const noexcept { return impl_->n; }
 int HeatOperators::dimension() const noexcept { return impl_->d; }
 TransportKind HeatOperators::transport_kind() const noexcept { return impl_->kind; }
-double HeatOperators::tau() const noexcept { return impl_->system->tau(); }
+std::span<const double> HeatOperators::tau() const noexcept { return impl_->system->tau(); }
 double HeatOperators::scaling() const noexcept { return impl_->system->scaling(); }
 const FactorStatistics& HeatOperators::statistics() const noexcept { return impl_->system->statistics(); }
 std::span<const Index> HeatOperators::components() const noexcept { return impl_->components.of_vertex; }

@@ -16,6 +16,7 @@
 #include "heat/blas_control.hpp"
 #include "heat/check_options.hpp"
 #include "heat/cholesky.hpp"
+#include "heat/component_scales.hpp"
 #include "heat/conjugate_gradient.hpp"
 
 namespace ahm {
@@ -31,18 +32,6 @@ double scaling_for(const TangentGraph& graph) {
   if (!(mean > 0) || !std::isfinite(mean))
     throw InvalidGraph("the mean mass is " + detail::number(mean) + "; masses must be finite and > 0");
   return std::ldexp(1.0, -std::ilogb(mean));
-}
-
-/// @throws InvalidArgument
-double checked_tau(const TangentGraph& graph, double t_coef) {
-  const double tau = t_coef * graph.mean_edge_length() * graph.mean_edge_length();
-  if (!(t_coef > 0) || !std::isfinite(t_coef))
-    throw InvalidArgument("t_coef is " + detail::number(t_coef) + "; it must be finite and > 0 (default 1)");
-  if (!(tau >= 1e-290) || !(tau <= 1e290))
-    throw InvalidArgument("tau = t_coef h^2 leaves the range of double precision (t_coef " + detail::number(t_coef) +
-                          ", mean edge length " + detail::number(graph.mean_edge_length()) +
-                          "): give the graph a length_unit near its edge length");
-  return tau;
 }
 
 /// Constants are in the kernel of L, so A 1 = m: how far A^-1 m is from 1 tells what conditioning leaves of the digits.
@@ -61,7 +50,7 @@ void check_conservation(const HeatSystem& system, const TangentGraph& graph) {
 template <class Solver>
 class SystemOf final : public HeatSystem {
  public:
-  SystemOf(double tau, double scaling) : HeatSystem(tau, scaling) {}
+  SystemOf(std::vector<double> tau, double scaling) : HeatSystem(std::move(tau), scaling) {}
 
   void solve_A(std::span<double> X, Offset columns) const override { A->solve(X, columns); }
   void solve_B(std::span<double> X, Offset columns) const override { B->solve(X, columns); }
@@ -80,30 +69,31 @@ class SystemOf final : public HeatSystem {
 /// The checks and the assembly that every system begins with.
 template <class Solver>
 std::pair<std::unique_ptr<SystemOf<Solver>>, AssembledOperators> begin(const TangentGraph& graph,
+                                                                       std::vector<double> tau,
                                                                        const HeatOptions& options) {
-  const double tau = check_heat_options(graph, options);
-  auto system = std::make_unique<SystemOf<Solver>>(tau, scaling_for(graph));
+  auto system = std::make_unique<SystemOf<Solver>>(std::move(tau), scaling_for(graph));
   options.progress.step("assemble", 0.0);
   detail::Stopwatch stopwatch;
-  AssembledOperators matrices = assemble(graph, tau, system->scaling());
+  AssembledOperators matrices = assemble(graph, system->tau(), system->scaling());
   system->statistics_to_fill().assemble_seconds = stopwatch.lap();
   return {std::move(system), std::move(matrices)};
 }
 
 }  // namespace
 
-double check_heat_options(const TangentGraph& graph, const HeatOptions& options) {
+void check_heat_options(const TangentGraph& graph, const HeatOptions& options) {
   if (options.check_graph) {
     options.progress.step("check", 0.0);
     validate(graph);
   }
-  return checked_tau(graph, options.t_coef);
+  diffusion_time(options.t_coef, graph.mean_edge_length());
 }
 
-std::unique_ptr<const HeatSystem> factored_system(const TangentGraph& graph, const HeatOptions& options) {
+std::unique_ptr<const HeatSystem> factored_system(const TangentGraph& graph, std::vector<double> tau,
+                                                  const HeatOptions& options) {
   std::unique_ptr<SystemOf<CholeskyFactor>> system;
   AssembledOperators matrices;
-  std::tie(system, matrices) = begin<CholeskyFactor>(graph, options);
+  std::tie(system, matrices) = begin<CholeskyFactor>(graph, std::move(tau), options);
   detail::Stopwatch stopwatch;
   options.progress.step("analyze", 0.0);
 
@@ -123,8 +113,9 @@ std::unique_ptr<const HeatSystem> factored_system(const TangentGraph& graph, con
   return system;
 }
 
-std::unique_ptr<const HeatSystem> iterative_system(const TangentGraph& graph, const HeatOptions& options) {
-  auto [system, matrices] = begin<ConjugateGradient>(graph, options);
+std::unique_ptr<const HeatSystem> iterative_system(const TangentGraph& graph, std::vector<double> tau,
+                                                   const HeatOptions& options) {
+  auto [system, matrices] = begin<ConjugateGradient>(graph, std::move(tau), options);
   system->A.emplace(matrices.A, name_A);
   system->B.emplace(matrices.B, name_B);
   system->finish(graph);

@@ -4,6 +4,8 @@
 
 #include <memory>
 #include <span>
+#include <utility>
+#include <vector>
 
 #include "ahm/heat/heat_operators.hpp"
 
@@ -19,24 +21,29 @@ class HeatSystem {
   /// X <- (c B)^-1 X, column major; complex numbers as interleaved pairs.
   virtual void solve_B(std::span<double> X, Offset columns) const = 0;
 
-  double tau() const noexcept { return tau_; }
+  /// Of each vertex.
+  std::span<const double> tau() const noexcept { return tau_; }
   double scaling() const noexcept { return scaling_; }
   const FactorStatistics& statistics() const noexcept { return statistics_; }
 
  protected:
-  HeatSystem(double tau, double scaling) : tau_(tau), scaling_(scaling) {}
+  HeatSystem(std::vector<double> tau, double scaling) : tau_(std::move(tau)), scaling_(scaling) {}
 
-  double tau_, scaling_;
+  std::vector<double> tau_;
+  double scaling_;
   FactorStatistics statistics_;
 };
 
 /// By Cholesky factors.
+/// @param tau  of each vertex, the same at both ends of an edge
 /// @throws as `HeatOperators`
-std::unique_ptr<const HeatSystem> factored_system(const TangentGraph& graph, const HeatOptions& options);
+std::unique_ptr<const HeatSystem> factored_system(const TangentGraph& graph, std::vector<double> tau,
+                                                  const HeatOptions& options);
 
 /// By conjugate gradients; block graphs only. Errors are relative to the largest value of a solution, which is enough for
 /// the thin bands of a march.
 /// @throws as `HeatOperators`
-std::unique_ptr<const HeatSystem> iterative_system(const TangentGraph& graph, const HeatOptions& options);
+std::unique_ptr<const HeatSystem> iterative_system(const TangentGraph& graph, std::vector<double> tau,
+                                                   const HeatOptions& options);
 
 }  // namespace ahm

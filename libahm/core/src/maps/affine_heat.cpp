@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "ahm/util/parallel.hpp"
+#include "ahm/util/scratch.hpp"
+#include "ahm/util/small_math.hpp"
 
 namespace ahm {
 
@@ -61,10 +63,10 @@ void AffineHeat::diffuse() {
 /// adds the displacement j -> i, so that the plane comes out exact.
 std::vector<double> AffineHeat::translations() const {
   std::vector<double> rho(inflows_.size() * n_ * d_, 0.0);
-  const double factor = -operators_.tau() * operators_.scaling();
   const double to_units = graph_.length_unit() / solution_unit(graph_);
   detail::for_each_index(n_, threads_, [&](std::size_t i) {
     const Star star = graph_.star(static_cast<Index>(i));
+    const double factor = -operators_.tau()[i] * operators_.scaling();
     for (std::size_t s = 0; s < inflows_.size(); ++s) {
       const double* lambda = lambda_.data() + s * n_;
       double* out = rho.data() + (s * n_ + i) * d_;
@@ -82,11 +84,11 @@ std::vector<double> AffineHeat::translations() const {
   return rho;
 }
 
-std::vector<double> AffineHeat::solve() const {
+void AffineHeat::solve() {
   const std::vector<double> rho = translations();
-  std::vector<double> X(rho.size());
+  unknown_.assign(rho.size(), 0.0);
   for (std::size_t s = 0; s < inflows_.size(); ++s) {
-    double* right_side = X.data() + s * n_ * d_;
+    double* right_side = unknown_.data() + s * n_ * d_;
     const FrameField U = frames(s);
     detail::for_each_index(n_, threads_, [&](std::size_t i) {
       system_.put(U, static_cast<Index>(i), std::span(rho).subspan((s * n_ + i) * d_, d_), right_side, n_);
@@ -96,16 +98,54 @@ std::vector<double> AffineHeat::solve() const {
         right_side[system_.place(static_cast<std::size_t>(inflows_[s].vertices[k]), a, n_, d_)] +=
             inflows_[s].values[k * d_ + a];
   }
-  system_.solve(operators_, X, inflows_.size());
-  return X;
+  system_.solve(operators_, unknown_, inflows_.size());
 }
 
-void AffineHeat::solution_at(std::span<const double> solution, Index vertex, double* out) const {
-  for (std::size_t a = 0; a < d_; ++a) out[a] = solution[system_.place(static_cast<std::size_t>(vertex), a, n_, d_)];
+/// A^-1 (s + b |z|^2)
+void AffineHeat::solve_squares() {
+  const double to_units = graph_.length_unit() / solution_unit(graph_);
+  squares_.resize(inflows_.size() * n_);
+  detail::for_each_index(n_, threads_, [&](std::size_t i) {
+    const Star star = graph_.star(static_cast<Index>(i));
+    const double coefficient = -operators_.tau()[i] * operators_.scaling();
+    Scratch e(d_), value(d_), pairs(d_ * d_);
+    for (std::size_t s = 0; s < inflows_.size(); ++s) {
+      std::fill(pairs.span().begin(), pairs.span().end(), 0.0);
+      double squares = 0;
+      for (std::size_t k = 0; k < star.degree(); ++k) {
+        const Index j = star.neighbors[k];
+        const double amount = coefficient * star.weights[k];
+        for (std::size_t a = 0; a < d_; ++a) e.data()[a] = to_units * star.logs[k * d_ + a];
+        unknown_at(s, j, value.data());
+        system_.add_pair(2 * amount, e.span(), star.transport(k), value.span(), pairs.data());
+        squares += amount * dot(e.span(), e.span()) * lambda_[s * n_ + static_cast<std::size_t>(j)];
+      }
+      squares_[s * n_ + i] = system_.paired(frames(s), static_cast<Index>(i), pairs.span()) - squares;
+    }
+  });
+  for (std::size_t s = 0; s < inflows_.size(); ++s) {
+    const Inflow& in = inflows_[s];
+    for (std::size_t k = 0; k < in.vertices.size(); ++k) {
+      double& entry = squares_[s * n_ + static_cast<std::size_t>(in.vertices[k])];
+      entry += in.squares[k];
+      if (!in.pairs.empty())
+        entry += system_.paired(frames(s), in.vertices[k], std::span(in.pairs).subspan(k * d_ * d_, d_ * d_));
+    }
+  }
+  operators_.solve_scalar(squares_, static_cast<Index>(inflows_.size()));
 }
 
-void AffineHeat::coordinates_at(std::size_t source, std::span<const double> solution, Index vertex, double* phi) const {
-  system_.read(frames(source), vertex, solution, n_, phi);
+void AffineHeat::unknown_at(std::size_t source, Index vertex, double* out) const {
+  const std::span<const double> x = unknown(source);
+  for (std::size_t a = 0; a < d_; ++a) out[a] = x[system_.place(static_cast<std::size_t>(vertex), a, n_, d_)];
+}
+
+double AffineHeat::root_mean_square_at(std::size_t source, Index vertex) const {
+  return std::sqrt(std::max(0.0, square_at(source, vertex) / lambda(source)[vertex])) * solution_unit(graph_);
+}
+
+void AffineHeat::coordinates_at(std::size_t source, Index vertex, double* phi) const {
+  system_.read(frames(source), vertex, unknown(source), n_, phi);
   const double heat = lambda(source)[vertex], unit = solution_unit(graph_);
   for (std::size_t a = 0; a < d_; ++a) phi[a] = phi[a] / heat * unit;
 }

@@ -9,6 +9,15 @@
 ///     rho_i  = -tau sum_j w_ij e_ij lambda_j            in frame i
 ///
 /// and then the variant's own system (maps/variants): adaptive, x = A^-1 (rho / U + b z); localized, Y = B^-1 (rho + b U z).
+///
+/// Isometries of the plane are linear on (|z|^2, z, 1) too, so that the mean square of what heat brings to a vertex costs
+/// one more solve:
+///
+///     s_i = -tau sum_j w_ij (2 <e_ij, z_j> - |e_ij|^2 lambda_j),   q = A^-1 (s + b |z|^2)
+///
+/// with z_j = x_j (adaptive) or Y_j (localized) seen from i. Where heat comes along several ways their vectors cancel in
+/// phi, but their squares do not in q / lambda: its root is a distance that holds at cut loci, and q / lambda - |phi|^2 >= 0
+/// is the variance of the map.
 #pragma once
 
 #include <span>
@@ -34,12 +43,24 @@ class AffineHeat {
   /// Solves for lambda alone: enough for variants that put no frames into their system.
   void diffuse_heat();
 
-  /// The variant's unknown for every source, n x d numbers each, in units of `solution_unit(graph)`.
-  std::vector<double> solve() const;
-  /// The unknown of one source at a vertex, from its part of `solve`: d numbers.
-  void solution_at(std::span<const double> solution, Index vertex, double* out) const;
-  /// phi_i of one source in world units, from its part of `solve`.
-  void coordinates_at(std::size_t source, std::span<const double> solution, Index vertex, double* phi) const;
+  /// Solves for the variant's unknown, in units of `solution_unit(graph)`.
+  void solve();
+  /// Solves for the second moments q, after `solve`.
+  void solve_squares();
+  /// The unknown of one source: n x d numbers, laid out as its system wants them.
+  std::span<const double> unknown(std::size_t source) const {
+    return std::span(unknown_).subspan(source * n_ * d_, n_ * d_);
+  }
+  /// The unknown of one source at a vertex: d numbers.
+  void unknown_at(std::size_t source, Index vertex, double* out) const;
+  /// q of one source at a vertex.
+  double square_at(std::size_t source, Index vertex) const {
+    return squares_[source * n_ + static_cast<std::size_t>(vertex)];
+  }
+  /// sqrt(q_i / lambda_i) of one source in world units.
+  double root_mean_square_at(std::size_t source, Index vertex) const;
+  /// phi_i of one source in world units.
+  void coordinates_at(std::size_t source, Index vertex, double* phi) const;
 
   /// Whether enough heat reached the vertex, by both operators, for its numbers to be right.
   bool reached(std::size_t source, Index vertex) const {
@@ -65,6 +86,8 @@ class AffineHeat {
   std::vector<double> lambda_;          ///< n per source
   std::vector<double> least_heat_;      ///< one per source
   std::vector<double> frame_solution_;  ///< U~, frame_size() per source
+  std::vector<double> unknown_;         ///< n x d per source
+  std::vector<double> squares_;         ///< n per source
 };
 
 }  // namespace ahm

@@ -7,26 +7,36 @@
 
 namespace ahm {
 
-std::vector<double> diffusion_times(int order, const TangentGraph& graph) {
-  if (order == 1) return {1.0};
-  const double c = std::pow(static_cast<double>(graph.size()), 1.0 / graph.dimension()) / 50;
-  return c < 2 ? std::vector{1.0, 2.0} : std::vector{1.0, c, 2 * c};
+DiffusionTimes::DiffusionTimes(int order, const TangentGraph& graph, const ComponentScales& scales)
+    : count_(order == 1 ? 1 : 2), middle_(scales.sizes.size(), 1.0) {
+  if (order == 1) return;
+  for (std::size_t k = 0; k < middle_.size(); ++k) {
+    const double c = std::pow(static_cast<double>(scales.sizes[k]), 1.0 / graph.dimension()) / 50;
+    if (c < 2) continue;
+    middle_[k] = c;
+    count_ = 3;
+  }
 }
 
-LogMap extrapolate(const TangentGraph& graph, double t_coef, const std::vector<double>& times,
+double DiffusionTimes::factor(std::size_t k, Index component) const {
+  if (k == 0) return 1.0;
+  return k + 1 == count_ ? 2 * middle_[component] : middle_[component];
+}
+
+LogMap extrapolate(const TangentGraph& graph, const ComponentScales& scales, double t_coef, const DiffusionTimes& times,
                    const std::vector<const LogMap*>& maps, double radius) {
   const LogMap &first = *maps.front(), &middle = *maps[maps.size() - 2], &last = *maps.back();
   const auto n = static_cast<std::size_t>(first.size()), d = static_cast<std::size_t>(first.dimension());
-  const double c = times[times.size() - 2];
-  const double h = graph.mean_edge_length() * graph.length_unit();
-  const double step = (std::sqrt(2.0) - 1) * std::sqrt(t_coef * c) * h;  // sqrt(tau_2c) - sqrt(tau_c)
-  std::vector<double> coordinates(n * d, NAN), error(n, NAN), difference(d);
+  std::vector<double> coordinates(n * d, NAN), distances(n, NAN), error(n, NAN), difference(d);
   std::vector<Status> status(n, Status::ok);
   for (std::size_t i = 0; i < n; ++i) {
     const auto vertex = Vertex(i);
     for (const LogMap* map : maps)
       if (status[i] == Status::ok) status[i] = map->status(vertex);
     if (status[i] != Status::ok) continue;
+    const double c = times.middle(scales.component(vertex.index));
+    const double h = scales.h(vertex.index) * graph.length_unit();
+    const double step = (std::sqrt(2.0) - 1) * std::sqrt(t_coef * c) * h;  // sqrt(tau_2c) - sqrt(tau_c)
     const auto p1 = first.coordinates(vertex), pc = middle.coordinates(vertex), p2 = last.coordinates(vertex);
     for (std::size_t a = 0; a < d; ++a) difference[a] = p2[a] - pc[a];
     const double w = std::clamp((length(difference) / step - 3) / 2, 0.0, 1.0);
@@ -35,23 +45,31 @@ LogMap extrapolate(const TangentGraph& graph, double t_coef, const std::vector<d
     for (std::size_t a = 0; a < d; ++a) {
       const double extrapolated = pc[a] - difference[a] / (std::sqrt(2.0) - 1);
       // The same limit from the times 1 and c; with two times, the step that was made.
-      const double other = times.size() > 2 ? (std::sqrt(c) * p1[a] - pc[a]) / (std::sqrt(c) - 1) : pc[a];
+      const double other = c > 1 ? (std::sqrt(c) * p1[a] - pc[a]) / (std::sqrt(c) - 1) : pc[a];
       phi[a] = (1 - w) * extrapolated + w * p1[a];
       moved = std::hypot(moved, phi[a] - extrapolated);
       disagreement = std::hypot(disagreement, extrapolated - other);
     }
     error[i] = std::max(moved, disagreement);
+    // Unfolded distances are the same at all times.
+    const double r1 = first.distance(vertex), rc = middle.distance(vertex), r2 = last.distance(vertex);
+    const double at_zero = std::max(0.0, rc - (r2 - rc) / (std::sqrt(2.0) - 1));
+    distances[i] = r1 + (1 - w) * (at_zero - r1);
     if (!all_finite(phi))
       status[i] = Status::unreached;
-    else if (length(phi) > radius)
+    else if (distances[i] > radius)
       status[i] = Status::beyond_radius;
     if (status[i] == Status::ok) continue;
     std::fill(phi.begin(), phi.end(), NAN);
-    error[i] = NAN;
+    distances[i] = error[i] = NAN;
   }
   const bool marched =
       std::any_of(maps.begin(), maps.end(), [](auto* map) { return map->strategy() == Strategy::march; });
-  MapExtras extras{first.march(), {middle.frames().begin(), middle.frames().end()}, std::move(error)};
+  MapExtras extras{first.march(),
+                   std::move(distances),
+                   {first.spread().begin(), first.spread().end()},
+                   {middle.frames().begin(), middle.frames().end()},
+                   std::move(error)};
   for (std::size_t k = 1; k < maps.size(); ++k) extras.march += maps[k]->march();
   return LogMap(first.dimension(), first.variant(), marched ? Strategy::march : Strategy::global, first.source(),
                 std::move(coordinates), std::move(status), std::move(extras));

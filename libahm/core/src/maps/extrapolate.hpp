@@ -6,15 +6,30 @@
 
 #include "ahm/graph/tangent_graph.hpp"
 #include "ahm/maps/log_map.hpp"
+#include "heat/component_scales.hpp"
 
 namespace ahm {
 
-/// The times of one order, as factors of t_coef: {1}, or {1, c, 2c} with c = n^(1/d) / 50, or {1, 2} on graphs where that
-/// is less than 2. Longer times shrink the error that comes from the mesh's directions, ~ 1/c, and extrapolation removes
-/// the one in sqrt(tau) that grows with them.
-std::vector<double> diffusion_times(int order, const TangentGraph& graph);
+/// The diffusion times of one order as factors of t_coef, per component: {1}, or {1, c, 2c} with c = n^(1/d) / 50, n that of
+/// the component, and c = 1 where that is less than 2. Longer times shrink the error that comes from the mesh's directions,
+/// ~ 1/c, and extrapolation removes the one in sqrt(tau) that grows with them.
+class DiffusionTimes {
+ public:
+  DiffusionTimes(int order, const TangentGraph& graph, const ComponentScales& scales);
 
-/// Coordinates extrapolated vertex by vertex from the maps of one source at these times (factors of t_coef).
+  /// How many solves: 1; or 3, or 2 where c = 1 everywhere.
+  std::size_t count() const { return count_; }
+  /// Time number k of a component.
+  double factor(std::size_t k, Index component) const;
+  double middle(Index component) const { return middle_[component]; }
+
+ private:
+  std::size_t count_;
+  std::vector<double> middle_;  ///< c
+};
+
+/// Coordinates extrapolated vertex by vertex from the maps of one source at these times; distances of heat alike, along
+/// the same w.
 ///
 ///     phi* = phi(c) + (phi(c) - phi(2c)) / (sqrt 2 - 1)
 ///     a    = |phi(2c) - phi(c)| / (sqrt(tau_2c) - sqrt(tau_c)),   w = clamp((a - 3)/2, 0, 1)
@@ -22,7 +37,7 @@ std::vector<double> diffusion_times(int order, const TangentGraph& graph);
 ///
 /// a is about 1 where phi is smooth in sqrt(tau); where it is not (cut loci), the shortest time is kept. A vertex that
 /// lacks coordinates at any of the times keeps that status.
-LogMap extrapolate(const TangentGraph& graph, double t_coef, const std::vector<double>& times,
+LogMap extrapolate(const TangentGraph& graph, const ComponentScales& scales, double t_coef, const DiffusionTimes& times,
                    const std::vector<const LogMap*>& maps, double radius);
 
 }  // namespace ahm

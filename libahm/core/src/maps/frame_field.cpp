@@ -1,29 +1,12 @@
 #include "maps/frame_field.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
-#include <vector>
+
+#include "ahm/util/scratch.hpp"
 
 namespace ahm {
-namespace {
-
-/// Space for one frame: on the stack for d <= 3.
-class FrameBuffer {
- public:
-  explicit FrameBuffer(std::size_t width) {
-    if (width > small_.size()) large_.resize(width);
-  }
-  double* data() { return large_.empty() ? small_.data() : large_.data(); }
-
- private:
-  std::array<double, 9> small_;
-  std::vector<double> large_;
-};
-
-}  // namespace
-
 FrameField::FrameField(Index n, TransportLayout layout, std::span<const double> solution)
     : n_(static_cast<std::size_t>(n)), layout_(layout), solution_(solution) {}
 
@@ -50,13 +33,13 @@ void FrameField::frame(Index vertex, double* out) const {
 }
 
 void FrameField::to_source(Index vertex, const double* in, double* out, std::size_t stride) const {
-  FrameBuffer U(layout_.width());
+  Scratch U(layout_.width());
   frame(vertex, U.data());
   Transport(layout_, U.data()).apply_inverse(in, out, stride);
 }
 
 void FrameField::axes(Index vertex, double* out) const {
-  FrameBuffer U(layout_.width());
+  Scratch U(layout_.width());
   frame(vertex, U.data());
   Transport(layout_, U.data()).matrix(out);
 }

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "ahm/error.hpp"
+#include "ahm/util/small_math.hpp"
 #include "maps/frame_field.hpp"
 #include "maps/variants/variant_system.hpp"
 
@@ -61,6 +62,7 @@ Inflow inflow_of(const Source& source, const TangentGraph& graph, const HeatOper
     for (std::size_t c = first; c < in.frames.size(); ++c) in.frames[c] *= b;
     in.values.resize(in.values.size() + d);
     system.add_sample(b, U, z, in.values.data() + in.values.size() - d);
+    in.squares.push_back(b * dot(z, z));
   }
   in.translations.assign(in.vertices.size() * d, 0.0);
   return in;

@@ -20,6 +20,8 @@ struct Inflow {
   std::vector<double> frames;        ///< b U: enters B U~; stored as transports are
   std::vector<double> values;        ///< of the variant's own: enters its system; d numbers
   std::vector<double> translations;  ///< enters rho, hence every variant; d numbers in the vertex's frame
+  std::vector<double> squares;       ///< b |z|^2: enters the second moment
+  std::vector<double> pairs;         ///< of known vertices, d x d numbers: enters the second moment with U; or empty
 };
 
 /// @throws InvalidArgument when the source does not fit the graph

@@ -4,6 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include "ahm/util/scratch.hpp"
+#include "ahm/util/small_math.hpp"
+
 namespace ahm {
 
 KnownValues::KnownValues(const TangentGraph& graph, const VariantSystem& system)
@@ -14,13 +17,14 @@ KnownValues::KnownValues(const TangentGraph& graph, const VariantSystem& system)
       to_units_(graph.length_unit() / solution_unit(graph)),
       lambda_(static_cast<std::size_t>(graph.size())),
       value_(lambda_.size() * d_),
+      square_(lambda_.size()),
       frame_(lambda_.size() * width_),
       exponents_(lambda_.size()) {}
 
-void KnownValues::take(Index vertex, Index place, const AffineHeat& heat, std::size_t source,
-                       std::span<const double> solution, HeatExponents exponents) {
+void KnownValues::take(Index vertex, Index place, const AffineHeat& heat, std::size_t source, HeatExponents exponents) {
   lambda_[vertex] = heat.lambda(source)[place];
-  heat.solution_at(solution, place, value_.data() + vertex * d_);
+  heat.unknown_at(source, place, value_.data() + vertex * d_);
+  square_[vertex] = heat.square_at(source, place);
   heat.frames(source).raw(place, frame_.data() + vertex * width_);
   exponents_[vertex] = exponents;
 }
@@ -56,8 +60,14 @@ void KnownValues::add_to(Inflow& in, const Star& star, std::size_t edge, double 
   const double heat = std::ldexp(conductance, exponents_[j].heat - exponents.heat);
   const double turn = std::ldexp(conductance, exponents_[j].frame - exponents.frame);
   in.heat.back() += heat * lambda_[j];
+  Scratch e(d_);
   double* translation = in.translations.data() + in.translations.size() - d_;
-  for (std::size_t a = 0; a < d_; ++a) translation[a] -= heat * lambda_[j] * (to_units_ * star.log(edge)[a]);
+  for (std::size_t a = 0; a < d_; ++a) {
+    e.data()[a] = to_units_ * star.log(edge)[a];
+    translation[a] -= heat * lambda_[j] * e.data()[a];
+  }
+  in.squares.back() += heat * (square_[j] + dot(e.span(), e.span()) * lambda_[j]);
+  system_.add_pair(-2 * heat, e.span(), R, value(j), in.pairs.data() + in.pairs.size() - d_ * d_);
   system_.add_known(heat, R, value(j), in.values.data() + in.values.size() - d_);
   R.add_product(turn, frame(j).data(), in.frames.data() + in.frames.size() - width_);
 }

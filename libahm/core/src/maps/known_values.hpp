@@ -13,19 +13,18 @@ namespace ahm {
 
 /// Powers of two that a solve's numbers are to be multiplied by.
 struct HeatExponents {
-  std::int32_t heat = 0;   ///< of lambda and of the variant's unknown
+  std::int32_t heat = 0;   ///< of lambda, the variant's unknown and its second moment
   std::int32_t frame = 0;  ///< of U~
 };
 
-/// lambda, U~ and the variant's unknown of every vertex, as mantissas with exponents of their own: nothing underflows at
+/// lambda, U~, the variant's unknown and its second moment of every vertex, as mantissas with exponents of their own: nothing underflows at
 /// any distance.
 class KnownValues {
  public:
   KnownValues(const TangentGraph& graph, const VariantSystem& system);
 
   /// Takes over what vertex `place` of a solve found for `vertex`.
-  void take(Index vertex, Index place, const AffineHeat& heat, std::size_t source, std::span<const double> solution,
-            HeatExponents exponents);
+  void take(Index vertex, Index place, const AffineHeat& heat, std::size_t source, HeatExponents exponents);
 
   double heat(Index vertex) const { return lambda_[vertex]; }
   /// -log lambda
@@ -47,7 +46,7 @@ class KnownValues {
   TransportLayout layout_;
   std::size_t d_, width_;
   double to_units_;  ///< from the graph's lengths to those of the solution
-  std::vector<double> lambda_, value_, frame_;
+  std::vector<double> lambda_, value_, square_, frame_;
   std::vector<HeatExponents> exponents_;
 };
 

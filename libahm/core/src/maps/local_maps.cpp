@@ -10,6 +10,7 @@
 #include <string>
 
 #include "ahm/error.hpp"
+#include "ahm/fields/unfolding_front.hpp"
 #include "ahm/graph/validate.hpp"
 #include "ahm/util/memory.hpp"
 #include "ahm/util/parallel.hpp"
@@ -19,7 +20,10 @@
 #include "graph/shortest_paths.hpp"
 #include "heat/blas_control.hpp"
 #include "heat/check_options.hpp"
+#include "heat/component_scales.hpp"
+#include "heat/heat_system.hpp"
 #include "maps/affine_heat.hpp"
+#include "maps/heat_distance.hpp"
 
 namespace ahm {
 namespace {
@@ -95,7 +99,8 @@ void check(const TangentGraph& graph, std::span<const Source> sources, const Loc
 }
 
 /// Groups of sources near each other: the first that has no group yet, and those around it.
-std::vector<std::vector<Index>> group(const TangentGraph& graph, std::span<const Source> sources, double reach) {
+template <class Reach>
+std::vector<std::vector<Index>> group(const TangentGraph& graph, std::span<const Source> sources, const Reach& reach) {
   const auto n = static_cast<std::size_t>(graph.size());
   SparseArray<Index> first(n);  // 1 + the first source at a vertex that has no group yet
   std::vector<Index> after(sources.size(), -1);
@@ -110,7 +115,7 @@ std::vector<std::vector<Index>> group(const TangentGraph& graph, std::span<const
   for (std::size_t seed = 0; seed < sources.size(); ++seed) {
     if (grouped[seed]) continue;
     std::vector<Index> members;
-    ball.grow(sources[seed].vertices().first(1), reach, [&](Index vertex) {
+    ball.grow(sources[seed].vertices().first(1), reach(sources[seed].vertices().front()), [&](Index vertex) {
       for (Index s = first[vertex] - 1; s >= 0; s = first[vertex] - 1) {
         if (members.size() == group_size) return false;
         members.push_back(s);
@@ -132,12 +137,14 @@ struct Entries {
 
 class Worker {
  public:
-  Worker(const TangentGraph& graph, std::span<const Source> sources, const LocalMapOptions& options)
+  Worker(const TangentGraph& graph, const ComponentScales& scales, std::span<const Source> sources,
+         const LocalMapOptions& options)
       : graph_(graph),
         sources_(sources),
         options_(options),
         operators_(options.heat),
         ball_(graph),
+        scales_(scales),
         place_(static_cast<std::size_t>(graph.size())),
         d_(static_cast<std::size_t>(graph.dimension())) {
     operators_.progress = {};
@@ -147,7 +154,10 @@ class Worker {
 
   /// Solves for the sources of one group on one patch; result[s] for source s.
   void solve(std::span<const Index> members, std::vector<Entries>& result) {
-    const double unit = graph_.length_unit(), sqrt_tau = std::sqrt(options_.heat.t_coef) * graph_.mean_edge_length();
+    double h = 0;
+    for (Index s : members)
+      for (Vertex vertex : sources_[s].vertices()) h = std::max(h, scales_.h(vertex.index));
+    const double unit = graph_.length_unit(), sqrt_tau = std::sqrt(options_.heat.t_coef) * h;
     const double reach = options_.radius / unit + options_.margin * sqrt_tau;  // graph units
     for (double detour = usual_detour; detour < largest_detour; detour *= 1.3)
       if (solve(members, detour * reach, reach * unit, result)) return;
@@ -177,36 +187,72 @@ class Worker {
           if (edge.empty() || edge.back() != static_cast<Index>(k)) edge.push_back(static_cast<Index>(k));
           return 0.0;
         });
-    const HeatOperators operators(patch, operators_);
+    std::vector<double> tau;
+    for (Index vertex : vertices) tau.push_back(diffusion_time(options_.heat.t_coef, scales_.h(vertex)));
+    const HeatOperators operators(factored_system(patch, std::move(tau), operators_), patch, {});
     std::vector<Inflow> inflows;
     for (Index s : members) {
       inflows.push_back(inflow_of(sources_[s], graph_, operators, options_.heat.variant));
       for (Index& vertex : inflows.back().vertices) vertex = place_[vertex] - 1;
     }
+    std::vector<Source> local;
+    for (Index s : members) local.push_back(in_patch(sources_[s]));
     for (Index vertex : vertices) place_[vertex] = 0;
     AffineHeat heat(patch, operators, options_.heat.variant, std::move(inflows));
     heat.diffuse();
-    const std::vector<double> solution = heat.solve();
-    const std::size_t size = solution.size() / members.size();
+    heat.solve();
+    if (!graph_.is_triangulation()) heat.solve_squares();
     for (std::size_t m = 0; m < members.size(); ++m)
-      if (!collect(heat, m, std::span(solution).subspan(m * size, size), vertices, edge, wanted, result[members[m]]))
-        return false;
+      if (!collect(heat, m, patch, local[m], vertices, edge, wanted, result[members[m]])) return false;
     return true;
   }
 
+  /// A source by the places of its vertices.
+  Source in_patch(const Source& source) {
+    Source result(static_cast<int>(d_));
+    const std::vector<double> zero(d_, 0.0);
+    for (std::size_t k = 0; k < source.vertices().size(); ++k) {
+      const bool plain = source.offsets().empty();
+      result.add(Vertex(place_[source.vertices()[k].index] - 1), source.weights()[k],
+                 plain ? zero : source.offsets().subspan(k * d_, d_),
+                 plain ? std::span<const double>() : source.axes().subspan(k * d_ * d_, d_ * d_), source.place(k));
+    }
+    return result;
+  }
+
+  /// Distances of the patch from its source number m, as those of a whole map (`LogMap::distance`).
+  void measure(const AffineHeat& heat, std::size_t m, const CsrGraph& patch, const Source& source, double root_tau,
+               double wanted) {
+    const auto n = static_cast<std::size_t>(patch.size());
+    distance_.resize(n);
+    if (graph_.is_triangulation()) {
+      UnfoldingFront front(patch);
+      front.add(source);
+      front.run(std::max(wanted, options_.radius));
+      for (std::size_t k = 0; k < n; ++k) distance_[k] = front.distance(Vertex(k));
+      return;
+    }
+    for (std::size_t k = 0; k < n; ++k)
+      distance_[k] = heat_distance(length(std::span<const double>(phi_).subspan(k * d_, d_)),
+                                   heat.root_mean_square_at(m, static_cast<Index>(k)), root_tau);
+    for (std::size_t k = 0; k < source.vertices().size(); ++k)
+      if (source.weights()[k] > 0) distance_[source.vertices()[k].index] = source.place(k).distance;
+  }
+
   /// The vertices within the radius, nearest first.
-  bool collect(const AffineHeat& heat, std::size_t m, std::span<const double> solution, std::span<const Index> vertices,
-               std::span<const Index> edge, double wanted, Entries& entries) {
+  bool collect(const AffineHeat& heat, std::size_t m, const CsrGraph& patch, const Source& source,
+               std::span<const Index> vertices, std::span<const Index> edge, double wanted, Entries& entries) {
     const std::size_t n = vertices.size();
     phi_.resize(n * d_);
-    distance_.assign(n, std::numeric_limits<double>::infinity());
+    for (std::size_t k = 0; k < n; ++k) heat.coordinates_at(m, static_cast<Index>(k), phi_.data() + k * d_);
+    const double root_tau = std::sqrt(options_.heat.t_coef) * scales_.h(vertices[source.vertices().front().index]);
+    measure(heat, m, patch, source, root_tau * graph_.length_unit(), wanted);
     order_.clear();
     for (std::size_t k = 0; k < n; ++k) {
       const auto vertex = static_cast<Index>(k);
-      double* phi = phi_.data() + k * d_;
-      heat.coordinates_at(m, solution, vertex, phi);
-      if (!heat.reached(m, vertex) || !all_finite(std::span(phi, d_))) continue;
-      distance_[k] = length(std::span<const double>(phi, d_));
+      const double* phi = phi_.data() + k * d_;
+      if (!heat.reached(m, vertex) || !all_finite(std::span(phi, d_)))
+        distance_[k] = std::numeric_limits<double>::infinity();
       if (distance_[k] <= options_.radius) order_.push_back(vertex);
     }
     for (Index k : edge)
@@ -240,6 +286,7 @@ class Worker {
   const LocalMapOptions& options_;
   HeatOptions operators_;
   Ball ball_;
+  const ComponentScales& scales_;
   SparseArray<Index> place_;  ///< 1 + place in the patch at hand, 0: outside
   std::size_t d_;
   std::vector<double> phi_, distance_;
@@ -277,8 +324,11 @@ LocalMaps local_maps(const TangentGraph& graph, std::span<const Source> sources,
     check(graph, sources, options);
     options.heat.progress.step("group", 0.0);
     // Sources whose patches overlap anyway.
-    const double reach = options.radius / graph.length_unit() +
-                         (options.margin + 4) * std::sqrt(options.heat.t_coef) * graph.mean_edge_length();
+    const ComponentScales scales(graph);
+    const auto reach = [&](Vertex seed) {
+      return options.radius / graph.length_unit() +
+             (options.margin + 4) * std::sqrt(options.heat.t_coef) * scales.h(seed.index);
+    };
     const auto groups = group(graph, sources, reach);
     std::vector<Entries> entries(sources.size());
     const OneBlasThread one_thread;
@@ -291,7 +341,7 @@ LocalMaps local_maps(const TangentGraph& graph, std::span<const Source> sources,
         std::scoped_lock lock(mutex);
         if (!idle.empty()) worker = std::move(idle.back()), idle.pop_back();
       }
-      if (!worker) worker = std::make_unique<Worker>(graph, sources, options);
+      if (!worker) worker = std::make_unique<Worker>(graph, scales, sources, options);
       without_openmp_regions([&] {
         for (Offset g = begin; g < end; ++g) worker->solve(groups[g], entries);
       });

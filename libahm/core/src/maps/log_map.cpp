@@ -50,14 +50,15 @@ LogMap::LogMap(int dimension, Variant variant, Strategy strategy, Source source,
       source_(std::move(source)),
       coordinates_(std::move(coordinates)),
       status_(std::move(status)),
-      extras_(std::move(extras)) {}
+      extras_(std::move(extras)) {
+  if (!extras_.distances.empty()) return;
+  for (Index i = 0; i < size(); ++i) extras_.distances.push_back(length(this->coordinates(Vertex(i))));
+}
 
 std::span<const double> LogMap::coordinates(Vertex vertex) const {
   const auto d = static_cast<std::size_t>(dimension_);
   return std::span<const double>(coordinates_).subspan(static_cast<std::size_t>(vertex.index) * d, d);
 }
-
-double LogMap::distance(Vertex vertex) const { return length(coordinates(vertex)); }
 
 Index LogMap::count(Status status) const noexcept {
   return static_cast<Index>(std::count(status_.begin(), status_.end(), status));

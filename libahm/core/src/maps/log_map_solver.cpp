@@ -8,16 +8,18 @@
 #include <string>
 
 #include "ahm/error.hpp"
-#include "ahm/graph/components.hpp"
-#include "ahm/graph/validate.hpp"
+#include "ahm/fields/unfolding_front.hpp"
 #include "ahm/maps/cost.hpp"
 #include "ahm/util/memory.hpp"
 #include "ahm/util/parallel.hpp"
 #include "ahm/util/small_math.hpp"
 #include "ahm/util/text.hpp"
 #include "heat/check_options.hpp"
+#include "heat/component_scales.hpp"
+#include "heat/heat_system.hpp"
 #include "maps/affine_heat.hpp"
 #include "maps/extrapolate.hpp"
+#include "maps/heat_distance.hpp"
 #include "maps/march.hpp"
 
 namespace ahm {
@@ -52,15 +54,26 @@ void check_options(const HeatOptions& options) {
     throw InvalidArgument("expected_maps is " + std::to_string(options.expected_maps) + "; it must be >= 0 (0: many)");
 }
 
-/// Status of a vertex of the source's component, from its coordinates.
-Status status_of(std::span<const double> phi, bool reached, double radius) {
-  if (!reached || !all_finite(phi)) return Status::unreached;
-  return length(phi) > radius ? Status::beyond_radius : Status::ok;
+/// What a solve knows of a vertex besides its coordinates.
+struct Found {
+  Status status;
+  double root_mean_square = 0;  ///< sqrt(q / lambda), world units
+};
+
+/// Distances unfolded from a source, where that is how they are measured: on triangulations, and from curves.
+std::vector<double> unfolded(const TangentGraph& graph, const Source& source, double radius) {
+  if (!graph.is_triangulation() && !source.is_curve()) return {};
+  UnfoldingFront front(graph);
+  front.add(source);
+  front.run(radius);
+  std::vector<double> distances(static_cast<std::size_t>(graph.size()));
+  for (std::size_t i = 0; i < distances.size(); ++i) distances[i] = front.distance(Vertex(i));
+  return distances;
 }
 
 /// One diffusion time.
 struct Time {
-  HeatOptions options;
+  std::vector<double> tau;  ///< per component
   std::once_flag factored;
   std::optional<HeatOperators> operators;
 };
@@ -71,151 +84,176 @@ struct LogMapSolver::Impl {
   const TangentGraph& graph;
   HeatOptions options;
   Strategy strategy;
-  std::vector<double> factors;  ///< of t_coef, ascending from 1
+  ComponentScales scales;
+  DiffusionTimes diffusion_times;
   mutable std::vector<Time> times;
-  mutable std::once_flag numbered;
-  mutable Components parts;
 
   Impl(const TangentGraph& graph, const HeatOptions& options);
 
   const HeatOperators& operators(std::size_t time) const {
-    Time& t = times[time];
-    std::call_once(t.factored, [&] {
+    std::call_once(times[time].factored, [&] {
       if (strategy == Strategy::march) check_memory();
-      t.operators.emplace(graph, t.options);
+      factor(time, {});
     });
-    return *t.operators;
+    return *times[time].operators;
   }
+  void factor(std::size_t time, const Progress& progress) const;
   void check_memory() const;
-  std::span<const Index> components() const {
-    if (strategy == Strategy::global) return operators(0).components();
-    std::call_once(numbered, [&] { parts = connected_components(graph); });
-    return parts.of_vertex;
-  }
 
   March front(std::size_t time, const MapSettings& map, unsigned threads) const {
-    return March(graph, times[time].options, map.variant, options.accuracy, map.radius, threads, map.progress);
+    return March(graph, options, scales, times[time].tau, map.variant, map.radius, threads, map.progress);
   }
   template <class Values>
   LogMap map_of(const Values& values, Strategy how, const MarchStatistics& march, const Source& source,
-                const MapSettings& map, unsigned threads) const;
-  LogMap marched(const March& front, const Source& source, const MapSettings& map, unsigned threads) const;
+                std::span<const double> taus, std::span<const double> unfolded, const MapSettings& map,
+                unsigned threads) const;
+  LogMap marched(const March& front, std::size_t time, const Source& source, std::span<const double> unfolded,
+                 const MapSettings& map, unsigned threads) const;
   LogMap finished(const AffineHeat& heat, std::size_t time, std::size_t s, const Source& source,
-                  std::span<const double> solution, const MapSettings& map, unsigned threads) const;
-  std::vector<LogMap> solve_block(std::size_t time, std::span<const Source> sources, const MapSettings& map,
+                  std::span<const double> unfolded, const MapSettings& map, unsigned threads) const;
+  std::vector<LogMap> solve_block(std::size_t time, std::span<const Source> sources,
+                                  const std::vector<std::vector<double>>& unfolded, const MapSettings& map,
                                   unsigned threads) const;
   std::vector<LogMap> solve_block(std::span<const Source> sources, const MapSettings& map, unsigned threads) const;
 };
 
+namespace {
+
+/// The checks come before anything else is asked of the graph.
+const TangentGraph& checked(const TangentGraph& graph, const HeatOptions& options) {
+  check_options(options);
+  check_heat_options(graph, options);
+  return graph;
+}
+
+}  // namespace
+
 LogMapSolver::Impl::Impl(const TangentGraph& graph, const HeatOptions& options)
-    : graph(graph),
+    : graph(checked(graph, options)),
       options(options),
       strategy(choose_strategy({graph.size(), graph.dimension(), graph.transport_kind()}, options)),
-      factors(diffusion_times(options.order, graph)),
-      times(factors.size()) {
-  if (strategy == Strategy::march) check_heat_options(graph, options);
-  for (std::size_t k = 0; k < times.size(); ++k) {
-    times[k].options = options;
-    times[k].options.t_coef *= factors[k];
-    times[k].options.check_graph &= k == 0 && strategy == Strategy::global;  // once is enough
-    if (strategy == Strategy::global) operators(k);
-    times[k].options.progress = {};
-  }
+      scales(graph),
+      diffusion_times(options.order, graph, scales),
+      times(diffusion_times.count()) {
+  for (std::size_t k = 0; k < times.size(); ++k)
+    for (Index c = 0; c < scales.components.count; ++c)
+      times[k].tau.push_back(diffusion_time(options.t_coef * diffusion_times.factor(k, c), scales.edge_length[c]));
+  if (strategy != Strategy::global) return;
+  for (std::size_t k = 0; k < times.size(); ++k)
+    std::call_once(times[k].factored, [&] { factor(k, options.progress); });
+}
+
+void LogMapSolver::Impl::factor(std::size_t time, const Progress& progress) const {
+  detail::with_memory_check("factoring a graph of " + std::to_string(graph.size()) + " vertices", [&] {
+    std::vector<double> tau;
+    for (Index c : scales.components.of_vertex) tau.push_back(times[time].tau[c]);
+    HeatOptions quiet = options;
+    quiet.progress = progress;
+    times[time].operators.emplace(factored_system(graph, std::move(tau), quiet), graph, scales.components);
+  });
 }
 
 /// What a march found, vertex by vertex.
 class MarchedValues {
  public:
-  MarchedValues(const March& front, const Source& source, std::span<const Index> components, double radius)
-      : front_(front), components_(source, components), radius_(radius) {}
+  MarchedValues(const March& front, double radius) : front_(front), radius_(radius) {}
 
-  Status read(Index vertex, std::span<double> phi) const {
+  Found read(Index vertex, std::span<double> phi) const {
     const auto found = front_.coordinates(vertex);
     std::copy(found.begin(), found.end(), phi.begin());
-    if (front_.accepted(vertex)) return status_of(phi, true, radius_);
-    if (!components_.hold(vertex)) return Status::disconnected;
-    return std::isinf(radius_) ? Status::unreached : Status::beyond_radius;
+    if (front_.accepted(vertex)) return {Status::ok, front_.root_mean_square(vertex)};
+    return {std::isinf(radius_) ? Status::unreached : Status::beyond_radius};
   }
   void axes(Index vertex, double* out) const { front_.axes(vertex, out); }
 
  private:
   const March& front_;
-  SourceComponents components_;
   double radius_;
 };
 
 /// What a global solve found for source number s of a block.
 class GlobalValues {
  public:
-  GlobalValues(const AffineHeat& heat, std::size_t s, std::span<const double> solution, const Source& source,
-               std::span<const Index> components, double radius)
-      : heat_(heat),
-        s_(s),
-        solution_(solution),
-        frames_(heat.frames(s)),
-        components_(source, components),
-        radius_(radius) {}
+  GlobalValues(const AffineHeat& heat, std::size_t s) : heat_(heat), s_(s), frames_(heat.frames(s)) {}
 
-  Status read(Index vertex, std::span<double> phi) const {
-    heat_.coordinates_at(s_, solution_, vertex, phi.data());
-    return components_.hold(vertex) ? status_of(phi, heat_.reached(s_, vertex), radius_) : Status::disconnected;
+  Found read(Index vertex, std::span<double> phi) const {
+    heat_.coordinates_at(s_, vertex, phi.data());
+    return {heat_.reached(s_, vertex) ? Status::ok : Status::unreached, heat_.root_mean_square_at(s_, vertex)};
   }
   void axes(Index vertex, double* out) const { frames_.axes(vertex, out); }
 
  private:
   const AffineHeat& heat_;
   std::size_t s_;
-  std::span<const double> solution_;
   FrameField frames_;
-  SourceComponents components_;
-  double radius_;
 };
 
 /// The map that `values` tell of.
+/// @param taus      per component
+/// @param unfolded  distances; empty: those of heat
 template <class Values>
 LogMap LogMapSolver::Impl::map_of(const Values& values, Strategy how, const MarchStatistics& march,
-                                  const Source& source, const MapSettings& map, unsigned threads) const {
+                                  const Source& source, std::span<const double> taus, std::span<const double> unfolded,
+                                  const MapSettings& map, unsigned threads) const {
   const auto n = static_cast<std::size_t>(graph.size()), d = static_cast<std::size_t>(graph.dimension());
+  const SourceComponents components(source, scales.components.of_vertex);
   std::vector<double> coordinates(n * d);
-  std::vector<Status> status(n, Status::ok);
-  MapExtras extras{march, {}, {}};
+  std::vector<Status> status(n);
+  MapExtras extras{march, std::vector<double>(n), std::vector<double>(source.is_curve() ? 0 : n), {}, {}};
   if (map.frames) extras.frames.resize(n * d * d);
   detail::for_each_index(n, threads, [&](std::size_t i) {
+    const auto vertex = static_cast<Index>(i);
     const std::span phi = std::span(coordinates).subspan(i * d, d);
-    status[i] = values.read(static_cast<Index>(i), phi);
-    if (status[i] != Status::ok) std::fill(phi.begin(), phi.end(), NAN);
-    if (map.frames) values.axes(static_cast<Index>(i), extras.frames.data() + i * d * d);
+    const Found found = values.read(vertex, phi);
+    status[i] = components.hold(vertex) ? found.status : Status::disconnected;
+    if (status[i] == Status::ok && !(all_finite(phi) && std::isfinite(found.root_mean_square)))
+      status[i] = Status::unreached;
+    const double r = length(phi), rms = found.root_mean_square;
+    const double root_tau = std::sqrt(taus[scales.component(vertex)]) * graph.length_unit();
+    extras.distances[i] = unfolded.empty() ? heat_distance(r, rms, root_tau) : unfolded[i];
+    if (!source.is_curve()) extras.spread[i] = rms > r ? std::sqrt(rms - r) * std::sqrt(rms + r) : 0.0;
+    if (map.frames) values.axes(vertex, extras.frames.data() + i * d * d);
   });
+  if (unfolded.empty())  // the source itself is known better than by the root of a difference
+    for (std::size_t k = 0; k < source.vertices().size(); ++k)
+      if (source.weights()[k] > 0) extras.distances[source.vertices()[k].index] = source.place(k).distance;
+  for (std::size_t i = 0; i < n; ++i) {
+    if (status[i] == Status::ok && extras.distances[i] > map.radius) status[i] = Status::beyond_radius;
+    if (status[i] == Status::ok) continue;
+    std::fill_n(coordinates.begin() + static_cast<std::ptrdiff_t>(i * d), d, NAN);
+    extras.distances[i] = NAN;
+    if (!extras.spread.empty()) extras.spread[i] = NAN;
+  }
   return LogMap(static_cast<int>(d), map.variant, how, source, std::move(coordinates), std::move(status),
                 std::move(extras));
 }
 
-LogMap LogMapSolver::Impl::marched(const March& front, const Source& source, const MapSettings& map,
-                                   unsigned threads) const {
-  return map_of(MarchedValues(front, source, components(), map.radius), Strategy::march, front.statistics(), source,
-                map, threads);
+LogMap LogMapSolver::Impl::marched(const March& front, std::size_t time, const Source& source,
+                                   std::span<const double> unfolded, const MapSettings& map, unsigned threads) const {
+  return map_of(MarchedValues(front, map.radius), Strategy::march, front.statistics(), source, times[time].tau,
+                unfolded, map, threads);
 }
 
 /// Where a global solve leaves vertices beyond its reach, strategy `automatic` marches on.
 LogMap LogMapSolver::Impl::finished(const AffineHeat& heat, std::size_t time, std::size_t s, const Source& source,
-                                    std::span<const double> solution, const MapSettings& map, unsigned threads) const {
-  LogMap result = map_of(GlobalValues(heat, s, solution, source, components(), map.radius), Strategy::global, {},
-                         source, map, threads);
+                                    std::span<const double> unfolded, const MapSettings& map, unsigned threads) const {
+  LogMap result = map_of(GlobalValues(heat, s), Strategy::global, {}, source, times[time].tau, unfolded, map, threads);
   if (options.strategy != Strategy::automatic || result.count(Status::unreached) == 0) return result;
   March on = front(time, map, threads);
-  on.run_on(heat, s, solution);
-  return marched(on, source, map, threads);
+  on.run_on(heat, s);
+  return marched(on, time, source, unfolded, map, threads);
 }
 
 /// Solves one block of sources at one diffusion time.
 std::vector<LogMap> LogMapSolver::Impl::solve_block(std::size_t time, std::span<const Source> sources,
+                                                    const std::vector<std::vector<double>>& unfolded,
                                                     const MapSettings& map, unsigned threads) const {
   std::vector<LogMap> maps;
   if (strategy == Strategy::march) {
-    for (const Source& source : sources) {
+    for (std::size_t s = 0; s < sources.size(); ++s) {
       March on = front(time, map, threads);
-      on.run(source);
-      maps.push_back(marched(on, source, map, threads));
+      on.run(sources[s]);
+      maps.push_back(marched(on, time, sources[s], unfolded[s], map, threads));
     }
     return maps;
   }
@@ -223,10 +261,10 @@ std::vector<LogMap> LogMapSolver::Impl::solve_block(std::size_t time, std::span<
                   threads);
   heat.diffuse();
   if (map.progress.stop.stop_requested()) throw Cancelled("cancelled during solve");
-  const std::vector<double> solution = heat.solve();
-  const std::size_t size = solution.size() / sources.size();
+  heat.solve();
+  heat.solve_squares();
   for (std::size_t s = 0; s < sources.size(); ++s)
-    maps.push_back(finished(heat, time, s, sources[s], std::span(solution).subspan(s * size, size), map, threads));
+    maps.push_back(finished(heat, time, s, sources[s], unfolded[s], map, threads));
   return maps;
 }
 
@@ -245,25 +283,27 @@ void LogMapSolver::Impl::check_memory() const {
 /// The same at all times, extrapolated.
 std::vector<LogMap> LogMapSolver::Impl::solve_block(std::span<const Source> sources, const MapSettings& map,
                                                     unsigned threads) const {
-  if (factors.size() == 1) return solve_block(0, sources, map, threads);
-  MapSettings wider = map;  // the maps of different times differ a little at the radius
-  wider.radius += 8 * graph.mean_edge_length() * graph.length_unit();
+  MapSettings wider = map;
+  if (times.size() > 1)  // the maps of different times differ a little at the radius
+    wider.radius += 8 * *std::max_element(scales.edge_length.begin(), scales.edge_length.end()) * graph.length_unit();
+  std::vector<std::vector<double>> unfolded;
+  for (const Source& source : sources) unfolded.push_back(ahm::unfolded(graph, source, wider.radius));
+  if (times.size() == 1) return solve_block(0, sources, unfolded, map, threads);
   std::vector<std::vector<LogMap>> at_times;
-  for (std::size_t time = 0; time < factors.size(); ++time) {
-    wider.frames = map.frames && time + 2 == factors.size();
-    at_times.push_back(solve_block(time, sources, wider, threads));
+  for (std::size_t time = 0; time < times.size(); ++time) {
+    wider.frames = map.frames && time + 2 == times.size();
+    at_times.push_back(solve_block(time, sources, unfolded, wider, threads));
   }
   std::vector<LogMap> result;
   for (std::size_t s = 0; s < sources.size(); ++s) {
     std::vector<const LogMap*> maps;
     for (const auto& at_time : at_times) maps.push_back(&at_time[s]);
-    result.push_back(extrapolate(graph, options.t_coef, factors, maps, map.radius));
+    result.push_back(extrapolate(graph, scales, options.t_coef, diffusion_times, maps, map.radius));
   }
   return result;
 }
 
 LogMapSolver::LogMapSolver(const TangentGraph& graph, const HeatOptions& options) {
-  check_options(options);
   impl_ = std::make_unique<const Impl>(graph, options);
 }
 

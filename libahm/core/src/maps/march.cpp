@@ -41,23 +41,22 @@ double heat_distance(double length, double weight, double tau, const Diagonal& d
 
 }  // namespace
 
-March::March(const TangentGraph& graph, const HeatOptions& operators, Variant variant, double accuracy, double radius,
-             unsigned threads, Progress progress)
+March::March(const TangentGraph& graph, const HeatOptions& options, const ComponentScales& scales,
+             std::vector<double> tau, Variant variant, double radius, unsigned threads, Progress progress)
     : graph_(graph),
-      options_(operators),
+      options_(options),
       variant_(variant),
       iterative_(graph.dimension() > 2),
+      scales_(scales),
+      tau_(std::move(tau)),
       // What lies ahead by x influences what lies behind by exp(-2 x).
-      margin_(1.6 - 0.5 * std::log(accuracy)),
+      margin_(1.6 - 0.5 * std::log(options.accuracy)),
       step_(iterative_ ? iterative_step : default_step),
-      // A little beyond, since coordinates are not monotone from vertex to vertex.
-      radius_(radius + 4 * graph.mean_edge_length() * graph.length_unit()),
-      tau_(operators.t_coef * graph.mean_edge_length() * graph.mean_edge_length()),
+      radius_(radius),
       progress_(std::move(progress)),
       threads_(threads),
       d_(static_cast<std::size_t>(graph.dimension())),
       known_(graph, system_of(variant)) {
-  options_.check_graph = false;
   options_.progress = {};
   options_.threads = threads;
   const auto n = static_cast<std::size_t>(graph.size());
@@ -65,15 +64,16 @@ March::March(const TangentGraph& graph, const HeatOptions& operators, Variant va
   place_.assign(n, -1);
   tentative_.assign(n, far_away);
   coordinates_.assign(n * d_, NAN);
+  root_mean_squares_.assign(n, NAN);
 }
 
 void March::run(const Source& source) { march(&source); }
 
-void March::run_on(const AffineHeat& heat, std::size_t s, std::span<const double> solution) {
+void March::run_on(const AffineHeat& heat, std::size_t s) {
   std::vector<Index> reached;
   for (Index i = 0; i < graph_.size(); ++i)
     if (heat.reached(s, i)) reached.push_back(i);
-  for (Index i : reached) accept(i, i, heat, s, solution, {});
+  for (Index i : reached) accept(i, i, heat, s, {});
   update_front(reached);
   march(nullptr);
 }
@@ -111,10 +111,12 @@ bool March::advance(const Source* source, double depth) {
       [&](std::size_t k, const Star& star, std::size_t e) {
         if (!accepted_[star.neighbors[e]]) return 0.0;
         links.push_back({static_cast<Index>(k), e});
-        return tau_ * star.weights[e];
+        return tau(band.vertices[k]) * star.weights[e];
       });
-  const HeatOperators operators(iterative_ ? iterative_system(patch, options_) : factored_system(patch, options_),
-                                patch);
+  std::vector<double> times;
+  for (Index vertex : band.vertices) times.push_back(tau(vertex));
+  const auto system = iterative_ ? iterative_system : factored_system;
+  const HeatOperators operators(system(patch, std::move(times), options_), patch, {});
 
   HeatExponents exponents;
   Inflow inflow;
@@ -129,7 +131,8 @@ bool March::advance(const Source* source, double depth) {
 
   AffineHeat heat(patch, operators, variant_, {std::move(inflow)}, threads_);
   heat.diffuse();
-  const std::vector<double> solution = heat.solve();
+  heat.solve();
+  heat.solve_squares();
 
   // Accept what is farther than the margin from all that was left out, by the heat just found.
   const auto lambda = heat.lambda(0);
@@ -147,7 +150,7 @@ bool March::advance(const Source* source, double depth) {
     return false;
   for (Index k : near) {
     added.push_back(band.vertices[k]);
-    accept(added.back(), k, heat, 0, solution, exponents);
+    accept(added.back(), k, heat, 0, exponents);
   }
   update_front(added);
   return true;
@@ -165,7 +168,7 @@ March::Band March::find_band(const Source* source, double depth) {
       if (star.weights[e] != 0 && !accepted_[star.neighbors[e]])
         ahead.push_back({star.neighbors[e], star.weights[e], length(star.log(e))});
     for (const Ahead& edge : ahead)
-      paths.offer(edge.vertex, static_cast<float>(distance + heat_distance(edge.length, edge.weight, tau_,
+      paths.offer(edge.vertex, static_cast<float>(distance + heat_distance(edge.length, edge.weight, tau(edge.vertex),
                                                                            [&] { return diagonal(edge.vertex); })));
   };
   if (source) {
@@ -223,20 +226,22 @@ Inflow March::inflow_behind(const Band& band, std::span<const Link> links, doubl
       in.frames.resize(in.frames.size() + width);
       in.values.resize(in.values.size() + d_);
       in.translations.resize(in.translations.size() + d_);
+      in.squares.push_back(0);
+      in.pairs.resize(in.pairs.size() + d_ * d_);
     }
     const Star star = graph_.star(band.vertices[link.place]);
-    known_.add_to(in, star, link.edge, scaling * tau_ * star.weights[link.edge], exponents);
+    known_.add_to(in, star, link.edge, scaling * tau(band.vertices[link.place]) * star.weights[link.edge], exponents);
   }
   return in;
 }
 
-void March::accept(Index vertex, Index place, const AffineHeat& heat, std::size_t s, std::span<const double> solution,
-                   HeatExponents exponents) {
+void March::accept(Index vertex, Index place, const AffineHeat& heat, std::size_t s, HeatExponents exponents) {
   accepted_[vertex] = 1;
   ++accepted_count_;
-  known_.take(vertex, place, heat, s, solution, exponents);
+  known_.take(vertex, place, heat, s, exponents);
   const std::span phi = std::span(coordinates_).subspan(vertex * d_, d_);
-  heat.coordinates_at(s, solution, place, phi.data());
+  heat.coordinates_at(s, place, phi.data());
+  root_mean_squares_[vertex] = heat.root_mean_square_at(s, place);
   const bool good = known_.heat(vertex) > 0 && heat.frames(s).heat(place) > 0 && all_finite(phi);
   if (!good) std::fill(phi.begin(), phi.end(), NAN);
 }
@@ -250,7 +255,8 @@ void March::update_front(std::span<const Index> added) {
 
 bool March::sends_heat(Index vertex) const {
   const auto phi = std::span(coordinates_).subspan(static_cast<std::size_t>(vertex) * d_, d_);
-  if (!(length(phi) <= radius_)) return false;
+  // A little beyond the radius, since coordinates are not monotone from vertex to vertex.
+  if (!(length(phi) <= radius_ + 4 * scales_.h(vertex) * graph_.length_unit())) return false;
   const Star star = graph_.star(vertex);
   for (std::size_t e = 0; e < star.degree(); ++e)
     if (star.weights[e] != 0 && !accepted_[star.neighbors[e]]) return true;
@@ -260,7 +266,7 @@ bool March::sends_heat(Index vertex) const {
 /// m + tau sum w: the diagonal of A.
 double March::diagonal(Index vertex) const {
   double sum = graph_.mass(vertex);
-  for (double w : graph_.star(vertex).weights) sum += tau_ * w;
+  for (double w : graph_.star(vertex).weights) sum += tau(vertex) * w;
   return sum;
 }
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "ahm/maps/log_map_solver.hpp"
+#include "heat/component_scales.hpp"
 #include "maps/affine_heat.hpp"
 #include "maps/known_values.hpp"
 
@@ -18,17 +19,20 @@ namespace ahm {
 
 class March {
  public:
-  /// @param operators  t_coef, ordering, kind of factorization; the graph must have been checked
-  March(const TangentGraph& graph, const HeatOptions& operators, Variant variant, double accuracy, double radius,
-        unsigned threads, Progress progress);
+  /// @param options  accuracy, ordering, kind of factorization; the graph must have been checked
+  /// @param tau      per component, in squared graph units
+  March(const TangentGraph& graph, const HeatOptions& options, const ComponentScales& scales, std::vector<double> tau,
+        Variant variant, double radius, unsigned threads, Progress progress);
 
   /// Marches from a checked source.
   void run(const Source& source);
   /// Marches on from where a solve on the whole graph ended, source number `s` of `heat`.
-  void run_on(const AffineHeat& heat, std::size_t s, std::span<const double> solution);
+  void run_on(const AffineHeat& heat, std::size_t s);
 
   /// phi_i in world units; NaN where `accepted` is false or too little heat arrived.
   std::span<const double> coordinates(Index vertex) const { return std::span(coordinates_).subspan(vertex * d_, d_); }
+  /// sqrt(q_i / lambda_i) in world units; NaN as `coordinates`.
+  double root_mean_square(Index vertex) const { return root_mean_squares_[vertex]; }
   /// Whether the march came to the vertex.
   bool accepted(Index vertex) const { return accepted_[vertex] != 0; }
   /// U_i as d x d numbers, row major.
@@ -50,17 +54,19 @@ class March {
   Band find_band(const Source* source, double depth);
   HeatExponents exponents_behind(const Band& band, std::span<const Link> links) const;
   Inflow inflow_behind(const Band& band, std::span<const Link> links, double scaling, HeatExponents exponents) const;
-  void accept(Index vertex, Index place, const AffineHeat& heat, std::size_t s, std::span<const double> solution,
-              HeatExponents exponents);
+  void accept(Index vertex, Index place, const AffineHeat& heat, std::size_t s, HeatExponents exponents);
   void update_front(std::span<const Index> added);
   bool sends_heat(Index vertex) const;
   double diagonal(Index vertex) const;
+  double tau(Index vertex) const { return tau_[scales_.component(vertex)]; }
 
   const TangentGraph& graph_;
   HeatOptions options_;
   Variant variant_;
   bool iterative_;  ///< volumes: the factors of a band would fill the memory
-  double margin_, step_, radius_, tau_;
+  const ComponentScales& scales_;
+  std::vector<double> tau_;  ///< per component
+  double margin_, step_, radius_;
   Progress progress_;
   unsigned threads_;
   std::size_t d_;
@@ -71,6 +77,7 @@ class March {
   std::vector<Index> front_;      ///< accepted vertices with neighbours that are not
   KnownValues known_;             ///< of the accepted vertices
   std::vector<double> coordinates_;
+  std::vector<double> root_mean_squares_;
   MarchStatistics statistics_;
   Offset accepted_count_ = 0;
 };

@@ -32,6 +32,7 @@ Source Source::at_vertices(std::span<const Vertex> vertices) {
   Source source;
   source.vertices_.assign(vertices.begin(), vertices.end());
   source.weights_.assign(vertices.size(), 1.0);
+  for (std::size_t k = 0; k < vertices.size(); ++k) source.places_.push_back({static_cast<Index>(k), 0});
   return source;
 }
 
@@ -47,6 +48,14 @@ Source Source::at_vertex(Vertex vertex, std::span<const double> direction) {
 }
 
 Source& Source::add(Vertex vertex, double weight, std::span<const double> offset, std::span<const double> axes) {
+  const bool curve = is_curve_;
+  add(vertex, weight, offset, axes, {0, length(offset)});
+  is_curve_ = curve;
+  return *this;
+}
+
+Source& Source::add(Vertex vertex, double weight, std::span<const double> offset, std::span<const double> axes,
+                    const Place& place) {
   const auto d = static_cast<std::size_t>(dimension_.value_or(0));
   const std::string where = "Source::add, vertex " + std::to_string(vertex.index) + ": ";
   if (d == 0) throw InvalidArgument(where + "a source made by at_vertex(vertex) takes no further samples");
@@ -57,6 +66,10 @@ Source& Source::add(Vertex vertex, double weight, std::span<const double> offset
   if (!axes.empty() && (axes.size() != d * d || !all_finite(axes) || !is_orthogonal(axes, d)))
     throw InvalidArgument(where + "'axes' must be an orthogonal " + std::to_string(d) + " x " + std::to_string(d) +
                           " matrix");
+  if (place.point < 0 || !(place.distance >= 0) || !std::isfinite(place.distance))
+    throw InvalidArgument(where + "'place' must have a point >= 0 and a finite distance >= 0");
+  is_curve_ = true;
+  places_.push_back(place);
   vertices_.push_back(vertex);
   weights_.push_back(weight);
   offsets_.insert(offsets_.end(), offset.begin(), offset.end());

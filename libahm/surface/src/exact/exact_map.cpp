@@ -70,7 +70,7 @@ class MapBuilder {
     map_.distance_.push_back(ok ? distance : nan);
     const Index source = ok ? map_.origins_[reached.origin].source : -1;
     map_.direction_.push_back(ok ? scaled(reached.direction, source) : nan);
-    map_.arrival_.push_back(ok ? Arrival{reached.half, reached.origin, {reached.from.x, reached.from.y}} : Arrival{});
+    map_.arrival_.push_back(ok ? Arrival{reached.half, reached.origin, reached.from} : Arrival{});
   }
   double scaled(double direction, Index source) const {
     const Index vertex = map_.origins_[source].vertex;
@@ -113,9 +113,8 @@ ExactMap exact_map(const PolyhedralSurface& surface, const MeshPoint& source, co
 std::vector<ExactMap> exact_maps(const PolyhedralSurface& surface, std::span<const MeshPoint> sources,
                                  const ExactOptions& options, unsigned threads) {
   std::vector<ExactMap> maps(sources.size());
-  detail::parallel_chunks(static_cast<Offset>(sources.size()), 1, threads, [&](Offset begin, Offset) {
-    maps[static_cast<std::size_t>(begin)] = exact_map(surface, sources[static_cast<std::size_t>(begin)], options);
-  });
+  detail::parallel_chunks(static_cast<Offset>(sources.size()), 1, threads,
+                          [&](Offset begin, Offset) { maps[begin] = exact_map(surface, sources[begin], options); });
   return maps;
 }
 

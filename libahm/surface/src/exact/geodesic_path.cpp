@@ -24,8 +24,8 @@ double positive_angle(double angle) { return angle < 0 ? angle + 2 * pi : angle;
 
 /// The true angle, from the right side of the first corner, at which a vertex sees a place in one of its faces.
 /// @param corner   the half-edge of the face that starts at the vertex; the place is in its frame
-double angle_at_vertex(const PolyhedralSurface& surface, Half corner, Place towards) {
-  const double width = surface.angle(corner), within = std::clamp(std::atan2(towards.y, towards.x), 0.0, width);
+double angle_at_vertex(const PolyhedralSurface& surface, Half corner, const Place& towards) {
+  const double width = surface.angle(corner), within = std::clamp(std::atan2(towards[1], towards[0]), 0.0, width);
   double turned = 0;
   for (Corner c = surface.first_corner(surface.record(corner).tail);; c = surface.turn_left(c)) {
     if (c.half == corner) return turned + (c.forward ? within : width - within);
@@ -42,9 +42,8 @@ class Backwards {
     const Arrival& in = map_.arrival(Vertex{vertex});
     if (in.half >= 0) {
       const Half corner = previous(in.half);
-      path_.end_direction =
-          angle_at_vertex(surface_, corner, in_previous(surface_.record(in.half), {in.from[0], in.from[1]})) *
-          surface_.angle_scale(vertex);
+      path_.end_direction = angle_at_vertex(surface_, corner, in_previous(surface_.record(in.half), in.from)) *
+                            surface_.angle_scale(vertex);
       back_from(vertex);
     }
     return finish(in.origin, map_.distance(Vertex{vertex}), map_.direction(Vertex{vertex}));
@@ -56,7 +55,7 @@ class Backwards {
     const Vec2 place = surface_.place(target);
     path_.points.push_back(target);
     path_.end_direction = positive_angle(std::atan2(in.from[1] - place[1], in.from[0] - place[0]));
-    back_from(piece(in, {place[0], place[1]}, map_.target_distance(k), false));
+    back_from(piece(in, place, map_.target_distance(k), false));
     return finish(in.origin, map_.target_distance(k), map_.target_direction(k));
   }
 
@@ -73,18 +72,18 @@ class Backwards {
   /// Adds the crossings of the straight piece that comes in at a place of its last face, or at its apex.
   /// @return the vertex it comes from, or the first it goes through: both sides of that may be covered by windows, within
   ///         rounding, but only its own map says which one is right. -1: a source that is no vertex.
-  Index piece(const Arrival& in, Place end, double end_distance, bool at_apex) {
+  Index piece(const Arrival& in, const Place& end, double end_distance, bool at_apex) {
     const Index origin = map_.origins()[in.origin].vertex;
-    const Place back{in.from[0] - end.x, in.from[1] - end.y};
-    const double length = distance(back, {}), first = end_margin * length, last = (1 - end_margin) * length;
+    const Place back = in.from - end;
+    const double length = norm(back), first = end_margin * length, last = (1 - end_margin) * length;
     if (!(length > 0)) return origin;
-    Line line{in.half, end, {back.x / length, back.y / length}};
+    Line line{in.half, end, {back[0] / length, back[1] / length}};
     Exit exit = at_apex ? leave_through(surface_, line, in.half) : leave(surface_, line);
     while (exit.walked < last) {
       const Index through = grazed(exit, end_distance);
       if (through >= 0) return through;
       if (exit.walked > first) path_.points.push_back(point_on(surface_, exit.side, exit.along));
-      line = cross(surface_, line, exit);
+      line = cross_side(surface_, line, exit);
       if (line.half < 0 || path_.points.size() > most_points())
         throw Error("a path of length " + detail::number(end_distance) + " was lost beyond face " +
                     std::to_string(exit.side / 3));
@@ -147,7 +146,7 @@ class Tracer {
         exit = leave_corner(line);
         continue;
       }
-      const Line beyond = cross(surface_, line, exit);
+      const Line beyond = cross_side(surface_, line, exit);
       const MeshPoint crossed = point_on(surface_, exit.side, exit.along);
       if (beyond.half < 0) return end(TraceEnd::boundary, line, exit.walked, crossed);
       path_.points.push_back(crossed);
@@ -173,7 +172,7 @@ class Tracer {
     const Index vertex = surface_.record(corner).tail;
     const Line seen = in_frame_of(surface_, line, corner);
     const double sum = surface_.angle_sum(vertex);
-    const double in = angle_at_vertex(surface_, corner, {-seen.direction.x, -seen.direction.y});
+    const double in = angle_at_vertex(surface_, corner, -seen.direction);
     done_ += walked;
     left_ -= walked;
     path_.points.push_back(surface_.vertex_point(Vertex{vertex}));
@@ -236,7 +235,7 @@ TracedPath trace(const PolyhedralSurface& surface, const MeshPoint& from, double
   const Index vertex = vertex_of(surface, start);
   if (vertex < 0) {
     const Vec2 place = surface.place(start);
-    return Tracer(surface, length).from(start, line_from(3 * start.face, {place[0], place[1]}, direction));
+    return Tracer(surface, length).from(start, line_from(3 * start.face, place, direction));
   }
   const double sum = surface.angle_sum(vertex);
   double angle = direction / surface.angle_scale(vertex);

@@ -9,6 +9,7 @@
 #include "ahm/surface/gluing.hpp"
 #include "ahm/util/disjoint_sets.hpp"
 #include "ahm/util/text.hpp"
+#include "ahm/util/vec.hpp"
 
 namespace ahm::exact {
 namespace {
@@ -19,9 +20,6 @@ using std::numbers::pi;
 constexpr double least_height = 1e-13;
 /// Angle sums closer to 2 pi than this are flat.
 constexpr double flat_excess = 1e-13;
-
-double cross(const Vec2& a, const Vec2& b) { return a[0] * b[1] - a[1] * b[0]; }
-double dot(const Vec2& a, const Vec2& b) { return a[0] * b[0] + a[1] * b[1]; }
 
 [[noreturn]] void refuse(Index face, const std::string& reason) {
   throw InvalidGeometry("face " + std::to_string(face) + " " + reason);
@@ -59,41 +57,44 @@ FaceSides lay_out(Index face, const std::array<double, 3>& l) {
   return {Vec2{l[0], 0}, Vec2{c - l[0], area / l[0]}, Vec2{-c, -area / l[0]}};
 }
 
-bool is_mirrored(const Connectivity& c, Half h) { return !c.mirrored.empty() && c.mirrored[h] != 0; }
-
-void check_twin(const Connectivity& c, Half h) {
-  const Half t = c.twins[h], halves = static_cast<Half>(c.tails.size());
+void check_twin(const HalfEdges& edges, Half h) {
+  const Half t = edges.twin[h];
   if (t < 0) return;
   const std::string where = "half-edge " + std::to_string(h) + " of face " + std::to_string(h / 3);
-  if (t >= halves || t == h || c.twins[t] != h) throw InvalidGeometry(where + " and its twin are not mutual");
-  const bool mirrored = is_mirrored(c, h);
-  if (mirrored != is_mirrored(c, t)) throw InvalidGeometry(where + " is mirrored, its twin is not");
-  if (c.tails[mirrored ? next(t) : t] != c.tails[next(h)] || c.tails[mirrored ? t : next(t)] != c.tails[h])
+  if (t >= edges.size() || t == h || edges.twin[t] != h) throw InvalidGeometry(where + " and its twin are not mutual");
+  const bool mirrored = edges.is_mirrored(h);
+  if (mirrored != edges.is_mirrored(t)) throw InvalidGeometry(where + " is mirrored, its twin is not");
+  if (edges.tail[mirrored ? next(t) : t] != edges.head(h) || edges.tail[mirrored ? t : next(t)] != edges.tail[h])
     throw InvalidGeometry(where + " is glued to a side between other vertices");
 }
 
 }  // namespace
 
-PolyhedralSurface::PolyhedralSurface(const Connectivity& connectivity, std::span<const FaceSides> sides) {
-  if (sides.empty() || connectivity.tails.size() != 3 * sides.size() || connectivity.twins.size() != 3 * sides.size() ||
-      (!connectivity.mirrored.empty() && connectivity.mirrored.size() != 3 * sides.size()))
+PolyhedralSurface::PolyhedralSurface(const HalfEdges& edges, std::span<const FaceSides> sides,
+                                     std::span<const Half> corners)
+    : tail_(edges.tail.begin(), edges.tail.end()),
+      twin_(edges.twin.begin(), edges.twin.end()),
+      mirrored_(edges.mirrored.begin(), edges.mirrored.end()) {
+  if (sides.empty() || tail_.size() != 3 * sides.size() || twin_.size() != tail_.size() ||
+      (!mirrored_.empty() && mirrored_.size() != tail_.size()))
     throw InvalidGeometry("a surface needs faces, and three tails and twins for each of them");
-  if (*std::min_element(connectivity.tails.begin(), connectivity.tails.end()) < 0)
-    throw InvalidGeometry("a tail is negative");
-  set_records(connectivity, sides);
-  set_fans(connectivity);
+  if (std::ranges::min(tail_) < 0) throw InvalidGeometry("a tail is negative");
+  set_records(sides);
+  set_fans(corners);
 }
 
-PolyhedralSurface PolyhedralSurface::from_lengths(const Connectivity& connectivity,
-                                                  std::span<const std::array<double, 3>> lengths) {
+PolyhedralSurface PolyhedralSurface::from_lengths(const HalfEdges& edges,
+                                                  std::span<const std::array<double, 3>> lengths,
+                                                  std::span<const Half> corners) {
   std::vector<FaceSides> sides(lengths.size());
   for (std::size_t f = 0; f < sides.size(); ++f) sides[f] = lay_out(static_cast<Index>(f), lengths[f]);
-  return {connectivity, sides};
+  return {edges, sides, corners};
 }
 
-void PolyhedralSurface::set_records(const Connectivity& c, std::span<const FaceSides> sides) {
-  record_.resize(c.tails.size());
-  angle_.resize(c.tails.size());
+void PolyhedralSurface::set_records(std::span<const FaceSides> sides) {
+  const HalfEdges edges = this->edges();
+  record_.resize(tail_.size());
+  angle_.resize(tail_.size());
   double sum = 0;
   for (std::size_t f = 0; f < sides.size(); ++f) {
     std::array<double, 3> length;
@@ -103,26 +104,26 @@ void PolyhedralSurface::set_records(const Connectivity& c, std::span<const FaceS
     for (int s = 0; s < 3; ++s) {
       const auto h = static_cast<Half>(3 * f + s);
       const Vec2 &side = sides[f][s], &last = sides[f][(s + 2) % 3];
-      check_twin(c, h);
+      check_twin(edges, h);
       HalfRecord& r = record_[h];
       r.length = length[s];
       r.left = length[(s + 2) % 3];
       r.right = length[(s + 1) % 3];
       r.apex_x = -dot(side, last) / length[s];
       r.apex_y = area / length[s];
-      r.tail = c.tails[h];
-      r.head = c.tails[next(h)];
-      r.apex = c.tails[previous(h)];
-      r.beyond_left = std::max(c.twins[previous(h)], -1);
-      r.beyond_right = std::max(c.twins[next(h)], -1);
-      r.mirrored = static_cast<std::uint8_t>(is_mirrored(c, previous(h)) + 2 * is_mirrored(c, next(h)));
+      r.tail = tail_[h];
+      r.head = tail_[next(h)];
+      r.apex = tail_[previous(h)];
+      r.beyond_left = std::max(twin_[previous(h)], -1);
+      r.beyond_right = std::max(twin_[next(h)], -1);
+      r.mirrored = static_cast<std::uint8_t>(edges.is_mirrored(previous(h)) + 2 * edges.is_mirrored(next(h)));
       angle_[h] = std::atan2(area, -dot(side, last));
       sum += length[s];
     }
   }
   mean_length_ = sum / static_cast<double>(record_.size());
   for (std::size_t h = 0; h < record_.size(); ++h) {
-    const Half t = c.twins[h];
+    const Half t = twin_[h];
     if (t >= 0 && std::abs(record_[h].length - record_[t].length) > 1e-9 * record_[h].length)
       throw InvalidGeometry("faces " + std::to_string(h / 3) + " and " + std::to_string(t / 3) +
                             " give their common side lengths " + detail::number(record_[h].length) + " and " +
@@ -130,26 +131,24 @@ void PolyhedralSurface::set_records(const Connectivity& c, std::span<const FaceS
   }
 }
 
-void PolyhedralSurface::set_fans(const Connectivity& c) {
-  const Index vertices = *std::max_element(c.tails.begin(), c.tails.end()) + 1;
-  std::vector<Index> corners_at(static_cast<std::size_t>(vertices), 0);
+void PolyhedralSurface::set_fans(std::span<const Half> corners) {
+  const HalfEdges edges = this->edges();
+  const Index vertices = std::ranges::max(tail_) + 1;
+  std::vector<Index> corners_at(vertices, 0);
   corner_.resize(corners_at.size());
-  for (std::size_t h = c.tails.size(); h-- > 0;) {
-    ++corners_at[c.tails[h]];
-    corner_[c.tails[h]] = {static_cast<Half>(h), true};
+  for (Half h = edges.size(); h-- > 0;) {
+    ++corners_at[tail_[h]];
+    corner_[tail_[h]] = {h, true};
   }
   detail::DisjointSets parts(corner_.size());
   angle_sum_.resize(corner_.size());
   on_boundary_.resize(corner_.size());
   for (Index v = 0; v < vertices; ++v) {
-    if (!c.corners.empty()) corner_[v].half = c.corners[v];
-    if (corner_[v].half < 0 || c.tails[corner_[v].half] != v)
+    if (!corners.empty()) corner_[v].half = corners[v];
+    if (corner_[v].half < 0 || tail_[corner_[v].half] != v)
       throw InvalidGeometry("vertex " + std::to_string(v) + " has no face, or a corner of another vertex");
-    const Corner given = corner_[v];
-    for (Corner right = turn_right(given); right.half >= 0 && right != given; right = turn_right(right))
-      corner_[v] = right;
-    on_boundary_[v] = turn_right(corner_[v]).half < 0;
-    if (!on_boundary_[v]) corner_[v] = given;
+    corner_[v] = edges.rightmost(corner_[v]);
+    on_boundary_[v] = edges.turn_right(corner_[v]).half < 0;
     Index met = 0;
     Corner at = corner_[v];
     do {
@@ -168,21 +167,6 @@ void PolyhedralSurface::set_fans(const Connectivity& c) {
 bool PolyhedralSurface::bends_paths(Index v) const { return on_boundary(v) || angle_sum_[v] > 2 * pi + flat_excess; }
 
 double PolyhedralSurface::angle_scale(Index v) const { return on_boundary(v) ? 1.0 : 2 * pi / angle_sum_[v]; }
-
-// The side met last is previous(c.half) where the corner is forward, else c.half: what lies left of the half after it.
-Corner PolyhedralSurface::turn_left(Corner c) const {
-  const HalfRecord& r = record_[c.forward ? c.half : next(c.half)];
-  const Half t = r.beyond_left;
-  const bool mirrored = (r.mirrored & 1) != 0;
-  if (t < 0) return {};
-  if (c.forward) return {mirrored ? next(t) : t, !mirrored};
-  return {mirrored ? t : next(t), mirrored};
-}
-
-Corner PolyhedralSurface::turn_right(Corner c) const {
-  const Corner turned = turn_left({c.half, !c.forward});
-  return {turned.half, !turned.forward};
-}
 
 double PolyhedralSurface::turned(Corner corner) const {
   double sum = 0;

@@ -28,7 +28,7 @@ constexpr double bucket_width = 0.25;
 constexpr std::uint32_t ring = 4096;
 
 /// Whether an origin lies on the line of a side, in its frame.
-bool on_line(Place from, double length) { return !(-from.y > least_angle * (std::abs(from.x) + length)); }
+bool on_line(const Place& from, double length) { return !(-from[1] > least_angle * (std::abs(from[0]) + length)); }
 
 }  // namespace
 
@@ -79,8 +79,7 @@ void Propagation::add_source(const MeshPoint& point) {
   }
   if (zeros == 2) return add_vertex_source(origin2, surface_.record(first + corner).tail);
   // The sides of the face that the source sees at an angle; the one it lies on, it sees through.
-  const auto [x, y] = surface_.place(point);
-  Ray ray{first, {x, y}, 0, origin2};
+  Ray ray{first, surface_.place(point), 0, origin2};
   for (int s = 0; s < 3; ++s) {
     const HalfRecord& r = surface_.record(ray.half);
     offer(r.apex, distance(ray.from, apex(r)), ray, apex(r));
@@ -122,7 +121,7 @@ void Propagation::see_beyond_right(const Ray& ray) {
   const HalfRecord& r = surface_.record(ray.half);
   if (r.beyond_right < 0) return;
   Window w = beyond_right(ray, 0, r.right);
-  Ray there{w.half, {w.from.x, std::max(0.0, w.from.y)}, w.turn, w.origin2};
+  Ray there{w.half, {w.from[0], std::max(0.0, w.from[1])}, w.turn, w.origin2};
   const HalfRecord& face = surface_.record(there.half);
   offer(face.apex, distance(there.from, apex(face)), there, apex(face));
   for (int s = 0; s < 3; ++s) {
@@ -157,7 +156,7 @@ Window Propagation::beyond_right(const Ray& ray, double begin, double end) const
 }
 
 void Propagation::mirror(Window& w, double length) {
-  w = {length - w.end, length - w.begin, {length - w.from.x, w.from.y}, w.turn + (w.mirrored() ? -pi : pi),
+  w = {length - w.end, length - w.begin, {length - w.from[0], w.from[1]}, w.turn + (w.mirrored() ? -pi : pi),
        w.half,         w.origin2 ^ 1};
 }
 
@@ -170,7 +169,7 @@ void Propagation::light_corner(const Ray& ray, double low, double high) {
   offer(r.head, sigma + r.length, {previous(ray.half), {r.left, 0}, ray.turn + back, ray.origin2},
         apex(surface_.record(previous(ray.half))));
   const Place from = exact::beyond_right(r, {});
-  auto crossing = [&](double phi) { return from.x - from.y / std::tan(phi + surface_.angle(next(ray.half))); };
+  auto crossing = [&](double phi) { return from[0] - from[1] / std::tan(phi + surface_.angle(next(ray.half))); };
   light_right(ray, high >= angle ? 0.0 : std::max(0.0, crossing(high)),
               low <= 0 ? r.right : std::min(r.right, crossing(low)));
   see_face(ray);
@@ -188,7 +187,7 @@ void Propagation::bend(const Bend& event) {
   origins_.push_back({v, from.source, event.distance, in.direction});
   const Half corner = previous(in.half);
   const Place back = in_previous(surface_.record(in.half), in.from);
-  const double angle = surface_.angle(corner), inwards = std::clamp(std::atan2(back.y, back.x), 0.0, angle);
+  const double angle = surface_.angle(corner), inwards = std::clamp(std::atan2(back[1], back[0]), 0.0, angle);
   if (surface_.on_boundary(v)) {
     fill({corner, true}, -inwards, infinity, origin2);
     fill({corner, false}, inwards - angle, infinity, origin2);
@@ -216,8 +215,8 @@ void Propagation::fill(Corner c, double turned, double high, std::uint32_t origi
 
 /// Keeps a window for later.
 void Propagation::push(const Window& w, double sigma, double at_begin, double at_end) {
-  const bool across = w.from.x >= w.begin && w.from.x <= w.end;
-  const double key = across ? sigma - w.from.y : std::min(at_begin, at_end);
+  const bool across = w.from[0] >= w.begin && w.from[0] <= w.end;
+  const double key = across ? sigma - w.from[1] : std::min(at_begin, at_end);
   if (key > horizon_) return;
   windows_.push(key, w);
   ++made_;
@@ -232,8 +231,8 @@ void Propagation::cross_face(const Window& w) {
     return;
   if (!targets_of_face_.empty()) see_targets(w, sigma);
 
-  const double up = r.apex_y - w.from.y;
-  const double crossing = w.from.x - (r.apex_x - w.from.x) * w.from.y / up;
+  const double up = r.apex_y - w.from[1];
+  const double crossing = w.from[0] - (r.apex_x - w.from[0]) * w.from[1] / up;
   const double beside = margin * r.length;
   bool left = crossing > w.begin, right = crossing < w.end;
   double to_apex = 0;
@@ -255,8 +254,8 @@ void Propagation::cross_face(const Window& w) {
 /// The part of a window that goes on through the side tail - apex.
 /// @param to_apex  sigma and the distance of the apex where the window ends there, else 0
 void Propagation::go_left(const Window& w, const HalfRecord& r, double sigma, double to_apex) {
-  const double down = -w.from.y;
-  auto hit = [&](double t) { return t * down / (down * r.apex_x + (w.from.x - t) * r.apex_y) * r.left; };
+  const double down = -w.from[1];
+  auto hit = [&](double t) { return t * down / (down * r.apex_x + (w.from[0] - t) * r.apex_y) * r.left; };
   const double begin = std::max(0.0, hit(w.begin)), end = to_apex > 0 ? r.left : std::min(r.left, hit(w.end));
   if (!(end - begin > least_width * r.left)) return;
   const Place from = beyond_left(r, w.from);
@@ -274,7 +273,7 @@ void Propagation::go_left(const Window& w, const HalfRecord& r, double sigma, do
 
 /// The part that goes on through the side apex - head.
 void Propagation::go_right(const Window& w, const HalfRecord& r, double sigma, double to_apex) {
-  const double down = -w.from.y, base = r.length - r.apex_x, x = r.length - w.from.x;
+  const double down = -w.from[1], base = r.length - r.apex_x, x = r.length - w.from[0];
   auto hit = [&](double t) {
     const double u = r.length - t;
     return r.right - u * down / (down * base + (x - u) * r.apex_y) * r.right;
@@ -296,14 +295,14 @@ void Propagation::go_right(const Window& w, const HalfRecord& r, double sigma, d
 
 // ---------------------------------------------------------------------------------------------- what is reached
 
-Reached Propagation::reach(const Ray& ray, Place at) const {
+Reached Propagation::reach(const Ray& ray, const Place& at) const {
   const auto origin = static_cast<Index>(ray.origin2 / 2);
   if (ray.origin2 / 2 >= sources_) return {ray.half, origin, ray.from, origins_[origin].direction};
-  const double angle = std::atan2(at.y - ray.from.y, at.x - ray.from.x);
+  const double angle = std::atan2(at[1] - ray.from[1], at[0] - ray.from[0]);
   return {ray.half, origin, ray.from, ray.turn + (ray.origin2 & 1 ? -angle : angle)};
 }
 
-void Propagation::offer(Index vertex, double distance, const Ray& ray, Place at) {
+void Propagation::offer(Index vertex, double distance, const Ray& ray, const Place& at) {
   if (!(distance < distance_[vertex])) return;
   distance_[vertex] = distance;
   reached_[vertex] = reach(ray, at);
@@ -322,11 +321,11 @@ void Propagation::see_targets(const Window& w, double sigma) {
   const HalfRecord& r = surface_.record(w.half);
   for (Offset k = targets_of_face_[face]; k < targets_of_face_[face + 1]; ++k) {
     const Index target = target_order_[k];
-    const Place placed{targets_[target][0], targets_[target][1]};
+    const Place& placed = targets_[target];
     const int s = w.half % 3;
     const Place at = s == 0 ? placed : s == 1 ? exact::in_next(side0, placed) : in_previous(side0, placed);
     if (std::isfinite(w.begin)) {
-      const double crossing = w.from.x - (at.x - w.from.x) * w.from.y / (at.y - w.from.y);
+      const double crossing = w.from[0] - (at[0] - w.from[0]) * w.from[1] / (at[1] - w.from[1]);
       if (!(crossing > w.begin - margin * r.length && crossing < w.end + margin * r.length)) continue;
     }
     const double d = sigma + distance(w.from, at);

@@ -27,7 +27,7 @@ struct Window {
 struct Reached {
   Half half = -1;  ///< as `Arrival`
   Index origin = -1;
-  Place from;
+  Place from{};
   double direction = 0;  ///< by true angles
 };
 
@@ -84,8 +84,8 @@ class Propagation {
   void go_right(const Window& w, const HalfRecord& r, double sigma, double to_apex);
   void push(const Window& w, double sigma, double at_begin, double at_end);
 
-  Reached reach(const Ray& ray, Place at) const;
-  void offer(Index vertex, double distance, const Ray& ray, Place at);
+  Reached reach(const Ray& ray, const Place& at) const;
+  void offer(Index vertex, double distance, const Ray& ray, const Place& at);
   void see_face(const Ray& ray);
   void see_targets(const Window& w, double sigma);
   void copy_vertex_targets();

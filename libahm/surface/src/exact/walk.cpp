@@ -7,25 +7,21 @@
 namespace ahm::exact {
 namespace {
 
-double cross(Place a, Place b) { return a.x * b.y - a.y * b.x; }
-double dot(Place a, Place b) { return a.x * b.x + a.y * b.y; }
-Place minus(Place a, Place b) { return {a.x - b.x, a.y - b.y}; }
-
 /// The line in a frame to which `place` takes points.
 template <class Map>
 Line mapped(const Line& line, Half half, const Map& place) {
   const Place start = place(line.start), ahead = place({0, 0});
-  const Place tip = minus(place(line.direction), ahead);
+  const Place tip = place(line.direction) - ahead;
   return {half, start, tip, line.walked};
 }
 
 /// Where the line crosses the side from a to b, which is `length` long; ends count as part of the side.
-Exit crossing(const Line& line, Half side, Place a, Place b, double length) {
-  const Place run = minus(b, a);
+Exit crossing(const Line& line, Half side, const Place& a, const Place& b, double length) {
+  const Place run = b - a;
   const double across = cross(line.direction, run);
-  const double part = across != 0 ? std::clamp(cross(line.direction, minus(line.start, a)) / across, 0.0, 1.0) : 0.0;
-  const Place hit{a.x + part * run.x, a.y + part * run.y};
-  return {dot(minus(hit, line.start), line.direction), side, part * length};
+  const double part = across != 0 ? std::clamp(cross(line.direction, line.start - a) / across, 0.0, 1.0) : 0.0;
+  const Place hit = a + part * run;
+  return {dot(hit - line.start, line.direction), side, part * length};
 }
 
 }  // namespace
@@ -33,7 +29,7 @@ Exit crossing(const Line& line, Half side, Place a, Place b, double length) {
 Line in_frame_of(const PolyhedralSurface& surface, Line line, Half half) {
   while (line.half != half) {
     const HalfRecord& r = surface.record(line.half);
-    line = mapped(line, next(line.half), [&](Place p) { return in_next(r, p); });
+    line = mapped(line, next(line.half), [&](const Place& p) { return in_next(r, p); });
   }
   return line;
 }
@@ -46,7 +42,7 @@ Exit leave_through(const PolyhedralSurface& surface, const Line& line, Half side
 }
 
 Exit leave_upwards(const PolyhedralSurface& surface, const Line& line) {
-  const bool left = cross(minus(apex(surface.record(line.half)), line.start), line.direction) > 0;
+  const bool left = cross(apex(surface.record(line.half)) - line.start, line.direction) > 0;
   return leave_through(surface, line, left ? previous(line.half) : next(line.half));
 }
 
@@ -57,10 +53,10 @@ Exit leave(const PolyhedralSurface& surface, const Line& line) {
   double soonest = std::numeric_limits<double>::infinity();
   int through = 0;
   for (int s = 0; s < 3; ++s) {
-    const Place a = corner[s], run = minus(corner[(s + 1) % 3], a);
+    const Place a = corner[s], run = corner[(s + 1) % 3] - a;
     const double outwards = cross(line.direction, run);
-    if (outwards <= 1e-14 * std::sqrt(dot(run, run))) continue;
-    const double walked = cross(minus(a, line.start), run) / outwards;
+    if (outwards <= 1e-14 * norm(run)) continue;
+    const double walked = cross(a - line.start, run) / outwards;
     if (walked >= soonest) continue;
     soonest = walked;
     through = s;
@@ -68,22 +64,22 @@ Exit leave(const PolyhedralSurface& surface, const Line& line) {
   return leave_through(surface, line, side[through]);
 }
 
-Line cross(const PolyhedralSurface& surface, const Line& line, const Exit& exit) {
+Line cross_side(const PolyhedralSurface& surface, const Line& line, const Exit& exit) {
   // In the frame whose left side is the exit.
   const Line seen = in_frame_of(surface, line, next(exit.side));
   const HalfRecord& r = surface.record(seen.half);
-  Line beyond = mapped(seen, r.beyond_left, [&](Place p) {
+  Line beyond = mapped(seen, r.beyond_left, [&](const Place& p) {
     const Place q = beyond_left(r, p);
-    return r.mirrored & 1 ? Place{r.left - q.x, q.y} : q;
+    return r.mirrored & 1 ? Place{r.left - q[0], q[1]} : q;
   });
   beyond.walked = exit.walked;
   return beyond;
 }
 
-MeshPoint point_of(const PolyhedralSurface& surface, Half half, Place place) {
+MeshPoint point_of(const PolyhedralSurface& surface, Half half, const Place& place) {
   const HalfRecord& r = surface.record(half);
-  const double up = std::clamp(place.y / r.apex_y, 0.0, 1.0);
-  const double ahead = std::clamp((place.x - up * r.apex_x) / r.length, 0.0, 1.0 - up);
+  const double up = std::clamp(place[1] / r.apex_y, 0.0, 1.0);
+  const double ahead = std::clamp((place[0] - up * r.apex_x) / r.length, 0.0, 1.0 - up);
   MeshPoint point{half / 3, {}};
   point.barycentric[half % 3] = std::max(0.0, 1 - up - ahead);
   point.barycentric[next(half) % 3] = ahead;
@@ -99,7 +95,9 @@ MeshPoint point_on(const PolyhedralSurface& surface, Half side, double along) {
   return point;
 }
 
-Line line_from(Half half, Place place, double angle) { return {half, place, {std::cos(angle), std::sin(angle)}, 0}; }
+Line line_from(Half half, const Place& place, double angle) {
+  return {half, place, {std::cos(angle), std::sin(angle)}, 0};
+}
 
 Line line_from_vertex(const PolyhedralSurface& surface, Index vertex, double angle) {
   Corner c = surface.first_corner(vertex);
@@ -115,7 +113,7 @@ Line line_from_vertex(const PolyhedralSurface& surface, Index vertex, double ang
 
 double angle_in_face(const PolyhedralSurface& surface, const Line& line) {
   const Line seen = in_frame_of(surface, line, 3 * (line.half / 3));
-  return std::atan2(seen.direction.y, seen.direction.x);
+  return std::atan2(seen.direction[1], seen.direction[0]);
 }
 
 }  // namespace ahm::exact

@@ -11,11 +11,11 @@ namespace ahm::exact {
 /// A straight line that is being followed from face to face.
 struct Line {
   Half half = -1;     ///< in whose frame it is given
-  Place start;        ///< where it started, unfolded
-  Place direction;    ///< unit vector
+  Place start{};      ///< where it started, unfolded
+  Place direction{};  ///< unit vector
   double walked = 0;  ///< how far it has been followed
 
-  Place at(double s) const { return {start.x + s * direction.x, start.y + s * direction.y}; }
+  Place at(double s) const { return start + s * direction; }
 };
 
 /// Where a line leaves a face.
@@ -36,16 +36,16 @@ Exit leave_upwards(const PolyhedralSurface& surface, const Line& line);
 Exit leave(const PolyhedralSurface& surface, const Line& line);
 
 /// The line in the face beyond a side; half < 0 where there is none.
-Line cross(const PolyhedralSurface& surface, const Line& line, const Exit& exit);
+Line cross_side(const PolyhedralSurface& surface, const Line& line, const Exit& exit);
 
 /// The point of the face where a place in the frame of a half-edge lies, and the point of a half-edge.
-MeshPoint point_of(const PolyhedralSurface& surface, Half half, Place place);
+MeshPoint point_of(const PolyhedralSurface& surface, Half half, const Place& place);
 MeshPoint point_on(const PolyhedralSurface& surface, Half side, double along);
 
 /// The line from a vertex that leaves it at a true angle from the right side of its first corner.
 Line line_from_vertex(const PolyhedralSurface& surface, Index vertex, double angle);
 /// The line from a place in the face of a half-edge, at an angle in its frame.
-Line line_from(Half half, Place place, double angle);
+Line line_from(Half half, const Place& place, double angle);
 
 /// The angle of a line in the frame of side 0 of its face.
 double angle_in_face(const PolyhedralSurface& surface, const Line& line);

@@ -54,12 +54,10 @@ class PolygonMesh {
   std::span<const Offset> face_begin() const noexcept { return topology_.face_begin(); }
   /// Vertices of all corners, oriented.
   std::span<const Index> corners() const noexcept { return topology_.half_edges().tail; }
-  std::span<const Index> face(Index f) const { return FaceList{face_begin(), corners()}[static_cast<std::size_t>(f)]; }
+  std::span<const Index> face(Index f) const { return FaceList{face_begin(), corners()}[f]; }
   /// Faces at a vertex: numbers of its corners, the first oriented like the vertex.
   std::span<const Offset> corners_at(Index vertex) const {
-    const auto first = static_cast<std::size_t>(at_begin_[vertex]);
-    return std::span(at_).subspan(first,
-                                  static_cast<std::size_t>(at_begin_[static_cast<std::size_t>(vertex) + 1]) - first);
+    return std::span(at_).subspan(at_begin_[vertex], at_begin_[vertex + 1] - at_begin_[vertex]);
   }
   /// Face of a corner.
   Index face_of(Offset corner) const { return topology_.face_of(corner); }

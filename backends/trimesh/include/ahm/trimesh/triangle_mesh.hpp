@@ -76,7 +76,7 @@ class TriangleMesh {
   double length_unit() const noexcept { return length_unit_; }
   /// The face laid out in the plane, counter-clockwise, side 0 along the x axis: its three sides as vectors, in units
   /// of `length_unit()`.
-  std::array<std::array<double, 2>, 3> layout(Index face) const;
+  std::array<Vec2, 3> layout(Index face) const;
 
   /// Corner of the face as stored, for a corner of the face as given, and the other way round.
   int stored_corner(Index face, int corner) const { return topology_.stored_corner(face, corner); }

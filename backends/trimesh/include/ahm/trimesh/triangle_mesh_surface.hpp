@@ -96,7 +96,7 @@ class TriangleMeshSurface final : public Surface {
   /// Other faces lie at the cut locus, where the map jumps (blended over a few edges): they are unfolded from the
   /// nearest face, counted in faces, that is sound. So every face is nearly isometric in itself, and a texture is cut
   /// open in the middle of the band, along the cut locus.
-  std::vector<ahm::Vec2> on_corners(const LogMap& map) const override;
+  std::vector<Vec2> on_corners(const LogMap& map) const override;
 
   /// Where a point of a face lies in the intrinsic triangulation.
   struct Located {

@@ -2,7 +2,7 @@
 /// An atlas: the surface cut into geodesic Voronoi cells, each flattened by the log map of its own source (Fig. 18).
 ///
 /// \code
-/// auto sources = ahm::farthest_points(solver, ahm::Vertex{0}, 20);
+/// auto sources = ahm::farthest_points(graph, ahm::Vertex{0}, 20);
 /// ahm::Atlas atlas = ahm::make_atlas(solver, sources, {face_begin, face_vertices});
 /// for (ahm::Index f : atlas.charts[3].faces)
 ///   for (ahm::Offset c = face_begin[f]; c < face_begin[f + 1]; ++c) use(atlas.corner(c));   // (u, v) of each corner
@@ -37,7 +37,7 @@ struct Atlas {
 };
 
 /// Cuts the surface into cells and flattens them. A face belongs to the source from which its corners are nearest on
-/// average (Sec. 5 of the paper), among the sources nearest to a corner by heat (`nearest_source`). Corners at a border
+/// average (Sec. 5 of the paper), among the sources nearest to a corner (`voronoi_cells`). Corners at a border
 /// have other coordinates in each chart.
 ///
 /// Faces cut off from the rest of their cell go to the neighbouring chart with which they share most sides, where its

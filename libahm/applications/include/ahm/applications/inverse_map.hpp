@@ -38,6 +38,7 @@ struct InverseMapOptions {
   /// For `inverse_map`: vertices of a lower `map_quality` are left out; 0: none. It means nothing on maps from a curve
   /// with coordinates of its own.
   double min_quality = trusted_quality;
+  unsigned threads = 0;  ///< for the quality; 0: one per core
 };
 
 /// A point of the surface and the map's derivatives there.

@@ -46,7 +46,4 @@ VertexField parallel_transport(const LogMapSolver& solver, const Source& source,
 /// @throws InvalidArgument when the source does not fit the graph; as `LogMapSolver::operators`
 VertexField radial_field(const LogMapSolver& solver, const Source& source, const MapOptions& options = {});
 
-/// |phi_i| for every vertex. Width 1.
-VertexField distance(const LogMap& map);
-
 }  // namespace ahm

@@ -35,6 +35,7 @@ struct CsrGraphData {
   std::vector<Frame> frames;               ///< n, or empty
   double length_unit = 1.0;                ///< power of two; see TangentGraph::length_unit
   std::optional<double> mean_edge_length;  ///< default: the mean of |e_ij| over all edges
+  bool is_triangulation = false;           ///< see TangentGraph::is_triangulation
 };
 
 /// A `TangentGraph` held in flat arrays.
@@ -53,6 +54,7 @@ class CsrGraph final : public TangentGraph {
   Star star(Index vertex) const override;
   Offset edge_count() const noexcept override { return static_cast<Offset>(data_.neighbors.size()); }
   double length_unit() const noexcept override { return data_.length_unit; }
+  bool is_triangulation() const noexcept override { return data_.is_triangulation; }
   std::optional<Frame> frame(Index vertex) const override;
 
   const CsrGraphData& data() const noexcept { return data_; }

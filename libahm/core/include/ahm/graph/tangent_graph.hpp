@@ -73,6 +73,9 @@ class TangentGraph {
   /// What a length of 1 in this graph means outside. Backends store geometry divided by a power of two, so that models
   /// at any scale from 1e-300 to 1e300 are solved alike; results are multiplied by it again.
   virtual double length_unit() const noexcept { return 1.0; }
+  /// Whether d = 2 and the edges are the sides of triangles whose lengths are the same from both ends, so that distances
+  /// can be unfolded across them (`UnfoldingFront`).
+  virtual bool is_triangulation() const noexcept { return false; }
   /// Tangent axes in ambient space, in world units, where the backend knows them.
   virtual std::optional<Frame> frame(Index) const { return std::nullopt; }
 };

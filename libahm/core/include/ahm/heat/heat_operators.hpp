@@ -16,6 +16,7 @@
 #include <span>
 #include <string>
 
+#include "ahm/graph/components.hpp"
 #include "ahm/graph/tangent_graph.hpp"
 #include "ahm/heat/heat_options.hpp"
 
@@ -43,7 +44,7 @@ class HeatOperators {
   ///         its residual check), ResourceExhausted (memory), Cancelled
   HeatOperators(const TangentGraph& graph, const HeatOptions& options = {});
   /// The same by what already solves with A and B of this graph; a type of this library alone.
-  HeatOperators(std::unique_ptr<const HeatSystem> system, const TangentGraph& graph);
+  HeatOperators(std::unique_ptr<const HeatSystem> system, const TangentGraph& graph, Components components);
   ~HeatOperators();
   HeatOperators(HeatOperators&&) noexcept;
   HeatOperators& operator=(HeatOperators&&) noexcept;
@@ -51,7 +52,8 @@ class HeatOperators {
   Index size() const noexcept;
   int dimension() const noexcept;
   TransportKind transport_kind() const noexcept;
-  double tau() const noexcept;  ///< in squared graph units
+  /// Of each vertex, in squared graph units: t_coef h_c^2 with h_c the mean edge length of its component.
+  std::span<const double> tau() const noexcept;
   const FactorStatistics& statistics() const noexcept;
 
   /// X <- (c A)^-1 X for `columns` right-hand sides, column major n x columns. c is the fixed power of two that brings

@@ -30,6 +30,8 @@ struct MarchStatistics {
 /// What a map may hold besides coordinates.
 struct MapExtras {
   MarchStatistics march;
+  std::vector<double> distances;
+  std::vector<double> spread;
   std::vector<double> frames;
   std::vector<double> error_estimate;
 };
@@ -54,6 +56,7 @@ std::string_view to_string(Strategy strategy) noexcept;
 /// not `ok`.
 class LogMap {
  public:
+  /// Without distances in `extras` they are |phi_i|.
   LogMap(int dimension, Variant variant, Strategy strategy, Source source, std::vector<double> coordinates,
          std::vector<Status> status, MapExtras extras = {});
 
@@ -79,8 +82,15 @@ class LogMap {
   std::span<const double> coordinates(Vertex vertex) const;
   std::span<const Status> status() const noexcept { return status_; }
   Status status(Vertex vertex) const { return status_[vertex.index]; }
-  /// |phi_i|: the geodesic distance from the source, NaN where not ok.
-  double distance(Vertex vertex) const;
+  /// The geodesic distance from the source, world units; NaN where not ok. It is not |phi_i|, which is too short wherever
+  /// several ways lead to a vertex: on triangulations it is unfolded (`UnfoldingFront`), elsewhere sqrt(q_i / lambda_i), the
+  /// root mean square of what heat brings (docs/accuracy.md). Both are |phi_i| on flat graphs. From a curve: to its nearest
+  /// sample.
+  double distance(Vertex vertex) const { return extras_.distances[vertex.index]; }
+  std::span<const double> distances() const noexcept { return extras_.distances; }
+  /// sqrt(q_i / lambda_i - |phi_i|^2), the standard deviation of the coordinates over the ways by which heat arrives, world
+  /// units: 0 on flat graphs, small inside the cut locus, about the distance on it. NaN where not ok; empty from a curve.
+  std::span<const double> spread() const noexcept { return extras_.spread; }
   /// Number of vertices with this status.
   Index count(Status status) const noexcept;
 

@@ -37,13 +37,23 @@ class Source {
   /// with the axes of that vertex's frame; in any dimension.
   static Source at_vertices(std::span<const Vertex> vertices);
 
-  /// Adds a sample.
+  /// A sample of a curve or another set of points, whose coordinates are not its place on the surface: the point of the
+  /// source that it belongs to, from 0, and how far the vertex is from that point, world units.
+  struct Place {
+    Index point = 0;
+    double distance = 0;
+  };
+
+  /// Adds a sample of the one point p.
   /// @param weight  b_k >= 0, finite: barycentric or quadrature weight
   /// @param offset  z_k, d numbers in world units: where the vertex lies in the source's frame
   /// @param axes    U_k, d x d orthogonal, row major: column a is source axis a in the frame of `vertex`
   /// @throws InvalidArgument
   ///                Empty: those of the frame itself
   Source& add(Vertex vertex, double weight, std::span<const double> offset, std::span<const double> axes = {});
+  /// Adds a sample of a curve. @throws InvalidArgument
+  Source& add(Vertex vertex, double weight, std::span<const double> offset, std::span<const double> axes,
+              const Place& place);
 
   /// None for `at_vertex(vertex)` and `at_vertices`, which fit every dimension.
   std::optional<int> dimension() const noexcept { return dimension_; }
@@ -53,6 +63,10 @@ class Source {
   std::span<const double> offsets() const noexcept { return offsets_; }
   /// U_k; empty without a dimension: identity.
   std::span<const double> axes() const noexcept { return axes_; }
+  /// Of sample k: of a curve as it was given, of `at_vertices` point k, else point 0 at |z_k|.
+  Place place(std::size_t k) const { return places_[k]; }
+  /// Whether coordinates may be something else than positions relative to a point.
+  bool is_curve() const noexcept { return is_curve_; }
 
  private:
   Source() = default;
@@ -62,6 +76,8 @@ class Source {
   std::vector<double> weights_;
   std::vector<double> offsets_;
   std::vector<double> axes_;
+  std::vector<Place> places_;
+  bool is_curve_ = false;
 };
 
 }  // namespace ahm

@@ -1,6 +1,8 @@
 // Alg. 2 of [SS25] (Eq. 15 to 17): coordinates in the source's frame diffuse as d scalar fields.
 //
 //     x = A^-1 (rho / U + b z),   phi = x / lambda
+#include "ahm/util/scratch.hpp"
+#include "ahm/util/small_math.hpp"
 #include "maps/variants/variant_system.hpp"
 
 namespace ahm {
@@ -24,6 +26,16 @@ class Adaptive final : public VariantSystem {
   }
   void solve(const HeatOperators& operators, std::span<double> X, std::size_t sources) const override {
     operators.solve_scalar(X, static_cast<Index>(sources) * operators.dimension());
+  }
+  void add_pair(double factor, std::span<const double> e, const Transport&, std::span<const double> value,
+                double* pairs) const override {
+    for (std::size_t c = 0; c < e.size(); ++c)
+      for (std::size_t a = 0; a < e.size(); ++a) pairs[c * e.size() + a] += factor * e[c] * value[a];
+  }
+  double paired(const FrameField& U, Index i, std::span<const double> pairs) const override {
+    Scratch axes(pairs.size());
+    U.axes(i, axes.data());
+    return dot(axes.span(), pairs);
   }
   void read(const FrameField&, Index vertex, std::span<const double> solution, std::size_t n,
             double* out) const override {

@@ -3,6 +3,8 @@
 //     Y = B^-1 (rho + b U z),   phi = (Y / lambda) / U
 #include <algorithm>
 
+#include "ahm/util/scratch.hpp"
+#include "ahm/util/small_math.hpp"
 #include "maps/variants/variant_system.hpp"
 
 namespace ahm {
@@ -32,6 +34,13 @@ class Localized final : public VariantSystem {
   void solve(const HeatOperators& operators, std::span<double> X, std::size_t sources) const override {
     operators.solve_vector(X, static_cast<Index>(sources));
   }
+  void add_pair(double factor, std::span<const double> e, const Transport& R, std::span<const double> value,
+                double* pairs) const override {
+    Scratch seen(e.size());
+    R.apply(value.data(), seen.data());
+    pairs[0] += factor * dot(e, seen.span());
+  }
+  double paired(const FrameField&, Index, std::span<const double> pairs) const override { return pairs[0]; }
   void read(const FrameField& U, Index vertex, std::span<const double> solution, std::size_t n,
             double* out) const override {
     U.to_source(vertex, solution.data() + static_cast<std::size_t>(vertex) * (solution.size() / n), out);

@@ -34,6 +34,12 @@ class VariantSystem {
                    std::size_t n) const = 0;
   /// X <- solution, for all sources.
   virtual void solve(const HeatOperators& operators, std::span<double> X, std::size_t sources) const = 0;
+  /// The inner products of edges e_ij with the unknowns of their far ends j, which the second moment of i is made of:
+  /// adds one, times `factor`, to `pairs` (d x d numbers) as far as it can be told without the frame of i ...
+  virtual void add_pair(double factor, std::span<const double> e, const Transport& R, std::span<const double> value,
+                        double* pairs) const = 0;
+  /// ... and reads the sum with it.
+  virtual double paired(const FrameField& U, Index i, std::span<const double> pairs) const = 0;
   /// lambda phi of a vertex, d numbers in the source's frame.
   virtual void read(const FrameField& U, Index vertex, std::span<const double> solution, std::size_t n,
                     double* out) const = 0;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "ahm/maps/log_map.hpp"
@@ -19,6 +20,11 @@ struct RowLogMap {
   std::vector<Status> status;                 ///< `removed` for rows without a vertex
   std::vector<std::optional<Vertex>> vertex;  ///< that the numbers are from
 };
+
+/// Numbers of vertices, such as their `map_quality`, on the rows of a map: those of the vertex that the row's coordinates
+/// are from, NaN where there is none.
+/// @param values  one per vertex. @throws InvalidArgument (too few)
+std::vector<double> on_rows(const RowLogMap& rows, std::span<const double> values);
 
 /// Coordinates at one point of a surface; NaN where the status is not ok.
 struct Sample {

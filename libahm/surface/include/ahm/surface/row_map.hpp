@@ -6,6 +6,7 @@
 /// \endcode
 #pragma once
 
+#include <cmath>
 #include <optional>
 #include <span>
 #include <vector>
@@ -36,6 +37,16 @@ class RowMap {
   std::span<const Vertex> vertices(Row row) const;
   /// The first vertex of a row; none where it was removed. @throws InvalidArgument (out of range)
   std::optional<Vertex> vertex(Row row) const;
+  /// Of the vertices of a row the one with the least value, the first of equal ones; NaN is no value.
+  /// @param value  (Vertex) -> double. @throws InvalidArgument (out of range)
+  template <class Value>
+  std::optional<Vertex> least(Row row, const Value& value) const {
+    std::optional<Vertex> best;
+    double smallest = 0;
+    for (Vertex vertex : vertices(row))
+      if (const double x = value(vertex); !std::isnan(x) && (!best || x < smallest)) best = vertex, smallest = x;
+    return best;
+  }
   /// The first row of a vertex; none for vertices that the input does not have. @throws InvalidArgument (out of range)
   std::optional<Row> row(Vertex vertex) const;
 

@@ -25,6 +25,13 @@ std::array<double, d> operator-(const std::array<double, d>& a, const std::array
 }
 
 template <std::size_t d>
+std::array<double, d> operator-(const std::array<double, d>& a) {
+  std::array<double, d> c;
+  for (std::size_t k = 0; k < d; ++k) c[k] = -a[k];
+  return c;
+}
+
+template <std::size_t d>
 std::array<double, d> operator*(double s, const std::array<double, d>& a) {
   std::array<double, d> c;
   for (std::size_t k = 0; k < d; ++k) c[k] = s * a[k];

@@ -2,7 +2,7 @@
 /// Flat triangles glued along their sides: all that exact geodesics need to know of a surface.
 ///
 /// \code
-/// ahm::exact::PolyhedralSurface surface({mesh.tails(), mesh.twins(), mesh.mirrored(), mesh.corners()}, layouts);
+/// ahm::exact::PolyhedralSurface surface(mesh.topology().half_edges(), layouts);
 /// ahm::exact::ExactMap map = ahm::exact::exact_map(surface, surface.vertex_point(ahm::Vertex{42}));
 /// \endcode
 #pragma once
@@ -12,22 +12,16 @@
 #include <span>
 #include <vector>
 
+#include "ahm/surface/half_edges.hpp"
 #include "ahm/types.hpp"
 
 namespace ahm::exact {
 
-/// A half-edge: 3 f + s is side s of face f, from its corner s to its corner s + 1 (mod 3).
-using Half = std::int32_t;
-
-/// Triangles in half-edge arrays. Views only.
-struct Connectivity {
-  std::span<const Index> tails;              ///< 3 per face: the vertex each half-edge starts at
-  std::span<const Half> twins;               ///< the half-edge on the other side, negative on the boundary
-  std::span<const std::uint8_t> mirrored{};  ///< 1 where the two faces are oppositely oriented; empty: nowhere
-  /// One half-edge that starts at each vertex, which is oriented like its face; empty: the lowest. In both cases every
-  /// vertex has one fan of faces.
-  std::span<const Half> corners{};
-};
+using detail::Corner;
+using detail::Half;
+using detail::HalfEdges;
+using detail::next;
+using detail::previous;
 
 /// The three sides of a face laid out in the plane, counter-clockwise, as vectors; they sum to zero. Any turn will do.
 using FaceSides = std::array<Vec2, 3>;
@@ -48,27 +42,21 @@ struct alignas(64) HalfRecord {
   std::uint8_t mirrored;  ///< bit 0: the face beyond the left side is oppositely oriented, bit 1: the right one
 };
 
-/// A corner met while turning about its vertex. `half` starts at the vertex; `forward`: its face is oriented like the
-/// vertex, as always on an orientable surface.
-struct Corner {
-  Half half = -1;
-  bool forward = true;
-  bool operator==(const Corner&) const = default;
-};
-
 /// An immutable polyhedral surface with or without boundary, of any number of components, orientable or not. Sides of
 /// the same face may be glued to each other.
 class PolyhedralSurface {
  public:
-  /// @param sides  one per face; both faces of an edge give it the same length to 1e-9
+  /// @param edges    of triangles; copied
+  /// @param sides    one per face; both faces of an edge give it the same length to 1e-9
+  /// @param corners  one half-edge that starts at each vertex, which is oriented like its face; empty: the lowest
   /// @throws InvalidGeometry naming the face or half-edge: a side that is not finite or zero, a triangle flatter than
   ///         1e-13 of its longest side, sides that do not close, lengths that differ, twins that are not mutual or join
   ///         other vertices, a vertex with several fans or none
-  PolyhedralSurface(const Connectivity& connectivity, std::span<const FaceSides> sides);
+  PolyhedralSurface(const HalfEdges& edges, std::span<const FaceSides> sides, std::span<const Half> corners = {});
   /// By lengths alone: length s of a face is that of its side s. Flat caps are known only to 1e-8 this way.
   /// @throws InvalidGeometry as above
-  static PolyhedralSurface from_lengths(const Connectivity& connectivity,
-                                        std::span<const std::array<double, 3>> lengths);
+  static PolyhedralSurface from_lengths(const HalfEdges& edges, std::span<const std::array<double, 3>> lengths,
+                                        std::span<const Half> corners = {});
 
   Index vertex_count() const noexcept { return static_cast<Index>(corner_.size()); }
   Index face_count() const noexcept { return static_cast<Index>(record_.size() / 3); }
@@ -91,8 +79,8 @@ class PolyhedralSurface {
   double mean_length() const noexcept { return mean_length_; }
 
   /// The corner beyond the side met last (left) or first (right) when turning counter-clockwise; half < 0: boundary.
-  Corner turn_left(Corner c) const;
-  Corner turn_right(Corner c) const;
+  Corner turn_left(Corner c) const { return edges().turn_left(c); }
+  Corner turn_right(Corner c) const { return edges().turn_right(c); }
   /// The angle at a vertex from its first corner's right side to the right side of this corner.
   double turned(Corner corner) const;
 
@@ -102,9 +90,13 @@ class PolyhedralSurface {
   Vec2 place(const MeshPoint& point) const;
 
  private:
-  void set_records(const Connectivity& connectivity, std::span<const FaceSides> sides);
-  void set_fans(const Connectivity& connectivity);
+  HalfEdges edges() const { return {tail_, twin_, mirrored_}; }
+  void set_records(std::span<const FaceSides> sides);
+  void set_fans(std::span<const Half> corners);
 
+  std::vector<Index> tail_;
+  std::vector<Half> twin_;
+  std::vector<std::uint8_t> mirrored_;
   std::vector<HalfRecord> record_;
   std::vector<double> angle_;
   std::vector<double> angle_sum_;
@@ -113,8 +105,5 @@ class PolyhedralSurface {
   std::vector<Index> component_;
   double mean_length_ = 0;
 };
-
-inline Half next(Half h) { return h % 3 == 2 ? h - 2 : h + 1; }
-inline Half previous(Half h) { return h % 3 == 0 ? h + 2 : h - 1; }
 
 }  // namespace ahm::exact

@@ -1,0 +1,37 @@
+/// \file
+/// What `ahm info` finds out about the faces of a file, whether a map can be made on them or not.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "ahm/io/geometry.hpp"
+#include "ahm/surface/mesh_topology.hpp"
+
+namespace ahm::app {
+
+/// Of many lengths, world units.
+struct LengthRange {
+  double smallest = 0, median = 0, largest = 0;
+  std::size_t count = 0;
+};
+
+/// @param lengths  any order; none: nothing
+std::optional<LengthRange> range_of(std::vector<double> lengths);
+
+struct MeshSurvey {
+  std::size_t triangles = 0, quadrilaterals = 0, others = 0;  ///< faces by their corners
+  MeshInspection inspection;
+  std::optional<LengthRange> edges;  ///< each once; those between finite points
+
+  /// Whether edges or vertices have to be cut before a map can be made.
+  bool is_manifold() const {
+    return inspection.topology.non_manifold_edges == 0 && inspection.topology.non_manifold_vertices == 0;
+  }
+};
+
+/// @param input  with faces
+MeshSurvey survey_mesh(const io::Geometry& input);
+
+}  // namespace ahm::app

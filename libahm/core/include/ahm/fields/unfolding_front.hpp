@@ -1,0 +1,88 @@
+/// \file
+/// Geodesic distance by unfolding: from any number of source points at once, with the nearest of them.
+///
+/// \code
+/// ahm::UnfoldingFront front(graph);
+/// front.add(ahm::Source::at_vertex(ahm::Vertex{3}));
+/// front.add(ahm::Source::at_vertex(ahm::Vertex{9}));
+/// front.run();
+/// std::cout << front.distance(ahm::Vertex{5}) << " to source " << front.nearest(ahm::Vertex{5}) << '\n';
+/// \endcode
+#pragma once
+
+#include <functional>
+#include <limits>
+#include <queue>
+#include <vector>
+
+#include "ahm/graph/tangent_graph.hpp"
+#include "ahm/maps/source.hpp"
+
+namespace ahm {
+
+/// A front that grows from source points over a graph, nearest vertices first [KS98, MR12].
+///
+/// Two neighbours a, b whose distances from a point are known fix where it lies in the plane of a triangle a b c of the
+/// star of a; where the straight line from there to c crosses the side a b, its length is the distance of c, else the way
+/// along the edge a c is. No heat, no operator: O(n log n), about a microsecond a vertex.
+///
+/// It is exact on flat Delaunay triangulations without holes, and of second order elsewhere; unlike heat it knows the way
+/// around a hole and along both sides of a cut locus. Where a graph's lengths are noisy it takes the shortest of many
+/// uncertain ways and is too short. In other dimensions than 2 the displacement from the point is carried along the edges.
+class UnfoldingFront {
+ public:
+  /// @param graph  must outlive the front
+  explicit UnfoldingFront(const TangentGraph& graph);
+
+  /// Adds the points of a source, which get the next numbers, from 0.
+  /// @return the number of the first
+  /// @throws InvalidArgument when the source does not fit the graph
+  Index add(const Source& source);
+  /// Lets the front go on, as far as `radius` (world units). May be called again after `add`: only what is nearer to the new
+  /// points changes.
+  void run(double radius = std::numeric_limits<double>::infinity());
+
+  /// The distance to the nearest point, world units; infinity where the front did not come.
+  double distance(Vertex vertex) const;
+  /// The number of the nearest point; -1 where the front did not come. Of equally near ones any.
+  Index nearest(Vertex vertex) const;
+
+ private:
+  /// A distance from one point. Beside a border between points both sides are known, so that both can unfold across it.
+  struct Entry {
+    double distance;
+    Index point, next;
+  };
+  struct Neighbor {
+    Index vertex;
+    Vec2 log;
+    double length;
+    std::size_t edge;
+  };
+  struct Waiting {
+    double distance;
+    Index vertex, point;
+    bool operator>(const Waiting& other) const {
+      return distance != other.distance ? distance > other.distance
+                                        : (vertex != other.vertex ? vertex > other.vertex : point > other.point);
+    }
+  };
+
+  const Entry* find(Index vertex, Index point) const;
+  bool offer(Index vertex, Index point, double distance, double slack, std::span<const double> displacement);
+  void spread(Index from, Index point, double distance);
+  void unfold(Index point, double distance);
+  void carry(Index from, Index point);
+  void look_around(Index vertex);
+
+  const TangentGraph& graph_;
+  std::size_t d_;
+  std::vector<Index> head_;  ///< of the entries of a vertex, nearest first; -1: none
+  std::vector<Entry> entries_;
+  std::vector<double> displacements_;  ///< d per entry, from the vertex to the point in its frame; d = 2: empty
+  std::priority_queue<Waiting, std::vector<Waiting>, std::greater<>> queue_;
+  std::vector<Neighbor> around_;  ///< of the vertex at hand, by angle
+  Index points_ = 0;
+};
+
+}  // namespace ahm
