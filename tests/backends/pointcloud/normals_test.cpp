@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <string>
 
 #include "noisy_clouds.hpp"
 #include "solved_cloud.hpp"
@@ -118,8 +119,13 @@ TEST(Normals, WithNoiseAreNoWorseThanNone) {
       return sum;
     };
     const double estimated = angle(points, false);
-    for (double noise : {0.02, 0.05, 0.1, 0.2})
-      EXPECT_LT(angle(with_noisy_normals(points, noise), true), 1.1 * estimated) << points_noise << ", " << noise;
+    RecordProperty("points " + std::to_string(points_noise), std::to_string(estimated));
+    for (double noise : {0.02, 0.05, 0.1, 0.2}) {
+      const double given = angle(with_noisy_normals(points, noise), true);
+      RecordProperty("points " + std::to_string(points_noise) + " normals " + std::to_string(noise),
+                     std::to_string(given));
+      EXPECT_LT(given, 1.1 * estimated) << points_noise << ", " << noise;
+    }
   }
 }
 
