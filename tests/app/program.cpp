@@ -171,7 +171,7 @@ std::vector<Row> read_csv(const std::string& path) {
   std::istringstream lines(read_text(path));
   std::string line;
   std::getline(lines, line);
-  EXPECT_TRUE(line.starts_with("index,x,y,z,u,v,distance,angle,status,quality")) << line;
+  EXPECT_TRUE(line.starts_with("index,x,y,z,u,v,distance,angle,status,quality,spread")) << line;
   std::vector<Row> rows;
   while (std::getline(lines, line)) {
     std::vector<std::string> fields;
