@@ -19,8 +19,8 @@ constexpr double deviation_of_median = 1 / 0.6744897501960817;
 /// below a percent, so that noisy planes keep their distances.
 constexpr double noise_reach = 3;
 
-/// Neighbours are of another sheet beyond this many deviations and this slope over the mean plane. Chosen by the distances
-/// on scans: below .5 surfaces fall apart, from 1 on sheets are joined.
+/// Neighbours are of another sheet beyond this many deviations and this slope over the mean plane. Distances on scans need some
+/// such bound, but hardly tell slopes between 0.4 and 1 apart.
 constexpr double sheet_reach = 4;
 constexpr double steepest = 0.6;
 
