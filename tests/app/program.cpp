@@ -177,8 +177,8 @@ std::vector<Row> read_csv(const std::string& path) {
     std::vector<std::string> fields;
     std::istringstream stream(line);
     for (std::string field; std::getline(stream, field, ',');) fields.push_back(field);
-    if (fields.size() != 10 && fields.size() != 11) {
-      ADD_FAILURE() << "not ten or eleven fields: " << line;
+    if (fields.size() != 11 && fields.size() != 12) {
+      ADD_FAILURE() << "not eleven or twelve fields: " << line;
       break;
     }
     const auto number = [&](std::size_t i) { return std::strtod(fields[i].c_str(), nullptr); };
