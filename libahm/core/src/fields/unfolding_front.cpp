@@ -27,17 +27,6 @@ double turn(const Vec2& v) {
 
 double cross(const Vec2& u, const Vec2& v) { return u[0] * v[1] - u[1] * v[0]; }
 
-/// The third side of the corner between two neighbours in the plane; none where the star is open between them.
-std::optional<double> third_side(const TangentGraph& graph, Index p, const Vec2& u, Index q, const Vec2& v) {
-  if (p == q || cross(u, v) <= 0) return std::nullopt;
-  const Star star = graph.star(p);
-  for (std::size_t e = 0; e < star.degree(); ++e)
-    if (star.neighbors[e] == q) return length(star.log(e));
-  // Not joined: a corner of a grid or a square if it is narrow, else a gap.
-  if (u[0] * v[0] + u[1] * v[1] < -0.5 * std::hypot(u[0], u[1]) * std::hypot(v[0], v[1])) return std::nullopt;
-  return std::hypot(u[0] - v[0], u[1] - v[1]);
-}
-
 /// The distance of c from a point at distances `from_a` and `from_b`, beyond the side ab of a triangle of the given sides;
 /// none where the straight line to it does not cross that side.
 std::optional<double> across(double from_a, double from_b, double ab, double ac, double bc) {
@@ -49,15 +38,82 @@ std::optional<double> across(double from_a, double from_b, double ab, double ac,
   const double y = -std::sqrt(std::max(0.0, squared_y)), cy = std::sqrt(squared_cy);
   const double at_side = x - (cx - x) * y / (cy - y);
   if (!(at_side >= -1e-9 * ab) || !(at_side <= ab * (1 + 1e-9))) return std::nullopt;
-  return std::hypot(cx - x, cy - y);
+  return std::sqrt((cx - x) * (cx - x) + (cy - y) * (cy - y));
+}
+
+struct Neighbor {
+  Index vertex;
+  Vec2 log;
+  double length, turn;
+  std::size_t edge;
+};
+
+/// The neighbours of a vertex, counterclockwise.
+void neighbors_of(const TangentGraph& graph, Index vertex, std::vector<Neighbor>& neighbors) {
+  neighbors.clear();
+  const Star star = graph.star(vertex);
+  for (std::size_t e = 0; e < star.degree(); ++e) {
+    const Vec2 log{star.logs[2 * e], star.logs[2 * e + 1]};
+    neighbors.push_back({star.neighbors[e], log, std::sqrt(log[0] * log[0] + log[1] * log[1]), turn(log), e});
+  }
+  std::sort(neighbors.begin(), neighbors.end(),
+            [](const Neighbor& a, const Neighbor& b) { return a.turn != b.turn ? a.turn < b.turn : a.edge < b.edge; });
+}
+
+/// The third side of the corner between two neighbours; NaN where the star is open between them.
+double third_side(const TangentGraph& graph, const Neighbor& right, const Neighbor& left) {
+  const double open = std::numeric_limits<double>::quiet_NaN();
+  const Vec2 &u = right.log, &v = left.log;
+  if (right.vertex == left.vertex || cross(u, v) <= 0) return open;
+  const Star star = graph.star(right.vertex);
+  for (std::size_t e = 0; e < star.degree(); ++e)
+    if (star.neighbors[e] == left.vertex) return length(star.log(e));
+  // Not joined: a corner of a grid or a square if it is narrow, else a gap.
+  if (u[0] * v[0] + u[1] * v[1] < -0.5 * right.length * left.length) return open;
+  return std::hypot(u[0] - v[0], u[1] - v[1]);
+}
+
+template <class Sector>
+void append_sectors(const TangentGraph& graph, Index vertex, std::vector<Neighbor>& neighbors,
+                    std::vector<Sector>& sectors) {
+  neighbors_of(graph, vertex, neighbors);
+  for (std::size_t k = 0; k < neighbors.size(); ++k) {
+    const Neighbor &right = neighbors[k], &left = neighbors[k + 1 < neighbors.size() ? k + 1 : 0];
+    sectors.push_back({right.vertex, left.vertex, right.length, left.length, third_side(graph, right, left)});
+  }
 }
 
 }  // namespace
 
-UnfoldingFront::UnfoldingFront(const TangentGraph& graph)
+class UnfoldingFront::Stars {
+ public:
+  explicit Stars(const TangentGraph& graph) : begin_{0} {
+    sectors_.reserve(static_cast<std::size_t>(graph.edge_count()));
+    std::vector<Neighbor> neighbors;
+    for (Index i = 0; i < graph.size(); ++i) {
+      append_sectors(graph, i, neighbors, sectors_);
+      begin_.push_back(static_cast<Offset>(sectors_.size()));
+    }
+  }
+  std::span<const Sector> of(Index vertex) const {
+    return std::span(sectors_).subspan(static_cast<std::size_t>(begin_[vertex]),
+                                       static_cast<std::size_t>(begin_[vertex + 1] - begin_[vertex]));
+  }
+
+ private:
+  std::vector<Offset> begin_;
+  std::vector<Sector> sectors_;
+};
+
+std::shared_ptr<const UnfoldingFront::Stars> UnfoldingFront::stars(const TangentGraph& graph) {
+  return graph.dimension() == 2 ? std::make_shared<const Stars>(graph) : nullptr;
+}
+
+UnfoldingFront::UnfoldingFront(const TangentGraph& graph, std::shared_ptr<const Stars> stars)
     : graph_(graph),
       d_(static_cast<std::size_t>(graph.dimension())),
-      head_(static_cast<std::size_t>(graph.size()), none) {
+      head_(static_cast<std::size_t>(graph.size()), none),
+      stars_(std::move(stars)) {
   entries_.reserve(head_.size());
 }
 
@@ -79,8 +135,9 @@ Index UnfoldingFront::add(const Source& source) {
     offer(vertex, first + point, away / unit, 0, back.span());
     if (d_ != 2 || away == 0 || source.is_curve() || source.vertices().size() > 1) continue;
     // A point beside its only vertex, in whose tangent plane the neighbours lie too.
-    look_around(vertex);
-    for (const Neighbor& n : around_)
+    std::vector<Neighbor> neighbors;
+    neighbors_of(graph_, vertex, neighbors);
+    for (const Neighbor& n : neighbors)
       offer(n.vertex, first + point, std::hypot(n.log[0] - back.data()[0], n.log[1] - back.data()[1]), 0, {});
   }
   return first;
@@ -147,44 +204,34 @@ bool UnfoldingFront::offer(Index vertex, Index point, double distance, double sl
   return true;
 }
 
+std::span<const UnfoldingFront::Sector> UnfoldingFront::around(Index vertex) {
+  if (stars_) return stars_->of(vertex);
+  static thread_local std::vector<Neighbor> neighbors;
+  around_.clear();
+  append_sectors(graph_, vertex, neighbors, around_);
+  return around_;
+}
+
+/// Along the edges of a vertex, and across the triangles of its star: from its own distance and that of one neighbour to
+/// the other.
 void UnfoldingFront::spread(Index from, Index point, double distance) {
   if (d_ != 2) return carry(from, point);
-  look_around(from);
+  const std::span<const Sector> sectors = around(from);
   double longest = 0;
-  for (const Neighbor& c : around_) longest = std::max(longest, c.length);
+  for (const Sector& s : sectors) longest = std::max(longest, s.right_length);
   const double slack = 4 * longest;  // what unfolds to a border comes from a few edges beyond
-  for (const Neighbor& c : around_) offer(c.vertex, point, distance + c.length, slack, {});
-  unfold(point, distance, slack);
-}
-
-/// The neighbours of a vertex, counterclockwise.
-void UnfoldingFront::look_around(Index vertex) {
-  around_.clear();
-  const Star star = graph_.star(vertex);
-  for (std::size_t e = 0; e < star.degree(); ++e)
-    around_.push_back({star.neighbors[e], {star.logs[2 * e], star.logs[2 * e + 1]}, length(star.log(e)), e});
-  std::sort(around_.begin(), around_.end(), [](const Neighbor& a, const Neighbor& b) {
-    const double s = turn(a.log), t = turn(b.log);
-    return s != t ? s < t : a.edge < b.edge;
-  });
-}
-
-/// Across the triangles of the star of a, from its own distance and that of one neighbour to the other.
-void UnfoldingFront::unfold(Index point, double distance, double slack) {
-  for (std::size_t k = 0; k < around_.size(); ++k) {
-    const Neighbor &right = around_[k], &left = around_[k + 1 < around_.size() ? k + 1 : 0];
-    const Entry *of_right = find(right.vertex, point), *of_left = find(left.vertex, point);
-    if (!of_right && !of_left) continue;
-    const std::optional<double> side = third_side(graph_, right.vertex, right.log, left.vertex, left.log);
-    if (!side) continue;
-    // `offer` may move the entries.
-    const double to_right = of_right ? of_right->distance : 0, to_left = of_left ? of_left->distance : 0;
-    if (of_right)
-      if (const auto found = across(distance, to_right, right.length, left.length, *side))
-        offer(left.vertex, point, *found, slack, {});
-    if (of_left)
-      if (const auto found = across(distance, to_left, left.length, right.length, *side))
-        offer(right.vertex, point, *found, slack, {});
+  for (const Sector& s : sectors) offer(s.right, point, distance + s.right_length, slack, {});
+  for (const Sector& s : sectors) {
+    if (std::isnan(s.side)) continue;
+    const Entry *right = find(s.right, point), *left = find(s.left, point);
+    if (!right || !left) continue;
+    const double to_right = right->distance, to_left = left->distance;  // `offer` may move the entries
+    if (to_right < distance + s.right_length)
+      if (const auto found = across(distance, to_right, s.right_length, s.left_length, s.side))
+        offer(s.left, point, *found, slack, {});
+    if (to_left < distance + s.left_length)
+      if (const auto found = across(distance, to_left, s.left_length, s.right_length, s.side))
+        offer(s.right, point, *found, slack, {});
   }
 }
 

@@ -201,7 +201,10 @@ class Worker {
     AffineHeat heat(patch, operators, options_.heat.variant, std::move(inflows));
     heat.diffuse();
     heat.solve();
-    if (!graph_.is_delaunay()) heat.solve_squares();
+    if (graph_.is_delaunay())
+      stars_ = UnfoldingFront::stars(patch);
+    else
+      heat.solve_squares();
     for (std::size_t m = 0; m < members.size(); ++m)
       if (!collect(heat, m, patch, local[m], vertices, edge, wanted, result[members[m]])) return false;
     return true;
@@ -226,7 +229,7 @@ class Worker {
     const auto n = static_cast<std::size_t>(patch.size());
     distance_.resize(n);
     if (graph_.is_delaunay()) {
-      UnfoldingFront front(patch);
+      UnfoldingFront front(patch, stars_);
       front.add(source);
       front.run(std::max(wanted, options_.radius));
       for (std::size_t k = 0; k < n; ++k) distance_[k] = front.distance(Vertex(k));
@@ -290,6 +293,7 @@ class Worker {
   SparseArray<Index> place_;  ///< 1 + place in the patch at hand, 0: outside
   std::size_t d_;
   std::vector<double> phi_, distance_;
+  std::shared_ptr<const UnfoldingFront::Stars> stars_;  ///< of the patch at hand
   std::vector<Index> order_;
 };
 

@@ -61,9 +61,10 @@ struct Found {
 };
 
 /// Distances unfolded from a source, where that is how they are measured: on triangulations, and from curves.
-std::vector<double> unfolded(const TangentGraph& graph, const Source& source, double radius) {
+std::vector<double> unfolded(const TangentGraph& graph, const std::shared_ptr<const UnfoldingFront::Stars>& stars,
+                             const Source& source, double radius) {
   if (!graph.is_delaunay() && !source.is_curve()) return {};
-  UnfoldingFront front(graph);
+  UnfoldingFront front(graph, stars);
   front.add(source);
   front.run(radius);
   std::vector<double> distances(static_cast<std::size_t>(graph.size()));
@@ -87,6 +88,8 @@ struct LogMapSolver::Impl {
   ComponentScales scales;
   DiffusionTimes diffusion_times;
   mutable std::vector<Time> times;
+  mutable std::once_flag looked_around;
+  mutable std::shared_ptr<const UnfoldingFront::Stars> kept_stars;
 
   Impl(const TangentGraph& graph, const HeatOptions& options);
 
@@ -99,6 +102,12 @@ struct LogMapSolver::Impl {
   }
   void factor(std::size_t time, const Progress& progress) const;
   void check_memory() const;
+  /// Kept by solvers that make many maps.
+  std::shared_ptr<const UnfoldingFront::Stars> stars() const {
+    if (strategy == Strategy::march || !graph.is_delaunay()) return nullptr;
+    std::call_once(looked_around, [&] { kept_stars = UnfoldingFront::stars(graph); });
+    return kept_stars;
+  }
 
   March front(std::size_t time, const MapSettings& map, unsigned threads) const {
     return March(graph, options, scales, times[time].tau, map.variant, map.radius, threads, map.progress);
@@ -287,7 +296,7 @@ std::vector<LogMap> LogMapSolver::Impl::solve_block(std::span<const Source> sour
   if (times.size() > 1)  // the maps of different times differ a little at the radius
     wider.radius += 8 * *std::max_element(scales.edge_length.begin(), scales.edge_length.end()) * graph.length_unit();
   std::vector<std::vector<double>> unfolded;
-  for (const Source& source : sources) unfolded.push_back(ahm::unfolded(graph, source, wider.radius));
+  for (const Source& source : sources) unfolded.push_back(ahm::unfolded(graph, stars(), source, wider.radius));
   if (times.size() == 1) return solve_block(0, sources, unfolded, map, threads);
   std::vector<std::vector<LogMap>> at_times;
   for (std::size_t time = 0; time < times.size(); ++time) {

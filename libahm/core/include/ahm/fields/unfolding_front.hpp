@@ -12,7 +12,9 @@
 
 #include <functional>
 #include <limits>
+#include <memory>
 #include <queue>
+#include <span>
 #include <vector>
 
 #include "ahm/graph/tangent_graph.hpp"
@@ -31,8 +33,13 @@ namespace ahm {
 /// uncertain ways and is too short. In other dimensions than 2 the displacement from the point is carried along the edges.
 class UnfoldingFront {
  public:
+  /// The triangles around every vertex, made once for many fronts: about 200 bytes a vertex.
+  class Stars;
+  static std::shared_ptr<const Stars> stars(const TangentGraph& graph);
+
   /// @param graph  must outlive the front
-  explicit UnfoldingFront(const TangentGraph& graph);
+  /// @param stars  of this graph; none: looked up vertex by vertex
+  explicit UnfoldingFront(const TangentGraph& graph, std::shared_ptr<const Stars> stars = nullptr);
 
   /// Adds the points of a source, which get the next numbers, from 0.
   /// @return the number of the first
@@ -53,11 +60,11 @@ class UnfoldingFront {
     double distance;
     Index point, next, gains;
   };
-  struct Neighbor {
-    Index vertex;
-    Vec2 log;
-    double length;
-    std::size_t edge;
+  /// Between two neighbours of a vertex that follow each other counterclockwise.
+  struct Sector {
+    Index right, left;
+    double right_length, left_length;
+    double side;  ///< from right to left; NaN where the star is open
   };
   struct Waiting {
     double distance;
@@ -71,9 +78,8 @@ class UnfoldingFront {
   const Entry* find(Index vertex, Index point) const;
   bool offer(Index vertex, Index point, double distance, double slack, std::span<const double> displacement);
   void spread(Index from, Index point, double distance);
-  void unfold(Index point, double distance, double slack);
   void carry(Index from, Index point);
-  void look_around(Index vertex);
+  std::span<const Sector> around(Index vertex);
 
   const TangentGraph& graph_;
   std::size_t d_;
@@ -81,7 +87,8 @@ class UnfoldingFront {
   std::vector<Entry> entries_;
   std::vector<double> displacements_;  ///< d per entry, from the vertex to the point in its frame; d = 2: empty
   std::priority_queue<Waiting, std::vector<Waiting>, std::greater<>> queue_;
-  std::vector<Neighbor> around_;  ///< of the vertex at hand, by angle
+  std::shared_ptr<const Stars> stars_;
+  std::vector<Sector> around_;  ///< of the vertex at hand, where there are no stars
   Index points_ = 0;
 };
 
