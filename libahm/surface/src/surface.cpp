@@ -8,6 +8,7 @@
 
 #include "ahm/error.hpp"
 #include "ahm/surface/directions.hpp"
+#include "ahm/surface/exact/flat_triangles.hpp"
 #include "ahm/surface/face_tree.hpp"
 #include "ahm/util/text.hpp"
 #include "ahm/util/vec.hpp"
@@ -193,6 +194,25 @@ FacePoint Surface::face_point(const EdgePoint& point) const {
   }
   throw InvalidArgument("rows " + std::to_string(point.from.index) + " and " + std::to_string(point.to.index) +
                         " are not joined by an edge");
+}
+
+FlatTriangles Surface::flat_triangles() const {
+  throw InvalidArgument("no_flat_triangles", "exact geodesics need faces, which this surface does not have",
+                        "map it by heat");
+}
+
+exact::MeshPoint Surface::flat_point_in_face(const FacePoint&) const {
+  throw InvalidArgument("no_flat_triangles", "this surface has no flat triangles", "map it by heat");
+}
+
+exact::MeshPoint Surface::flat_point(const FacePoint& point) const {
+  check(point);
+  return flat_point_in_face(point);
+}
+
+exact::MeshPoint Surface::flat_point(const EdgePoint& point) const {
+  check(point);
+  return flat_point_in_face(face_point(point));
 }
 
 RowLogMap Surface::on_rows(const LogMap& map) const {
