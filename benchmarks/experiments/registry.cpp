@@ -25,6 +25,7 @@ Table radial(const Settings&);
 Table runtime(const Settings&);
 Table tessellations(const Settings&);
 Table times(const Settings&);
+Table trust(const Settings&);
 Table variants(const Settings&);
 
 std::span<const Experiment> experiments() {
@@ -70,6 +71,10 @@ std::span<const Experiment> experiments() {
       Experiment{"radial", "Fig. 21", "Radial field on thin triangles",
                  "On anisotropic meshes affine diffusion gives a more isotropic radial field than vector diffusion.",
                  radial},
+      Experiment{
+          "trust", "after Fig. 20", "Distances and quality against exact maps",
+          "Distances are accurate near the source and too short at cut loci; exact vectors are not in the paper.",
+          trust},
       Experiment{
           "runtime", "Fig. 22", "Run time",
           "AHM_l is 27 % slower than VHM_log, AHM_a 70 %; further maps are 7 to 30 (AHM_l) and 3 to 10 (AHM_a) times "

@@ -100,6 +100,7 @@ struct CloudSteps {
   std::unique_ptr<ahm::pointcloud::NeighborSearch> search;
   ahm::pointcloud::Neighborhoods neighborhoods;
   ahm::pointcloud::TangentPlanes planes;
+  double noise = 0;
   std::vector<ahm::Triangle> triangles;
   ahm::pointcloud::WeightedEdges edges;
   std::vector<Index> vertices;
@@ -115,13 +116,11 @@ struct CloudSteps {
     vertices.resize(cloud.points.size());
     std::iota(vertices.begin(), vertices.end(), 0);
   }
-  void find_neighbors() { neighborhoods = find_neighborhoods(cloud, *search, options); }
+  void find_neighbors() { neighborhoods = find_neighborhoods(cloud, *search, 30, options); }
   void find_planes() { planes = find_tangent_planes(cloud, {}, *search, neighborhoods, options); }
-  void triangulate() { triangles = local_delaunay(cloud, neighborhoods, planes, false, options, report); }
+  void triangulate() { triangles = local_delaunay(cloud, neighborhoods, planes, false, noise, options, report); }
   void weigh() { edges = tufted_laplacian(cloud, planes, triangles, report); }
-  ahm::CsrGraphData join() {
-    return tangent_edges(cloud, planes, edges, vertices, size(), true, options.edge_length, 1, report);
-  }
+  ahm::CsrGraphData join() { return tangent_edges(cloud, planes, edges, vertices, size(), true, noise, 1, report); }
   Index size() const { return static_cast<Index>(cloud.points.size()); }
 };
 

@@ -28,18 +28,22 @@ CsrGraphData stored(const TangentGraph& graph) {
   return g;
 }
 
-CsrGraphData doubled(const CsrGraphData& g) {
+CsrGraphData joined(const CsrGraphData& g, const CsrGraphData& other) {
   CsrGraphData two = g;
   const auto n = static_cast<Index>(g.masses.size());
   auto append = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
-  for (std::size_t i = 1; i < g.row_begin.size(); ++i) two.row_begin.push_back(g.row_begin.back() + g.row_begin[i]);
-  for (Index j : g.neighbors) two.neighbors.push_back(j + n);
-  append(two.weights, g.weights);
-  append(two.logs, g.logs);
-  append(two.transports, g.transports);
-  append(two.masses, g.masses);
+  for (std::size_t i = 1; i < other.row_begin.size(); ++i)
+    two.row_begin.push_back(g.row_begin.back() + other.row_begin[i]);
+  for (Index j : other.neighbors) two.neighbors.push_back(j + n);
+  append(two.weights, other.weights);
+  append(two.logs, other.logs);
+  append(two.transports, other.transports);
+  append(two.masses, other.masses);
+  if (!two.frames.empty()) append(two.frames, other.frames);
   return two;
 }
+
+CsrGraphData doubled(const CsrGraphData& g) { return joined(g, g); }
 
 Turned with_frames_turned(const CsrGraphData& g, unsigned seed) {
   const int d = g.dimension;

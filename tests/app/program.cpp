@@ -171,14 +171,14 @@ std::vector<Row> read_csv(const std::string& path) {
   std::istringstream lines(read_text(path));
   std::string line;
   std::getline(lines, line);
-  EXPECT_TRUE(line.starts_with("index,x,y,z,u,v,distance,angle,status,quality")) << line;
+  EXPECT_TRUE(line.starts_with("index,x,y,z,u,v,distance,angle,status,quality,spread")) << line;
   std::vector<Row> rows;
   while (std::getline(lines, line)) {
     std::vector<std::string> fields;
     std::istringstream stream(line);
     for (std::string field; std::getline(stream, field, ',');) fields.push_back(field);
-    if (fields.size() != 10 && fields.size() != 11) {
-      ADD_FAILURE() << "not ten or eleven fields: " << line;
+    if (fields.size() != 11 && fields.size() != 12) {
+      ADD_FAILURE() << "not eleven or twelve fields: " << line;
       break;
     }
     const auto number = [&](std::size_t i) { return std::strtod(fields[i].c_str(), nullptr); };

@@ -23,7 +23,7 @@ struct InputOptions {
   bool outliers = false;
   bool drop_nan = false;
   std::optional<double> local;  ///< build the graph only around the source, as a map of this radius needs it
-  Index k = 30;
+  std::optional<Index> k;
   std::string knn = "nanoflann";  ///< nanoflann, flann, pcl
   std::string normals = "auto";   ///< auto, oriented, unoriented, estimate
 

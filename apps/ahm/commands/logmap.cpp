@@ -26,12 +26,16 @@ constexpr const char* logmap_footer =
     "\n"
     "INPUT   .ply .pcd .xyz .txt .csv .off .obj .stl\n"
     "OUTPUT  .csv, .ply or .pcd; one row per vertex of INPUT, in its order:\n"
-    "          index,x,y,z,u,v,distance,angle,status,quality, with --order 2 also error_estimate,\n"
+    "          index,x,y,z,u,v,distance,angle,status,quality,spread, with --order 2 also error_estimate,\n"
     "          with --gradient also gx,gy,gz: unit vector in space, away from the source along the surface\n"
-    "        quality is in (0, 1]; below 0.5 the vertex lies at a cut locus or in a fold.\n"
+    "        u,v        the log map of heat: where heat comes along several ways they cancel, and behind a hole\n"
+    "                   it is the straight line\n"
+    "        distance   along the surface; on meshes round holes too, not |(u, v)|\n"
+    "        quality    in (0, 1]; below 0.5 do not trust u,v: a cut locus, a shadow, or too coarse\n"
+    "        spread     standard deviation of (u, v) over the ways by which heat came\n"
     "        The numbers are nan where status is not ok:\n"
-    "          component  not connected to the source      radius   beyond --radius\n"
-    "          unreached  too far for double precision     removed  dropped, replaced, or in no face\n"
+    "          disconnected  from the source                beyond_radius  farther than --radius\n"
+    "          unreached     too far for double precision  removed        dropped, replaced, or in no face\n"
     "\n"
     "Examples:\n"
     "  ahm logmap scan.ply --source 0 -o map.csv\n"
@@ -81,6 +85,7 @@ void write_results(const PlacedSource& source, const RowLogMap& rows, const std:
   table.add("angle", rows.angle);
   table.add("status", rows.status);
   table.add("quality", quality);
+  table.add("spread", rows.spread);
   if (!rows.error_estimate.empty()) table.add("error_estimate", rows.error_estimate);
   if (!away.empty()) table.add({"gx", "gy", "gz"}, away);
   results.write(table, results.scene(rows, quality, source), journal);

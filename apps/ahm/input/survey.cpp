@@ -101,7 +101,7 @@ void try_surface(const io::Geometry& input, InputOptions options, const Progress
   std::string flags;
   if (s.as_cloud) {
     if (s.mesh) flags += " --backend pointcloud";
-    if (options.k != InputOptions{}.k) flags += fmt::format(" --k {}", options.k);
+    if (options.k) flags += fmt::format(" --k {}", *options.k);
     options.drop_nan = s.non_finite > 0;
     if (options.drop_nan) flags += " --drop-nan";
   } else if (!s.mesh->is_manifold()) {

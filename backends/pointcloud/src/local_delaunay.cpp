@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "ahm/util/parallel.hpp"
+#include "edge_unfolding.hpp"
 #include "plane_axes.hpp"
 
 namespace ahm::pointcloud {
@@ -50,14 +51,15 @@ void convex_hull(std::vector<Inverted>& points, std::vector<Inverted>& hull) {
 class StarTriangulator {
  public:
   StarTriangulator(const CleanPoints& cloud, const Neighborhoods& neighborhoods, const TangentPlanes& planes,
-                   bool oriented, double max_edge_ratio)
+                   bool oriented, double noise, double max_edge_ratio)
       : cloud_(cloud),
         neighborhoods_(neighborhoods),
         planes_(planes),
         oriented_(oriented),
+        noise_(noise),
         max_ratio_(max_edge_ratio) {}
 
-  Offset too_long = 0, other_sheet = 0;
+  Offset too_long = 0, other_sheet = 0, too_steep = 0;
 
   void triangulate(Index i, std::vector<Triangle>& out) {
     images_.clear();
@@ -88,6 +90,8 @@ class StarTriangulator {
   bool accept(Index i, Index j, double length) {
     if (length * neighborhoods_.radius[i] > max_ratio_ * neighborhoods_.radius[j]) return ++too_long, false;
     if (oriented_ && dot(planes_.normals[i], planes_.normals[j]) < sheet_cosine) return ++other_sheet, false;
+    if (leaves_surface(planes_.normals[i], planes_.normals[j], cloud_.points[j] - cloud_.points[i], noise_))
+      return ++too_steep, false;
     return true;
   }
 
@@ -95,6 +99,7 @@ class StarTriangulator {
   const Neighborhoods& neighborhoods_;
   const TangentPlanes& planes_;
   bool oriented_;
+  double noise_;
   double max_ratio_;
   std::vector<Inverted> images_, hull_;
 };
@@ -126,23 +131,25 @@ std::vector<Triangle> unique_triangles(const std::vector<std::vector<Triangle>>&
 }  // namespace
 
 std::vector<Triangle> local_delaunay(const CleanPoints& cloud, const Neighborhoods& neighborhoods,
-                                     const TangentPlanes& planes, bool oriented, const CloudOptions& options,
-                                     CloudDetails& report) {
+                                     const TangentPlanes& planes, bool oriented, double noise,
+                                     const CloudOptions& options, CloudDetails& report) {
   const auto n = static_cast<Offset>(cloud.points.size());
   std::vector<std::vector<Triangle>> parts(static_cast<std::size_t>((n + chunk - 1) / chunk));
-  std::atomic<Offset> too_long{0}, other_sheet{0};
+  std::atomic<Offset> too_long{0}, other_sheet{0}, too_steep{0};
   detail::parallel_chunks(n, chunk, options.threads, [&](Offset begin, Offset end) {
-    StarTriangulator star(cloud, neighborhoods, planes, oriented, options.max_edge_ratio);
+    StarTriangulator star(cloud, neighborhoods, planes, oriented, noise, options.max_edge_ratio);
     auto& part = parts[begin / chunk];
     part.reserve(static_cast<std::size_t>(end - begin) * 6);
     for (Offset i = begin; i < end; ++i)
       if (planes.has_plane(static_cast<Index>(i))) star.triangulate(static_cast<Index>(i), part);
     too_long += star.too_long;
     other_sheet += star.other_sheet;
+    too_steep += star.too_steep;
     if (options.progress.stop.stop_requested()) throw Cancelled("cancelled during the local triangulation");
   });
-  report.rejected_long = too_long;
+  report.rejected_long = neighborhoods.unreachable + too_long;
   report.rejected_normals = other_sheet;
+  report.rejected_steep = too_steep;
   std::vector<Triangle> triangles = unique_triangles(parts, static_cast<Index>(n), options.threads);
   report.triangles = static_cast<Offset>(triangles.size());
   options.progress.step("triangulate", 1.0);

@@ -13,8 +13,9 @@ namespace ahm::pointcloud {
 /// itself. A triangle found from several of its corners is listed once, corners ascending, triangles in lexicographic
 /// order.
 /// @param oriented  reject neighbours whose normals point the other way
+/// @param noise  of offsets across the surface; neighbours far beyond it, steeply above the surface, are rejected
 std::vector<Triangle> local_delaunay(const CleanPoints& cloud, const Neighborhoods& neighborhoods,
-                                     const TangentPlanes& planes, bool oriented, const CloudOptions& options,
-                                     CloudDetails& report);
+                                     const TangentPlanes& planes, bool oriented, double noise,
+                                     const CloudOptions& options, CloudDetails& report);
 
 }  // namespace ahm::pointcloud

@@ -1,6 +1,7 @@
 #include "ahm/pointcloud/plane_fit.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 
 #include "ahm/util/vec.hpp"
 
@@ -29,7 +30,7 @@ PlaneFit fit_plane(std::span<const Vec3> points, Index i, std::span<const Index>
   const double ratio = variance[2] > 0 ? variance[1] / variance[2] : 0.0;
   if (!(ratio > collinear_ratio)) return {};
   const Eigen::Vector3d n = eigen.eigenvectors().col(0);
-  return {normalized(Vec3{n[0], n[1], n[2]}), ratio};
+  return {normalized(Vec3{n[0], n[1], n[2]}), ratio, std::max(0.0, variance[0]) / variance[1]};
 }
 
 }  // namespace ahm::pointcloud

@@ -12,6 +12,7 @@
 #include "ahm/util/stopwatch.hpp"
 #include "ahm/util/text.hpp"
 #include "clean_points.hpp"
+#include "edge_unfolding.hpp"
 #include "local_delaunay.hpp"
 #include "orientation.hpp"
 #include "plane_axes.hpp"
@@ -22,11 +23,19 @@
 namespace ahm::pointcloud {
 namespace {
 
+constexpr Index default_k = 30, most_k = 120;
+
+/// Noise of more than this share of the spacing bends planes more than corners do: more neighbours are taken.
+constexpr double much_noise = 0.5;
+
+/// A cloud with more than this share of its points in neighbourhoods as thick as wide is no surface.
+constexpr double thick_share = 0.15;
+
 void check_arguments(std::span<const Vec3> points, const CloudOptions& options) {
   if (points.size() < 3)
     throw InvalidGeometry("the cloud has " + std::to_string(points.size()) + " points; at least 3 are needed");
-  if (options.k < 3)
-    throw InvalidArgument("k is " + std::to_string(options.k) + "; it must be at least 3 (default 30)");
+  if (options.k && *options.k < 3)
+    throw InvalidArgument("k is " + std::to_string(*options.k) + "; it must be at least 3 (default 30)");
   if (!(options.max_edge_ratio >= 1))
     throw InvalidArgument("max_edge_ratio is " + detail::number(options.max_edge_ratio) +
                           "; it must be at least 1 (default 3)");
@@ -75,6 +84,37 @@ std::string first_ten(const std::vector<Index>& indices) {
   detail::ItemList list;
   for (Index i : indices) list.add(std::to_string(i));
   return list.text();
+}
+
+struct NoisyPlanes {
+  Neighborhoods neighborhoods;
+  TangentPlanes planes;
+  double noise;  ///< `offset_noise`
+};
+
+NoisyPlanes find_planes_of(const CleanPoints& cloud, std::span<const Vec3> normals, const NeighborSearch& search,
+                           Index k, const CloudOptions& options) {
+  NoisyPlanes result;
+  result.neighborhoods = find_neighborhoods(cloud, search, k, options);
+  result.planes = find_tangent_planes(cloud, normals, search, result.neighborhoods, options);
+  result.noise = offset_noise(cloud, result.neighborhoods, result.planes, options.threads);
+  return result;
+}
+
+/// Neighbours and planes. Where nobody fixed their number, noisy clouds get more neighbours, since the error of a plane is
+/// that of its points over the number of them; but only as long as that makes neighbourhoods flatter, which sets noise apart
+/// from branches and volumes.
+NoisyPlanes find_planes(const CleanPoints& cloud, std::span<const Vec3> normals, const NeighborSearch& search,
+                        const CloudOptions& options) {
+  NoisyPlanes result = find_planes_of(cloud, normals, search, options.k.value_or(default_k), options);
+  if (options.k) return result;
+  for (Index k = 2 * default_k; k <= most_k; k *= 2) {
+    if (!(result.noise > much_noise * spacing(result.neighborhoods)) || result.neighborhoods.k < k / 2) break;
+    NoisyPlanes wider = find_planes_of(cloud, normals, search, k, options);
+    if (wider.planes.thick > result.planes.thick) break;
+    result = std::move(wider);
+  }
+  return result;
 }
 
 /// Whether neighbours whose normals are opposed are kept apart.
@@ -154,16 +194,18 @@ PointCloudSurface PointCloudSurface::build(std::span<const Vec3> input, std::spa
   const auto search = options.search ? options.search(cloud.points) : nullptr;
   if (!search) throw InvalidArgument("options.search made no neighbour search; default: nanoflann_search");
   options.progress.step("neighbours", 0.0);
-  Neighborhoods neighborhoods = find_neighborhoods(cloud, *search, options);
-  details.k_asked = options.k;
+  details.k_asked = options.k.value_or(default_k);
+  auto [neighborhoods, planes, noise] = find_planes(cloud, normals, *search, options);
   details.k = neighborhoods.k;
-  TangentPlanes planes = find_tangent_planes(cloud, normals, *search, neighborhoods, options);
+  details.noise = noise * cloud.unit;
   if (!normals.empty()) details.estimated = planes.estimated;
+  details.contradicted = planes.contradicted;
+  details.thick = planes.thick;
   if (planes.estimated == static_cast<Index>(cloud.points.size())) normals = {};
   const bool cut = cut_between_sheets(normals, cloud, planes, neighborhoods, options);
   details.seconds_normals = stopwatch.lap();
 
-  std::vector<Triangle> triangles = local_delaunay(cloud, neighborhoods, planes, cut, options, details);
+  std::vector<Triangle> triangles = local_delaunay(cloud, neighborhoods, planes, cut, noise, options, details);
   details.seconds_delaunay = stopwatch.lap();
   neighborhoods = {};
 
@@ -177,8 +219,8 @@ PointCloudSurface PointCloudSurface::build(std::span<const Vec3> input, std::spa
 
   const std::vector<Index> vertex_of_clean = number_vertices(cloud, edges, kept, details);
   orient(cloud, edges, normals, cut, options, planes, details);
-  CsrGraphData data = tangent_edges(cloud, planes, edges, vertex_of_clean, details.vertices, details.oriented,
-                                    options.edge_length, options.threads, details);
+  CsrGraphData data = tangent_edges(cloud, planes, edges, vertex_of_clean, details.vertices, details.oriented, noise,
+                                    options.threads, details);
   fill_vertex_data(data, points, cloud, planes, edges, vertex_of_clean);
   CsrGraph graph(std::move(data));
   details.components = connected_components(graph).count;
@@ -216,9 +258,13 @@ Report PointCloudSurface::report() const {
           {"flips", d.flips},
           {"rejected_long", d.rejected_long},
           {"rejected_normals", d.rejected_normals},
+          {"rejected_steep", d.rejected_steep},
           {"reflections", d.reflections},
           {"normals_given", d.normals_given},
+          {"contradicted", d.contradicted},
+          {"thick", d.thick},
           {"oriented", d.oriented},
+          {"noise", d.noise},
           {"mollification", d.mollification},
           {"seconds.normals", d.seconds_normals},
           {"seconds.delaunay", d.seconds_delaunay},
@@ -234,11 +280,15 @@ std::vector<Warning> PointCloudSurface::warnings() const {
   };
   warn("normals_estimated", d.estimated);
   if (d.flips_stopped) result.push_back({"cover_not_delaunay", {}, {}});
+  warn("normals_contradicted", d.contradicted);
+  if (d.thick > thick_share * d.vertices)
+    result.push_back({"no_surface", {static_cast<double>(d.thick), static_cast<double>(d.vertices)}, {}});
   warn("degenerate", d.degenerate, d.first_degenerate);
   warn("normals_turned", d.turned);
   if (d.k < d.k_asked)
     result.push_back(
         {"k_reduced", {static_cast<double>(d.k_asked), static_cast<double>(d.k), static_cast<double>(d.k + 1)}, {}});
+  if (d.k > d.k_asked) result.push_back({"k_raised", {static_cast<double>(d.k), d.noise}, {}});
   warn("non_finite", d.non_finite);
   warn("duplicates", d.duplicates);
   warn("thin_walls", d.rejected_normals);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "ahm/util/parallel.hpp"
+#include "edge_unfolding.hpp"
 #include "plane_axes.hpp"
 
 namespace ahm::pointcloud {
@@ -37,15 +38,6 @@ Matrix2 smallest_rotation(const Plane& from, const Plane& to, bool reflect) {
   return reflect ? Matrix2{c, s, s, -c} : Matrix2{c, -s, s, c};
 }
 
-/// Where `offset` lies in the plane.
-std::array<double, 2> edge_log(const Plane& plane, const Vec3& offset, EdgeLength edge_length) {
-  const double x = dot(plane.axes.x, offset), y = dot(plane.axes.y, offset);
-  const double projected = std::hypot(x, y);
-  if (edge_length == EdgeLength::projected || !(projected > 0)) return {x, y};
-  const double scale = norm(offset) / projected;
-  return {scale * x, scale * y};
-}
-
 /// Row starts of the symmetric graph of the given undirected edges.
 std::vector<Offset> row_starts(const WeightedEdges& edges, const std::vector<Index>& vertex_of_clean, Index vertices) {
   std::vector<Offset> begin(static_cast<std::size_t>(vertices) + 1, 0);
@@ -60,8 +52,8 @@ std::vector<Offset> row_starts(const WeightedEdges& edges, const std::vector<Ind
 }  // namespace
 
 CsrGraphData tangent_edges(const CleanPoints& cloud, const TangentPlanes& planes, const WeightedEdges& edges,
-                           const std::vector<Index>& vertex_of_clean, Index vertices, bool trusted,
-                           EdgeLength edge_length, unsigned threads, CloudDetails& report) {
+                           const std::vector<Index>& vertex_of_clean, Index vertices, bool trusted, double noise,
+                           unsigned threads, CloudDetails& report) {
   const auto count = static_cast<Offset>(edges.tails.size());
   auto is_reflection = [&](std::size_t e) {
     return !trusted && dot(planes.normals[edges.tails[e]], planes.normals[edges.heads[e]]) < 0;
@@ -92,17 +84,18 @@ CsrGraphData tangent_edges(const CleanPoints& cloud, const TangentPlanes& planes
       const Vec3 offset = cloud.points[b] - cloud.points[a];
       const Matrix2 R_ab = smallest_rotation(plane_a, plane_b, reflect);
       const Matrix2 R_ba{R_ab[0], R_ab[2], R_ab[1], R_ab[3]};
-      auto store = [&](Offset at, Index neighbor, const std::array<double, 2>& log, const Matrix2& R) {
+      auto store = [&](Offset at, Index neighbor, const Plane& plane, const Vec3& log, const Matrix2& R) {
         g.neighbors[at] = vertex_of_clean[neighbor];
         g.weights[at] = edges.weights[e];
-        std::copy_n(log.begin(), 2, g.logs.begin() + 2 * at);
+        g.logs[2 * at] = dot(plane.axes.x, log);
+        g.logs[2 * at + 1] = dot(plane.axes.y, log);
         double* transport = g.transports.data() + static_cast<std::size_t>(at) * width;
         transport[0] = R[0];
         transport[1] = width == 2 ? R[2] : R[1];
         if (width == 4) transport[2] = R[2], transport[3] = R[3];
       };
-      store(position_in_tail[e], b, edge_log(plane_a, offset, edge_length), R_ba);
-      store(position_in_head[e], a, edge_log(plane_b, -1.0 * offset, edge_length), R_ab);
+      store(position_in_tail[e], b, plane_a, unfolded_edge(plane_a.normal, plane_b.normal, offset, noise), R_ba);
+      store(position_in_head[e], a, plane_b, unfolded_edge(plane_b.normal, plane_a.normal, -1.0 * offset, noise), R_ab);
     }
   });
   return g;

@@ -13,9 +13,10 @@ namespace ahm::pointcloud {
 /// Fills the graph from oriented normals and weighted edges: vertices are the points that a triangle touches.
 /// Where `trusted` is false, an edge between opposed normals is a reflection; else it is a rotation by more than 90
 /// degrees.
+/// @param noise  of offsets across the surface, units of the clean points
 /// @param vertex_of_clean  number of each clean point among the vertices, -1: none
 CsrGraphData tangent_edges(const CleanPoints& cloud, const TangentPlanes& planes, const WeightedEdges& edges,
-                           const std::vector<Index>& vertex_of_clean, Index vertices, bool trusted,
-                           EdgeLength edge_length, unsigned threads, CloudDetails& report);
+                           const std::vector<Index>& vertex_of_clean, Index vertices, bool trusted, double noise,
+                           unsigned threads, CloudDetails& report);
 
 }  // namespace ahm::pointcloud

@@ -1,8 +1,10 @@
 #include "tangent_planes.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <iterator>
+#include <numbers>
 #include <string>
 #include <utility>
 
@@ -10,6 +12,7 @@
 #include "ahm/pointcloud/plane_fit.hpp"
 #include "ahm/util/parallel.hpp"
 #include "ahm/util/vec.hpp"
+#include "given_planes.hpp"
 
 namespace ahm::pointcloud {
 namespace {
@@ -19,6 +22,13 @@ constexpr Offset chunk = 4096;  // points per task
 /// Neighbours are narrow, and more of them are wanted, when their second principal variance is below this share of the
 /// first.
 constexpr double narrow_ratio = 1e-3;
+
+/// Neighbours are as thick as wide when their third principal variance is above this share of the second.
+constexpr double thick_ratio = 0.25;
+
+/// Dropping neighbours shrinks a neighbourhood, which may drop others; what is left after these rounds is not joined either.
+constexpr int reach_rounds = 3;
+
 /// Buffers of one thread's queries.
 struct QueryBuffers {
   std::vector<Index> indices;
@@ -44,17 +54,63 @@ std::span<const Index> neighbors_of(std::span<const Vec3> points, Index i, const
   return buffers.indices;
 }
 
+/// The neighbours, nearest first, up to the first gap behind half of k.
+std::span<const Index> before_gap(std::span<const Vec3> points, Index i, std::span<const Index> neighbors, Index k,
+                                  double ratio) {
+  for (auto m = static_cast<std::size_t>((k + 1) / 2); m < neighbors.size(); ++m)
+    if (norm(points[neighbors[m]] - points[i]) > ratio * norm(points[neighbors[m - 1]] - points[i]))
+      return neighbors.first(m);
+  return neighbors;
+}
+
+/// Of `counts[i]` neighbours at i * k, keeps those whose own neighbourhood reaches point i, and its radius.
+/// @return whether all were kept
+bool drop_unreachable(const CleanPoints& cloud, const CloudOptions& options, std::vector<Index>& counts,
+                      Neighborhoods& result) {
+  std::vector<double> radius = result.radius;
+  std::atomic<bool> all{true};
+  detail::parallel_chunks(static_cast<Offset>(counts.size()), chunk, options.threads, [&](Offset begin, Offset end) {
+    for (Offset i = begin; i < end; ++i) {
+      const auto first = result.indices.begin() + i * result.k;
+      const auto last = std::remove_if(first, first + counts[i], [&](Index j) {
+        return norm(cloud.points[j] - cloud.points[i]) > options.max_edge_ratio * result.radius[j];
+      });
+      if (last == first + counts[i]) continue;
+      all = false;
+      counts[i] = static_cast<Index>(last - first);
+      if (counts[i] > 0) radius[i] = norm(cloud.points[*(last - 1)] - cloud.points[i]);
+    }
+  });
+  result.radius = std::move(radius);
+  return all;
+}
+
+/// Closes the gaps that dropped neighbours left.
+void compact(const std::vector<Index>& counts, Neighborhoods& result) {
+  const auto n = static_cast<Offset>(counts.size()), k = static_cast<Offset>(result.k);
+  result.begin.assign(static_cast<std::size_t>(n) + 1, 0);
+  for (Offset i = 0; i < n; ++i) {
+    result.begin[i + 1] = result.begin[i] + counts[i];
+    if (result.begin[i] < i * k)
+      std::copy_n(result.indices.begin() + i * k, counts[i], result.indices.begin() + result.begin[i]);
+  }
+  result.unreachable = n * k - result.begin[n];
+  result.indices.resize(static_cast<std::size_t>(result.begin[n]));
+}
+
 struct WiderNeighborhood {
   Index point;
   std::vector<Index> neighbors;
 };
 
 /// Fits a plane to more and more neighbours until they are no longer narrow; the widest fit wins if they stay so.
-PlaneFit fit_wider(std::span<const Vec3> points, const NeighborSearch& search, Index k, WiderNeighborhood& wider) {
+PlaneFit fit_wider(std::span<const Vec3> points, const NeighborSearch& search, Index k, double max_edge_ratio,
+                   WiderNeighborhood& wider) {
   PlaneFit fit;
   QueryBuffers buffers;
   for (Index factor : {2, 4}) {
-    const auto neighbors = neighbors_of(points, wider.point, search, factor * k, buffers);
+    const auto neighbors = before_gap(
+        points, wider.point, neighbors_of(points, wider.point, search, factor * k, buffers), k, max_edge_ratio);
     wider.neighbors.assign(neighbors.begin(), neighbors.end());
     fit = fit_plane(points, wider.point, wider.neighbors);
     if (fit.ratio > narrow_ratio) break;
@@ -88,62 +144,94 @@ Vec3 direction(const Vec3& given) {
   return normalized((1.0 / largest) * given);
 }
 
+/// Fits a plane to the neighbours of every point, to wider neighbourhoods where they are narrow.
+void fit_planes(const CleanPoints& cloud, const NeighborSearch& search, const CloudOptions& options,
+                Neighborhoods& neighborhoods, TangentPlanes& planes) {
+  const auto n = static_cast<Offset>(cloud.points.size());
+  planes.normals.assign(static_cast<std::size_t>(n), Vec3{0, 0, 0});
+  std::vector<std::vector<WiderNeighborhood>> wider(static_cast<std::size_t>((n + chunk - 1) / chunk));
+  std::atomic<Index> thick{0};
+  detail::parallel_chunks(n, chunk, options.threads, [&](Offset begin, Offset end) {
+    Index thick_here = 0;
+    for (Offset i = begin; i < end; ++i) {
+      const auto point = static_cast<Index>(i);
+      PlaneFit fit = fit_plane(cloud.points, point, neighborhoods.of(point));
+      if (!(fit.ratio > narrow_ratio) && n > neighborhoods.k + 1) {
+        WiderNeighborhood candidate{point, {}};
+        fit = fit_wider(cloud.points, search, neighborhoods.k, options.max_edge_ratio, candidate);
+        wider[begin / chunk].push_back(std::move(candidate));
+      }
+      planes.normals[i] = fit.normal;
+      thick_here += fit.thickness > thick_ratio;
+    }
+    thick += thick_here;
+    if (options.progress.stop.stop_requested()) throw Cancelled("cancelled during normal estimation");
+  });
+  planes.thick = thick;
+  std::vector<WiderNeighborhood> all;
+  for (auto& part : wider) std::move(part.begin(), part.end(), std::back_inserter(all));
+  replace(neighborhoods, all, cloud.points);
+}
+
 }  // namespace
 
-Neighborhoods find_neighborhoods(const CleanPoints& cloud, const NeighborSearch& search, const CloudOptions& options) {
+Neighborhoods find_neighborhoods(const CleanPoints& cloud, const NeighborSearch& search, Index wanted,
+                                 const CloudOptions& options) {
   const auto n = static_cast<Offset>(cloud.points.size());
   Neighborhoods result;
-  result.k = static_cast<Index>(std::min<Offset>(options.k, n - 1));
+  result.k = static_cast<Index>(std::min<Offset>(wanted, n - 1));
   const Offset k = result.k;
-  result.begin.resize(static_cast<std::size_t>(n) + 1);
-  for (Offset i = 0; i <= n; ++i) result.begin[i] = i * k;
+  std::vector<Index> counts(static_cast<std::size_t>(n));
   result.indices.resize(static_cast<std::size_t>(n * k));
   result.radius.resize(static_cast<std::size_t>(n));
   detail::parallel_chunks(n, chunk, options.threads, [&](Offset begin, Offset end) {
     QueryBuffers buffers;
     for (Offset i = begin; i < end; ++i) {
-      const auto neighbors = neighbors_of(cloud.points, static_cast<Index>(i), search, result.k, buffers);
+      const auto point = static_cast<Index>(i);
+      const auto neighbors =
+          before_gap(cloud.points, point, neighbors_of(cloud.points, point, search, result.k, buffers), result.k,
+                     options.max_edge_ratio);
       std::copy(neighbors.begin(), neighbors.end(), result.indices.begin() + i * k);
+      counts[i] = static_cast<Index>(neighbors.size());
       result.radius[i] = norm(cloud.points[neighbors.back()] - cloud.points[i]);
     }
     if (options.progress.stop.stop_requested()) throw Cancelled("cancelled during the neighbour search");
   });
+  for (int round = 0; round < reach_rounds && !drop_unreachable(cloud, options, counts, result); ++round) continue;
+  compact(counts, result);
   options.progress.step("neighbours", 1.0);
   return result;
+}
+
+double spacing(const Neighborhoods& neighborhoods) {
+  std::vector<double> spacings(neighborhoods.radius.size());
+  for (std::size_t i = 0; i < spacings.size(); ++i) {
+    const auto count = static_cast<double>(neighborhoods.begin[i + 1] - neighborhoods.begin[i]);
+    spacings[i] = neighborhoods.radius[i] * std::sqrt(std::numbers::pi / std::max(1.0, count));
+  }
+  const auto middle = spacings.begin() + static_cast<std::ptrdiff_t>(spacings.size() / 2);
+  std::nth_element(spacings.begin(), middle, spacings.end());
+  return *middle;
 }
 
 TangentPlanes find_tangent_planes(const CleanPoints& cloud, std::span<const Vec3> given, const NeighborSearch& search,
                                   Neighborhoods& neighborhoods, const CloudOptions& options) {
   const auto n = static_cast<Offset>(cloud.points.size());
   TangentPlanes planes;
-  planes.normals.assign(static_cast<std::size_t>(n), Vec3{0, 0, 0});
-  std::vector<char> is_estimated(static_cast<std::size_t>(n), 0);
-  std::vector<std::vector<WiderNeighborhood>> wider(static_cast<std::size_t>((n + chunk - 1) / chunk));
-  detail::parallel_chunks(n, chunk, options.threads, [&](Offset begin, Offset end) {
-    for (Offset i = begin; i < end; ++i) {
-      const auto point = static_cast<Index>(i);
-      PlaneFit fit = fit_plane(cloud.points, point, neighborhoods.of(point));
-      if (!(fit.ratio > narrow_ratio) && n > neighborhoods.k + 1) {
-        WiderNeighborhood candidate{point, {}};
-        fit = fit_wider(cloud.points, search, neighborhoods.k, candidate);
-        wider[begin / chunk].push_back(std::move(candidate));
-      }
-      if (!given.empty()) planes.normals[i] = direction(given[cloud.input[i]]);
-      is_estimated[i] = planes.normals[i] == Vec3{0, 0, 0};
-      if (is_estimated[i]) planes.normals[i] = fit.normal;
-    }
-    if (options.progress.stop.stop_requested()) throw Cancelled("cancelled during normal estimation");
-  });
-  std::vector<WiderNeighborhood> all;
-  for (auto& part : wider) std::move(part.begin(), part.end(), std::back_inserter(all));
-  replace(neighborhoods, all, cloud.points);
-
-  for (Index i = 0; i < static_cast<Index>(n); ++i) {
-    if (!is_estimated[i]) continue;
-    ++planes.estimated;
+  fit_planes(cloud, search, options, neighborhoods, planes);
+  std::vector<char> missing(static_cast<std::size_t>(n), 1);
+  if (given.empty()) {
+    planes.estimated = static_cast<Index>(n);
+  } else {
+    std::vector<Vec3> directions(static_cast<std::size_t>(n));
+    for (Offset i = 0; i < n; ++i) directions[i] = direction(given[cloud.input[i]]);
+    missing = take_given_planes(cloud, neighborhoods, directions, options.threads, planes);
+  }
+  for (Index i = 0; planes.estimated < static_cast<Index>(n) && i < static_cast<Index>(n); ++i) {
+    if (!missing[i]) continue;
     double agreement = 0;
     for (Index j : neighborhoods.of(i))
-      if (!is_estimated[j]) agreement += dot(planes.normals[i], planes.normals[j]);
+      if (!missing[j]) agreement += dot(planes.normals[i], planes.normals[j]);
     if (agreement < 0) planes.normals[i] = -1.0 * planes.normals[i];
   }
   options.progress.step("normals", 1.0);

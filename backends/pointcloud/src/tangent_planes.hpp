@@ -11,10 +11,11 @@
 namespace ahm::pointcloud {
 
 struct Neighborhoods {
-  Index k = 0;                 ///< neighbours per point, but for points that needed more
+  Index k = 0;                 ///< neighbours per point, but for points that needed more or reach fewer
   std::vector<Offset> begin;   ///< n + 1
   std::vector<Index> indices;  ///< of each point: nearest first, the point itself left out
   std::vector<double> radius;  ///< distance to the last of them
+  Offset unreachable = 0;      ///< neighbours found but left out, too far away to be joined
   std::span<const Index> of(Index i) const {
     return std::span(indices).subspan(static_cast<std::size_t>(begin[i]),
                                       static_cast<std::size_t>(begin[i + 1] - begin[i]));
@@ -23,13 +24,23 @@ struct Neighborhoods {
 
 struct TangentPlanes {
   std::vector<Vec3> normals;  ///< unit length, signs as given or arbitrary; zero where there is no plane
-  Index estimated = 0;        ///< normals that came from PCA
+  Index estimated = 0;        ///< normals that came from PCA because none was given
+  Index contradicted = 0;     ///< given normals of which only the side was taken
+  Index thick = 0;            ///< points whose neighbours lie about as far across the plane as within it
   bool has_plane(Index i) const { return normals[i] != Vec3{0, 0, 0}; }
 };
 
-Neighborhoods find_neighborhoods(const CleanPoints& cloud, const NeighborSearch& search, const CloudOptions& options);
+/// The k nearest, less those beyond a gap (a step to more than `max_edge_ratio` times the distance behind half of them),
+/// and those whose own neighbourhood is so much smaller that they will not be joined: planes are made of what the surface
+/// is made of, and an island takes nothing from the next one.
+Neighborhoods find_neighborhoods(const CleanPoints& cloud, const NeighborSearch& search, Index k,
+                                 const CloudOptions& options);
 
-/// Normals as given (zero and non-finite ones are estimated, and turned to the side of their neighbours) or by
+/// Median distance of neighbours on an even surface of the same density: the root of the area per point.
+double spacing(const Neighborhoods& neighborhoods);
+
+/// Normals as given, where the points bear them out (zero and non-finite ones are estimated, and turned to the side of
+/// their neighbours), or by
 /// principal component analysis of the neighbours. Points whose neighbours lie almost on a line, as on one line of a
 /// scanner, get two or four times as many neighbours.
 TangentPlanes find_tangent_planes(const CleanPoints& cloud, std::span<const Vec3> given, const NeighborSearch& search,

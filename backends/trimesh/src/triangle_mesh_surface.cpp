@@ -131,9 +131,9 @@ TriangleMeshSurface TriangleMeshSurface::build(TriangleMesh mesh, const MeshOpti
   details.seconds_graph = stopwatch.lap();
   RowMap rows = rows_of(mesh);
   std::vector<Index> face_rows = mesh.topology().given_corners();
-  return TriangleMeshSurface(std::make_unique<const Impl>(
-      Impl{std::move(mesh), std::move(triangulation), std::move(frames), CsrGraph(std::move(data)), std::move(details),
-           std::move(rows), std::move(face_rows)}));
+  return TriangleMeshSurface(
+      std::make_unique<const Impl>(Impl{std::move(mesh), std::move(triangulation), std::move(frames),
+                                        CsrGraph(std::move(data)), details, std::move(rows), std::move(face_rows)}));
 }
 
 TriangleMeshSurface TriangleMeshSurface::build(TriangleMesh mesh, const MeshOptions& options) {

@@ -145,7 +145,7 @@ bool VertexFrames::forward(const HalfEdges& edges, Half side, bool from_tail) co
 VertexFrames find_frames(const TriangleMesh& mesh, const IntrinsicTriangulation& triangulation, unsigned threads) {
   const HalfEdges input = mesh.topology().half_edges(), edges = triangulation.half_edges();
   const auto n = static_cast<std::size_t>(mesh.vertex_count());
-  const auto directed = static_cast<std::size_t>(edges.size() + mesh.report().boundary_edges);
+  const auto directed = static_cast<std::size_t>(edges.size()) + mesh.report().boundary_edges;
   VertexFrames frames;
   frames.start.resize(n);
   frames.scale.resize(n);

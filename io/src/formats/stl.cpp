@@ -3,6 +3,7 @@
 // to float.
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstring>
 #include <numeric>
 
@@ -85,7 +86,9 @@ void weld(const std::vector<Vec3>& corners, Geometry& g) {
   std::vector<std::size_t> order(corners.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   // NaN equals nothing, itself included, so such corners stay apart; they are put last to keep the order strict.
-  auto is_number = [&](std::size_t c) { return corners[c] == corners[c]; };
+  auto is_number = [&](std::size_t c) {
+    return std::ranges::none_of(corners[c], [](double x) { return std::isnan(x); });
+  };
   const auto numbers = std::stable_partition(order.begin(), order.end(), is_number);
   std::stable_sort(order.begin(), numbers, [&](std::size_t a, std::size_t b) { return corners[a] < corners[b]; });
   std::vector<std::size_t> first(corners.size());

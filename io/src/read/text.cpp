@@ -25,7 +25,7 @@ std::size_t find_comment(std::string_view line, char comment) noexcept {
 /// Whether a number out of range is one too small: a short mantissa with a negative exponent.
 bool is_underflow(std::string_view word) noexcept {
   const std::size_t exponent = word.find_first_of("eE");
-  return exponent != std::string_view::npos && exponent < 64 && word.substr(exponent + 1).starts_with('-');
+  return exponent < 64 && word.substr(exponent + 1).starts_with('-');
 }
 
 }  // namespace

@@ -81,7 +81,7 @@ std::vector<double> graph_distances(const MappedSurface& s, const std::vector<Tr
     for (Index v : triangles[t]) incident[end[v]++] = static_cast<Index>(t);
 
   std::vector<double> distance(n, std::numeric_limits<double>::infinity());
-  ShortestPaths<double, std::vector<double>, std::numeric_limits<double>::infinity()> paths(distance);
+  ShortestPaths<double, std::vector<double>> paths(distance, std::numeric_limits<double>::infinity());
   for (Index v : sources) paths.offer(v, 0);
   paths.run([&](Index i, double d) {
     for (Offset k = begin[i]; k < begin[to_size(i) + 1]; ++k)

@@ -215,11 +215,38 @@ exact::MeshPoint Surface::flat_point(const EdgePoint& point) const {
   return flat_point_in_face(face_point(point));
 }
 
+namespace {
+
+/// Where the point of a source lies in space; none for curves, and where the graph knows no frames.
+std::optional<Vec3> place_of(const TangentGraph& graph, const Source& source) {
+  if (source.is_curve() || source.vertices().empty()) return std::nullopt;
+  Vec3 sum{};
+  double weights = 0;
+  for (std::size_t k = 0; k < source.vertices().size(); ++k) {
+    if (source.place(k).point != 0) return std::nullopt;
+    const auto frame = graph.frame(source.vertices()[k].index);
+    if (!frame) return std::nullopt;
+    Vec3 place = frame->origin;
+    for (std::size_t a = 0; a < 2 && !source.offsets().empty(); ++a) {
+      const double z = source.offsets()[2 * k + a];
+      place = place - (z * source.axes()[4 * k + a]) * frame->x - (z * source.axes()[4 * k + 2 + a]) * frame->y;
+    }
+    sum = sum + source.weights()[k] * place;
+    weights += source.weights()[k];
+  }
+  return (1 / weights) * sum;
+}
+
+}  // namespace
+
 RowLogMap Surface::on_rows(const LogMap& map) const {
   check_map(map);
+  // Where distances are those of heat they may be below the straight line, which no way on the surface is.
+  const bool may_be_short = map.method() == Method::heat && !graph().is_delaunay();
+  const auto source = may_be_short ? place_of(graph(), map.source()) : std::nullopt;
   const auto n = static_cast<std::size_t>(rows().row_count());
   const std::vector<double> none(n, nan);
-  RowLogMap result{none, none, none, none, {}, std::vector<Status>(n, Status::removed), {}};
+  RowLogMap result{none, none, none, none, none, {}, std::vector<Status>(n, Status::removed), {}};
   result.vertex.resize(n);
   const std::span<const double> error = map.error_estimate();
   if (!error.empty()) result.error_estimate = none;
@@ -231,7 +258,8 @@ RowLogMap Surface::on_rows(const LogMap& map) const {
     const auto phi = map.coordinates(v);
     result.u[r] = phi[0];
     result.v[r] = phi[1];
-    result.distance[r] = map.distance(v);
+    result.distance[r] = source ? std::max(map.distance(v), distance(positions()[r], *source)) : map.distance(v);
+    if (!map.spread().empty()) result.spread[r] = map.spread()[v.index];
     result.angle[r] = std::atan2(phi[1], phi[0]);
     if (!error.empty()) result.error_estimate[r] = error[v.index];
     result.vertex[r] = best.vertex;
@@ -364,7 +392,7 @@ std::vector<Vec3> distance_gradients(const Surface& surface, const LogMap& map, 
     const std::optional<Frame> frame = graph.frame(rows.vertex[r]->index);
     if (!frame) continue;
     const auto U = map.frames().subspan(4 * static_cast<std::size_t>(rows.vertex[r]->index), 4);
-    const double scale = rows.distance[r] > at_source ? 1 / rows.distance[r] : 0;
+    const double away = std::hypot(rows.u[r], rows.v[r]), scale = away > at_source ? 1 / away : 0;
     const double a = scale * (U[0] * rows.u[r] + U[1] * rows.v[r]), b = scale * (U[2] * rows.u[r] + U[3] * rows.v[r]);
     result[r] = a * frame->x + b * frame->y;
   }

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <string>
 
+#include "noisy_clouds.hpp"
 #include "solved_cloud.hpp"
 
 namespace ahm::test {
@@ -104,6 +106,50 @@ TEST(Normals, MissingAmongGivenOnesAreEstimatedAndCounted) {
   EXPECT_EQ(solved.graph.warnings()[0].numbers, std::vector<double>{301});
   cloud.normals = cloud.points;
   EXPECT_LT(sphere_error(cloud, solved.graph, solved.map(5), 5).angle, 0.05);
+}
+
+TEST(Normals, WithNoiseAreNoWorseThanNone) {
+  for (double points_noise : {0.0, 0.004}) {
+    const Cloud exact = random_sphere(10000);
+    const Cloud points = with_noise(exact, points_noise);
+    auto angle = [&](const Cloud& cloud, bool with_normals) {
+      const Solved solved(cloud, with_normals);
+      double sum = 0;
+      for (Index p : {5, 3000, 7000}) sum += sphere_error(exact, solved.graph, solved.map(p), p).angle / 3;
+      return sum;
+    };
+    const double estimated = angle(points, false);
+    RecordProperty("points " + std::to_string(points_noise), std::to_string(estimated));
+    for (double noise : {0.02, 0.05, 0.1, 0.2}) {
+      const double given = angle(with_noisy_normals(points, noise), true);
+      RecordProperty("points " + std::to_string(points_noise) + " normals " + std::to_string(noise),
+                     std::to_string(given));
+      EXPECT_LT(given, 1.1 * estimated) << points_noise << ", " << noise;
+    }
+  }
+}
+
+TEST(Normals, ThatThePointsContradictAreCountedAndNamed) {
+  auto contradicted = [](const Cloud& cloud) {
+    const auto surface = pointcloud::PointCloudSurface::build(cloud.points, cloud.normals);
+    double told = 0;
+    for (const Warning& warning : surface.warnings())
+      if (warning.id == "normals_contradicted") told = warning.numbers.at(0);
+    EXPECT_EQ(told, surface.details().contradicted);
+    EXPECT_TRUE(surface.details().oriented);
+    return surface.details().contradicted;
+  };
+  const Cloud sphere = random_sphere(5000);
+  EXPECT_EQ(contradicted(sphere), 0);
+  EXPECT_GT(contradicted(with_noisy_normals(sphere, 0.1)), 4900);
+  // Exact normals at corners, where planes fitted to the points are wrong, stand.
+  const Cloud folds = folded_cloud(60, 6, std::numbers::pi / 2);
+  EXPECT_LT(contradicted(folds), 36);  // of 3600
+  // So do normals written with few digits.
+  Cloud rounded = flat_cloud(3000);
+  for (Vec3& n : rounded.normals)
+    for (double& c : n) c = std::round(1000 * c) / 1000;
+  EXPECT_EQ(contradicted(rounded), 0);
 }
 
 TEST(Normals, ThatAreAllMissingAreNoNormals) {

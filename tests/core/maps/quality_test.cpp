@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "ahm/error.hpp"
@@ -80,11 +81,12 @@ TEST(MapQuality, IsNanWhereTheMapIs) {
   EXPECT_EQ(map.count(Status::disconnected), flat.size());
 }
 
-TEST(MapQuality, NeedsFramesAndTheRightGraph) {
+TEST(MapQuality, NeedsAPointAndTheRightGraph) {
   const CsrGraph graph(sphere_graph(200)), other(sphere_graph(300));
   const LogMapSolver solver(graph);
-  EXPECT_THROW(map_quality(graph, solver.solve(Source::at_vertex(Vertex{0}))), InvalidArgument);
-  EXPECT_THROW(map_quality(other, solver.solve(Source::at_vertex(Vertex{0}), {.frames = true})), InvalidArgument);
+  const Source curve = Source(2).add(Vertex{3}, 1, std::array{0.0, 0.0}, {}, {0, 0.0});
+  EXPECT_THROW(map_quality(graph, solver.solve(curve)), InvalidArgument);
+  EXPECT_THROW(map_quality(other, solver.solve(Source::at_vertex(Vertex{0}))), InvalidArgument);
 }
 
 }  // namespace

@@ -13,8 +13,6 @@
 namespace ahm {
 namespace {
 
-std::size_t to_size(Offset i) { return static_cast<std::size_t>(i); }
-
 void check(const Atlas& atlas, const FaceList& faces) {
   if (atlas.chart_of_face.size() != faces.size() || atlas.coordinates.size() != 2 * faces.vertices.size())
     throw InvalidArgument("the atlas has " + std::to_string(atlas.chart_of_face.size()) + " faces and " +
@@ -31,7 +29,7 @@ struct Fans {
     std::vector<std::array<Index, 3>> vertices;
     std::vector<double> coordinates;
     for (Index f : numbers)
-      for (Offset c = faces.begin[f] + 1; c + 1 < faces.begin[to_size(f) + 1]; ++c) {
+      for (Offset c = faces.begin[f] + 1; c + 1 < faces.begin[f + 1]; ++c) {
         corners.push_back({faces.begin[f], c, c + 1});
         auto& triangle = vertices.emplace_back();
         for (std::size_t k = 0; k < 3; ++k) {
@@ -68,8 +66,8 @@ std::vector<Vertex> one_per_component(const TangentGraph& graph, std::span<const
                                       std::size_t most) {
   std::vector<Vertex> result(sources.begin(), sources.end());
   const Components components = connected_components(graph);
-  std::vector<bool> has_source(to_size(components.count), false);
-  const auto component = [&](Index vertex) { return to_size(components.of_vertex[vertex]); };
+  std::vector<bool> has_source(components.count, false);
+  const auto component = [&](Index vertex) { return components.of_vertex[vertex]; };
   for (const auto [vertex] : sources)
     if (vertex >= 0 && vertex < graph.size()) has_source[component(vertex)] = true;
   for (Index vertex : faces.vertices) {

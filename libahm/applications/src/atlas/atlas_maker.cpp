@@ -16,13 +16,11 @@ constexpr Index nobody = -1;
 /// Maps kept at the same time.
 constexpr std::size_t block_size = 16;
 
-std::size_t to_size(Offset i) { return static_cast<std::size_t>(i); }
-
 void check(const TangentGraph& graph, const FaceList& faces) {
   if (graph.dimension() != 2)
     throw InvalidArgument("make_atlas: the graph has dimension " + std::to_string(graph.dimension()) +
                           "; an atlas is of a surface, dimension 2");
-  if (faces.begin.empty() || faces.begin.front() != 0 || to_size(faces.begin.back()) != faces.vertices.size() ||
+  if (faces.begin.empty() || faces.begin.front() != 0 || faces.begin.back() != std::ssize(faces.vertices) ||
       !std::is_sorted(faces.begin.begin(), faces.begin.end()))
     throw InvalidArgument("make_atlas: 'faces.begin' must rise from 0 to the number of corners, " +
                           std::to_string(faces.vertices.size()));
@@ -137,7 +135,7 @@ void attach_islands(const FaceNeighbors& neighbors, const FaceList& faces, const
 bool is_mirrored(const Atlas& atlas, const FaceList& faces, const Chart& chart) {
   std::ptrdiff_t balance = 0;
   for (Index f : chart.faces) {
-    const Offset first = faces.begin[f], last = faces.begin[to_size(f) + 1];
+    const Offset first = faces.begin[f], last = faces.begin[f + 1];
     double area = 0;
     const auto [x0, y0] = atlas.corner(first);
     for (Offset c = first + 1; c + 1 < last; ++c) {
@@ -167,14 +165,14 @@ Atlas assemble(const FaceNeighbors& neighbors, const FaceList& faces, const Regi
     const Chart& chart = atlas.charts[k];
     for (Index f : chart.faces) {
       atlas.chart_of_face[f] = static_cast<Index>(k);
-      for (Offset c = faces.begin[f]; c < faces.begin[to_size(f) + 1]; ++c) {
+      for (Offset c = faces.begin[f]; c < faces.begin[f + 1]; ++c) {
         const auto q = regions.coordinates(chart.source, faces.vertices[c]);
         std::copy(q.begin(), q.end(), atlas.coordinates.begin() + 2 * c);
       }
     }
     if (!is_mirrored(atlas, faces, chart)) continue;
     for (Index f : chart.faces)
-      for (Offset c = faces.begin[f]; c < faces.begin[to_size(f) + 1]; ++c) {
+      for (Offset c = faces.begin[f]; c < faces.begin[f + 1]; ++c) {
         double& v = atlas.coordinates[2 * c + 1];
         v = -v;
       }
@@ -196,7 +194,7 @@ Atlas AtlasMaker::make(std::span<const Vertex> sources) {
     std::vector<Source> starts;
     for (Index s : block) starts.push_back(Source::at_vertex(sources[s]));
     const std::vector<LogMap> maps = solver_.solve(starts);
-    for (std::size_t k = 0; k < maps.size(); ++k) regions.keep(to_size(block[k]), maps[k]);
+    for (std::size_t k = 0; k < maps.size(); ++k) regions.keep(block[k], maps[k]);
   }
   regions_ = std::move(regions);
   std::vector<Index> source = nearest_of_faces(faces_, label, regions_);

@@ -5,15 +5,10 @@
 
 #include "ahm/applications/atlas.hpp"
 #include "ahm/util/memory.hpp"
+#include "ahm/util/vec.hpp"
 
 namespace ahm {
 namespace {
-
-std::size_t to_size(Offset i) { return static_cast<std::size_t>(i); }
-
-double cross(const Vec2& o, const Vec2& a, const Vec2& b) {
-  return (a[0] - o[0]) * (b[1] - o[1]) - (a[1] - o[1]) * (b[0] - o[0]);
-}
 
 /// Corners of the convex hull, counter-clockwise (Andrew's monotone chains).
 std::vector<Vec2> convex_hull(std::vector<Vec2> points) {
@@ -24,7 +19,8 @@ std::vector<Vec2> convex_hull(std::vector<Vec2> points) {
   for (int chain = 0; chain < 2; ++chain) {
     const std::size_t start = hull.size();
     for (const Vec2& p : points) {
-      while (hull.size() >= start + 2 && !(cross(hull[hull.size() - 2], hull.back(), p) > 0)) hull.pop_back();
+      const auto turns_right = [&](const Vec2& o) { return !(cross(hull.back() - o, p - o) > 0); };
+      while (hull.size() >= start + 2 && turns_right(hull[hull.size() - 2])) hull.pop_back();
       hull.push_back(p);
     }
     hull.pop_back();  // the next chain begins with it
@@ -68,7 +64,7 @@ std::vector<ChartBox> chart_boxes(const Atlas& atlas, const FaceList& faces) {
     for (const Chart& chart : atlas.charts) {
       std::vector<Vec2> points;
       for (Index f : chart.faces)
-        for (Offset c = faces.begin[f]; c < faces.begin[to_size(f) + 1]; ++c) points.push_back(atlas.corner(c));
+        for (Offset c = faces.begin[f]; c < faces.begin[f + 1]; ++c) points.push_back(atlas.corner(c));
       boxes.push_back(least_box(convex_hull(std::move(points))));
     }
     return boxes;

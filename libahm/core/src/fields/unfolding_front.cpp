@@ -45,7 +45,7 @@ std::optional<double> across(double from_a, double from_b, double ab, double ac,
   // a is at 0, b at (ab, 0), c above, the point below.
   const double x = (from_a * from_a - from_b * from_b + ab * ab) / (2 * ab), squared_y = from_a * from_a - x * x;
   const double cx = (ac * ac - bc * bc + ab * ab) / (2 * ab), squared_cy = ac * ac - cx * cx;
-  if (!(squared_cy > 0) || !(squared_y >= -least_gain * from_a * from_a)) return std::nullopt;
+  if (!(squared_cy > 0) || !(squared_y >= -1e-14 * from_a * from_a)) return std::nullopt;
   const double y = -std::sqrt(std::max(0.0, squared_y)), cy = std::sqrt(squared_cy);
   const double at_side = x - (cx - x) * y / (cy - y);
   if (!(at_side >= -1e-9 * ab) || !(at_side <= ab * (1 + 1e-9))) return std::nullopt;
@@ -152,8 +152,9 @@ void UnfoldingFront::spread(Index from, Index point, double distance) {
   look_around(from);
   double longest = 0;
   for (const Neighbor& c : around_) longest = std::max(longest, c.length);
-  for (const Neighbor& c : around_) offer(c.vertex, point, distance + c.length, 2 * longest, {});
-  unfold(point, distance, 2 * longest);
+  const double slack = 4 * longest;  // what unfolds to a border comes from a few edges beyond
+  for (const Neighbor& c : around_) offer(c.vertex, point, distance + c.length, slack, {});
+  unfold(point, distance, slack);
 }
 
 /// The neighbours of a vertex, counterclockwise.

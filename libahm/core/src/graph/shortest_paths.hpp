@@ -13,17 +13,17 @@ namespace ahm {
 
 /// The queue of Dijkstra's algorithm over `known`, the best distance so far by vertex, which the caller provides and
 /// clears: anything with known[Index] -> Distance&.
-/// @tparam unset  what `known` holds where nothing is known yet
-template <class Distance, class Known, Distance unset>
+template <class Distance, class Known>
 class ShortestPaths {
  public:
-  explicit ShortestPaths(Known& known) : known_(known) {}
+  /// @param unset  what `known` holds where nothing is known yet
+  ShortestPaths(Known& known, Distance unset) : known_(known), unset_(unset) {}
 
   /// Keeps the distance if it is the least so far.
   /// @return whether it is
   bool offer(Index vertex, Distance distance) {
     Distance& known = known_[vertex];
-    if (known != unset && !(distance < known)) return false;
+    if (known != unset_ && !(distance < known)) return false;
     queue_.push({known = distance, vertex});
     return true;
   }
@@ -49,6 +49,7 @@ class ShortestPaths {
  private:
   using Entry = std::pair<Distance, Index>;
   Known& known_;
+  Distance unset_;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue_;
 };
 

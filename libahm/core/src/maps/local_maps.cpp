@@ -81,7 +81,7 @@ class Ball {
 
   const TangentGraph& graph_;
   SparseArray<double> known_;  ///< 1 + distance, 0: none
-  ShortestPaths<double, SparseArray<double>, 0.0> paths_{known_};
+  ShortestPaths<double, SparseArray<double>> paths_{known_, 0.0};
   std::vector<Index> touched_;
 };
 

@@ -159,7 +159,7 @@ bool March::advance(const Source* source, double depth) {
 /// The vertices ahead of the front within `depth` of heat distance (Dijkstra's algorithm, the levels on the front being
 /// those of the heat that was found there), in the order of the graph.
 March::Band March::find_band(const Source* source, double depth) {
-  ShortestPaths<float, std::vector<float>, far_away> paths(tentative_);
+  ShortestPaths<float, std::vector<float>> paths(tentative_, far_away);
   std::vector<Ahead> ahead;
   auto spread = [&](Index from, double distance) {
     const Star star = graph_.star(from);

@@ -133,6 +133,7 @@ LogMap ExactGeodesics::log_map(const SurfacePoint& source, const std::optional<V
     const Vec2 phi{a[0] * w[0] + a[2] * w[1], a[1] * w[0] + a[3] * w[1]};
     coordinates.insert(coordinates.end(), phi.begin(), phi.end());
     extras.distances.push_back(flat_.length_unit * exact.distance(v));
+    extras.spread.push_back(0 * exact.distance(v));
     if (!options.frames) continue;
     Axes frame{1, 0, 0, 1};
     if (exact.status(v) == Status::ok)

@@ -11,6 +11,9 @@ namespace ahm::test {
 /// A copy of any graph in flat arrays.
 CsrGraphData stored(const TangentGraph& graph);
 
+/// Two graphs of one kind side by side, not connected.
+CsrGraphData joined(const CsrGraphData& graph, const CsrGraphData& other);
+
 /// Two copies of a graph side by side, not connected.
 CsrGraphData doubled(const CsrGraphData& graph);
 

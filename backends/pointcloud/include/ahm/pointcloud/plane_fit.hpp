@@ -15,6 +15,7 @@ namespace ahm::pointcloud {
 struct PlaneFit {
   Vec3 normal{0, 0, 0};  ///< unit direction of least variance, either sign; zero where the points lie on a line
   double ratio = 0;      ///< second principal variance / first
+  double thickness = 0;  ///< third principal variance / second
 };
 
 /// By principal component analysis of point i and the neighbours.

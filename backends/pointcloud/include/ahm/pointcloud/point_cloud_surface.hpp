@@ -30,18 +30,11 @@ enum class NormalSigns {
   unoriented,  ///< only the planes are used
 };
 
-/// How long the logarithm of an edge is; its direction is that of the neighbour projected to the tangent plane.
-enum class EdgeLength {
-  projected,  ///< the length of the projection: as accurate as the chord on clean clouds, and blind to noise across the
-              ///< surface
-  chord,      ///< the distance in space: noise of 30 % of the spacing makes every distance 12 % too long
-};
-
 struct CloudOptions {
-  Index k = 30;  ///< neighbours per point, the point itself not counted; clamped to n - 1 and reported
+  /// Neighbours per point, the point itself not counted; clamped to n - 1 and reported. None: 30, and more on noisy clouds.
+  std::optional<Index> k;
   NeighborSearchFactory search = nanoflann_search;
   NormalSigns normal_signs = NormalSigns::automatic;
-  EdgeLength edge_length = EdgeLength::projected;
   /// Two points are joined only if their distance is at most this multiple of the distance to the k-th neighbour of
   /// either.
   double max_edge_ratio = 3.0;
@@ -64,7 +57,7 @@ struct CloudDetails {
   Index duplicates = 0;               ///< points merged into an equal one
   Index degenerate = 0;               ///< points without a tangent plane or without a triangle, removed
   std::vector<Row> first_degenerate;  ///< the first ten of them
-  Index k_asked = 0;                  ///< neighbours asked for
+  Index k_asked = 0;                  ///< neighbours asked for, 30 by default
   Index k = 0;                        ///< neighbours used
   Index components = 0;               ///< connected components of the graph
   Offset triangles = 0;               ///< of the union of the local Delaunay triangulations
@@ -72,16 +65,20 @@ struct CloudDetails {
   bool flips_stopped = false;         ///< before all edges were Delaunay
   Offset rejected_long = 0;           ///< neighbour pairs not joined: too long for the local spacing
   Offset rejected_normals = 0;        ///< neighbour pairs not joined: oriented normals disagree (thin wall)
-  Offset reflections = 0;             ///< edges between oppositely oriented frames
-  bool normals_given = false;         ///< one per point
-  Index estimated = 0;                ///< given normals that are zero or not finite and were estimated
-  Index turned = 0;                   ///< given normals that pointed to the other side than the majority around them
-  bool oriented = false;              ///< given normals fix which side is up, everywhere
-  double mollification = 0;           ///< length added to every edge of the tufted cover, world units
-  double seconds_normals = 0;         ///< neighbours and tangent planes
-  double seconds_delaunay = 0;        ///< local triangulations
-  double seconds_laplacian = 0;       ///< tufted cover, flips, weights
-  double seconds_graph = 0;           ///< orientation, logs, transports
+  Offset rejected_steep = 0;     ///< neighbour pairs not joined: steeply above each other, beyond noise (other sheets)
+  Offset reflections = 0;        ///< edges between oppositely oriented frames
+  bool normals_given = false;    ///< one per point
+  Index estimated = 0;           ///< given normals that are zero or not finite and were estimated
+  Index contradicted = 0;        ///< given normals whose planes the points contradict: only their sides were taken
+  Index thick = 0;               ///< points whose neighbours are as thick as wide: no surface there
+  Index turned = 0;              ///< given normals that pointed to the other side than the majority around them
+  bool oriented = false;         ///< given normals fix which side is up, everywhere
+  double noise = 0;              ///< standard deviation of neighbours' offsets across the surface, world units
+  double mollification = 0;      ///< length added to every edge of the tufted cover, world units
+  double seconds_normals = 0;    ///< neighbours and tangent planes
+  double seconds_delaunay = 0;   ///< local triangulations
+  double seconds_laplacian = 0;  ///< tufted cover, flips, weights
+  double seconds_graph = 0;      ///< orientation, logs, transports
 };
 
 /// A point cloud as a surface. Rows are the points given; vertices are sorted along a space-filling curve, equal points
@@ -89,10 +86,11 @@ struct CloudDetails {
 /// axis, u is x of `graph().frame(vertex)`.
 ///
 /// Its report: points, vertices, non_finite, duplicates, degenerate, k, components, triangles, flips, rejected_long,
-/// rejected_normals, reflections, normals_given, oriented, mollification, seconds.normals, seconds.delaunay,
+/// rejected_normals, rejected_steep, reflections, normals_given, contradicted, thick, oriented, noise, mollification, seconds.normals, seconds.delaunay,
 /// seconds.laplacian, seconds.graph.
-/// Its warnings, each with a count unless said otherwise: normals_estimated; cover_not_delaunay (no number);
-/// degenerate (with rows); normals_turned; k_reduced (asked for, used, distinct points); non_finite; duplicates; thin_walls (pairs of
+/// Its warnings, each with a count unless said otherwise: normals_estimated; normals_contradicted; cover_not_delaunay (no number);
+/// degenerate (with rows); normals_turned; k_reduced (asked for, used, distinct points); k_raised (used, noise); no_surface (points as
+/// thick as wide, vertices); non_finite; duplicates; thin_walls (pairs of
 /// neighbours not joined); reflections (edges); cloud_components (of more than one).
 /// Faults of a row: row_left_out (by `CloudOptions::rows`), row_removed (not finite, no tangent plane, no triangle).
 class PointCloudSurface final : public Surface {

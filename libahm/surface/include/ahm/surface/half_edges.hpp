@@ -77,7 +77,7 @@ struct HalfEdges {
   /// the number of itself; boundary edges, which lack a twin, get numbers from size() on for their other direction.
   std::size_t directed(Half h, bool from_tail) const {
     const Half t = twin[h];
-    if (t < 0) return static_cast<std::size_t>(from_tail ? h : size() - 1 - t);
+    if (t < 0) return from_tail ? static_cast<std::size_t>(h) : tail.size() + static_cast<std::size_t>(-1 - t);
     if (is_mirrored(h)) return static_cast<std::size_t>(from_tail ? std::min(h, t) : std::max(h, t));
     return static_cast<std::size_t>(from_tail ? h : t);
   }

@@ -14,8 +14,9 @@ namespace ahm {
 /// One entry per row of the input, in its order; NaN where the status is not ok.
 struct RowLogMap {
   std::vector<double> u, v;                   ///< world units
-  std::vector<double> distance;               ///< |(u, v)|, world units
+  std::vector<double> distance;               ///< `LogMap::distance`, world units, but no less than the straight line
   std::vector<double> angle;                  ///< atan2(v, u), in (-pi, pi]
+  std::vector<double> spread;                 ///< `LogMap::spread`, world units
   std::vector<double> error_estimate;         ///< of order 2 (`LogMap::error_estimate`), else empty
   std::vector<Status> status;                 ///< `removed` for rows without a vertex
   std::vector<std::optional<Vertex>> vertex;  ///< that the numbers are from

@@ -44,7 +44,7 @@ class ExactGeodesics {
   const FlatTriangles& triangles() const noexcept { return flat_; }
 
   /// The log map from a point, with the axes, statuses and vertices that a map by heat has. `LogMap::method` is exact;
-  /// there is no spread and no error estimate. Its frames turn the direction in which the shortest path leaves the source
+  /// its spread is 0, so its `map_quality` is 1, and it has no error estimate. Its frames turn the direction in which the shortest path leaves the source
   /// to that in which it arrives, so that U_i phi_i / |phi_i| is the gradient of the distance; they are rotations, also
   /// where the path reverses the orientation (surfaces that are not orientable).
   /// @param u_axis  as of `Surface::source`

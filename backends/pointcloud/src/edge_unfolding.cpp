@@ -1,0 +1,88 @@
+#include "edge_unfolding.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ahm/util/parallel.hpp"
+#include "ahm/util/vec.hpp"
+
+namespace ahm::pointcloud {
+namespace {
+
+constexpr Offset chunk = 4096;
+constexpr Index nearest_few = 6;  ///< neighbours per point that noise is measured on
+
+/// Standard deviation of a normal distribution over the median of its absolute value.
+constexpr double deviation_of_median = 1 / 0.6744897501960817;
+
+/// What noise explains: offsets of fewer standard deviations. Of the rest of normal noise the share in squared lengths is
+/// below a percent, so that noisy planes keep their distances.
+constexpr double noise_reach = 3;
+
+/// Neighbours are of another sheet beyond this many deviations and this slope over the mean plane. Distances on scans need some
+/// such bound, but hardly tell slopes between 0.4 and 1 apart.
+constexpr double sheet_reach = 4;
+constexpr double steepest = 0.6;
+
+/// Squared length that an offset across the mean plane adds: all of it where it is far beyond noise, nothing within.
+double squared_excess(double offset, double noise) {
+  const double squared = offset * offset, reach = noise_reach * noise_reach * noise * noise;
+  return squared > reach ? squared - reach * (reach / squared) : 0.0;
+}
+
+}  // namespace
+
+MeanPlane::MeanPlane(const Vec3& from, const Vec3& to) {
+  const double side = dot(from, to) < 0 ? -1.0 : 1.0;
+  const Vec3 sum = from + side * to;
+  const double length = norm(sum);
+  normal = (1 / length) * sum;
+  across = 0.5 * (from - side * to);
+  cosine = std::min(1.0, 0.5 * length);
+}
+
+double offset_noise(const CleanPoints& cloud, const Neighborhoods& neighborhoods, const TangentPlanes& planes,
+                    unsigned threads) {
+  const auto n = static_cast<Offset>(cloud.points.size());
+  std::vector<double> offsets(static_cast<std::size_t>(n * nearest_few), -1.0);
+  detail::parallel_chunks(n, chunk, threads, [&](Offset begin, Offset end) {
+    for (Offset i = begin; i < end; ++i) {
+      const auto point = static_cast<Index>(i);
+      if (!planes.has_plane(point)) continue;
+      const auto neighbors = neighborhoods.of(point);
+      const Index few = std::min(nearest_few, static_cast<Index>(neighbors.size()));
+      for (Index k = 0; k < few; ++k) {
+        const Index j = neighbors[k];
+        if (!planes.has_plane(j)) continue;
+        const MeanPlane mean(planes.normals[i], planes.normals[j]);
+        offsets[i * nearest_few + k] = std::abs(dot(mean.normal, cloud.points[j] - cloud.points[i]));
+      }
+    }
+  });
+  std::erase(offsets, -1.0);
+  if (offsets.empty()) return 0;
+  const auto middle = offsets.begin() + static_cast<std::ptrdiff_t>(offsets.size() / 2);
+  std::nth_element(offsets.begin(), middle, offsets.end());
+  return *middle * deviation_of_median;
+}
+
+Vec3 unfolded_edge(const Vec3& tail, const Vec3& head, const Vec3& edge, double noise) {
+  const MeanPlane mean(tail, head);
+  const double offset = dot(mean.normal, edge);
+  Vec3 flat = edge - offset * mean.normal;
+  const double squared_sine = dot(mean.across, mean.across);
+  if (squared_sine > 0) flat = flat + ((1 / mean.cosine - 1) * dot(mean.across, flat) / squared_sine) * mean.across;
+  // From the mean plane to that of the tail by the smallest rotation.
+  flat = flat - (dot(tail, flat) / (1 + mean.cosine)) * (mean.normal + tail);
+  const double excess = squared_excess(offset, noise), squared = dot(flat, flat);
+  if (!(excess > 0 && squared > 0)) return flat;
+  return std::sqrt(1 + excess / squared) * flat;
+}
+
+bool leaves_surface(const Vec3& tail, const Vec3& head, const Vec3& edge, double noise) {
+  const double offset = std::abs(dot(MeanPlane(tail, head).normal, edge));
+  const double flat = std::sqrt(std::max(0.0, dot(edge, edge) - offset * offset));
+  return offset > sheet_reach * noise && offset > steepest * flat;
+}
+
+}  // namespace ahm::pointcloud

@@ -1,0 +1,89 @@
+#include "given_planes.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "ahm/util/parallel.hpp"
+#include "ahm/util/vec.hpp"
+#include "edge_unfolding.hpp"
+
+namespace ahm::pointcloud {
+namespace {
+
+constexpr Offset chunk = 4096;
+
+/// A given plane is contradicted when its slope is this many times that of the plane fitted to the points, and more than
+/// normals written with three digits have.
+constexpr double contradiction = 2;
+constexpr double least_slope = 2e-3;
+
+/// It is also contradicted when it disagrees with those around it by this many times the angle between fitted planes, and
+/// this much: that tells on points too noisy for slopes to tell.
+constexpr double disagreement = 3;
+constexpr double least_disagreement = 0.1;
+
+constexpr std::size_t most_neighbors = 12;
+
+struct Fit {
+  double slope, disagreement;
+};
+
+/// The value of the best third.
+double third(std::span<double> values) {
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 3);
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+/// How well a field of normals fits the points around point i. Between two planes that are right, a neighbour lies in their
+/// mean plane, whatever the curvature: slopes over it, and angles between the planes, in radians, of the best third of the
+/// nearest neighbours, so that other faces of a corner and other sheets do not count.
+Fit fit_of(const CleanPoints& cloud, const Neighborhoods& neighborhoods, std::span<const Vec3> normals, Index i) {
+  std::array<double, most_neighbors> slopes, angles;
+  std::size_t count = 0;
+  for (Index j : neighborhoods.of(i)) {
+    if (count == most_neighbors) break;
+    if (normals[j] == Vec3{0, 0, 0}) continue;
+    const Vec3 edge = cloud.points[j] - cloud.points[i];
+    const MeanPlane mean(normals[i], normals[j]);
+    slopes[count] = std::abs(dot(mean.normal, edge)) / norm(edge);
+    angles[count++] = 2 * norm(mean.across);
+  }
+  if (count == 0) return {0, 0};
+  return {third(std::span(slopes).first(count)), third(std::span(angles).first(count))};
+}
+
+bool contradicts(const Fit& given, const Fit& fitted) {
+  return given.slope > std::max(least_slope, contradiction * fitted.slope) ||
+         given.disagreement > std::max(least_disagreement, disagreement * fitted.disagreement);
+}
+
+}  // namespace
+
+std::vector<char> take_given_planes(const CleanPoints& cloud, const Neighborhoods& neighborhoods,
+                                    std::span<const Vec3> given, unsigned threads, TangentPlanes& planes) {
+  const auto n = static_cast<Offset>(cloud.points.size());
+  std::vector<char> missing(static_cast<std::size_t>(n), 0), contradicted(static_cast<std::size_t>(n), 0);
+  detail::parallel_chunks(n, chunk, threads, [&](Offset begin, Offset end) {
+    for (Offset i = begin; i < end; ++i) {
+      const auto point = static_cast<Index>(i);
+      missing[i] = given[i] == Vec3{0, 0, 0};
+      if (missing[i] || !planes.has_plane(point)) continue;
+      contradicted[i] =
+          contradicts(fit_of(cloud, neighborhoods, given, point), fit_of(cloud, neighborhoods, planes.normals, point));
+    }
+  });
+  for (Offset i = 0; i < n; ++i) {
+    planes.estimated += missing[i];
+    planes.contradicted += contradicted[i];
+    if (missing[i]) continue;
+    if (!contradicted[i])
+      planes.normals[i] = given[i];
+    else if (dot(planes.normals[i], given[i]) < 0)
+      planes.normals[i] = -1.0 * planes.normals[i];
+  }
+  return missing;
+}
+
+}  // namespace ahm::pointcloud

@@ -1,0 +1,127 @@
+// Distances and vectors against exact ones, and how well the quality tells the right vectors from the wrong ones.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numeric>
+
+#include "ahm/maps/log_map_solver.hpp"
+#include "ahm/maps/quality.hpp"
+#include "ahm/surface/exact/exact_map.hpp"
+#include "ahm/testing/triangle_meshes.hpp"
+#include "experiments/comparison.hpp"
+
+namespace ahm::bench {
+namespace {
+
+using Complex = std::complex<double>;
+constexpr int source_count = 3;
+/// A vector is right when it is off by less than this share of the distance.
+constexpr double right = 0.1;
+
+exact::PolyhedralSurface polyhedron(const Surface& surface) {
+  const trimesh::TriangleMesh& mesh = surface.mesh().mesh();
+  std::vector<exact::FaceSides> sides;
+  for (Index f = 0; f < mesh.face_count(); ++f) sides.push_back(mesh.layout(f));
+  return {mesh.topology().half_edges(), sides, mesh.corners()};
+}
+
+/// Of all vertices and sources together.
+struct Found {
+  std::vector<double> length_error, distance_error;  ///< relative: |phi|, and the distance
+  std::vector<double> quality;
+  std::vector<char> is_right;
+};
+
+/// Vertices nearer than two edges are left out: there the vectors are short and the edges few.
+void compare(const Surface& surface, const exact::ExactMap& truth, const LogMap& map, Found& found) {
+  const double unit = surface.graph().length_unit(), near = 2 * surface.mean_edge();
+  const std::vector<double> quality = map_quality(surface.graph(), map);
+  std::vector<Complex> exact, ours;
+  std::vector<std::size_t> vertices;
+  for (Index i = 0; i < surface.size(); ++i) {
+    const Vertex v(i);
+    if (map.status(v) != Status::ok || !(truth.distance(v) * unit > near)) continue;
+    vertices.push_back(static_cast<std::size_t>(i));
+    exact.emplace_back(unit * truth.coordinates(v)[0], unit * truth.coordinates(v)[1]);
+    ours.emplace_back(map.coordinates(v)[0], map.coordinates(v)[1]);
+  }
+  // The axes of the two differ by a turn: the one that fits best near the source.
+  std::vector<double> away;
+  for (Complex z : exact) away.push_back(std::abs(z));
+  const double third = away.empty() ? 0 : quantile(away, 0.3);
+  Complex turn = 0;
+  for (std::size_t k = 0; k < exact.size(); ++k)
+    if (away[k] < third) turn += ours[k] * std::conj(exact[k]);
+  turn /= std::abs(turn);
+  for (std::size_t k = 0; k < exact.size(); ++k) {
+    found.length_error.push_back(std::abs(std::abs(ours[k]) - away[k]) / away[k]);
+    found.distance_error.push_back(std::abs(map.distances()[vertices[k]] - away[k]) / away[k]);
+    found.quality.push_back(quality[vertices[k]]);
+    found.is_right.push_back(std::abs(ours[k] - turn * exact[k]) < right * away[k]);
+  }
+}
+
+/// Area under the curve of right ones against wrong ones: how often a right vertex has the higher quality of a pair.
+/// Empty where all are of one kind.
+Cell area_under_curve(const Found& found) {
+  std::vector<std::size_t> order(found.quality.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](auto a, auto b) { return found.quality[a] < found.quality[b]; });
+  double above = 0, wrong = 0, right_ones = 0;
+  for (std::size_t k : order) {
+    if (!found.is_right[k]) {
+      ++wrong;
+      continue;
+    }
+    above += wrong;
+    ++right_ones;
+  }
+  return wrong > 0 && right_ones > 0 ? Cell(above / (wrong * right_ones)) : Cell();
+}
+
+double mean(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+void measure(const Surface& surface, Table& table) {
+  const exact::PolyhedralSurface polyhedral = polyhedron(surface);
+  for (Variant variant : {Variant::adaptive, Variant::localized}) {
+    const LogMapSolver solver(surface.graph(), {.variant = variant});
+    Found found;
+    for (int s = 0; s < source_count; ++s) {
+      const Vertex source(surface.size() / 11 + s * (surface.size() / source_count));
+      compare(surface, exact::exact_map(polyhedral, polyhedral.vertex_point(source)),
+              solver.solve(Source::at_vertex(source)), found);
+    }
+    double trusted = 0, right_trusted = 0, all_right = 0;
+    const auto count = static_cast<double>(found.quality.size());
+    for (std::size_t k = 0; k < found.quality.size(); ++k) {
+      const bool is_trusted = found.quality[k] >= trusted_quality;
+      trusted += is_trusted;
+      right_trusted += is_trusted && found.is_right[k];
+      all_right += found.is_right[k];
+    }
+    table.add({surface.name(), surface.size(), std::string(to_string(variant)), mean(found.distance_error),
+               quantile(found.distance_error, 0.95), quantile(found.distance_error, 1), mean(found.length_error),
+               quantile(found.length_error, 0.95), quantile(found.length_error, 1), all_right / count,
+               area_under_curve(found), trusted / count, trusted > 0 ? Cell(right_trusted / trusted) : Cell()});
+  }
+}
+
+}  // namespace
+
+Table trust(const Settings& settings) {
+  Table table({"mesh", "vertices", "variant", "distance mean", "distance 95%", "distance max", "|phi| mean",
+               "|phi| 95%", "|phi| max", "right", "area under curve", "trusted", "right among trusted"});
+  const Index n = settings.toy ? 640 : 10000;
+  measure(Surface("sphere", test::split_icosphere(n)), table);
+  measure(Surface("torus", torus(n)), table);
+  for_user_surfaces(settings, 20000, [&](const Surface& surface) { measure(surface, table); });
+  table.seen = fmt::format("95th percentile of the relative error, medians over meshes: distance {:.3f}, |phi| {:.2f}.",
+                           quantile(table.numbers("distance 95%"), 0.5), quantile(table.numbers("|phi| 95%"), 0.5));
+  return table;
+}
+
+}  // namespace ahm::bench

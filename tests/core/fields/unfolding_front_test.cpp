@@ -1,0 +1,99 @@
+// Distances by unfolding.
+#include "ahm/fields/unfolding_front.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "ahm/error.hpp"
+#include "ahm/testing/flat_graphs.hpp"
+#include "ahm/testing/graph_changes.hpp"
+
+namespace ahm::test {
+namespace {
+
+std::vector<double> distances(const TangentGraph& graph, const Source& source) {
+  UnfoldingFront front(graph);
+  front.add(source);
+  front.run();
+  std::vector<double> result;
+  for (Index i = 0; i < graph.size(); ++i) result.push_back(front.distance(Vertex(i)));
+  return result;
+}
+
+TEST(UnfoldingFront, GoesRoundATubeTheShorterWay) {
+  const Index rings = 60, around = 14;
+  const CsrGraph graph(tube(rings, around));
+  const auto away = distances(graph, Source::at_vertex(Vertex(30 * around)));
+  for (Index r = 0; r < rings; ++r)
+    for (Index k = 0; k < around; ++k)
+      ASSERT_NEAR(away[r * around + k], std::hypot(r - 30, std::min(k, around - k)), 1e-10) << r << ", " << k;
+}
+
+TEST(UnfoldingFront, IsExactInSpace) {
+  const FlatGraph flat = lattice3(9);
+  const CsrGraph graph(flat.data);
+  const auto away = distances(graph, Source::at_vertex(Vertex{100}));
+  for (Index i = 0; i < flat.size(); ++i) {
+    const auto z = flat.exact(100, i);
+    ASSERT_NEAR(away[i], std::hypot(z[0], z[1], z[2]), 1e-11);
+  }
+}
+
+TEST(UnfoldingFront, TellsTheNearestOfManyAndGoesOnFromThere) {
+  const CsrGraph graph(tube(40, 12));
+  const std::array sources{Vertex{5}, Vertex{100}, Vertex{301}, Vertex{470}};
+  UnfoldingFront at_once(graph), in_turn(graph);
+  for (Vertex source : sources) at_once.add(Source::at_vertex(source));
+  at_once.run();
+  for (Vertex source : sources) {
+    in_turn.add(Source::at_vertex(source));
+    in_turn.run();
+  }
+  std::vector<std::vector<double>> alone;
+  for (Vertex source : sources) alone.push_back(distances(graph, Source::at_vertex(source)));
+  for (Index i = 0; i < graph.size(); ++i) {
+    double least = alone[0][i];
+    for (const auto& one : alone) least = std::min(least, one[i]);
+    for (const UnfoldingFront* front : {&at_once, &in_turn}) {
+      ASSERT_NEAR(front->distance(Vertex(i)), least, 1e-10) << "vertex " << i;
+      ASSERT_NEAR(alone[front->nearest(Vertex(i))][i], least, 1e-10) << "vertex " << i;
+    }
+  }
+}
+
+TEST(UnfoldingFront, StopsAtTheRadiusAndAtTheComponent) {
+  const CsrGraph graph(doubled(tube(40, 12)));
+  UnfoldingFront front(graph);
+  front.add(Source::at_vertex(Vertex{0}));
+  front.run(7);
+  for (Index i = 0; i < graph.size(); ++i) {
+    const double exact = std::hypot(i / 12, std::min(i % 12, 12 - i % 12));
+    if (i >= graph.size() / 2) {
+      ASSERT_EQ(front.nearest(Vertex(i)), -1);
+      ASSERT_TRUE(std::isinf(front.distance(Vertex(i))));
+    } else if (exact <= 7) {
+      ASSERT_NEAR(front.distance(Vertex(i)), exact, 1e-11);
+    } else {
+      ASSERT_GT(front.distance(Vertex(i)), 7);
+    }
+  }
+}
+
+TEST(UnfoldingFront, ScalesByPowersOfTwoToTheBit) {
+  const CsrGraph graph(tube(20, 9)), large(scaled(tube(20, 9), 0x1p40));
+  const auto a = distances(graph, Source::at_vertex(Vertex{4})), b = distances(large, Source::at_vertex(Vertex{4}));
+  for (std::size_t i = 0; i < a.size(); ++i) ASSERT_EQ(a[i] * 0x1p40, b[i]);
+}
+
+TEST(UnfoldingFront, RefusesSourcesThatDoNotFit) {
+  const CsrGraph graph(tube(3, 5));
+  UnfoldingFront front(graph);
+  EXPECT_THROW(front.add(Source::at_vertex(Vertex{15})), InvalidArgument);
+  EXPECT_THROW(front.add(Source(3)), InvalidArgument);
+}
+
+}  // namespace
+}  // namespace ahm::test

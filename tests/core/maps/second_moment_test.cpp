@@ -1,0 +1,155 @@
+// The second moment of heat: distances that hold at cut loci, and the spread of a map.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "ahm/maps/local_maps.hpp"
+#include "ahm/maps/log_map_solver.hpp"
+#include "ahm/testing/closed_forms.hpp"
+#include "ahm/testing/curved_graphs.hpp"
+#include "ahm/testing/flat_graphs.hpp"
+#include "ahm/testing/graph_changes.hpp"
+#include "ahm/testing/triangle_meshes.hpp"
+#include "ahm/trimesh/triangle_mesh_surface.hpp"
+
+namespace ahm::test {
+namespace {
+
+const std::array variants{Variant::adaptive, Variant::localized};
+const std::array strategies{Strategy::global, Strategy::march};
+
+double length(std::span<const double> v) {
+  double sum = 0;
+  for (double x : v) sum = std::hypot(sum, x);
+  return sum;
+}
+
+// Any triangulation, any weights, both arithmetic paths, one to three dimensions.
+TEST(SecondMoment, IsTheDistanceOnFlatGraphs) {
+  for (const FlatGraph& flat :
+       {planar_triangulation(30), planar_triangulation(20, TransportKind::block, true), line_graph(200), lattice3(9)}) {
+    const CsrGraph graph(flat.data);
+    ASSERT_FALSE(graph.is_delaunay());
+    for (Strategy strategy : strategies)
+      for (int order : {1, 2})
+        for (Variant variant : variants) {
+          const LogMapSolver solver(graph, {.variant = variant, .order = order, .strategy = strategy});
+          const LogMap map = solver.solve(Source::at_vertex(Vertex{33}));
+          for (Index i = 0; i < graph.size(); ++i) {
+            ASSERT_NEAR(map.distance(Vertex(i)), length(flat.exact(33, i)),
+                        (order == 1 ? 1e-11 : 1e-10) * flat.diameter());
+            // A root of a difference keeps half the digits.
+            ASSERT_LT(map.spread()[i], 1e-5 * flat.diameter());
+          }
+        }
+  }
+}
+
+// q / lambda >= |phi|^2 by Jensen's inequality.
+TEST(SecondMoment, HasAVarianceThatIsNotNegative) {
+  for (const CsrGraphData& data : {sphere_graph(2500), as_blocks(sphere_graph(900)), bent_lattice(10), tube(60, 9)}) {
+    const CsrGraph graph(data);
+    for (Variant variant : variants) {
+      const LogMap map = LogMapSolver(graph).solve(Source::at_vertex(Vertex{7}), {.variant = variant});
+      for (Index i = 0; i < graph.size(); ++i)
+        if (i != 7) ASSERT_GE(map.distance(Vertex(i)), length(map.coordinates(Vertex(i))) * (1 - 1e-12));
+    }
+  }
+}
+
+/// Errors of the distance on the unit sphere from one vertex: 95th percentile, relative.
+double error_on_sphere(Index parts, Variant variant) {
+  const Mesh mesh = icosphere(parts);
+  const std::vector<Vec3>& points = mesh.positions;
+  const auto surface = trimesh::TriangleMeshSurface::build(points, mesh.faces);
+  CsrGraphData data = stored(surface.graph());
+  data.is_delaunay = false;
+  const CsrGraph graph(data);
+  const LogMap map = LogMapSolver(graph).solve(Source::at_vertex(Vertex{40}), {.variant = variant});
+  std::vector<double> errors;
+  for (Index i = 0; i < graph.size(); ++i) {
+    const double exact = sphere_distance(points[40], points[i]);
+    if (exact > 5 * graph.mean_edge_length()) errors.push_back(std::abs(map.distance(Vertex(i)) - exact) / exact);
+  }
+  std::sort(errors.begin(), errors.end());
+  EXPECT_LT(errors.back(),
+            4 * graph.mean_edge_length() * graph.length_unit());  // at the antipode too, where |phi| is 0
+  return errors[errors.size() * 95 / 100];
+}
+
+TEST(SecondMoment, HoldsOnTheWholeSphereAndConverges) {
+  for (Variant variant : variants) {
+    const double coarse = error_on_sphere(10, variant), fine = error_on_sphere(32, variant);
+    EXPECT_LT(coarse, 0.12);
+    EXPECT_LT(fine, 0.5 * coarse);
+  }
+}
+
+TEST(SecondMoment, IsTheSameByMarch) {
+  for (const CsrGraphData& data : {sphere_graph(6000), as_blocks(sphere_graph(3000)), bent_lattice(12)}) {
+    const CsrGraph graph(data);
+    for (Variant variant : variants) {
+      const LogMap expected =
+          LogMapSolver(graph, {.variant = variant, .strategy = Strategy::global}).solve(Source::at_vertex(Vertex{5}));
+      const LogMap map =
+          LogMapSolver(graph, {.variant = variant, .strategy = Strategy::march}).solve(Source::at_vertex(Vertex{5}));
+      for (Index i = 0; i < graph.size(); ++i)
+        ASSERT_NEAR(map.distance(Vertex(i)), expected.distance(Vertex(i)), 1e-7) << "vertex " << i;
+    }
+  }
+}
+
+TEST(SecondMoment, SpreadsAcrossACutLocusOnly) {
+  const Index around = 60, rings = 61;
+  const CsrGraph graph(tube(rings, around));
+  const LogMap map = LogMapSolver(graph).solve(Source::at_vertex(Vertex(30 * around)));
+  const auto at = [&](Index k) { return 30 * around + k; };
+  EXPECT_GT(map.spread()[at(30)], 0.9 * 30);  // both ways round, 30 each
+  EXPECT_LT(map.spread()[at(15)], 1e-3 * 15);
+  EXPECT_NEAR(map.distance(Vertex(at(30))), 30, 0.2);
+  EXPECT_LT(length(map.coordinates(Vertex(at(30)))), 1);
+}
+
+TEST(Distances, AreZeroAtTheSourceInEveryOrder) {
+  const CsrGraph graph(sphere_graph(500));
+  for (int order : {1, 2})
+    for (Variant variant : variants)
+      EXPECT_EQ(LogMapSolver(graph, {.variant = variant, .order = order})
+                    .solve(Source::at_vertex(Vertex{9}))
+                    .distance(Vertex{9}),
+                0);
+}
+
+// A component's numbers do not depend on what else is in the graph, whatever its scale.
+TEST(Components, HaveAMapOfTheirOwn) {
+  const CsrGraphData one = sphere_graph(1500);
+  const CsrGraph alone(one), with_a_large_one(joined(one, scaled(sphere_graph(900), 32)));
+  for (int order : {1, 2})
+    for (Strategy strategy : strategies)
+      for (Variant variant : variants) {
+        const HeatOptions options{.variant = variant, .order = order, .strategy = strategy};
+        const LogMap a = LogMapSolver(alone, options).solve(Source::at_vertex(Vertex{11})),
+                     b = LogMapSolver(with_a_large_one, options).solve(Source::at_vertex(Vertex{11}));
+        for (Index i = 0; i < alone.size(); ++i) {
+          ASSERT_NEAR(a.distance(Vertex(i)), b.distance(Vertex(i)), 1e-9);
+          for (int c = 0; c < 2; ++c) ASSERT_NEAR(a.coordinates(Vertex(i))[c], b.coordinates(Vertex(i))[c], 1e-9);
+        }
+        EXPECT_EQ(b.count(Status::disconnected), 900);
+      }
+}
+
+TEST(LocalMaps, HaveTheDistancesOfWholeMaps) {
+  const CsrGraph graph(sphere_graph(4000));
+  const double radius = 6 * graph.mean_edge_length();
+  const LocalMaps maps = local_maps(graph, std::array{Vertex{40}}, {.radius = radius, .margin = 6});
+  const LogMap whole = LogMapSolver(graph).solve(Source::at_vertex(Vertex{40}));
+  ASSERT_EQ(maps.indices.front(), 40);
+  ASSERT_EQ(maps.distances.front(), 0);
+  for (std::size_t e = 0; e < maps.indices.size(); ++e)
+    EXPECT_NEAR(maps.distances[e], whole.distance(Vertex(maps.indices[e])), 1e-4 * radius);
+}
+
+}  // namespace
+}  // namespace ahm::test
