@@ -41,22 +41,24 @@ TEST(DecalCommand, LaysTheImageOnAPlate) {
   if (!io::has_images()) GTEST_SKIP() << "this build has no stb";
   Folder folder;
   const std::string image = half_and_half(folder);
-  const Outcome outcome =
-      run({"decal", folder.write("plate.off", plate()), "--image", image, "--source", "1,1,5", "--u-axis", "1,0,0",
-           "--size", "1", "--lift", "0", "--alone", "-o", folder / "decal.obj", "--json", folder / "decal.json"});
-  ASSERT_EQ(outcome.status, 0) << outcome.err;
-  const io::Geometry decal = io::read(folder / "decal.obj");
-  Vec3 low{9, 9, 9}, high{-9, -9, -9};
-  for (const Vec3& p : decal.points)
-    for (std::size_t c = 0; c < 3; ++c) low[c] = std::min(low[c], p[c]), high[c] = std::max(high[c], p[c]);
-  const Vec3 low_corner{0.5, 0.75, 5}, high_corner{1.5, 1.25, 5};
-  for (std::size_t c = 0; c < 3; ++c) {
-    EXPECT_NEAR(low[c], low_corner[c], 1e-9);
-    EXPECT_NEAR(high[c], high_corner[c], 1e-9);
+  for (const std::string method : {"heat", "exact"}) {
+    const Outcome outcome = run({"decal", folder.write("plate.off", plate()), "--image", image, "--source", "1,1,5",
+                                 "--u-axis", "1,0,0", "--size", "1", "--lift", "0", "--alone", "--method", method, "-o",
+                                 folder / "decal.obj", "--json", folder / "decal.json"});
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    const io::Geometry decal = io::read(folder / "decal.obj");
+    Vec3 low{9, 9, 9}, high{-9, -9, -9};
+    for (const Vec3& p : decal.points)
+      for (std::size_t c = 0; c < 3; ++c) low[c] = std::min(low[c], p[c]), high[c] = std::max(high[c], p[c]);
+    const Vec3 low_corner{0.5, 0.75, 5}, high_corner{1.5, 1.25, 5};
+    for (std::size_t c = 0; c < 3; ++c) {
+      EXPECT_NEAR(low[c], low_corner[c], 1e-9);
+      EXPECT_NEAR(high[c], high_corner[c], 1e-9);
+    }
+    const auto json = read_json(folder / "decal.json");
+    EXPECT_NEAR(json.at("covered").get<double>(), 1, 1e-9);
+    EXPECT_NEAR(json.at("distortion").at("mean").get<double>(), 1, 1e-9);
   }
-  const auto json = read_json(folder / "decal.json");
-  EXPECT_NEAR(json.at("covered").get<double>(), 1, 1e-9);
-  EXPECT_NEAR(json.at("distortion").at("mean").get<double>(), 1, 1e-9);
 }
 
 TEST(DecalCommand, PaintsPointsUnderTheOpaquePart) {

@@ -109,6 +109,20 @@ void add_mesh_options(CLI::App& app, InputOptions& o) {
       ->group("Polygon meshes");
 }
 
+CLI::Option* add_method(CLI::App& app, SolveOptions& o) {
+  app.parse_complete_callback([&app, &o] {
+    if (o.method == Method::heat) return;
+    for (const char* name :
+         {"--variant", "--order", "--strategy", "--t-coef", "--ordering", "--accuracy", "--estimate"})
+      if (const CLI::Option* option = app.get_option_no_throw(name); option != nullptr && option->count() > 0)
+        throw CLI::ValidationError("--method", fmt::format("exact has no {}: that belongs to heat", name));
+  });
+  return add_parsed(app, "--method", o.method, choice_of<Method>({{"heat", Method::heat}, {"exact", Method::exact}}),
+                    "NAME",
+                    "heat (default), or exact: straight lines over the faces of a mesh, best on coarse and\n"
+                    "sharp-edged ones");
+}
+
 CLI::Option* add_variant(CLI::App& app, SolveOptions& o) {
   return add_parsed(app, "--variant", o.variant,
                     choice_of<Variant>({{"adaptive", Variant::adaptive}, {"localized", Variant::localized}}), "NAME",

@@ -66,6 +66,8 @@ void add_cloud_options(CLI::App& app, InputOptions& o);
 /// --no-flips, --non-manifold, --discretization
 void add_mesh_options(CLI::App& app, InputOptions& o);
 
+/// --method; with exact, what the subcommand offers of heat's options is refused.
+CLI::Option* add_method(CLI::App& app, SolveOptions& o);
 CLI::Option* add_variant(CLI::App& app, SolveOptions& o);
 CLI::Option* add_t_coef(CLI::App& app, SolveOptions& o);
 /// For the graph, and for maps on it where there are any.

@@ -35,6 +35,7 @@ struct InputOptions {
 
 /// How maps are computed.
 struct SolveOptions : HeatOptions {
+  Method method = Method::heat;
   std::optional<double> radius;
 };
 

@@ -143,8 +143,7 @@ void run(const CoverageCommandOptions& options) {
   Journal journal(options.output.verbose);
   const Input input = open_input(options.input, journal, options.source.spec);
   const PlacedSource source = resolve(options.source, input);
-  const LogMapSolver solver = make_solver(options.solve, input.graph(), journal);
-  const LogMap map = solve(options.solve, solver, source.source, journal);
+  const LogMap map = solve(options.solve, input, options.source.spec, source, journal).map;
 
   journal.start("path");
   const InverseMap inverse =
@@ -191,6 +190,7 @@ void offer(CLI::App& app, CoverageCommandOptions& o) {
   add_parsed(app, "--step", o.path.step, parse_positive, "L", "Between points of the path (default: S / 2)");
   add_min_quality(app, o.min_quality);
   add_u_axis(app, o.source);
+  add_method(app, o.solve);
   add_graph_options(app, o.input, o.solve);
   add_json(app, o.output);
   add_view(app, o.output);

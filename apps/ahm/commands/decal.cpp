@@ -79,14 +79,13 @@ struct Amount {
   }
 };
 
-SurfaceFaces faces_behind(const DecalCommandOptions& options, const Input& input, const LogMapSolver& solver) {
-  if (options.alone || input.surface().faces().size() == 0) return {};
-  return surface_faces(input.surface(), solver, {});
+SurfaceFaces faces_behind(const DecalCommandOptions& options, const Input& input) {
+  return options.alone ? SurfaceFaces() : surface_faces(input.surface());
 }
 
-void write_mesh(const DecalCommandOptions& options, const Input& input, const LogMapSolver& solver, const Decal& decal,
-                const Image& image, const Vec3& source) {
-  const SurfaceFaces faces = faces_behind(options, input, solver);
+void write_mesh(const DecalCommandOptions& options, const Input& input, const Decal& decal, const Image& image,
+                const Vec3& source) {
+  const SurfaceFaces faces = faces_behind(options, input);
   const FacesPart behind(faces, [](std::size_t) { return true; });
   std::vector<double> corners;
   for (Index v : decal.face_vertices)
@@ -179,10 +178,9 @@ void run(const DecalCommandOptions& given) {
   Journal journal(options.output.verbose);
   const Input input = open_input(options.input, journal, options.source.spec);
   const PlacedSource source = resolve(options.source, input);
-  const LogMapSolver solver = make_solver(options.solve, input.graph(), journal);
   SolveOptions near = options.solve;
   near.radius = map_radius(options.decal, input.graph());
-  const LogMap map = solve(near, solver, source.source, journal);
+  const LogMap map = solve(near, input, options.source.spec, source, journal).map;
 
   comment_on_quality(quality_of(input, map, input.surface().on_rows(map), options.solve),
                      "lower --size, or choose another source", journal);
@@ -204,7 +202,7 @@ void run(const DecalCommandOptions& given) {
 
   journal.start("write");
   extension_of(options.output.output) == ".ply" ? write_points(options, input, inverse, image, source.position)
-                                                : write_mesh(options, input, solver, decal, image, source.position);
+                                                : write_mesh(options, input, decal, image, source.position);
   report(options, input, decal, amount, source.position, journal);
 }
 
@@ -221,6 +219,7 @@ void offer(CLI::App& app, DecalCommandOptions& o) {
   app.add_flag("--alone", o.alone, "Write the decal without the surface (.obj, .glb)");
   add_min_quality(app, o.min_quality);
   add_u_axis(app, o.source);
+  add_method(app, o.solve);
   add_graph_options(app, o.input, o.solve);
   add_json(app, o.output);
   add_view(app, o.output)->description("Draw the result: .png");

@@ -64,8 +64,7 @@ void run(const InverseCommandOptions& options) {
   Journal journal(options.output.verbose);
   const Input input = open_input(options.input, journal, options.source.spec);
   const PlacedSource source = resolve(options.source, input);
-  const LogMapSolver solver = make_solver(options.solve, input.graph(), journal);
-  const LogMap map = solve(options.solve, solver, source.source, journal);
+  const LogMap map = solve(options.solve, input, options.source.spec, source, journal).map;
 
   comment_on_quality(quality_of(input, map, input.surface().on_rows(map), options.solve),
                      "start nearer to the points that are looked up", journal);
@@ -89,6 +88,7 @@ void offer(CLI::App& app, InverseCommandOptions& o) {
   add_output(app, o.output)->required();
   add_min_quality(app, o.min_quality);
   add_u_axis(app, o.source);
+  add_method(app, o.solve);
   add_graph_options(app, o.input, o.solve);
   add_json(app, o.output);
   add_verbose(app, o.output);

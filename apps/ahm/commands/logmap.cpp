@@ -101,8 +101,8 @@ void run(const LogmapOptions& options) {
   const PlacedSource source = resolve(options.source, input);
   comment_on_source(options.source.spec, input, source, journal);
 
-  const LogMapSolver solver = make_solver(options.solve, input.graph(), journal);
-  const LogMap map = solve(options.solve, solver, source.source, journal);
+  const SolvedMap solved = solve(options.solve, input, options.source.spec, source, journal);
+  const LogMap& map = solved.map;
   RowLogMap rows = input.surface().on_rows(map);
   const std::vector<double> quality = quality_of(input, map, rows, options.solve);
   if (opened.local) mark_beyond(input.geometry.points, source.position, *opened.local, rows);
@@ -113,13 +113,14 @@ void run(const LogmapOptions& options) {
   const std::vector<Vec3> away =
       options.gradient ? distance_gradients(input.surface(), map, rows) : std::vector<Vec3>();
   write_results(source, rows, quality, away, results, journal);
-  report({options.input.path, options.source.spec, options.solve, input, solver, source, map, rows, quality},
+  report({options.input.path, options.source.spec, options.solve, input, solved.solver, source, map, rows, quality},
          options.output, journal);
   results.keep();
 }
 
 void offer_method(CLI::App& app, LogmapOptions& o) {
   const char* group = "Method";
+  add_method(app, o.solve)->group(group);
   add_variant(app, o.solve)->group(group);
   add_backend(app, o.input)->group(group);
   add_t_coef(app, o.solve)->group(group);

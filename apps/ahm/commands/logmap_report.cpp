@@ -66,10 +66,13 @@ nlohmann::ordered_json as_json(const LogmapRun& run, const OutputOptions& output
   nlohmann::ordered_json j = summary("ahm logmap", run.path, output, run.input);
   j["input"]["normals"] = !run.input.geometry.normals.empty();
   j["n"] = run.rows.status.size();
-  j["variant"] = to_string(run.map.variant());
-  j["strategy"] = to_string(run.map.strategy());
-  j["order"] = run.options.order;
-  j["t_coef"] = run.options.t_coef;
+  j["method"] = to_string(run.map.method());
+  if (run.map.method() == Method::heat) {
+    j["variant"] = to_string(run.map.variant());
+    j["strategy"] = to_string(run.map.strategy());
+    j["order"] = run.options.order;
+    j["t_coef"] = run.options.t_coef;
+  }
   j["mean_edge_length"] = run.input.mean_edge_length();
   j["largest_distance"] = largest_distance(run.rows);
   for (Status s : all_statuses) j["status"][std::string(to_string(s))] = count(run.rows, s);
@@ -77,7 +80,8 @@ nlohmann::ordered_json as_json(const LogmapRun& run, const OutputOptions& output
   if (!run.rows.error_estimate.empty()) j["median_error_estimate"] = median(run.rows.error_estimate);
   j["source"] = source_as_json(run);
   j[std::string(run.input.backend->name)] = app::as_json(run.input.built.report);
-  if (run.solver.strategy() == Strategy::global) j["factor"] = factor_as_json(run.solver.operators().statistics());
+  if (run.solver && run.solver->strategy() == Strategy::global)
+    j["factor"] = factor_as_json(run.solver->operators().statistics());
   if (const MarchStatistics& m = run.map.march(); m.bands > 0)
     j["march"] = {{"bands", m.bands}, {"largest_band", m.largest_band}, {"solved_vertices", m.solved}};
   return j;

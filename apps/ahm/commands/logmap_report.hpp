@@ -2,6 +2,7 @@
 /// What `ahm logmap` tells about a run.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "ahm/maps/log_map_solver.hpp"
@@ -15,7 +16,7 @@ struct LogmapRun {
   const SourceSpec& spec;
   const SolveOptions& options;
   const Input& input;
-  const LogMapSolver& solver;
+  const std::optional<LogMapSolver>& solver;  ///< of heat
   const PlacedSource& source;
   const LogMap& map;
   const RowLogMap& rows;

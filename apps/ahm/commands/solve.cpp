@@ -5,6 +5,7 @@
 #include "ahm/error.hpp"
 #include "ahm/maps/cost.hpp"
 #include "ahm/maps/quality.hpp"
+#include "ahm/surface/exact/exact_geodesics.hpp"
 #include "cli/system_info.hpp"
 
 namespace ahm::app {
@@ -27,6 +28,18 @@ std::string strategy_as_text(const LogMap& map) {
   const MarchStatistics& m = map.march();
   if (map.strategy() == Strategy::global) return "global";
   return fmt::format("march: {} bands, the largest of {} vertices", m.bands, m.largest_band);
+}
+
+/// From the point and along the axis of a resolved source.
+LogMap exact_map(const SolveOptions& options, const Input& input, const SourceSpec& spec, const PlacedSource& source,
+                 Journal& journal) {
+  journal.start("layout");
+  const ExactGeodesics geodesics(input.surface());
+  journal.start("solve");
+  const MapOptions map = map_options(options);
+  const auto u_axis = source.frame ? std::optional(source.frame->x) : std::nullopt;
+  return geodesics.log_map(point_of(input.surface(), spec), u_axis,
+                           {.radius = map.radius, .frames = map.frames, .progress = journal.progress()});
 }
 
 }  // namespace
@@ -52,6 +65,16 @@ LogMap solve(const SolveOptions& options, const LogMapSolver& solver, const Sour
   LogMap map = solver.solve(source, map_options(options));
   journal.tell(strategy_as_text(map));
   return map;
+}
+
+SolvedMap solve(const SolveOptions& options, const Input& input, const SourceSpec& spec, const PlacedSource& source,
+                Journal& journal) {
+  if (options.method == Method::heat) {
+    LogMapSolver solver = make_solver(options, input.graph(), journal);
+    LogMap map = solve(options, solver, source.source, journal);
+    return {std::move(solver), std::move(map)};
+  }
+  return {std::nullopt, exact_map(options, input, spec, source, journal)};
 }
 
 std::vector<double> quality_of(const Input& input, const LogMap& map, const RowLogMap& rows,

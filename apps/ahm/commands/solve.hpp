@@ -2,6 +2,8 @@
 /// The second step of every subcommand that maps: factor and solve.
 #pragma once
 
+#include <optional>
+
 #include "ahm/maps/log_map_solver.hpp"
 #include "cli/journal.hpp"
 #include "cli/options.hpp"
@@ -19,6 +21,18 @@ MapOptions map_options(const SolveOptions& options);
 
 /// One map; the journal tells the strategy.
 LogMap solve(const SolveOptions& options, const LogMapSolver& solver, const Source& source, Journal& journal);
+
+/// A map, and the solver that made it, where it was heat's.
+struct SolvedMap {
+  std::optional<LogMapSolver> solver;
+  LogMap map;
+};
+
+/// The one map of a subcommand, by the method of the options.
+/// @param source  of `spec`
+/// @throws InvalidArgument where the method needs faces that the input does not have, and as `make_solver`
+SolvedMap solve(const SolveOptions& options, const Input& input, const SourceSpec& spec, const PlacedSource& source,
+                Journal& journal);
 
 /// `map_quality` by row. @param rows  of the map
 std::vector<double> quality_of(const Input& input, const LogMap& map, const RowLogMap& rows,

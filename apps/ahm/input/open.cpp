@@ -41,13 +41,15 @@ Input open_input(const InputOptions& options, Journal& journal, const std::optio
   return {std::move(geometry), &backend, std::move(built)};
 }
 
+SurfacePoint point_of(const Surface& surface, const SourceSpec& spec) {
+  if (const auto* face = std::get_if<SourceFace>(&spec)) return FacePoint{face->face, face->weights};
+  if (const auto* position = std::get_if<SourcePosition>(&spec)) return surface.nearest_row(position->position);
+  return Row(std::get<SourceVertex>(spec).index);
+}
+
 PlacedSource place(const Surface& surface, const SourceSpec& spec, const std::optional<Vec3>& u_axis,
                    const std::string& option) try {
-  if (const auto* face = std::get_if<SourceFace>(&spec))
-    return surface.source(FacePoint{face->face, face->weights}, u_axis);
-  if (const auto* position = std::get_if<SourcePosition>(&spec))
-    return surface.source(surface.nearest_row(position->position), u_axis);
-  return surface.source(Row(std::get<SourceVertex>(spec).index), u_axis);
+  return surface.source(point_of(surface, spec), u_axis);
 } catch (const InvalidArgument& e) {
   if (u_axis && e.fault() == "axis_along_normal")
     throw InvalidArgument(fmt::format("--u-axis {},{},{}: is perpendicular to the surface at the source {}",

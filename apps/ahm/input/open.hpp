@@ -29,6 +29,10 @@ struct Input {
 /// @throws InvalidGeometry where there are no points; what the reader and the backend throw
 Input open_input(const InputOptions& options, Journal& journal, const std::optional<SourceSpec>& source = {});
 
+/// The point of a surface that the user means: a row, the row nearest to a position, a point in a face.
+/// @throws InvalidArgument (a surface without positions)
+SurfacePoint point_of(const Surface& surface, const SourceSpec& spec);
+
 /// A source where the user wants it: at a row, at the row nearest to a position, in a face.
 /// @param option  that asked for it, for messages
 /// @throws InvalidArgument

@@ -70,6 +70,8 @@ constexpr Advice advices[] = {
     {"non_manifold_edges", "repair them, or cut the mesh there with --non-manifold split"},
     {"non_manifold_vertices", "repair them, or split them with --non-manifold split"},
     {"twisted_faces", "use --discretization polygons"},
+    {"no_flat_triangles", "use --method heat"},
+    {"polygons_not_refined", "use --discretization refined, or --method heat"},
     {"no_bending_direction", "give the axis as X,Y,Z"},
     {"row_left_out", "--voxel, --outliers, --drop-nan or --local removed it; choose another one, or write x,y,z"},
 };

@@ -8,6 +8,7 @@
 
 #include "ahm/error.hpp"
 #include "ahm/surface/directions.hpp"
+#include "ahm/surface/exact/flat_triangles.hpp"
 #include "ahm/trimesh/triangle_mesh_surface.hpp"
 #include "ahm/util/memory.hpp"
 #include "ahm/util/stopwatch.hpp"
@@ -258,6 +259,20 @@ PlacedSource PolygonMeshSurface::source_in_face(const FacePoint& point, const st
 Sample PolygonMeshSurface::sample_in_face(const LogMap& map, const FacePoint& point) const {
   if (!impl_->refined) return Surface::sample_in_face(map, point);
   return impl_->refined->at(map, locate(impl_->refinement, point.face, position(point)));
+}
+
+FlatTriangles PolygonMeshSurface::flat_triangles() const {
+  if (impl_->refined) return impl_->refined->flat_triangles();
+  if (!impl_->details.twisted.empty())
+    throw InvalidArgument("no_flat_triangles", "exact geodesics need flat faces; " + twisted(impl_->details.twisted),
+                          "map by heat");
+  throw InvalidArgument("polygons_not_refined", "exact geodesics need polygons refined to triangles",
+                        "use Discretization::refined, or map by heat");
+}
+
+exact::MeshPoint PolygonMeshSurface::flat_point_in_face(const FacePoint& point) const {
+  if (!impl_->refined) return Surface::flat_point_in_face(point);
+  return impl_->refined->flat_point(locate(impl_->refinement, point.face, position(point)));
 }
 
 Report PolygonMeshSurface::report() const {

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "ahm/error.hpp"
+#include "ahm/surface/exact/flat_triangles.hpp"
 #include "ahm/util/memory.hpp"
 #include "ahm/util/stopwatch.hpp"
 #include "ahm/util/text.hpp"
@@ -67,6 +68,22 @@ FaceList TriangleMeshSurface::faces() const { return {impl_->mesh.topology().fac
 std::span<const Index> TriangleMeshSurface::corner_vertices() const { return impl_->mesh.tails(); }
 const MeshDetails& TriangleMeshSurface::details() const noexcept { return impl_->details; }
 const TriangleMesh& TriangleMeshSurface::mesh() const noexcept { return impl_->mesh; }
+
+FlatTriangles TriangleMeshSurface::flat_triangles() const {
+  const TriangleMesh& mesh = impl_->mesh;
+  std::vector<exact::FaceSides> sides;
+  for (Index f = 0; f < mesh.face_count(); ++f) sides.push_back(mesh.layout(f));
+  std::vector<Vec3> positions;
+  if (mesh.has_positions())
+    for (Index v = 0; v < mesh.vertex_count(); ++v) positions.push_back(mesh.original_position(v));
+  return {{mesh.topology().half_edges(), sides, mesh.corners()}, std::move(positions), mesh.length_unit()};
+}
+
+exact::MeshPoint TriangleMeshSurface::flat_point_in_face(const FacePoint& point) const {
+  exact::MeshPoint result{point.face, {}};
+  for (int s = 0; s < 3; ++s) result.barycentric[impl_->mesh.stored_corner(point.face, s)] = point.barycentric[s];
+  return result;
+}
 
 Report TriangleMeshSurface::report() const {
   const MeshDetails& d = details();

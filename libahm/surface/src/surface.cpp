@@ -8,6 +8,7 @@
 
 #include "ahm/error.hpp"
 #include "ahm/surface/directions.hpp"
+#include "ahm/surface/exact/flat_triangles.hpp"
 #include "ahm/surface/face_tree.hpp"
 #include "ahm/util/text.hpp"
 #include "ahm/util/vec.hpp"
@@ -195,6 +196,25 @@ FacePoint Surface::face_point(const EdgePoint& point) const {
                         " are not joined by an edge");
 }
 
+FlatTriangles Surface::flat_triangles() const {
+  throw InvalidArgument("no_flat_triangles", "exact geodesics need faces, which this surface does not have",
+                        "map it by heat");
+}
+
+exact::MeshPoint Surface::flat_point_in_face(const FacePoint&) const {
+  throw InvalidArgument("no_flat_triangles", "this surface has no flat triangles", "map it by heat");
+}
+
+exact::MeshPoint Surface::flat_point(const FacePoint& point) const {
+  check(point);
+  return flat_point_in_face(point);
+}
+
+exact::MeshPoint Surface::flat_point(const EdgePoint& point) const {
+  check(point);
+  return flat_point_in_face(face_point(point));
+}
+
 namespace {
 
 /// Where the point of a source lies in space; none for curves, and where the graph knows no frames.
@@ -222,7 +242,8 @@ std::optional<Vec3> place_of(const TangentGraph& graph, const Source& source) {
 RowLogMap Surface::on_rows(const LogMap& map) const {
   check_map(map);
   // Where distances are those of heat they may be below the straight line, which no way on the surface is.
-  const auto source = graph().is_delaunay() ? std::nullopt : place_of(graph(), map.source());
+  const bool may_be_short = map.method() == Method::heat && !graph().is_delaunay();
+  const auto source = may_be_short ? place_of(graph(), map.source()) : std::nullopt;
   const auto n = static_cast<std::size_t>(rows().row_count());
   const std::vector<double> none(n, nan);
   RowLogMap result{none, none, none, none, none, {}, std::vector<Status>(n, Status::removed), {}};

@@ -9,19 +9,6 @@
 namespace ahm {
 namespace {
 
-SurfaceFaces given_faces(const Surface& surface) {
-  const auto positions = surface.positions();
-  const FaceList faces = surface.faces();
-  const auto corners = surface.corner_vertices();
-  SurfaceFaces result{{positions.begin(), positions.end()},
-                      surface.normals(),
-                      {faces.begin.begin(), faces.begin.end()},
-                      {},
-                      {corners.begin(), corners.end()}};
-  for (Index vertex : corners) result.corner_points.push_back(surface.rows().row(Vertex(vertex))->index);
-  return result;
-}
-
 /// A map from the first source of every component, with frames.
 LogMap map_of_all(const LogMapSolver& solver, std::span<const Vertex> sources) {
   const Components components = connected_components(solver.graph());
@@ -62,8 +49,22 @@ double side(std::span<const Vec3> points, std::span<const Index> face, std::span
 
 }  // namespace
 
+SurfaceFaces surface_faces(const Surface& surface) {
+  if (surface.faces().size() == 0) return {};
+  const auto positions = surface.positions();
+  const FaceList faces = surface.faces();
+  const auto corners = surface.corner_vertices();
+  SurfaceFaces result{{positions.begin(), positions.end()},
+                      surface.normals(),
+                      {faces.begin.begin(), faces.begin.end()},
+                      {},
+                      {corners.begin(), corners.end()}};
+  for (Index vertex : corners) result.corner_points.push_back(surface.rows().row(Vertex(vertex))->index);
+  return result;
+}
+
 SurfaceFaces surface_faces(const Surface& surface, const LogMapSolver& solver, std::span<const Vertex> sources) {
-  if (surface.faces().size() > 0) return given_faces(surface);
+  if (surface.faces().size() > 0) return surface_faces(surface);
   return found_triangles(surface.graph(), map_of_all(solver, sources));
 }
 

@@ -23,6 +23,8 @@ std::string_view to_string(Status status) noexcept {
   return "unknown";
 }
 
+std::string_view to_string(Method method) noexcept { return method == Method::heat ? "heat" : "exact"; }
+
 std::string_view to_string(Strategy strategy) noexcept {
   switch (strategy) {
     case Strategy::automatic:

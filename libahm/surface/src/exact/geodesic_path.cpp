@@ -22,17 +22,6 @@ constexpr double vertex_margin = 1e-12, graze_margin = 1e-10;
 
 double positive_angle(double angle) { return angle < 0 ? angle + 2 * pi : angle; }
 
-/// The true angle, from the right side of the first corner, at which a vertex sees a place in one of its faces.
-/// @param corner   the half-edge of the face that starts at the vertex; the place is in its frame
-double angle_at_vertex(const PolyhedralSurface& surface, Half corner, const Place& towards) {
-  const double width = surface.angle(corner), within = std::clamp(std::atan2(towards[1], towards[0]), 0.0, width);
-  double turned = 0;
-  for (Corner c = surface.first_corner(surface.record(corner).tail);; c = surface.turn_left(c)) {
-    if (c.half == corner) return turned + (c.forward ? within : width - within);
-    turned += surface.angle(c.half);
-  }
-}
-
 /// Collects a path from its end to its source.
 class Backwards {
  public:

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 
+#include "ahm/error.hpp"
 #include "check_point.hpp"
 
 namespace ahm::exact {
@@ -338,8 +339,9 @@ void Propagation::see_targets(const Window& w, double sigma) {
   }
 }
 
-void Propagation::run() {
+void Propagation::run(const std::stop_token& stop) {
   while (!windows_.empty() || !bends_.empty()) {
+    if (stop.stop_requested()) throw Cancelled("cancelled while tracing windows");
     if (windows_.key() > horizon_ || (only_targets_ && targets_final())) break;
     while (!windows_.bucket_empty() || !bends_.bucket_empty()) {
       while (!bends_.bucket_empty()) bends_.drain_chunk([this](const Bend& b) { bend(b); });

@@ -37,7 +37,8 @@ class Propagation {
   Propagation(const PolyhedralSurface& surface, double radius, std::span<const MeshPoint> targets, bool only_targets);
 
   void add_source(const MeshPoint& point);
-  void run();
+  /// @throws Cancelled
+  void run(const std::stop_token& stop = {});
 
   std::span<const double> distances() const { return distance_; }  ///< of the vertices; infinite: not reached
   std::span<const double> target_distances() const { return target_distance_; }

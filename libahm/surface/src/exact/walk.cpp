@@ -116,4 +116,13 @@ double angle_in_face(const PolyhedralSurface& surface, const Line& line) {
   return std::atan2(seen.direction[1], seen.direction[0]);
 }
 
+double angle_at_vertex(const PolyhedralSurface& surface, Half corner, const Place& towards) {
+  const double width = surface.angle(corner), within = std::clamp(std::atan2(towards[1], towards[0]), 0.0, width);
+  double turned = 0;
+  for (Corner c = surface.first_corner(surface.record(corner).tail);; c = surface.turn_left(c)) {
+    if (c.half == corner) return turned + (c.forward ? within : width - within);
+    turned += surface.angle(c.half);
+  }
+}
+
 }  // namespace ahm::exact

@@ -50,4 +50,8 @@ Line line_from(Half half, const Place& place, double angle);
 /// The angle of a line in the frame of side 0 of its face.
 double angle_in_face(const PolyhedralSurface& surface, const Line& line);
 
+/// The true angle, from the right side of the first corner, at which a vertex sees a place in one of its faces.
+/// @param corner   the half-edge of the face that starts at the vertex; the place is in its frame
+double angle_at_vertex(const PolyhedralSurface& surface, Half corner, const Place& towards);
+
 }  // namespace ahm::exact

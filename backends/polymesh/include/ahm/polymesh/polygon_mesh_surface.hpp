@@ -106,12 +106,16 @@ class PolygonMeshSurface final : public Surface {
   std::span<const Index> corner_vertices() const override;
   Report report() const override;
   std::vector<Warning> warnings() const override;
+  /// Those of the refinement. @throws InvalidArgument (faults "polygons_not_refined", "no_flat_triangles": twisted faces),
+  /// InvalidGeometry
+  FlatTriangles flat_triangles() const override;
   const PolygonDetails& details() const noexcept;
   const PolygonMesh& mesh() const noexcept;
 
  protected:
   PlacedSource source_in_face(const FacePoint& point, const std::optional<Vec3>& u_axis) const override;
   Sample sample_in_face(const LogMap& map, const FacePoint& point) const override;
+  exact::MeshPoint flat_point_in_face(const FacePoint& point) const override;
 
  private:
   struct Impl;

@@ -89,6 +89,8 @@ class TriangleMeshSurface final : public Surface {
   std::span<const Index> corner_vertices() const override;
   Report report() const override;
   std::vector<Warning> warnings() const override;
+  /// The mesh as given: neither flipped nor mollified.
+  FlatTriangles flat_triangles() const override;
   const MeshDetails& details() const noexcept;
   const TriangleMesh& mesh() const noexcept;
 
@@ -114,6 +116,7 @@ class TriangleMeshSurface final : public Surface {
   /// `on_corners`), it is laid out along a side that is kept; `Status::unreached` where there is none: at the cut locus
   /// interpolate `on_corners` instead.
   Sample sample_in_face(const LogMap& map, const FacePoint& point) const override;
+  exact::MeshPoint flat_point_in_face(const FacePoint& point) const override;
   FacePoint face_point(const EdgePoint& point) const override;
 
  private:

@@ -27,6 +27,12 @@ struct MarchStatistics {
   MarchStatistics& operator+=(const MarchStatistics& other);
 };
 
+/// How a map was made.
+enum class Method {
+  heat,   ///< by diffusion (`LogMapSolver`)
+  exact,  ///< by straight lines over the flat triangles of a mesh (`ExactGeodesics`)
+};
+
 /// What a map may hold besides coordinates.
 struct MapExtras {
   MarchStatistics march;
@@ -34,6 +40,7 @@ struct MapExtras {
   std::vector<double> spread;
   std::vector<double> frames;
   std::vector<double> error_estimate;
+  Method method = Method::heat;
 };
 
 /// Why a vertex has coordinates, or has none.
@@ -49,6 +56,7 @@ enum class Status : std::uint8_t {
 
 /// The word used in files: "ok", "disconnected", "beyond_radius", "unreached", "removed".
 std::string_view to_string(Status status) noexcept;
+std::string_view to_string(Method method) noexcept;
 std::string_view to_string(Variant variant) noexcept;
 std::string_view to_string(Strategy strategy) noexcept;
 
@@ -62,6 +70,8 @@ class LogMap {
 
   Index size() const noexcept { return static_cast<Index>(status_.size()); }
   int dimension() const noexcept { return dimension_; }
+  /// Variant and strategy mean nothing of an exact map.
+  Method method() const noexcept { return extras_.method; }
   Variant variant() const noexcept { return variant_; }
   /// How it was solved: `global`, or `march` where any part was marched.
   Strategy strategy() const noexcept { return strategy_; }
@@ -85,11 +95,12 @@ class LogMap {
   /// The geodesic distance from the source, world units; NaN where not ok. It is not |phi_i|, which is too short wherever
   /// several ways lead to a vertex: on triangulations it is unfolded (`UnfoldingFront`), elsewhere sqrt(q_i / lambda_i), the
   /// root mean square of what heat brings (docs/accuracy.md). Both are |phi_i| on flat graphs. From a curve: to its nearest
-  /// sample.
+  /// sample. Of an exact map it is |phi_i|.
   double distance(Vertex vertex) const { return extras_.distances[vertex.index]; }
   std::span<const double> distances() const noexcept { return extras_.distances; }
   /// sqrt(q_i / lambda_i - |phi_i|^2), the standard deviation of the coordinates over the ways by which heat arrives, world
-  /// units: 0 on flat graphs, small inside the cut locus, about the distance on it. NaN where not ok; empty from a curve.
+  /// units: 0 on flat graphs, small inside the cut locus, about the distance on it. NaN where not ok; empty from a curve;
+  /// 0 of an exact map, which takes one way.
   std::span<const double> spread() const noexcept { return extras_.spread; }
   /// Number of vertices with this status.
   Index count(Status status) const noexcept;

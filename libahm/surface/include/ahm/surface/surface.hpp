@@ -24,6 +24,11 @@
 
 namespace ahm {
 
+namespace exact {
+struct MeshPoint;
+}
+struct FlatTriangles;
+
 /// A source and where it lies in space.
 struct PlacedSource {
   Source source;
@@ -80,6 +85,13 @@ class Surface {
   /// or along the normal: fault "axis_along_normal")
   PlacedSource source(const SurfacePoint& point, const std::optional<Vec3>& u_axis = {}) const;
 
+  /// The faces as flat triangles, for exact geodesics (`ExactGeodesics`).
+  /// @throws InvalidArgument (fault "no_flat_triangles": a surface without flat faces), InvalidGeometry (a face of no area)
+  virtual FlatTriangles flat_triangles() const;
+  /// Where a point lies in these. @throws InvalidArgument (as `source`; as `flat_triangles`)
+  exact::MeshPoint flat_point(const FacePoint& point) const;
+  exact::MeshPoint flat_point(const EdgePoint& point) const;
+
   /// A map on the rows: of several vertices of a row the one nearest to the source counts.
   /// @throws InvalidArgument (another graph's map)
   RowLogMap on_rows(const LogMap& map) const;
@@ -108,6 +120,8 @@ class Surface {
   virtual PlacedSource source_on_edge(const EdgePoint& point, const std::optional<Vec3>& u_axis) const;
   /// @param point  as for `source_in_face`. Here, linear between the vertices at the corners
   virtual Sample sample_in_face(const LogMap& map, const FacePoint& point) const;
+  /// @param point  as for `source_in_face`
+  virtual exact::MeshPoint flat_point_in_face(const FacePoint& point) const;
   /// A point of a face that has this edge. @throws InvalidArgument (no such edge)
   virtual FacePoint face_point(const EdgePoint& point) const;
 

@@ -30,6 +30,9 @@ struct SurfaceFaces {
 /// @throws InvalidArgument, without faces: as `LogMapSolver::solve`, `star_triangles`
 SurfaceFaces surface_faces(const Surface& surface, const LogMapSolver& solver, std::span<const Vertex> sources);
 
+/// The faces of the input; none of a cloud.
+SurfaceFaces surface_faces(const Surface& surface);
+
 /// The faces of a mesh as triangles of rows, turned to the side of given normals of the rows; polygons as fans from their
 /// first corner.
 std::vector<Triangle> turned_triangles(const Surface& surface, std::span<const Vec3> normals);

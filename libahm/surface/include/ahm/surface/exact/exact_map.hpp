@@ -9,6 +9,7 @@
 
 #include <limits>
 #include <span>
+#include <stop_token>
 #include <vector>
 
 #include "ahm/maps/log_map.hpp"
@@ -23,6 +24,7 @@ struct ExactOptions {
   std::vector<MeshPoint> targets;
   /// End when the distances of all targets are final; vertices beyond the farthest of them get `Status::beyond_radius`.
   bool only_targets = false;
+  std::stop_token stop;  ///< asked between bands of windows
 };
 
 /// How the last straight piece of a shortest path comes in.
@@ -102,7 +104,7 @@ class ExactMap {
 /// Shortest paths on the polyhedral surface, exact up to rounding, by the improved algorithm of Chen and Han: windows,
 /// unfolded from face to face [CH90], discarded where a vertex is known to be nearer [XW09], in the order of buckets.
 /// @param sources  one or more points; each keeps its own axes
-/// @throws InvalidArgument (no source, a point outside its face, radius), ResourceExhausted
+/// @throws InvalidArgument (no source, a point outside its face, radius), ResourceExhausted, Cancelled
 ExactMap exact_map(const PolyhedralSurface& surface, std::span<const MeshPoint> sources,
                    const ExactOptions& options = {});
 ExactMap exact_map(const PolyhedralSurface& surface, const MeshPoint& source, const ExactOptions& options = {});

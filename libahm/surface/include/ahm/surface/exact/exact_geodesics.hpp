@@ -1,0 +1,85 @@
+/// \file
+/// Exact geodesics in terms of a surface's input: log maps that stand beside those of heat, shortest paths, and straight
+/// lines. Exact means: of the flat triangles, up to rounding.
+///
+/// \code
+/// auto surface = ahm::trimesh::TriangleMeshSurface::build(positions, faces);
+/// const ahm::ExactGeodesics geodesics(surface);
+/// ahm::LogMap map = geodesics.log_map(ahm::Row{42});
+/// ahm::RowLogMap rows = surface.on_rows(map);                     // as from a map by heat
+/// ahm::exact::GeodesicPath path = geodesics.path(std::array<ahm::SurfacePoint, 2>{ahm::Row{3}, ahm::Row{42}});
+/// for (const auto& point : path.points) use(geodesics.position(point));
+/// \endcode
+#pragma once
+
+#include <array>
+#include <limits>
+#include <optional>
+#include <span>
+
+#include "ahm/maps/log_map.hpp"
+#include "ahm/progress.hpp"
+#include "ahm/surface/exact/flat_triangles.hpp"
+#include "ahm/surface/exact/geodesic_path.hpp"
+#include "ahm/surface/surface.hpp"
+
+namespace ahm {
+
+struct ExactMapOptions {
+  /// Vertices farther than this get `Status::beyond_radius`, and the work ends there. World units; > 0.
+  double radius = std::numeric_limits<double>::infinity();
+  bool frames = false;  ///< fill `LogMap::frames`
+  Progress progress;
+};
+
+/// A surface laid out in triangles, once for many maps and paths. Immutable; all members may be called from many threads at
+/// once. Refers to the surface, which has to stay where it is.
+class ExactGeodesics {
+ public:
+  /// Time and memory linear in the number of faces.
+  /// @throws as `Surface::flat_triangles`
+  explicit ExactGeodesics(const Surface& surface);
+  explicit ExactGeodesics(Surface&&) = delete;
+
+  const FlatTriangles& triangles() const noexcept { return flat_; }
+
+  /// The log map from a point, with the axes, statuses and vertices that a map by heat has. `LogMap::method` is exact;
+  /// its spread is 0, so its `map_quality` is 1, and it has no error estimate. Its frames turn the direction in which the shortest path leaves the source
+  /// to that in which it arrives, so that U_i phi_i / |phi_i| is the gradient of the distance; they are rotations, also
+  /// where the path reverses the orientation (surfaces that are not orientable).
+  /// @param u_axis  as of `Surface::source`
+  /// @throws InvalidArgument (as `Surface::source`, `exact::exact_map`), ResourceExhausted, Cancelled
+  LogMap log_map(const SurfacePoint& source, const std::optional<Vec3>& u_axis = {},
+                 const ExactMapOptions& options = {}) const;
+
+  /// The shortest path through points in their order. Its length is in world units; `position` tells where its points lie.
+  /// @throws InvalidArgument (fewer than two points; as `Surface::source`)
+  exact::GeodesicPath path(std::span<const SurfacePoint> stops, bool closed = false) const;
+
+  /// The straightest geodesic from a point along a vector of space, projected to the surface.
+  /// @param length  >= 0, world units, as of the result
+  /// @throws InvalidArgument (as `Surface::source`, `exact::trace`)
+  exact::TracedPath trace(const SurfacePoint& from, const Vec3& direction, double length) const;
+
+  /// A point of the surface as one of the triangles.
+  /// @throws InvalidArgument (a point that the surface does not have; a `TangentPoint`)
+  exact::MeshPoint point(const SurfacePoint& point) const;
+  /// Where a point of the triangles lies, world units. @throws InvalidArgument (no positions)
+  Vec3 position(const exact::MeshPoint& point) const;
+
+ private:
+  /// Axes of a source in the tangent plane in which `exact::ExactMap::direction` counts: u is (a[0], a[2]), v (a[1], a[3]).
+  using Axes = std::array<double, 4>;
+  Axes axes(const SurfacePoint& at, const PlacedSource& placed, const exact::MeshPoint& point) const;
+  double u_in_face(const SurfacePoint& at, const PlacedSource& placed, Index face) const;
+  Axes at_corner(exact::Half corner, double u) const;
+
+  const Surface* surface_;
+  FlatTriangles flat_;
+};
+
+/// One map. @throws as `ExactGeodesics`
+LogMap exact_log_map(const Surface& surface, const SurfacePoint& source, const std::optional<Vec3>& u_axis = {},
+                     const ExactMapOptions& options = {});
+
+}  // namespace ahm

@@ -1,0 +1,170 @@
+#include "ahm/surface/exact/exact_geodesics.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "ahm/error.hpp"
+#include "ahm/surface/directions.hpp"
+#include "ahm/util/memory.hpp"
+#include "ahm/util/text.hpp"
+#include "ahm/util/vec.hpp"
+#include "check_point.hpp"
+#include "walk.hpp"
+
+namespace ahm {
+namespace {
+
+using Axes = std::array<double, 4>;
+
+/// u at an angle, v at its left; `mirrored`: at its right.
+Axes axes_at(double angle, bool mirrored = false) {
+  const double c = std::cos(angle), s = std::sin(angle), side = mirrored ? -1 : 1;
+  return {c, -side * s, s, side * c};
+}
+
+/// What two points of a source without positions lie apart, in the plane of their face.
+Vec2 side_between(const exact::PolyhedralSurface& surface, const exact::MeshPoint& from, const exact::MeshPoint& to) {
+  return surface.place(to) - surface.place(from);
+}
+
+/// The frame that leads from the map's coordinates at a vertex to the direction in which its path arrives.
+Axes arriving(const exact::PolyhedralSurface& surface, const exact::Arrival& in, const Vec2& phi) {
+  const exact::HalfRecord& record = surface.record(in.half);
+  const double back = exact::angle_at_vertex(surface, exact::previous(in.half), exact::in_previous(record, in.from));
+  const double ahead = std::numbers::pi + back * surface.angle_scale(record.apex);
+  return axes_at(ahead - std::atan2(phi[1], phi[0]));
+}
+
+}  // namespace
+
+ExactGeodesics::ExactGeodesics(const Surface& surface)
+    : surface_(&surface),
+      flat_(detail::with_memory_check("laying out triangles", [&] { return surface.flat_triangles(); })) {}
+
+exact::MeshPoint ExactGeodesics::point(const SurfacePoint& point) const {
+  if (const auto* row = std::get_if<Row>(&point)) return flat_.surface.vertex_point(surface_->vertex(*row));
+  if (const auto* edge = std::get_if<EdgePoint>(&point)) return surface_->flat_point(*edge);
+  if (const auto* inside = std::get_if<FacePoint>(&point)) return surface_->flat_point(*inside);
+  throw InvalidArgument("a point of a tangent plane lies in no triangle; name a row, an edge or a face");
+}
+
+Vec3 ExactGeodesics::position(const exact::MeshPoint& point) const {
+  if (flat_.positions.empty()) throw InvalidArgument("the surface has no positions");
+  const exact::MeshPoint inside = exact::checked(flat_.surface, point, "point");
+  Vec3 sum{};
+  for (int s = 0; s < 3; ++s)
+    sum = sum + inside.barycentric[s] * flat_.positions[flat_.surface.record(3 * inside.face + s).tail];
+  return sum;
+}
+
+/// The angle of a source's u axis in the frame of side 0 of its face.
+double ExactGeodesics::u_in_face(const SurfacePoint& at, const PlacedSource& placed, Index face) const {
+  Vec2 u{};
+  if (placed.frame && !flat_.positions.empty()) {
+    const auto corner = [&](int s) { return flat_.positions[flat_.surface.record(3 * face + s).tail]; };
+    const double scale = 1 / flat_.length_unit;
+    const Vec3 side = scale * (corner(1) - corner(0)), normal = cross(side, scale * (corner(2) - corner(0)));
+    const Vec3 x = normalized(side), y = normalized(cross(normal, side));
+    u = projected(x, y, placed.frame->x, "in face " + std::to_string(face));
+  } else if (const auto* edge = std::get_if<EdgePoint>(&at)) {
+    u = side_between(flat_.surface, point(EdgePoint{edge->from, edge->to, 0}),
+                     point(EdgePoint{edge->from, edge->to, 1}));
+  } else {
+    FacePoint from = std::get<FacePoint>(at), to = from;
+    from.barycentric = {1, 0, 0};
+    to.barycentric = {0, 1, 0};
+    u = side_between(flat_.surface, point(from), point(to));
+  }
+  return std::atan2(u[1], u[0]);
+}
+
+/// Axes that a source in a face has, carried along the bisector to the vertex at one of its corners.
+Axes ExactGeodesics::at_corner(exact::Half corner, double u) const {
+  const exact::PolyhedralSurface& surface = flat_.surface;
+  const auto place = [&](exact::Half h) {
+    exact::MeshPoint point{h / 3, {}};
+    point.barycentric[h % 3] = 1;
+    return surface.place(point);
+  };
+  const Vec2 side = place(exact::next(corner)) - place(corner);
+  const double half = surface.angle(corner) / 2, off = u - std::atan2(side[1], side[0]) - half;
+  const Index vertex = surface.record(corner).tail;
+  double turned = half;
+  exact::Corner c = surface.first_corner(vertex);
+  for (; c.half != corner; c = surface.turn_left(c)) turned += surface.angle(c.half);
+  return axes_at(turned * surface.angle_scale(vertex) + (c.forward ? off : -off), !c.forward);
+}
+
+Axes ExactGeodesics::axes(const SurfacePoint& at, const PlacedSource& placed, const exact::MeshPoint& point) const {
+  if (std::holds_alternative<Row>(at)) {
+    const auto own = placed.source.axes();
+    return own.empty() ? Axes{1, 0, 0, 1} : Axes{own[0], own[1], own[2], own[3]};
+  }
+  const exact::MeshPoint inside = exact::checked(flat_.surface, point, "source");
+  const double u = u_in_face(at, placed, inside.face);
+  if (exact::vertex_of(flat_.surface, inside) < 0) return axes_at(u);
+  const auto corner = std::max_element(inside.barycentric.begin(), inside.barycentric.end());
+  return at_corner(static_cast<exact::Half>(3 * inside.face + (corner - inside.barycentric.begin())), u);
+}
+
+LogMap ExactGeodesics::log_map(const SurfacePoint& source, const std::optional<Vec3>& u_axis,
+                               const ExactMapOptions& options) const {
+  const exact::MeshPoint from = point(source);
+  PlacedSource placed = surface_->source(source, u_axis);
+  const Axes a = axes(source, placed, from);
+  exact::ExactOptions exact_options;
+  exact_options.radius = options.radius / flat_.length_unit;
+  exact_options.stop = options.progress.stop;
+  options.progress.step("windows", 0);
+  const exact::ExactMap exact = exact::exact_map(flat_.surface, from, exact_options);
+  options.progress.step("windows", 1);
+
+  std::vector<double> coordinates;
+  MapExtras extras;
+  extras.method = Method::exact;
+  for (Index i = 0; i < exact.size(); ++i) {
+    const Vertex v(i);
+    const Vec2 w = flat_.length_unit * exact.coordinates(v);
+    const Vec2 phi{a[0] * w[0] + a[2] * w[1], a[1] * w[0] + a[3] * w[1]};
+    coordinates.insert(coordinates.end(), phi.begin(), phi.end());
+    extras.distances.push_back(flat_.length_unit * exact.distance(v));
+    extras.spread.push_back(0 * exact.distance(v));
+    if (!options.frames) continue;
+    Axes frame{1, 0, 0, 1};
+    if (exact.status(v) == Status::ok)
+      frame = exact.arrival(v).half >= 0 ? arriving(flat_.surface, exact.arrival(v), phi) : a;
+    extras.frames.insert(extras.frames.end(), frame.begin(), frame.end());
+  }
+  return LogMap(2, Variant::adaptive, Strategy::automatic, std::move(placed.source), std::move(coordinates),
+                {exact.status().begin(), exact.status().end()}, std::move(extras));
+}
+
+exact::GeodesicPath ExactGeodesics::path(std::span<const SurfacePoint> stops, bool closed) const {
+  std::vector<exact::MeshPoint> points;
+  for (const SurfacePoint& stop : stops) points.push_back(point(stop));
+  exact::GeodesicPath path = exact::geodesic_path(flat_.surface, points, closed);
+  path.length *= flat_.length_unit;
+  return path;
+}
+
+exact::TracedPath ExactGeodesics::trace(const SurfacePoint& from, const Vec3& direction, double length) const {
+  const exact::MeshPoint start = point(from);
+  const Axes a = axes(from, surface_->source(from, direction), start);
+  double angle = std::atan2(a[2], a[0]);
+  if (angle < 0) angle += 2 * std::numbers::pi;
+  exact::TracedPath path = exact::trace(flat_.surface, start, angle, length / flat_.length_unit);
+  path.length *= flat_.length_unit;
+  return path;
+}
+
+LogMap exact_log_map(const Surface& surface, const SurfacePoint& source, const std::optional<Vec3>& u_axis,
+                     const ExactMapOptions& options) {
+  return ExactGeodesics(surface).log_map(source, u_axis, options);
+}
+
+}  // namespace ahm

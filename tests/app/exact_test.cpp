@@ -1,0 +1,120 @@
+// Exact maps, paths and lines, through the program.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <numbers>
+#include <sstream>
+
+#include "ahm/testing/triangle_meshes.hpp"
+#include "program.hpp"
+
+namespace ahm::test {
+namespace {
+
+using Words = std::vector<std::string>;
+
+std::string off(const std::vector<Vec3>& positions, const std::vector<std::vector<int>>& faces) {
+  std::ostringstream text;
+  text.precision(17);
+  text << "OFF\n" << positions.size() << ' ' << faces.size() << " 0\n";
+  for (const Vec3& p : positions) text << p[0] << ' ' << p[1] << ' ' << p[2] << '\n';
+  for (const auto& face : faces) {
+    text << face.size();
+    for (int v : face) text << ' ' << v;
+    text << '\n';
+  }
+  return text.str();
+}
+
+std::string off(const Mesh& mesh) {
+  std::vector<std::vector<int>> faces;
+  for (const Triangle& t : mesh.faces) faces.push_back({t[0], t[1], t[2]});
+  return off(mesh.positions, faces);
+}
+
+/// A cube of quads: corner k lies at the bits of k.
+std::string cube() {
+  std::vector<Vec3> corners;
+  for (int k = 0; k < 8; ++k) corners.push_back({1.0 * (k & 1), 1.0 * (k >> 1 & 1), 1.0 * (k >> 2 & 1)});
+  return off(corners, {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}});
+}
+
+Words with(Words words, const Words& more) {
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
+void expect_same_numbers(const std::string& a, const std::string& b, const Words& columns) {
+  auto first = read_numbers(a), second = read_numbers(b);
+  ASSERT_EQ(first.size(), second.size());
+  ASSERT_FALSE(first.empty());
+  for (std::size_t i = 0; i < first.size(); ++i)
+    for (const std::string& column : columns) ASSERT_NEAR(first[i].at(column), second[i].at(column), 1e-9) << column;
+}
+
+TEST(ExactMethod, IsThatOfHeatOnAPlaneInEverySubcommandOfOneMap) {
+  Folder folder;
+  const std::string input = folder.write("square.off", off(flat_square(15)));
+  const auto both = [&](Words words, const Words& columns) {
+    for (const std::string method : {"heat", "exact"}) {
+      const Outcome outcome = run(with(words, {"--method", method, "-o", folder / (method + ".csv")}));
+      ASSERT_EQ(outcome.status, 0) << outcome.err;
+    }
+    expect_same_numbers(folder / "heat.csv", folder / "exact.csv", columns);
+  };
+  for (const std::string source : {"112", "face:40:.2,.3,.5"}) {
+    both({"logmap", input, "--source", source, "--gradient"}, {"u", "v", "distance", "quality"});
+    both({"inverse", input, "--source", source, "--at", "0.1,0.1 -.2,.15"}, {"x", "y", "z", "hx", "hy", "hz"});
+    both({"coverage", input, "--source", source, "--radius", ".2", "--spacing", ".05"}, {"x", "y", "z", "arclength"});
+  }
+}
+
+TEST(ExactMethod, UnfoldsACube) {
+  Folder folder;
+  const std::string input = folder.write("cube.off", cube());
+  const Outcome outcome = run(
+      {"logmap", input, "--source", "0", "--method", "exact", "-o", folder / "map.csv", "--json", folder / "map.json"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const double root2 = std::sqrt(2.0), expected[] = {0, 1, 1, root2, 1, root2, root2, std::sqrt(5.0)};
+  const auto rows = read_csv(folder / "map.csv");
+  ASSERT_EQ(rows.size(), 8U);
+  for (std::size_t k = 0; k < 8; ++k) EXPECT_NEAR(rows[k].distance, expected[k], 1e-12);
+  const auto json = read_json(folder / "map.json");
+  EXPECT_EQ(json.at("method"), "exact");
+  EXPECT_FALSE(json.contains("variant") || json.contains("strategy") || json.contains("t_coef"));
+}
+
+TEST(ExactMethod, IsRefusedWhereThereAreNoFlatFaces) {
+  Folder folder;
+  const Words more{"--source", "0", "--method", "exact", "-o", folder / "map.csv"};
+  const auto refused = [&](const Words& input) {
+    const Outcome outcome = run(with(with({"logmap"}, input), more));
+    EXPECT_EQ(outcome.status, 1);
+    EXPECT_NE(outcome.err.find("--method heat"), std::string::npos) << outcome.err;
+    EXPECT_FALSE(std::ifstream(folder / "map.csv").good());
+  };
+  refused({folder.write("plane.xyz", xyz(plane(12)))});
+  refused({folder.write("square.off", off(flat_square(9))), "--backend", "pointcloud"});
+  refused({folder.write("cube.off", cube()), "--discretization", "polygons"});
+}
+
+TEST(ExactMethod, RefusesTheOptionsOfHeat) {
+  Folder folder;
+  const std::string input = folder.write("square.off", off(flat_square(9)));
+  for (const Words& option : std::vector<Words>{{"--variant", "adaptive"},
+                                                {"--order", "1"},
+                                                {"--strategy", "auto"},
+                                                {"--t-coef", "1"},
+                                                {"--ordering", "amd"},
+                                                {"--accuracy", "1e-6"}}) {
+    const Words words{"logmap", input, "--source", "0", "-o", folder / "map.csv", "--method"};
+    const Outcome outcome = run(with(with(words, {"exact"}), option));
+    EXPECT_EQ(outcome.status, 2) << option[0];
+    EXPECT_NE(outcome.err.find(option[0]), std::string::npos) << outcome.err;
+    EXPECT_EQ(run(with(with(words, {"heat"}), option)).status, 0) << option[0];
+  }
+}
+
+}  // namespace
+}  // namespace ahm::test
