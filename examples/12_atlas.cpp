@@ -40,7 +40,8 @@ int main() {
                 atlas.charts.size(), d.mean, d.percentile_95, 100 * d.flipped);
     return d;
   };
-  const auto one = print("one source", ahm::make_atlas(solver, ahm::farthest_points(solver.graph(), ahm::Vertex{0}, 1), faces));
+  const auto one =
+      print("one source", ahm::make_atlas(solver, ahm::farthest_points(solver.graph(), ahm::Vertex{0}, 1), faces));
   const auto sources = ahm::farthest_points(solver.graph(), ahm::Vertex{0}, 4);
   print("4 spread sources", ahm::make_atlas(solver, sources, faces));
   const auto good = print("refined", ahm::make_atlas(solver, sources, faces, points, {.max_distortion = 1.5}));

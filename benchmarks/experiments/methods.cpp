@@ -67,7 +67,7 @@ void measure_all(std::string_view shape, const TangentGraph& graph, Table& table
   add("DEM", [&] { return discrete_exponential(graph); });
   add("DEM, turned in space", [&] { return discrete_exponential(graph, {.turn = FrameTurn::in_space}); });
   add("HM (graph)", [&] { return heat_distance(graph); });
-  add("SHM", [&]() -> Method { return std::make_unique<SignedHeat>(graph); });
+  add("SHM", [&]() -> methods::Method { return std::make_unique<SignedHeat>(graph); });
 }
 
 }  // namespace

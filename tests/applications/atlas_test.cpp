@@ -260,7 +260,8 @@ TEST(AtlasRefinement, AddsNothingToAGoodAtlasAndNoMoreThanAllowed) {
 
 TEST(ChartBoxes, AreTheLeastOfAllTurns) {
   const Surface surface(icosphere(10));
-  const Atlas atlas = make_atlas(surface.solver(), farthest_points(surface.solver().graph(), Vertex{0}, 8), surface.faces());
+  const Atlas atlas =
+      make_atlas(surface.solver(), farthest_points(surface.solver().graph(), Vertex{0}, 8), surface.faces());
   const auto boxes = chart_boxes(atlas, surface.faces());
   ASSERT_EQ(boxes.size(), atlas.charts.size());
   for (std::size_t k = 0; k < boxes.size(); ++k) {
