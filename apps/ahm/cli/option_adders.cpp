@@ -8,6 +8,7 @@
 #include "ahm/io/formats.hpp"
 #include "cli/numbers.hpp"
 #include "input/backend.hpp"
+#include "output/picture_options.hpp"
 
 namespace ahm::app {
 
@@ -166,6 +167,13 @@ CLI::Option* add_view(CLI::App& app, OutputOptions& o) {
 
 CLI::Option* add_verbose(CLI::App& app, OutputOptions& o) {
   return app.add_flag("--verbose", o.verbose, "Print the time of each stage and the peak memory");
+}
+
+void add_map_results(CLI::App& app, OutputOptions& o) {
+  add_json(app, o);
+  add_view(app, o);
+  add_map_picture(app, o.picture);
+  add_verbose(app, o);
 }
 
 }  // namespace ahm::app

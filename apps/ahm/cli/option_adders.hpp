@@ -79,5 +79,7 @@ CLI::Option* add_output(CLI::App& app, OutputOptions& o);
 CLI::Option* add_json(CLI::App& app, OutputOptions& o);
 CLI::Option* add_view(CLI::App& app, OutputOptions& o);
 CLI::Option* add_verbose(CLI::App& app, OutputOptions& o);
+/// --json, --view with what goes with a map's picture, --verbose
+void add_map_results(CLI::App& app, OutputOptions& o);
 
 }  // namespace ahm::app

@@ -203,10 +203,7 @@ void offer(CLI::App& app, CellsOptions& o) {
   add_threads(app, o.input);
   add_cloud_options(app, o.input);
   add_mesh_options(app, o.input);
-  add_json(app, o.output);
-  add_view(app, o.output);
-  add_map_picture(app, o.output.picture);
-  add_verbose(app, o.output);
+  add_map_results(app, o.output);
 }
 
 }  // namespace

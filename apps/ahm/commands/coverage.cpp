@@ -192,10 +192,7 @@ void offer(CLI::App& app, CoverageCommandOptions& o) {
   add_u_axis(app, o.source);
   add_method(app, o.solve);
   add_graph_options(app, o.input, o.solve);
-  add_json(app, o.output);
-  add_view(app, o.output);
-  add_map_picture(app, o.output.picture);
-  add_verbose(app, o.output);
+  add_map_results(app, o.output);
 }
 
 }  // namespace

@@ -103,10 +103,7 @@ void offer(CLI::App& app, PathCommandOptions& o) {
   app.add_flag("--closed", o.closed, "And back to where it starts");
   add_threads(app, o.input);
   add_mesh_options(app, o.input);
-  add_json(app, o.output);
-  add_view(app, o.output);
-  add_map_picture(app, o.output.picture);
-  add_verbose(app, o.output);
+  add_map_results(app, o.output);
 }
 
 }  // namespace

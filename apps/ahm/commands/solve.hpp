@@ -16,7 +16,7 @@ namespace ahm::app {
 /// @throws ResourceExhausted where a global solve would swap
 LogMapSolver make_solver(const SolveOptions& options, const TangentGraph& graph, Journal& journal, int maps = 1);
 
-/// What the options say of single maps: the radius. With frames, for `map_quality` and transport.
+/// What the options say of single maps: the radius. With frames, for directions in space.
 MapOptions map_options(const SolveOptions& options);
 
 /// One map; the journal tells the strategy.

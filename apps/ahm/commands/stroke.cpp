@@ -155,10 +155,7 @@ void offer(CLI::App& app, StrokeCommandOptions& o) {
       "--circle", [&o] { o.shape.closed = true, o.shape.shape = StrokeShape::circle; },
       "Closed; map the curve to a circle instead of a line");
   add_graph_options(app, o.input, o.solve);
-  add_json(app, o.output);
-  add_view(app, o.output);
-  add_map_picture(app, o.output.picture);
-  add_verbose(app, o.output);
+  add_map_results(app, o.output);
 }
 
 }  // namespace

@@ -80,10 +80,7 @@ void offer(CLI::App& app, TraceCommandOptions& o) {
   add_output(app, o.output)->required();
   add_threads(app, o.input);
   add_mesh_options(app, o.input);
-  add_json(app, o.output);
-  add_view(app, o.output);
-  add_map_picture(app, o.output.picture);
-  add_verbose(app, o.output);
+  add_map_results(app, o.output);
 }
 
 }  // namespace

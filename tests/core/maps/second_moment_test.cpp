@@ -13,18 +13,13 @@
 #include "ahm/testing/graph_changes.hpp"
 #include "ahm/testing/triangle_meshes.hpp"
 #include "ahm/trimesh/triangle_mesh_surface.hpp"
+#include "ahm/util/small_math.hpp"
 
 namespace ahm::test {
 namespace {
 
 const std::array variants{Variant::adaptive, Variant::localized};
 const std::array strategies{Strategy::global, Strategy::march};
-
-double length(std::span<const double> v) {
-  double sum = 0;
-  for (double x : v) sum = std::hypot(sum, x);
-  return sum;
-}
 
 // Any triangulation, any weights, both arithmetic paths, one to three dimensions.
 TEST(SecondMoment, IsTheDistanceOnFlatGraphs) {

@@ -6,6 +6,7 @@
 
 #include "ahm/util/scratch.hpp"
 #include "ahm/util/small_math.hpp"
+#include "ahm/util/vec.hpp"
 #include "maps/inflow.hpp"
 
 namespace ahm {
@@ -24,8 +25,6 @@ double turn(const Vec2& v) {
   const double along = v[0] / (std::abs(v[0]) + std::abs(v[1]));
   return v[1] >= 0 ? 1 - along : along - 1;
 }
-
-double cross(const Vec2& u, const Vec2& v) { return u[0] * v[1] - u[1] * v[0]; }
 
 /// The distance of c from a point at distances `from_a` and `from_b`, beyond the side ab of a triangle of the given sides;
 /// none where the straight line to it does not cross that side.
@@ -169,20 +168,19 @@ const UnfoldingFront::Entry* UnfoldingFront::find(Index vertex, Index point) con
 }
 
 /// Keeps a distance if it is the least from its point, and that point the nearest or nearly so.
-bool UnfoldingFront::offer(Index vertex, Index point, double distance, double slack,
+void UnfoldingFront::offer(Index vertex, Index point, double distance, double slack,
                            std::span<const double> displacement) {
   Index own = head_[vertex], before = none;
   const double nearest = own == none ? std::numeric_limits<double>::infinity() : entries_[own].distance;
-  if (!(distance <= nearest + slack)) return false;
+  if (!(distance <= nearest + slack)) return;
   while (own != none && entries_[own].point != point) before = own, own = entries_[own].next;
   if (own == none) {
     own = static_cast<Index>(entries_.size());
     entries_.push_back({distance, point, head_[vertex], 0});
     if (d_ != 2) displacements_.resize(displacements_.size() + d_);
-    before = none;
     head_[vertex] = own;
   } else if (!(distance < entries_[own].distance * (1 - least_gain)) || entries_[own].gains == most_gains) {
-    return false;
+    return;
   }
   ++entries_[own].gains;
   entries_[own].distance = distance;
@@ -201,7 +199,6 @@ bool UnfoldingFront::offer(Index vertex, Index point, double distance, double sl
     head_[vertex] = own;
   }
   queue_.push({distance, vertex, point});
-  return true;
 }
 
 std::span<const UnfoldingFront::Sector> UnfoldingFront::around(Index vertex) {

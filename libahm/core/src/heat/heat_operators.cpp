@@ -21,19 +21,10 @@ struct HeatOperators::Impl {
   std::unique_ptr<const HeatSystem> system;
 };
 
-namespace {
-
-/// The checks come before anything else is asked of the graph.
-ComponentScales checked_scales(const TangentGraph& graph, const HeatOptions& options) {
-  check_heat_options(graph, options);
-  return ComponentScales(graph);
-}
-
-}  // namespace
-
 HeatOperators::HeatOperators(const TangentGraph& graph, const HeatOptions& options) {
   detail::with_memory_check("factoring a graph of " + std::to_string(graph.size()) + " vertices", [&] {
-    ComponentScales scales = checked_scales(graph, options);
+    check_heat_options(graph, options);
+    ComponentScales scales(graph);
     auto system = factored_system(graph, diffusion_times(scales, options.t_coef), options);
     *this = HeatOperators(std::move(system), graph, std::move(scales.components));
   });

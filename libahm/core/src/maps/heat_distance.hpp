@@ -3,6 +3,9 @@
 #pragma once
 
 #include <algorithm>
+#include <span>
+
+#include "ahm/maps/source.hpp"
 
 namespace ahm {
 
@@ -13,6 +16,12 @@ namespace ahm {
 inline double heat_distance(double length, double root_mean_square, double root_tau) {
   const double w = std::clamp(0.5 * (root_mean_square / root_tau - 2), 0.0, 1.0);
   return length + w * (root_mean_square - length);
+}
+
+/// Puts a source's own vertices at the distances it was given with, which are known better than by the root of a difference.
+inline void place_source(const Source& source, std::span<double> distances) {
+  for (std::size_t k = 0; k < source.vertices().size(); ++k)
+    if (source.weights()[k] > 0) distances[source.vertices()[k].index] = source.place(k).distance;
 }
 
 }  // namespace ahm

@@ -238,8 +238,7 @@ class Worker {
     for (std::size_t k = 0; k < n; ++k)
       distance_[k] = heat_distance(length(std::span<const double>(phi_).subspan(k * d_, d_)),
                                    heat.root_mean_square_at(m, static_cast<Index>(k)), root_tau);
-    for (std::size_t k = 0; k < source.vertices().size(); ++k)
-      if (source.weights()[k] > 0) distance_[source.vertices()[k].index] = source.place(k).distance;
+    place_source(source, distance_);
   }
 
   /// The vertices within the radius, nearest first.

@@ -223,9 +223,7 @@ LogMap LogMapSolver::Impl::map_of(const Values& values, Strategy how, const Marc
     if (!source.is_curve()) extras.spread[i] = rms > r ? std::sqrt(rms - r) * std::sqrt(rms + r) : 0.0;
     if (map.frames) values.axes(vertex, extras.frames.data() + i * d * d);
   });
-  if (unfolded.empty())  // the source itself is known better than by the root of a difference
-    for (std::size_t k = 0; k < source.vertices().size(); ++k)
-      if (source.weights()[k] > 0) extras.distances[source.vertices()[k].index] = source.place(k).distance;
+  if (unfolded.empty()) place_source(source, extras.distances);
   for (std::size_t i = 0; i < n; ++i) {
     if (status[i] == Status::ok && extras.distances[i] > map.radius) status[i] = Status::beyond_radius;
     if (status[i] == Status::ok) continue;

@@ -76,7 +76,7 @@ class UnfoldingFront {
   };
 
   const Entry* find(Index vertex, Index point) const;
-  bool offer(Index vertex, Index point, double distance, double slack, std::span<const double> displacement);
+  void offer(Index vertex, Index point, double distance, double slack, std::span<const double> displacement);
   void spread(Index from, Index point, double distance);
   void carry(Index from, Index point);
   std::span<const Sector> around(Index vertex);

@@ -27,7 +27,7 @@ struct MapOptions {
   /// Vertices farther than this from the source get `Status::beyond_radius`, and a march ends there. World units; > 0.
   double radius = std::numeric_limits<double>::infinity();
   std::optional<unsigned> threads = {};
-  bool frames = false;  ///< keep the transported frames, for `map_quality` and transport
+  bool frames = false;  ///< keep the transported frames
   std::optional<Progress> progress = {};
 };
 
