@@ -69,6 +69,12 @@ TEST(ConvergenceExperiment, SecondOrderIsNearer) {
             0.5 * finest.where("method", "AHM_a").smallest("L2 inside"));
 }
 
+TEST(OrdersExperiment, TheSecondIsNearerOnTheSphereAndNowhereMuchWorse) {
+  const Table& table = toy("orders");
+  EXPECT_LE(table.largest("order 2 / 1"), 1.1);
+  EXPECT_LT(table.where("mesh", "sphere").where("variant", "adaptive").largest("trusted order 2 / 1"), 0.5);
+}
+
 TEST(VariantsExperiment, DifferLeastAtTheSource) {
   const Table& table = toy("variants");
   for (const char* shape : {"sphere", "ellipsoid", "bumpy sphere", "torus"}) {

@@ -188,6 +188,12 @@ void InverseMap::make_buckets() {
     for_buckets(triangles_[t], [&](std::size_t b) { bucket_triangles_[end[b]++] = static_cast<Index>(t); });
 }
 
+std::array<Vec2, 3> InverseMap::corners(const Triangle& triangle) const {
+  std::array<Vec2, 3> result;
+  for (std::size_t k = 0; k < 3; ++k) result[k] = {plane_[triangle[k]][0] * unit_, plane_[triangle[k]][1] * unit_};
+  return result;
+}
+
 std::optional<InversePoint> InverseMap::at(double u, double v) const {
   const Vec2 q{u / unit_, v / unit_};
   if (triangles_.empty() || !all_finite(q)) return std::nullopt;
