@@ -10,8 +10,8 @@
 #include <string>
 
 #include "ahm/error.hpp"
-#include "ahm/fields/unfolding_front.hpp"
 #include "ahm/graph/validate.hpp"
+#include "ahm/maps/unfolding_front.hpp"
 #include "ahm/util/memory.hpp"
 #include "ahm/util/parallel.hpp"
 #include "ahm/util/small_math.hpp"

@@ -8,8 +8,8 @@
 #include <string>
 
 #include "ahm/error.hpp"
-#include "ahm/fields/unfolding_front.hpp"
 #include "ahm/maps/cost.hpp"
+#include "ahm/maps/unfolding_front.hpp"
 #include "ahm/util/memory.hpp"
 #include "ahm/util/parallel.hpp"
 #include "ahm/util/small_math.hpp"

@@ -1,4 +1,4 @@
-#include "ahm/fields/unfolding_front.hpp"
+#include "ahm/maps/unfolding_front.hpp"
 
 #include <algorithm>
 #include <array>
