@@ -119,7 +119,9 @@ SurfaceSurvey survey_surface(const Built& built) {
 bool can_remove_outliers(const io::Geometry& input, InputOptions options, Index source, const Progress& progress) {
   options.outliers = true;
   try {
-    build_pointcloud(input, options, SourceVertex{source}, progress).surface->vertex(Row(source));
+    choose_backend(input, "pointcloud")
+        .build(input, options, SourceVertex{source}, progress)
+        .surface->vertex(Row(source));
     return true;
   } catch (const Cancelled&) {
     throw;
@@ -140,8 +142,8 @@ void try_surface(const io::Geometry& input, InputOptions options, const Progress
     options.non_manifold = "split";
     flags += " --non-manifold split";
   }
-  const Built built = s.as_cloud ? build_pointcloud(input, options, {}, progress)
-                                 : choose_backend(input, "auto").build(input, options, {}, progress);
+  const Backend& backend = choose_backend(input, s.as_cloud ? "pointcloud" : "auto");
+  const Built built = backend.build(input, options, {}, progress);
   s.surface = survey_surface(built);
   // Many small components are stray points as a rule.
   if (s.as_cloud && s.surface->part_sizes.size() > 20 &&

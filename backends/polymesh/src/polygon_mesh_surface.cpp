@@ -302,8 +302,9 @@ std::vector<Warning> PolygonMeshSurface::warnings() const {
   const PolygonDetails& d = details();
   std::vector<Warning> result = ahm::warnings(d.topology);
   if (impl_->refined) {
+    const std::vector<Warning> told = ahm::warnings(impl_->refined->details().topology);
     for (Warning& warning : impl_->refined->warnings())
-      if (warning.id != "components" && warning.id != "not_orientable") result.push_back(std::move(warning));
+      if (std::ranges::find(told, warning.id, &Warning::id) == told.end()) result.push_back(std::move(warning));
     return result;
   }
   const auto warn = [&](std::string_view id, auto count) {

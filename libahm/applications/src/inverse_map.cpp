@@ -10,9 +10,9 @@
 
 #include "ahm/error.hpp"
 #include "ahm/surface/surface_faces.hpp"
+#include "ahm/util/shortest_paths.hpp"
 #include "ahm/util/small_math.hpp"
 #include "ahm/util/vec.hpp"
-#include "graph/shortest_paths.hpp"
 
 namespace ahm {
 namespace {
