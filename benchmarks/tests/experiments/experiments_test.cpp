@@ -55,6 +55,16 @@ TEST(DistanceExperiment, AffineHeatIsNearerThanTheHeatMethodsNearTheSource) {
             << shape << " " << method << " " << other;
       }
 }
+
+TEST(DistanceExperiment, UnfoldedDistancesHoldEverywhere) {
+  const Table all = toy("distance").where("distance / longest", "all");
+  EXPECT_LT(all.where("method", "unfolded").largest("95%"), 0.03);
+  for (const char* shape : {"sphere", "bumpy sphere", "torus"})
+    for (const char* method : affine)
+      EXPECT_LT(all.where("shape", shape).where("method", "unfolded").mean("95%"),
+                all.where("shape", shape).where("method", method).mean("95%"))
+          << shape << " " << method;
+}
 #endif
 
 TEST(ConvergenceExperiment, TheAdaptiveVariantIsOfFirstOrder) {
