@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "ahm/util/parallel.hpp"
 
@@ -14,6 +15,9 @@ constexpr double least_weight = 1e-13;
 /// Larger weights make the heat at both ends equal to 1e-4 anyway, and cost the solver the digits that the sum of a row
 /// needs.
 constexpr double largest_weight = 1e4;
+
+/// Relative to the mean.
+constexpr double least_mass = 1e-30;
 
 class Rows {
  public:
@@ -81,7 +85,7 @@ class Rows {
     double sum = 0;
     for (Half h = 0; h < edges_.size(); ++h) {
       const Half t = edges_.twin[h];
-      if (t >= 0 && t < h) continue;
+      if (triangulation_.is_dropped(h / 3) || (t >= 0 && t < h)) continue;
       ++report.edges;
       sum += triangulation_.length(h);
       report.closed_edges += edges_.tail[h] == edges_.head(h);
@@ -110,9 +114,12 @@ CsrGraphData mesh_edges(const TriangleMesh& mesh, const IntrinsicTriangulation& 
   g.length_unit = mesh.length_unit();
   g.masses.assign(n, 0.0);
   for (Half h = 0; h < edges.size(); h += 3) {
-    const double third = triangulation.area(h / 3) / 3.0;
+    const double third = std::max(0.0, triangulation.area(h / 3)) / 3.0;
     for (Half s = h; s < h + 3; ++s) g.masses[edges.tail[s]] += third;
   }
+  // Vertices whose faces have no area still need a mass.
+  const double least = least_mass * std::accumulate(g.masses.begin(), g.masses.end(), 0.0) / static_cast<double>(n);
+  for (double& mass : g.masses) mass = std::max(mass, least > 0 ? least : 1.0);
   g.row_begin.assign(n + 1, 0);
   detail::for_each_index(n, threads, [&](std::size_t i) {
     Offset degree = 0;

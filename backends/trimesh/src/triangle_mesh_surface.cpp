@@ -18,6 +18,7 @@ namespace {
 void measure_edges(const IntrinsicTriangulation& triangulation, double length_unit, MeshDetails& report) {
   double shortest = HUGE_VAL, longest = 0;
   for (Half h = 0; h < triangulation.half_edges().size(); ++h) {
+    if (triangulation.is_dropped(h / 3)) continue;
     const double length = triangulation.length(h);
     shortest = std::min(shortest, length);
     longest = std::max(longest, length);
@@ -26,32 +27,29 @@ void measure_edges(const IntrinsicTriangulation& triangulation, double length_un
   report.longest_edge = longest * length_unit;
 }
 
-/// The triangulation the graph is built from. Flips alone heal flat caps, and leave good faces as they are;
-/// mollification changes every length, so it comes second.
+/// The triangulation the graph is built from. Sides without a direction, which only flips of faces without area can make
+/// once edges without length are contracted, are the only reason to change a length.
 IntrinsicTriangulation triangulate(const TriangleMesh& mesh, const MeshOptions& options, MeshDetails& report) {
   IntrinsicTriangulation triangulation(mesh, false, options.threads);
   measure_edges(triangulation, mesh.length_unit(), report);
-  report.degenerate_faces = triangulation.count_degenerate();
+  report.degenerate_faces = triangulation.count_thin();
   if (!(report.longest_edge > 0)) throw InvalidGeometry("all vertices of the mesh are at the same place");
   auto flip = [&](IntrinsicTriangulation& t) {
     return !options.intrinsic_delaunay || t.flip_to_delaunay(options.progress);
   };
-  if (!triangulation.has_collapsed_sides() && flip(triangulation) && triangulation.count_degenerate() == 0)
-    return triangulation;
+  if (flip(triangulation) && triangulation.has_angles()) return triangulation;
   triangulation = IntrinsicTriangulation(mesh, true, options.threads);
   if (!flip(triangulation)) report.flips_stopped = true;
-  if (const Index count = triangulation.count_degenerate(); count > 0)
-    throw InvalidGeometry(std::to_string(count) +
-                          " faces stay degenerate after mollification: edge lengths span too many orders of "
-                          "magnitude (" +
-                          detail::number(report.shortest_edge) + " to " + detail::number(report.longest_edge) + ")");
+  if (!triangulation.has_angles())
+    throw InvalidGeometry(
+        "faces stay degenerate after mollification: edge lengths span too many orders of "
+        "magnitude (" +
+        detail::number(report.shortest_edge) + " to " + detail::number(report.longest_edge) + ")");
   return triangulation;
 }
 
 RowMap rows_of(const TriangleMesh& mesh) {
-  std::vector<RowVertex> pairs;
-  for (Index v = 0; v < mesh.vertex_count(); ++v) pairs.push_back({Row(mesh.input_of_vertex()[v]), Vertex(v)});
-  return RowMap(mesh.report().vertices, mesh.vertex_count(), pairs);
+  return RowMap(mesh.report().vertices, mesh.vertex_count(), mesh.topology().rows());
 }
 
 }  // namespace
@@ -71,18 +69,37 @@ const TriangleMesh& TriangleMeshSurface::mesh() const noexcept { return impl_->m
 
 FlatTriangles TriangleMeshSurface::flat_triangles() const {
   const TriangleMesh& mesh = impl_->mesh;
+  const HalfEdges edges = mesh.topology().half_edges();
+  // Numbers of half-edges without those of dropped faces.
+  std::vector<Half> place(edges.tail.size(), -1), corners;
   std::vector<exact::FaceSides> sides;
-  for (Index f = 0; f < mesh.face_count(); ++f) sides.push_back(mesh.layout(f));
+  for (Half h = 0; h < edges.size(); ++h) {
+    if (mesh.is_dropped(h / 3)) continue;
+    place[h] = static_cast<Half>(3 * sides.size()) + h % 3;
+    if (h % 3 == 2) sides.push_back(mesh.layout(h / 3));
+  }
+  std::vector<Index> tail;
+  std::vector<Half> twin;
+  std::vector<std::uint8_t> mirrored;
+  for (Half h = 0; h < edges.size(); ++h) {
+    if (place[h] < 0) continue;
+    tail.push_back(edges.tail[h]);
+    twin.push_back(edges.twin[h] < 0 ? edges.twin[h] : place[edges.twin[h]]);
+    if (!edges.mirrored.empty()) mirrored.push_back(edges.mirrored[h]);
+  }
+  for (Half h : mesh.corners()) corners.push_back(place[h]);
   std::vector<Vec3> positions;
   if (mesh.has_positions())
     for (Index v = 0; v < mesh.vertex_count(); ++v) positions.push_back(mesh.original_position(v));
-  return {{mesh.topology().half_edges(), sides, mesh.corners()}, std::move(positions), mesh.length_unit()};
+  return {{HalfEdges{tail, twin, mirrored}, sides, corners}, std::move(positions), mesh.length_unit()};
 }
 
 exact::MeshPoint TriangleMeshSurface::flat_point_in_face(const FacePoint& point) const {
-  exact::MeshPoint result{point.face, {}};
-  for (int s = 0; s < 3; ++s) result.barycentric[impl_->mesh.stored_corner(point.face, s)] = point.barycentric[s];
-  return result;
+  const TriangleMesh& mesh = impl_->mesh;
+  const auto [face, weight] = impl_->stored(point);
+  Index kept = 0;
+  for (Index f = 0; f < face; ++f) kept += !mesh.is_dropped(f);
+  return {kept, weight};
 }
 
 Report TriangleMeshSurface::report() const {
