@@ -35,6 +35,8 @@ constexpr Sentence sentences[] = {
     {"not_orientable", "the mesh is not orientable; it is solved with reflections"},
     {"components", "the mesh falls into {0:.0f} components; a map covers those that hold its source"},
     {"flips_stopped", "edge flips were stopped before all edges were Delaunay"},
+    {"merged",
+     "{0:.0f} vertices coincide with a neighbour and were merged with it; {1:.0f} faces without area were left out"},
     {"mollified", "{0:.0f} degenerate faces: every edge was made longer by {1:.6g}"},
     {"edge_lengths", "edge lengths range from {0:.6g} to {1:.6g}; one diffusion time cannot suit them all"},
     {"degenerate_faces", "{0:.0f} faces have almost no area"},

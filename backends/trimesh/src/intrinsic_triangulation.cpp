@@ -74,7 +74,16 @@ double IntrinsicTriangulation::angle(Half h) const {
   return std::max(0.0, angle_between(side_[h], -side_[previous(h)]));
 }
 
-/// The angles opposite the edge sum to at most pi, but for rounding.
+/// Whether the third corners of two flat faces at an edge fall together, so that a flip would leave no diagonal.
+bool IntrinsicTriangulation::opposite_coincide(Half h) const {
+  const Half t = twin_[h];
+  const double length = norm(side_[h]), along_h = -dot(side_[h], side_[previous(h)]) / length,
+               along_t = -dot(side_[t], side_[previous(t)]) / norm(side_[t]);
+  const bool mirrored = !mirrored_.empty() && mirrored_[h];
+  return std::abs(along_h - (mirrored ? along_t : length - along_t)) <= least_side * length;
+}
+
+/// The angles opposite the edge sum to at most pi, but for rounding; or a flip is impossible.
 bool IntrinsicTriangulation::is_delaunay(Half h) const {
   const Half t = twin_[h];
   // On the boundary, or two sides of one face, which is folded onto itself and has nothing to flip.
@@ -85,7 +94,7 @@ bool IntrinsicTriangulation::is_delaunay(Half h) const {
     return Vec2{dot(a, b) * scale, std::max(0.0, cross(a, b)) * scale};  // cosine, sine
   };
   const Vec2 p = opposite(h), q = opposite(t);
-  if (p[0] < 0 && q[0] < 0) return false;
+  if (p[0] < 0 && q[0] < 0) return std::max(p[1], q[1]) < least_sine && opposite_coincide(h);
   return p[0] * q[1] + p[1] * q[0] >= -1e-15 - 1e-10 * p[1] * q[1];
 }
 

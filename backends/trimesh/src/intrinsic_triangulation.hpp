@@ -53,6 +53,7 @@ class IntrinsicTriangulation {
   };
 
   void mollify();
+  bool opposite_coincide(Half h) const;
   Half turn_over(Half h);
   Quadrilateral unfold(Half h, Half t) const;
   void flip(Half h);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "ahm/util/parallel.hpp"
 
@@ -15,9 +14,6 @@ constexpr double least_weight = 1e-13;
 /// Larger weights make the heat at both ends equal to 1e-4 anyway, and cost the solver the digits that the sum of a row
 /// needs.
 constexpr double largest_weight = 1e4;
-
-/// Relative to the mean.
-constexpr double least_mass = 1e-30;
 
 class Rows {
  public:
@@ -102,6 +98,22 @@ class Rows {
   bool clamp_;
 };
 
+/// Vertices whose faces have no area still need a mass: where it is below 1e-14 of the square of their longest edge, it
+/// becomes a hundredth of that.
+void mend_masses(const IntrinsicTriangulation& triangulation, std::vector<double>& masses) {
+  const HalfEdges edges = triangulation.half_edges();
+  std::vector<double> longest(masses.size(), 0.0);
+  for (Half h = 0; h < edges.size(); ++h) {
+    if (triangulation.is_dropped(h / 3)) continue;
+    const double length = triangulation.length(h);
+    for (Index v : {edges.tail[h], edges.head(h)}) longest[v] = std::max(longest[v], length * length);
+  }
+  const double of_all = std::ranges::max(longest);
+  for (std::size_t v = 0; v < masses.size(); ++v)
+    if (const double square = longest[v] > 0 ? longest[v] : of_all; !(masses[v] > 1e-14 * square))
+      masses[v] = 0.01 * square;
+}
+
 }  // namespace
 
 CsrGraphData mesh_edges(const TriangleMesh& mesh, const IntrinsicTriangulation& triangulation,
@@ -117,9 +129,7 @@ CsrGraphData mesh_edges(const TriangleMesh& mesh, const IntrinsicTriangulation& 
     const double third = std::max(0.0, triangulation.area(h / 3)) / 3.0;
     for (Half s = h; s < h + 3; ++s) g.masses[edges.tail[s]] += third;
   }
-  // Vertices whose faces have no area still need a mass.
-  const double least = least_mass * std::accumulate(g.masses.begin(), g.masses.end(), 0.0) / static_cast<double>(n);
-  for (double& mass : g.masses) mass = std::max(mass, least > 0 ? least : 1.0);
+  mend_masses(triangulation, g.masses);
   g.row_begin.assign(n + 1, 0);
   detail::for_each_index(n, threads, [&](std::size_t i) {
     Offset degree = 0;

@@ -52,7 +52,8 @@ Source TriangleMeshSurface::Impl::source(const FacePoint& point, Vec2 u) const {
     const Vec2 back = at_corner ? product(unit(within), normalized(side[s])) : normalized(-offset);
     const Index k = edges.tail[h];
     const bool forward = frames.forward(edges, h, true);
-    const double angle = frames.angle[edges.directed(h, true)] + (forward ? within : -within) * frames.corner_scale(h, k);
+    const double angle =
+        frames.angle[edges.directed(h, true)] + (forward ? within : -within) * frames.corner_scale(h, k);
     Vec2 axis = product(u_here, conj(back));
     if (!forward) axis = conj(axis);
     axis = normalized(product(axis, unit(angle)));

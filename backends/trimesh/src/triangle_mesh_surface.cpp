@@ -17,12 +17,19 @@ namespace {
 
 void measure_edges(const IntrinsicTriangulation& triangulation, double length_unit, MeshDetails& report) {
   double shortest = HUGE_VAL, longest = 0;
+  std::vector<double> longest_at(triangulation.half_edges().tail.size(), 0.0);  // per vertex, of which there are fewer
   for (Half h = 0; h < triangulation.half_edges().size(); ++h) {
     if (triangulation.is_dropped(h / 3)) continue;
     const double length = triangulation.length(h);
     shortest = std::min(shortest, length);
     longest = std::max(longest, length);
+    for (Index v : {triangulation.half_edges().tail[h], triangulation.half_edges().head(h)})
+      longest_at[v] = std::max(longest_at[v], length);
   }
+  double finest = longest;
+  for (double length : longest_at)
+    if (length > 0) finest = std::min(finest, length);
+  report.finest = finest * length_unit;
   report.shortest_edge = shortest * length_unit;
   report.longest_edge = longest * length_unit;
 }
@@ -102,10 +109,22 @@ exact::MeshPoint TriangleMeshSurface::flat_point_in_face(const FacePoint& point)
   return {kept, weight};
 }
 
+Surface::Reason TriangleMeshSurface::why_without_vertex(Row row) const {
+  const std::vector<Index>& used = impl_->face_rows;
+  if (std::find(used.begin(), used.end(), row.index) == used.end()) return Surface::why_without_vertex(row);
+  return {"row_without_area", "lies in faces without area alone", "choose another one"};
+}
+
 Report TriangleMeshSurface::report() const {
   const MeshDetails& d = details();
-  Report report{{"vertices", d.vertices}, {"faces", d.topology.faces},        {"edges", d.edges},
-                {"flips", d.flips},       {"mollification", d.mollification}, {"degenerate_faces", d.degenerate_faces}};
+  Report report{{"vertices", d.vertices},
+                {"faces", d.topology.faces},
+                {"edges", d.edges},
+                {"flips", d.flips},
+                {"merged_vertices", d.merged_vertices},
+                {"dropped_faces", d.dropped_faces},
+                {"mollification", d.mollification},
+                {"degenerate_faces", d.degenerate_faces}};
   const Report topology = figures(d.topology);
   report.insert(report.end(), topology.begin(), topology.end());
   report.push_back({"seconds.checks", d.seconds_checks});
@@ -120,9 +139,11 @@ std::vector<Warning> TriangleMeshSurface::warnings() const {
   if (d.flips_stopped) result.push_back({"flips_stopped", {}, {}});
   const std::vector<Warning> topology = ahm::warnings(d.topology);
   result.insert(result.end(), topology.begin(), topology.end());
+  if (d.merged_vertices > 0)
+    result.push_back({"merged", {static_cast<double>(d.merged_vertices), static_cast<double>(d.dropped_faces)}, {}});
   if (d.mollification > 0)
     result.push_back({"mollified", {static_cast<double>(d.degenerate_faces), d.mollification}, {}});
-  if (d.longest_edge > 1e6 * d.shortest_edge) result.push_back({"edge_lengths", {d.shortest_edge, d.longest_edge}, {}});
+  if (d.longest_edge > 1e6 * d.finest) result.push_back({"edge_lengths", {d.finest, d.longest_edge}, {}});
   return result;
 }
 
@@ -131,6 +152,8 @@ TriangleMeshSurface TriangleMeshSurface::build(TriangleMesh mesh, const MeshOpti
   details.seconds_checks = seconds_checks;
   details.topology = mesh.report();
   details.vertices = mesh.vertex_count();
+  details.merged_vertices = static_cast<Index>(mesh.topology().merged().size());
+  for (std::uint8_t dropped : mesh.topology().dropped()) details.dropped_faces += dropped;
   detail::Stopwatch stopwatch;
   options.progress.step("flips", 0.0);
   IntrinsicTriangulation triangulation = triangulate(mesh, options, details);

@@ -107,6 +107,9 @@ void set_angles(const HalfEdges& edges, const IntrinsicTriangulation& triangulat
   }
 }
 
+/// Normals of faces in space that rounding of their corners turns by no more than this are certain.
+constexpr double certain_normal = 1e-6;
+
 /// The part of an arbitrary axis that is perpendicular to a unit vector.
 Vec3 axis_across(const Vec3& n) {
   const Vec3 axis = std::abs(n[0]) < 0.9 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
@@ -140,18 +143,31 @@ class SpatialFan {
   Vec3 center_;
 };
 
-/// The normal is the mean of the face normals weighted by angle; x makes the projected edges lie as close as possible
-/// to where the tangent space has them.
+/// The mean of the face normals weighted by angle: of faces whose normals rounding leaves alone or, where there are none, of
+/// all. Zero where they cancel.
+Vec3 mean_normal(const SpatialFan& fan, double rounding) {
+  Vec3 sum{0, 0, 0}, of_all{0, 0, 0};
+  fan.for_each_face([&](const Vec3& a, const Vec3& b) {
+    const Vec3 normal = cross(a, b);
+    const double area = norm(normal), longest = std::max({norm(a), norm(b), norm(b - a)});
+    if (!(area > 0)) return;
+    const Vec3 weighted = std::atan2(area, dot(a, b)) / area * normal;
+    of_all = of_all + weighted;
+    if (rounding * longest <= certain_normal * area) sum = sum + weighted;
+  });
+  return norm(sum) > 1e-12 ? sum : of_all;
+}
+
+/// The normal is the mean of the face normals; x makes the projected edges lie as close as possible to where the tangent
+/// space has them.
 Frame frame_in_space(const TriangleMesh& mesh, const HalfEdges& edges, Index v) {
   const SpatialFan fan(mesh, edges, v);
-  Vec3 sum{0, 0, 0}, reference{0, 0, 0};
+  const Vec3 sum = mean_normal(fan, mesh.rounding());
+  Vec3 reference{0, 0, 0};
   double angle_sum = 0;
   const bool closed = fan.for_each_face([&](const Vec3& a, const Vec3& b) {
     if (angle_sum == 0) reference = a;
-    const Vec3 normal = cross(a, b);
-    const double area = norm(normal), angle = std::atan2(area, dot(a, b));
-    if (area > 0) sum = sum + angle / area * normal;
-    angle_sum += angle;
+    angle_sum += std::atan2(norm(cross(a, b)), dot(a, b));
   });
   // Where the faces cancel or the reference edge stands on the plane, any axes will do.
   const double length = norm(sum), reach = norm(reference);

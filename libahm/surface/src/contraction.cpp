@@ -80,26 +80,18 @@ void close_faces(std::vector<std::uint8_t>& contracted, std::span<const Half> tw
   }
 }
 
-/// Components all of whose faces would be dropped stay as they are.
-void spare_components(std::vector<std::uint8_t>& contracted, std::span<const Half> twin) {
-  const std::size_t faces = contracted.size() / 3;
-  DisjointSets parts(faces);
-  for (std::size_t h = 0; h < contracted.size(); ++h)
-    if (twin[h] >= 0) parts.join(static_cast<Index>(h / 3), twin[h] / 3);
-  std::vector<std::uint8_t> keeps(faces, 0);
-  auto drops = [&](std::size_t f) { return contracted[3 * f] || contracted[3 * f + 1] || contracted[3 * f + 2]; };
-  for (std::size_t f = 0; f < faces; ++f)
-    if (!drops(f)) keeps[parts.root(static_cast<Index>(f))] = 1;
-  for (std::size_t h = 0; h < contracted.size(); ++h)
-    if (!keeps[parts.root(static_cast<Index>(h / 3))]) contracted[h] = 0;
+/// Whether a face is without a contracted side.
+bool leaves_a_face(std::span<const std::uint8_t> contracted) {
+  for (std::size_t h = 0; h < contracted.size(); h += 3)
+    if (!contracted[h] && !contracted[h + 1] && !contracted[h + 2]) return true;
+  return false;
 }
 
 }  // namespace
 
 void GluedMesh::contract(std::vector<std::uint8_t> contracted) {
   close_faces(contracted, twin_);
-  spare_components(contracted, twin_);
-  if (std::find(contracted.begin(), contracted.end(), 1) == contracted.end()) return;
+  if (std::find(contracted.begin(), contracted.end(), 1) == contracted.end() || !leaves_a_face(contracted)) return;
   given_corners_ = given_corners();
 
   DisjointSets places(vertex_of_input_.size());
@@ -151,17 +143,18 @@ void GluedMesh::place_dropped_corners() {
   std::vector<Index> dropped, vertex(vertex_of_input_);
   for (Index f = 0; f < face_count(); ++f)
     if (is_dropped(f)) dropped.push_back(f);
-  // Corners of faces that hung on by a line alone have no vertex; that of the next corner has to do.
+  // Corners in faces without area alone have no vertex: that of the next corner has to do, or any.
   for (bool changed = true; changed;) {
     changed = false;
     for (Index f : dropped)
       for (Half h = 3 * f; h < 3 * f + 3; ++h)
-        if (vertex[tail_[h]] < 0 && vertex[tail_[next(h)]] >= 0) vertex[tail_[h]] = vertex[tail_[next(h)]], changed = true;
+        if (vertex[tail_[h]] < 0 && vertex[tail_[next(h)]] >= 0)
+          vertex[tail_[h]] = vertex[tail_[next(h)]], changed = true;
   }
   for (Index f : dropped) {
     const auto corner = tail_.begin() + 3 * f;
     const bool is_point = corner[0] == corner[1] && corner[1] == corner[2] && vertex_of_input_[corner[0]] >= 0;
-    for (Half h = 3 * f; h < 3 * f + 3; ++h) tail_[h] = vertex[tail_[h]];
+    for (Half h = 3 * f; h < 3 * f + 3; ++h) tail_[h] = std::max(vertex[tail_[h]], 0);
     if (is_point) stand_in_[f].fill(corner_[tail_[3 * f]]);
   }
 }

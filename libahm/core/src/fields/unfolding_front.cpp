@@ -17,8 +17,8 @@ constexpr Index none = -1;
 constexpr double least_gain = 1e-12;
 /// An entry is bettered no more often: where triangles contradict each other they could go on for ever.
 constexpr Index most_gains = 40;
-/// Sides that are shorter than this share of a distance no longer tell where its point lies.
-constexpr double shortest_side = 1e-6;
+/// Sides that are shorter than this share of the other two, or of a distance, no longer tell where its point lies.
+constexpr double shortest_side = 1e-6, shortest_side_far_away = 1e-13;
 
 /// A number that grows with the angle of v, from -2 to 2.
 double turn(const Vec2& v) {
@@ -29,10 +29,10 @@ double turn(const Vec2& v) {
 /// The distance of c from a point at distances `from_a` and `from_b`, beyond the side ab of a triangle of the given sides;
 /// none where the straight line to it does not cross that side.
 std::optional<double> across(double from_a, double from_b, double ab, double ac, double bc) {
-  if (!(ab > shortest_side * from_a)) return std::nullopt;
+  if (!(ab > shortest_side * ac) || !(ab > shortest_side_far_away * from_a)) return std::nullopt;
   // a is at 0, b at (ab, 0), c above, the point below.
-  const double x = (from_a * from_a - from_b * from_b + ab * ab) / (2 * ab), squared_y = from_a * from_a - x * x;
-  const double cx = (ac * ac - bc * bc + ab * ab) / (2 * ab), squared_cy = ac * ac - cx * cx;
+  const double x = 0.5 * (ab + (from_a - from_b) * ((from_a + from_b) / ab)), squared_y = (from_a - x) * (from_a + x);
+  const double cx = 0.5 * (ab + (ac - bc) * ((ac + bc) / ab)), squared_cy = (ac - cx) * (ac + cx);
   if (!(squared_cy > 0) || !(squared_y >= -1e-14 * from_a * from_a)) return std::nullopt;
   const double y = -std::sqrt(std::max(0.0, squared_y)), cy = std::sqrt(squared_cy);
   const double at_side = x - (cx - x) * y / (cy - y);

@@ -31,7 +31,8 @@ using ahm::TopologyReport;
 ///
 /// The ends of an edge without length are one vertex, and the faces on its sides are dropped: nothing turns into them
 /// (`is_dropped`). In space an edge counts as one up to 2e-12 of the largest coordinate, where rounding begins to decide how the
-/// faces lie; by lengths alone up to 1e-15 of the longest. A component of such edges alone keeps them.
+/// faces lie; by lengths alone up to 1e-15 of the longest. Vertices in such faces alone are left out; a mesh of
+/// such faces alone keeps them.
 class TriangleMesh {
  public:
   /// A mesh in space.

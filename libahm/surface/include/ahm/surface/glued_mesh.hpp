@@ -49,8 +49,8 @@ class GluedMesh {
 
   /// Contracts edges of triangles: their ends become one vertex, that of the lowest of the input vertices. A face with such a
   /// side has nothing left: it is dropped, and what lies beyond its two other sides is glued together. It keeps its number
-  /// and half-edges, but nothing turns into it any more. A component of which nothing would be left stays as it is. Where
-  /// two boundaries meet in one point, that vertex is split.
+  /// and half-edges, but nothing turns into it any more. A vertex in such faces alone is none any more; a mesh of such faces
+  /// alone stays as it is. Where two boundaries meet in one point, that vertex is split.
   /// @param contracted  one per half-edge, 1 for both halves of the edges concerned
   void contract(std::vector<std::uint8_t> contracted);
   bool is_dropped(Index face) const { return !dropped_.empty() && dropped_[face]; }
