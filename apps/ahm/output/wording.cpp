@@ -39,7 +39,7 @@ constexpr Sentence sentences[] = {
      "{0:.0f} vertices coincide with a neighbour and were merged with it; {1:.0f} faces without area were left out"},
     {"mollified", "{0:.0f} degenerate faces: every edge was made longer by {1:.6g}"},
     {"edge_lengths", "edge lengths range from {0:.6g} to {1:.6g}; one diffusion time cannot suit them all"},
-    {"degenerate_faces", "{0:.0f} faces have almost no area"},
+    {"collinear_faces", "{0:.0f} faces are collinear: all their corners lie on one line; the first is face {1:.0f}"},
     {"negative_weights", "{0:.0f} edges have negative weights; far from the source heat may lose its sign"},
     {"twisted_faces", "{0:.0f} faces are twisted, the first is face {1:.0f}, so the polygons are not refined"},
     // clouds
@@ -72,6 +72,7 @@ constexpr Advice advices[] = {
     {"non_manifold_edges", "repair them, or cut the mesh there with --non-manifold split"},
     {"non_manifold_vertices", "repair them, or split them with --non-manifold split"},
     {"twisted_faces", "use --discretization polygons"},
+    {"collinear_faces", "remove them, or use --method heat"},
     {"no_flat_triangles", "use --method heat"},
     {"polygons_not_refined", "use --discretization refined, or --method heat"},
     {"no_bending_direction", "give the axis as X,Y,Z"},
