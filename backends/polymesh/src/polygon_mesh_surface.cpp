@@ -329,8 +329,9 @@ std::vector<Warning> PolygonMeshSurface::warnings() const {
   };
   warn_of("collinear_faces", d.collinear);
   if (impl_->refined) {
+    const std::vector<Warning> told = ahm::warnings(impl_->refined->details().topology);
     for (Warning& warning : impl_->refined->warnings())
-      if (warning.id != "components" && warning.id != "not_orientable") result.push_back(std::move(warning));
+      if (std::ranges::find(told, warning.id, &Warning::id) == told.end()) result.push_back(std::move(warning));
     return result;
   }
   if (!d.clamped && d.negative_weights > 0)

@@ -193,7 +193,7 @@ Atlas AtlasMaker::make(std::span<const Vertex> sources) {
     const auto block = std::span(missing).subspan(first, std::min(block_size, missing.size() - first));
     std::vector<Source> starts;
     for (Index s : block) starts.push_back(Source::at_vertex(sources[s]));
-    const std::vector<LogMap> maps = solver_.solve(starts);
+    const std::vector<LogMap> maps = solver_.solve(starts, {.spread = false});
     for (std::size_t k = 0; k < maps.size(); ++k) regions.keep(block[k], maps[k]);
   }
   regions_ = std::move(regions);
