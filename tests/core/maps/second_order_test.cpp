@@ -37,7 +37,7 @@ TEST(SecondOrder, IsExactOnThePlaneAndKnowsIt) {
     for (const HeatOptions& options : {global, marching}) {
       const FlatGraph flat = planar_triangulation(side);
       const CsrGraph graph(flat.data);
-      for (Variant variant : {Variant::adaptive, Variant::localized}) {
+      for (Variant variant : all_variants) {
         const LogMap map = LogMapSolver(graph, options).solve(Source::at_vertex(Vertex{77}), {.variant = variant});
         for (Index i = 0; i < flat.size(); ++i) {
           for (int a = 0; a < 2; ++a)
