@@ -69,6 +69,15 @@ SurfaceCurve draw_curve(const Input& input, const std::vector<SourceSpec>& given
   }
 }
 
+LogMap solve(const SolveOptions& options, const Input& input, const SurfaceCurve& curve, Journal& journal) {
+  const Maps maps(options, input, journal, 1);
+  if (maps.solver) return ahm::app::solve(options, *maps.solver, curve.source, journal);
+  journal.start("solve");
+  ExactMapOptions exact;
+  exact.progress = journal.progress();
+  return maps.geodesics->log_map(curve.samples, exact).map;
+}
+
 void comment_on_curve(const SurfaceCurve& curve, double edge, Journal& journal) {
   if (curve.gap > 2 * edge)
     journal.add_warning(fmt::format(
@@ -133,8 +142,7 @@ void run(const StrokeCommandOptions& options) {
   const SurfaceCurve curve = draw_curve(input, options.curve, options.shape);
   comment_on_curve(curve, input.mean_edge_length(), journal);
 
-  const LogMapSolver solver = make_solver(options.solve, input.graph(), journal);
-  const LogMap map = solve(options.solve, solver, curve.source, journal);
+  const LogMap map = solve(options.solve, input, curve, journal);
   const RowLogMap rows = input.surface().on_rows(map);
   std::vector<double> distance;
   for (std::size_t i = 0; i < rows.u.size(); ++i)
@@ -154,6 +162,7 @@ void offer(CLI::App& app, StrokeCommandOptions& o) {
   app.add_flag_callback(
       "--circle", [&o] { o.shape.closed = true, o.shape.shape = StrokeShape::circle; },
       "Closed; map the curve to a circle instead of a line");
+  add_method(app, o.solve);
   add_graph_options(app, o.input, o.solve);
   add_map_results(app, o.output);
 }

@@ -191,7 +191,8 @@ Source stroke_source(std::span<const StrokePoint> points) {
   return source;
 }
 
-Source stroke_source(std::span<const Source> points, std::span<const double> lengths, const StrokeOptions& options) {
+std::vector<StrokePoint> stroke_points(std::span<const Source> points, std::span<const double> lengths,
+                                       const StrokeOptions& options) {
   check_shape(options);
   check_points(points, lengths, options.closed);
   const double length = std::accumulate(lengths.begin(), lengths.end(), 0.0);
@@ -205,7 +206,11 @@ Source stroke_source(std::span<const Source> points, std::span<const double> len
     stroke.push_back({points[k], (before + after) / 2, position, std::atan2(direction[1], direction[0])});
     s += after;
   }
-  return stroke_source(stroke);
+  return stroke;
+}
+
+Source stroke_source(std::span<const Source> points, std::span<const double> lengths, const StrokeOptions& options) {
+  return stroke_source(stroke_points(points, lengths, options));
 }
 
 }  // namespace ahm

@@ -132,10 +132,12 @@ SurfaceCurve draw_curve(const Surface& surface, std::span<const CurvePoint> give
     if (frame) normal = frame->normal;
   };
   for (std::size_t k = 0; k < n; ++k) {
-    const PlacedSource point = surface.source(samples[k].point, tangent(samples, k, options.closed));
+    const Vec3 along = tangent(samples, k, options.closed);
+    const PlacedSource point = surface.source(samples[k].point, along);
     if (k == 0) curve.first = point.frame;
     turn_over(point.frame);
     sources.push_back(side < 0 ? mirrored(point.source) : point.source);
+    curve.samples.push_back({samples[k].point, along, {}, 0, side < 0});
     curve.points.push_back(samples[k].position);
     if (k + 1 < n || options.closed) lengths.push_back(distance(samples[k].position, samples[(k + 1) % n].position));
   }
@@ -144,7 +146,12 @@ SurfaceCurve draw_curve(const Surface& surface, std::span<const CurvePoint> give
     throw InvalidArgument("curve_one_sided", "the curve runs along a one-sided band, so it has no left",
                           "leave it open");
   for (double length : lengths) curve.length += length, curve.jump = std::max(curve.jump, length);
-  curve.source = stroke_source(sources, lengths, options);
+  const std::vector<StrokePoint> stroke = stroke_points(sources, lengths, options);
+  for (std::size_t k = 0; k < n; ++k) {
+    curve.samples[k].position = stroke[k].position;
+    curve.samples[k].angle = stroke[k].angle;
+  }
+  curve.source = stroke_source(stroke);
   return curve;
 }
 

@@ -5,6 +5,7 @@
 /// const ahm::CurvePoint given[] = {ahm::Vec3{0, 0, 1.2}, ahm::Row{17}, ahm::FacePoint{7, {0.2, 0.3, 0.5}}};
 /// ahm::SurfaceCurve curve = ahm::draw_curve(surface, given);
 /// ahm::LogMap map = solver.solve(curve.source);                  // u: arclength, v: signed distance (left > 0)
+/// ahm::LogMap exact = geodesics.log_map(curve.samples);          // the same over the flat faces of a mesh
 /// \endcode
 #pragma once
 
@@ -14,6 +15,7 @@
 #include <vector>
 
 #include "ahm/applications/stroke.hpp"
+#include "ahm/surface/exact/exact_geodesics.hpp"
 #include "ahm/surface/surface.hpp"
 
 namespace ahm {
@@ -23,7 +25,8 @@ using CurvePoint = std::variant<Vec3, SurfacePoint>;
 
 /// A curve on a surface and what it amounts to.
 struct SurfaceCurve {
-  Source source{2};
+  Source source{2};                  ///< for heat
+  std::vector<ExactSource> samples;  ///< the same for `ExactGeodesics::log_map`: one per point
   std::vector<Vec3> points;    ///< as sampled, on the surface, world units
   std::optional<Frame> first;  ///< u along the curve, v left of it, at its first point
   double length = 0;           ///< world units
