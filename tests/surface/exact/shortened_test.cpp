@@ -17,7 +17,8 @@ using exact::MeshPoint;
 using std::numbers::pi;
 
 std::vector<Mesh> shapes() {
-  return {icosphere(7), torus(16), sliver_square(200), holed_square(14), folded_strip(11), moebius_mesh(40, 6), maze(3)};
+  return {icosphere(7),        torus(300), sliver_square(200), holed_square(14), folded_strip(11),
+          moebius_mesh(40, 6), maze(3)};
 }
 
 Index vertex_at(const exact::PolyhedralSurface& surface, const MeshPoint& p) {
@@ -55,7 +56,8 @@ double angle_to(const exact::PolyhedralSurface& surface, Index vertex, const Mes
 }
 
 /// Whether both sides of the vertices passed have an angle of pi at least, or the boundary.
-void expect_locally_shortest(const exact::PolyhedralSurface& surface, const std::vector<MeshPoint>& points, bool closed) {
+void expect_locally_shortest(const exact::PolyhedralSurface& surface, const std::vector<MeshPoint>& points,
+                             bool closed) {
   const std::size_t n = points.size();
   for (std::size_t k = closed ? 0 : 1; k + 1 < n; ++k) {
     const Index vertex = vertex_at(surface, points[k]);
@@ -148,7 +150,7 @@ TEST(LocallyShortestPath, LeavesInTheDirectionThatATraceFollows) {
 
 TEST(LocallyShortestPath, SearchesTheSameWithABound) {
   std::mt19937_64 random(6);
-  const Polyhedron solid(torus(20));
+  const Polyhedron solid(torus(300));
   for (int k = 0; k < 20; ++k) {
     const MeshPoint a = random_point(solid.surface, random), b = random_point(solid.surface, random);
     const auto straight = [&](Vertex v) { return distance(solid.mesh.position(v.index), solid.position(b)); };
@@ -184,7 +186,7 @@ std::vector<MeshPoint> around(const exact::PolyhedralSurface& surface, const std
 
 TEST(ShortenedLoop, IsAClosedGeodesicOfATorus) {
   // Stops on a wavy way about the tube and about the hole: the shortest loops of their kinds are closed geodesics.
-  const Mesh mesh = torus(24);
+  const Mesh mesh = torus(300);
   const Polyhedron solid(mesh);
   std::mt19937_64 random(2);
   for (int k = 0; k < 20; ++k) {
@@ -206,7 +208,8 @@ TEST(ShortenedLoop, GoesRoundATubeStraight) {
   Mesh mesh;
   for (int i = 0; i < rings; ++i)
     for (int j = 0; j < n; ++j)
-      mesh.positions.push_back({std::cos(2 * pi * j / n), std::sin(2 * pi * j / n), 0.7 * i + 0.05 * ((i * 7 + j * 3) % 4)});
+      mesh.positions.push_back(
+          {std::cos(2 * pi * j / n), std::sin(2 * pi * j / n), 0.7 * i + 0.05 * ((i * 7 + j * 3) % 4)});
   for (int i = 0; i + 1 < rings; ++i)
     for (int j = 0; j < n; ++j) {
       const Index a = i * n + j, b = i * n + (j + 1) % n, c = a + n, d = b + n;

@@ -50,9 +50,7 @@ class EdgeSearch {
   struct Entry {
     double key, distance;
     Index vertex;
-    bool operator<(const Entry& other) const {
-      return key != other.key ? key > other.key : vertex > other.vertex;
-    }
+    bool operator<(const Entry& other) const { return key != other.key ? key > other.key : vertex > other.vertex; }
   };
 
   /// From a point of a face; a point at a corner goes there alone.

@@ -148,7 +148,8 @@ Source ExactGeodesics::joined(std::span<const ExactSource> given, const Placed& 
       Vec2 z{};
       Axes axes{1, 0, 0, 1};
       if (!source.offsets().empty()) z = {source.offsets()[2 * i], side * source.offsets()[2 * i + 1]};
-      if (!source.axes().empty()) std::copy_n(source.axes().begin() + static_cast<std::ptrdiff_t>(4 * i), 4, axes.begin());
+      if (!source.axes().empty())
+        std::copy_n(source.axes().begin() + static_cast<std::ptrdiff_t>(4 * i), 4, axes.begin());
       const Vec2 u{axes[0], axes[2]}, v{side * axes[1], side * axes[3]};
       const Vec2 there = given[k].position + Vec2{c * z[0] - s * z[1], s * z[0] + c * z[1]};
       const Vec2 turned_u = c * u - s * v, turned_v = s * u + c * v;
@@ -194,8 +195,7 @@ LabelledLogMap ExactGeodesics::log_map(std::span<const ExactSource> sources, con
   return log_map(from, joined(sources, from), options);
 }
 
-LabelledLogMap ExactGeodesics::log_map(const Placed& from, Source source,
-                                       const ExactMapOptions& options) const {
+LabelledLogMap ExactGeodesics::log_map(const Placed& from, Source source, const ExactMapOptions& options) const {
   exact::ExactOptions exact_options;
   exact_options.radius = options.radius / flat_.length_unit;
   exact_options.progress = options.progress;
@@ -231,6 +231,36 @@ exact::GeodesicPath ExactGeodesics::path(std::span<const SurfacePoint> stops, bo
   std::vector<exact::MeshPoint> points;
   for (const SurfacePoint& stop : stops) points.push_back(point(stop));
   exact::GeodesicPath path = exact::geodesic_path(flat_.surface, points, closed);
+  path.length *= flat_.length_unit;
+  return path;
+}
+
+std::vector<exact::GeodesicPath> ExactGeodesics::paths(std::span<const std::array<SurfacePoint, 2>> pairs,
+                                                       const Progress& progress, unsigned threads) const {
+  std::vector<exact::PointPair> ends;
+  for (const auto& [from, to] : pairs) ends.push_back({point(from), point(to)});
+  std::vector<exact::GeodesicPath> paths = exact::geodesic_paths(flat_.surface, ends, progress, threads);
+  for (exact::GeodesicPath& path : paths) path.length *= flat_.length_unit;
+  return paths;
+}
+
+exact::GeodesicPath ExactGeodesics::shortened(std::span<const exact::MeshPoint> curve, bool closed) const {
+  exact::GeodesicPath path =
+      closed ? exact::shortened_loop(flat_.surface, curve) : exact::shortened_path(flat_.surface, curve);
+  path.length *= flat_.length_unit;
+  return path;
+}
+
+exact::GeodesicPath ExactGeodesics::locally_shortest_path(const SurfacePoint& from, const SurfacePoint& to) const {
+  const exact::MeshPoint start = point(from), end = point(to);
+  std::function<double(Vertex)> straight;
+  if (!flat_.positions.empty()) {
+    // A little less than the straight line, against rounding.
+    straight = [this, at = position(end), scale = (1 - 1e-12) / flat_.length_unit](Vertex v) {
+      return scale * distance(flat_.positions[v.index], at);
+    };
+  }
+  exact::GeodesicPath path = exact::locally_shortest_path(flat_.surface, start, end, straight);
   path.length *= flat_.length_unit;
   return path;
 }

@@ -6,6 +6,9 @@
 namespace ahm::exact {
 namespace {
 
+/// A line that passes a vertex at a smaller angle than this bends there: only then is its other side looked at.
+constexpr double touching = 1e-12;
+
 Place turned_left(const Place& v) { return {-v[1], v[0]}; }
 
 /// The side of a face left, in the frame of side 0: seen from inside its head is on the left.
@@ -59,15 +62,14 @@ class Funnel {
     auto& own_apex = left ? left_apex_ : right_apex_;
     auto& other_apex = left ? right_apex_ : left_apex_;
     const double sign = left ? 1 : -1;
-    const auto place = [&](std::size_t node) { return nodes_[node].at; };
-    while (own.size() - own_apex > 1 &&
-           !(sign * cross(place(own.back()) - place(own[own.size() - 2]), at - place(own.back())) > 0))
-      own.pop_back();
+    const auto outwards = [&](std::size_t a, std::size_t b) {
+      const Vec2 to_b = nodes_[b].at - nodes_[a].at, on = at - nodes_[b].at;
+      return sign * cross(to_b, on) / (norm(to_b) * norm(on));
+    };
+    while (own.size() - own_apex > 1 && !(outwards(own[own.size() - 2], own.back()) > -touching)) own.pop_back();
     if (own.size() - own_apex == 1) {
       // The new end may lie beyond the other chain.
-      while (other.size() - other_apex > 1 &&
-             !(sign * cross(place(other[other_apex + 1]) - place(other[other_apex]), at - place(other[other_apex])) >
-               0)) {
+      while (other.size() - other_apex > 1 && !(outwards(other[other_apex], other[other_apex + 1]) > touching)) {
         ++other_apex;
         own.assign(1, other[other_apex]);
         own_apex = 0;
@@ -153,8 +155,7 @@ TautLine pull_taut(const PolyhedralSurface& surface, const Strip& strip) {
   const Place end = end_of(surface, strip, line.portals);
   funnel.add(end, true, line.portals.size());
   line.bends = funnel.bends();
-  for (std::size_t k = 1; k < line.bends.size(); ++k)
-    line.length += distance(line.bends[k].at, line.bends[k - 1].at);
+  for (std::size_t k = 1; k < line.bends.size(); ++k) line.length += distance(line.bends[k].at, line.bends[k - 1].at);
   line.arrival = line.bends[line.bends.size() - 2].at;
   if (!line.portals.empty())
     line.arrival = to_first_side(surface, strip.entered.back(), Unfolded(line.portals.back()).into(line.arrival));

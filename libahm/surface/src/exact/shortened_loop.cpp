@@ -16,9 +16,9 @@ using std::numbers::pi;
 using Halves = std::vector<Half>;
 
 /// Turns of a loop that are laid one behind the other to find where it bends for good.
-constexpr int most_turns = 64;
+constexpr int most_turns = 4096;
 /// Moves of the base; every one makes the loop shorter.
-constexpr int most_moves = 100000;
+constexpr int most_moves = 1000000;
 
 /// A closed walk over faces, and the loop in it through a base.
 class Loop {
@@ -112,18 +112,23 @@ class Loop {
       base_at(walk, static_cast<std::size_t>(found - walk.begin()), at_tail);
       return true;
     }
-    for (int turns = 2; turns <= most_turns; turns *= 2) {
-      Strip many = from_middle(walk, turns);
+    bool straight = false;
+    for (int turns = 4; turns <= most_turns && !straight; turns *= 2) {
+      const Strip many = from_middle(walk, turns);
       const TautLine line = pull_taut(surface_, many);
-      const std::size_t first = walk.size() * (turns / 2 - 1), last = first + 2 * walk.size();
+      straight = line.bends.size() == 2;
+      // A bend that comes again a turn later is one of the shortest loop in this walk.
       for (std::size_t k = 1; k + 1 < line.bends.size(); ++k) {
         const Bend& bend = line.bends[k];
-        if (bend.arrives < first || bend.arrives >= last) continue;
+        const bool again = std::any_of(line.bends.begin() + static_cast<std::ptrdiff_t>(k), line.bends.end() - 1,
+                                       [&](const Bend& b) { return b.arrives == bend.arrives + walk.size(); });
+        if (!again) continue;
         const std::size_t portal = bend.arrives % walk.size();
         base_at(walk, portal, corner_after(many, line, bend, bend.arrives) == walk[portal]);
         return true;
       }
     }
+    if (!straight) throw Error("a loop that turns by very little at every turn was not followed to its end");
     strip_ = from_middle(walk, 1);
     line_ = pull_taut(surface_, strip_);
     return false;

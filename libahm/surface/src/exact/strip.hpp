@@ -57,7 +57,7 @@ struct Portal {
 /// A point of the shortest line: its start, a vertex where it bends, its end.
 struct Bend {
   Place at;
-  bool left = false;                  ///< on which side of the strip the vertex is
+  bool left = false;                    ///< on which side of the strip the vertex is
   std::size_t arrives = 0, leaves = 0;  ///< portals: the first and the last that the line crosses at this vertex
 };
 

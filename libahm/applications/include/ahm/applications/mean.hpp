@@ -58,8 +58,8 @@ Center karcher_mean(const MapMaker& maps, std::span<const Vertex> vertices, std:
 ///     x <- exp_x(geometric median of log_x(p_k) in the tangent space)
 ///
 /// One map per step: Weiszfeld's and Newton's steps run in the tangent space, to rounding. Otherwise as `karcher_mean`.
-Center geometric_median(const MapMaker& maps, std::span<const Vertex> vertices,
-                        std::span<const double> weights = {}, const CenterOptions& options = {});
+Center geometric_median(const MapMaker& maps, std::span<const Vertex> vertices, std::span<const double> weights = {},
+                        const CenterOptions& options = {});
 
 /// The source at a center; its axes are those of the frame of `center.vertex`.
 Source source_at(const Center& center);

@@ -27,11 +27,11 @@ using CurvePoint = std::variant<Vec3, SurfacePoint>;
 struct SurfaceCurve {
   Source source{2};                  ///< for heat
   std::vector<ExactSource> samples;  ///< the same for `ExactGeodesics::log_map`: one per point
-  std::vector<Vec3> points;    ///< as sampled, on the surface, world units
-  std::optional<Frame> first;  ///< u along the curve, v left of it, at its first point
-  double length = 0;           ///< world units
-  double gap = 0;              ///< largest distance of the polyline in space from the surface
-  double jump = 0;             ///< largest distance between consecutive points
+  std::vector<Vec3> points;          ///< as sampled, on the surface, world units
+  std::optional<Frame> first;        ///< u along the curve, v left of it, at its first point
+  double length = 0;                 ///< world units
+  double gap = 0;                    ///< largest distance of the polyline in space from the surface
+  double jump = 0;                   ///< largest distance between consecutive points
 };
 
 /// Joins the given points by straight lines, cuts these into pieces of half a mean edge length at the most, and takes

@@ -22,6 +22,7 @@
 #include "ahm/progress.hpp"
 #include "ahm/surface/exact/flat_triangles.hpp"
 #include "ahm/surface/exact/geodesic_path.hpp"
+#include "ahm/surface/exact/shortened_path.hpp"
 #include "ahm/surface/surface.hpp"
 
 namespace ahm {
@@ -80,6 +81,17 @@ class ExactGeodesics {
   /// The shortest path through points in their order. Its length is in world units; `position` tells where its points lie.
   /// @throws InvalidArgument (fewer than two points; as `Surface::source`)
   exact::GeodesicPath path(std::span<const SurfacePoint> stops, bool closed = false) const;
+
+  /// Shortest paths between many pairs of points (`exact::geodesic_paths`).
+  /// @throws InvalidArgument (as `Surface::source`), Cancelled
+  std::vector<exact::GeodesicPath> paths(std::span<const std::array<SurfacePoint, 2>> pairs,
+                                         const Progress& progress = {}, unsigned threads = 0) const;
+  /// The same curve made locally shortest: pulled taut, its ends apart. `closed`: a loop, no point of which is kept.
+  /// @throws as `exact::shortened_path`
+  exact::GeodesicPath shortened(std::span<const exact::MeshPoint> curve, bool closed = false) const;
+  /// A locally shortest path, without an exact map: fast on surfaces of any size, not always the shortest
+  /// (`exact::locally_shortest_path`). @throws InvalidArgument (as `Surface::source`)
+  exact::GeodesicPath locally_shortest_path(const SurfacePoint& from, const SurfacePoint& to) const;
 
   /// The straightest geodesic from a point along a vector of space, projected to the surface.
   /// @param length  >= 0, world units, as of the result
