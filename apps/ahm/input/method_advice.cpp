@@ -55,8 +55,7 @@ MethodAdvice method_advice(const Surface& surface) {
       advice.median_bend = quantile(angles, 0.5);
       advice.sharp_bend = quantile(angles, 0.95);
     }
-    const bool fine = advice.median_bend < fine_bend && advice.sharp_bend < sharp_edge;
-    advice.exact_first = flat.surface.vertex_count() <= exact_vertices && !fine;
+    advice.exact_first = flat.surface.vertex_count() <= exact_vertices && advice.sharp_bend > fine_bend;
   } catch (const Error& e) {
     advice.problem = worded(e);
   }

@@ -22,8 +22,8 @@ struct MethodAdvice {
 MethodAdvice method_advice(const Surface& surface);
 
 inline constexpr Index exact_vertices = 50000;
-/// In degrees: surfaces whose edges bend less are sampled finely.
-inline constexpr double fine_bend = 3, sharp_edge = 30;
+/// In degrees: where 5 % of the edges bend more, the surface is coarse or has sharp edges.
+inline constexpr double fine_bend = 5;
 
 std::string as_text(const MethodAdvice& advice);
 

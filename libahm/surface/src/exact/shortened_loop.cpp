@@ -112,11 +112,10 @@ class Loop {
       base_at(walk, static_cast<std::size_t>(found - walk.begin()), at_tail);
       return true;
     }
-    bool straight = false;
-    for (int turns = 4; turns <= most_turns && !straight; turns *= 2) {
-      const Strip many = from_middle(walk, turns);
+    if (take_straight(walk)) return false;
+    for (int turns = 4; turns <= most_turns; turns *= 2) {
+      const Strip many = along(walk, turns, 0.5);
       const TautLine line = pull_taut(surface_, many);
-      straight = line.bends.size() == 2;
       // A bend that comes again a turn later is one of the shortest loop in this walk.
       for (std::size_t k = 1; k + 1 < line.bends.size(); ++k) {
         const Bend& bend = line.bends[k];
@@ -128,17 +127,37 @@ class Loop {
         return true;
       }
     }
-    if (!straight) throw Error("a loop that turns by very little at every turn was not followed to its end");
-    strip_ = from_middle(walk, 1);
-    line_ = pull_taut(surface_, strip_);
-    return false;
+    throw Error("a loop that turns by very little at every turn was not followed to its end");
   }
 
-  /// From the middle of the first side crossed to itself.
-  Strip from_middle(const Halves& walk, int turns) const {
+  /// Where a turn of the walk is nothing but a shift, as around a cylinder, the loop may be a straight line: in the middle
+  /// of all those that stay in the strip.
+  bool take_straight(const Halves& walk) {
+    const std::vector<Portal> portals = pull_taut(surface_, along(walk, 2, 0.5)).portals;
+    const Portal &first = portals[0], &again = portals[walk.size()];
+    const Vec2 before = first.right - first.left, after = again.right - again.left;
+    if (first.tail_left != again.tail_left || !(dot(before, after) > 0) ||
+        !(std::abs(cross(before, after)) < straight_margin * dot(before, before)))
+      return false;
+    const Vec2 shift = again.left - first.left, left = (1 / norm(shift)) * Vec2{-shift[1], shift[0]};
+    double low = dot(first.right, left), high = dot(first.left, left);
+    for (std::size_t p = 0; p < walk.size(); ++p) {
+      low = std::max(low, dot(portals[p].right, left));
+      high = std::min(high, dot(portals[p].left, left));
+    }
+    if (!(low < high)) return false;
+    const double from_left = (dot(first.left, left) - (low + high) / 2) / dot(first.left - first.right, left);
+    strip_ = along(walk, 1, from_left);
+    line_ = pull_taut(surface_, strip_);
+    return true;
+  }
+
+  /// From a point of the first side crossed to itself.
+  /// @param from_left  its share of the side, seen from the face before: there its head is on the left
+  Strip along(const Halves& walk, int turns, double from_left) const {
     const Half side = beyond(surface_, walk.front());
     Strip strip;
-    strip.start.point = point_on(surface_, side, surface_.record(side).length / 2);
+    strip.start.point = point_on(surface_, side, surface_.record(side).length * (1 - from_left));
     strip.end = strip.start;
     for (int t = 0; t < turns; ++t) strip.entered.insert(strip.entered.end(), walk.begin(), walk.end());
     return strip;
