@@ -1,7 +1,9 @@
 #include "ahm/applications/surface_curve.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -20,14 +22,40 @@ struct CurveSample {
   Vec3 position;
 };
 
+/// The faces of a surface for paths; none where it has no flat ones.
+std::optional<ExactGeodesics> geodesics_of(const Surface& surface) {
+  if (surface.faces().size() == 0 || surface.positions().empty()) return std::nullopt;
+  try {
+    return std::optional<ExactGeodesics>(std::in_place, surface);
+  } catch (const Cancelled&) {
+    throw;
+  } catch (const Error&) {  // twisted polygons, faces of no area
+    return std::nullopt;
+  }
+}
+
+/// Places on the shortest path between two points, no farther apart than a step; empty where the faces do not join them.
+std::vector<Vec3> along_path(const ExactGeodesics& geodesics, const SurfacePoint& from, const SurfacePoint& to,
+                             double step) {
+  const exact::GeodesicPath path = geodesics.path(std::array{from, to});
+  std::vector<Vec3> places;
+  for (std::size_t k = 1; k < path.points.size(); ++k) {
+    const Vec3 a = geodesics.position(path.points[k - 1]), b = geodesics.position(path.points[k]);
+    const int pieces = std::max(1, static_cast<int>(std::ceil(distance(a, b) / step)));
+    for (int p = 1; p <= pieces; ++p) places.push_back(a + static_cast<double>(p) / pieces * (b - a));
+  }
+  if (!places.empty()) places.pop_back();
+  return places;
+}
+
 double length_of(const std::vector<Vec3>& corners) {
   double length = 0;
   for (std::size_t k = 0; k + 1 < corners.size(); ++k) length += distance(corners[k], corners[k + 1]);
   return length;
 }
 
-/// The given points as corners, and points on the straight lines between them; the largest distance of these from the
-/// surface.
+/// The given points as corners, and points between them: on the shortest path over flat faces, else, and between points
+/// closer than four steps, on the straight line. The largest distance of these from the surface.
 std::vector<CurveSample> sample(const Surface& surface, std::span<const CurvePoint> given, bool closed, double step,
                                 double& gap) {
   std::vector<Vec3> corners;
@@ -44,6 +72,12 @@ std::vector<CurveSample> sample(const Surface& surface, std::span<const CurvePoi
                           "is it in the units of the surface?");
 
   std::vector<CurveSample> samples;
+  const std::optional<ExactGeodesics> geodesics = geodesics_of(surface);
+  const auto end_point = [&](std::size_t k) {
+    const CurvePoint& end = given[k % given.size()];
+    const auto* on_surface = std::get_if<SurfacePoint>(&end);
+    return on_surface ? *on_surface : surface.closest_point(std::get<Vec3>(end)).point;
+  };
   const auto project = [&](const Vec3& p) {
     ClosestPoint closest = surface.closest_point(p);
     samples.push_back({std::move(closest.point), closest.position});
@@ -56,7 +90,13 @@ std::vector<CurveSample> sample(const Surface& surface, std::span<const CurvePoi
     else
       project(corners[k]);
     if (k + 1 == corners.size()) break;
-    const int pieces = static_cast<int>(std::ceil(distance(corners[k], corners[k + 1]) / step));
+    const double straight = distance(corners[k], corners[k + 1]);
+    if (geodesics && straight > 4 * step) {
+      const std::vector<Vec3> places = along_path(*geodesics, end_point(k), end_point(k + 1), step);
+      for (const Vec3& p : places) project(p);
+      if (!places.empty()) continue;
+    }
+    const int pieces = static_cast<int>(std::ceil(straight / step));
     for (int p = 1; p < pieces; ++p)
       project(corners[k] + static_cast<double>(p) / pieces * (corners[k + 1] - corners[k]));
   }

@@ -122,6 +122,32 @@ TEST(LocallyShortestPath, JoinsPointsInsideFaces) {
   }
 }
 
+TEST(LocallyShortestPath, JoinsPointsOfSides) {
+  std::mt19937_64 random(15);
+  std::uniform_real_distribution<double> share(0.1, 0.9);
+  for (const Mesh& mesh : shapes()) {
+    const Polyhedron solid(mesh);
+    const auto on_side = [&] {
+      MeshPoint p = random_point(solid.surface, random);
+      const int side = static_cast<int>(random() % 3);
+      const double t = share(random);
+      p.barycentric = {0, 0, 0};
+      p.barycentric[side] = t;
+      p.barycentric[(side + 1) % 3] = 1 - t;
+      return p;
+    };
+    for (int k = 0; k < 30; ++k) {
+      const MeshPoint a = on_side(), b = on_side();
+      const GeodesicPath path = exact::locally_shortest_path(solid.surface, a, b);
+      EXPECT_GE(path.length, exact::geodesic_path(solid.surface, a, b).length - 1e-12);
+      EXPECT_NEAR(solid.length(path.points), path.length, 1e-12);
+      EXPECT_LT(distance(solid.position(path.points.front()), solid.position(a)), 1e-12);
+      EXPECT_LT(distance(solid.position(path.points.back()), solid.position(b)), 1e-12);
+      expect_locally_shortest(solid.surface, path.points, false);
+    }
+  }
+}
+
 TEST(LocallyShortestPath, IsTheShortestInThePlane) {
   // Where there is one locally shortest path only; beside holes there are several.
   std::mt19937_64 random(8);

@@ -62,16 +62,29 @@ class Funnel {
     auto& own_apex = left ? left_apex_ : right_apex_;
     auto& other_apex = left ? right_apex_ : left_apex_;
     const double sign = left ? 1 : -1;
-    const auto outwards = [&](std::size_t a, std::size_t b) {
+    // The sine by which the way from a by b to `at` turns outwards; where it is none, whether the way goes on ahead.
+    const auto turn = [&](std::size_t a, std::size_t b) {
       const Vec2 to_b = nodes_[b].at - nodes_[a].at, on = at - nodes_[b].at;
       return sign * cross(to_b, on) / (norm(to_b) * norm(on));
     };
-    while (own.size() - own_apex > 1 && !(outwards(own[own.size() - 2], own.back()) > -touching)) own.pop_back();
+    const auto is_ahead = [&](std::size_t a, std::size_t b) {
+      return dot(nodes_[b].at - nodes_[a].at, at - nodes_[a].at) > 0;
+    };
+    while (own.size() - own_apex > 1) {
+      const std::size_t a = own[own.size() - 2], b = own.back();
+      const double sine = turn(a, b);
+      const bool beyond_b = dot(nodes_[b].at - nodes_[a].at, at - nodes_[b].at) > 0;
+      if (sine > touching || (sine > -touching && beyond_b)) break;
+      own.pop_back();
+    }
     if (own.size() - own_apex == 1) {
-      // The new end may lie beyond the other chain.
-      while (other.size() - other_apex > 1 && !(outwards(other[other_apex], other[other_apex + 1]) > touching)) {
+      // The new end may lie beyond the other chain; not where the start lies between both ends of its portal.
+      while (other.size() - other_apex > 1) {
+        const std::size_t a = other[other_apex], b = other[other_apex + 1];
+        const double sine = turn(a, b);
+        if (sine > touching || (sine > -touching && !is_ahead(a, b))) break;
         ++other_apex;
-        own.assign(1, other[other_apex]);
+        own.assign(1, b);
         own_apex = 0;
       }
     }

@@ -34,8 +34,10 @@ struct SurfaceCurve {
   double jump = 0;                   ///< largest distance between consecutive points
 };
 
-/// Joins the given points by straight lines, cuts these into pieces of half a mean edge length at the most, and takes
-/// the nearest points of the surface (`Surface::closest_point`). Give points so close that the lines stay near the surface.
+/// Joins the given points, cuts the lines into pieces of half a mean edge length at the most, and takes the nearest points
+/// of the surface (`Surface::closest_point`). On flat faces the lines are shortest paths between these; on clouds and twisted
+/// polygons, and between points closer than two edges, they are straight in space: give points so close that they stay near
+/// the surface.
 /// @throws InvalidArgument (as `Surface::source`; faults curve_too_long: more than a million pieces, curve_too_short: fewer
 /// than 2 different points, closed: 3, curve_turns_back, curve_one_sided: closed along a one-sided band), as
 /// `stroke_source`
