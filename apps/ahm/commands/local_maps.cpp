@@ -23,7 +23,7 @@ constexpr const char* local_maps_footer =
     "OUTPUT is a NumPy archive. Entry e of source s, indptr[s] <= e < indptr[s+1], nearest first:\n"
     "  sources[s]    row of INPUT             frames[s]     u axis, v axis and normal in space\n"
     "  indices[e]    row of the neighbour     log[e]        its coordinates u, v in the source's frame\n"
-    "  distance[e]   length of log[e]         transport[e]  turns u + iv into the neighbour's frame\n"
+    "  distance[e]   along the surface        transport[e]  turns u + iv into the neighbour's frame\n"
     "  weight[e]     area of the neighbour\n"
     "With --pad the arrays are sources x K, and mask says what is there.\n"
     "\n"

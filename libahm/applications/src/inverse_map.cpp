@@ -10,9 +10,9 @@
 
 #include "ahm/error.hpp"
 #include "ahm/surface/surface_faces.hpp"
+#include "ahm/util/shortest_paths.hpp"
 #include "ahm/util/small_math.hpp"
 #include "ahm/util/vec.hpp"
-#include "graph/shortest_paths.hpp"
 
 namespace ahm {
 namespace {
@@ -186,6 +186,12 @@ void InverseMap::make_buckets() {
   std::vector<Offset> end(bucket_begin_.begin(), bucket_begin_.end() - 1);
   for (std::size_t t = 0; t < triangles_.size(); ++t)
     for_buckets(triangles_[t], [&](std::size_t b) { bucket_triangles_[end[b]++] = static_cast<Index>(t); });
+}
+
+std::array<Vec2, 3> InverseMap::corners(const Triangle& triangle) const {
+  std::array<Vec2, 3> result;
+  for (std::size_t k = 0; k < 3; ++k) result[k] = {plane_[triangle[k]][0] * unit_, plane_[triangle[k]][1] * unit_};
+  return result;
 }
 
 std::optional<InversePoint> InverseMap::at(double u, double v) const {

@@ -10,7 +10,7 @@
 namespace ahm {
 
 LogMap MapMaker::map(Vertex source, double radius) const {
-  if (solver_ != nullptr) return solver_->solve(Source::at_vertex(source), {.radius = radius});
+  if (solver_ != nullptr) return solver_->solve(Source::at_vertex(source), {.radius = radius, .spread = false});
   return geodesics_->log_map(source, {.radius = radius, .frames = false, .progress = {}});
 }
 
@@ -18,7 +18,7 @@ std::vector<LogMap> MapMaker::maps(std::span<const Vertex> sources, std::span<co
   if (solver_ != nullptr) {
     std::vector<Source> starts;
     for (Vertex vertex : sources) starts.push_back(Source::at_vertex(vertex));
-    return solver_->solve(starts);
+    return solver_->solve(starts, {.spread = false});
   }
   std::vector<std::optional<LogMap>> made(sources.size());
   detail::parallel_chunks(static_cast<Offset>(sources.size()), 1, threads_, [&](Offset k, Offset) {

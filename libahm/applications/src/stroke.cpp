@@ -149,8 +149,8 @@ Source stroke_source(const TangentGraph& graph, std::span<const Vertex> path, co
   return source;
 }
 
-Source stroke_source(const TangentGraph& graph, std::span<const Vertex> path,
-                     std::span<const std::array<double, 2>> positions, bool closed) {
+Source stroke_source(const TangentGraph& graph, std::span<const Vertex> path, std::span<const Vec2> positions,
+                     bool closed) {
   if (positions.size() != path.size())
     throw InvalidArgument("stroke_source: 'positions' has " + std::to_string(positions.size()) +
                           " entries, 'path' has " + std::to_string(path.size()));

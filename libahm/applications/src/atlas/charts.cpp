@@ -1,9 +1,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 #include <utility>
 
 #include "ahm/applications/atlas.hpp"
+#include "ahm/error.hpp"
 #include "ahm/util/memory.hpp"
 #include "ahm/util/vec.hpp"
 
@@ -60,6 +62,11 @@ ChartBox least_box(const std::vector<Vec2>& hull) {
 
 std::vector<ChartBox> chart_boxes(const Atlas& atlas, const FaceList& faces) {
   return detail::with_memory_check("bounding charts", [&] {
+    if (faces.size() != atlas.chart_of_face.size() || 2 * faces.vertices.size() != atlas.coordinates.size())
+      throw InvalidArgument("chart_boxes: there are " + std::to_string(faces.size()) + " faces with " +
+                            std::to_string(faces.vertices.size()) + " corners, but the atlas has " +
+                            std::to_string(atlas.chart_of_face.size()) + " with " +
+                            std::to_string(atlas.coordinates.size() / 2));
     std::vector<ChartBox> boxes;
     for (const Chart& chart : atlas.charts) {
       std::vector<Vec2> points;

@@ -23,6 +23,20 @@ double DiffusionTimes::factor(std::size_t k, Index component) const {
   return k + 1 == count_ ? 2 * middle_[component] : middle_[component];
 }
 
+namespace {
+
+/// How much of the shortest time is kept, since phi is not smooth in sqrt(tau): where it changes faster than on smooth
+/// surfaces, and where, with three times, heat of the longest comes along several ways and the two limits disagree by as
+/// much as they correct.
+double share_of_first(double rate, double c, double relative_disagreement, double relative_spread) {
+  const double fast = std::clamp((rate - 3) / 2, 0.0, 1.0);
+  if (!(c > 1) || !(relative_disagreement > 0.4)) return fast;
+  return std::max(fast,
+                  std::clamp(std::min((relative_disagreement - 0.4) / 0.4, (relative_spread - 0.1) / 0.1), 0.0, 1.0));
+}
+
+}  // namespace
+
 LogMap extrapolate(const TangentGraph& graph, const ComponentScales& scales, double t_coef, const DiffusionTimes& times,
                    const std::vector<const LogMap*>& maps, double radius) {
   const LogMap &first = *maps.front(), &middle = *maps[maps.size() - 2], &last = *maps.back();
@@ -39,18 +53,19 @@ LogMap extrapolate(const TangentGraph& graph, const ComponentScales& scales, dou
     const double step = (std::sqrt(2.0) - 1) * std::sqrt(t_coef * c) * h;  // sqrt(tau_2c) - sqrt(tau_c)
     const auto p1 = first.coordinates(vertex), pc = middle.coordinates(vertex), p2 = last.coordinates(vertex);
     for (std::size_t a = 0; a < d; ++a) difference[a] = p2[a] - pc[a];
-    const double w = std::clamp((length(difference) / step - 3) / 2, 0.0, 1.0);
     const std::span phi = std::span(coordinates).subspan(i * d, d);
-    double moved = 0, disagreement = 0;
+    double correction = 0, disagreement = 0;
     for (std::size_t a = 0; a < d; ++a) {
-      const double extrapolated = pc[a] - difference[a] / (std::sqrt(2.0) - 1);
+      phi[a] = pc[a] - difference[a] / (std::sqrt(2.0) - 1);
       // The same limit from the times 1 and c; with two times, the step that was made.
       const double other = c > 1 ? (std::sqrt(c) * p1[a] - pc[a]) / (std::sqrt(c) - 1) : pc[a];
-      phi[a] = (1 - w) * extrapolated + w * p1[a];
-      moved = std::hypot(moved, phi[a] - extrapolated);
-      disagreement = std::hypot(disagreement, extrapolated - other);
+      correction = std::hypot(correction, phi[a] - p1[a]);
+      disagreement = std::hypot(disagreement, phi[a] - other);
     }
-    error[i] = std::max(moved, disagreement);
+    const double w = share_of_first(length(difference) / step, c, disagreement / correction,
+                                    last.spread().empty() ? 0 : last.spread()[i] / std::max(last.distance(vertex), h));
+    for (std::size_t a = 0; a < d; ++a) phi[a] = (1 - w) * phi[a] + w * p1[a];
+    error[i] = std::max(w * correction, disagreement);
     // Unfolded distances are the same at all times.
     const double r1 = first.distance(vertex), rc = middle.distance(vertex), r2 = last.distance(vertex);
     const double at_zero = std::max(0.0, rc - (r2 - rc) / (std::sqrt(2.0) - 1));

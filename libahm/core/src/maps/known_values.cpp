@@ -58,6 +58,7 @@ void KnownValues::add_to(Inflow& in, const Star& star, std::size_t edge, double 
   const Index j = star.neighbors[edge];
   const Transport R = star.transport(edge);
   const double heat = std::ldexp(conductance, exponents_[j].heat - exponents.heat);
+  const double pair_factor[] = {-2 * heat * to_units_};
   const double turn = std::ldexp(conductance, exponents_[j].frame - exponents.frame);
   in.heat.back() += heat * lambda_[j];
   Scratch e(d_);
@@ -67,7 +68,7 @@ void KnownValues::add_to(Inflow& in, const Star& star, std::size_t edge, double 
     translation[a] -= heat * lambda_[j] * e.data()[a];
   }
   in.squares.back() += heat * (square_[j] + dot(e.span(), e.span()) * lambda_[j]);
-  system_.add_pair(-2 * heat, e.span(), R, value(j), in.pairs.data() + in.pairs.size() - d_ * d_);
+  system_.add_pairs(star.only(edge), pair_factor, value(j), in.pairs.data() + in.pairs.size() - d_ * d_);
   system_.add_known(heat, R, value(j), in.values.data() + in.values.size() - d_);
   R.add_product(turn, frame(j).data(), in.frames.data() + in.frames.size() - width_);
 }

@@ -10,14 +10,14 @@
 #include <string>
 
 #include "ahm/error.hpp"
-#include "ahm/fields/unfolding_front.hpp"
 #include "ahm/graph/validate.hpp"
+#include "ahm/maps/unfolding_front.hpp"
 #include "ahm/util/memory.hpp"
 #include "ahm/util/parallel.hpp"
+#include "ahm/util/shortest_paths.hpp"
 #include "ahm/util/small_math.hpp"
 #include "ahm/util/text.hpp"
 #include "graph/patch.hpp"
-#include "graph/shortest_paths.hpp"
 #include "heat/blas_control.hpp"
 #include "heat/check_options.hpp"
 #include "heat/component_scales.hpp"

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include "ahm/util/shortest_paths.hpp"
 #include "ahm/util/small_math.hpp"
 #include "graph/patch.hpp"
-#include "graph/shortest_paths.hpp"
 #include "heat/blas_control.hpp"
 #include "heat/heat_system.hpp"
 

@@ -36,6 +36,12 @@ struct Star {
     const TransportLayout layout{is_complex ? TransportKind::rotation2 : TransportKind::block, dimension};
     return {layout, transports.data() + edge * layout.width()};
   }
+  /// The star with that edge alone.
+  Star only(std::size_t edge) const {
+    const std::size_t width = transports.size() / degree();
+    return {dimension, neighbors.subspan(edge, 1), weights.subspan(edge, 1), log(edge),
+            transports.subspan(edge * width, width)};
+  }
 };
 
 /// Tangent axes at a vertex in ambient 3-space, for input and display. The solver never asks for them.

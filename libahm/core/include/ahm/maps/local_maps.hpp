@@ -34,7 +34,7 @@ struct LocalMapOptions {
 
 /// Local maps of many sources in compressed rows: source s has the entries indptr[s] .. indptr[s + 1], nearest first.
 ///
-/// An entry is a vertex j within the radius: its coordinates phi_j in the source's frame, |phi_j|, the mass of j as an
+/// An entry is a vertex j within the radius: its coordinates phi_j in the source's frame, its distance (as `LogMap::distance`), the mass of j as an
 /// integration weight, and the source's axes carried to the frame of j, which turn components in the source's frame into
 /// components in frame j. The vertex a source stands on is its own neighbour, at distance 0.
 struct LocalMaps {
