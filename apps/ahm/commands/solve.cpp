@@ -5,7 +5,6 @@
 #include "ahm/error.hpp"
 #include "ahm/maps/cost.hpp"
 #include "ahm/maps/quality.hpp"
-#include "ahm/surface/exact/exact_geodesics.hpp"
 #include "cli/system_info.hpp"
 
 namespace ahm::app {
@@ -74,6 +73,15 @@ SolvedMap solve(const SolveOptions& options, const Input& input, const SourceSpe
     return {std::move(solver), std::move(map)};
   }
   return {std::nullopt, exact_map(options, input, spec, source, journal)};
+}
+
+Maps::Maps(const SolveOptions& options, const Input& input, Journal& journal, int count) : threads(options.threads) {
+  if (options.method == Method::heat) {
+    solver.emplace(make_solver(options, input.graph(), journal, count));
+  } else {
+    journal.start("layout");
+    geodesics.emplace(input.surface());
+  }
 }
 
 std::vector<double> quality_of(const Input& input, const LogMap& map, const RowLogMap& rows,

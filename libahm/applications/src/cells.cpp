@@ -42,6 +42,22 @@ VoronoiCells voronoi_cells(const TangentGraph& graph, std::span<const Vertex> ve
   });
 }
 
+VoronoiCells voronoi_cells(const ExactGeodesics& geodesics, std::span<const Vertex> vertices) {
+  check_vertices(geodesics.surface().graph(), vertices);
+  return detail::with_memory_check("labelling by the nearest source", [&] {
+    const exact::PolyhedralSurface& triangles = geodesics.triangles().surface;
+    std::vector<exact::MeshPoint> sources;
+    for (Vertex vertex : vertices) sources.push_back(triangles.vertex_point(vertex));
+    const exact::ExactMap map = exact::exact_map(triangles, sources);
+    VoronoiCells cells;
+    for (Index i = 0; i < map.size(); ++i) {
+      cells.labels.push_back(map.source(Vertex(i)));
+      cells.distances.push_back(geodesics.triangles().length_unit * map.distance(Vertex(i)));
+    }
+    return cells;
+  });
+}
+
 std::vector<Vertex> farthest_points(const TangentGraph& graph, Vertex first, Index count) {
   const Index n = graph.size();
   if (first.index < 0 || first.index >= n)

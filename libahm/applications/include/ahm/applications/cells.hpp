@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "ahm/graph/tangent_graph.hpp"
+#include "ahm/surface/exact/exact_geodesics.hpp"
 
 namespace ahm {
 
@@ -25,6 +26,8 @@ struct VoronoiCells {
 /// Delaunay triangulations without holes.
 /// @throws InvalidArgument (empty, index, a vertex given twice), ResourceExhausted
 VoronoiCells voronoi_cells(const TangentGraph& graph, std::span<const Vertex> vertices);
+/// The same by exact distances over the flat faces. @throws as above, as `ExactGeodesics::log_map`
+VoronoiCells voronoi_cells(const ExactGeodesics& geodesics, std::span<const Vertex> vertices);
 
 /// `count` vertices, each the farthest from those before it, beginning with `first`; vertices of components without one
 /// count as infinitely far. Each one costs what is nearer to it than to those before.
