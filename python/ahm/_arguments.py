@@ -216,7 +216,8 @@ def points(value: Any, name: str, surface: Any) -> tuple:
     if len(value) == 0:
         raise ValueError(f"{name}: is empty; at least one point is needed")
     try:
-        whole = array(value, name)
+        mixed = isinstance(value, (list, tuple)) and any(isinstance(one, (bool, np.bool_)) for one in value)
+        whole = None if mixed else array(value, name)
     except (TypeError, ValueError):
         whole = None
     if whole is not None and whole.ndim == 1 and whole.dtype.kind in "iu":

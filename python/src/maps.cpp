@@ -175,7 +175,10 @@ py::array axes(const MapPtr& m) {
   return owned<Vec3, double>(std::move(result), {m->body->rows(), 2, 3});
 }
 
-py::array gradient(const MapPtr& m) { return owned(distance_gradients(m->surface(), m->map, m->rows)); }
+py::array gradient(const MapPtr& m) {
+  require_frames(*m);
+  return owned(distance_gradients(m->surface(), m->map, m->rows));
+}
 
 py::array corners(const MapPtr& m) {
   std::vector<Vec2> result = m->surface().on_corners(m->map);
