@@ -56,9 +56,9 @@ py::tuple cells(const BodyPtr& body, const py::tuple& sources, const py::object&
 /// Rows; vertices that no row has (inside refined polygons) are passed over.
 py::array farthest(const BodyPtr& body, const py::tuple& first, Index count, const py::object& report) {
   const Places at = places(first);
-  return owned(compute(report, py::none(), [=](const Progress&) {
+  return owned(compute(report, py::none(), [=](const Progress& progress) {
     std::vector<Index> rows;
-    for (Vertex vertex : farthest_points(body->graph(), body->vertices_near(at).at(0), count))
+    for (Vertex vertex : farthest_points(body->graph(), body->vertices_near(at).at(0), count, progress))
       if (const auto row = body->row(vertex)) rows.push_back(row->index);
     return rows;
   }));
