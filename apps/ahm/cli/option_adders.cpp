@@ -62,7 +62,8 @@ void add_input(CLI::App& app, InputOptions& o) {
 }
 
 CLI::Option* add_backend(CLI::App& app, InputOptions& o) {
-  std::vector<std::string> names = backend_names();
+  std::vector<std::string> names;
+  for (const Backend& backend : backends()) names.emplace_back(backend.name);
   const std::string last = names.back();
   names.pop_back();
   const std::string help = fmt::format("auto (default): by the faces of INPUT; {} or {}", fmt::join(names, ", "), last);

@@ -1,14 +1,12 @@
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
+#include <numeric>
 
 #include "ahm/error.hpp"
 #include "cli/option_adders.hpp"
 #include "cli/source_list.hpp"
 #include "commands/polyline.hpp"
 #include "commands/subcommand.hpp"
-#include "output/results.hpp"
-#include "output/summary.hpp"
 
 namespace ahm::app {
 namespace {
@@ -35,63 +33,42 @@ struct PathCommandOptions {
   bool closed = false;
 };
 
-/// The curve through all points, and how long it is between them.
-struct Path {
-  std::vector<Vec3> points;
+/// Adds the shortest ways from stop to stop, as one curve.
+void go_through(const std::vector<SurfacePoint>& stops, const std::vector<SourceSpec>& specs,
+                const ExactGeodesics& geodesics, Polyline& path) {
   std::vector<double> lengths;
-  double length = 0;
-
-  void add(const ExactGeodesics& geodesics, const exact::GeodesicPath& leg) {
-    for (const exact::MeshPoint& point : leg.points) {
-      const bool joint = !points.empty() && &point == &leg.points.front();
-      if (!joint) points.push_back(geodesics.position(point));
-    }
-    lengths.push_back(leg.length);
-    length += leg.length;
-  }
-};
-
-Path find_path(const ExactGeodesics& geodesics, const std::vector<SurfacePoint>& stops,
-               const std::vector<SourceSpec>& specs) {
-  Path path;
   for (std::size_t k = 1; k < stops.size(); ++k) {
     const exact::GeodesicPath leg = geodesics.path(std::span(stops).subspan(k - 1, 2));
     if (leg.status != Status::ok)
       throw InvalidArgument(fmt::format("there is no path from {} to {}: the surface does not connect them",
                                         to_string(specs[k - 1]), to_string(specs[k])));
-    path.add(geodesics, leg);
+    const std::vector<Vec3> points = positions_of(geodesics, leg.points);
+    path.points.insert(path.points.end(), points.begin() + (k > 1 ? 1 : 0), points.end());
+    lengths.push_back(leg.length);
   }
-  return path;
+  const double length = std::accumulate(lengths.begin(), lengths.end(), 0.0);
+  path.text = fmt::format("a path of {} points, {:.6g} long\n", path.points.size(), length);
+  path.json["points"] = path.points.size();
+  path.json["length"] = length;
+  path.json["lengths"] = lengths;
 }
 
-void report(const PathCommandOptions& options, const Input& input, const std::vector<SourceSpec>& specs,
-            const Path& path, Journal& journal) {
-  nlohmann::ordered_json j = summary("ahm path", options.input.path, options.output, input);
-  for (const SourceSpec& spec : specs) j["stops"].push_back(to_string(spec));
-  j["closed"] = options.closed;
-  j["points"] = path.points.size();
-  j["length"] = path.length;
-  j["lengths"] = path.lengths;
-  deliver(std::move(j), fmt::format("a path of {} points, {:.6g} long\n", path.points.size(), path.length),
-          options.output, journal);
-}
-
-void run(const PathCommandOptions& options) {
-  check_results(options.input.path, options.output, polyline_endings());
-  Journal journal(options.output.verbose);
-  const Input input = open_input(options.input, journal);
-  journal.start("path");
-  const ExactGeodesics geodesics = geodesics_of(input);
+Polyline find_path(const PathCommandOptions& options, const ExactGeodesics& geodesics, const Input& input) {
   std::vector<SourceSpec> specs{options.from};
   specs.insert(specs.end(), options.to.begin(), options.to.end());
   std::vector<SurfacePoint> stops;
   for (const SourceSpec& spec : specs) stops.push_back(point_on_faces(input, spec, stops.empty() ? "--from" : "--to"));
   if (options.closed) stops.push_back(stops.front()), specs.push_back(specs.front());
-  const Path path = find_path(geodesics, stops, specs);
-  write_polyline_view(geodesics, input, options.input, options.output, stops.front(), path.points, journal);
-  journal.start("write");
-  write_polyline(options.output.output, path.points);
-  report(options, input, specs, path, journal);
+  Polyline path{.from = stops.front()};
+  for (const SourceSpec& spec : specs) path.json["stops"].push_back(to_string(spec));
+  path.json["closed"] = options.closed;
+  go_through(stops, specs, geodesics, path);
+  return path;
+}
+
+void run(const PathCommandOptions& options) {
+  run_polyline("path", options.input, options.output, {},
+               [&](const auto& geodesics, const Input& input) { return find_path(options, geodesics, input); });
 }
 
 void offer(CLI::App& app, PathCommandOptions& o) {

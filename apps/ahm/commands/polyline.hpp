@@ -2,6 +2,9 @@
 /// Curves over the faces of a mesh: what `ahm path` and `ahm trace` have in common.
 #pragma once
 
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,23 +13,28 @@
 
 namespace ahm::app {
 
-/// The endings of files that `write_polyline` writes.
-std::vector<std::string> polyline_endings();
+/// What a subcommand found, and what it tells.
+struct Polyline {
+  SurfacePoint from;
+  std::vector<Vec3> points{};
+  nlohmann::ordered_json json{};  ///< to programs, after the head of the summary
+  std::string text{};             ///< to people
+};
+using FindPolyline = std::function<Polyline(const ExactGeodesics& geodesics, const Input& input)>;
 
-/// The faces of the input, laid out. @throws InvalidArgument where there are none
-ExactGeodesics geodesics_of(const Input& input);
+/// Opens the input, finds the curve, and writes it: --output (.csv, .ply with edges, or .obj with a line), --view (the
+/// curve on the exact map of its first point) and --json.
+/// @param name    of the subcommand
+/// @param source  --source, where the surface is opened for one
+/// @throws InvalidArgument where the input has no faces; what opening, `find` and writing throw
+void run_polyline(const std::string& name, const InputOptions& options, const OutputOptions& output,
+                  const std::optional<SourceSpec>& source, const FindPolyline& find);
 
 /// The point that the user means; of a position the nearest point of the faces.
 /// @param option  that asked for it, for messages
 /// @throws InvalidArgument
 SurfacePoint point_on_faces(const Input& input, const SourceSpec& spec, const std::string& option);
 
-/// x, y, z and the length up to each point: .csv, .ply with edges, or .obj with a line.
-void write_polyline(const std::string& name, const std::vector<Vec3>& points);
-
-/// Writes --view, where it was asked for: the curve on the exact map of its first point.
-void write_polyline_view(const ExactGeodesics& geodesics, const Input& input, const InputOptions& options,
-                         const OutputOptions& output, const SurfacePoint& from, const std::vector<Vec3>& points,
-                         Journal& journal);
+std::vector<Vec3> positions_of(const ExactGeodesics& geodesics, const std::vector<exact::MeshPoint>& points);
 
 }  // namespace ahm::app

@@ -1,14 +1,10 @@
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
 #include "ahm/error.hpp"
 #include "cli/numbers.hpp"
 #include "cli/option_adders.hpp"
 #include "commands/polyline.hpp"
 #include "commands/subcommand.hpp"
-#include "output/results.hpp"
-#include "output/summary.hpp"
 
 namespace ahm::app {
 namespace {
@@ -41,34 +37,23 @@ exact::TracedPath trace(const ExactGeodesics& geodesics, const SurfacePoint& fro
   }
 }
 
-void report(const TraceCommandOptions& options, const Input& input, const exact::TracedPath& line,
-            const std::vector<Vec3>& points, Journal& journal) {
+Polyline find_line(const TraceCommandOptions& options, const ExactGeodesics& geodesics, const Input& input) {
+  Polyline result{.from = point_on_faces(input, options.source, "--source")};
+  const exact::TracedPath line = trace(geodesics, result.from, options);
+  const std::vector<Vec3>& points = result.points = positions_of(geodesics, line.points);
   const bool complete = line.end == exact::TraceEnd::complete;
-  nlohmann::ordered_json j = summary("ahm trace", options.input.path, options.output, input);
-  j["source"] = {{"spec", to_string(options.source)}, {"position", points.front()}};
-  j["end"] = {{"at", complete ? "length" : "boundary"}, {"position", points.back()}};
-  j["points"] = points.size();
-  j["length"] = line.length;
-  deliver(std::move(j),
-          fmt::format("a line of {} points, {:.6g} long{}\n", points.size(), line.length,
-                      complete ? "" : ", where it meets the boundary"),
-          options.output, journal);
+  result.json["source"] = {{"spec", to_string(options.source)}, {"position", points.front()}};
+  result.json["end"] = {{"at", complete ? "length" : "boundary"}, {"position", points.back()}};
+  result.json["points"] = points.size();
+  result.json["length"] = line.length;
+  result.text = fmt::format("a line of {} points, {:.6g} long{}\n", points.size(), line.length,
+                            complete ? "" : ", where it meets the boundary");
+  return result;
 }
 
 void run(const TraceCommandOptions& options) {
-  check_results(options.input.path, options.output, polyline_endings());
-  Journal journal(options.output.verbose);
-  const Input input = open_input(options.input, journal, options.source);
-  journal.start("trace");
-  const ExactGeodesics geodesics = geodesics_of(input);
-  const SurfacePoint from = point_on_faces(input, options.source, "--source");
-  const exact::TracedPath line = trace(geodesics, from, options);
-  std::vector<Vec3> points;
-  for (const exact::MeshPoint& point : line.points) points.push_back(geodesics.position(point));
-  write_polyline_view(geodesics, input, options.input, options.output, from, points, journal);
-  journal.start("write");
-  write_polyline(options.output.output, points);
-  report(options, input, line, points, journal);
+  run_polyline("trace", options.input, options.output, options.source,
+               [&](const auto& geodesics, const Input& input) { return find_line(options, geodesics, input); });
 }
 
 void offer(CLI::App& app, TraceCommandOptions& o) {

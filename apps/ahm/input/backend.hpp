@@ -1,10 +1,11 @@
 /// \file
-/// What the program needs of a backend. A new backend is one more source file with a `build_...` function and one line
-/// in the table of backends.cpp.
+/// What the program needs of a backend. Each has a file of its own, input/NAME_backend.cpp, with a function
+/// `NAME_backend`; the list of all is in apps/ahm/CMakeLists.txt.
 #pragma once
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -30,7 +31,7 @@ struct Built {
 /// A way to make a surface of an input.
 struct Backend {
   std::string_view name;
-  bool (*suits)(const io::Geometry&);  ///< `auto` takes the first of the table that does
+  bool (*suits)(const io::Geometry&);  ///< `auto` takes the first that does
   BuildCost cost;
   /// @param source  that the surface is opened for, if there is one: filters of clouds keep it
   /// @throws what the backend throws
@@ -38,14 +39,10 @@ struct Backend {
                  const Progress& progress);
 };
 
-/// Names of the table, in its order.
-std::vector<std::string> backend_names();
+/// All of them, in the order in which `auto` asks them.
+std::span<const Backend> backends();
 
 /// The user's choice, or for `auto` the backend that suits the input.
 const Backend& choose_backend(const io::Geometry& input, const std::string& requested);
-
-Built build_trimesh(const io::Geometry&, const InputOptions&, const std::optional<SourceSpec>&, const Progress&);
-Built build_polymesh(const io::Geometry&, const InputOptions&, const std::optional<SourceSpec>&, const Progress&);
-Built build_pointcloud(const io::Geometry&, const InputOptions&, const std::optional<SourceSpec>&, const Progress&);
 
 }  // namespace ahm::app

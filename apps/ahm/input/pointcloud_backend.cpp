@@ -73,10 +73,10 @@ std::vector<Warning> warnings_of(const PreparedCloud& prepared, std::size_t face
   return result;
 }
 
-}  // namespace
+bool suits(const io::Geometry& input) { return input.face_count() == 0; }
 
-Built build_pointcloud(const io::Geometry& input, const InputOptions& options, const std::optional<SourceSpec>& source,
-                       const Progress& progress) {
+Built build(const io::Geometry& input, const InputOptions& options, const std::optional<SourceSpec>& source,
+            const Progress& progress) {
   const PreparedCloud prepared = prepare_cloud(input, options, checked_source(source, input));
   CloudOptions cloud = cloud_options(options, progress);
   cloud.rows = prepared.rows;
@@ -87,5 +87,9 @@ Built build_pointcloud(const io::Geometry& input, const InputOptions& options, c
   result.warnings.insert(result.warnings.begin(), before.begin(), before.end());
   return result;
 }
+
+}  // namespace
+
+Backend pointcloud_backend() { return {"pointcloud", suits, pointcloud::build_cost, build}; }
 
 }  // namespace ahm::app

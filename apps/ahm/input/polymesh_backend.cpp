@@ -20,13 +20,17 @@ polymesh::PolygonOptions polygon_options(const InputOptions& options, const Prog
   return result;
 }
 
-}  // namespace
+bool suits(const io::Geometry& input) { return input.face_count() > 0; }
 
-Built build_polymesh(const io::Geometry& input, const InputOptions& options, const std::optional<SourceSpec>& source,
-                     const Progress& progress) {
+Built build(const io::Geometry& input, const InputOptions& options, const std::optional<SourceSpec>& source,
+            const Progress& progress) {
   check_mesh_input("polymesh", input, options, source);
   return Built(std::make_unique<PolygonMeshSurface>(PolygonMeshSurface::build(
       input.points, input.face_begin, input.face_vertices, polygon_options(options, progress))));
 }
+
+}  // namespace
+
+Backend polymesh_backend() { return {"polymesh", suits, polymesh::build_cost, build}; }
 
 }  // namespace ahm::app

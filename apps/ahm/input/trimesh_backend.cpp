@@ -33,13 +33,21 @@ MeshOptions mesh_options(const InputOptions& options, const Progress& progress) 
   return result;
 }
 
-}  // namespace
+bool suits(const io::Geometry& input) {
+  for (std::size_t f = 0; f < input.face_count(); ++f)
+    if (input.face(f).size() != 3) return false;
+  return input.face_count() > 0;
+}
 
-Built build_trimesh(const io::Geometry& input, const InputOptions& options, const std::optional<SourceSpec>& source,
-                    const Progress& progress) {
+Built build(const io::Geometry& input, const InputOptions& options, const std::optional<SourceSpec>& source,
+            const Progress& progress) {
   check_mesh_input("trimesh", input, options, source);
   return Built(std::make_unique<TriangleMeshSurface>(
       TriangleMeshSurface::build(input.points, triangles(input), mesh_options(options, progress))));
 }
+
+}  // namespace
+
+Backend trimesh_backend() { return {"trimesh", suits, trimesh::build_cost, build}; }
 
 }  // namespace ahm::app

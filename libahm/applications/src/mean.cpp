@@ -60,7 +60,7 @@ struct View {
 
 View look(const Problem& problem, Vertex from, double radius) {
   const TangentGraph& graph = problem.solver.graph();
-  View view{problem.solver.solve(Source::at_vertex(from), {.radius = radius}), {}, {}};
+  View view{problem.solver.solve(Source::at_vertex(from), {.radius = radius, .spread = false}), {}, {}};
   view.points.dimension = static_cast<std::size_t>(graph.dimension());
   view.points.weights = problem.weights;
   for (Vertex vertex : problem.vertices) {

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <set>
 
 #include "ahm/error.hpp"
 #include "ahm/graph/validate.hpp"
@@ -122,6 +123,19 @@ TEST(PolygonFaults, MoebiusBandsAreSolvedWithReflections) {
   for (Index i = 0; i < mesh.vertices(); ++i)
     if (other.distance(Vertex(i)) < 1.5)
       EXPECT_NEAR(map.distance(Vertex(i)), other.distance(Vertex(i)), h) << "vertex " << i;
+}
+
+TEST(PolygonFaults, EveryWarningComesOnceHoweverItIsDiscretized) {
+  Polygons mesh = moebius_quads(60, 6);
+  mesh.reverse(7);
+  mesh.positions.push_back({0, 0, 0});  // no vertex of a face
+  for (const auto discretization : {polymesh::Discretization::polygons, polymesh::Discretization::refined}) {
+    const auto surface = polymesh::PolygonMeshSurface::build(mesh.positions, mesh.begin, mesh.corners,
+                                                             {.discretization = discretization});
+    std::multiset<std::string_view> ids;
+    for (const Warning& warning : surface.warnings()) ids.insert(warning.id);
+    EXPECT_EQ(ids, (std::multiset<std::string_view>{"not_orientable", "reoriented", "unreferenced"}));
+  }
 }
 
 TEST(PolygonFaults, FacesWithoutAreaAreMapped) {

@@ -5,8 +5,10 @@
 #include <array>
 #include <cmath>
 
+#include "ahm/error.hpp"
 #include "ahm/maps/local_maps.hpp"
 #include "ahm/maps/log_map_solver.hpp"
+#include "ahm/maps/quality.hpp"
 #include "ahm/testing/closed_forms.hpp"
 #include "ahm/testing/curved_graphs.hpp"
 #include "ahm/testing/flat_graphs.hpp"
@@ -105,6 +107,30 @@ TEST(SecondMoment, SpreadsAcrossACutLocusOnly) {
   EXPECT_LT(map.spread()[at(15)], 1e-3 * 15);
   EXPECT_NEAR(map.distance(Vertex(at(30))), 30, 0.2);
   EXPECT_LT(length(map.coordinates(Vertex(at(30)))), 1);
+}
+
+// What is left out changes nothing else, not where a map marches on beyond the reach of a global solve either.
+TEST(SecondMoment, MayBeLeftOut) {
+  CsrGraphData delaunay = tube(900, 5);
+  delaunay.is_delaunay = true;
+  for (const CsrGraphData& data : {delaunay, tube(60, 9)}) {
+    const CsrGraph graph(data);
+    const LogMapSolver solver(graph, {.strategy = Strategy::automatic});
+    for (Variant variant : variants) {
+      const LogMap all = solver.solve(Source::at_vertex(Vertex{7}), {.variant = variant});
+      const LogMap map = solver.solve(Source::at_vertex(Vertex{7}), {.variant = variant, .spread = false});
+      ASSERT_EQ(map.strategy(), all.strategy());
+      for (std::size_t i = 0; i < map.distances().size(); ++i) {
+        ASSERT_EQ(map.distances()[i], all.distances()[i]);
+        ASSERT_EQ(map.coordinates()[2 * i], all.coordinates()[2 * i]);
+      }
+      EXPECT_FALSE(all.spread().empty());
+      EXPECT_TRUE(map.spread().empty());
+      EXPECT_THROW(map_quality(graph, map), InvalidArgument);
+    }
+  }
+  const CsrGraph long_tube(delaunay);
+  EXPECT_EQ(LogMapSolver(long_tube).solve(Source::at_vertex(Vertex{7})).strategy(), Strategy::march);
 }
 
 TEST(Distances, AreZeroAtTheSourceInEveryOrder) {

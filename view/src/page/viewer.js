@@ -293,6 +293,7 @@
   try {
     start();
   } catch (error) {
+    for (const id of ["axis_u", "axis_v", "panel"]) element(id).style.display = "none";
     element("message").textContent = "This page needs WebGL: " + error.message;
   }
 })();

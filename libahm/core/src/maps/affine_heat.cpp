@@ -18,6 +18,7 @@ AffineHeat::AffineHeat(const TangentGraph& graph, const HeatOperators& operators
       n_(static_cast<std::size_t>(graph.size())),
       d_(static_cast<std::size_t>(graph.dimension())),
       layout_(graph.transport_layout()),
+      place_(system_.layout(n_, d_)),
       threads_(threads) {}
 
 FrameField AffineHeat::frames(std::size_t source) const {
@@ -95,7 +96,7 @@ void AffineHeat::solve() {
     });
     for (std::size_t k = 0; k < inflows_[s].vertices.size(); ++k)
       for (std::size_t a = 0; a < d_; ++a)
-        right_side[system_.place(static_cast<std::size_t>(inflows_[s].vertices[k]), a, n_, d_)] +=
+        right_side[place_.place(static_cast<std::size_t>(inflows_[s].vertices[k]), a)] +=
             inflows_[s].values[k * d_ + a];
   }
   system_.solve(operators_, unknown_, inflows_.size());
@@ -106,20 +107,27 @@ void AffineHeat::solve_squares() {
   const double to_units = graph_.length_unit() / solution_unit(graph_);
   squares_.resize(inflows_.size() * n_);
   detail::for_each_index(n_, threads_, [&](std::size_t i) {
+    static thread_local std::vector<double> amounts, factors, values;
     const Star star = graph_.star(static_cast<Index>(i));
-    const double coefficient = -operators_.tau()[i] * operators_.scaling();
-    Scratch e(d_), value(d_), pairs(d_ * d_);
+    const double coefficient = -operators_.tau()[i] * operators_.scaling() * to_units;
+    amounts.resize(star.degree());
+    factors.resize(star.degree());
+    values.resize(star.degree() * d_);
+    for (std::size_t k = 0; k < star.degree(); ++k) {
+      factors[k] = 2 * coefficient * star.weights[k];
+      amounts[k] = coefficient * star.weights[k] * to_units * dot(star.log(k), star.log(k));
+    }
+    Scratch pairs(d_ * d_);
     for (std::size_t s = 0; s < inflows_.size(); ++s) {
-      std::fill(pairs.span().begin(), pairs.span().end(), 0.0);
+      const double *lambda = lambda_.data() + s * n_, *x = unknown_.data() + s * n_ * d_;
       double squares = 0;
       for (std::size_t k = 0; k < star.degree(); ++k) {
-        const Index j = star.neighbors[k];
-        const double amount = coefficient * star.weights[k];
-        for (std::size_t a = 0; a < d_; ++a) e.data()[a] = to_units * star.logs[k * d_ + a];
-        unknown_at(s, j, value.data());
-        system_.add_pair(2 * amount, e.span(), star.transport(k), value.span(), pairs.data());
-        squares += amount * dot(e.span(), e.span()) * lambda_[s * n_ + static_cast<std::size_t>(j)];
+        const auto j = static_cast<std::size_t>(star.neighbors[k]);
+        squares += amounts[k] * lambda[j];
+        for (std::size_t a = 0; a < d_; ++a) values[k * d_ + a] = x[place_.place(j, a)];
       }
+      std::fill(pairs.span().begin(), pairs.span().end(), 0.0);
+      system_.add_pairs(star, factors, values, pairs.data());
       squares_[s * n_ + i] = system_.paired(frames(s), static_cast<Index>(i), pairs.span()) - squares;
     }
   });
@@ -137,10 +145,11 @@ void AffineHeat::solve_squares() {
 
 void AffineHeat::unknown_at(std::size_t source, Index vertex, double* out) const {
   const std::span<const double> x = unknown(source);
-  for (std::size_t a = 0; a < d_; ++a) out[a] = x[system_.place(static_cast<std::size_t>(vertex), a, n_, d_)];
+  for (std::size_t a = 0; a < d_; ++a) out[a] = x[place_.place(static_cast<std::size_t>(vertex), a)];
 }
 
 double AffineHeat::root_mean_square_at(std::size_t source, Index vertex) const {
+  if (!has_squares()) return 0;
   return std::sqrt(std::max(0.0, square_at(source, vertex) / lambda(source)[vertex])) * solution_unit(graph_);
 }
 

@@ -47,6 +47,7 @@ class AffineHeat {
   void solve();
   /// Solves for the second moments q, after `solve`.
   void solve_squares();
+  bool has_squares() const { return !squares_.empty(); }
   /// The unknown of one source: n x d numbers, laid out as its system wants them.
   std::span<const double> unknown(std::size_t source) const {
     return std::span(unknown_).subspan(source * n_ * d_, n_ * d_);
@@ -57,7 +58,7 @@ class AffineHeat {
   double square_at(std::size_t source, Index vertex) const {
     return squares_[source * n_ + static_cast<std::size_t>(vertex)];
   }
-  /// sqrt(q_i / lambda_i) of one source in world units.
+  /// sqrt(q_i / lambda_i) of one source in world units; 0 without `solve_squares`.
   double root_mean_square_at(std::size_t source, Index vertex) const;
   /// phi_i of one source in world units.
   void coordinates_at(std::size_t source, Index vertex, double* phi) const;
@@ -82,6 +83,7 @@ class AffineHeat {
   std::vector<Inflow> inflows_;
   std::size_t n_, d_;
   TransportLayout layout_;
+  UnknownLayout place_;
   unsigned threads_;
   std::vector<double> lambda_;          ///< n per source
   std::vector<double> least_heat_;      ///< one per source

@@ -25,11 +25,23 @@ double FrameField::heat(Index vertex) const {
 }
 
 void FrameField::frame(Index vertex, double* out) const {
+  if (layout_.kind == TransportKind::rotation2) return rotation(vertex, out);
   raw(vertex, out);
   const double largest = heat(vertex);
   if (!(largest >= std::numeric_limits<double>::min())) return layout_.set_identity(out);
   for (std::size_t k = 0; k < layout_.width(); ++k) out[k] /= largest;
   layout_.make_orthogonal(out);
+}
+
+/// The same for a complex number, which most graphs ask for at every vertex.
+void FrameField::rotation(Index vertex, double* out) const {
+  const double re = solution_[2 * static_cast<std::size_t>(vertex)],
+               im = solution_[2 * static_cast<std::size_t>(vertex) + 1];
+  const double largest = std::max(std::abs(re), std::abs(im));
+  if (!(largest >= std::numeric_limits<double>::min())) return layout_.set_identity(out);
+  const double c = re / largest, s = im / largest, r = std::sqrt(c * c + s * s);
+  out[0] = c / r;
+  out[1] = s / r;
 }
 
 void FrameField::to_source(Index vertex, const double* in, double* out, std::size_t stride) const {

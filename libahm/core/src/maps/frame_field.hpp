@@ -32,6 +32,8 @@ class FrameField {
   void axes(Index vertex, double* out) const;
 
  private:
+  void rotation(Index vertex, double* out) const;
+
   std::size_t n_;
   TransportLayout layout_;
   std::span<const double> solution_;

@@ -8,8 +8,8 @@
 #include <string>
 
 #include "ahm/error.hpp"
-#include "ahm/fields/unfolding_front.hpp"
 #include "ahm/maps/cost.hpp"
+#include "ahm/maps/unfolding_front.hpp"
 #include "ahm/util/memory.hpp"
 #include "ahm/util/parallel.hpp"
 #include "ahm/util/small_math.hpp"
@@ -35,23 +35,15 @@ std::size_t sources_per_block(Index n) {
 struct MapSettings {
   Variant variant;
   double radius;
-  bool frames;
+  bool frames, spread;
   Progress progress;
 };
 
 MapSettings settings_of(const MapOptions& map, const HeatOptions& options) {
   if (!(map.radius > 0))
     throw InvalidArgument("radius is " + detail::number(map.radius) + "; it must be > 0 (infinity: the whole graph)");
-  return {map.variant.value_or(options.variant), map.radius, map.frames, map.progress.value_or(options.progress)};
-}
-
-void check_options(const HeatOptions& options) {
-  if (!(options.accuracy >= 1e-14 && options.accuracy <= 0.1))
-    throw InvalidArgument("accuracy is " + detail::number(options.accuracy) + "; it must be in [1e-14, 0.1]");
-  if (options.order != 1 && options.order != 2)
-    throw InvalidArgument("order is " + std::to_string(options.order) + "; it must be 1 or 2");
-  if (options.expected_maps < 0)
-    throw InvalidArgument("expected_maps is " + std::to_string(options.expected_maps) + "; it must be >= 0 (0: many)");
+  return {map.variant.value_or(options.variant), map.radius, map.frames, map.spread,
+          map.progress.value_or(options.progress)};
 }
 
 /// What a solve knows of a vertex besides its coordinates.
@@ -60,10 +52,13 @@ struct Found {
   double root_mean_square = 0;  ///< sqrt(q / lambda), world units
 };
 
-/// Distances unfolded from a source, where that is how they are measured: on triangulations, and from curves.
+/// How distances are measured: unfolded on triangulations and from curves, elsewhere by the second moment of heat.
+bool unfolds(const TangentGraph& graph, const Source& source) { return graph.is_delaunay() || source.is_curve(); }
+
+/// Distances unfolded from a source; empty: they are measured by heat.
 std::vector<double> unfolded(const TangentGraph& graph, const std::shared_ptr<const UnfoldingFront::Stars>& stars,
                              const Source& source, double radius) {
-  if (!graph.is_delaunay() && !source.is_curve()) return {};
+  if (!unfolds(graph, source)) return {};
   UnfoldingFront front(graph, stars);
   front.add(source);
   front.run(radius);
@@ -118,10 +113,10 @@ struct LogMapSolver::Impl {
                 unsigned threads) const;
   LogMap marched(const March& front, std::size_t time, const Source& source, std::span<const double> unfolded,
                  const MapSettings& map, unsigned threads) const;
-  LogMap finished(const AffineHeat& heat, std::size_t time, std::size_t s, const Source& source,
+  LogMap finished(AffineHeat& heat, std::size_t time, std::size_t s, const Source& source,
                   std::span<const double> unfolded, const MapSettings& map, unsigned threads) const;
   std::vector<LogMap> solve_block(std::size_t time, std::span<const Source> sources,
-                                  const std::vector<std::vector<double>>& unfolded, const MapSettings& map,
+                                  std::vector<std::vector<double>>& unfolded, const MapSettings& map,
                                   unsigned threads) const;
   std::vector<LogMap> solve_block(std::span<const Source> sources, const MapSettings& map, unsigned threads) const;
 };
@@ -130,7 +125,6 @@ namespace {
 
 /// The checks come before anything else is asked of the graph.
 const TangentGraph& checked(const TangentGraph& graph, const HeatOptions& options) {
-  check_options(options);
   check_heat_options(graph, options);
   return graph;
 }
@@ -208,7 +202,8 @@ LogMap LogMapSolver::Impl::map_of(const Values& values, Strategy how, const Marc
   const SourceComponents components(source, scales.components.of_vertex);
   std::vector<double> coordinates(n * d);
   std::vector<Status> status(n);
-  MapExtras extras{march, std::vector<double>(n), std::vector<double>(source.is_curve() ? 0 : n), {}, {}};
+  MapExtras extras{
+      march, std::vector<double>(n), std::vector<double>(map.spread && !source.is_curve() ? n : 0), {}, {}};
   if (map.frames) extras.frames.resize(n * d * d);
   detail::for_each_index(n, threads, [&](std::size_t i) {
     const auto vertex = static_cast<Index>(i);
@@ -220,7 +215,7 @@ LogMap LogMapSolver::Impl::map_of(const Values& values, Strategy how, const Marc
     const double r = length(phi), rms = found.root_mean_square;
     const double root_tau = std::sqrt(taus[scales.component(vertex)]) * graph.length_unit();
     extras.distances[i] = unfolded.empty() ? heat_distance(r, rms, root_tau) : unfolded[i];
-    if (!source.is_curve()) extras.spread[i] = rms > r ? std::sqrt(rms - r) * std::sqrt(rms + r) : 0.0;
+    if (!extras.spread.empty()) extras.spread[i] = rms > r ? std::sqrt(rms - r) * std::sqrt(rms + r) : 0.0;
     if (map.frames) values.axes(vertex, extras.frames.data() + i * d * d);
   });
   if (unfolded.empty()) place_source(source, extras.distances);
@@ -242,21 +237,28 @@ LogMap LogMapSolver::Impl::marched(const March& front, std::size_t time, const S
 }
 
 /// Where a global solve leaves vertices beyond its reach, strategy `automatic` marches on.
-LogMap LogMapSolver::Impl::finished(const AffineHeat& heat, std::size_t time, std::size_t s, const Source& source,
+LogMap LogMapSolver::Impl::finished(AffineHeat& heat, std::size_t time, std::size_t s, const Source& source,
                                     std::span<const double> unfolded, const MapSettings& map, unsigned threads) const {
   LogMap result = map_of(GlobalValues(heat, s), Strategy::global, {}, source, times[time].tau, unfolded, map, threads);
   if (options.strategy != Strategy::automatic || result.count(Status::unreached) == 0) return result;
+  if (!heat.has_squares()) heat.solve_squares();
   March on = front(time, map, threads);
   on.run_on(heat, s);
   return marched(on, time, source, unfolded, map, threads);
 }
 
 /// Solves one block of sources at one diffusion time.
+/// @param unfolded  distances of the sources, empty ones for those of heat; made here unless a time before has
 std::vector<LogMap> LogMapSolver::Impl::solve_block(std::size_t time, std::span<const Source> sources,
-                                                    const std::vector<std::vector<double>>& unfolded,
-                                                    const MapSettings& map, unsigned threads) const {
+                                                    std::vector<std::vector<double>>& unfolded, const MapSettings& map,
+                                                    unsigned threads) const {
   std::vector<LogMap> maps;
+  const auto unfold = [&] {
+    if (unfolded.empty())
+      for (const Source& source : sources) unfolded.push_back(ahm::unfolded(graph, stars(), source, map.radius));
+  };
   if (strategy == Strategy::march) {
+    unfold();
     for (std::size_t s = 0; s < sources.size(); ++s) {
       March on = front(time, map, threads);
       on.run(sources[s]);
@@ -268,8 +270,14 @@ std::vector<LogMap> LogMapSolver::Impl::solve_block(std::size_t time, std::span<
                   threads);
   heat.diffuse();
   if (map.progress.stop.stop_requested()) throw Cancelled("cancelled during solve");
-  heat.solve();
-  heat.solve_squares();
+  const bool squares = std::any_of(sources.begin(), sources.end(), [&](const Source& source) {
+    return !unfolds(graph, source) || (map.spread && !source.is_curve());
+  });
+  const auto solve = [&] {
+    heat.solve();
+    if (squares) heat.solve_squares();
+  };
+  detail::run_both(threads > 1, solve, unfold);
   for (std::size_t s = 0; s < sources.size(); ++s)
     maps.push_back(finished(heat, time, s, sources[s], unfolded[s], map, threads));
   return maps;
@@ -294,11 +302,11 @@ std::vector<LogMap> LogMapSolver::Impl::solve_block(std::span<const Source> sour
   if (times.size() > 1)  // the maps of different times differ a little at the radius
     wider.radius += 8 * *std::max_element(scales.edge_length.begin(), scales.edge_length.end()) * graph.length_unit();
   std::vector<std::vector<double>> unfolded;
-  for (const Source& source : sources) unfolded.push_back(ahm::unfolded(graph, stars(), source, wider.radius));
   if (times.size() == 1) return solve_block(0, sources, unfolded, map, threads);
   std::vector<std::vector<LogMap>> at_times;
   for (std::size_t time = 0; time < times.size(); ++time) {
     wider.frames = map.frames && time + 2 == times.size();
+    wider.spread = map.spread || time + 1 == times.size();  // the last tells where not to extrapolate
     at_times.push_back(solve_block(time, sources, unfolded, wider, threads));
   }
   std::vector<LogMap> result;

@@ -48,13 +48,18 @@ Source Source::at_vertex(Vertex vertex, std::span<const double> direction) {
 }
 
 Source& Source::add(Vertex vertex, double weight, std::span<const double> offset, std::span<const double> axes) {
-  const bool curve = is_curve_;
-  add(vertex, weight, offset, axes, {0, length(offset)});
-  is_curve_ = curve;
+  append(vertex, weight, offset, axes, {0, length(offset)});
   return *this;
 }
 
 Source& Source::add(Vertex vertex, double weight, std::span<const double> offset, std::span<const double> axes,
+                    const Place& place) {
+  append(vertex, weight, offset, axes, place);
+  is_curve_ = true;
+  return *this;
+}
+
+void Source::append(Vertex vertex, double weight, std::span<const double> offset, std::span<const double> axes,
                     const Place& place) {
   const auto d = static_cast<std::size_t>(dimension_.value_or(0));
   const std::string where = "Source::add, vertex " + std::to_string(vertex.index) + ": ";
@@ -68,14 +73,12 @@ Source& Source::add(Vertex vertex, double weight, std::span<const double> offset
                           " matrix");
   if (place.point < 0 || !(place.distance >= 0) || !std::isfinite(place.distance))
     throw InvalidArgument(where + "'place' must have a point >= 0 and a finite distance >= 0");
-  is_curve_ = true;
   places_.push_back(place);
   vertices_.push_back(vertex);
   weights_.push_back(weight);
   offsets_.insert(offsets_.end(), offset.begin(), offset.end());
   axes_.insert(axes_.end(), axes.begin(), axes.end());
   for (std::size_t k = 0; axes.empty() && k < d * d; ++k) axes_.push_back(k % (d + 1) == 0 ? 1.0 : 0.0);
-  return *this;
 }
 
 }  // namespace ahm

@@ -36,6 +36,12 @@ struct Star {
     const TransportLayout layout{is_complex ? TransportKind::rotation2 : TransportKind::block, dimension};
     return {layout, transports.data() + edge * layout.width()};
   }
+  /// The star with that edge alone.
+  Star only(std::size_t edge) const {
+    const std::size_t width = transports.size() / degree();
+    return {dimension, neighbors.subspan(edge, 1), weights.subspan(edge, 1), log(edge),
+            transports.subspan(edge * width, width)};
+  }
 };
 
 /// Tangent axes at a vertex in ambient 3-space, for input and display. The solver never asks for them.
@@ -79,5 +85,9 @@ class TangentGraph {
   /// Tangent axes in ambient space, in world units, where the backend knows them.
   virtual std::optional<Frame> frame(Index) const { return std::nullopt; }
 };
+
+/// A mass of the graph, or a sum of them, in world units to the power d. NaN where that is beyond a double or has lost
+/// digits at its lower end, as areas have from lengths of about 1e154 up and 1e-154 down.
+double world_mass(const TangentGraph& graph, double mass);
 
 }  // namespace ahm

@@ -28,6 +28,7 @@ struct MapOptions {
   double radius = std::numeric_limits<double>::infinity();
   std::optional<unsigned> threads = {};
   bool frames = false;  ///< keep the transported frames
+  bool spread = true;   ///< find and keep `LogMap::spread`; where distances are unfolded it is a fifth of the work
   std::optional<Progress> progress = {};
 };
 

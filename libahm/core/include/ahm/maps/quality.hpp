@@ -28,7 +28,7 @@ inline constexpr double trusted_quality = 0.5;
 /// docs/accuracy.md.
 /// @param threads  0: one per core
 /// @return n numbers in (0, 1]; NaN where the map is not ok
-/// @throws InvalidArgument when the map is from a curve or belongs to another graph
+/// @throws InvalidArgument when the map is from a curve, belongs to another graph or was made without its spread
 std::vector<double> map_quality(const TangentGraph& graph, const LogMap& map, unsigned threads = 0);
 
 }  // namespace ahm

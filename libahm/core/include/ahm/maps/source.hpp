@@ -48,8 +48,8 @@ class Source {
   /// @param weight  b_k >= 0, finite: barycentric or quadrature weight
   /// @param offset  z_k, d numbers in world units: where the vertex lies in the source's frame
   /// @param axes    U_k, d x d orthogonal, row major: column a is source axis a in the frame of `vertex`
-  /// @throws InvalidArgument
   ///                Empty: those of the frame itself
+  /// @throws InvalidArgument
   Source& add(Vertex vertex, double weight, std::span<const double> offset, std::span<const double> axes = {});
   /// Adds a sample of a curve. @throws InvalidArgument
   Source& add(Vertex vertex, double weight, std::span<const double> offset, std::span<const double> axes,
@@ -70,6 +70,8 @@ class Source {
 
  private:
   Source() = default;
+  void append(Vertex vertex, double weight, std::span<const double> offset, std::span<const double> axes,
+              const Place& place);
 
   std::optional<int> dimension_;
   std::vector<Vertex> vertices_;

@@ -19,7 +19,7 @@ class Adaptive final : public VariantSystem {
     for (std::size_t a = 0; a < value.size(); ++a) out[a] += heat * value[a];
   }
 
-  std::size_t place(std::size_t i, std::size_t a, std::size_t n, std::size_t) const override { return a * n + i; }
+  UnknownLayout layout(std::size_t n, std::size_t) const override { return {1, n}; }
   void put(const FrameField& U, Index vertex, std::span<const double> rho, double* right_side,
            std::size_t n) const override {
     U.to_source(vertex, rho.data(), right_side + vertex, n);
@@ -27,10 +27,12 @@ class Adaptive final : public VariantSystem {
   void solve(const HeatOperators& operators, std::span<double> X, std::size_t sources) const override {
     operators.solve_scalar(X, static_cast<Index>(sources) * operators.dimension());
   }
-  void add_pair(double factor, std::span<const double> e, const Transport&, std::span<const double> value,
-                double* pairs) const override {
-    for (std::size_t c = 0; c < e.size(); ++c)
-      for (std::size_t a = 0; a < e.size(); ++a) pairs[c * e.size() + a] += factor * e[c] * value[a];
+  void add_pairs(const Star& star, std::span<const double> factors, std::span<const double> values,
+                 double* pairs) const override {
+    const auto d = static_cast<std::size_t>(star.dimension);
+    for (std::size_t k = 0; k < star.degree(); ++k)
+      for (std::size_t c = 0; c < d; ++c)
+        for (std::size_t a = 0; a < d; ++a) pairs[c * d + a] += factors[k] * star.logs[k * d + c] * values[k * d + a];
   }
   double paired(const FrameField& U, Index i, std::span<const double> pairs) const override {
     Scratch axes(pairs.size());

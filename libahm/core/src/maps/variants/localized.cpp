@@ -26,7 +26,7 @@ class Localized final : public VariantSystem {
     R.add_to(heat, value.data(), out);
   }
 
-  std::size_t place(std::size_t i, std::size_t a, std::size_t, std::size_t d) const override { return i * d + a; }
+  UnknownLayout layout(std::size_t, std::size_t d) const override { return {d, 1}; }
   void put(const FrameField&, Index vertex, std::span<const double> rho, double* right_side,
            std::size_t) const override {
     std::copy(rho.begin(), rho.end(), right_side + static_cast<std::size_t>(vertex) * rho.size());
@@ -34,11 +34,14 @@ class Localized final : public VariantSystem {
   void solve(const HeatOperators& operators, std::span<double> X, std::size_t sources) const override {
     operators.solve_vector(X, static_cast<Index>(sources));
   }
-  void add_pair(double factor, std::span<const double> e, const Transport& R, std::span<const double> value,
-                double* pairs) const override {
-    Scratch seen(e.size());
-    R.apply(value.data(), seen.data());
-    pairs[0] += factor * dot(e, seen.span());
+  void add_pairs(const Star& star, std::span<const double> factors, std::span<const double> values,
+                 double* pairs) const override {
+    const auto d = static_cast<std::size_t>(star.dimension);
+    Scratch seen(d);
+    for (std::size_t k = 0; k < star.degree(); ++k) {
+      star.transport(k).apply(values.data() + k * d, seen.data());
+      pairs[0] += factors[k] * dot(star.log(k), seen.span());
+    }
   }
   double paired(const FrameField&, Index, std::span<const double> pairs) const override { return pairs[0]; }
   void read(const FrameField& U, Index vertex, std::span<const double> solution, std::size_t n,

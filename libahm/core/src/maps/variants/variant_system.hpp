@@ -15,7 +15,13 @@
 
 namespace ahm {
 
-/// The unknown of one source is n vectors of d numbers, laid out as its operator wants them (`place`).
+/// Component a of vertex i stands at i * vertex + a * component.
+struct UnknownLayout {
+  std::size_t vertex, component;
+  std::size_t place(std::size_t i, std::size_t a) const { return i * vertex + a * component; }
+};
+
+/// The unknown of one source is n vectors of d numbers, laid out as its operator wants them (`layout`).
 class VariantSystem {
  public:
   virtual ~VariantSystem() = default;
@@ -27,17 +33,18 @@ class VariantSystem {
   /// A vertex of known value (Dirichlet data), seen along R: adds to out, d numbers.
   virtual void add_known(double heat, const Transport& R, std::span<const double> value, double* out) const = 0;
 
-  /// Where the system has component a of vertex i.
-  virtual std::size_t place(std::size_t i, std::size_t a, std::size_t n, std::size_t d) const = 0;
+  /// Where the system has the components of the vertices.
+  virtual UnknownLayout layout(std::size_t n, std::size_t d) const = 0;
   /// Puts rho of a vertex (Eq. 9, d numbers in its frame) into the right-hand side of one source.
   virtual void put(const FrameField& U, Index vertex, std::span<const double> rho, double* right_side,
                    std::size_t n) const = 0;
   /// X <- solution, for all sources.
   virtual void solve(const HeatOperators& operators, std::span<double> X, std::size_t sources) const = 0;
   /// The inner products of edges e_ij with the unknowns of their far ends j, which the second moment of i is made of:
-  /// adds one, times `factor`, to `pairs` (d x d numbers) as far as it can be told without the frame of i ...
-  virtual void add_pair(double factor, std::span<const double> e, const Transport& R, std::span<const double> value,
-                        double* pairs) const = 0;
+  /// adds them, each times its factor, to `pairs` (d x d numbers) as far as they can be told without the frame of i ...
+  /// @param values  the unknowns, degree x d
+  virtual void add_pairs(const Star& star, std::span<const double> factors, std::span<const double> values,
+                         double* pairs) const = 0;
   /// ... and reads the sum with it.
   virtual double paired(const FrameField& U, Index i, std::span<const double> pairs) const = 0;
   /// lambda phi of a vertex, d numbers in the source's frame.

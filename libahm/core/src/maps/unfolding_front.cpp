@@ -1,8 +1,9 @@
-#include "ahm/fields/unfolding_front.hpp"
+#include "ahm/maps/unfolding_front.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <optional>
+#include <functional>
 
 #include "ahm/util/scratch.hpp"
 #include "ahm/util/small_math.hpp"
@@ -17,8 +18,8 @@ constexpr Index none = -1;
 constexpr double least_gain = 1e-12;
 /// An entry is bettered no more often: where triangles contradict each other they could go on for ever.
 constexpr Index most_gains = 40;
-/// Sides that are shorter than this share of a distance no longer tell where its point lies.
-constexpr double shortest_side = 1e-6;
+/// Sides that are shorter than this share of the other two, or of a distance, no longer tell where its point lies.
+constexpr double shortest_side = 1e-6, shortest_side_far_away = 1e-13;
 
 /// A number that grows with the angle of v, from -2 to 2.
 double turn(const Vec2& v) {
@@ -26,18 +27,18 @@ double turn(const Vec2& v) {
   return v[1] >= 0 ? 1 - along : along - 1;
 }
 
-/// The distance of c from a point at distances `from_a` and `from_b`, beyond the side ab of a triangle of the given sides;
-/// none where the straight line to it does not cross that side.
-std::optional<double> across(double from_a, double from_b, double ab, double ac, double bc) {
-  if (!(ab > shortest_side * from_a)) return std::nullopt;
-  // a is at 0, b at (ab, 0), c above, the point below.
-  const double x = (from_a * from_a - from_b * from_b + ab * ab) / (2 * ab), squared_y = from_a * from_a - x * x;
-  const double cx = (ac * ac - bc * bc + ab * ab) / (2 * ab), squared_cy = ac * ac - cx * cx;
-  if (!(squared_cy > 0) || !(squared_y >= -1e-14 * from_a * from_a)) return std::nullopt;
-  const double y = -std::sqrt(std::max(0.0, squared_y)), cy = std::sqrt(squared_cy);
-  const double at_side = x - (cx - x) * y / (cy - y);
-  if (!(at_side >= -1e-9 * ab) || !(at_side <= ab * (1 + 1e-9))) return std::nullopt;
-  return std::sqrt((cx - x) * (cx - x) + (cy - y) * (cy - y));
+/// The square of the distance of c from a point at distances `from_a` and `from_b`, beyond the side ab of a triangle with
+/// a at 0, b at (ab, 0) and c at (cx, cy) above, the point below; `limit` where it is no less, or where the straight line
+/// to the point does not cross that side.
+double squared_across(double from_a, double from_b, double ab, double cx, double cy, double limit) {
+  if (!(ab > shortest_side * std::max(std::abs(cx), cy)) || !(ab > shortest_side_far_away * from_a)) return limit;
+  const double x = 0.5 * (ab + (from_a - from_b) * (from_a + from_b) / ab);
+  const double squared_y = (from_a - x) * (from_a + x), along = (cx - x) * (cx - x) + cy * cy + squared_y;
+  if (!(squared_y >= -1e-14 * from_a * from_a) || !(along < limit)) return limit;
+  const double depth = std::sqrt(std::max(0.0, squared_y)), height = cy + depth;
+  const double at_side = x * cy + cx * depth;  // where the line crosses, times height
+  if (!(at_side >= -1e-9 * ab * height) || !(at_side <= (1 + 1e-9) * ab * height)) return limit;
+  return std::min(limit, (cx - x) * (cx - x) + height * height);
 }
 
 struct Neighbor {
@@ -72,13 +73,24 @@ double third_side(const TangentGraph& graph, const Neighbor& right, const Neighb
   return std::hypot(u[0] - v[0], u[1] - v[1]);
 }
 
-template <class Sector>
-void append_sectors(const TangentGraph& graph, Index vertex, std::vector<Neighbor>& neighbors,
-                    std::vector<Sector>& sectors) {
+/// Cosine and sine of the corner between two sides of a triangle, by its lengths [Kah14]; NaN where there is no corner.
+Vec2 corner(double a, double b, double opposite) {
+  std::array<double, 3> sides{a, b, opposite};
+  std::sort(sides.begin(), sides.end(), std::greater<>());
+  const auto [x, y, z] = sides;
+  const double squared = (x + (y + z)) * (z - (x - y)) * (z + (x - y)) * (x + (y - z));  // 16 area^2
+  if (!(squared > 0)) return {NAN, NAN};
+  return {((a - opposite) * (a + opposite) + b * b) / (2 * a * b), std::sqrt(squared) / (2 * a * b)};
+}
+
+template <class Corner>
+void append_corners(const TangentGraph& graph, Index vertex, std::vector<Neighbor>& neighbors,
+                    std::vector<Corner>& corners) {
   neighbors_of(graph, vertex, neighbors);
   for (std::size_t k = 0; k < neighbors.size(); ++k) {
     const Neighbor &right = neighbors[k], &left = neighbors[k + 1 < neighbors.size() ? k + 1 : 0];
-    sectors.push_back({right.vertex, left.vertex, right.length, left.length, third_side(graph, right, left)});
+    const Vec2 angle = corner(right.length, left.length, third_side(graph, right, left));
+    corners.push_back({right.vertex, right.length, angle[0], angle[1]});
   }
 }
 
@@ -87,21 +99,21 @@ void append_sectors(const TangentGraph& graph, Index vertex, std::vector<Neighbo
 class UnfoldingFront::Stars {
  public:
   explicit Stars(const TangentGraph& graph) : begin_{0} {
-    sectors_.reserve(static_cast<std::size_t>(graph.edge_count()));
+    corners_.reserve(static_cast<std::size_t>(graph.edge_count()));
     std::vector<Neighbor> neighbors;
     for (Index i = 0; i < graph.size(); ++i) {
-      append_sectors(graph, i, neighbors, sectors_);
-      begin_.push_back(static_cast<Offset>(sectors_.size()));
+      append_corners(graph, i, neighbors, corners_);
+      begin_.push_back(static_cast<Offset>(corners_.size()));
     }
   }
-  std::span<const Sector> of(Index vertex) const {
-    return std::span(sectors_).subspan(static_cast<std::size_t>(begin_[vertex]),
+  std::span<const Corner> of(Index vertex) const {
+    return std::span(corners_).subspan(static_cast<std::size_t>(begin_[vertex]),
                                        static_cast<std::size_t>(begin_[vertex + 1] - begin_[vertex]));
   }
 
  private:
   std::vector<Offset> begin_;
-  std::vector<Sector> sectors_;
+  std::vector<Corner> corners_;
 };
 
 std::shared_ptr<const UnfoldingFront::Stars> UnfoldingFront::stars(const TangentGraph& graph) {
@@ -201,11 +213,11 @@ void UnfoldingFront::offer(Index vertex, Index point, double distance, double sl
   queue_.push({distance, vertex, point});
 }
 
-std::span<const UnfoldingFront::Sector> UnfoldingFront::around(Index vertex) {
+std::span<const UnfoldingFront::Corner> UnfoldingFront::around(Index vertex) {
   if (stars_) return stars_->of(vertex);
   static thread_local std::vector<Neighbor> neighbors;
   around_.clear();
-  append_sectors(graph_, vertex, neighbors, around_);
+  append_corners(graph_, vertex, neighbors, around_);
   return around_;
 }
 
@@ -213,23 +225,34 @@ std::span<const UnfoldingFront::Sector> UnfoldingFront::around(Index vertex) {
 /// the other.
 void UnfoldingFront::spread(Index from, Index point, double distance) {
   if (d_ != 2) return carry(from, point);
-  const std::span<const Sector> sectors = around(from);
+  const std::span<const Corner> corners = around(from);
+  const std::size_t degree = corners.size();
+  known_.resize(degree);
   double longest = 0;
-  for (const Sector& s : sectors) longest = std::max(longest, s.right_length);
-  const double slack = 4 * longest;  // what unfolds to a border comes from a few edges beyond
-  for (const Sector& s : sectors) offer(s.right, point, distance + s.right_length, slack, {});
-  for (const Sector& s : sectors) {
-    if (std::isnan(s.side)) continue;
-    const Entry *right = find(s.right, point), *left = find(s.left, point);
-    if (!right || !left) continue;
-    const double to_right = right->distance, to_left = left->distance;  // `offer` may move the entries
-    if (to_right < distance + s.right_length)
-      if (const auto found = across(distance, to_right, s.right_length, s.left_length, s.side))
-        offer(s.left, point, *found, slack, {});
-    if (to_left < distance + s.left_length)
-      if (const auto found = across(distance, to_left, s.left_length, s.right_length, s.side))
-        offer(s.right, point, *found, slack, {});
+  for (std::size_t k = 0; k < degree; ++k) {
+    const Entry* entry = find(corners[k].neighbor, point);
+    const double before = entry ? entry->distance : std::numeric_limits<double>::infinity();
+    const double along = distance + corners[k].length;
+    known_[k] = {before, std::min(before, along), along};
+    longest = std::max(longest, corners[k].length);
   }
+  for (std::size_t k = 0; k < degree; ++k) {
+    const std::size_t next = k + 1 < degree ? k + 1 : 0;
+    const Corner &right = corners[k], &left = corners[next];
+    if (std::isnan(right.cosine)) continue;
+    const auto unfold = [&](std::size_t base, double base_length, std::size_t target, double target_length) {
+      if (!(known_[base].now < known_[base].along)) return;
+      const double limit = known_[target].now * known_[target].now;
+      const double found = squared_across(distance, known_[base].now, base_length, target_length * right.cosine,
+                                          target_length * right.sine, limit);
+      if (found < limit) known_[target].now = std::sqrt(found);
+    };
+    unfold(k, right.length, next, left.length);
+    unfold(next, left.length, k, right.length);
+  }
+  // What unfolds to a border comes from a few edges beyond.
+  for (std::size_t k = 0; k < degree; ++k)
+    if (known_[k].now < known_[k].before) offer(corners[k].neighbor, point, known_[k].now, 4 * longest, {});
 }
 
 /// The displacement to the point, from vertex to vertex.

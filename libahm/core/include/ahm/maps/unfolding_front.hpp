@@ -60,11 +60,15 @@ class UnfoldingFront {
     double distance;
     Index point, next, gains;
   };
-  /// Between two neighbours of a vertex that follow each other counterclockwise.
-  struct Sector {
-    Index right, left;
-    double right_length, left_length;
-    double side;  ///< from right to left; NaN where the star is open
+  /// A neighbour of a vertex, and the angle from it to the next one counterclockwise.
+  struct Corner {
+    Index neighbor;
+    double length;
+    double cosine, sine;  ///< NaN where the star is open
+  };
+  /// What is known of a neighbour while a vertex spreads: its distance before and now, and that along the edge.
+  struct Known {
+    double before, now, along;
   };
   struct Waiting {
     double distance;
@@ -79,7 +83,7 @@ class UnfoldingFront {
   void offer(Index vertex, Index point, double distance, double slack, std::span<const double> displacement);
   void spread(Index from, Index point, double distance);
   void carry(Index from, Index point);
-  std::span<const Sector> around(Index vertex);
+  std::span<const Corner> around(Index vertex);
 
   const TangentGraph& graph_;
   std::size_t d_;
@@ -88,7 +92,8 @@ class UnfoldingFront {
   std::vector<double> displacements_;  ///< d per entry, from the vertex to the point in its frame; d = 2: empty
   std::priority_queue<Waiting, std::vector<Waiting>, std::greater<>> queue_;
   std::shared_ptr<const Stars> stars_;
-  std::vector<Sector> around_;  ///< of the vertex at hand, where there are no stars
+  std::vector<Corner> around_;  ///< of the vertex at hand, where there are no stars
+  std::vector<Known> known_;    ///< of its neighbours
   Index points_ = 0;
 };
 

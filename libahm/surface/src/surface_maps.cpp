@@ -1,0 +1,178 @@
+// Maps on the rows, the corners and the points of a surface.
+#include <algorithm>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "ahm/error.hpp"
+#include "ahm/surface/surface.hpp"
+#include "ahm/util/vec.hpp"
+#include "visit_point.hpp"
+
+namespace ahm {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+/// Of the vertices of a row the one with coordinates nearest to the source; nothing where there is none.
+struct Best {
+  std::optional<Vertex> vertex;
+  Status status = Status::removed;
+
+  Best(const LogMap& map, const RowMap& rows, Row row)
+      : vertex(rows.least(row, [&](Vertex v) { return map.distance(v); })) {
+    if (vertex)
+      status = Status::ok;
+    else if (const auto all = rows.vertices(row); !all.empty())
+      status = map.status(all.back());
+  }
+};
+
+/// Where the point of a source lies in space; none for curves, and where the graph knows no frames.
+std::optional<Vec3> place_of(const TangentGraph& graph, const Source& source) {
+  if (source.is_curve() || source.vertices().empty()) return std::nullopt;
+  Vec3 sum{};
+  double weights = 0;
+  for (std::size_t k = 0; k < source.vertices().size(); ++k) {
+    if (source.place(k).point != 0) return std::nullopt;
+    const auto frame = graph.frame(source.vertices()[k].index);
+    if (!frame) return std::nullopt;
+    Vec3 place = frame->origin;
+    for (std::size_t a = 0; a < 2 && !source.offsets().empty(); ++a) {
+      const double z = source.offsets()[2 * k + a];
+      place = place - (z * source.axes()[4 * k + a]) * frame->x - (z * source.axes()[4 * k + 2 + a]) * frame->y;
+    }
+    sum = sum + source.weights()[k] * place;
+    weights += source.weights()[k];
+  }
+  return (1 / weights) * sum;
+}
+
+}  // namespace
+
+RowLogMap Surface::on_rows(const LogMap& map) const {
+  check_map(map);
+  // Where distances are those of heat they may be below the straight line, which no way on the surface is.
+  const bool may_be_short = map.method() == Method::heat && !graph().is_delaunay();
+  const auto source = may_be_short ? place_of(graph(), map.source()) : std::nullopt;
+  const auto n = static_cast<std::size_t>(rows().row_count());
+  const std::vector<double> none(n, nan);
+  RowLogMap result{none, none, none, none, none, {}, std::vector<Status>(n, Status::removed), {}};
+  result.vertex.resize(n);
+  const std::span<const double> error = map.error_estimate();
+  if (!error.empty()) result.error_estimate = none;
+  for (std::size_t r = 0; r < n; ++r) {
+    const Best best(map, rows(), Row(static_cast<Index>(r)));
+    result.status[r] = best.status;
+    if (!best.vertex) continue;
+    const Vertex v = *best.vertex;
+    const auto phi = map.coordinates(v);
+    result.u[r] = phi[0];
+    result.v[r] = phi[1];
+    result.distance[r] = source ? std::max(map.distance(v), distance(positions()[r], *source)) : map.distance(v);
+    if (!map.spread().empty()) result.spread[r] = map.spread()[v.index];
+    result.angle[r] = std::atan2(phi[1], phi[0]);
+    if (!error.empty()) result.error_estimate[r] = error[v.index];
+    result.vertex[r] = best.vertex;
+  }
+  return result;
+}
+
+std::vector<Vec2> Surface::on_corners(const LogMap& map) const {
+  check_map(map);
+  const FaceList all = faces();
+  std::vector<Vec2> result(all.vertices.size(), Vec2{nan, nan});
+  for (std::size_t f = 0; f < all.size(); ++f)
+    for (std::size_t c = 0; c < all[f].size(); ++c) {
+      const Vertex v = corner_vertex(static_cast<Index>(f), c);
+      if (map.status(v) != Status::ok) continue;
+      const auto phi = map.coordinates(v);
+      result[static_cast<std::size_t>(all.begin[f]) + c] = {phi[0], phi[1]};
+    }
+  return result;
+}
+
+Sample Surface::at(const LogMap& map, const SurfacePoint& point) const {
+  check_map(map);
+  const auto at_row = [&](Row row) -> std::pair<Sample, Index> {
+    const Best best(map, rows(), row);
+    if (!best.vertex) return {{nan, nan, best.status}, -1};
+    const auto phi = map.coordinates(*best.vertex);
+    return {{phi[0], phi[1], Status::ok}, best.vertex->index};
+  };
+  const auto visit = Overloaded{[&](Row row) { return at_row(row).first; },
+                                [&](const EdgePoint& edge) {
+                                  check(edge);
+                                  return sample_in_face(map, face_point(edge));
+                                },
+                                [&](const FacePoint& inside) {
+                                  check(inside);
+                                  return sample_in_face(map, inside);
+                                },
+                                [&](const TangentPoint& near) {
+                                  check_finite(near);
+                                  if (map.frames().empty())
+                                    throw InvalidArgument("the map has no frames; solve with MapOptions::frames");
+                                  auto [sample, v] = at_row(near.row);
+                                  const auto frame = v < 0 ? std::nullopt : graph().frame(v);
+                                  if (!frame) return sample;
+                                  const Vec3 way = near.position - frame->origin;
+                                  const double x = dot(way, frame->x), y = dot(way, frame->y);
+                                  const auto U = map.frames().subspan(4 * static_cast<std::size_t>(v), 4);
+                                  sample.u += U[0] * x + U[2] * y;
+                                  sample.v += U[1] * x + U[3] * y;
+                                  return sample;
+                                }};
+  return std::visit(visit, point);
+}
+
+Sample Surface::sample_in_face(const LogMap& map, const FacePoint& point) const {
+  Sample sum{0, 0, Status::ok};
+  for (std::size_t c = 0; c < point.barycentric.size(); ++c) {
+    const Vertex v = corner_vertex(point.face, c);
+    if (map.status(v) != Status::ok) return {nan, nan, map.status(v)};
+    const auto phi = map.coordinates(v);
+    sum.u += point.barycentric[c] * phi[0];
+    sum.v += point.barycentric[c] * phi[1];
+  }
+  return sum;
+}
+
+void Surface::check_map(const LogMap& map) const {
+  if (map.size() != graph().size() || map.dimension() != 2)
+    throw InvalidArgument("the map has " + std::to_string(map.size()) + " vertices in dimension " +
+                          std::to_string(map.dimension()) + ", this surface's graph has " +
+                          std::to_string(graph().size()) + " in dimension 2: it belongs to another graph");
+}
+
+std::vector<double> on_rows(const RowLogMap& rows, std::span<const double> values) {
+  std::vector<double> result;
+  result.reserve(rows.vertex.size());
+  for (const std::optional<Vertex>& vertex : rows.vertex) {
+    if (vertex && static_cast<std::size_t>(vertex->index) >= values.size())
+      throw InvalidArgument("on_rows: there are " + std::to_string(values.size()) +
+                            " values, but the map has a vertex " + std::to_string(vertex->index));
+    result.push_back(vertex ? values[vertex->index] : nan);
+  }
+  return result;
+}
+
+std::vector<Vec3> distance_gradients(const Surface& surface, const LogMap& map, const RowLogMap& rows) {
+  const TangentGraph& graph = surface.graph();
+  if (map.size() != graph.size() || map.frames().empty())
+    throw InvalidArgument("distance_gradients: the map has no frames, or belongs to another graph");
+  const double at_source = 1e-8 * graph.mean_edge_length() * graph.length_unit();
+  std::vector<Vec3> result(rows.vertex.size(), Vec3{nan, nan, nan});
+  for (std::size_t r = 0; r < result.size(); ++r) {
+    if (!rows.vertex[r]) continue;
+    const std::optional<Frame> frame = graph.frame(rows.vertex[r]->index);
+    if (!frame) continue;
+    const auto U = map.frames().subspan(4 * static_cast<std::size_t>(rows.vertex[r]->index), 4);
+    const double away = std::hypot(rows.u[r], rows.v[r]), scale = away > at_source ? 1 / away : 0;
+    const double a = scale * (U[0] * rows.u[r] + U[1] * rows.v[r]), b = scale * (U[2] * rows.u[r] + U[3] * rows.v[r]);
+    result[r] = a * frame->x + b * frame->y;
+  }
+  return result;
+}
+
+}  // namespace ahm
