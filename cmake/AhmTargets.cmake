@@ -1,6 +1,6 @@
 # GCC 12 takes `"text" + std::to_string(n)` for overlapping or endless copies, hence the last two.
 set(AHM_WARNINGS $<$<CXX_COMPILER_ID:GNU,Clang>:-Wall -Wextra -Wpedantic>
-  $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict -Wno-stringop-overflow>)
+  $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict -Wno-stringop-overflow -Wno-array-bounds>)
 
 # For precompiled headers. Configured with CMAKE_DISABLE_PRECOMPILE_HEADERS, every source must include what it needs itself.
 set(AHM_STANDARD_HEADERS <algorithm> <array> <cmath> <functional> <limits> <memory> <mutex> <numeric> <optional> <span>
