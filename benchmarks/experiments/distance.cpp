@@ -22,31 +22,36 @@ constexpr DistanceMethod methods[] = {
     {"AHM_a", [](const Surface& s) { return methods::affine_heat(s.graph(), Variant::adaptive); }},
     {"AHM_l", [](const Surface& s) { return methods::affine_heat(s.graph(), Variant::localized); }},
     {"AHM_a, order 2", [](const Surface& s) { return methods::affine_heat(s.graph(), Variant::adaptive, 1.0, 2); }},
+    {"unfolded", [](const Surface& s) { return methods::unfolded_distance(s.graph()); }},
     {"HM", [](const Surface& s) { return methods::heat_distance(s.mesh().mesh()); }},
     {"HM (graph)", [](const Surface& s) { return methods::heat_distance(s.graph()); }},
     {"SHM", [](const Surface& s) -> methods::Method { return std::make_unique<methods::SignedHeat>(s.graph()); }}};
 
-/// Relative errors of one method over the rings about three sources.
+/// Their mean and quantiles, as cells.
+void add_row(const Surface& surface, const char* method, Cell where, const std::vector<double>& e, Table& table) {
+  if (e.empty()) return;
+  double mean = 0;
+  for (double x : e) mean += x / static_cast<double>(e.size());
+  table.add({surface.name(), surface.size(), method, std::move(where), mean, quantile(e, 0.5), quantile(e, 0.95),
+             quantile(e, 1.0)});
+}
+
+/// Relative errors of one method over the rings about three sources, and over all vertices.
 void measure(const Surface& surface, const DistanceMethod& method, std::span<const Index> sources,
              std::span<const std::vector<double>> exact, Table& table) {
   const methods::Method made = method.make(surface);
   std::vector<std::vector<double>> by_ring(ring_count);
+  std::vector<double> all;
   for (std::size_t s = 0; s < sources.size(); ++s) {
     const std::vector<double> distance = made->solve(sources[s]).distance;
     const std::vector<int> ring_of = rings(exact[s], ring_count);
     for (std::size_t i = 0; i < distance.size(); ++i)
       if (const double error = std::abs(distance[i] / exact[s][i] - 1);
           ring_of[i] >= 0 && exact[s][i] > 0 && std::isfinite(error))
-        by_ring[ring_of[i]].push_back(error);
+        by_ring[ring_of[i]].push_back(error), all.push_back(error);
   }
-  for (int r = 0; r < ring_count; ++r) {
-    const std::vector<double>& e = by_ring[r];
-    if (e.empty()) continue;
-    double mean = 0;
-    for (double x : e) mean += x / static_cast<double>(e.size());
-    table.add({surface.name(), surface.size(), method.name, (r + 0.5) / ring_count, mean, quantile(e, 0.5),
-               quantile(e, 0.95), quantile(e, 1.0)});
-  }
+  for (int r = 0; r < ring_count; ++r) add_row(surface, method.name, (r + 0.5) / ring_count, by_ring[r], table);
+  add_row(surface, method.name, "all", all, table);
 }
 
 void measure(const Surface& surface, Table& table) {

@@ -151,7 +151,7 @@ def distortion(rows):
 
 
 def distance(rows):
-    return by_shape(rows, "distance / longest", "mean", "method", logy=True, ylabel="mean relative error")
+    return by_shape([row for row in rows if row["distance / longest"] != "all"], "distance / longest", "mean", "method", logy=True, ylabel="mean relative error")
 
 
 def convergence(rows):

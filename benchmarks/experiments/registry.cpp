@@ -21,6 +21,7 @@ Table margins(const Settings&);
 Table mazes(const Settings&);
 Table mesh_scaling(const Settings&);
 Table methods_compared(const Settings&);
+Table orders(const Settings&);
 Table radial(const Settings&);
 Table runtime(const Settings&);
 Table tessellations(const Settings&);
@@ -75,6 +76,8 @@ std::span<const Experiment> experiments() {
           "trust", "after Fig. 20", "Distances and quality against exact maps",
           "Distances are accurate near the source and too short at cut loci; exact vectors are not in the paper.",
           trust},
+      Experiment{"orders", "after Fig. 24", "Order 2 against order 1",
+                 "Maps are of first order in h; the paper does not extrapolate.", orders},
       Experiment{
           "runtime", "Fig. 22", "Run time",
           "AHM_l is 27 % slower than VHM_log, AHM_a 70 %; further maps are 7 to 30 (AHM_l) and 3 to 10 (AHM_a) times "

@@ -1,5 +1,6 @@
-// The affine heat method of this library.
+// The affine heat method of this library; its distance is the paper's, the length of phi.
 #include "ahm/maps/log_map_solver.hpp"
+#include "ahm/util/small_math.hpp"
 #include "methods/heat_fields.hpp"
 #include "methods/method.hpp"
 
@@ -17,7 +18,7 @@ class AffineHeat final : public Baseline {
     check_source(source, solver_.graph().size());
     const LogMap map = solver_.solve(Source::at_vertex(Vertex(source)), {.variant = variant_});
     Result result{{map.coordinates().begin(), map.coordinates().end()}, {}};
-    for (Index i = 0; i < map.size(); ++i) result.distance.push_back(map.distance(Vertex(i)));
+    for (Index i = 0; i < map.size(); ++i) result.distance.push_back(length(map.coordinates(Vertex(i))));
     return result;
   }
 

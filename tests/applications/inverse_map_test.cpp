@@ -11,6 +11,7 @@
 #include "ahm/grid/grid_graph.hpp"
 #include "ahm/maps/log_map_solver.hpp"
 #include "ahm/pointcloud/point_cloud_surface.hpp"
+#include "ahm/testing/clouds.hpp"
 #include "ahm/testing/flat_graphs.hpp"
 #include "ahm/trimesh/triangle_mesh_surface.hpp"
 #include "mapped_surfaces.hpp"
@@ -227,20 +228,9 @@ TEST(StarTriangles, CoverTheCellsOfAGridAndSpareItsHoles) {
   }
 }
 
-/// n points evenly on the unit sphere.
-std::vector<Vec3> sphere_points(int n) {
-  std::vector<Vec3> points;
-  for (int i = 0; i < n; ++i) {
-    const double z = 1 - (2.0 * i + 1) / n, r = std::sqrt(1 - z * z),
-                 turn = i * std::numbers::pi * (3 - std::sqrt(5.0));
-    points.push_back({r * std::cos(turn), r * std::sin(turn), z});
-  }
-  return points;
-}
-
 TEST(InverseMap, OnASphereOfPointsGoesTheGeodesicWay) {
   const int n = 4000;
-  const auto points = sphere_points(n);
+  const auto points = even_sphere(n).points;
   const auto cloud = pointcloud::PointCloudSurface::build(points);
   const Index source = n / 3;
   const auto& graph = cloud.graph();
@@ -276,12 +266,12 @@ TEST(InverseMap, OnAMeshHasNoHoles) {
 }
 
 TEST(InverseMap, OfASurfaceIsThatOfItsGraphByRows) {
-  std::vector<Vec3> points = sphere_points(1500);
+  std::vector<Vec3> points = even_sphere(1500).points;
   points.push_back(points[3]);  // two rows of one vertex
   const auto cloud = pointcloud::PointCloudSurface::build(points);
   const LogMap map = LogMapSolver(cloud.graph()).solve(cloud.source(Row(700)).source, {.frames = true});
   const InverseMap by_rows = inverse_map(cloud, map), by_vertices = inverse_map(cloud.graph(), map);
-  EXPECT_EQ(by_rows.size(), points.size());
+  EXPECT_EQ(by_rows.positions().size(), points.size());
   int answered = 0;
   for (const auto& [u, v] : points_in_disc(2, 500)) {
     const auto a = by_rows.at(u, v), b = by_vertices.at(u, v);
@@ -304,7 +294,7 @@ TEST(InverseMap, OfAMeshAnswersOnItsFaces) {
     const auto point = inverse.at(u, v);
     ASSERT_TRUE(point) << u << ' ' << v;
     EXPECT_LT(mesh.closest_point(point->position).distance, 1e-12);
-    const Vec2 corner = inverse.coordinates(point->vertices[0]);
+    const Vec2 corner = inverse.corners(point->vertices)[0];
     EXPECT_LT(std::hypot(corner[0] - u, corner[1] - v), 2 * cap.longest_edge);
   }
 }

@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "ahm/error.hpp"
 #include "ahm/graph/components.hpp"
 #include "ahm/pointcloud/neighbor_search.hpp"
+#include "ahm/util/small_math.hpp"
 #include "ahm/util/vec.hpp"
 #include "input/backend.hpp"
 #include "output/wording.hpp"
@@ -36,8 +38,12 @@ std::vector<Vec3> distinct_places(std::vector<Vec3> points) {
   return points;
 }
 
-std::optional<LengthRange> find_spacing(const std::vector<Vec3>& places) {
+std::optional<LengthRange> find_spacing(std::vector<Vec3> places) {
   if (places.size() < 2) return std::nullopt;
+  double size = 0;
+  for (const Vec3& p : places) size = std::max(size, largest(p));
+  const double unit = power_of_two_below(size);  // the search squares lengths
+  for (Vec3& p : places) p = 1 / unit * p;
   const auto search = pointcloud::nanoflann_search(places);
   constexpr std::size_t sample = 20000;
   const std::size_t step = std::max<std::size_t>(1, places.size() / sample);
@@ -46,25 +52,58 @@ std::optional<LengthRange> find_spacing(const std::vector<Vec3>& places) {
   std::array<double, 2> squared{};
   for (std::size_t i = 0; i < places.size(); i += step) {
     search->nearest(places[i], index, squared);
-    distances.push_back(distance(places[i], places[index[static_cast<std::size_t>(index[0]) == i ? 1 : 0]]));
+    const Index other = index[static_cast<std::size_t>(index[0]) == i ? 1 : 0];
+    distances.push_back(unit * distance(places[i], places[other]));
   }
   return range_of(std::move(distances));
 }
 
-/// The row in `component` nearest to the mean of its positions.
-Index central_row(const Surface& surface, const std::vector<Index>& component_of, Index component) {
+std::vector<Index> rows_of(const Surface& surface, const std::vector<Index>& component_of, Index component) {
   std::vector<Index> rows;
   for (std::size_t v = 0; v < component_of.size(); ++v) {
     const auto row = surface.rows().row(Vertex(static_cast<Index>(v)));
     if (row && component_of[v] == component) rows.push_back(row->index);
   }
+  return rows;
+}
+
+/// Of these rows those that stand in front where one looks along the thinnest side of their box, one in each cell of a
+/// raster so coarse that what is behind does not show through: on a solid the middle lies inside, and the point nearest to it
+/// where nobody sees it.
+std::vector<Index> front_rows(std::span<const Vec3> positions, const std::vector<Index>& rows) {
+  Vec3 low = positions[rows[0]], high = low;
+  for (Index row : rows)
+    for (std::size_t a = 0; a < 3; ++a) {
+      low[a] = std::min(low[a], positions[row][a]);
+      high[a] = std::max(high[a], positions[row][a]);
+    }
+  const Vec3 sides = high - low;
+  const auto thin = static_cast<std::size_t>(std::min_element(sides.begin(), sides.end()) - sides.begin());
+  const std::size_t x = (thin + 1) % 3, y = (thin + 2) % 3;
+  const double cells = std::clamp(std::floor(std::sqrt(static_cast<double>(rows.size()) / 8)), 1.0, 64.0);
+  std::vector<Index> front(static_cast<std::size_t>(cells * cells), -1);
+  const auto cell = [&](double p, std::size_t a) {
+    return sides[a] > 0 ? std::min(cells - 1, std::floor((p - low[a]) / sides[a] * cells)) : 0;
+  };
+  for (Index row : rows) {
+    const Vec3& p = positions[row];
+    Index& first = front[static_cast<std::size_t>(cell(p[x], x) * cells + cell(p[y], y))];
+    if (first < 0 || p[thin] > positions[first][thin]) first = row;
+  }
+  std::erase(front, -1);
+  return front;
+}
+
+/// The row nearest to the mean of the positions, of a mesh one that can be seen.
+Index central_row(const Surface& surface, const std::vector<Index>& rows) {
   Vec3 mean{};
   double count = 0;
   for (Index row : rows) {
     count += 1;
     for (std::size_t a = 0; a < 3; ++a) mean[a] += (surface.positions()[row][a] - mean[a]) / count;
   }
-  return *std::min_element(rows.begin(), rows.end(), [&](Index a, Index b) {
+  const std::vector<Index> candidates = surface.faces().size() > 0 ? front_rows(surface.positions(), rows) : rows;
+  return *std::min_element(candidates.begin(), candidates.end(), [&](Index a, Index b) {
     return distance(surface.positions()[a], mean) < distance(surface.positions()[b], mean);
   });
 }
@@ -78,7 +117,7 @@ SurfaceSurvey survey_surface(const Built& built) {
   for (std::size_t v = 0; v < component.size(); ++v)
     if (built.surface->rows().row(Vertex(static_cast<Index>(v)))) ++sizes[component[v]];
   const auto largest = static_cast<Index>(std::max_element(sizes.begin(), sizes.end()) - sizes.begin());
-  result.central_row = central_row(*built.surface, component, largest);
+  result.central_row = central_row(*built.surface, rows_of(*built.surface, component, largest));
   std::sort(sizes.begin(), sizes.end(), std::greater<>());
   return result;
 }
@@ -155,10 +194,10 @@ Survey survey(const io::Geometry& input, const InputOptions& options, const Prog
   find_bounds(points, s);
   if (s.faces > 0) s.mesh = survey_mesh(input);
   {
-    const std::vector<Vec3> places = distinct_places(points);
+    std::vector<Vec3> places = distinct_places(points);
     s.duplicates = points.size() - places.size();
     progress.step("spacing", 0);
-    if (!s.mesh) s.spacing = find_spacing(places);
+    if (!s.mesh) s.spacing = find_spacing(std::move(places));
   }
   find_surface(input, options, progress, s);
   return s;

@@ -55,6 +55,16 @@ TEST(DistanceExperiment, AffineHeatIsNearerThanTheHeatMethodsNearTheSource) {
             << shape << " " << method << " " << other;
       }
 }
+
+TEST(DistanceExperiment, UnfoldedDistancesHoldEverywhere) {
+  const Table all = toy("distance").where("distance / longest", "all");
+  EXPECT_LT(all.where("method", "unfolded").largest("95%"), 0.03);
+  for (const char* shape : {"sphere", "bumpy sphere", "torus"})
+    for (const char* method : affine)
+      EXPECT_LT(all.where("shape", shape).where("method", "unfolded").mean("95%"),
+                all.where("shape", shape).where("method", method).mean("95%"))
+          << shape << " " << method;
+}
 #endif
 
 TEST(ConvergenceExperiment, TheAdaptiveVariantIsOfFirstOrder) {
@@ -67,6 +77,12 @@ TEST(ConvergenceExperiment, SecondOrderIsNearer) {
   const Table finest = toy("convergence").where("vertices", "2562");
   EXPECT_LT(finest.where("method", "AHM_a, order 2").largest("L2 inside"),
             0.5 * finest.where("method", "AHM_a").smallest("L2 inside"));
+}
+
+TEST(OrdersExperiment, TheSecondIsNearerOnTheSphereAndNowhereMuchWorse) {
+  const Table& table = toy("orders");
+  EXPECT_LE(table.largest("order 2 / 1"), 1.1);
+  EXPECT_LT(table.where("mesh", "sphere").where("variant", "adaptive").largest("trusted order 2 / 1"), 0.5);
 }
 
 TEST(VariantsExperiment, DifferLeastAtTheSource) {

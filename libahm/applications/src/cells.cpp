@@ -6,7 +6,7 @@
 #include <string>
 
 #include "ahm/error.hpp"
-#include "ahm/fields/unfolding_front.hpp"
+#include "ahm/maps/unfolding_front.hpp"
 #include "ahm/util/memory.hpp"
 
 namespace ahm {

@@ -75,10 +75,6 @@ Vec2 combine(const Weights& w, const std::array<Vec2, 3>& q) {
   return {w[0] * q[0][0] + w[1] * q[1][0] + w[2] * q[2][0], w[0] * q[0][1] + w[1] * q[1][1] + w[2] * q[2][1]};
 }
 
-std::array<Vec2, 3> corners_of(const InverseMap& inverse, const Triangle& t) {
-  return {inverse.coordinates(t[0]), inverse.coordinates(t[1]), inverse.coordinates(t[2])};
-}
-
 /// What is left of a triangle inside the image, as barycentric weights (Sutherland & Hodgman 1974); empty: nothing.
 std::vector<Weights> clipped(const Placement& image, const std::array<Vec2, 3>& q) {
   std::vector<Weights> polygon{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, kept;
@@ -106,7 +102,7 @@ bool is_uppermost(const InverseMap& inverse, const Triangle& t, const std::vecto
   Weights middle{};
   for (const Weights& w : polygon)
     for (std::size_t c = 0; c < 3; ++c) middle[c] += w[c] / static_cast<double>(polygon.size());
-  const Vec2 q = combine(middle, corners_of(inverse, t));
+  const Vec2 q = combine(middle, inverse.corners(t));
   const auto answer = inverse.at(q[0], q[1]);
   if (!answer || answer->vertices == t) return true;
   double longest = 0;
@@ -114,8 +110,8 @@ bool is_uppermost(const InverseMap& inverse, const Triangle& t, const std::vecto
   for (std::size_t k = 0; k < 3; ++k) {
     Vec3 edge;
     for (std::size_t c = 0; c < 3; ++c) {
-      edge[c] = inverse.position(t[(k + 1) % 3])[c] - inverse.position(t[k])[c];
-      away[c] -= middle[k] * inverse.position(t[k])[c];
+      edge[c] = inverse.positions()[t[(k + 1) % 3]][c] - inverse.positions()[t[k]][c];
+      away[c] -= middle[k] * inverse.positions()[t[k]][c];
     }
     longest = std::max(longest, length(edge));
   }
@@ -141,12 +137,12 @@ struct Shown {
   Shown(const InverseMap& inverse, const Placement& image) {
     Index all = 0;
     for (const Triangle& t : inverse.triangles()) {
-      const std::vector<Weights> polygon = clipped(image, corners_of(inverse, t));
+      const std::vector<Weights> polygon = clipped(image, inverse.corners(t));
       if (polygon.empty()) continue;
       ++all;
       if (is_uppermost(inverse, t, polygon)) triangles.push_back(t);
     }
-    triangles = joined_to_first(triangles, inverse.size());
+    triangles = joined_to_first(triangles, inverse.positions().size());
     hidden = all - static_cast<Index>(triangles.size());
   }
 };
@@ -155,7 +151,7 @@ struct Shown {
 class Collector {
  public:
   Collector(const InverseMap& inverse, const Placement& image, double lift)
-      : inverse_(inverse), image_(image), lift_(lift), number_(inverse.size(), -1) {
+      : inverse_(inverse), image_(image), lift_(lift), number_(inverse.positions().size(), -1) {
     decal_.face_begin.push_back(0);
   }
 
@@ -180,8 +176,8 @@ class Collector {
     Vec3 position{}, normal{};
     for (std::size_t k = 0; k < 3; ++k)
       for (std::size_t c = 0; c < 3; ++c) {
-        position[c] += w[k] * inverse_.position(t[k])[c];
-        normal[c] += w[k] * inverse_.normal(t[k])[c];
+        position[c] += w[k] * inverse_.positions()[t[k]][c];
+        normal[c] += w[k] * inverse_.normals()[t[k]][c];
       }
     const double norm = length(normal);
     for (std::size_t c = 0; c < 3; ++c) {
@@ -190,7 +186,7 @@ class Collector {
     }
     decal_.points.push_back(position);
     decal_.normals.push_back(normal);
-    for (double x : image_.in_image(combine(w, corners_of(inverse_, t))))
+    for (double x : image_.in_image(combine(w, inverse_.corners(t))))
       decal_.image_coordinates.push_back(std::clamp(x, 0.0, 1.0));  // rounding at the borders
     return static_cast<Index>(decal_.points.size()) - 1;
   }
@@ -210,7 +206,7 @@ Decal make_decal(const InverseMap& inverse, const DecalOptions& options) {
     const Placement image(options);
     const Shown shown(inverse, image);
     Collector collector(inverse, image, options.lift);
-    for (const Triangle& t : shown.triangles) collector.add(t, clipped(image, corners_of(inverse, t)));
+    for (const Triangle& t : shown.triangles) collector.add(t, clipped(image, inverse.corners(t)));
     Decal decal = collector.take();
     decal.hidden = shown.hidden;
     return decal;
@@ -221,9 +217,9 @@ std::vector<double> image_coordinates_of_vertices(const InverseMap& inverse, con
   check(options);
   return detail::with_memory_check("making a decal", [&] {
     const Placement image(options);
-    std::vector<double> result(2 * inverse.size(), std::numeric_limits<double>::quiet_NaN());
+    std::vector<double> result(2 * inverse.positions().size(), std::numeric_limits<double>::quiet_NaN());
     for (const Triangle& t : Shown(inverse, image).triangles) {
-      const std::array<Vec2, 3> q = corners_of(inverse, t);
+      const std::array<Vec2, 3> q = inverse.corners(t);
       for (std::size_t k = 0; k < 3; ++k) {
         if (!image.is_inside(q[k])) continue;
         const Vec2 place = image.in_image(q[k]);

@@ -146,7 +146,7 @@ InverseMap::InverseMap(const MappedSurface& surface, const InverseMapOptions& op
   for (const Triangle& t : triangles_)
     for (Index v : t)
       for (std::size_t c : {0, 1}) largest = std::max(largest, std::abs(surface.coordinates[2 * to_size(v) + c]));
-  if (largest > 0) unit_ = std::ldexp(1.0, std::ilogb(largest));
+  unit_ = power_of_two_below(largest);
   for (std::size_t v = 0; v < positions_.size(); ++v)
     plane_.push_back({surface.coordinates[2 * v] / unit_, surface.coordinates[2 * v + 1] / unit_});
   make_buckets();
@@ -186,6 +186,12 @@ void InverseMap::make_buckets() {
   std::vector<Offset> end(bucket_begin_.begin(), bucket_begin_.end() - 1);
   for (std::size_t t = 0; t < triangles_.size(); ++t)
     for_buckets(triangles_[t], [&](std::size_t b) { bucket_triangles_[end[b]++] = static_cast<Index>(t); });
+}
+
+std::array<Vec2, 3> InverseMap::corners(const Triangle& triangle) const {
+  std::array<Vec2, 3> result;
+  for (std::size_t k = 0; k < 3; ++k) result[k] = {plane_[triangle[k]][0] * unit_, plane_[triangle[k]][1] * unit_};
+  return result;
 }
 
 std::optional<InversePoint> InverseMap::at(double u, double v) const {

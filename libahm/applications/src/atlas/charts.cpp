@@ -1,10 +1,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 #include <utility>
 
 #include "ahm/applications/atlas.hpp"
+#include "ahm/error.hpp"
 #include "ahm/util/memory.hpp"
+#include "ahm/util/small_math.hpp"
 #include "ahm/util/vec.hpp"
 
 namespace ahm {
@@ -60,12 +63,23 @@ ChartBox least_box(const std::vector<Vec2>& hull) {
 
 std::vector<ChartBox> chart_boxes(const Atlas& atlas, const FaceList& faces) {
   return detail::with_memory_check("bounding charts", [&] {
+    if (faces.size() != atlas.chart_of_face.size() || 2 * faces.vertices.size() != atlas.coordinates.size())
+      throw InvalidArgument("chart_boxes: there are " + std::to_string(faces.size()) + " faces with " +
+                            std::to_string(faces.vertices.size()) + " corners, but the atlas has " +
+                            std::to_string(atlas.chart_of_face.size()) + " with " +
+                            std::to_string(atlas.coordinates.size() / 2));
     std::vector<ChartBox> boxes;
     for (const Chart& chart : atlas.charts) {
       std::vector<Vec2> points;
       for (Index f : chart.faces)
         for (Offset c = faces.begin[f]; c < faces.begin[f + 1]; ++c) points.push_back(atlas.corner(c));
-      boxes.push_back(least_box(convex_hull(std::move(points))));
+      double size = 0;
+      for (const Vec2& p : points) size = std::max(size, largest(p));
+      const double unit = power_of_two_below(size);
+      for (Vec2& p : points) p = 1 / unit * p;
+      ChartBox box = least_box(convex_hull(std::move(points)));
+      box.low = unit * box.low, box.high = unit * box.high;
+      boxes.push_back(box);
     }
     return boxes;
   });

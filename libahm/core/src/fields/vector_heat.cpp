@@ -22,14 +22,14 @@ Source plain_source(const LogMapSolver& solver, std::span<const Vertex> vertices
   return source;
 }
 
-unsigned threads_of(const LogMapSolver& solver, const MapOptions& options) {
-  return detail::thread_count(options.threads.value_or(solver.options().threads));
+unsigned threads_of(const LogMapSolver& solver, std::optional<unsigned> threads) {
+  return detail::thread_count(threads.value_or(solver.options().threads));
 }
 
-AffineHeat affine_heat(const LogMapSolver& solver, const Source& source, const MapOptions& options) {
+AffineHeat affine_heat(const LogMapSolver& solver, const Source& source, std::optional<unsigned> threads) {
   constexpr Variant variant = Variant::localized;  // Y is the radial field
   return AffineHeat(solver.graph(), solver.operators(), variant,
-                    {inflow_of(source, solver.graph(), solver.operators(), variant)}, threads_of(solver, options));
+                    {inflow_of(source, solver.graph(), solver.operators(), variant)}, threads_of(solver, threads));
 }
 
 /// Status of every vertex, and NaN where it is not ok. `reached(i)`: whether the value at vertex i can be trusted.
@@ -131,27 +131,27 @@ VertexField transport_vectors(const LogMapSolver& solver, std::span<const Vertex
   });
 }
 
-VertexField parallel_transport(const LogMapSolver& solver, const Source& source, const MapOptions& options) {
+VertexField parallel_transport(const LogMapSolver& solver, const Source& source, std::optional<unsigned> threads) {
   return detail::with_memory_check("transporting a frame", [&] {
     check_source(source, solver.graph());
     const auto n = solver.graph().size();
     const auto width = static_cast<std::size_t>(solver.graph().dimension()) * solver.graph().dimension();
-    AffineHeat heat = affine_heat(solver, source, options);
+    AffineHeat heat = affine_heat(solver, source, threads);
     heat.diffuse();
     VertexField field{static_cast<int>(width), std::vector<double>(static_cast<std::size_t>(n) * width), {}};
     const FrameField U = heat.frames(0);
-    detail::for_each_index(static_cast<std::size_t>(n), threads_of(solver, options),
+    detail::for_each_index(static_cast<std::size_t>(n), threads_of(solver, threads),
                            [&](std::size_t i) { U.axes(static_cast<Index>(i), field.values.data() + i * width); });
     finish(field, solver, source, [&](std::size_t i) { return heat.reached(0, static_cast<Index>(i)); });
     return field;
   });
 }
 
-VertexField radial_field(const LogMapSolver& solver, const Source& source, const MapOptions& options) {
+VertexField radial_field(const LogMapSolver& solver, const Source& source, std::optional<unsigned> threads) {
   return detail::with_memory_check("computing the radial field", [&] {
     check_source(source, solver.graph());
     const auto d = static_cast<std::size_t>(solver.graph().dimension());
-    AffineHeat heat = affine_heat(solver, source, options);
+    AffineHeat heat = affine_heat(solver, source, threads);
     heat.diffuse_heat();
     heat.solve();
     VertexField field{static_cast<int>(d), {heat.unknown(0).begin(), heat.unknown(0).end()}, {}};

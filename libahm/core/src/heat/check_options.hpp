@@ -6,7 +6,7 @@
 
 namespace ahm {
 
-/// Checks the graph, if the options say so, and t_coef.
+/// Checks the options, and the graph if they say so.
 /// @throws InvalidGraph, InvalidArgument
 void check_heat_options(const TangentGraph& graph, const HeatOptions& options);
 

@@ -34,6 +34,9 @@ double scaling_for(const TangentGraph& graph) {
   return std::ldexp(1.0, -std::ilogb(mean));
 }
 
+/// Heat may be lost as if masses were greater by this share, which bends distances by half of it and flat graphs not at all.
+constexpr double most_loss = 1e-6;
+
 /// Constants are in the kernel of L, so A 1 = m: how far A^-1 m is from 1 tells what conditioning leaves of the digits.
 void check_conservation(const HeatSystem& system, const TangentGraph& graph) {
   std::vector<double> x(static_cast<std::size_t>(graph.size()));
@@ -41,7 +44,7 @@ void check_conservation(const HeatSystem& system, const TangentGraph& graph) {
   system.solve_A(x, 1);
   double worst = 0;
   for (double value : x) worst = std::isfinite(value) ? std::max(worst, std::abs(value - 1)) : INFINITY;
-  if (!(worst <= 1e-9))
+  if (!(worst <= most_loss))
     throw NotPositiveDefinite("operator A = M + tau L loses heat (" + detail::number(worst) +
                               " relative): t_coef is too large for this graph, or its weights differ too much");
 }
@@ -82,6 +85,12 @@ std::pair<std::unique_ptr<SystemOf<Solver>>, AssembledOperators> begin(const Tan
 }  // namespace
 
 void check_heat_options(const TangentGraph& graph, const HeatOptions& options) {
+  if (!(options.accuracy >= 1e-14 && options.accuracy <= 0.1))
+    throw InvalidArgument("accuracy is " + detail::number(options.accuracy) + "; it must be in [1e-14, 0.1]");
+  if (options.order != 1 && options.order != 2)
+    throw InvalidArgument("order is " + std::to_string(options.order) + "; it must be 1 or 2");
+  if (options.expected_maps < 0)
+    throw InvalidArgument("expected_maps is " + std::to_string(options.expected_maps) + "; it must be >= 0 (0: many)");
   if (options.check_graph) {
     options.progress.step("check", 0.0);
     validate(graph);

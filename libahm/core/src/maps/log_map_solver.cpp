@@ -8,8 +8,8 @@
 #include <string>
 
 #include "ahm/error.hpp"
-#include "ahm/fields/unfolding_front.hpp"
 #include "ahm/maps/cost.hpp"
+#include "ahm/maps/unfolding_front.hpp"
 #include "ahm/util/memory.hpp"
 #include "ahm/util/parallel.hpp"
 #include "ahm/util/small_math.hpp"
@@ -44,15 +44,6 @@ MapSettings settings_of(const MapOptions& map, const HeatOptions& options) {
     throw InvalidArgument("radius is " + detail::number(map.radius) + "; it must be > 0 (infinity: the whole graph)");
   return {map.variant.value_or(options.variant), map.radius, map.frames, map.spread,
           map.progress.value_or(options.progress)};
-}
-
-void check_options(const HeatOptions& options) {
-  if (!(options.accuracy >= 1e-14 && options.accuracy <= 0.1))
-    throw InvalidArgument("accuracy is " + detail::number(options.accuracy) + "; it must be in [1e-14, 0.1]");
-  if (options.order != 1 && options.order != 2)
-    throw InvalidArgument("order is " + std::to_string(options.order) + "; it must be 1 or 2");
-  if (options.expected_maps < 0)
-    throw InvalidArgument("expected_maps is " + std::to_string(options.expected_maps) + "; it must be >= 0 (0: many)");
 }
 
 /// What a solve knows of a vertex besides its coordinates.
@@ -134,7 +125,6 @@ namespace {
 
 /// The checks come before anything else is asked of the graph.
 const TangentGraph& checked(const TangentGraph& graph, const HeatOptions& options) {
-  check_options(options);
   check_heat_options(graph, options);
   return graph;
 }
@@ -316,6 +306,7 @@ std::vector<LogMap> LogMapSolver::Impl::solve_block(std::span<const Source> sour
   std::vector<std::vector<LogMap>> at_times;
   for (std::size_t time = 0; time < times.size(); ++time) {
     wider.frames = map.frames && time + 2 == times.size();
+    wider.spread = map.spread || time + 1 == times.size();  // the last tells where not to extrapolate
     at_times.push_back(solve_block(time, sources, unfolded, wider, threads));
   }
   std::vector<LogMap> result;

@@ -33,7 +33,7 @@ struct Atlas {
   /// are so.
   std::vector<double> coordinates;
 
-  std::array<double, 2> corner(Offset c) const { return {coordinates[2 * c], coordinates[2 * c + 1]}; }
+  Vec2 corner(Offset c) const { return {coordinates[2 * c], coordinates[2 * c + 1]}; }
 };
 
 /// Cuts the surface into cells and flattens them. A face belongs to the source from which its corners are nearest on
@@ -59,6 +59,7 @@ struct RefineOptions {
 /// becomes another source, and the surface is cut anew, until nothing is to be added. Components without a source get
 /// one. One log map per source.
 /// @param positions  n, of the graph's vertices, world units
+/// @throws InvalidArgument (also positions, options), as LogMapSolver::solve
 Atlas make_atlas(const LogMapSolver& solver, std::span<const Vertex> sources, const FaceList& faces,
                  std::span<const Vec3> positions, const RefineOptions& refine);
 
@@ -75,11 +76,12 @@ AtlasDistortion distortion(const Atlas& atlas, const FaceList& faces, std::span<
 /// Bounding rectangle of least area of a chart, as axes in its plane: turned by `turn`, the chart fills
 /// [low, high] in both directions.
 struct ChartBox {
-  std::array<double, 2> turn{1, 0};  ///< cosine and sine; x = c u + s v, y = -s u + c v
-  std::array<double, 2> low{}, high{};
+  Vec2 turn{1, 0};  ///< cosine and sine; x = c u + s v, y = -s u + c v
+  Vec2 low{}, high{};
 };
 
 /// One per chart; the longer side lies along x.
+/// @throws InvalidArgument (faces and atlas do not fit)
 std::vector<ChartBox> chart_boxes(const Atlas& atlas, const FaceList& faces);
 
 }  // namespace ahm

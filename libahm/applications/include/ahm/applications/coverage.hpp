@@ -28,12 +28,12 @@ struct CoverageOptions {
 };
 
 struct CoveragePoint {
-  Vec3 position, normal;              ///< of the surface, normal unit
-  Vec3 heading;                       ///< where the path goes: unit, perpendicular to the normal
-  std::array<double, 2> coordinates;  ///< (u, v)
-  Index piece;                        ///< from 0; a tool must lift between pieces
-  Index line;                         ///< of the raster, from 0; 0 on a spiral
-  double arclength;                   ///< from the start of the piece, in space
+  Vec3 position, normal;  ///< of the surface, normal unit
+  Vec3 heading;           ///< where the path goes: unit, perpendicular to the normal
+  Vec2 coordinates;       ///< (u, v)
+  Index piece;            ///< from 0; a tool must lift between pieces
+  Index line;             ///< of the raster, from 0; 0 on a spiral
+  double arclength;       ///< from the start of the piece, in space
   /// Distance in space, across the path, to what lies `spacing` to the left of it in the plane, or to the right where
   /// that is not valid or on another sheet; NaN where both fail. Equal to `spacing` but for curvature and the map's
   /// error: on hills the lines come closer, on saddles they part, and the path leaves gaps.
@@ -50,7 +50,7 @@ struct CoveragePath {
 /// map has no answer, and where the path would jump in space further than the map's `max_stretch` allows for. Points
 /// without a neighbour in their piece are left out.
 ///
-/// The spiral keeps its pitch on any surface, since |phi| is the distance from the source; raster lines keep theirs near
+/// The spiral keeps its pitch where |phi| is the distance from the source, as it is where the map is to be trusted; raster lines keep theirs near
 /// the source and on flat or rolled surfaces (`CoveragePoint::spacing`).
 /// @throws InvalidArgument (values not finite or out of range, more than 2^30 points)
 CoveragePath coverage_path(const InverseMap& inverse, const CoverageOptions& options);

@@ -71,14 +71,11 @@ class InverseMap {
   /// The triangles that answer, nearest to the source first.
   std::span<const Triangle> triangles() const noexcept { return triangles_; }
   double max_stretch() const noexcept { return max_stretch_; }
-  /// Number of vertices n, and what was given of each.
-  std::size_t size() const noexcept { return positions_.size(); }
-  std::array<double, 2> coordinates(Index vertex) const {
-    const Vec2& q = plane_[vertex];
-    return {q[0] * unit_, q[1] * unit_};
-  }
-  const Vec3& position(Index vertex) const { return positions_[vertex]; }
-  const Vec3& normal(Index vertex) const { return normals_[vertex]; }
+  /// Its corners in the plane.
+  std::array<Vec2, 3> corners(const Triangle& triangle) const;
+  /// n, as they were given.
+  std::span<const Vec3> positions() const noexcept { return positions_; }
+  std::span<const Vec3> normals() const noexcept { return normals_; }
 
  private:
   void make_buckets();

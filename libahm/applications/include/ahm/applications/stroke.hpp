@@ -40,15 +40,15 @@ Source stroke_source(const TangentGraph& graph, std::span<const Vertex> path, co
 
 /// The same with the user's own parameterization.
 /// @param positions  one (u, v) per vertex of the path, world units; consecutive ones differ
-Source stroke_source(const TangentGraph& graph, std::span<const Vertex> path,
-                     std::span<const std::array<double, 2>> positions, bool closed = false);
+Source stroke_source(const TangentGraph& graph, std::span<const Vertex> path, std::span<const Vec2> positions,
+                     bool closed = false);
 
 /// A point of a polyline on the surface, wherever the backend can put a source: in a face, on an edge, at a vertex.
 struct StrokePoint {
-  Source point;                    ///< its u axis along the curve; of dimension 2
-  double weight;                   ///< > 0, about half of the lengths of the two adjacent segments
-  std::array<double, 2> position;  ///< coordinates of the point, world units
-  double angle;                    ///< direction of the curve in the plane of coordinates, radians
+  Source point;   ///< its u axis along the curve; of dimension 2
+  double weight;  ///< > 0, about half of the lengths of the two adjacent segments
+  Vec2 position;  ///< coordinates of the point, world units
+  double angle;   ///< direction of the curve in the plane of coordinates, radians
 };
 
 /// One source from the points of a polyline. Its spacing should not exceed the edge length by much.
@@ -61,5 +61,10 @@ Source stroke_source(std::span<const StrokePoint> points);
 /// @throws InvalidArgument (counts, a length, a source that is not of dimension 2, `circle` on an open curve)
 Source stroke_source(std::span<const Source> points, std::span<const double> lengths,
                      const StrokeOptions& options = {});
+
+/// The same with the user's own parameterization.
+/// @param positions  one (u, v) per point, world units; consecutive ones differ
+Source stroke_source(std::span<const Source> points, std::span<const double> lengths, std::span<const Vec2> positions,
+                     bool closed = false);
 
 }  // namespace ahm

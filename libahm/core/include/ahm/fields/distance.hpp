@@ -12,20 +12,17 @@
 namespace ahm {
 
 struct DistanceField {
-  VertexField distance;  ///< width 1, world units
-  /// Width d, in the frame of each vertex: the unit vector away from the source; 0 where the radial field is,
-  /// i.e. at the source itself and where opposite ways to it cancel.
+  VertexField distance;  ///< width 1, world units: `LogMap::distance`
+  /// Width d, in the frame of each vertex: the unit vector away from the source; 0 at the source itself and where opposite
+  /// ways to it cancel.
   VertexField gradient;
 };
 
-/// Length and direction of the radial field Y_x = - log_x(source), half the gradient of the squared distance (Lemma 1):
-/// no distance is differentiated. One solve by A and one by B.
-///
-/// The distance is that of the localized variant. Within a few edges of the cut locus heat from both sides mixes:
-/// distances are too short there, and directions blended.
-/// @param source  in one place; or any set of samples with offset 0: the distance to the nearest of them
-/// @param options  threads
-/// @throws InvalidArgument when the source does not fit the graph; as `radial_field`
+/// The distance from a source, and the direction U_i phi_i / |phi_i| of half the gradient of its square (Lemma 1): nothing
+/// is differentiated. Within a few edges of the cut locus heat from both sides mixes, and directions are blended.
+/// @param source   in one place; or any set of samples with offset 0: the distance to the nearest of them
+/// @param options  of the map that this solves for; the variant is localized unless given, the only one for sets
+/// @throws as `LogMapSolver::solve`
 DistanceField distance_and_gradient(const LogMapSolver& solver, const Source& source, const MapOptions& options = {});
 
 }  // namespace ahm

@@ -7,6 +7,7 @@
 /// \endcode
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -36,14 +37,14 @@ VertexField transport_vectors(const LogMapSolver& solver, std::span<const Vertex
 /// The source's orthonormal frame carried to every vertex (Eq. 11 and 12). Width d x d, row major: column a is source
 /// axis a in the frame of the vertex. `MapOptions::frames` keeps the same frames beside a map that is solved for anyway;
 /// this solves for no map, and tells where frames can be trusted.
-/// @param options  threads
+/// @param threads  0: one per core; none: the solver's
 /// @throws InvalidArgument when the source does not fit the graph; as `LogMapSolver::operators`
-VertexField parallel_transport(const LogMapSolver& solver, const Source& source, const MapOptions& options = {});
+VertexField parallel_transport(const LogMapSolver& solver, const Source& source, std::optional<unsigned> threads = {});
 
 /// Y / lambda of Alg. 1: half the gradient of the squared distance, i.e. minus the log map of the source seen from each
 /// vertex (Lemma 1). Width d, components in the frame of each vertex, world units.
-/// @param options  threads
+/// @param threads  0: one per core; none: the solver's
 /// @throws InvalidArgument when the source does not fit the graph; as `LogMapSolver::operators`
-VertexField radial_field(const LogMapSolver& solver, const Source& source, const MapOptions& options = {});
+VertexField radial_field(const LogMapSolver& solver, const Source& source, std::optional<unsigned> threads = {});
 
 }  // namespace ahm

@@ -1,5 +1,5 @@
 // Distances by unfolding.
-#include "ahm/fields/unfolding_front.hpp"
+#include "ahm/maps/unfolding_front.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,34 @@
+// Distances unfolded across triangles: `LogMap::distance` of this library on meshes.
+#include "ahm/maps/unfolding_front.hpp"
+#include "methods/heat_fields.hpp"
+#include "methods/method.hpp"
+
+namespace ahm::methods {
+namespace {
+
+class UnfoldedDistance final : public Baseline {
+ public:
+  explicit UnfoldedDistance(const TangentGraph& graph) : graph_(graph), stars_(UnfoldingFront::stars(graph)) {}
+
+  std::string_view name() const noexcept override { return "unfolded"; }
+
+  Result solve(Index source) const override {
+    check_source(source, graph_.size());
+    UnfoldingFront front(graph_, stars_);
+    front.add(Source::at_vertex(Vertex(source)));
+    front.run();
+    Result result;
+    for (Index i = 0; i < graph_.size(); ++i) result.distance.push_back(front.distance(Vertex(i)));
+    return result;
+  }
+
+ private:
+  const TangentGraph& graph_;
+  std::shared_ptr<const UnfoldingFront::Stars> stars_;
+};
+
+}  // namespace
+
+Method unfolded_distance(const TangentGraph& graph) { return std::make_unique<UnfoldedDistance>(graph); }
+
+}  // namespace ahm::methods
