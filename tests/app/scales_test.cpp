@@ -6,6 +6,7 @@
 #include <functional>
 #include <set>
 #include <sstream>
+#include <utility>
 
 #include "ahm/testing/triangle_meshes.hpp"
 #include "program.hpp"
@@ -108,7 +109,7 @@ void expect_same_at_all_scales(const Words& command, const std::function<Words(d
     for (int exponent : exponents) {
       expect_scaled_table(expected, table(sheets[k], exponent), std::ldexp(1.0, exponent),
                           command[0] + " on sheet " + std::to_string(k) + " at 2^" + std::to_string(exponent));
-      if (HasFailure()) return;
+      if (testing::Test::HasFailure()) return;
     }
   }
 }

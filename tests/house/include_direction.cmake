@@ -19,7 +19,7 @@ file(GLOB backends RELATIVE "${ROOT}/backends" "${ROOT}/backends/*")
 list(JOIN backends "|" any_backend)
 
 forbid(libahm "ahm/(${any_backend}|pcl|io|view)/" "libahm knows no backend, no file, no picture")
-forbid(libahm "(iostream|fstream|filesystem)>" "libahm neither prints nor reads, but for the memory it may use" "memory_limits")
+forbid(libahm "(iostream|fstream|filesystem)>" "libahm neither prints nor reads but the limits of its process" "memory_limits")
 forbid(libahm "cholmod" "CHOLMOD appears in cholesky.cpp only" "cholesky\\.cpp$")
 # The rooms of the core: graph, heat, maps, fields, one way down.
 forbid(libahm/core/include/ahm/graph "ahm/(heat|maps|fields)/" "graph is the lowest room of the core")
