@@ -160,7 +160,7 @@ TEST(SecondOrder, LengthensNothingBeyondWhatIsPossible) {
   const CsrGraph cloud(sphere_graph(120));
   for (const TangentGraph* graph :
        {static_cast<const TangentGraph*>(&mesh.graph()), static_cast<const TangentGraph*>(&cloud)})
-    for (Variant variant : {Variant::adaptive, Variant::localized})
+    for (Variant variant : all_variants)
       for (Index source : {0, 50, 100}) {
         const auto start = Source::at_vertex(Vertex{source});
         const LogMap one = LogMapSolver(*graph, {.variant = variant}).solve(start),
