@@ -30,7 +30,10 @@ void write_obj(const std::string& name, const Polylines& curves) {
 
 ExactGeodesics geodesics_of(const Input& input) {
   if (input.surface().faces().size() == 0)
-    throw InvalidArgument("geodesics run over faces, which this input does not have, or which --backend ignores");
+    throw InvalidArgument(
+        "geodesics run over faces, which this input does not have, or which --backend ignores; the triangles around "
+        "the "
+        "points of a cloud do not agree on one surface: mesh it first");
   return ExactGeodesics(input.surface());
 }
 
