@@ -28,7 +28,7 @@ class LocalMaps:
     """Local maps in compressed rows: source s has the entries indptr[s] : indptr[s + 1], nearest first, itself included.
 
     indptr : (s + 1,) int64. indices : (e,) int32 rows. log : (e, d) coordinates in the source's frame, world units.
-    distance : (e,) |log|. weight : (e,) masses, world units to the power d, as integration weights.
+    distance : (e,) geodesic, as `LogMap.distance`. weight : (e,) masses, world units to the power d, as integration weights.
     transport : (e, 2) (cos, sin), or (e, d, d): components in the source's frame -> components in the neighbour's.
     sources : (s,) int32 rows.
     """
@@ -91,12 +91,12 @@ class LocalMaps:
         return f"<ahm.LocalMaps: {len(self)} sources, {len(self.indices)} entries>"
 
 
-def local_maps(surface: Any, radius: float, k: Optional[int] = None, *, sources: Any = None, margin: float = 2.0,
+def local_maps(surface: Any, radius: Optional[float] = None, k: Optional[int] = None, *, sources: Any = None, margin: float = 2.0,
                t_coef: float = 1.0, variant: str = "adaptive", threads: int = 0, progress: Progress = None) -> LocalMaps:
-    """The log map around every row, or around `sources`, of everything within a radius.
+    """The log map around every row, or around `sources`, of everything within a radius or of the k nearest rows.
 
-    radius : world units, > 0.
-    k : keep only so many nearest entries per source, the source itself included; None: all.
+    radius : world units, > 0; None, with k: as far as those are.
+    k : keep only so many nearest entries per source, the source itself included; None: all within the radius.
     sources : (s,) rows; None: all rows, of which those without a vertex have no entries.
     margin : how far beyond the radius each patch reaches, in units of sqrt(tau).
     t_coef, variant, threads, progress : as of `LogMapSolver`.
@@ -112,7 +112,11 @@ def local_maps(surface: Any, radius: float, k: Optional[int] = None, *, sources:
     Raises ValueError naming the argument; NotPositiveDefinite, ResourceExhausted.
     """
     on = as_body(surface)
-    options = checked(radius=arguments.real(radius, "radius", positive=True), k=k, margin=margin, t_coef=t_coef,
+    if radius is None and k is None:
+        raise ValueError("radius: is missing; give a radius, or k")
+    if radius is not None:
+        radius = arguments.real(radius, "radius", positive=True)
+    options = checked(radius=radius, k=k, margin=margin, t_coef=t_coef,
                       variant=variant, threads=threads)
     rows = None if sources is None else arguments.rows(sources, "sources", len(on))
     with reporting(progress) as report:

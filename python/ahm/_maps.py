@@ -87,7 +87,7 @@ class LogMap:
     @property
     def spread(self) -> np.ndarray:
         """(n,) standard deviation of the coordinates over the ways by which heat arrives, world units: about the distance
-        on the cut locus. Empty of a map from a curve."""
+        on the cut locus. Empty of a map from a curve, or made with spread=False."""
         return self._map.spread()
 
     @property
@@ -292,13 +292,14 @@ class LogMapSolver:
         return self._solve(at, "log_map", source, options, progress)[0]
 
     def log_maps(self, sources: Any, *, u_axis: Any = None, radius: Optional[float] = None, frames: bool = False,
-                 variant: Optional[str] = None, threads: Optional[int] = None, progress: Progress = None) -> List[LogMap]:
+                 spread: bool = True, variant: Optional[str] = None, threads: Optional[int] = None, progress: Progress = None) -> List[LogMap]:
         """One map for each source, in blocks, which is faster than one by one, and the same numbers.
 
-        sources : (k,) rows, (k, 3) positions, `(faces, barycentric)`, or a list of any. Otherwise as `log_map`.
+        sources : (k,) rows, (k, 3) positions, `(faces, barycentric)`, or a list of any.
+        spread : keep `LogMap.spread`, which `quality` needs and which is a fifth of the work. Otherwise as `log_map`.
         """
         at = arguments.points(sources, "sources", self.surface)
-        options = dict(u_axis=u_axis, radius=radius, frames=frames, variant=variant, threads=threads)
+        options = dict(u_axis=u_axis, radius=radius, frames=frames, spread=spread, variant=variant, threads=threads)
         return self._solve(at, "log_maps", sources, options, progress)
 
     def _solve(self, at: tuple, name: str, given: Any, options: Dict[str, Any], progress: Progress) -> List[LogMap]:

@@ -36,6 +36,7 @@ CHECKS: Dict[str, Callable[[Any, str], Any]] = {
     "threads": _whole(0, 4096),
     "radius": _radius,
     "frames": arguments.flag,
+    "spread": arguments.flag,
     "k": _whole(1),
     "margin": _positive,
     "delaunay": arguments.flag,
@@ -58,7 +59,6 @@ CHECKS: Dict[str, Callable[[Any, str], Any]] = {
     "pattern": _one_of("raster", "spiral"),
     "max_distortion": _positive,
     "size": _whole(1),
-    "margin_texels": _whole(0),
 }
 
 

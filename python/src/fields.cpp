@@ -4,8 +4,8 @@
 
 #include "ahm/error.hpp"
 #include "ahm/fields/distance.hpp"
-#include "ahm/fields/unfolding_front.hpp"
 #include "ahm/fields/vector_heat.hpp"
+#include "ahm/maps/unfolding_front.hpp"
 #include "ahm/surface/directions.hpp"
 #include "compute.hpp"
 #include "heat/component_scales.hpp"

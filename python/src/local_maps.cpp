@@ -60,10 +60,20 @@ LocalMaps solve(const Body& body, const std::optional<std::vector<Index>>& rows,
     place.push_back(s);
   }
   const Index most = options.nearest;
-  if (has_virtual(body)) options.nearest = 0;
-  LocalMaps maps = local_maps(body.graph(), vertices, options);
-  keep_rows(maps, body, most, place, sources);
-  return maps;
+  const bool all_on_rows = !has_virtual(body);
+  if (!all_on_rows && options.radius > 0) options.nearest = 0;
+  while (true) {
+    LocalMaps maps = local_maps(body.graph(), vertices, options);
+    const std::vector<Offset> found = maps.indptr;
+    keep_rows(maps, body, most, place, sources);
+    if (all_on_rows || options.radius > 0 || options.nearest >= body.graph().size()) return maps;
+    // Of the nearest some were virtual: it takes more of them, where there are more.
+    bool enough = true;
+    for (std::size_t s = 0; s < place.size() && enough; ++s)
+      enough = maps.indptr[place[s] + 1] - maps.indptr[place[s]] == most || found[s + 1] - found[s] < options.nearest;
+    if (enough) return maps;
+    options.nearest = std::min(2 * options.nearest, body.graph().size());
+  }
 }
 
 py::dict local_maps_of(const BodyPtr& body, const py::object& rows, const py::dict& options, const py::object& report) {

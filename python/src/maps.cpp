@@ -43,6 +43,7 @@ MapOptions map_options(const py::dict& options) {
   read(options, "radius", o.radius);
   if (unsigned threads = 0; read(options, "threads", threads)) o.threads = threads;
   read(options, "frames", o.frames);
+  read(options, "spread", o.spread);
   return o;
 }
 

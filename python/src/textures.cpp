@@ -75,7 +75,7 @@ py::tuple decal(const InversePtr& map, const py::dict& options) {
 
 py::array image_coordinates(const InversePtr& map, const py::dict& options) {
   const DecalOptions o = decal_options(options);
-  const auto n = static_cast<py::ssize_t>(map->size());
+  const auto n = static_cast<py::ssize_t>(map->positions().size());
   return owned<double>(
       compute(py::none(), py::none(), [=](const Progress&) { return image_coordinates_of_vertices(*map, o); }), {n, 2});
 }

@@ -38,6 +38,15 @@ def test_local_maps_in_csr_and_padded_hold_the_same_numbers(sphere):
     np.testing.assert_array_equal(most.padded(dtype=float).log, maps.padded(4, float).log)
 
 
+def test_local_maps_of_the_nearest_rows_need_no_radius(flat_surfaces):
+    for kind in ("triangles", "refined", "cloud"):
+        maps = ahm.local_maps(flat_surfaces[kind], k=7)
+        P = np.asarray(flat_surfaces[kind].points)
+        away = np.sort(np.linalg.norm(P[:, None] - P[None], axis=2), axis=1)[:, :7]
+        np.testing.assert_allclose(np.sort(maps.distance.reshape(-1, 7), axis=1), away, atol=1e-8)
+    assert np.diff(ahm.local_maps(flat_surfaces["refined"], k=1000, sources=[4]).indptr).tolist() == [143]
+
+
 def test_distances_by_three_methods_on_the_plane(flat_surfaces):
     s = flat_surfaces["triangles"]
     solver = ahm.LogMapSolver(s)

@@ -32,6 +32,7 @@ NAN = float("nan")
     (lambda s: ahm.log_map(s, 0, u_axis=s.normals[0]), r"source: "),
     (lambda s: ahm.log_map(s, 0, method="magic"), r"method: 'magic' is none of"),
     (lambda s: ahm.local_maps(s, radius=0), r"radius"),
+    (lambda s: ahm.local_maps(s), r"radius: is missing"),
     (lambda s: ahm.local_maps(s, 0.2, sources=[1, 2, -7]), r"sources\[2\]: row -7"),
     (lambda s: ahm.distance(s, 0, targets=[0.5]), r"targets: rows are whole numbers"),
     (lambda s: ahm.extend(s, [0, 1], [1.0]), r"values: shape \(2,\) is needed, not \(1,\)"),
