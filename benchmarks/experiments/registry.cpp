@@ -23,6 +23,7 @@ Table mazes(const Settings&);
 Table mesh_scaling(const Settings&);
 Table methods_compared(const Settings&);
 Table orders(const Settings&);
+Table polygons(const Settings&);
 Table radial(const Settings&);
 Table runtime(const Settings&);
 Table tessellations(const Settings&);
@@ -90,6 +91,8 @@ std::span<const Experiment> experiments() {
       Experiment{"discretizations", "Fig. 15, 16", "The sphere as triangles, polygons and points",
                  "The same algorithm runs on point clouds and polygon meshes; the paper gives pictures, no numbers.",
                  discretizations},
+      Experiment{"polygons", "after Fig. 15", "The sphere as polygons of many kinds",
+                 "The same algorithm runs on polygon meshes; the paper gives a picture, no numbers.", polygons},
       Experiment{"backends", "after Fig. 16", "What each backend costs",
                  "The same algorithm runs on triangles, polygons and point clouds, with like results.", backends},
       Experiment{"methods", "all", "Every method on the sphere",
