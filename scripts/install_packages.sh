@@ -41,14 +41,21 @@ if [ "$(id -u)" -ne 0 ]; then
   command -v sudo >/dev/null || { echo "error: run this as root, or install sudo" >&2; exit 1; }
   as_root=(sudo)
 fi
-# apt's machine-readable status, "pmstatus:PACKAGE:PERCENT:WHAT", as one line per ten percent.
+# apt's machine-readable status, "pmstatus:PACKAGE:PERCENT:WHAT", as one line per ten percent. In bash, since Debian's awk reads
+# blocks of 4096 bytes and would tell late.
 progress() {
-  awk -F: '/^(dl|pm)status:/ {
-    step = int($3 / 10); what = $1 == "dlstatus" ? "downloading" : "installing"
-    if (what != last || step > reached) { printf "  %s %3d %%%s\n", what, 10 * step, what == "installing" ? "  " $2 : ""; fflush() }
-    if (what != last || step > reached) reached = step
-    last = what
-  }'
+  local kind package percent rest what last="" step reached=0
+  while IFS=: read -r kind package percent rest; do
+    case "$kind" in
+      dlstatus) what=downloading package="" ;;
+      pmstatus) what=installing ;;
+      *) continue ;;
+    esac
+    step=$((${percent%%.*} / 10))
+    [ "$what" = "$last" ] && [ "$step" -le "$reached" ] && continue
+    printf '  %-11s %3d %%  %s\n' "$what" $((10 * step)) "$package"
+    last="$what" reached="$step"
+  done
 }
 apt=("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -y -qq -o APT::Status-Fd=1 -o Dpkg::Use-Pty=0)
 echo "  reading the lists of packages"

@@ -34,10 +34,13 @@ double doubled_area(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
 
 }  // namespace
 
-void Polygon::read(const PolygonMesh& mesh, Index face) {
-  const auto vertices = mesh.face(face);
+void Polygon::read_corners(const PolygonMesh& mesh, Index face) {
   corner_.clear();
-  for (Index v : vertices) corner_.emplace_back(mesh.position(v).data());
+  for (Index v : mesh.face(face)) corner_.emplace_back(mesh.position(v).data());
+}
+
+void Polygon::read(const PolygonMesh& mesh, Index face) {
+  read_corners(mesh, face);
   find_middle();
   find_weights();
 }
@@ -78,6 +81,16 @@ Vector3d Polygon::vector_area() const {
   Vector3d sum = Vector3d::Zero();
   for (std::size_t c = 1; c + 1 < size(); ++c) sum += (corner_[c] - corner_[0]).cross(corner_[c + 1] - corner_[0]);
   return 0.5 * sum;
+}
+
+bool Polygon::is_collinear() const {
+  const auto away = [&](const Vector3d& x) { return (x - corner_[0]).norm(); };
+  const Vector3d end = *std::max_element(corner_.begin(), corner_.end(),
+                                         [&](const auto& a, const auto& b) { return away(a) < away(b); });
+  const double length = away(end), least = std::max(least_height * length, 0x1p-50);
+  return length <= least || std::all_of(corner_.begin(), corner_.end(), [&](const Vector3d& x) {
+           return (x - corner_[0]).cross(end - corner_[0]).norm() <= least * length;
+         });
 }
 
 bool Polygon::folds() const {

@@ -18,6 +18,9 @@ class Polygon {
   /// as p = sum w_c x_c with sum w_c = 1 and the smallest sum w_c^2.
   void read(const PolygonMesh& mesh, Index face);
 
+  /// Takes the corners alone: enough for `is_collinear`, `vector_area` and `corner`.
+  void read_corners(const PolygonMesh& mesh, Index face);
+
   std::size_t size() const { return corner_.size(); }
   const Eigen::Vector3d& corner(std::size_t c) const { return corner_[c]; }
   const Eigen::Vector3d& middle() const { return middle_; }
@@ -25,6 +28,8 @@ class Polygon {
   std::span<const double> weights() const { return weight_; }
   /// Vector area: half the sum of the cross products of consecutive corners.
   Eigen::Vector3d vector_area() const;
+  /// Whether all corners lie on one line, to 1e-10 of its length or rounding.
+  bool is_collinear() const;
   /// Whether a triangle about p faces away from the vector area.
   bool folds() const;
   /// Appends the triangles of the polygon seen along its vector area, cut off ear by ear, as places of corners. Where the

@@ -45,6 +45,16 @@ void PolygonMesh::orient_vertices() {
   }
 }
 
+std::vector<Index> PolygonMesh::collinear_faces() const {
+  std::vector<Index> result;
+  Polygon polygon;
+  for (Index f = 0; f < face_count(); ++f) {
+    polygon.read_corners(*this, f);
+    if (polygon.is_collinear()) result.push_back(f);
+  }
+  return result;
+}
+
 Refinement PolygonMesh::refined() const {
   Refinement result;
   for (Index v : input_of_vertex()) result.positions.push_back(input_[v]);
@@ -58,7 +68,7 @@ Refinement PolygonMesh::refined() const {
     } else {
       polygon.read(*this, f);
       ears.clear();
-      const bool folds = polygon.folds();
+      const bool folds = !polygon.is_collinear() && polygon.folds();
       if (folds && polygon.cut_ears(ears)) {
         for (const auto& [a, b, c] : ears) result.triangles.push_back({corners[a], corners[b], corners[c]});
       } else {

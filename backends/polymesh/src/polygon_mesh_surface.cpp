@@ -11,6 +11,7 @@
 #include "ahm/surface/exact/flat_triangles.hpp"
 #include "ahm/trimesh/triangle_mesh_surface.hpp"
 #include "ahm/util/memory.hpp"
+#include "ahm/util/small_math.hpp"
 #include "ahm/util/stopwatch.hpp"
 #include "ahm/util/vec.hpp"
 #include "polygon_edges.hpp"
@@ -30,7 +31,8 @@ Frame frame_in_space(const Axes& axes, const Vec3& origin) {
 
 /// Where a position near a triangle lies in it: barycentric coordinates of its projection to the plane.
 std::array<double, 3> barycentric(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
-  const Vec3 u = b - a, v = c - a, w = p - a;
+  const double scale = 1 / power_of_two_below(std::max(largest(b - a), largest(c - a)));
+  const Vec3 u = scale * (b - a), v = scale * (c - a), w = scale * (p - a);
   const double uu = dot(u, u), uv = dot(u, v), vv = dot(v, v), wu = dot(w, u), wv = dot(w, v);
   const double area = uu * vv - uv * uv;
   const double s = (vv * wu - uv * wv) / area, t = (uu * wv - uv * wu) / area;
@@ -56,14 +58,21 @@ FacePoint locate(const Refinement& refinement, Index face, const Vec3& position)
   return best;
 }
 
-std::string twisted(const std::vector<Index>& faces) {
-  return std::to_string(faces.size()) + " faces are twisted, the first is face " + std::to_string(faces.front());
+/// @param what  "twisted"
+std::string faces_that_are(const char* what, const std::vector<Index>& faces) {
+  return std::to_string(faces.size()) + " faces are " + what + ", the first is face " + std::to_string(faces.front());
 }
 
-RowMap rows_of(const PolygonMesh& mesh, Index vertices) {
+RowMap rows_of(const PolygonMesh& mesh) {
+  return RowMap(mesh.report().vertices, mesh.vertex_count(), mesh.topology().rows());
+}
+
+/// The rows of the vertices of a refinement, whose first rows are the vertices of the mesh.
+RowMap rows_of(const PolygonMesh& mesh, const RowMap& refined) {
   std::vector<RowVertex> pairs;
-  for (Index v = 0; v < mesh.vertex_count(); ++v) pairs.push_back({Row(mesh.input_of_vertex()[v]), Vertex(v)});
-  return RowMap(mesh.report().vertices, vertices, pairs);
+  for (const auto& [row, vertex] : mesh.topology().rows())
+    for (Vertex v : refined.vertices(Row(vertex.index))) pairs.push_back({row, v});
+  return RowMap(mesh.report().vertices, refined.vertex_count(), pairs);
 }
 
 }  // namespace
@@ -72,6 +81,7 @@ struct PolygonMeshSurface::Impl {
   PolygonMesh mesh;
   PolygonDetails details;
   std::vector<Index> face_rows;  ///< of the faces as given
+  std::vector<Index> corners;    ///< vertices of the graph at the corners as stored
   RowMap rows;
   Frames frames;                               ///< polygons
   std::optional<CsrGraph> polygons;            ///< either this
@@ -82,6 +92,7 @@ struct PolygonMeshSurface::Impl {
     for (Index f = 0; f < mesh.face_count(); ++f)
       details.largest_face = std::max(details.largest_face, static_cast<Index>(mesh.face(f).size()));
     details.topology = mesh.report();
+    details.collinear = mesh.collinear_faces();
     details.vertices = mesh.vertex_count();
   }
 
@@ -109,7 +120,8 @@ void PolygonMeshSurface::Impl::build_polygons(const PolygonOptions& options) {
   details.seconds_graph = stopwatch.lap();
   options.progress.step("graph", 1.0);
   polygons.emplace(std::move(data));
-  rows = rows_of(mesh, polygons->size());
+  rows = rows_of(mesh);
+  corners.assign(mesh.corners().begin(), mesh.corners().end());
 }
 
 void PolygonMeshSurface::Impl::build_refined(const PolygonOptions& options) {
@@ -121,13 +133,18 @@ void PolygonMeshSurface::Impl::build_refined(const PolygonOptions& options) {
   refined.emplace(TriangleMeshSurface::build(refinement.positions, refinement.triangles, triangles));
   const trimesh::MeshDetails& d = refined->details();
   details.refined = true;
-  details.virtual_vertices = d.vertices - mesh.vertex_count();
+  details.virtual_vertices = static_cast<Index>(refinement.positions.size()) - mesh.vertex_count();
   details.flips = d.flips;
   details.mollification = d.mollification;
   details.seconds_checks = d.seconds_checks;
   details.seconds_delaunay = d.seconds_delaunay;
   details.seconds_graph = d.seconds_graph;
-  rows = rows_of(mesh, refined->graph().size());
+  details.merged_vertices = d.merged_vertices;
+  rows = rows_of(mesh, refined->rows());
+  for (Index v : mesh.corners()) {
+    const std::optional<Vertex> vertex = refined->rows().vertex(Row(v));
+    corners.push_back(vertex ? vertex->index : 0);  // in faces without area alone: any
+  }
 }
 
 std::vector<double> PolygonMeshSurface::Impl::stored_weights(const FacePoint& point) const {
@@ -200,7 +217,7 @@ const CsrGraph& PolygonMeshSurface::graph() const& {
 const RowMap& PolygonMeshSurface::rows() const { return impl_->rows; }
 std::span<const Vec3> PolygonMeshSurface::positions() const { return impl_->mesh.input_positions(); }
 FaceList PolygonMeshSurface::faces() const { return {impl_->mesh.face_begin(), impl_->face_rows}; }
-std::span<const Index> PolygonMeshSurface::corner_vertices() const { return impl_->mesh.corners(); }
+std::span<const Index> PolygonMeshSurface::corner_vertices() const { return impl_->corners; }
 const PolygonDetails& PolygonMeshSurface::details() const noexcept { return impl_->details; }
 const PolygonMesh& PolygonMeshSurface::mesh() const noexcept { return impl_->mesh; }
 
@@ -213,7 +230,7 @@ PolygonMeshSurface PolygonMeshSurface::build(PolygonMesh mesh, const PolygonOpti
   }
   const std::vector<Index>& bad = impl->details.twisted;
   if (options.discretization == Discretization::refined && !bad.empty())
-    throw InvalidGeometry("twisted_faces", twisted(bad), "use Discretization::polygons");
+    throw InvalidGeometry("twisted_faces", faces_that_are("twisted", bad), "use Discretization::polygons");
   if (options.discretization == Discretization::polygons || !bad.empty()) {
     impl->refinement = {};
     impl->build_polygons(options);
@@ -262,9 +279,15 @@ Sample PolygonMeshSurface::sample_in_face(const LogMap& map, const FacePoint& po
 }
 
 FlatTriangles PolygonMeshSurface::flat_triangles() const {
-  if (impl_->refined) return impl_->refined->flat_triangles();
+  if (impl_->refined && impl_->details.collinear.empty()) return impl_->refined->flat_triangles();
+  if (!impl_->details.collinear.empty())
+    throw InvalidGeometry("collinear_faces",
+                          "exact geodesics need faces with an area; " +
+                              faces_that_are("collinear, all corners on one line", impl_->details.collinear),
+                          "remove them, or map by heat");
   if (!impl_->details.twisted.empty())
-    throw InvalidArgument("no_flat_triangles", "exact geodesics need flat faces; " + twisted(impl_->details.twisted),
+    throw InvalidArgument("no_flat_triangles",
+                          "exact geodesics need flat faces; " + faces_that_are("twisted", impl_->details.twisted),
                           "map by heat");
   throw InvalidArgument("polygons_not_refined", "exact geodesics need polygons refined to triangles",
                         "use Discretization::refined, or map by heat");
@@ -286,6 +309,7 @@ Report PolygonMeshSurface::report() const {
   if (d.refined)
     append({{"virtual_vertices", d.virtual_vertices},
             {"flips", d.flips},
+            {"merged_vertices", d.merged_vertices},
             {"mollification", d.mollification},
             {"seconds.checks", d.seconds_checks},
             {"seconds.delaunay", d.seconds_delaunay},
@@ -301,20 +325,21 @@ Report PolygonMeshSurface::report() const {
 std::vector<Warning> PolygonMeshSurface::warnings() const {
   const PolygonDetails& d = details();
   std::vector<Warning> result = ahm::warnings(d.topology);
+  const auto warn_of = [&](std::string_view id, const std::vector<Index>& faces) {
+    if (!faces.empty())
+      result.push_back({id, {static_cast<double>(faces.size()), static_cast<double>(faces.front())}, {}});
+  };
+  warn_of("collinear_faces", d.collinear);
   if (impl_->refined) {
     const std::vector<Warning> told = ahm::warnings(impl_->refined->details().topology);
     for (Warning& warning : impl_->refined->warnings())
       if (std::ranges::find(told, warning.id, &Warning::id) == told.end()) result.push_back(std::move(warning));
     return result;
   }
-  const auto warn = [&](std::string_view id, auto count) {
-    if (count > 0) result.push_back({id, {static_cast<double>(count)}, {}});
-  };
-  warn("degenerate_faces", d.degenerate_faces);
-  if (!d.clamped) warn("negative_weights", d.negative_weights);
+  if (!d.clamped && d.negative_weights > 0)
+    result.push_back({"negative_weights", {static_cast<double>(d.negative_weights)}, {}});
   if (d.longest_edge > 1e6 * d.shortest_edge) result.push_back({"edge_lengths", {d.shortest_edge, d.longest_edge}, {}});
-  if (!d.twisted.empty())
-    result.push_back({"twisted_faces", {static_cast<double>(d.twisted.size()), static_cast<double>(d.twisted[0])}, {}});
+  warn_of("twisted_faces", d.twisted);
   return result;
 }
 

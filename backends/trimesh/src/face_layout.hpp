@@ -20,7 +20,7 @@ FaceLayout layout_of_lengths(double l0, double l1, double l2);
 /// Height over the longest side, divided by that side: 0.87 for an equilateral triangle, 0 for a degenerate one.
 double relative_height(const Vec2* sides);
 
-/// A height below this multiple of the longest side makes a face degenerate.
+/// A height below this multiple of the longest side is almost none.
 constexpr double least_relative_height = 1e-10;
 
 }  // namespace ahm::trimesh

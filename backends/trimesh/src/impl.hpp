@@ -17,10 +17,24 @@ struct TriangleMeshSurface::Impl {
   RowMap rows;
   std::vector<Index> face_rows;  ///< at the corners of the faces as given
 
+  /// A point in a face that was kept, by the weights of its corners as stored.
+  struct StoredPoint {
+    Index face;
+    std::array<double, 3> weight;
+  };
+  StoredPoint stored(const FacePoint& point) const;
   /// A point of the input mesh in the intrinsic triangulation. Weights are those of the corners of `face` as stored.
   FlipHistory::Point locate(const FacePoint& point) const;
-  /// The side from corner `from` to corner `to` of an input face, corners as given, in the layout of the face.
+  /// The side from corner `from` to corner `to` of an input face, corners as given, in the layout of the face that was kept;
+  /// zero where it was contracted.
   Vec2 input_side(Index face, int from, int to) const;
+  /// A face that was kept with an edge between two rows, and its corners there, as given; none where there is no such edge,
+  /// or it was contracted.
+  struct Edge {
+    Index face;
+    int from, to;
+  };
+  std::optional<Edge> edge(Row from, Row to) const;
   /// The source at a point whose u axis is the given unit vector in the layout of its input face.
   Source source(const FacePoint& point, Vec2 u) const;
   /// Position and axes of a face in space; none without positions or area.

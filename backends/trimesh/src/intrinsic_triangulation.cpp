@@ -13,6 +13,12 @@ namespace {
 /// Margin in the triangle inequality of mollified faces, in mean edge lengths.
 constexpr double mollified_margin = 1e-8;
 
+/// Sides shorter than this multiple of the longest of their face have no direction.
+constexpr double least_side = 1e-15;
+
+/// The sine of an angle that counts as none: cotangents are no larger than its inverse.
+constexpr double least_sine = 1e-16;
+
 }  // namespace
 
 IntrinsicTriangulation::IntrinsicTriangulation(const TriangleMesh& mesh, bool mollify_now, unsigned threads)
@@ -20,8 +26,10 @@ IntrinsicTriangulation::IntrinsicTriangulation(const TriangleMesh& mesh, bool mo
       twin_(mesh.twins().begin(), mesh.twins().end()),
       mirrored_(mesh.mirrored().begin(), mesh.mirrored().end()),
       side_(mesh.tails().size()),
+      dropped_(mesh.topology().dropped().begin(), mesh.topology().dropped().end()),
       history_(mesh.tails().size() / 3) {
   detail::for_each_index(static_cast<std::size_t>(mesh.face_count()), threads, [&](std::size_t f) {
+    if (is_dropped(static_cast<Index>(f))) return;
     const auto layout = mesh.layout(static_cast<Index>(f));
     for (int s = 0; s < 3; ++s) side_[3 * f + s] = layout[s];
   });
@@ -40,10 +48,12 @@ void IntrinsicTriangulation::mollify() {
   const double margin = mollified_margin * (mean > 0 ? mean : 1.0);
   double epsilon = 0;
   for (std::size_t f = 0; f < length.size(); f += 3) {
+    if (is_dropped(static_cast<Index>(f / 3))) continue;
     const double sum = length[f] + length[f + 1] + length[f + 2];
     for (int s = 0; s < 3; ++s) epsilon = std::max(epsilon, margin - (sum - 2.0 * length[f + s]));
   }
   for (std::size_t f = 0; f < length.size(); f += 3) {
+    if (is_dropped(static_cast<Index>(f / 3))) continue;
     const FaceLayout layout = layout_of_lengths(length[f] + epsilon, length[f + 1] + epsilon, length[f + 2] + epsilon);
     std::copy(layout.begin(), layout.end(), side_.begin() + static_cast<std::ptrdiff_t>(f));
   }
@@ -57,14 +67,23 @@ double IntrinsicTriangulation::area(Index face) const {
 
 double IntrinsicTriangulation::cotangent(Half h) const {
   const Vec2 a = side_[previous(h)], b = -side_[next(h)];
-  return dot(a, b) / cross(a, b);
+  return dot(a, b) / std::max(cross(a, b), least_sine * norm(a) * norm(b));
 }
 
 double IntrinsicTriangulation::angle(Half h) const {
   return std::max(0.0, angle_between(side_[h], -side_[previous(h)]));
 }
 
-/// The angles opposite the edge sum to at most pi, but for rounding.
+/// Whether the third corners of two flat faces at an edge fall together, so that a flip would leave no diagonal.
+bool IntrinsicTriangulation::opposite_coincide(Half h) const {
+  const Half t = twin_[h];
+  const double length = norm(side_[h]), along_h = -dot(side_[h], side_[previous(h)]) / length,
+               along_t = -dot(side_[t], side_[previous(t)]) / norm(side_[t]);
+  const bool mirrored = !mirrored_.empty() && mirrored_[h];
+  return std::abs(along_h - (mirrored ? along_t : length - along_t)) <= least_side * length;
+}
+
+/// The angles opposite the edge sum to at most pi, but for rounding; or a flip is impossible.
 bool IntrinsicTriangulation::is_delaunay(Half h) const {
   const Half t = twin_[h];
   // On the boundary, or two sides of one face, which is folded onto itself and has nothing to flip.
@@ -75,7 +94,7 @@ bool IntrinsicTriangulation::is_delaunay(Half h) const {
     return Vec2{dot(a, b) * scale, std::max(0.0, cross(a, b)) * scale};  // cosine, sine
   };
   const Vec2 p = opposite(h), q = opposite(t);
-  if (p[0] < 0 && q[0] < 0) return false;
+  if (p[0] < 0 && q[0] < 0) return std::max(p[1], q[1]) < least_sine && opposite_coincide(h);
   return p[0] * q[1] + p[1] * q[0] >= -1e-15 - 1e-10 * p[1] * q[1];
 }
 
@@ -165,20 +184,21 @@ void IntrinsicTriangulation::flip(Half h) {
   if (!mirrored_.empty()) mirrored_[h] = mirrored_[t] = 0;
 }
 
-Index IntrinsicTriangulation::count_degenerate() const {
+Index IntrinsicTriangulation::count_thin() const {
   Index count = 0;
   for (Index f = 0; f < static_cast<Index>(tail_.size() / 3); ++f)
-    count += !(relative_height(sides(f)) >= least_relative_height);
+    count += is_dropped(f) || !(relative_height(sides(f)) >= least_relative_height);
   return count;
 }
 
-bool IntrinsicTriangulation::has_collapsed_sides() const {
-  for (std::size_t f = 0; f < side_.size(); f += 3) {
-    const double l[3] = {dot(side_[f], side_[f]), dot(side_[f + 1], side_[f + 1]), dot(side_[f + 2], side_[f + 2])};
+bool IntrinsicTriangulation::has_angles() const {
+  for (Index f = 0; f < static_cast<Index>(tail_.size() / 3); ++f) {
+    if (is_dropped(f)) continue;
+    const double l[3] = {norm(side_[3 * f]), norm(side_[3 * f + 1]), norm(side_[3 * f + 2])};
     const auto [least, largest] = std::minmax({l[0], l[1], l[2]});
-    if (!(least > least_relative_height * least_relative_height * largest)) return true;
+    if (!(least > least_side * largest)) return false;
   }
-  return false;
+  return true;
 }
 
 std::size_t IntrinsicTriangulation::bytes() const {

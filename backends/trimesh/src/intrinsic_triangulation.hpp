@@ -14,14 +14,16 @@ namespace ahm::trimesh {
 /// Half-edge arrays whose faces are laid out in the plane one by one.
 class IntrinsicTriangulation {
  public:
-  /// The mesh itself. Degenerate faces are mollified at once when `mollify` asks for it ([SC20] Sec. 4.5): the least
-  /// length is added to every edge that leaves each face a margin in the triangle inequality.
+  /// The mesh itself. `mollify` adds the least length to every edge that leaves each face a margin in the triangle inequality
+  /// ([SC20] Sec. 4.5).
   IntrinsicTriangulation(const TriangleMesh& mesh, bool mollify, unsigned threads);
 
   /// Flips edges until all are Delaunay. Returns false when a cap on the number of flips was met.
   bool flip_to_delaunay(const Progress& progress);
 
   HalfEdges half_edges() const { return {tail_, twin_, mirrored_}; }
+  /// Faces that the mesh dropped have no part in anything here.
+  bool is_dropped(Index face) const { return !dropped_.empty() && dropped_[face]; }
   const FlipHistory& history() const { return history_; }
   /// Side h in the layout of its face, in units of the mesh.
   Vec2 side(Half h) const { return side_[h]; }
@@ -36,10 +38,10 @@ class IntrinsicTriangulation {
   bool is_delaunay(Half h) const;
   /// Length added to every edge, in units of the mesh.
   double mollification() const { return mollification_; }
-  /// Faces without height; > 0 means that weights and angles have no meaning.
-  Index count_degenerate() const;
-  /// Whether a side is so short beside its face that it has no direction.
-  bool has_collapsed_sides() const;
+  /// Faces of almost no height.
+  Index count_thin() const;
+  /// Whether the angles of all faces have a meaning: no side is so short beside its face that it has no direction.
+  bool has_angles() const;
   std::size_t bytes() const;
 
  private:
@@ -51,6 +53,7 @@ class IntrinsicTriangulation {
   };
 
   void mollify();
+  bool opposite_coincide(Half h) const;
   Half turn_over(Half h);
   Quadrilateral unfold(Half h, Half t) const;
   void flip(Half h);
@@ -59,6 +62,7 @@ class IntrinsicTriangulation {
   std::vector<Half> twin_;
   std::vector<std::uint8_t> mirrored_;
   std::vector<Vec2> side_;
+  std::vector<std::uint8_t> dropped_;
   FlipHistory history_;
   double mollification_ = 0;
 };

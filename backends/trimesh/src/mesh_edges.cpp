@@ -81,7 +81,7 @@ class Rows {
     double sum = 0;
     for (Half h = 0; h < edges_.size(); ++h) {
       const Half t = edges_.twin[h];
-      if (t >= 0 && t < h) continue;
+      if (triangulation_.is_dropped(h / 3) || (t >= 0 && t < h)) continue;
       ++report.edges;
       sum += triangulation_.length(h);
       report.closed_edges += edges_.tail[h] == edges_.head(h);
@@ -98,6 +98,22 @@ class Rows {
   bool clamp_;
 };
 
+/// Vertices whose faces have no area still need a mass: where it is below 1e-14 of the square of their longest edge, it
+/// becomes a hundredth of that.
+void mend_masses(const IntrinsicTriangulation& triangulation, std::vector<double>& masses) {
+  const HalfEdges edges = triangulation.half_edges();
+  std::vector<double> longest(masses.size(), 0.0);
+  for (Half h = 0; h < edges.size(); ++h) {
+    if (triangulation.is_dropped(h / 3)) continue;
+    const double length = triangulation.length(h);
+    for (Index v : {edges.tail[h], edges.head(h)}) longest[v] = std::max(longest[v], length * length);
+  }
+  const double of_all = std::ranges::max(longest);
+  for (std::size_t v = 0; v < masses.size(); ++v)
+    if (const double square = longest[v] > 0 ? longest[v] : of_all; !(masses[v] > 1e-14 * square))
+      masses[v] = 0.01 * square;
+}
+
 }  // namespace
 
 CsrGraphData mesh_edges(const TriangleMesh& mesh, const IntrinsicTriangulation& triangulation,
@@ -110,9 +126,10 @@ CsrGraphData mesh_edges(const TriangleMesh& mesh, const IntrinsicTriangulation& 
   g.length_unit = mesh.length_unit();
   g.masses.assign(n, 0.0);
   for (Half h = 0; h < edges.size(); h += 3) {
-    const double third = triangulation.area(h / 3) / 3.0;
+    const double third = std::max(0.0, triangulation.area(h / 3)) / 3.0;
     for (Half s = h; s < h + 3; ++s) g.masses[edges.tail[s]] += third;
   }
+  mend_masses(triangulation, g.masses);
   g.row_begin.assign(n + 1, 0);
   detail::for_each_index(n, threads, [&](std::size_t i) {
     Offset degree = 0;

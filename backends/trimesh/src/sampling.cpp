@@ -52,6 +52,7 @@ class Unfolding {
         done_(static_cast<std::size_t>(mesh.face_count()), no) {
     std::vector<Index> front;
     for (Index f = 0; f < mesh.face_count(); ++f) {
+      if (mesh.is_dropped(f)) continue;
       MappedFace face = mapped(f);
       bool ok = true;
       for (int s = 0; s < 3; ++s) {
@@ -111,6 +112,9 @@ std::vector<Vec2> TriangleMeshSurface::on_corners(const LogMap& map) const {
     if (!unfolding.known(f)) continue;
     for (int s = 0; s < 3; ++s) result[3 * f + mesh.stored_corner(f, s)] = unfolding.phi(3 * f + s);
   }
+  for (Index f = 0; f < mesh.face_count(); ++f)
+    if (mesh.is_dropped(f) && mesh.topology().stand_in(f)[0] >= 0 && unfolding.known(mesh.kept_corner(f, 0) / 3))
+      for (int s = 0; s < 3; ++s) result[3 * f + s] = unfolding.phi(mesh.kept_corner(f, s));
   return result;
 }
 

@@ -7,18 +7,26 @@
 #include "impl.hpp"
 
 namespace ahm::trimesh {
+
+TriangleMeshSurface::Impl::StoredPoint TriangleMeshSurface::Impl::stored(const FacePoint& point) const {
+  StoredPoint result{mesh.kept_corner(point.face, 0) / 3, {0, 0, 0}};
+  for (int s = 0; s < 3; ++s) result.weight[mesh.kept_corner(point.face, s) % 3] += point.barycentric[s];
+  return result;
+}
+
 FlipHistory::Point TriangleMeshSurface::Impl::locate(const FacePoint& point) const {
-  std::array<double, 3> weight;
+  auto [face, weight] = stored(point);
   double total = 0;
-  for (int s = 0; s < 3; ++s) total += weight[mesh.stored_corner(point.face, s)] = std::max(0.0, point.barycentric[s]);
+  for (double& w : weight) total += w = std::max(0.0, w);
   for (double& w : weight) w /= total;
-  return triangulation.history().locate(point.face, weight);
+  return triangulation.history().locate(face, weight);
 }
 
 Vec2 TriangleMeshSurface::Impl::input_side(Index face, int from, int to) const {
-  const auto layout = mesh.layout(face);
-  const int a = mesh.stored_corner(face, from), b = mesh.stored_corner(face, to);
-  return b == (a + 1) % 3 ? layout[a] : -layout[b];
+  const Half a = mesh.kept_corner(face, from), b = mesh.kept_corner(face, to);
+  if (a == b) return {0, 0};
+  const auto layout = mesh.layout(a / 3);
+  return b == next(a) ? layout[a % 3] : -layout[b % 3];
 }
 
 Source TriangleMeshSurface::Impl::source(const FacePoint& point, Vec2 u) const {
@@ -44,7 +52,8 @@ Source TriangleMeshSurface::Impl::source(const FacePoint& point, Vec2 u) const {
     const Vec2 back = at_corner ? product(unit(within), normalized(side[s])) : normalized(-offset);
     const Index k = edges.tail[h];
     const bool forward = frames.forward(edges, h, true);
-    const double angle = frames.angle[edges.directed(h, true)] + (forward ? within : -within) * frames.scale[k];
+    const double angle =
+        frames.angle[edges.directed(h, true)] + (forward ? within : -within) * frames.corner_scale(h, k);
     Vec2 axis = product(u_here, conj(back));
     if (!forward) axis = conj(axis);
     axis = normalized(product(axis, unit(angle)));
@@ -58,15 +67,16 @@ Source TriangleMeshSurface::Impl::source(const FacePoint& point, Vec2 u) const {
 
 std::optional<Frame> TriangleMeshSurface::Impl::frame(const FacePoint& point) const {
   if (!mesh.has_positions()) return std::nullopt;
+  const auto [face, weight] = stored(point);
   Vec3 corner[3], origin{0, 0, 0};
   for (int s = 0; s < 3; ++s) {
-    const Index v = mesh.tails()[3 * point.face + mesh.stored_corner(point.face, s)];
+    const Index v = mesh.tails()[3 * face + s];
     corner[s] = mesh.position(v);
-    origin = origin + point.barycentric[s] * mesh.original_position(v);
+    origin = origin + weight[s] * mesh.original_position(v);
   }
-  const Vec3 side = corner[1] - corner[0], other = corner[2] - corner[0];
-  Vec3 normal = cross(side, other);
-  if (mesh.reversed()[point.face]) normal = -1.0 * normal;
+  const int a = mesh.kept_corner(point.face, 0) % 3, b = mesh.kept_corner(point.face, 1) % 3;
+  const Vec3 side = a != b ? corner[b] - corner[a] : corner[1] - corner[0];
+  const Vec3 normal = cross(corner[1] - corner[0], corner[2] - corner[0]);
   if (!(norm(side) > 0) || !(norm(normal) > 0)) return std::nullopt;
   const Vec3 x = 1 / norm(side) * side, n = 1 / norm(normal) * normal;
   return Frame{origin, x, cross(n, x), n};
@@ -89,42 +99,42 @@ PlacedSource TriangleMeshSurface::source_in_face(const FacePoint& point, const s
   return {impl_->source(point, u), impl_->mesh.has_positions() ? position(point) : Vec3{}, frame, std::nullopt};
 }
 
-PlacedSource TriangleMeshSurface::source_on_edge(const EdgePoint& edge, const std::optional<Vec3>& u_axis) const {
-  const FacePoint point = face_point(edge);
-  PlacedSource result = source_in_face(point, u_axis);
-  if (u_axis) return result;
-  const auto given = faces()[point.face];
-  const auto corner = [&](Row row) {
-    return static_cast<int>(std::find(given.begin(), given.end(), row.index) - given.begin());
-  };
-  const Vec2 u = impl_->input_side(point.face, corner(edge.from), corner(edge.to));
-  result.source = impl_->source(point, norm(u) > 0 ? normalized(u) : Vec2{1, 0});
-  if (result.frame) result.frame = turned(*result.frame, positions()[edge.to.index] - positions()[edge.from.index]);
-  return result;
-}
-
-/// Looks through the fans of all copies of `from`; only a split mesh has more than one.
-FacePoint TriangleMeshSurface::face_point(const EdgePoint& edge) const {
-  const TriangleMesh& mesh = impl_->mesh;
+/// Looks through the fans of all vertices of `from`; only a split mesh has more than one.
+std::optional<TriangleMeshSurface::Impl::Edge> TriangleMeshSurface::Impl::edge(Row from, Row to) const {
   const HalfEdges edges = mesh.topology().half_edges();
-  for (Vertex v : rows().vertices(edge.from)) {
+  const auto ends = rows.vertices(to);
+  for (Vertex v : rows.vertices(from)) {
     const Corner start = edges.rightmost({mesh.corners()[v.index], true});
     for (Corner c = start; c.half >= 0;) {
       const Index face = c.half / 3;
       const int at = c.half % 3;
-      for (int other : {(at + 1) % 3, (at + 2) % 3}) {
-        if (mesh.input_of_vertex()[edges.tail[3 * face + other]] != edge.to.index) continue;
-        FacePoint point{face, {0, 0, 0}};
-        point.barycentric[mesh.stored_corner(face, at)] = 1 - edge.t;
-        point.barycentric[mesh.stored_corner(face, other)] = edge.t;
-        return point;
-      }
+      for (int other : {(at + 1) % 3, (at + 2) % 3})
+        if (std::find(ends.begin(), ends.end(), Vertex(edges.tail[3 * face + other])) != ends.end())
+          return Edge{face, mesh.stored_corner(face, at), mesh.stored_corner(face, other)};
       c = edges.turn_left(c);
       if (c == start) break;
     }
   }
-  throw InvalidArgument("rows " + std::to_string(edge.from.index) + " and " + std::to_string(edge.to.index) +
-                        " are not joined by an edge");
+  return std::nullopt;
+}
+
+PlacedSource TriangleMeshSurface::source_on_edge(const EdgePoint& edge, const std::optional<Vec3>& u_axis) const {
+  const FacePoint point = face_point(edge);
+  PlacedSource result = source_in_face(point, u_axis);
+  const std::optional<Impl::Edge> place = impl_->edge(edge.from, edge.to);
+  if (u_axis || !place) return result;
+  result.source = impl_->source(point, normalized(impl_->input_side(place->face, place->from, place->to)));
+  if (result.frame) result.frame = turned(*result.frame, positions()[edge.to.index] - positions()[edge.from.index]);
+  return result;
+}
+
+FacePoint TriangleMeshSurface::face_point(const EdgePoint& edge) const {
+  const std::optional<Impl::Edge> place = impl_->edge(edge.from, edge.to);
+  if (!place) return Surface::face_point(edge);  // contracted, or no edge
+  FacePoint point{place->face, {0, 0, 0}};
+  point.barycentric[place->from] = 1 - edge.t;
+  point.barycentric[place->to] = edge.t;
+  return point;
 }
 
 }  // namespace ahm::trimesh

@@ -8,10 +8,27 @@
 #include "ahm/surface/gluing.hpp"
 #include "ahm/util/disjoint_sets.hpp"
 #include "ahm/util/text.hpp"
+#include "ahm/util/vec.hpp"
 #include "face_layout.hpp"
 
 namespace ahm::trimesh {
+
+using detail::HalfEdges;
+
 namespace {
+
+/// Edges up to this many times the rounding of a coordinate: where they are longer, the angles about a flat vertex sum to 2 pi
+/// to 1e-8 in any plane, since that is the square of what rounding turns an edge by.
+constexpr double least_edge_in_space = 8192;
+/// Relative to the longest, edges given by their lengths alone.
+constexpr double least_edge_by_length = 1e-15;
+
+double largest_coordinate(std::span<const Vec3> points) {
+  double largest = 0;
+  for (const Vec3& p : points)
+    for (double x : p) largest = std::max(largest, std::abs(x));
+  return largest;
+}
 
 void check_lengths(std::span<const Triangle> faces, std::span<const std::array<double, 3>> lengths) {
   if (lengths.size() != faces.size())
@@ -47,8 +64,36 @@ TriangleMesh TriangleMesh::from_positions(std::span<const Vec3> positions, std::
   TriangleMesh mesh(static_cast<Index>(positions.size()), faces, non_manifold);
   mesh.input_.assign(positions.begin(), positions.end());
   for (Index v : mesh.input_of_vertex()) mesh.position_.push_back(positions[v]);
+  const double as_given = largest_coordinate(mesh.position_);
   mesh.length_unit_ = detail::normalize_positions(mesh.position_);
+  const HalfEdges edges = mesh.topology_.half_edges();
+  std::vector<double> lengths(edges.tail.size());
+  for (Half h = 0; h < edges.size(); ++h)
+    lengths[h] = norm(mesh.position_[edges.head(h)] - mesh.position_[edges.tail[h]]);
+  mesh.rounding_ *= std::max(1.0, as_given / mesh.length_unit_);
+  mesh.contract(lengths, least_edge_in_space * mesh.rounding_);
   return mesh;
+}
+
+/// Contracts the edges up to a length.
+void TriangleMesh::contract(const std::vector<double>& lengths, double least) {
+  std::vector<std::uint8_t> contracted(lengths.size());
+  std::transform(lengths.begin(), lengths.end(), contracted.begin(), [&](double length) { return length <= least; });
+  if (std::find(contracted.begin(), contracted.end(), 1) == contracted.end()) return;
+  const std::vector<Index> before(vertex_of_input().begin(), vertex_of_input().end());
+  topology_.contract(std::move(contracted));
+  if (position_.empty()) return;
+  std::vector<Vec3> kept;
+  for (Index input : input_of_vertex()) kept.push_back(position_[before[input]]);
+  position_ = std::move(kept);
+}
+
+Half TriangleMesh::kept_corner(Index face, int corner) const {
+  const int stored = stored_corner(face, corner);
+  if (!is_dropped(face)) return 3 * face + stored;
+  const Half kept = topology_.stand_in(face)[stored];
+  if (kept < 0) throw InvalidArgument("face " + std::to_string(face) + " has no area, and no other face is beside it");
+  return kept;
 }
 
 TriangleMesh TriangleMesh::from_edge_lengths(Index vertices, std::span<const Triangle> faces,
@@ -73,6 +118,9 @@ TriangleMesh TriangleMesh::from_edge_lengths(Index vertices, std::span<const Tri
                             detail::number(std::scalbn(b, exponent)) + "; they must be equal");
     mesh.length_[t] = a;
   }
+  mesh.contract(mesh.length_, least_edge_by_length * 2);  // the longest is in [1, 2)
+  for (std::size_t h = 0; h < mesh.length_.size(); ++h)
+    if (const Half t = mesh.twins()[h]; t > static_cast<Half>(h)) mesh.length_[t] = mesh.length_[h];
   return mesh;
 }
 

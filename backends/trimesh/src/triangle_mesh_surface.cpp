@@ -17,41 +17,46 @@ namespace {
 
 void measure_edges(const IntrinsicTriangulation& triangulation, double length_unit, MeshDetails& report) {
   double shortest = HUGE_VAL, longest = 0;
+  std::vector<double> longest_at(triangulation.half_edges().tail.size(), 0.0);  // per vertex, of which there are fewer
   for (Half h = 0; h < triangulation.half_edges().size(); ++h) {
+    if (triangulation.is_dropped(h / 3)) continue;
     const double length = triangulation.length(h);
     shortest = std::min(shortest, length);
     longest = std::max(longest, length);
+    for (Index v : {triangulation.half_edges().tail[h], triangulation.half_edges().head(h)})
+      longest_at[v] = std::max(longest_at[v], length);
   }
+  double finest = longest;
+  for (double length : longest_at)
+    if (length > 0) finest = std::min(finest, length);
+  report.finest = finest * length_unit;
   report.shortest_edge = shortest * length_unit;
   report.longest_edge = longest * length_unit;
 }
 
-/// The triangulation the graph is built from. Flips alone heal flat caps, and leave good faces as they are;
-/// mollification changes every length, so it comes second.
+/// The triangulation the graph is built from. Sides without a direction, which only flips of faces without area can make
+/// once edges without length are contracted, are the only reason to change a length.
 IntrinsicTriangulation triangulate(const TriangleMesh& mesh, const MeshOptions& options, MeshDetails& report) {
   IntrinsicTriangulation triangulation(mesh, false, options.threads);
   measure_edges(triangulation, mesh.length_unit(), report);
-  report.degenerate_faces = triangulation.count_degenerate();
+  report.degenerate_faces = triangulation.count_thin();
   if (!(report.longest_edge > 0)) throw InvalidGeometry("all vertices of the mesh are at the same place");
   auto flip = [&](IntrinsicTriangulation& t) {
     return !options.intrinsic_delaunay || t.flip_to_delaunay(options.progress);
   };
-  if (!triangulation.has_collapsed_sides() && flip(triangulation) && triangulation.count_degenerate() == 0)
-    return triangulation;
+  if (flip(triangulation) && triangulation.has_angles()) return triangulation;
   triangulation = IntrinsicTriangulation(mesh, true, options.threads);
   if (!flip(triangulation)) report.flips_stopped = true;
-  if (const Index count = triangulation.count_degenerate(); count > 0)
-    throw InvalidGeometry(std::to_string(count) +
-                          " faces stay degenerate after mollification: edge lengths span too many orders of "
-                          "magnitude (" +
-                          detail::number(report.shortest_edge) + " to " + detail::number(report.longest_edge) + ")");
+  if (!triangulation.has_angles())
+    throw InvalidGeometry(
+        "faces stay degenerate after mollification: edge lengths span too many orders of "
+        "magnitude (" +
+        detail::number(report.shortest_edge) + " to " + detail::number(report.longest_edge) + ")");
   return triangulation;
 }
 
 RowMap rows_of(const TriangleMesh& mesh) {
-  std::vector<RowVertex> pairs;
-  for (Index v = 0; v < mesh.vertex_count(); ++v) pairs.push_back({Row(mesh.input_of_vertex()[v]), Vertex(v)});
-  return RowMap(mesh.report().vertices, mesh.vertex_count(), pairs);
+  return RowMap(mesh.report().vertices, mesh.vertex_count(), mesh.topology().rows());
 }
 
 }  // namespace
@@ -71,24 +76,55 @@ const TriangleMesh& TriangleMeshSurface::mesh() const noexcept { return impl_->m
 
 FlatTriangles TriangleMeshSurface::flat_triangles() const {
   const TriangleMesh& mesh = impl_->mesh;
+  const HalfEdges edges = mesh.topology().half_edges();
+  // Numbers of half-edges without those of dropped faces.
+  std::vector<Half> place(edges.tail.size(), -1), corners;
   std::vector<exact::FaceSides> sides;
-  for (Index f = 0; f < mesh.face_count(); ++f) sides.push_back(mesh.layout(f));
+  for (Half h = 0; h < edges.size(); ++h) {
+    if (mesh.is_dropped(h / 3)) continue;
+    place[h] = static_cast<Half>(3 * sides.size()) + h % 3;
+    if (h % 3 == 2) sides.push_back(mesh.layout(h / 3));
+  }
+  std::vector<Index> tail;
+  std::vector<Half> twin;
+  std::vector<std::uint8_t> mirrored;
+  for (Half h = 0; h < edges.size(); ++h) {
+    if (place[h] < 0) continue;
+    tail.push_back(edges.tail[h]);
+    twin.push_back(edges.twin[h] < 0 ? edges.twin[h] : place[edges.twin[h]]);
+    if (!edges.mirrored.empty()) mirrored.push_back(edges.mirrored[h]);
+  }
+  for (Half h : mesh.corners()) corners.push_back(place[h]);
   std::vector<Vec3> positions;
   if (mesh.has_positions())
     for (Index v = 0; v < mesh.vertex_count(); ++v) positions.push_back(mesh.original_position(v));
-  return {{mesh.topology().half_edges(), sides, mesh.corners()}, std::move(positions), mesh.length_unit()};
+  return {{HalfEdges{tail, twin, mirrored}, sides, corners}, std::move(positions), mesh.length_unit()};
 }
 
 exact::MeshPoint TriangleMeshSurface::flat_point_in_face(const FacePoint& point) const {
-  exact::MeshPoint result{point.face, {}};
-  for (int s = 0; s < 3; ++s) result.barycentric[impl_->mesh.stored_corner(point.face, s)] = point.barycentric[s];
-  return result;
+  const TriangleMesh& mesh = impl_->mesh;
+  const auto [face, weight] = impl_->stored(point);
+  Index kept = 0;
+  for (Index f = 0; f < face; ++f) kept += !mesh.is_dropped(f);
+  return {kept, weight};
+}
+
+Surface::Reason TriangleMeshSurface::why_without_vertex(Row row) const {
+  const std::vector<Index>& used = impl_->face_rows;
+  if (std::find(used.begin(), used.end(), row.index) == used.end()) return Surface::why_without_vertex(row);
+  return {"row_without_area", "lies in faces without area alone", "choose another one"};
 }
 
 Report TriangleMeshSurface::report() const {
   const MeshDetails& d = details();
-  Report report{{"vertices", d.vertices}, {"faces", d.topology.faces},        {"edges", d.edges},
-                {"flips", d.flips},       {"mollification", d.mollification}, {"degenerate_faces", d.degenerate_faces}};
+  Report report{{"vertices", d.vertices},
+                {"faces", d.topology.faces},
+                {"edges", d.edges},
+                {"flips", d.flips},
+                {"merged_vertices", d.merged_vertices},
+                {"dropped_faces", d.dropped_faces},
+                {"mollification", d.mollification},
+                {"degenerate_faces", d.degenerate_faces}};
   const Report topology = figures(d.topology);
   report.insert(report.end(), topology.begin(), topology.end());
   report.push_back({"seconds.checks", d.seconds_checks});
@@ -103,9 +139,11 @@ std::vector<Warning> TriangleMeshSurface::warnings() const {
   if (d.flips_stopped) result.push_back({"flips_stopped", {}, {}});
   const std::vector<Warning> topology = ahm::warnings(d.topology);
   result.insert(result.end(), topology.begin(), topology.end());
+  if (d.merged_vertices > 0)
+    result.push_back({"merged", {static_cast<double>(d.merged_vertices), static_cast<double>(d.dropped_faces)}, {}});
   if (d.mollification > 0)
     result.push_back({"mollified", {static_cast<double>(d.degenerate_faces), d.mollification}, {}});
-  if (d.longest_edge > 1e6 * d.shortest_edge) result.push_back({"edge_lengths", {d.shortest_edge, d.longest_edge}, {}});
+  if (d.longest_edge > 1e6 * d.finest) result.push_back({"edge_lengths", {d.finest, d.longest_edge}, {}});
   return result;
 }
 
@@ -114,6 +152,8 @@ TriangleMeshSurface TriangleMeshSurface::build(TriangleMesh mesh, const MeshOpti
   details.seconds_checks = seconds_checks;
   details.topology = mesh.report();
   details.vertices = mesh.vertex_count();
+  details.merged_vertices = static_cast<Index>(mesh.topology().merged().size());
+  for (std::uint8_t dropped : mesh.topology().dropped()) details.dropped_faces += dropped;
   detail::Stopwatch stopwatch;
   options.progress.step("flips", 0.0);
   IntrinsicTriangulation triangulation = triangulate(mesh, options, details);

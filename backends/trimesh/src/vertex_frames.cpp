@@ -1,6 +1,8 @@
 #include "vertex_frames.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <mutex>
 #include <numbers>
 
 #include "ahm/util/parallel.hpp"
@@ -18,7 +20,7 @@ Corner reference_corner(const TriangleMesh& mesh, const HalfEdges& edges, Index 
 /// The reference direction found in the triangulation: its corner, and the angle from the right side of that corner.
 struct Reference {
   Corner corner;
-  double angle;
+  double angle = 0;
 };
 
 Reference find_reference(const TriangleMesh& mesh, const HalfEdges& input, const IntrinsicTriangulation& triangulation,
@@ -33,34 +35,80 @@ Reference find_reference(const TriangleMesh& mesh, const HalfEdges& input, const
   return {at, std::clamp(at.forward ? turned : -turned, 0.0, triangulation.angle(at.half))};
 }
 
-/// Sets start, scale and the angles of the edges of one vertex.
-void set_angles(const HalfEdges& edges, const IntrinsicTriangulation& triangulation, const Reference& reference,
-                std::size_t v, VertexFrames& frames) {
-  const Corner start = edges.rightmost(reference.corner);
-  double sum = 0;
-  bool closed = false;
-  for (Corner c = start; c.half >= 0 && !closed; closed = c == start) {
-    sum += triangulation.angle(c.half);
-    c = edges.turn_left(c);
+/// Positions are known to this many roundings of a coordinate: of three coordinates, after a few sums.
+constexpr double roundings = 8;
+/// Total uncertainties below this cannot be told from curvature, and need not be: the error they make is as small.
+constexpr double least_uncertainty = 1e-10;
+
+/// The corners of the triangulation about one vertex, and what their angles are in its tangent space.
+class Fan {
+ public:
+  Fan(const HalfEdges& edges, const IntrinsicTriangulation& triangulation, Corner start)
+      : edges_(edges), triangulation_(triangulation), start_(edges.rightmost(start)) {}
+
+  /// Calls visit(corner) counter-clockwise; returns whether the fan is closed.
+  template <class Visit>
+  bool for_each(const Visit& visit) const {
+    for (Corner c = start_;;) {
+      visit(c);
+      c = edges_.turn_left(c);
+      if (c.half < 0 || c == start_) return c.half >= 0;
+    }
   }
-  const double scale = closed ? 2 * pi / sum : 1.0;
-  frames.start[v] = start;
-  frames.scale[v] = scale;
+
+  Corner start() const { return start_; }
+
+  /// What all angles are multiplied by, and those of single corners instead, which are appended.
+  double find_scale(double rounding, std::vector<std::pair<Half, double>>& mended) const {
+    double sum = 0, uncertainty = 0;
+    const bool closed = for_each([&](Corner c) {
+      sum += triangulation_.angle(c.half);
+      uncertainty += uncertain(c, rounding);
+    });
+    if (!closed) return 1.0;
+    const double lack = 2 * pi - sum;
+    if (!(uncertainty > least_uncertainty) || !(std::abs(lack) <= uncertainty)) return 2 * pi / sum;
+    for_each([&](Corner c) {
+      if (const double share = uncertain(c, rounding) / uncertainty * lack; share != 0)
+        mended.emplace_back(c.half, 1 + share / triangulation_.angle(c.half));
+    });
+    return 1.0;
+  }
+
+ private:
+  double uncertain(Corner c, double rounding) const {
+    if (!(triangulation_.angle(c.half) > 0)) return 0;
+    return roundings * rounding * (1 / triangulation_.length(c.half) + 1 / triangulation_.length(previous(c.half)));
+  }
+
+  const HalfEdges& edges_;
+  const IntrinsicTriangulation& triangulation_;
+  Corner start_;
+};
+
+/// Sets the angles of the edges of one vertex.
+void set_angles(const HalfEdges& edges, const IntrinsicTriangulation& triangulation, const Reference& reference,
+                Index v, VertexFrames& frames) {
+  const Corner start = frames.start[v];
   auto store = [&](Half side, bool from_tail, double angle, bool forward) {
     const std::size_t edge = edges.directed(side, from_tail);
     frames.angle[edge] = angle;
     if (!frames.sense.empty()) frames.sense[edge] = forward != (edges.is_mirrored(side) && edges.twin[side] < side);
   };
-  double angle = closed ? -reference.angle * scale : 0.0;
+  const bool closed = edges.turn_right(start).half >= 0;
+  double angle = closed ? -reference.angle * frames.corner_scale(start.half, v) : 0.0;
   for (Corner c = start;;) {
     store(edges.right(c), c.forward, angle, c.forward);
-    angle += scale * triangulation.angle(c.half);
+    angle += frames.corner_scale(c.half, v) * triangulation.angle(c.half);
     const Corner left = edges.turn_left(c);
     if (left.half < 0) store(edges.left(c), !c.forward, angle, c.forward);
     if (left.half < 0 || left == start) return;
     c = left;
   }
 }
+
+/// Normals of faces in space that rounding of their corners turns by no more than this are certain.
+constexpr double certain_normal = 1e-6;
 
 /// The part of an arbitrary axis that is perpendicular to a unit vector.
 Vec3 axis_across(const Vec3& n) {
@@ -95,18 +143,31 @@ class SpatialFan {
   Vec3 center_;
 };
 
-/// The normal is the mean of the face normals weighted by angle; x makes the projected edges lie as close as possible
-/// to where the tangent space has them.
+/// The mean of the face normals weighted by angle: of faces whose normals rounding leaves alone or, where there are none, of
+/// all. Zero where they cancel.
+Vec3 mean_normal(const SpatialFan& fan, double rounding) {
+  Vec3 sum{0, 0, 0}, of_all{0, 0, 0};
+  fan.for_each_face([&](const Vec3& a, const Vec3& b) {
+    const Vec3 normal = cross(a, b);
+    const double area = norm(normal), longest = std::max({norm(a), norm(b), norm(b - a)});
+    if (!(area > 0)) return;
+    const Vec3 weighted = std::atan2(area, dot(a, b)) / area * normal;
+    of_all = of_all + weighted;
+    if (rounding * longest <= certain_normal * area) sum = sum + weighted;
+  });
+  return norm(sum) > 1e-12 ? sum : of_all;
+}
+
+/// The normal is the mean of the face normals; x makes the projected edges lie as close as possible to where the tangent
+/// space has them.
 Frame frame_in_space(const TriangleMesh& mesh, const HalfEdges& edges, Index v) {
   const SpatialFan fan(mesh, edges, v);
-  Vec3 sum{0, 0, 0}, reference{0, 0, 0};
+  const Vec3 sum = mean_normal(fan, mesh.rounding());
+  Vec3 reference{0, 0, 0};
   double angle_sum = 0;
   const bool closed = fan.for_each_face([&](const Vec3& a, const Vec3& b) {
     if (angle_sum == 0) reference = a;
-    const Vec3 normal = cross(a, b);
-    const double area = norm(normal), angle = std::atan2(area, dot(a, b));
-    if (area > 0) sum = sum + angle / area * normal;
-    angle_sum += angle;
+    angle_sum += std::atan2(norm(cross(a, b)), dot(a, b));
   });
   // Where the faces cancel or the reference edge stands on the plane, any axes will do.
   const double length = norm(sum), reach = norm(reference);
@@ -142,6 +203,11 @@ bool VertexFrames::forward(const HalfEdges& edges, Half side, bool from_tail) co
   return (sense[edges.directed(side, from_tail)] != 0) != (edges.is_mirrored(side) && edges.twin[side] < side);
 }
 
+double VertexFrames::corner_scale(Half corner, Index vertex) const {
+  const auto at = std::lower_bound(mended.begin(), mended.end(), std::pair{corner, -HUGE_VAL});
+  return at != mended.end() && at->first == corner ? at->second : scale[vertex];
+}
+
 VertexFrames find_frames(const TriangleMesh& mesh, const IntrinsicTriangulation& triangulation, unsigned threads) {
   const HalfEdges input = mesh.topology().half_edges(), edges = triangulation.half_edges();
   const auto n = static_cast<std::size_t>(mesh.vertex_count());
@@ -151,8 +217,21 @@ VertexFrames find_frames(const TriangleMesh& mesh, const IntrinsicTriangulation&
   frames.scale.resize(n);
   frames.angle.assign(directed, 0.0);
   if (!edges.mirrored.empty()) frames.sense.assign(directed, 0);
+  std::vector<Reference> references(n);
+  std::mutex mending;
   detail::for_each_index(n, threads, [&](std::size_t v) {
-    set_angles(edges, triangulation, find_reference(mesh, input, triangulation, static_cast<Index>(v)), v, frames);
+    references[v] = find_reference(mesh, input, triangulation, static_cast<Index>(v));
+    const Fan fan(edges, triangulation, references[v].corner);
+    std::vector<std::pair<Half, double>> mended;
+    frames.start[v] = fan.start();
+    frames.scale[v] = fan.find_scale(mesh.rounding(), mended);
+    if (mended.empty()) return;
+    const std::scoped_lock lock(mending);
+    frames.mended.insert(frames.mended.end(), mended.begin(), mended.end());
+  });
+  std::sort(frames.mended.begin(), frames.mended.end());
+  detail::for_each_index(n, threads, [&](std::size_t v) {
+    set_angles(edges, triangulation, references[v], static_cast<Index>(v), frames);
   });
   return frames;
 }

@@ -2,6 +2,7 @@
 /// Tangent spaces of the vertices [KCPS13], with true angles at the boundary.
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "ahm/graph/tangent_graph.hpp"
@@ -14,14 +15,21 @@ namespace ahm::trimesh {
 /// Angle 0 is the reference direction of a vertex, fixed on the input mesh: the boundary edge on its right, or the edge
 /// it stores a corner of. Angles about an interior vertex are scaled to the sum 2 pi; at the boundary they are kept,
 /// since scaling them to pi would bend every flat corner.
+///
+/// A corner between short sides is known no better than the rounding of the positions over their length. Where such
+/// uncertainty alone makes up for what the angles about a vertex lack or exceed 2 pi by, it is put right in those corners,
+/// and the others, between long sides, keep their angles.
 struct VertexFrames {
   std::vector<Corner> start;  ///< per vertex: the corner to start turning from; the rightmost on the boundary
   std::vector<double> scale;  ///< per vertex: 2 pi over the angle sum, 1 on the boundary
   std::vector<double> angle;  ///< per directed edge (HalfEdges::directed)
   std::vector<std::uint8_t>
       sense;  ///< per directed edge: whether the vertex is oriented like the lower of its faces; or empty
+  std::vector<std::pair<Half, double>> mended;  ///< what angles of uncertain corners are multiplied by; ascending
 
   bool forward(const HalfEdges& edges, Half side, bool from_tail) const;
+  /// What angles of the face at the start of a half-edge are multiplied by in the tangent space.
+  double corner_scale(Half corner, Index vertex) const;
 };
 
 VertexFrames find_frames(const TriangleMesh& mesh, const IntrinsicTriangulation& triangulation, unsigned threads);

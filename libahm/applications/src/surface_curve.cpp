@@ -18,6 +18,8 @@ constexpr double most_points = 1e6;
 struct CurveSample {
   SurfacePoint point;
   Vec3 position;
+  std::size_t piece;  ///< after which of the given points
+  double along;       ///< the piece: in [0, 1)
 };
 
 double length_of(const std::vector<Vec3>& corners) {
@@ -44,21 +46,23 @@ std::vector<CurveSample> sample(const Surface& surface, std::span<const CurvePoi
                           "is it in the units of the surface?");
 
   std::vector<CurveSample> samples;
-  const auto project = [&](const Vec3& p) {
+  const auto project = [&](const Vec3& p, std::size_t piece, double along) {
     ClosestPoint closest = surface.closest_point(p);
-    samples.push_back({std::move(closest.point), closest.position});
+    samples.push_back({std::move(closest.point), closest.position, piece, along});
     gap = std::max(gap, distance(closest.position, p));
   };
   for (std::size_t k = 0; k < corners.size(); ++k) {
     if (k + 1 == corners.size() && closed) break;
     if (const auto* on_surface = std::get_if<SurfacePoint>(&given[k]))
-      samples.push_back({*on_surface, corners[k]});
+      samples.push_back({*on_surface, corners[k], k, 0});
     else
-      project(corners[k]);
+      project(corners[k], k, 0);
     if (k + 1 == corners.size()) break;
     const int pieces = static_cast<int>(std::ceil(distance(corners[k], corners[k + 1]) / step));
-    for (int p = 1; p < pieces; ++p)
-      project(corners[k] + static_cast<double>(p) / pieces * (corners[k + 1] - corners[k]));
+    for (int p = 1; p < pieces; ++p) {
+      const double along = static_cast<double>(p) / pieces;
+      project(corners[k] + along * (corners[k + 1] - corners[k]), k, along);
+    }
   }
   return samples;
 }
@@ -111,14 +115,14 @@ Source mirrored(const Source& source) {
   return result;
 }
 
-}  // namespace
-
-SurfaceCurve draw_curve(const Surface& surface, std::span<const CurvePoint> given, const StrokeOptions& options) {
+/// @param source_of  makes the source of sources and lengths of a curve of these samples
+template <class SourceOf>
+SurfaceCurve draw(const Surface& surface, std::span<const CurvePoint> given, bool closed, const SourceOf& source_of) {
   const TangentGraph& graph = surface.graph();
   const double edge = graph.mean_edge_length() * graph.length_unit();
   SurfaceCurve curve;
-  std::vector<CurveSample> samples = sample(surface, given, options.closed, edge / 2, curve.gap);
-  thin(samples, options.closed, 1e-6 * edge);
+  std::vector<CurveSample> samples = sample(surface, given, closed, edge / 2, curve.gap);
+  thin(samples, closed, 1e-6 * edge);
 
   const bool may_mirror = graph.transport_kind() == TransportKind::block;
   const std::size_t n = samples.size();
@@ -132,20 +136,43 @@ SurfaceCurve draw_curve(const Surface& surface, std::span<const CurvePoint> give
     if (frame) normal = frame->normal;
   };
   for (std::size_t k = 0; k < n; ++k) {
-    const PlacedSource point = surface.source(samples[k].point, tangent(samples, k, options.closed));
+    const PlacedSource point = surface.source(samples[k].point, tangent(samples, k, closed));
     if (k == 0) curve.first = point.frame;
     turn_over(point.frame);
     sources.push_back(side < 0 ? mirrored(point.source) : point.source);
     curve.points.push_back(samples[k].position);
-    if (k + 1 < n || options.closed) lengths.push_back(distance(samples[k].position, samples[(k + 1) % n].position));
+    if (k + 1 < n || closed) lengths.push_back(distance(samples[k].position, samples[(k + 1) % n].position));
   }
-  if (options.closed) turn_over(curve.first);
-  if (side < 0 && options.closed)
+  if (closed) turn_over(curve.first);
+  if (side < 0 && closed)
     throw InvalidArgument("curve_one_sided", "the curve runs along a one-sided band, so it has no left",
                           "leave it open");
   for (double length : lengths) curve.length += length, curve.jump = std::max(curve.jump, length);
-  curve.source = stroke_source(sources, lengths, options);
+  curve.source = source_of(samples, sources, lengths);
   return curve;
+}
+
+}  // namespace
+
+SurfaceCurve draw_curve(const Surface& surface, std::span<const CurvePoint> given, const StrokeOptions& options) {
+  return draw(surface, given, options.closed, [&](const auto&, const auto& sources, const auto& lengths) {
+    return stroke_source(sources, lengths, options);
+  });
+}
+
+SurfaceCurve draw_curve(const Surface& surface, std::span<const CurvePoint> given, std::span<const Vec2> positions,
+                        bool closed) {
+  if (positions.size() != given.size())
+    throw InvalidArgument("draw_curve: 'positions' has " + std::to_string(positions.size()) + " entries for " +
+                          std::to_string(given.size()) + " points");
+  return draw(surface, given, closed, [&](const auto& samples, const auto& sources, const auto& lengths) {
+    std::vector<Vec2> places;
+    for (const CurveSample& sample : samples) {
+      const Vec2 &from = positions[sample.piece], &to = positions[(sample.piece + 1) % positions.size()];
+      places.push_back(from + sample.along * (to - from));
+    }
+    return stroke_source(sources, lengths, places, closed);
+  });
 }
 
 }  // namespace ahm

@@ -19,12 +19,12 @@ struct Fans {
   ItemList pinched;            ///< vertices of the others
 };
 
-Fans find_fans(const HalfEdges& edges, Index vertices) {
+Fans find_fans(const HalfEdges& edges, Index vertices, std::span<const std::uint8_t> dropped) {
   Fans fans;
   fans.of_half.assign(edges.tail.size(), -1);
   fans.first.assign(vertices, -1);
   for (Half h = 0; h < edges.size(); ++h) {
-    if (fans.of_half[h] >= 0) continue;
+    if (fans.of_half[h] >= 0 || (!dropped.empty() && dropped[h / 3])) continue;
     const auto number = static_cast<Index>(fans.corner.size());
     fans.corner.push_back(h);
     if (Index& first = fans.first[edges.tail[h]]; first < 0) {
@@ -91,7 +91,7 @@ void GluedMesh::build_half_edges(const FaceList& faces, NonManifold non_manifold
 /// Makes every fan of faces about an input vertex a vertex: first fans are numbered in the order of the input, then the
 /// others.
 void GluedMesh::number_vertices(NonManifold non_manifold) {
-  Fans fans = find_fans(half_edges(), report_.vertices);
+  Fans fans = find_fans(half_edges(), report_.vertices, dropped_);
   report_.non_manifold_vertices = static_cast<Index>(fans.pinched.count());
   if (fans.pinched.count() > 0 && non_manifold == NonManifold::error)
     throw InvalidGeometry("non_manifold_vertices",
@@ -114,14 +114,20 @@ void GluedMesh::number_vertices(NonManifold non_manifold) {
     }
   }
   for (Index fan : fans.later) number(fan, tail_[fans.corner[fan]]);
-  for (std::size_t h = 0; h < tail_.size(); ++h) tail_[h] = vertex_of_fan[fans.of_half[h]];
+  for (std::size_t h = 0; h < tail_.size(); ++h)
+    if (fans.of_half[h] >= 0) tail_[h] = vertex_of_fan[fans.of_half[h]];
 }
 
 void GluedMesh::count_parts() {
   const HalfEdges edges = half_edges();
   DisjointSets parts(input_of_vertex_.size()), loops(input_of_vertex_.size());
   std::vector<std::uint8_t> on_boundary(input_of_vertex_.size(), 0);
+  Index faces = 0;
+  Offset sides = 0;
+  for (Index f = 0; f < face_count(); ++f)
+    if (!is_dropped(f)) ++faces, sides += face_begin_[f + 1] - face_begin_[f];
   for (Half h = 0; h < edges.size(); ++h) {
+    if (is_dropped(face_of(h))) continue;
     const Index a = tail_[h], b = edges.head(h);
     parts.join(a, b);
     if (twin_[h] >= 0) continue;
@@ -132,11 +138,12 @@ void GluedMesh::count_parts() {
     report_.components += parts.root(v) == v;
     report_.boundary_loops += on_boundary[v] && loops.root(v) == v;
   }
-  report_.edges = (static_cast<Offset>(tail_.size()) + report_.boundary_edges) / 2;
-  report_.euler_characteristic = vertex_count() - report_.edges + report_.faces;
+  report_.edges = (sides + report_.boundary_edges) / 2;
+  report_.euler_characteristic = vertex_count() - report_.edges + faces;
 }
 
 std::vector<Index> GluedMesh::given_corners() const {
+  if (!given_corners_.empty()) return given_corners_;
   std::vector<Index> result(tail_.size());
   for (Index f = 0; f < face_count(); ++f)
     for (Offset begin = face_begin_[f], c = 0; begin + c < face_begin_[f + 1]; ++c)

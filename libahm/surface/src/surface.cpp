@@ -193,8 +193,8 @@ Vertex Surface::corner_vertex(Index face, std::size_t corner) const {
   const FaceList all = faces();
   const auto given = all[face];
   const auto stored = corner_vertices().subspan(all.begin[face], given.size());
-  const std::optional<Row> second = rows().row(Vertex(stored[1]));
-  const bool reversed = !second || second->index != given[1];
+  const auto second = rows().vertices(Row(given[1]));
+  const bool reversed = std::find(second.begin(), second.end(), Vertex(stored[1])) == second.end();
   return Vertex(stored[reversed ? (given.size() - corner) % given.size() : corner]);
 }
 

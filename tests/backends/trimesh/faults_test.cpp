@@ -222,27 +222,6 @@ TEST(MeshFaults, FlatCapsAreFlippedAwayWithoutMollification) {
   EXPECT_LT(plane_error(mesh, map, {1, 0}, {1, 0}), 1e-13);
 }
 
-TEST(MeshFaults, CoincidentVerticesAreMollified) {
-  Mesh mesh = holed_square(15);
-  const auto [a, b, c] = mesh.faces[60];
-  mesh.positions[a] = mesh.positions[b];
-  mesh.plane[a] = mesh.plane[b];
-  for (bool flips : {true, false}) {
-    const SolvedMesh solved(mesh, {.intrinsic_delaunay = flips});
-    EXPECT_GT(solved.surface.details().mollification, 0);
-    EXPECT_LT(solved.surface.details().mollification, 1e-6);
-    EXPECT_FALSE(solved.surface.warnings().empty());
-    const RowLogMap map = solved.map(solved.surface.source(Row(c)).source);
-    expect_nan_exactly_where_not_ok(map);
-    for (Index i = 0; i < mesh.vertices(); ++i) {
-      ASSERT_EQ(map.status[i], Status::ok);
-      const double straight = std::hypot(mesh.plane[i][0] - mesh.plane[c][0], mesh.plane[i][1] - mesh.plane[c][1]);
-      ASSERT_NEAR(std::hypot(map.u[i], map.v[i]), straight, 0.05);
-      ASSERT_GT(map.distance[i], straight - 0.05);  // longer around the hole
-    }
-  }
-}
-
 TEST(MeshFaults, ThinSliversAtTheBoundary) {
   Mesh mesh = holed_square(15);
   // A vertex 1e-12 beside a boundary edge.

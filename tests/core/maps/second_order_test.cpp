@@ -9,6 +9,8 @@
 #include "ahm/testing/curved_graphs.hpp"
 #include "ahm/testing/flat_graphs.hpp"
 #include "ahm/testing/graph_changes.hpp"
+#include "ahm/testing/triangle_meshes.hpp"
+#include "ahm/trimesh/triangle_mesh_surface.hpp"
 
 namespace ahm::test {
 namespace {
@@ -120,6 +122,49 @@ TEST(SecondOrder, IsOneOfTwo) {
   const CsrGraph graph(sphere_graph(100));
   for (int order : {0, 3, -1}) EXPECT_THROW(LogMapSolver(graph, {.order = order}), InvalidArgument);
   EXPECT_TRUE(LogMapSolver(graph).solve(Source::at_vertex(Vertex{0})).error_estimate().empty());
+}
+
+/// Lengths of the shortest ways along edges.
+std::vector<double> edge_paths(const TangentGraph& graph, Index source) {
+  std::vector<double> lengths(static_cast<std::size_t>(graph.size()), INFINITY);
+  lengths[source] = 0;
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (Index i = 0; i < graph.size(); ++i) {
+      const Star star = graph.star(i);
+      for (std::size_t e = 0; e < star.degree(); ++e) {
+        double& other = lengths[star.neighbors[e]];
+        const double way = lengths[i] + std::hypot(star.log(e)[0], star.log(e)[1]);
+        if (way < other) other = way, changed = true;
+      }
+    }
+  }
+  return lengths;
+}
+
+TEST(SecondOrder, LengthensNothingBeyondWhatIsPossible) {
+  // Coarse and strongly bent, where extrapolation goes astray: without the bound up to a quarter of the vertices fail.
+  const auto mesh = trimesh::TriangleMeshSurface::build(torus(400).positions, torus(400).faces);
+  const CsrGraph cloud(sphere_graph(120));
+  for (const TangentGraph* graph :
+       {static_cast<const TangentGraph*>(&mesh.graph()), static_cast<const TangentGraph*>(&cloud)})
+    for (Variant variant : {Variant::adaptive, Variant::localized})
+      for (Index source : {0, 50, 100}) {
+        const auto start = Source::at_vertex(Vertex{source});
+        const LogMap one = LogMapSolver(*graph, {.variant = variant}).solve(start),
+                     two = LogMapSolver(*graph, {.variant = variant, .order = 2}).solve(start);
+        const std::vector<double> paths = edge_paths(*graph, source);
+        const double rounding = 1 + 1e-12;
+        for (Index i = 0; i < graph->size(); ++i) {
+          const Vertex v(i);
+          const double unit = graph->length_unit();
+          const auto length = [&](const LogMap& map) {
+            return std::hypot(map.coordinates(v)[0], map.coordinates(v)[1]);
+          };
+          ASSERT_LE(two.distance(v), std::max(one.distance(v), paths[i] * unit) * rounding);
+          ASSERT_LE(length(two), std::max(length(one), two.distance(v)) * rounding);
+        }
+      }
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "ahm/error.hpp"
+#include "maps/memory_limits.hpp"
 
 namespace ahm {
 namespace {
@@ -49,7 +50,10 @@ Strategy choose_strategy(const GraphSize& size, const HeatOptions& options) {
 
 double machine_memory() {
   const long pages = sysconf(_SC_PHYS_PAGES), size = sysconf(_SC_PAGE_SIZE);
-  return pages > 0 && size > 0 ? static_cast<double>(pages) * static_cast<double>(size) : 0;
+  const double limit = std::min(resource_limit(), control_group_limit("/proc/self/cgroup", "/sys/fs/cgroup"));
+  const double machine = pages > 0 && size > 0 ? static_cast<double>(pages) * static_cast<double>(size) : INFINITY;
+  const double least = std::min(machine, limit);
+  return std::isinf(least) ? 0 : least;
 }
 
 }  // namespace ahm

@@ -18,8 +18,8 @@ constexpr Index none = -1;
 constexpr double least_gain = 1e-12;
 /// An entry is bettered no more often: where triangles contradict each other they could go on for ever.
 constexpr Index most_gains = 40;
-/// Sides that are shorter than this share of a distance no longer tell where its point lies.
-constexpr double shortest_side = 1e-6;
+/// Sides that are shorter than this share of the other two, or of a distance, no longer tell where its point lies.
+constexpr double shortest_side = 1e-6, shortest_side_far_away = 1e-13;
 
 /// A number that grows with the angle of v, from -2 to 2.
 double turn(const Vec2& v) {
@@ -31,7 +31,7 @@ double turn(const Vec2& v) {
 /// a at 0, b at (ab, 0) and c at (cx, cy) above, the point below; `limit` where it is no less, or where the straight line
 /// to the point does not cross that side.
 double squared_across(double from_a, double from_b, double ab, double cx, double cy, double limit) {
-  if (!(ab > shortest_side * from_a)) return limit;
+  if (!(ab > shortest_side * std::max(std::abs(cx), cy)) || !(ab > shortest_side_far_away * from_a)) return limit;
   const double x = 0.5 * (ab + (from_a - from_b) * (from_a + from_b) / ab);
   const double squared_y = (from_a - x) * (from_a + x), along = (cx - x) * (cx - x) + cy * cy + squared_y;
   if (!(squared_y >= -1e-14 * from_a * from_a) || !(along < limit)) return limit;

@@ -80,6 +80,8 @@ class PolygonMesh {
   /// A power of two near the size of the mesh.
   double length_unit() const noexcept { return length_unit_; }
 
+  /// Faces without area, because all their corners lie on one line.
+  std::vector<Index> collinear_faces() const;
   /// The mesh as triangles; its first `vertex_count()` vertices are those of this mesh.
   Refinement refined() const;
 

@@ -53,13 +53,14 @@ inline constexpr BuildCost build_cost{.bytes = 800, .seconds = 3e-6};
 /// What was found and done on the way.
 struct PolygonDetails {
   TopologyReport topology;
-  bool refined = false;         ///< the discretization chosen
-  Index vertices = 0;           ///< of the mesh; the graph has `virtual_vertices` more
-  Index largest_face = 0;       ///< corners
-  std::vector<Index> twisted;   ///< faces that refine badly; looked for unless polygons were asked for
-  double seconds_checks = 0;    ///< topology (when built from arrays); refined: of the triangles
-  double seconds_delaunay = 0;  ///< refined: layouts and flips
-  double seconds_graph = 0;     ///< frames, weights, logs, transports
+  bool refined = false;          ///< the discretization chosen
+  Index vertices = 0;            ///< of the mesh; the graph has `virtual_vertices` more
+  Index largest_face = 0;        ///< corners
+  std::vector<Index> collinear;  ///< faces without area, their corners on one line
+  std::vector<Index> twisted;    ///< faces that refine badly; looked for unless polygons were asked for
+  double seconds_checks = 0;     ///< topology (when built from arrays); refined: of the triangles
+  double seconds_delaunay = 0;   ///< refined: layouts and flips
+  double seconds_graph = 0;      ///< frames, weights, logs, transports
   /// Polygons only.
   Offset edges = 0;             ///< pairs of corners, over all faces
   Index triangles = 0;          ///< faces of three corners
@@ -73,17 +74,18 @@ struct PolygonDetails {
   /// Refined only.
   Index virtual_vertices = 0;
   Offset flips = 0;
-  double mollification = 0;  ///< length added to every edge, world units
+  Index merged_vertices = 0;  ///< as of `trimesh::MeshDetails`
+  double mollification = 0;   ///< length added to every edge, world units
 };
 
 /// A polygon mesh as a surface. Rows are the vertices given; sources in faces have their u axis along the first side as
 /// given, v is u turned by 90 degrees in the sense of the (consistent) orientation.
 ///
 /// Its report: discretization ("polygons" or "refined"), vertices, faces, largest_face, the figures of its topology; refined:
-/// virtual_vertices, flips, mollification, seconds.checks, seconds.delaunay, seconds.graph; polygons: nonplanar_faces,
+/// virtual_vertices, flips, merged_vertices, mollification, seconds.checks, seconds.delaunay, seconds.graph; polygons: nonplanar_faces,
 /// degenerate_faces, negative_weights, seconds.graph.
-/// Its warnings: those of the topology; polygons: degenerate_faces (count), negative_weights (count, where they stay),
-/// edge_lengths (shortest, longest), twisted_faces (count, the first: why they were not refined); refined: those of
+/// Its warnings: those of the topology; collinear_faces (count, the first); polygons: negative_weights (count, where they
+/// stay), edge_lengths (shortest, longest), twisted_faces (count, the first: why they were not refined); refined: those of
 /// `trimesh::TriangleMeshSurface` that are not about topology.
 class PolygonMeshSurface final : public Surface {
  public:
@@ -107,7 +109,7 @@ class PolygonMeshSurface final : public Surface {
   Report report() const override;
   std::vector<Warning> warnings() const override;
   /// Those of the refinement. @throws InvalidArgument (faults "polygons_not_refined", "no_flat_triangles": twisted faces),
-  /// InvalidGeometry
+  /// InvalidGeometry (fault "collinear_faces")
   FlatTriangles flat_triangles() const override;
   const PolygonDetails& details() const noexcept;
   const PolygonMesh& mesh() const noexcept;

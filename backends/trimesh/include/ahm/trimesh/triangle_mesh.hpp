@@ -28,6 +28,11 @@ using ahm::TopologyReport;
 ///
 /// Faces keep their number. A face that was turned over has its corners 1 and 2 swapped. Vertices are numbered anew
 /// without the unreferenced ones, in the order of the input; copies made by splitting come last.
+///
+/// The ends of an edge without length are one vertex, and the faces on its sides are dropped: nothing turns into them
+/// (`is_dropped`). In space an edge counts as one up to 2e-12 of the largest coordinate, where rounding begins to decide how the
+/// faces lie; by lengths alone up to 1e-15 of the longest. Vertices in such faces alone are left out; a mesh of
+/// such faces alone keeps them.
 class TriangleMesh {
  public:
   /// A mesh in space.
@@ -74,6 +79,8 @@ class TriangleMesh {
   std::span<const Vec3> input_positions() const noexcept { return input_; }
   /// A power of two near the size of the mesh.
   double length_unit() const noexcept { return length_unit_; }
+  /// Rounding of the coordinates as given, in units of `length_unit()`.
+  double rounding() const noexcept { return rounding_; }
   /// The face laid out in the plane, counter-clockwise, side 0 along the x axis: its three sides as vectors, in units
   /// of `length_unit()`.
   std::array<Vec2, 3> layout(Index face) const;
@@ -81,14 +88,20 @@ class TriangleMesh {
   /// Corner of the face as stored, for a corner of the face as given, and the other way round.
   int stored_corner(Index face, int corner) const { return topology_.stored_corner(face, corner); }
 
+  bool is_dropped(Index face) const { return topology_.is_dropped(face); }
+  /// For a corner of a face as given, the half-edge that starts there: of the face itself or, where that was dropped, of one
+  /// and the same face that was kept. @throws InvalidArgument (nothing of the face is left)
+  Half kept_corner(Index face, int corner) const;
+
  private:
   TriangleMesh(Index vertices, std::span<const Triangle> faces, NonManifold non_manifold);
+  void contract(const std::vector<double>& lengths, double least);
 
   detail::GluedMesh topology_;
   std::vector<Vec3> position_;  ///< per vertex, or empty
   std::vector<Vec3> input_;     ///< per input vertex, or empty
   std::vector<double> length_;  ///< per half-edge, or empty
-  double length_unit_ = 1.0;
+  double length_unit_ = 1.0, rounding_ = 0x1p-52;
 };
 
 }  // namespace ahm::trimesh

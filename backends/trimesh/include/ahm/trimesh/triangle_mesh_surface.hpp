@@ -45,15 +45,18 @@ struct MeshDetails {
   Index vertices = 0;  ///< vertices of the graph
   Offset edges = 0;    ///< of the triangulation the graph was built from
   Offset flips = 0;
-  Offset history_bytes = 0;  ///< memory of the record of flips
-  double mollification =
-      0;  ///< length added to every edge because of degenerate faces, world units; 0: none was needed
+  Offset history_bytes = 0;   ///< memory of the record of flips
+  Index merged_vertices = 0;  ///< input vertices that share the vertex of another one, an edge without length away
+  Index dropped_faces = 0;    ///< input faces with such an edge
+  /// Length added to every edge, world units, because flips of faces without area made an edge without length; 0: none did.
+  double mollification = 0;
   Index degenerate_faces = 0;  ///< input faces of almost no area (height below 1e-10 of the longest side)
   Offset closed_edges = 0;     ///< intrinsic edges from a vertex to itself; left out
   Offset clamped_weights = 0;  ///< negative weights set to 0
   Offset capped_weights = 0;   ///< weights above 1e4 set to 1e4
-  double shortest_edge = 0;    ///< of the input, world units
+  double shortest_edge = 0;    ///< of the input without those of no length, world units
   double longest_edge = 0;
+  double finest = 0;            ///< least of the longest edges at the vertices: needles do not count
   bool flips_stopped = false;   ///< before all edges were Delaunay
   double seconds_checks = 0;    ///< topology (when built from arrays)
   double seconds_delaunay = 0;  ///< layouts and flips
@@ -65,9 +68,12 @@ struct MeshDetails {
 /// without an axis, u points along the boundary edge that leaves the vertex with the surface on its left, or along one
 /// fixed edge of an interior vertex.
 ///
-/// Its report: vertices, faces, edges, flips, mollification, degenerate_faces, the figures of its topology,
-/// seconds.checks, seconds.delaunay, seconds.graph. Its warnings: flips_stopped; those of the topology; mollified (number of
-/// degenerate faces, length added to every edge); edge_lengths (shortest, longest: too far apart for one diffusion time).
+/// Coincident vertices joined by an edge are one vertex of the graph, which all their rows share (`TriangleMesh`).
+///
+/// Its report: vertices, faces, edges, flips, merged_vertices, dropped_faces, mollification, degenerate_faces, the figures of
+/// its topology, seconds.checks, seconds.delaunay, seconds.graph. Its warnings: flips_stopped; those of the topology; merged
+/// (number of vertices, of faces dropped with them); mollified (number of degenerate faces, length added to every edge);
+/// edge_lengths (`finest`, longest: too far apart for one diffusion time).
 class TriangleMeshSurface final : public Surface {
  public:
   /// A mesh in space. Time and memory near linear in the number of faces.
@@ -89,7 +95,7 @@ class TriangleMeshSurface final : public Surface {
   std::span<const Index> corner_vertices() const override;
   Report report() const override;
   std::vector<Warning> warnings() const override;
-  /// The mesh as given: neither flipped nor mollified.
+  /// The mesh as given, without the faces that were dropped: neither flipped nor mollified.
   FlatTriangles flat_triangles() const override;
   const MeshDetails& details() const noexcept;
   const TriangleMesh& mesh() const noexcept;
@@ -117,6 +123,7 @@ class TriangleMeshSurface final : public Surface {
   /// interpolate `on_corners` instead.
   Sample sample_in_face(const LogMap& map, const FacePoint& point) const override;
   exact::MeshPoint flat_point_in_face(const FacePoint& point) const override;
+  Reason why_without_vertex(Row row) const override;
   FacePoint face_point(const EdgePoint& point) const override;
 
  private:

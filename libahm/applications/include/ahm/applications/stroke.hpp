@@ -62,4 +62,9 @@ Source stroke_source(std::span<const StrokePoint> points);
 Source stroke_source(std::span<const Source> points, std::span<const double> lengths,
                      const StrokeOptions& options = {});
 
+/// The same with the user's own parameterization.
+/// @param positions  one (u, v) per point, world units; consecutive ones differ
+Source stroke_source(std::span<const Source> points, std::span<const double> lengths, std::span<const Vec2> positions,
+                     bool closed = false);
+
 }  // namespace ahm

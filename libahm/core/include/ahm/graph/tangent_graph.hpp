@@ -86,4 +86,8 @@ class TangentGraph {
   virtual std::optional<Frame> frame(Index) const { return std::nullopt; }
 };
 
+/// A mass of the graph, or a sum of them, in world units to the power d. NaN where that is beyond a double or has lost
+/// digits at its lower end, as areas have from lengths of about 1e154 up and 1e-154 down.
+double world_mass(const TangentGraph& graph, double mass);
+
 }  // namespace ahm

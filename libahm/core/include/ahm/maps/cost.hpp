@@ -36,7 +36,8 @@ Cost estimate_cost(const GraphSize& size, Strategy strategy);
 /// need more than the allowed memory; else `global`.
 Strategy choose_strategy(const GraphSize& size, const HeatOptions& options);
 
-/// Bytes of memory this machine has; 0 when the system does not say.
+/// Bytes of memory this process may take: what the machine has, or less where its control groups (containers) or its
+/// resource limits (`ulimit`) allow less; 0 when the system does not say.
 double machine_memory();
 
 }  // namespace ahm

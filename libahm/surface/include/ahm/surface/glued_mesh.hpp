@@ -3,11 +3,14 @@
 /// interface: what triangle and polygon meshes have in common.
 #pragma once
 
+#include <array>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "ahm/surface/half_edges.hpp"
 #include "ahm/surface/mesh_topology.hpp"
+#include "ahm/surface/row_map.hpp"
 
 namespace ahm::detail {
 
@@ -44,10 +47,29 @@ class GluedMesh {
   /// Input vertices at all corners of the faces as given.
   std::vector<Index> given_corners() const;
 
+  /// Contracts edges of triangles: their ends become one vertex, that of the lowest of the input vertices. A face with such a
+  /// side has nothing left: it is dropped, and what lies beyond its two other sides is glued together. It keeps its number
+  /// and half-edges, but nothing turns into it any more. A vertex in such faces alone is none any more; a mesh of such faces
+  /// alone stays as it is. Where two boundaries meet in one point, that vertex is split.
+  /// @param contracted  one per half-edge, 1 for both halves of the edges concerned
+  void contract(std::vector<std::uint8_t> contracted);
+  bool is_dropped(Index face) const { return !dropped_.empty() && dropped_[face]; }
+  /// One per face; empty without contracted edges.
+  std::span<const std::uint8_t> dropped() const { return dropped_; }
+  /// For each corner of a dropped face as stored, the corner of a face that was kept, one for all three, with which it
+  /// fell together; -1 where none is left.
+  std::array<Half, 3> stand_in(Index face) const { return stand_in_[face]; }
+  /// Input vertices that fell on another one, and that one, in ascending order.
+  std::span<const std::pair<Index, Index>> merged() const { return merged_; }
+  /// All input vertices and their vertices, those of one input vertex in the order of `vertex_of_input`.
+  std::vector<RowVertex> rows() const;
+
  private:
   void build_half_edges(const FaceList& faces, NonManifold non_manifold);
   void number_vertices(NonManifold non_manifold);
   void count_parts();
+  void renumber_contracted();
+  void place_dropped_corners();
 
   TopologyReport report_;
   std::vector<Offset> face_begin_;
@@ -57,6 +79,11 @@ class GluedMesh {
   std::vector<std::uint8_t> mirrored_, reversed_;
   std::vector<Half> corner_;
   std::vector<Index> vertex_of_input_, input_of_vertex_;
+  // Empty without contracted edges:
+  std::vector<Index> given_corners_;
+  std::vector<std::uint8_t> dropped_;
+  std::vector<std::array<Half, 3>> stand_in_;
+  std::vector<std::pair<Index, Index>> merged_;
 };
 
 }  // namespace ahm::detail
