@@ -11,6 +11,7 @@ program=(
   libnanoflann-dev                                            # neighbour search
   libcli11-dev nlohmann-json3-dev libfmt-dev                  # the program
   libstb-dev libjs-three                                      # pictures
+  zlib1g-dev                                                  # files compressed with gzip
 )
 tests=(
   "${program[@]}"

@@ -108,7 +108,9 @@ void add_cloud_options(CLI::App& app, InputOptions& o) {
 
 void add_mesh_options(CLI::App& app, InputOptions& o) {
   const char* group = "Triangle meshes";
-  app.add_flag("!--no-flips", o.flips, "Keep the edges as they are instead of flipping to intrinsic Delaunay")
+  app.add_flag_callback(
+         "--no-flips", [&o] { o.flips = false; },
+         "Keep the edges as they are instead of flipping to intrinsic Delaunay")
       ->group(group);
   add_non_manifold(app, o)->group(group);
   add_parsed(app, "--discretization", o.discretization, choice({"auto", "polygons", "refined"}), "NAME",
