@@ -78,9 +78,10 @@ std::span<const Experiment> experiments() {
           "trust", "after Fig. 20", "Distances and quality against exact maps",
           "Distances are accurate near the source and too short at cut loci; exact vectors are not in the paper.",
           trust},
-      Experiment{"exact", "none", "Exact maps, and heat's against them",
-                 "On coarse meshes exact maps cost no more than the first by heat; vectors of heat are off by percents.",
-                 exact_compared},
+      Experiment{
+          "exact", "none", "Exact maps, and heat's against them",
+          "On coarse meshes exact maps cost no more than the first by heat; vectors of heat are off by percents.",
+          exact_compared},
       Experiment{"orders", "after Fig. 24", "Order 2 against order 1",
                  "Maps are of first order in h; the paper does not extrapolate.", orders},
       Experiment{

@@ -1,9 +1,13 @@
 #include "options.hpp"
 
+#include "ahm/maps/log_map.hpp"
+
 namespace ahm::python {
 
 void read_variant(const py::dict& options, Variant& variant) {
-  read_choice(options, "variant", variant, {{"adaptive", Variant::adaptive}, {"localized", Variant::localized}});
+  std::vector<std::pair<std::string, Variant>> choices;
+  for (Variant each : all_variants) choices.emplace_back(to_string(each), each);
+  read_choice(options, "variant", variant, choices);
 }
 
 HeatOptions heat_options(const py::dict& options) {

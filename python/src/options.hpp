@@ -2,9 +2,9 @@
 /// Options from a dictionary whose keys the Python layer has checked; what is missing or None keeps its default.
 #pragma once
 
-#include <initializer_list>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "ahm/error.hpp"
 #include "ahm/heat/heat_options.hpp"
@@ -29,7 +29,7 @@ bool read(const py::dict& options, const char* key, T& value) {
 /// @throws InvalidArgument naming the key and the choices
 template <class T>
 void read_choice(const py::dict& options, const char* key, T& value,
-                 std::initializer_list<std::pair<const char*, T>> choices) {
+                 const std::vector<std::pair<std::string, T>>& choices) {
   std::string word, known;
   if (!read(options, key, word)) return;
   for (const auto& [name, choice] : choices) {
@@ -37,7 +37,7 @@ void read_choice(const py::dict& options, const char* key, T& value,
       value = choice;
       return;
     }
-    known += (known.empty() ? "'" : ", '") + std::string(name) + "'";
+    known += (known.empty() ? "'" : ", '") + name + "'";
   }
   throw InvalidArgument(std::string(key) + ": '" + word + "' is none of " + known);
 }

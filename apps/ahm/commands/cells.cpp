@@ -205,8 +205,8 @@ void offer(CLI::App& app, CellsOptions& o) {
       throw CLI::ValidationError("--sources", "give either --sources or --count");
   });
   add_output(app, o.output)->required();
-  add_method(app, o.solve)->description(
-      "heat (default): by unfolding the graph, or exact: by straight lines over the faces of a mesh");
+  add_method(app, o.solve)
+      ->description("heat (default): by unfolding the graph, or exact: by straight lines over the faces of a mesh");
   add_backend(app, o.input);
   add_threads(app, o.input);
   add_cloud_options(app, o.input);
