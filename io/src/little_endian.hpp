@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cstring>
 #include <string>
+#include <string_view>
 
 namespace ahm::io {
 
@@ -15,6 +17,15 @@ void append(std::string& bytes, T value) {
   auto raw = std::bit_cast<std::array<char, sizeof(T)>>(value);
   if constexpr (std::endian::native == std::endian::big) std::ranges::reverse(raw);
   bytes.append(raw.data(), raw.size());
+}
+
+/// The value at a position; the caller has checked that its bytes are there.
+template <class T>
+T load_at(std::string_view bytes, std::size_t position) {
+  std::array<char, sizeof(T)> raw;
+  std::memcpy(raw.data(), bytes.data() + position, sizeof(T));
+  if constexpr (std::endian::native == std::endian::big) std::ranges::reverse(raw);
+  return std::bit_cast<T>(raw);
 }
 
 }  // namespace ahm::io

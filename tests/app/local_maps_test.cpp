@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <minizip/unzip.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -78,6 +79,43 @@ TEST(LocalMapsCommand, PadsToAFixedCount) {
     EXPECT_TRUE(mask[e] || distance[e] == 0);
     EXPECT_TRUE(e % 20 == 0 || !mask[e] || mask[e - 1]);
   }
+}
+
+TEST(LocalMapsCommand, FindsTheNearestWithoutARadius) {
+  Folder folder;
+  const auto points = plane(12);
+  const std::string out = folder / "maps.npz";
+  const Outcome outcome = run({"local-maps", folder.write("plane.xyz", xyz(points)), "--k", "9", "--pad", "-o", out});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const auto mask = array<std::uint8_t>(out, "mask");
+  const auto distance = array<double>(out, "distance");
+  ASSERT_EQ(mask.size(), 9 * points.size());
+  for (std::size_t s = 0; s < points.size(); ++s) {
+    std::vector<double> away;
+    for (const Vec3& q : points) away.push_back(std::hypot(q[0] - points[s][0], q[1] - points[s][1]));
+    std::sort(away.begin(), away.end());
+    for (std::size_t k = 0; k < 9; ++k) {
+      ASSERT_TRUE(mask[9 * s + k]);
+      ASSERT_NEAR(distance[9 * s + k], away[k], 1e-10);
+    }
+  }
+}
+
+TEST(LocalMapsCommand, FindsTheNearestRowsBetweenVirtualVertices) {
+  Folder folder;
+  std::string sheet = "OFF\n64 49 0\n";
+  for (int i = 0; i < 64; ++i) sheet += std::to_string(i / 8) + " " + std::to_string(i % 8) + " 0\n";
+  for (int i = 0; i < 7; ++i)
+    for (int j = 0; j < 7; ++j) {
+      const int a = 8 * i + j;
+      for (int word : {4, a, a + 8, a + 9, a + 1}) sheet += std::to_string(word) + " ";
+      sheet += "\n";
+    }
+  const std::string out = folder / "maps.npz";
+  const Outcome outcome = run({"local-maps", folder.write("quads.off", sheet), "--k", "13", "-o", out});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const auto indptr = array<std::int64_t>(out, "indptr");
+  for (std::size_t s = 0; s < 64; ++s) ASSERT_EQ(indptr[s + 1] - indptr[s], 13);
 }
 
 TEST(LocalMapsCommand, RefusesNonsense) {

@@ -124,5 +124,78 @@ TEST(Mesh, RefusesWhatHasNoSurface) {
   EXPECT_EQ(map(book, "0", {"--non-manifold", "split"}).size(), 5u);
 }
 
+TEST(MeshCommand, AnAxisAlongTheNormalIsRefusedAndSaysWhy) {
+  const Folder folder;
+  const std::string mesh = folder.write("sheet.obj", sheet(9)), cloud = folder.write("plane.xyz", xyz(plane(12)));
+  for (const auto& [input, source] :
+       {std::pair{mesh, "40"}, std::pair{mesh, "face:30:.3,.3,.4"}, std::pair{cloud, "70"}})
+    for (const char* method : {"heat", "exact"}) {
+      if (input == cloud && method == std::string("exact")) continue;
+      const Outcome outcome =
+          run({"logmap", input, "--source", source, "--u-axis", "0,0,2", "--method", method, "-o", folder / "map.csv"});
+      EXPECT_EQ(outcome.status, 1);
+      EXPECT_NE(outcome.err.find("--u-axis 0,0,2: is perpendicular to the surface"), std::string::npos) << outcome.err;
+    }
+}
+
+/// The faces of an .obj file as lists of (v, vt), each vertex and pair of coordinates as numbers.
+struct Corners {
+  std::vector<std::vector<double>> points, places;
+  std::vector<std::vector<std::array<std::size_t, 2>>> faces;
+
+  explicit Corners(const std::string& path) {
+    std::istringstream lines(read_text(path));
+    for (std::string line, word; std::getline(lines, line);) {
+      std::istringstream words(line);
+      words >> word;
+      if (word == "v" || word == "vt") {
+        auto& row = (word == "v" ? points : places).emplace_back();
+        for (double x; words >> x;) row.push_back(x);
+      } else if (word == "f") {
+        faces.emplace_back();
+        for (std::string corner; words >> corner;) {
+          const std::size_t slash = corner.find('/');
+          faces.back().push_back({std::stoul(corner) - 1, slash == std::string::npos
+                                                              ? std::string::npos
+                                                              : std::stoul(corner.substr(slash + 1)) - 1});
+        }
+      }
+    }
+  }
+};
+
+TEST(MeshCommand, CornersHoldTheMapOfTheirVertices) {
+  const Folder folder;
+  std::string sheet = "OFF\n9 4 0\n";
+  for (int i = 0; i < 9; ++i) sheet += std::to_string(i / 3) + " " + std::to_string(i % 3) + " 0\n";
+  for (int a : {0, 1, 3, 4})
+    for (int word : {4, a, a + 3, a + 4, a + 1}) sheet += std::to_string(word) + (word == a + 1 ? "\n" : " ");
+  const Outcome outcome = run({"logmap", folder.write("quads.off", sheet), "--source", "4", "--u-axis", "1,0,0", "-o",
+                               folder / "map.csv", "--corners", folder / "map.obj", "--radius", "1.2"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const Corners mesh(folder / "map.obj");
+  EXPECT_EQ(mesh.faces.size(), 4U);
+  for (const auto& face : mesh.faces)
+    for (const auto& [v, vt] : face) EXPECT_EQ(vt, std::string::npos);  // every face has a corner beyond the radius
+
+  ASSERT_EQ(run({"logmap", folder / "quads.off", "--source", "4", "--u-axis", "1,0,0", "-o", folder / "map.csv",
+                 "--corners", folder / "map.obj"})
+                .status,
+            0);
+  const Corners whole(folder / "map.obj");
+  ASSERT_EQ(whole.faces.size(), 4U);
+  for (const auto& face : whole.faces) {
+    ASSERT_EQ(face.size(), 4U);
+    for (const auto& [v, vt] : face) {
+      EXPECT_NEAR(whole.places.at(vt)[0], whole.points.at(v)[0] - 1, 1e-12);
+      EXPECT_NEAR(std::abs(whole.places.at(vt)[1]), std::abs(whole.points.at(v)[1] - 1), 1e-12);
+    }
+  }
+  EXPECT_EQ(
+      run({"logmap", folder / "quads.off", "--source", "4", "-o", folder / "map.csv", "--corners", folder / "m.ply"})
+          .status,
+      1);
+}
+
 }  // namespace
 }  // namespace ahm::test

@@ -224,5 +224,36 @@ TEST(StrokeCommand, RefusesNonsenseAndLeavesNothing) {
   EXPECT_EQ(folder.files(), (Words{"bad.txt", "empty.txt", "plane.xyz"}));
 }
 
+TEST(StrokeCommand, GivenPositionsMoveTheMap) {
+  const Folder folder;
+  const std::string input = folder.write("plane.xyz", xyz(plane(30)));
+  // The line y = 0.4 from x = 0.21, a quarter turned and moved: (x, y) -> (3 - (y - 0.4), 5 + x - 0.21).
+  const auto rows = stroke(folder, input, "0.21,0.4,0 0.5,0.4,0 0.77,0.4,0", {"--positions", "3,5 3,5.29 3,5.56"});
+  ASSERT_EQ(rows.size(), 900U);
+  const double side = rows[0].at("v") != 0 && (rows[0].at("u") - 3) * (rows[0].at("y") - 0.4) > 0 ? 1 : -1;
+  for (const NumberRow& p : rows) {
+    ASSERT_NEAR(p.at("u"), 3 + side * (p.at("y") - 0.4), 1e-9);
+    ASSERT_NEAR(p.at("v"), 5 + p.at("x") - 0.21, 1e-9);
+    const double beyond = std::max({0.0, 0.21 - p.at("x"), p.at("x") - 0.77});
+    ASSERT_NEAR(p.at("distance"), std::hypot(p.at("y") - 0.4, beyond), 0.02);  // from samples of the curve
+  }
+  EXPECT_EQ(read_json(folder / "stroke.json").at("curve").at("shape"), "positions");
+}
+
+TEST(StrokeCommand, PositionsThatDoNotFitAreRefused) {
+  const Folder folder;
+  const std::string input = folder.write("plane.xyz", xyz(plane(12)));
+  const auto refused = [&](const Words& more) {
+    Words words{"stroke", input, "--curve", "0.2,0.4,0 0.8,0.4,0", "-o", folder / "stroke.csv"};
+    words.insert(words.end(), more.begin(), more.end());
+    return run(words);
+  };
+  EXPECT_EQ(refused({"--positions", "0,0 1,0 2,0"}).status, 2);
+  EXPECT_EQ(refused({"--positions", "0,0 1,0", "--circle"}).status, 2);
+  const Outcome still = refused({"--positions", "1,1 1,1"});
+  EXPECT_EQ(still.status, 1);
+  EXPECT_NE(still.err.find("stands still"), std::string::npos) << still.err;
+}
+
 }  // namespace
 }  // namespace ahm::test

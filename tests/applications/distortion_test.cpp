@@ -52,7 +52,7 @@ TEST(Distortion, OfALinearMapAreItsSingularValues) {
       EXPECT_NEAR(t.sigma2, most, 1e-12);
       EXPECT_NEAR(t.value(), std::max(1 / least, most), 1e-11);
       EXPECT_EQ(t.flipped, a * b < 0);
-      area += t.area;
+      area += t.side * t.side;
     }
     EXPECT_NEAR(area, 4, 1e-12);
     EXPECT_EQ(summary(triangles).flipped, a * b < 0 ? 1 : 0);
@@ -118,7 +118,7 @@ TEST(Distortion, ScalesWithThePowersOfTwo) {
 
 TEST(Distortion, IsSummarizedByArea) {
   const auto triangle = [](double sigma2, double area, bool flipped) {
-    return TriangleDistortion{1, sigma2, area, flipped};
+    return TriangleDistortion{1, sigma2, std::sqrt(area), flipped};
   };
   const std::vector<TriangleDistortion> some{triangle(2, 90, false), triangle(10, 6, true), triangle(4, 4, false),
                                              TriangleDistortion{}};

@@ -32,9 +32,16 @@ TEST_F(ReadFile, ListsTheKnownTypes) {
 
 TEST_F(ReadFile, ChoosesByExtensionInAnyCase) { EXPECT_EQ(read_bytes("A.XYZ", "1 2 3\n").points.size(), 1u); }
 
-TEST_F(ReadFile, TellsHowToUnpackCompressedFiles) {
-  expect_refused("a.ply.gz", "\x1f\x8b", {"unpack"});
-  expect_refused("a.ply", "\x1f\x8b\x08", {"gunzip"});
+TEST_F(ReadFile, TellsHowToUnpackAndConvertWhatItDoesNotRead) {
+  expect_refused("a.ply.zip", "PK", {"unzip"});
+  expect_refused("a.ply.xz",
+                 "\xfd"
+                 "7zXZ",
+                 {"unxz"});
+  expect_refused("a.ply.bz2", "BZh", {"bunzip2"});
+  expect_refused("a.ply.zst", "x", {"unzstd"});
+  expect_refused("a.laz", "LASF", {"laszip"});
+  expect_refused("a.e57", "ASTM-E57", {"CloudCompare"});
 }
 
 TEST_F(ReadFile, DoesNotWaitForPipesNorReadDevices) {

@@ -44,7 +44,6 @@ TEST_F(ReadObj, RefusesTruncatedAndShortStatements) {
   expect_refused("t.obj", points + "f 1 2", {"line 5", "2 corners"});
   expect_refused("t.obj", points + "f", {"line 5"});
   expect_refused("t.obj", "# nothing\n", {"no vertex"});
-  expect_refused("t.obj", points + "zebra 1\n", {"line 5", "zebra"});
 }
 
 TEST_F(ReadObj, RefusesWhatIsNoNumber) {
@@ -70,6 +69,36 @@ TEST_F(ReadObj, KeepsNormalsOnlyWhenNumberedLikeTheVertices) {
 
 TEST_F(ReadObj, WarnsOfNumbersBehindTheCoordinates) {
   EXPECT_EQ(read_bytes("c.obj", "v 0 0 0 1 0 0\n").warnings.size(), 1u);
+}
+
+TEST_F(ReadObj, SkipsStatementsItDoesNotKnowAndNamesThem) {
+  const Geometry g = read_bytes("s.obj", points + "zebra 1\nV 9 9 9\nzebra 2\nf 1 2 3\nadobe_x y\n");
+  EXPECT_EQ(g.points.size(), 4u);
+  EXPECT_EQ(g.face_vertices, (std::vector<Index>{0, 1, 2}));
+  ASSERT_EQ(g.warnings.size(), 1u);
+  EXPECT_EQ(g.warnings[0].id, "statements_ignored");
+  EXPECT_EQ(g.warnings[0].numbers, (std::vector<double>{4}));
+  EXPECT_EQ(g.warnings[0].name, "'zebra', 'V', 'adobe_x'");
+}
+
+TEST_F(ReadObj, RefusesLinesThatBeginWithNoWord) {
+  for (const char* damage : {"0.5 1 2", "-1", "\x01\x02", "v1.5,2"})
+    expect_refused("d.obj", points + damage + "\n", {"line 5", "no OBJ keyword"});
+}
+
+TEST_F(ReadObj, ReadsColoursBehindThePosition) {
+  using Color = std::array<std::uint8_t, 3>;
+  const Geometry g = read_bytes("c.obj", "v 0 0 0 1.0 0.5 0\nv 1 0 0 0 0 1\n");
+  EXPECT_EQ(g.colors, (std::vector<Color>{{255, 128, 0}, {0, 0, 255}}));
+  EXPECT_EQ(read_bytes("c.obj", "v 0 0 0 200 7 0\n").colors[0], (Color{200, 7, 0}));
+  EXPECT_TRUE(g.warnings.empty());
+  for (const char* other :
+       {"v 0 0 0 1.0 0.5 0\nv 1 0 0\n", "v 0 0 0 0.5 -1 0\n", "v 0 0 0 300 1 1\n", "v 0 0 0 1\n", "v 0 0 0 1 1 x\n"}) {
+    const Geometry none = read_bytes("c.obj", other);
+    EXPECT_TRUE(none.colors.empty()) << other;
+    ASSERT_EQ(none.warnings.size(), 1u) << other;
+    EXPECT_EQ(none.warnings[0].id, "vertex_extras");
+  }
 }
 
 }  // namespace

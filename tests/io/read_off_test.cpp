@@ -24,11 +24,10 @@ TEST_F(ReadOff, ReadsCountsOnTheKeywordsLineAndWithoutEdges) {
   EXPECT_EQ(read_bytes("a.off", "OFF 4 1\n" + points + "3 0 1 2\n").points.size(), 4u);
 }
 
-TEST_F(ReadOff, ReadsNormalsOfNoffAndIgnoresColours) {
+TEST_F(ReadOff, ReadsNormalsOfNoff) {
   const Geometry n = read_bytes("n.off", "NOFF\n1 0 0\n1 2 3 0 0 1\n");
   EXPECT_EQ(n.normals[0], (Vec3{0, 0, 1}));
   EXPECT_TRUE(n.face_begin.empty());
-  EXPECT_EQ(read_bytes("c.off", "COFF\n1 0 0\n1 2 3 255 0 0 255\n").points[0], (Vec3{1, 2, 3}));
   expect_refused("n.off", "NOFF\n1 0 0\n1 2 3 0 0\n", {"line 3", "5 numbers"});
 }
 
@@ -71,6 +70,30 @@ TEST_F(ReadOff, RefusesOtherKinds) {
   expect_refused("k.off", "nOFF\n3\n1 0 0\n1 2 3\n", {"nOFF"});
   expect_refused("k.off", "OFF BINARY\n1234", {"binary"});
   expect_refused("k.off", "ply\n", {"ply"});
+}
+
+TEST_F(ReadOff, ReadsColoursAsLevelsAndAsFractions) {
+  using Color = std::array<std::uint8_t, 3>;
+  EXPECT_EQ(read_bytes("c.off", "COFF\n1 0 0\n1 2 3 255 7 0 255\n").colors, (std::vector<Color>{{255, 7, 0}}));
+  const Geometry g = read_bytes("c.off", "COFF\n2 0 0\n1 2 3 1.0 0.5 0 1\n1 2 3 0 0 1 0.25\n");
+  EXPECT_EQ(g.points[0], (Vec3{1, 2, 3}));
+  EXPECT_EQ(g.colors, (std::vector<Color>{{255, 128, 0}, {0, 0, 255}}));
+  EXPECT_EQ(read_bytes("c.off", "CNOFF\n1 0 0\n1 2 3 0 0 1 9 8 7\n").colors[0], (Color{9, 8, 7}));
+  for (const char* other : {"COFF\n1 0 0\n1 2 3\n", "COFF\n1 0 0\n1 2 3 4\n", "COFF\n1 0 0\n1 2 3 300 0 0\n"}) {
+    const Geometry none = read_bytes("c.off", other);
+    EXPECT_TRUE(none.colors.empty()) << other;
+    ASSERT_EQ(none.warnings.size(), 1u) << other;
+    EXPECT_EQ(none.warnings[0].id, "colors_unknown");
+  }
+  expect_refused("c.off", "COFF\n1 0 0\n1 2 3 0,5 0 0\n", {"line 3", "0,5"});
+}
+
+TEST_F(ReadOff, ReadsTheKeywordInAnyCaseAndWithoutIt) {
+  for (const char* keyword : {"OFF", "off", "Off", "COFF", "coff", "STOFF", ""})
+    EXPECT_EQ(read_bytes("k.off", std::string(keyword) + "\n4 1 0\n" + points + "3 0 1 2\n").face_vertices,
+              (std::vector<Index>{0, 1, 2}))
+        << keyword;
+  EXPECT_EQ(read_bytes("k.off", "noff\n1 0 0\n1 2 3 0 0 1\n").normals[0], (Vec3{0, 0, 1}));
 }
 
 }  // namespace

@@ -213,5 +213,48 @@ TEST_F(ReadPly, WarnsOfDataBehindTheLastElement) {
   EXPECT_EQ(read_bytes("more.ply", text_header("1") + "1 2 3\n4 5 6\n").warnings.size(), 1u);
 }
 
+TEST_F(ReadPly, ReadsNamesInAnyCase) {
+  const std::string head = "ply\nformat ascii 1.0\nelement vertex 1\n";
+  const std::string upper = "property float X\nproperty float Y\nproperty float Z\n";
+  EXPECT_EQ(read_bytes("u.ply", head + upper + "end_header\n1 2 3\n").points[0], (Vec3{1, 2, 3}));
+  expect_refused("u.ply", head + upper + xyz + "end_header\n1 2 3 4 5 6\n", {"twice"});
+}
+
+TEST_F(ReadPly, ReadsColoursOfEveryType) {
+  using Color = std::array<std::uint8_t, 3>;
+  const auto colored = [&](const std::string& type, const std::string& values) {
+    return read_bytes("c.ply", "ply\nformat ascii 1.0\nelement vertex 1\n" + std::string(xyz) + "property " + type +
+                                   " red\nproperty " + type + " green\nproperty " + type + " blue\nend_header\n1 2 3 " +
+                                   values + "\n");
+  };
+  EXPECT_EQ(colored("float", "1 0.5 0").colors, (std::vector<Color>{{255, 128, 0}}));
+  EXPECT_EQ(colored("float", "255 7 0").colors, (std::vector<Color>{{255, 7, 0}}));
+  EXPECT_EQ(colored("int", "255 7 0").colors, (std::vector<Color>{{255, 7, 0}}));
+  EXPECT_EQ(colored("ushort", "65535 257 0").colors, (std::vector<Color>{{255, 1, 0}}));
+  EXPECT_EQ(colored("uchar", "1 1 0").colors, (std::vector<Color>{{1, 1, 0}}));
+  for (const char* values : {"-1 0 0", "0.5 2 0", "70000 1 1", "nan 0 0"}) {
+    const Geometry none = colored("float", values);
+    EXPECT_TRUE(none.colors.empty()) << values;
+    ASSERT_EQ(none.warnings.size(), 1u) << values;
+    EXPECT_EQ(none.warnings[0].id, "colors_unknown");
+  }
+}
+
+TEST_F(ReadPly, SkipsHeaderLinesWithoutMeaningWhereNothingCanShift) {
+  const auto with = [](const std::string& format, const char* first, const char* last) {
+    return "ply\n" + std::string(first) + "format " + format + " 1.0\nelement vertex 1\n" +
+           "property uchar x\nproperty uchar y\nproperty uchar z\n" + last + "end_header\n";
+  };
+  const Geometry text = read_bytes("h.ply", with("ascii", "made by hand\n", "TextureFile a.png\n") + "1 2 3\n");
+  EXPECT_EQ(text.points[0], (Vec3{1, 2, 3}));
+  ASSERT_EQ(text.warnings.size(), 1u);
+  EXPECT_EQ(text.warnings[0].id, "header_lines_ignored");
+  EXPECT_EQ(text.warnings[0].numbers, (std::vector<double>{2}));
+  EXPECT_EQ(read_bytes("h.ply", with("binary_little_endian", "made by hand\n", "") + "abc").points.size(), 1u);
+  // It could be a misspelt property, which would shift the values of all vertices behind the first.
+  expect_refused("h.ply", with("binary_little_endian", "", "proprty uchar red\n") + "abcd", {"line 7", "proprty"});
+  expect_refused("h.ply", with("ascii", "", "proprty uchar red\n") + "1 2 3 4\n", {"line 9", "more values"});
+}
+
 }  // namespace
 }  // namespace ahm::io::test

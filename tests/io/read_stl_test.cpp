@@ -72,5 +72,18 @@ TEST_F(ReadStl, RefusesBrokenFacets) {
   expect_refused("f.stl", "solid\nendsolid\n", {"no triangles"});
 }
 
+TEST_F(ReadStl, ReadsWordsInAnyCase) {
+  std::string upper = square;
+  for (char& c : upper) c = c >= 'a' && c <= 'z' ? static_cast<char>(c - 32) : c;
+  expect_square(read_bytes("u.stl", upper));
+  expect_square(read_bytes("u.stl", " \r\n" + upper));
+}
+
+TEST_F(ReadStl, RefusesABinaryFileThatSaysSolidForItsSizeAndNotForItsWords) {
+  std::string bytes = binary_square(3);
+  bytes.replace(20, 1, 1, '\0');
+  expect_refused("s.stl", bytes, {"byte 80", "3 triangles"});
+}
+
 }  // namespace
 }  // namespace ahm::io::test

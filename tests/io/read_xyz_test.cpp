@@ -43,7 +43,6 @@ TEST_F(ReadXyz, RefusesWhatIsNoNumber) {
     expect_refused("w.xyz", std::string("0 0 0\n0 0 ") + word + "\n", {"line 2", word});
   }
   expect_refused("w.xyz", "1,5 2,5 3,5\n", {"line 1", "1,5"});
-  expect_refused("w.xyz", "1.0, 2.0, 3.0\n", {"line 1"});
 }
 
 TEST_F(ReadXyz, ReadsInfinityNanAndTheSmallest) {
@@ -59,6 +58,75 @@ TEST_F(ReadXyz, ReadsAByteOrderMarkAndOldLineEnds) {
                        "1 2 3\r4 5 6\r")
                 .points.size(),
             2u);
+}
+
+TEST_F(ReadXyz, ReadsCommasAndSemicolons) {
+  for (const char* text : {"1.5,2,3\n4,5,6\n", "1.5, 2, 3\n4,5, 6\n", "1.5 , 2 ,3\n4,5,6\n", "1.5;2;3\n4;5;6\n",
+                           "1.5;2;3;\n4;5;6;\n", "1.5,2,3,\n4,5,6,\n"})
+    EXPECT_EQ(read_bytes("s.xyz", text).points, (std::vector<Vec3>{{1.5, 2, 3}, {4, 5, 6}})) << text;
+  expect_refused("s.xyz", "1;2;3\n4,5,6\n", {"line 2", "1 columns"});
+  expect_refused("s.xyz", "1;;3\n", {"line 1", "''"});
+}
+
+TEST_F(ReadXyz, TellsThatDecimalsTakeAPoint) {
+  for (const char* text : {"1,5 2,5 3,5\n", "1,5\t2,5\t3,5\n", "1,5;2,5;3,5\n", "1,5; 2,5; 3,5;\n", "x;y;z\n1,5;2;3\n"})
+    expect_refused("d.asc", text, {"'1,5'", "point", "'1.5'"});
+}
+
+TEST_F(ReadXyz, ReadsNamesOfColumns) {
+  using Color = std::array<std::uint8_t, 3>;
+  const Geometry g = read_bytes("n.asc", "//X Y Z R G B Scalar Nx Ny Nz\n1 2 3 255 0 7 0.5 0 0 1\n");
+  EXPECT_EQ(g.points[0], (Vec3{1, 2, 3}));
+  EXPECT_EQ(g.colors[0], (Color{255, 0, 7}));
+  EXPECT_EQ(g.normals[0], (Vec3{0, 0, 1}));
+  EXPECT_TRUE(g.warnings.empty());
+  EXPECT_EQ(read_bytes("n.txt", "// scanned\n//X,Y,Z,Rf,Gf,Bf\n// more\n1\n1,2,3,1,0.5,0\n").colors[0],
+            (Color{255, 128, 0}));
+  EXPECT_EQ(read_bytes("n.txt", "z y x\n1 2 3\n").points[0], (Vec3{3, 2, 1}));
+  expect_refused("n.asc", "//X Y Z R G B\n1 2 3\n", {"line 2", "3 columns"});
+  expect_refused("n.asc", "//X Y Z\n", {"no point"});
+  expect_refused("n.asc", "// only this\n", {"no point"});
+}
+
+TEST_F(ReadXyz, TellsColoursFromNormalsInNineColumns) {
+  const Geometry g = read_bytes("n.xyz", "1 2 3 200 10 0 0 0 1\n4 5 6 0 0 0 0 1 0\n");
+  EXPECT_EQ(g.colors[0], (std::array<std::uint8_t, 3>{200, 10, 0}));
+  EXPECT_EQ(g.normals[1], (Vec3{0, 1, 0}));
+  ASSERT_EQ(g.warnings.size(), 1u);
+  EXPECT_EQ(g.warnings[0].numbers, (std::vector<double>{4, 6}));
+  for (const char* unclear : {"1 2 3 0 0 1 0 0 1\n", "1 2 3 9 9 9 9 9 9\n"}) {
+    const Geometry none = read_bytes("n.xyz", unclear);
+    EXPECT_TRUE(none.colors.empty() && none.normals.empty());
+    EXPECT_EQ(none.warnings.back().id, "columns_ignored");
+  }
+}
+
+TEST_F(ReadXyz, HoldsAnAnnouncedNumberOfPointsToItsWord) {
+  EXPECT_EQ(read_bytes("c.xyz", "2\n1 2 3\n4 5 6\n").points.size(), 2u);
+  expect_refused("c.xyz", "3\n1 2 3\n4 5 6\n", {"line 3", "1 points before"});
+  expect_refused("c.xyz", "1\n1 2 3\n4 5 6\n", {"line 3", "more points"});
+  expect_refused("c.xyz", "9223372036854775807\n1 2 3\n", {"announced"});
+  expect_refused("c.xyz", "1 2 3\n2\n1 2 3\n", {"line 2", "1 columns"});
+}
+
+using ReadPts = Files;
+
+TEST_F(ReadPts, ReadsScansOneAfterTheOtherWithIntensityAndColours) {
+  const Geometry g = read_bytes("a.pts", "2\n1 2 3 -700 255 0 7\n4 5 6 12 0 0 0\n1\n7 8 9 2047 1 2 3\n");
+  EXPECT_EQ(g.points, (std::vector<Vec3>{{1, 2, 3}, {4, 5, 6}, {7, 8, 9}}));
+  EXPECT_EQ(g.colors[2], (std::array<std::uint8_t, 3>{1, 2, 3}));
+  ASSERT_EQ(g.properties.size(), 1u);
+  EXPECT_EQ(g.properties[0].name, "intensity");
+  EXPECT_EQ(g.properties[0].values, (std::vector<double>{-700, 12, 2047}));
+  EXPECT_TRUE(g.warnings.empty());
+  EXPECT_EQ(read_bytes("a.pts", "1\n1 2 3 0.25\n").properties[0].values[0], 0.25);
+  EXPECT_TRUE(read_bytes("a.pts", "1\n1 2 3\n").properties.empty());
+}
+
+TEST_F(ReadPts, RefusesEveryTruncationBetweenLines) {
+  const std::string whole = "2\n1 2 3 4\n5 6 7 8\n2\n1 2 3 4\n5 6 7 8\n";
+  for (std::size_t size = 1; size < whole.size() - 1; ++size)
+    if (size != 17 && size != 18) EXPECT_THROW(read_bytes("t.pts", whole.substr(0, size)), IoError) << size;
 }
 
 using ReadCsv = Files;

@@ -145,8 +145,8 @@ Camera choose_camera(const Scene& scene, const std::vector<Index>& shown, const 
 
   Camera camera;
   camera.centre = box.center();
-  camera.scale = box.diagonal().norm() / 2;
-  if (!(camera.scale > 0)) camera.scale = std::max(1.0, camera.centre.norm() * 1e-3);  // a single point
+  camera.scale = box.diagonal().stableNorm() / 2;
+  if (!(camera.scale > 0)) camera.scale = std::max(1.0, camera.centre.stableNorm() * 1e-3);  // a single point
 
   const Vector3d up =
       options.up ? Vector3d(as_vector(*options.up)) : default_up(box.sizes(), !scene.face_vertices.empty());

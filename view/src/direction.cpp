@@ -34,7 +34,7 @@ Vector3d nearest_normal(const Scene& scene, const std::vector<Index>& shown, con
   double nearest = std::numeric_limits<double>::infinity();
   for (const Index i : shown) {
     const auto k = static_cast<std::size_t>(i);
-    const double distance = (as_vector(scene.points[k]) - as_vector(place)).squaredNorm();
+    const double distance = (as_vector(scene.points[k]) - as_vector(place)).stableNorm();
     if (distance >= nearest || !as_vector(scene.normals[k]).allFinite()) continue;
     nearest = distance;
     normal = as_vector(scene.normals[k]).normalized();

@@ -43,7 +43,7 @@ std::vector<double> colours_of(const std::vector<Cell>& cells) {
     nearest.fill(std::numeric_limits<double>::infinity());
     for (std::size_t other = 0; other < c; ++other) {
       double& distance = nearest[result[other]];
-      distance = std::min(distance, (cells[other].middle - cells[c].middle).squaredNorm());
+      distance = std::min(distance, (cells[other].middle - cells[c].middle).stableNorm());
     }
     result.push_back(static_cast<double>(std::max_element(nearest.begin(), nearest.end()) - nearest.begin()));
   }

@@ -158,7 +158,8 @@ void run(const AtlasCommandOptions& options) {
 
   journal.start("sources");
   const std::vector<Vertex> sources = choose_sources(options, input);
-  const SurfaceFaces faces = maps.solver ? surface_faces(input.surface(), *maps.solver, sources) : surface_faces(input.surface());
+  const SurfaceFaces faces =
+      maps.solver ? surface_faces(input.surface(), *maps.solver, sources) : surface_faces(input.surface());
   const std::vector<Vec3> positions = positions_of(faces, graph.size());
   journal.start("charts");
   RefineOptions refine;

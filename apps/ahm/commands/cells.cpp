@@ -111,18 +111,18 @@ CellRows rows_of(const Input& input, const VoronoiCells& of_vertices) {
 
 struct Cell {
   Index vertices = 0;
-  double area = 0;
+  double area = 0;  ///< world units; NaN where no double holds it
 };
 
 std::vector<Cell> sizes(const TangentGraph& graph, const std::vector<Index>& labels, std::size_t count) {
   std::vector<Cell> cells(count);
-  const double unit = graph.length_unit();
   for (std::size_t i = 0; i < labels.size(); ++i) {
     if (labels[i] < 0) continue;
     Cell& cell = cells[labels[i]];
     ++cell.vertices;
-    cell.area += graph.mass(static_cast<Index>(i)) * unit * unit;
+    cell.area += graph.mass(static_cast<Index>(i));
   }
+  for (Cell& cell : cells) cell.area = world_mass(graph, cell.area);
   return cells;
 }
 
@@ -146,6 +146,8 @@ void report(const CellsOptions& options, const Input& input, const std::vector<I
   nlohmann::ordered_json j = summary("ahm cells", options.input.path, options.output, input);
   const auto [smallest, largest] =
       std::minmax_element(cells.begin(), cells.end(), [](const Cell& a, const Cell& b) { return a.area < b.area; });
+  if (std::any_of(cells.begin(), cells.end(), [](const Cell& cell) { return std::isnan(cell.area); }))
+    journal.add_warning("areas: no double holds squares of such lengths; they are given as nan");
   j["largest_distance"] = farthest;
   j["smallest_area"] = smallest->area;
   j["largest_area"] = largest->area;
@@ -203,8 +205,8 @@ void offer(CLI::App& app, CellsOptions& o) {
       throw CLI::ValidationError("--sources", "give either --sources or --count");
   });
   add_output(app, o.output)->required();
-  add_method(app, o.solve)->description(
-      "heat (default): by unfolding the graph, or exact: by straight lines over the faces of a mesh");
+  add_method(app, o.solve)
+      ->description("heat (default): by unfolding the graph, or exact: by straight lines over the faces of a mesh");
   add_backend(app, o.input);
   add_threads(app, o.input);
   add_cloud_options(app, o.input);

@@ -38,8 +38,7 @@ struct CenterCommandOptions {
   bool median = false;
 };
 
-Center find_center(const CenterCommandOptions& options, const Input& input, const Maps& maps,
-                   Journal& journal) {
+Center find_center(const CenterCommandOptions& options, const Input& input, const Maps& maps, Journal& journal) {
   std::vector<Vertex> vertices;
   for (const SourceSpec& spec : options.points) vertices.push_back(vertex_at(input, spec, "--points"));
   if (!options.weights.empty() && options.weights.size() != vertices.size())

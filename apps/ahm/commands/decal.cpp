@@ -72,10 +72,9 @@ struct Amount {
       plane[i] *= options.mirrored ? -options.width : options.width, plane[i + 1] *= options.height;
     const auto measured = ahm::distortion(decal.points, triangles, plane);
     distortion = summary(measured);
-    double area = 0;
     for (const TriangleDistortion& t : measured)
-      if (!std::isnan(t.value())) area += t.area * t.sigma1 * t.sigma2;
-    covered = std::min(1.0, area / (options.width * options.height));  // triangles of clouds may overlap
+      if (!std::isnan(t.value())) covered += t.side / options.width * (t.side / options.height) * t.sigma1 * t.sigma2;
+    covered = std::min(1.0, covered);  // triangles of clouds may overlap
   }
 };
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -114,6 +115,34 @@ std::vector<T> padded(const LocalMaps& maps, const std::vector<T>& values, std::
   return result;
 }
 
+/// The local maps of these vertices with their entries on rows of the input.
+LocalMaps maps_on_rows(const LocalMapsOptions& options, const Input& input, const std::vector<Vertex>& vertices,
+                       const Progress& progress) {
+  const RowMap& rows = input.surface().rows();
+  LocalMapOptions map_options;
+  map_options.radius = options.radius;
+  map_options.heat = options.solve;
+  map_options.heat.progress = progress;
+  Index on_rows = 0;
+  for (Vertex v(0); v.index < rows.vertex_count(); ++v.index) on_rows += rows.row(v) ? 1 : 0;
+  const bool all_on_rows = on_rows == rows.vertex_count();
+  map_options.nearest = all_on_rows || options.radius == 0 ? options.nearest : 0;
+  while (true) {
+    LocalMaps maps = local_maps(input.graph(), vertices, map_options);
+    const std::vector<Offset> found = maps.indptr;
+    keep_rows(maps, rows, options.nearest);
+    // Of the nearest some may have been virtual; then it takes more of them, where there are more.
+    bool enough = all_on_rows || options.radius > 0;
+    for (std::size_t s = 0; s < vertices.size() && !enough; ++s)
+      if (maps.indptr[s + 1] - maps.indptr[s] < options.nearest && found[s + 1] - found[s] == map_options.nearest)
+        break;
+      else if (s + 1 == vertices.size())
+        enough = true;
+    if (enough) return maps;
+    map_options.nearest = std::min(2 * map_options.nearest, rows.vertex_count());
+  }
+}
+
 void write(const LocalMapsOptions& options, const LocalMaps& maps, const std::vector<Row>& rows,
            const TangentGraph& graph, const std::vector<Vertex>& vertices) {
   const std::size_t sources = rows.size(), entries = maps.indices.size();
@@ -164,22 +193,17 @@ void run(const LocalMapsOptions& options) {
   for (Row row : wanted) vertices.push_back(*rows.vertex(row));
 
   journal.start("solve");
-  LocalMapOptions map_options;
-  map_options.radius = options.radius;
-  bool has_virtual = false;
-  for (Vertex v(0); v.index < rows.vertex_count(); ++v.index) has_virtual = has_virtual || !rows.row(v);
-  map_options.nearest = has_virtual ? 0 : options.nearest;
-  map_options.heat = options.solve;
-  map_options.heat.progress = journal.progress();
-  LocalMaps maps = local_maps(input.graph(), vertices, map_options);
-  keep_rows(maps, rows, options.nearest);
+  const LocalMaps maps = maps_on_rows(options, input, vertices, journal.progress());
+
+  if (std::any_of(maps.weights.begin(), maps.weights.end(), [](double w) { return std::isnan(w); }))
+    journal.add_warning("weight: no double holds squares of such lengths; they are given as nan");
 
   journal.start("write");
   write(options, maps, wanted, input.graph(), vertices);
 
   const double mean = static_cast<double>(maps.indices.size()) / static_cast<double>(wanted.size());
   nlohmann::ordered_json j = summary("ahm local-maps", options.input.path, options.output, input);
-  j["radius"] = options.radius;
+  if (options.radius > 0) j["radius"] = options.radius;
   j["sources"] = wanted.size();
   j["entries"] = maps.indices.size();
   j["mean_neighbours"] = mean;
@@ -189,9 +213,10 @@ void run(const LocalMapsOptions& options) {
 
 void offer(CLI::App& app, LocalMapsOptions& o) {
   add_input(app, o.input);
-  add_parsed(app, "--radius", o.radius, parse_positive, "R", "Of the neighbourhoods, along the surface")->required();
+  add_parsed(app, "--radius", o.radius, parse_positive, "R", "Of the neighbourhoods, along the surface");
   add_parsed(app, "-o,--output", o.output.output, non_empty, "OUTPUT", "File to write, .npz")->required();
-  add_parsed(app, "--k", o.nearest, integer_parser(1), "K", "Keep only so many nearest, the source included");
+  add_parsed(app, "--k", o.nearest, integer_parser(1), "K",
+             "Keep only so many nearest, the source included; without --radius: however far they are");
   add_parsed(app, "--sources", o.sources, non_empty, "all|FILE",
              "all (default), or a file of rows of INPUT, counted from 0");
   app.add_flag("--pad", o.pad, "Fixed rows of K entries and a mask; needs --k");
@@ -205,6 +230,7 @@ void offer(CLI::App& app, LocalMapsOptions& o) {
   add_json(app, o.output);
   add_verbose(app, o.output);
   app.callback([&o] {
+    if (o.radius == 0 && o.nearest == 0) throw CLI::RequiredError("--radius, or --k");
     if (o.pad && o.nearest == 0) throw CLI::ValidationError("--pad", "needs --k");
   });
 }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "ahm/error.hpp"
@@ -13,7 +15,9 @@
 #include "commands/logmap_report.hpp"
 #include "commands/solve.hpp"
 #include "commands/subcommand.hpp"
+#include "output/output_paths.hpp"
 #include "output/results.hpp"
+#include "output/texture_output.hpp"
 
 namespace ahm::app {
 namespace {
@@ -36,6 +40,8 @@ constexpr const char* logmap_footer =
     "        The numbers are nan where status is not ok:\n"
     "          disconnected  from the source                beyond_radius  farther than --radius\n"
     "          unreached     too far for double precision  removed        dropped, replaced, or in no face\n"
+    "CORNERS .obj (with .mtl): the faces of INPUT with the u,v of every corner as texture coordinates; where the mesh\n"
+    "        is cut a vertex has several, of which OUTPUT has the nearest. Faces without are the object 'rest'\n"
     "\n"
     "Examples:\n"
     "  ahm logmap scan.ply --source 0 -o map.csv\n"
@@ -49,6 +55,7 @@ struct LogmapOptions {
   SolveOptions solve;
   OutputOptions output;
   bool gradient = false;  ///< columns with the direction away from the source
+  std::string corners;    ///< file for the faces with u, v at every corner
   bool local = false;     ///< build the graph of a cloud around the source only
   bool estimate = false;  ///< tell what the run would cost instead of running
 };
@@ -91,9 +98,45 @@ void write_results(const PlacedSource& source, const RowLogMap& rows, const std:
   results.write(table, results.scene(rows, quality, source), journal);
 }
 
+void check_corners(const LogmapOptions& options) {
+  if (options.corners.empty()) return;
+  const OutputPath corners{"--corners", options.corners};
+  check_ending(corners, {".obj"});
+  const std::string materials = std::filesystem::path(options.corners).replace_extension(".mtl").string();
+  check_outputs(options.input.path, {{"--output", options.output.output},
+                                     {"--json", options.output.json},
+                                     {"--view", options.output.view},
+                                     corners,
+                                     {"--corners", materials}});
+}
+
+/// The faces as they were given, with the map at their corners.
+void write_corners(const std::string& path, const Surface& surface, const LogMap& map) {
+  const FaceList all = surface.faces();
+  if (all.size() == 0) throw InvalidArgument("--corners " + path + ": the surface has no faces");
+  const std::vector<Vec2> at = surface.on_corners(map);
+  std::vector<double> coordinates;
+  for (const Vec2& q : at) coordinates.insert(coordinates.end(), q.begin(), q.end());
+  SurfaceFaces faces;
+  faces.points.assign(surface.positions().begin(), surface.positions().end());
+  faces.begin.assign(all.begin.begin(), all.begin.end());
+  faces.corner_points.assign(all.vertices.begin(), all.vertices.end());
+  const auto is_mapped = [&](std::size_t f) {
+    return std::all_of(at.begin() + all.begin[f], at.begin() + all.begin[f + 1],
+                       [](const Vec2& q) { return !std::isnan(q[0]); });
+  };
+  const FacesPart mapped(faces, is_mapped, coordinates);
+  const FacesPart rest(faces, [&](std::size_t f) { return !is_mapped(f); });
+  std::vector<io::MeshPart> parts;
+  if (!mapped.empty()) parts.push_back(mapped.view("map"));
+  if (!rest.empty()) parts.push_back(rest.view("rest"));
+  io::write_textured(path, parts);
+}
+
 void run(const LogmapOptions& options) {
   if (options.estimate) return run_estimate(options.input, options.solve, options.output.json);
   check_results(options.input.path, options.output);
+  check_corners(options);
   Journal journal(options.output.verbose);
   InputOptions opened = options.input;
   if (options.local) opened.local = radius_of_local(options);
@@ -113,6 +156,7 @@ void run(const LogmapOptions& options) {
   const std::vector<Vec3> away =
       options.gradient ? distance_gradients(input.surface(), map, rows) : std::vector<Vec3>();
   write_results(source, rows, quality, away, results, journal);
+  if (!options.corners.empty()) write_corners(options.corners, input.surface(), map);
   report({options.input.path, options.source.spec, options.solve, input, solved.solver, source, map, rows, quality},
          options.output, journal);
   results.keep();
@@ -159,6 +203,7 @@ void offer(CLI::App& app, LogmapOptions& o) {
   add_input(app, o.input);
   auto* source = add_source(app, o.source, "Where the map starts, see below");
   auto* output = add_output(app, o.output);
+  add_parsed(app, "--corners", o.corners, non_empty, "CORNERS", "Mesh to write, with u,v at the corners of its faces");
   auto* estimate = app.add_flag("--estimate", o.estimate, "Tell what time and memory the run would take, and end");
   app.callback([=] {
     if (estimate->count() > 0) return;

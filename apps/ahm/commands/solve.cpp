@@ -14,8 +14,7 @@ namespace {
 void check_memory(const SolveOptions& options, const TangentGraph& graph) {
   if (options.strategy != Strategy::global) return;
   const GraphSize size{graph.size(), graph.dimension(), graph.transport_kind()};
-  const double factors = options.order == 1 ? 1 : 3;
-  const double wanted = factors * estimate_cost(size, Strategy::global).bytes, memory = machine_memory();
+  const double wanted = estimate_cost(size, Strategy::global, options.order).bytes, memory = machine_memory();
   if (memory > 0 && wanted > memory)
     throw ResourceExhausted(fmt::format(
         "--strategy global: the factors would take about {}, this machine has {}; leave the choice to auto, which "

@@ -31,7 +31,9 @@ constexpr const char* stroke_footer =
     "OUTPUT  .csv, .ply or .pcd; one row per vertex of INPUT, in its order: index,x,y,z,u,v,distance,status\n"
     "          u  arclength along the curve, before and after its ends straight on\n"
     "          v  distance from it, positive on its left as seen from outside (the side of the normals)\n"
-    "        With --circle the curve becomes a circle of its length about the origin.\n"
+    "        With --circle the curve becomes a circle of its length about the origin; with --positions its points get\n"
+    "        these coordinates, a list 'u,v u,v ...' or a file with one pair per line, and u,v go on from there.\n"
+    "          distance  from the curve, along the surface\n"
     "\n"
     "Examples:\n"
     "  ahm stroke scan.ply --curve '0,0,1.2 0.3,0,1.1 0.5,0.2,1' -o stroke.csv --view stroke.png\n"
@@ -43,6 +45,7 @@ struct StrokeCommandOptions {
   OutputOptions output;
   std::vector<SourceSpec> curve;
   StrokeOptions shape;
+  std::vector<std::array<double, 2>> positions;  ///< of the points of the curve; empty: by arclength
 };
 
 /// From a vertex with these coordinates to the curve, in the plane of coordinates.
@@ -57,14 +60,16 @@ CurvePoint curve_point(const SourceSpec& spec) {
   return SurfacePoint(Row(std::get<SourceVertex>(spec).index));
 }
 
-SurfaceCurve draw_curve(const Input& input, const std::vector<SourceSpec>& given, const StrokeOptions& options) {
+SurfaceCurve draw_curve(const Input& input, const StrokeCommandOptions& options) {
   std::vector<CurvePoint> points;
-  for (const SourceSpec& spec : given) {
+  for (const SourceSpec& spec : options.curve) {
     position_in(input.geometry, spec, "--curve");
     points.push_back(curve_point(spec));
   }
   try {
-    return ahm::draw_curve(input.surface(), points, options);
+    if (!options.positions.empty())
+      return ahm::draw_curve(input.surface(), points, options.positions, options.shape.closed);
+    return ahm::draw_curve(input.surface(), points, options.shape);
   } catch (const InvalidArgument& e) {
     throw InvalidArgument(fmt::format("--curve: {}", worded(e)));
   }
@@ -122,7 +127,9 @@ void report(const StrokeCommandOptions& options, const Input& input, const Surfa
                 {"points", curve.points.size()},
                 {"length", curve.length},
                 {"closed", options.shape.closed},
-                {"shape", options.shape.shape == StrokeShape::circle ? "circle" : "line"},
+                {"shape", !options.positions.empty()                   ? "positions"
+                          : options.shape.shape == StrokeShape::circle ? "circle"
+                                                                       : "line"},
                 {"largest_gap", curve.gap}};
   j["n"] = rows.status.size();
   j["mapped"] = mapped;
@@ -140,14 +147,16 @@ void run(const StrokeCommandOptions& options) {
   check_results(options.input.path, options.output);
   Journal journal(options.output.verbose);
   const Input input = open_input(options.input, journal);
-  const SurfaceCurve curve = draw_curve(input, options.curve, options.shape);
+  const SurfaceCurve curve = draw_curve(input, options);
   comment_on_curve(curve, input.mean_edge_length(), journal);
 
   const LogMap map = solve(options.solve, input, curve, journal);
   const RowLogMap rows = input.surface().on_rows(map);
   std::vector<double> distance;
   for (std::size_t i = 0; i < rows.u.size(); ++i)
-    distance.push_back(distance_from_curve(rows.u[i], rows.v[i], curve.length, options.shape));
+    distance.push_back(options.positions.empty()
+                           ? distance_from_curve(rows.u[i], rows.v[i], curve.length, options.shape)
+                           : rows.distance[i]);
   comment_on_statuses(rows.status, options.input.path, journal);
   Results results(options.output, input, options.input);
   write_results(curve, options.shape, rows, distance, results, journal);
@@ -160,9 +169,17 @@ void offer(CLI::App& app, StrokeCommandOptions& o) {
   add_parsed(app, "--curve", o.curve, parse_sources, "CURVE", "List or file of points, see below")->required();
   add_output(app, o.output)->required();
   app.add_flag("--closed", o.shape.closed, "Join the last point to the first");
-  app.add_flag_callback(
+  auto* circle = app.add_flag_callback(
       "--circle", [&o] { o.shape.closed = true, o.shape.shape = StrokeShape::circle; },
       "Closed; map the curve to a circle instead of a line");
+  add_parsed(app, "--positions", o.positions, parse_plane_points, "POINTS",
+             "Map the points of CURVE to these instead, one u,v for each, see below")
+      ->excludes(circle);
+  app.callback([&o] {
+    if (!o.positions.empty() && o.positions.size() != o.curve.size())
+      throw CLI::ValidationError("--positions",
+                                 fmt::format("{} for the {} points of --curve", o.positions.size(), o.curve.size()));
+  });
   add_method(app, o.solve);
   add_graph_options(app, o.input, o.solve);
   add_map_results(app, o.output);

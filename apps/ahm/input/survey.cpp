@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "ahm/error.hpp"
 #include "ahm/graph/components.hpp"
 #include "ahm/pointcloud/neighbor_search.hpp"
+#include "ahm/util/small_math.hpp"
 #include "ahm/util/vec.hpp"
 #include "input/backend.hpp"
 #include "output/wording.hpp"
@@ -36,8 +38,12 @@ std::vector<Vec3> distinct_places(std::vector<Vec3> points) {
   return points;
 }
 
-std::optional<LengthRange> find_spacing(const std::vector<Vec3>& places) {
+std::optional<LengthRange> find_spacing(std::vector<Vec3> places) {
   if (places.size() < 2) return std::nullopt;
+  double size = 0;
+  for (const Vec3& p : places) size = std::max(size, largest(p));
+  const double unit = power_of_two_below(size);  // the search squares lengths
+  for (Vec3& p : places) p = 1 / unit * p;
   const auto search = pointcloud::nanoflann_search(places);
   constexpr std::size_t sample = 20000;
   const std::size_t step = std::max<std::size_t>(1, places.size() / sample);
@@ -46,7 +52,8 @@ std::optional<LengthRange> find_spacing(const std::vector<Vec3>& places) {
   std::array<double, 2> squared{};
   for (std::size_t i = 0; i < places.size(); i += step) {
     search->nearest(places[i], index, squared);
-    distances.push_back(distance(places[i], places[index[static_cast<std::size_t>(index[0]) == i ? 1 : 0]]));
+    const Index other = index[static_cast<std::size_t>(index[0]) == i ? 1 : 0];
+    distances.push_back(unit * distance(places[i], places[other]));
   }
   return range_of(std::move(distances));
 }
@@ -189,10 +196,10 @@ Survey survey(const io::Geometry& input, const InputOptions& options, const Prog
   find_bounds(points, s);
   if (s.faces > 0) s.mesh = survey_mesh(input);
   {
-    const std::vector<Vec3> places = distinct_places(points);
+    std::vector<Vec3> places = distinct_places(points);
     s.duplicates = points.size() - places.size();
     progress.step("spacing", 0);
-    if (!s.mesh) s.spacing = find_spacing(places);
+    if (!s.mesh) s.spacing = find_spacing(std::move(places));
   }
   find_surface(input, options, progress, s);
   return s;

@@ -74,6 +74,7 @@ io::Table Results::table() const {
   io::Table table{.title = "logarithmic map by libahm"};
   table.add({"x", "y", "z"}, input_.points);
   if (!normals_.empty()) table.add({"nx", "ny", "nz"}, normals_).in_csv = false;
+  for (const io::Property& property : input_.properties) table.add(property.name, property.values);
   table.faces = input_.faces();
   return table;
 }

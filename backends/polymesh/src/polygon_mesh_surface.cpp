@@ -11,6 +11,7 @@
 #include "ahm/surface/exact/flat_triangles.hpp"
 #include "ahm/trimesh/triangle_mesh_surface.hpp"
 #include "ahm/util/memory.hpp"
+#include "ahm/util/small_math.hpp"
 #include "ahm/util/stopwatch.hpp"
 #include "ahm/util/vec.hpp"
 #include "polygon_edges.hpp"
@@ -30,7 +31,8 @@ Frame frame_in_space(const Axes& axes, const Vec3& origin) {
 
 /// Where a position near a triangle lies in it: barycentric coordinates of its projection to the plane.
 std::array<double, 3> barycentric(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
-  const Vec3 u = b - a, v = c - a, w = p - a;
+  const double scale = 1 / power_of_two_below(std::max(largest(b - a), largest(c - a)));
+  const Vec3 u = scale * (b - a), v = scale * (c - a), w = scale * (p - a);
   const double uu = dot(u, u), uv = dot(u, v), vv = dot(v, v), wu = dot(w, u), wv = dot(w, v);
   const double area = uu * vv - uv * uv;
   const double s = (vv * wu - uv * wv) / area, t = (uu * wv - uv * wu) / area;

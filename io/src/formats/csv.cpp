@@ -36,8 +36,10 @@ void write(AtomicFile& file, const Table& table) {
   }
 }
 
+Geometry read(const Input& in) { return read_columns(in, {.format = "CSV text", .tabs_separate = true}); }
+
 }  // namespace
 
-Format csv_format() { return {.extensions = {".csv"}, .read = read_delimited, .write = write}; }
+Format csv_format() { return {.extensions = {".csv"}, .read = read, .write = write}; }
 
 }  // namespace ahm::io

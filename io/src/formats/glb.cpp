@@ -1,8 +1,10 @@
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "ahm/util/text.hpp"
 #include "formats/format.hpp"
 #include "little_endian.hpp"
 #include "write/parts.hpp"
@@ -15,6 +17,9 @@ using Json = nlohmann::ordered_json;
 // Numbers of the glTF 2.0 specification.
 constexpr std::uint32_t glb_magic = 0x46546C67, glb_version = 2, json_chunk = 0x4E4F534A, binary_chunk = 0x004E4942;
 constexpr int float32 = 5126, uint32 = 5125, array_buffer = 34962, element_array_buffer = 34963, clamp_to_edge = 33071;
+
+/// Models smaller than this lose digits in single precision.
+constexpr double least_size = 1e-30;
 
 Vec3 middle_of(std::span<const MeshPart> parts) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -121,6 +126,7 @@ class GlbFile {
 
   /// With bounds, which the format asks for.
   int add_positions(const MeshPart& part, const std::vector<Index>& own, const std::vector<Index>& point_of) {
+    double largest = 0;
     std::array<float, 3> low, high;
     low.fill(std::numeric_limits<float>::infinity());
     high.fill(-std::numeric_limits<float>::infinity());
@@ -128,8 +134,12 @@ class GlbFile {
       const double x = part.points[own[point_of[k]]][c] - middle_[c];
       low[c] = std::min(low[c], static_cast<float>(x));
       high[c] = std::max(high[c], static_cast<float>(x));
+      largest = std::max(largest, std::abs(x));
       return x;
     });
+    if (largest > std::numeric_limits<float>::max() || (largest > 0 && largest < least_size))
+      throw InvalidArgument("a .glb file holds single precision, which a length of " + detail::number(largest) +
+                            " does not fit; write .obj");
     json_["accessors"][accessor]["min"] = low;
     json_["accessors"][accessor]["max"] = high;
     return accessor;

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "formats/format.hpp"
+#include "read/colors.hpp"
 #include "read/text.hpp"
 
 namespace ahm::io {
@@ -64,7 +65,9 @@ class ObjReader {
                        std::to_string(g_.points.size()) + " vertices");
     }
     finish_normals();
-    if (vertex_extras_) g_.warnings.push_back({"vertex_extras", {}, {}});
+    finish_colors();
+    if (ignored_ > 0)
+      g_.warnings.push_back({"statements_ignored", {static_cast<double>(ignored_)}, {}, ignored_names_});
     return std::move(g_);
   }
 
@@ -75,14 +78,47 @@ class ObjReader {
     if (keyword == "v") {
       check_vertex_count(in_, g_.points.size() + 1);
       g_.points.push_back(read_vector(rest));
-      vertex_extras_ = vertex_extras_ || !next_word(rest).empty();
+      read_extras(rest);
     } else if (keyword == "vn") {
       normals_.push_back(read_vector(rest));
     } else if (keyword == "f") {
       read_face(rest);
-    } else if (!is_ignored(keyword)) {
-      fail_at_line(in_, statements_.line(), "unknown OBJ keyword " + in_quotes(keyword));
+    } else if (!is_known(keyword)) {
+      ignore(keyword);
     }
+  }
+
+  /// Counts a statement of an extension of the format. What is no word at all is damage.
+  void ignore(std::string_view keyword) {
+    const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
+    if (!letter(keyword.front()) ||
+        !std::ranges::all_of(keyword, [&](char c) { return letter(c) || (c >= '0' && c <= '9'); }))
+      fail_at_line(in_, statements_.line(), in_quotes(keyword) + " is no OBJ keyword; the file is damaged");
+    constexpr std::size_t most_named = 5;
+    ++ignored_;
+    if (named_.size() == most_named || std::ranges::find(named_, keyword) != named_.end()) return;
+    named_.emplace_back(keyword);
+    ignored_names_ += (ignored_names_.empty() ? "" : ", ") + in_quotes(keyword);
+  }
+
+  /// Behind x, y, z: a weight, or red, green, blue.
+  void read_extras(std::string_view rest) {
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    Vec3 color{none, none, none};
+    std::size_t count = 0;
+    for (std::string_view word = next_word(rest); !word.empty(); word = next_word(rest), ++count)
+      if (count < 3) color[count] = to_real(word).value_or(none);
+    extras_ = extras_ || count > 0;
+    if (count == 3 && extra_.size() + 1 == g_.points.size()) extra_.push_back(color);
+  }
+
+  void finish_colors() {
+    if (!extras_) return;
+    auto colors = extra_.size() == g_.points.size() ? to_colors(extra_) : std::nullopt;
+    if (colors)
+      g_.colors = std::move(*colors);
+    else
+      g_.warnings.push_back({"vertex_extras", {}, {}});
   }
 
   Vec3 read_vector(std::string_view& rest) const {
@@ -153,7 +189,7 @@ class ObjReader {
     }
   }
 
-  static bool is_ignored(std::string_view keyword) {
+  static bool is_known(std::string_view keyword) {
     using namespace std::string_view_literals;
     static constexpr std::array keywords = {
         "vt"sv,       "vp"sv,       "p"sv,      "l"sv,          "o"sv,         "g"sv,     "s"sv,
@@ -169,7 +205,11 @@ class ObjReader {
   Geometry g_;
   std::vector<Vec3> normals_;
   bool normals_match_ = true;
-  bool vertex_extras_ = false;
+  bool extras_ = false;
+  std::vector<Vec3> extra_;  ///< three more numbers of the first vertices; of all, when they may be colours
+  std::size_t ignored_ = 0;
+  std::vector<std::string> named_;
+  std::string ignored_names_;
   std::uint64_t largest_ = 0;
   std::int64_t largest_line_ = 0;
 };

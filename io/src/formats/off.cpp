@@ -2,9 +2,12 @@
 // each vertex with the process's global C++ locale ("1.5" becomes 1 where decimals have commas), takes "0 0 1,5" as 0 0
 // 1, cannot read "nan", and believes the counts of the header.
 #include <algorithm>
+#include <array>
+#include <optional>
 #include <utility>
 
 #include "formats/format.hpp"
+#include "read/colors.hpp"
 #include "read/text.hpp"
 
 namespace ahm::io {
@@ -37,21 +40,24 @@ class Words {
 
 struct OffHeader {
   bool normals = false;
+  bool colors = false;
   std::uint64_t vertices = 0;
   std::uint64_t faces = 0;
 };
 
-/// Reads the keyword [ST][C][N]OFF. Four and n dimensions and the binary form are refused.
-bool parse_keyword(const Input& in, std::int64_t line, std::string_view word) {
-  const std::string_view prefix = word.substr(0, word.size() - std::min<std::size_t>(word.size(), 3));
-  const bool known = prefix.empty() || prefix == "N" || prefix == "C" || prefix == "CN" || prefix == "NC" ||
-                     prefix == "ST" || prefix == "STN" || prefix == "STC" || prefix == "STCN";
-  if (!word.ends_with("OFF") || !known) {
+/// Reads the keyword [ST][C][N]OFF in any case of its letters; nOFF and 4OFF, in other dimensions, are refused.
+void parse_keyword(const Input& in, std::int64_t line, std::string_view word, OffHeader& header) {
+  const std::string_view ending = word.substr(word.size() - std::min<std::size_t>(word.size(), 3));
+  const std::string_view prefix = word.substr(0, word.size() - ending.size());
+  static constexpr std::array<std::string_view, 9> prefixes = {"", "n", "c", "cn", "nc", "st", "stn", "stc", "stcn"};
+  const bool known = std::ranges::any_of(prefixes, [&](auto lower) { return equals_ignoring_case(prefix, lower); });
+  if (!equals_ignoring_case(ending, "off") || !known || word == "nOFF") {
     fail_at_line(
         in, line,
         "expected 'OFF', 'NOFF' or 'COFF', found " + in_quotes(word) + "; convert the file to three-dimensional OFF");
   }
-  return prefix.find('N') != std::string_view::npos;
+  header.normals = prefix.find_first_of("Nn") != std::string_view::npos;
+  header.colors = prefix.find_first_of("Cc") != std::string_view::npos;
 }
 
 std::uint64_t parse_count(const Input& in, Words& words, const char* what) {
@@ -63,10 +69,12 @@ std::uint64_t parse_count(const Input& in, Words& words, const char* what) {
 
 OffHeader parse_header(const Input& in, Words& words) {
   OffHeader header;
-  const std::string_view keyword = words.next("the keyword 'OFF'");
-  header.normals = parse_keyword(in, words.line(), keyword);
-  const std::string_view first = words.next("the number of vertices");
-  if (first == "BINARY")
+  std::string_view first = words.next("the keyword 'OFF'");
+  if (!to_whole(first)) {  // some writers leave the keyword out
+    parse_keyword(in, words.line(), first, header);
+    first = words.next("the number of vertices");
+  }
+  if (equals_ignoring_case(first, "binary"))
     fail_at_line(in, words.line(), "binary OFF is not supported; convert the file to text OFF or PLY");
   const std::int64_t vertices = whole_or_fail(in, words.line(), first);
   if (vertices < 0) fail_at_line(in, words.line(), "negative number of vertices " + std::to_string(vertices));
@@ -87,10 +95,23 @@ OffHeader parse_header(const Input& in, Words& words) {
   return header;
 }
 
+/// Red, green, blue, of which `word` is the first; opacity may follow. Fewer numbers stand for a colour in a table.
+void read_color(const Input& in, std::int64_t line, std::string_view word, std::string_view rest,
+                std::vector<Vec3>& colors) {
+  Vec3 color;
+  for (double& level : color) {
+    if (word.empty()) return;
+    level = real_or_fail(in, line, word);
+    word = next_word(rest);
+  }
+  colors.push_back(color);
+}
+
 /// One line per vertex, so that a missing number cannot shift all the numbers behind it.
 void read_vertices(const Input& in, Words& words, const OffHeader& header, Geometry& g) {
   g.points.resize(header.vertices);
   if (header.normals) g.normals.resize(header.vertices);
+  std::vector<Vec3> colors;
   for (std::size_t i = 0; i < header.vertices; ++i) {
     std::string_view word = words.next("all vertices are read");
     std::string_view rest = words.rest_of_line();
@@ -102,7 +123,13 @@ void read_vertices(const Input& in, Words& words, const OffHeader& header, Geome
       }
       (k < 3 ? g.points[i][k] : g.normals[i][k - 3]) = real_or_fail(in, words.line(), word);
     }
+    if (header.colors && colors.size() == i) read_color(in, words.line(), word, rest, colors);
   }
+  if (!header.colors || header.vertices == 0) return;
+  if (auto levels = colors.size() == header.vertices ? to_colors(colors) : std::nullopt)
+    g.colors = std::move(*levels);
+  else
+    g.warnings.push_back({"colors_unknown", {}, {}});
 }
 
 void read_faces(const Input& in, Words& words, const OffHeader& header, Geometry& g) {

@@ -10,6 +10,7 @@
 #include <limits>
 
 #include "formats/format.hpp"
+#include "read/colors.hpp"
 #include "read/ply_header.hpp"
 #include "read/text.hpp"
 
@@ -140,8 +141,8 @@ class Body {
 constexpr std::size_t unused = 9;
 constexpr std::array<std::string_view, unused> roles = {"x", "y", "z", "nx", "ny", "nz", "red", "green", "blue"};
 
-/// The role of every property; normals and colours count only when complete, colours only when stored as bytes.
-std::vector<std::size_t> assign_roles(const Input& in, const PlyElement& vertex, Geometry& g) {
+/// The role of every property; normals and colours count only when complete.
+std::vector<std::size_t> assign_roles(const Input& in, const PlyElement& vertex) {
   std::vector<std::size_t> role_of(vertex.properties.size(), unused);
   for (std::size_t group = 0; group < unused; group += 3) {
     std::array<std::optional<std::size_t>, 3> found;
@@ -152,15 +153,50 @@ std::vector<std::size_t> assign_roles(const Input& in, const PlyElement& vertex,
         fail_at_line(in, vertex.line, "the vertices have no property '" + std::string(roles[k]) + "'");
       }
       complete = complete && found[k];
-      if (found[k] && group == 6 && vertex.properties[*found[k]].type != PlyType::uint8) {
-        if (complete) g.warnings.push_back({"colors_not_uchar", {}, {}});
-        complete = false;
-      }
     }
     for (std::size_t k = 0; complete && k < 3; ++k) role_of[*found[k]] = group + k;
   }
   return role_of;
 }
+
+/// Colours as bytes, or as numbers that are to become bytes.
+class Colors {
+ public:
+  Colors(const std::vector<std::size_t>& role_of, const PlyElement& vertex, std::size_t n) {
+    bool bytes = true, present = false;
+    for (std::size_t p = 0; p < role_of.size(); ++p) {
+      if (role_of[p] < 6 || role_of[p] == unused) continue;
+      present = true;
+      bytes = bytes && vertex.properties[p].type == PlyType::uint8;
+    }
+    if (present && bytes) levels_.resize(n);
+    if (present && !bytes) numbers_.resize(n);
+  }
+
+  void read(PlyType type, Body& body, std::size_t i, std::size_t channel) {
+    if (levels_.empty()) {
+      numbers_[i][channel] = body.value(type);
+      return;
+    }
+    const std::int64_t level = body.whole(type);
+    if (level < 0 || level > 255) body.fail_here("colour " + std::to_string(level) + " is not in 0..255");
+    levels_[i][channel] = static_cast<std::uint8_t>(level);
+  }
+
+  void move_to(Geometry& g) {
+    if (!numbers_.empty()) {
+      if (auto colors = to_colors(numbers_, true))
+        levels_ = std::move(*colors);
+      else
+        g.warnings.push_back({"colors_unknown", {}, {}});
+    }
+    g.colors = std::move(levels_);
+  }
+
+ private:
+  std::vector<Color> levels_;
+  std::vector<Vec3> numbers_;
+};
 
 void read_vertices(const Input& in, const PlyElement& vertex, Body& body, Geometry& g) {
   for (const PlyProperty& p : vertex.properties) {
@@ -170,11 +206,11 @@ void read_vertices(const Input& in, const PlyElement& vertex, Body& body, Geomet
     }
   }
   check_vertex_count(in, vertex.count);
-  const std::vector<std::size_t> role_of = assign_roles(in, vertex, g);
+  const std::vector<std::size_t> role_of = assign_roles(in, vertex);
   const auto n = static_cast<std::size_t>(vertex.count);
   g.points.resize(n);
   if (std::ranges::count(role_of, std::size_t{3}) > 0) g.normals.resize(n);
-  if (std::ranges::count(role_of, std::size_t{6}) > 0) g.colors.resize(n);
+  Colors colors(role_of, vertex, n);
   for (std::size_t i = 0; i < n; ++i) {
     body.begin_item(vertex, i);
     for (std::size_t p = 0; p < role_of.size(); ++p) {
@@ -186,13 +222,12 @@ void read_vertices(const Input& in, const PlyElement& vertex, Body& body, Geomet
       } else if (role < 6) {
         g.normals[i][role - 3] = body.value(vertex.properties[p].type);
       } else {
-        const std::int64_t level = body.whole(vertex.properties[p].type);
-        if (level < 0 || level > 255) body.fail_here("colour " + std::to_string(level) + " is not in 0..255");
-        g.colors[i][role - 6] = static_cast<std::uint8_t>(level);
+        colors.read(vertex.properties[p].type, body, i, role - 6);
       }
     }
     body.end_item();
   }
+  colors.move_to(g);
 }
 
 void read_corners(const PlyProperty& list, Body& body, Geometry& g) {
@@ -275,6 +310,8 @@ Geometry read(const Input& in) {
   constexpr std::array<const char*, 3> names = {"PLY text", "PLY binary little endian", "PLY binary big endian"};
   Geometry g;
   g.format = names[static_cast<std::size_t>(header.format)];
+  if (header.ignored_lines > 0)
+    g.warnings.push_back({"header_lines_ignored", {static_cast<double>(header.ignored_lines)}, {}});
   Body body(in, header);
   for (const PlyElement& element : header.elements) {
     if (element.name == "vertex") {

@@ -2,12 +2,11 @@
 // Read by our own code like the other mesh formats: Assimp, the library in Debian 12 that reads STL, rounds coordinates
 // to float.
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstring>
 #include <numeric>
 
 #include "formats/format.hpp"
+#include "little_endian.hpp"
 #include "read/text.hpp"
 
 namespace ahm::io {
@@ -16,23 +15,22 @@ namespace {
 constexpr std::size_t header_bytes = 84;  // 80 of comment, then the number of triangles
 constexpr std::size_t triangle_bytes = 50;
 
-template <class T>
-T little_endian(const std::string& bytes, std::size_t at) {
-  std::array<char, sizeof(T)> raw;
-  std::memcpy(raw.data(), bytes.data() + at, sizeof(T));
-  if constexpr (std::endian::native == std::endian::big) std::reverse(raw.begin(), raw.end());
-  return std::bit_cast<T>(raw);
+bool begins_with_solid(const std::string& bytes) {
+  std::string_view rest = without_byte_order_mark(std::string_view(bytes).substr(0, header_bytes));
+  rest.remove_prefix(std::min(rest.size(), rest.find_first_not_of(" \t\r\n")));
+  return equals_ignoring_case(rest.substr(0, 5), "solid");
 }
 
 bool is_binary(const Input& in) {
   if (in.bytes.size() < header_bytes) return false;
   // Binary headers may begin with "solid" too, but only theirs tell the size of the file.
-  const std::uint64_t triangles = little_endian<std::uint32_t>(in.bytes, 80);
-  return header_bytes + triangles * triangle_bytes == in.bytes.size() || !in.bytes.starts_with("solid");
+  const std::uint64_t triangles = load_at<std::uint32_t>(in.bytes, 80);
+  return header_bytes + triangles * triangle_bytes == in.bytes.size() || !begins_with_solid(in.bytes) ||
+         in.bytes.find('\0') < header_bytes;
 }
 
 std::vector<Vec3> read_binary(const Input& in) {
-  const std::uint64_t triangles = little_endian<std::uint32_t>(in.bytes, 80);
+  const std::uint64_t triangles = load_at<std::uint32_t>(in.bytes, 80);
   if (header_bytes + triangles * triangle_bytes > in.bytes.size())
     fail_at_byte(in, 80,
                  std::to_string(triangles) + " triangles do not fit into the " +
@@ -42,8 +40,8 @@ std::vector<Vec3> read_binary(const Input& in) {
   for (std::uint64_t t = 0; t < triangles; ++t)
     for (std::size_t corner = 0; corner < 3; ++corner) {
       const std::size_t at = header_bytes + t * triangle_bytes + 12 + 12 * corner;
-      corners.push_back({little_endian<float>(in.bytes, at), little_endian<float>(in.bytes, at + 4),
-                         little_endian<float>(in.bytes, at + 8)});
+      corners.push_back(
+          {load_at<float>(in.bytes, at), load_at<float>(in.bytes, at + 4), load_at<float>(in.bytes, at + 8)});
     }
   return corners;
 }
@@ -52,28 +50,29 @@ std::vector<Vec3> read_binary(const Input& in) {
 std::vector<Vec3> read_text(const Input& in) {
   std::vector<Vec3> corners;
   std::vector<std::string_view> words;
-  Lines lines(in.bytes);
+  Lines lines(without_byte_order_mark(in.bytes));
   std::size_t in_facet = 0;
   bool open = false, ended = false;
   while (lines.next()) {
     split_words(lines.line(), words);
     if (words.empty()) continue;
-    if (words[0] == "facet") {
+    const auto begins_with = [&](std::string_view word) { return equals_ignoring_case(words[0], word); };
+    if (begins_with("facet")) {
       if (open) fail_at_line(in, lines.number(), "a facet begins before the last one has ended");
       open = true;
       in_facet = 0;
-    } else if (words[0] == "vertex") {
+    } else if (begins_with("vertex")) {
       if (!open || words.size() != 4) fail_at_line(in, lines.number(), "expected a facet's 'vertex x y z'");
       corners.push_back({real_or_fail(in, lines.number(), words[1]), real_or_fail(in, lines.number(), words[2]),
                          real_or_fail(in, lines.number(), words[3])});
       ++in_facet;
-    } else if (words[0] == "endfacet") {
+    } else if (begins_with("endfacet")) {
       if (!open || in_facet != 3)
         fail_at_line(in, lines.number(), "the facet has " + std::to_string(in_facet) + " vertices instead of 3");
       open = false;
-    } else if (words[0] == "endsolid") {
+    } else if (begins_with("endsolid")) {
       ended = true;
-    } else if (words[0] != "solid" && words[0] != "outer" && words[0] != "endloop") {
+    } else if (!begins_with("solid") && !begins_with("outer") && !begins_with("endloop")) {
       fail_at_line(in, lines.number(), "unknown word " + in_quotes(words[0]) + " in a text STL file");
     }
   }

@@ -2,7 +2,12 @@
 #include "read/columns.hpp"
 
 namespace ahm::io {
+namespace {
 
-Format xyz_format() { return {.extensions = {".xyz", ".txt"}, .read = read_blank_separated}; }
+Geometry read(const Input& in) { return read_columns(in, {.format = "XYZ text"}); }
+
+}  // namespace
+
+Format xyz_format() { return {.extensions = {".xyz", ".txt", ".asc"}, .read = read}; }
 
 }  // namespace ahm::io

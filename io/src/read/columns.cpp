@@ -5,20 +5,16 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <utility>
 
+#include "read/colors.hpp"
+#include "read/column_names.hpp"
 #include "read/text.hpp"
 
 namespace ahm::io {
 namespace {
 
 using Words = std::vector<std::string_view>;
-
-/// Which column holds x, y, z and, when there are six, what the other three are.
-struct Columns {
-  std::size_t count = 0;  ///< in every line
-  std::array<std::size_t, 6> of = {0, 1, 2, 3, 4, 5};
-  bool six = false;
-};
 
 std::string_view trimmed(std::string_view text) {
   const std::size_t begin = text.find_first_not_of(" \t\r\"");
@@ -38,106 +34,175 @@ void split(std::string_view line, char delimiter, Words& words) {
   }
 }
 
-void read_row(const Input& in, std::int64_t line, const Words& words, const Columns& columns, Geometry& g) {
-  if (words.size() != columns.count) {
-    fail_at_line(in, line,
-                 std::to_string(words.size()) + " columns, but the lines before have " + std::to_string(columns.count));
-  }
-  std::array<double, 6> row{};
-  for (std::size_t k = 0; k < (columns.six ? 6 : 3); ++k) row[k] = real_or_fail(in, line, words[columns.of[k]]);
-  g.points.push_back({row[0], row[1], row[2]});
-  if (columns.six) g.normals.push_back({row[3], row[4], row[5]});
+/// Whether no column holds two numbers, as those of "1,5 2,5 3,5" would.
+bool separates(std::string_view line, char delimiter, Words& words) {
+  if (line.find(delimiter) == std::string_view::npos) return false;
+  split(line, delimiter, words);
+  return std::ranges::none_of(words, [](std::string_view column) {
+    const std::string_view first = next_word(column), second = next_word(column);
+    return to_real(first) && to_real(second);
+  });
 }
 
-/// Six columns are often x y z red green blue: whole numbers up to 255 cannot all be meant as normals when one
-/// exceeds 1.
-void tell_colors_from_normals(Geometry& g) {
+/// Semicolon first, because commas may then be (refused) decimals.
+char find_delimiter(std::string_view line, const ColumnDialect& dialect) {
+  Words words;
+  if (line.find(';') != std::string_view::npos) return ';';
+  if (separates(line, ',', words)) return ',';
+  return dialect.tabs_separate && line.find('\t') != std::string_view::npos ? '\t' : ' ';
+}
+
+/// Whole numbers up to 255 cannot all be meant as normals when one exceeds 1.
+bool look_like_levels(const std::vector<Vec3>& values) {
   const auto is_level = [](double v) { return v >= 0 && v <= 255 && v == std::floor(v); };
   const auto all_levels = [&](const Vec3& n) { return std::ranges::all_of(n, is_level); };
   const auto too_long = [](const Vec3& n) { return *std::ranges::max_element(n) > 1; };
-  if (!std::ranges::all_of(g.normals, all_levels) || !std::ranges::any_of(g.normals, too_long)) return;
-  g.colors.reserve(g.normals.size());
-  for (const Vec3& n : g.normals) {
-    g.colors.push_back(
-        {static_cast<std::uint8_t>(n[0]), static_cast<std::uint8_t>(n[1]), static_cast<std::uint8_t>(n[2])});
-  }
-  g.normals.clear();
-  g.warnings.push_back({"columns_as_colors", {}, {}});
+  return std::ranges::all_of(values, all_levels) && std::ranges::any_of(values, too_long);
 }
 
-Geometry read_rows(const Input& in, Lines& lines, char delimiter, Columns columns, Geometry g) {
-  Words words;
-  do {
-    split(lines.line(), delimiter, words);
-    if (columns.count == 0) {
-      columns.count = words.size();
-      columns.six = words.size() == 6;
-      if (words.size() < 3) {
-        fail_at_line(in, lines.number(), "expected at least three columns, found " + std::to_string(words.size()));
-      }
-      if (words.size() > 3 && !columns.six) {
-        g.warnings.push_back({"columns_ignored", {static_cast<double>(words.size())}, {}});
+class ColumnReader {
+ public:
+  ColumnReader(const Input& in, const ColumnDialect& dialect)
+      : in_(in), dialect_(dialect), lines_(without_byte_order_mark(in.bytes)) {}
+
+  Geometry read() {
+    g_.format = dialect_.format;
+    while (next_line()) {
+      if (begins_block()) continue;
+      if (columns_ == 0 && named_columns()) continue;
+      read_row();
+    }
+    if (g_.points.empty())
+      fail(in_, names_found_ ? "the file holds no point below the column names" : "the file holds no point");
+    if (left_.value_or(0) > 0)
+      fail_at_line(in_, lines_.number(),
+                   "the file ends " + std::to_string(*left_) + " points before the announced number");
+    check_vertex_count(in_, g_.points.size());
+    finish();
+    return std::move(g_);
+  }
+
+ private:
+  /// Three columns that are one vector.
+  struct Triple {
+    ColumnRole role;
+    std::array<std::size_t, 3> columns;
+    std::vector<Vec3> values = {};
+  };
+
+  /// The next line that holds anything; // is a comment unless it names the columns.
+  bool next_line() {
+    while (lines_.next_filled('#')) {
+      line_ = trimmed(lines_.line());
+      if (!line_.starts_with("//")) return true;
+      line_.remove_prefix(2);
+      if (columns_ > 0 || names_found_) continue;
+      split(line_, find_delimiter(line_, dialect_), words_);
+      if (names_position(words_)) return true;
+    }
+    return false;
+  }
+
+  /// A line of one whole number: so many points follow.
+  bool begins_block() {
+    if (line_.find_first_of(" \t,;") != std::string_view::npos || (left_ ? *left_ > 0 : columns_ > 0)) return false;
+    const std::optional<std::int64_t> count = to_whole(line_);
+    if (!count || *count < 0) return false;
+    left_ = *count;
+    return true;
+  }
+
+  bool named_columns() {
+    const char delimiter = find_delimiter(line_, dialect_);
+    split(line_, delimiter, words_);
+    if (std::ranges::any_of(words_, is_like_number)) return false;
+    const ColumnNames names = find_columns(in_, lines_.number(), words_);
+    columns_ = words_.size();
+    position_ = names.position;
+    for (const auto& [role, columns] : names.triples) triples_.push_back({role, columns});
+    if (delimiter != ' ') delimiter_ = delimiter;
+    return names_found_ = true;
+  }
+
+  void read_row() {
+    if (left_ && (*left_)-- == 0) fail_at_line(in_, lines_.number(), "more points than the announced number");
+    if (delimiter_ == '\0') delimiter_ = find_delimiter(line_, dialect_);
+    split(line_, delimiter_, words_);
+    const bool open_end = words_.size() > 3 && words_.back().empty();  // a delimiter at the end of the line
+    if (open_end && (columns_ == 0 || words_.size() == columns_ + 1)) words_.pop_back();
+    if (columns_ == 0) choose_columns();
+    if (words_.size() != columns_)
+      fail_at_line(in_, lines_.number(),
+                   std::to_string(words_.size()) + " columns, but the lines before have " + std::to_string(columns_));
+    g_.points.push_back(vector(position_));
+    for (Triple& triple : triples_) triple.values.push_back(vector(triple.columns));
+    if (intensity_) intensity_->push_back(real_or_fail(in_, lines_.number(), words_[3]));
+  }
+
+  /// By their number, of a file that does not name them.
+  void choose_columns() {
+    columns_ = words_.size();
+    if (columns_ < 3)
+      fail_at_line(in_, lines_.number(), "expected at least three columns, found " + std::to_string(columns_));
+    if (columns_ == 6 || columns_ == 9) triples_.push_back({ColumnRole::unknown, {3, 4, 5}});
+    if (columns_ == 9) triples_.push_back({ColumnRole::unknown, {6, 7, 8}});
+    if (dialect_.fourth_is_intensity && (columns_ == 4 || columns_ == 7)) intensity_.emplace();
+    if (columns_ == 7 && intensity_) triples_.push_back({ColumnRole::colors, {4, 5, 6}});
+    if (columns_ > 3 && triples_.empty() && !intensity_) ignore_columns();
+  }
+
+  void ignore_columns() { g_.warnings.push_back({"columns_ignored", {static_cast<double>(columns_)}, {}}); }
+
+  Vec3 vector(const std::array<std::size_t, 3>& columns) const {
+    Vec3 result;
+    for (std::size_t c = 0; c < 3; ++c) result[c] = real_or_fail(in_, lines_.number(), words_[columns[c]]);
+    return result;
+  }
+
+  /// Unnamed columns are normals unless they can only be colours. Of two, one must be each.
+  void finish() {
+    if (intensity_) g_.properties.push_back({"intensity", std::move(*intensity_)});
+    for (Triple& triple : triples_)
+      if (triple.role == ColumnRole::unknown) tell(triple);
+    if (triples_.size() == 2 && triples_[0].role == triples_[1].role) {
+      triples_.clear();
+      return ignore_columns();
+    }
+    for (Triple& triple : triples_) {
+      if (triple.role == ColumnRole::normals) {
+        g_.normals = std::move(triple.values);
+      } else if (auto colors = to_colors(triple.values)) {
+        g_.colors = std::move(*colors);
+      } else {
+        g_.warnings.push_back({"colors_unknown", {}, {}});
       }
     }
-    read_row(in, lines.number(), words, columns, g);
-  } while (lines.next_filled('#'));
-  check_vertex_count(in, g.points.size());
-  if (columns.six) tell_colors_from_normals(g);
-  return g;
-}
-
-/// The delimiter that can be told from the first line; semicolon first, because commas may then be (refused) decimals.
-char find_delimiter(std::string_view line) {
-  for (char delimiter : {';', ',', '\t'}) {
-    if (line.find(delimiter) != std::string_view::npos) return delimiter;
   }
-  return ' ';
-}
 
-/// Columns by their names in the first line; nullopt when that line holds numbers.
-std::optional<Columns> named_columns(const Input& in, std::int64_t line, const Words& words) {
-  if (words.empty() || std::ranges::any_of(words, [](std::string_view w) { return to_real(w).has_value(); }))
-    return std::nullopt;
-  static constexpr std::array<std::string_view, 6> names = {"x", "y", "z", "nx", "ny", "nz"};
-  Columns columns;
-  columns.count = words.size();
-  std::size_t found = 0;
-  for (std::size_t k = 0; k < names.size(); ++k) {
-    const auto is_name = [&](std::string_view w) { return equals_ignoring_case(w, names[k]); };
-    const auto at = std::ranges::find_if(words, is_name);
-    if (std::ranges::count_if(words, is_name) > 1) {
-      fail_at_line(in, line, "two columns are named '" + std::string(names[k]) + "'");
-    }
-    if (at == words.end() && k < 3) fail_at_line(in, line, "no column is named '" + std::string(names[k]) + "'");
-    if (at == words.end()) continue;
-    columns.of[k] = static_cast<std::size_t>(at - words.begin());
-    ++found;
+  void tell(Triple& triple) {
+    triple.role = look_like_levels(triple.values) ? ColumnRole::colors : ColumnRole::normals;
+    if (triple.role == ColumnRole::normals) return;
+    const auto first = static_cast<double>(triple.columns[0] + 1);
+    g_.warnings.push_back({"columns_as_colors", {first, first + 2}, {}});
   }
-  columns.six = found == names.size();
-  return columns;
-}
+
+  const Input& in_;
+  const ColumnDialect& dialect_;
+  Lines lines_;
+  Geometry g_;
+  std::string_view line_;
+  Words words_;
+  char delimiter_ = '\0';    ///< not known yet
+  std::size_t columns_ = 0;  ///< in every line; 0: not known yet
+  std::array<std::size_t, 3> position_ = {0, 1, 2};
+  std::vector<Triple> triples_;
+  std::optional<std::vector<double>> intensity_;
+  bool names_found_ = false;
+  std::optional<std::int64_t> left_;  ///< points of this block to come, where their number is announced
+};
 
 }  // namespace
 
-Geometry read_blank_separated(const Input& in) {
-  Lines lines(without_byte_order_mark(in.bytes));
-  if (!lines.next_filled('#')) fail(in, "the file holds no point");
-  Geometry g;
-  g.format = "XYZ text";
-  return read_rows(in, lines, ' ', {}, std::move(g));
-}
-
-Geometry read_delimited(const Input& in) {
-  Lines lines(without_byte_order_mark(in.bytes));
-  if (!lines.next_filled('#')) fail(in, "the file holds no point");
-  Geometry g;
-  g.format = "CSV text";
-  const char delimiter = find_delimiter(lines.line());
-  Words words;
-  split(lines.line(), delimiter, words);
-  const std::optional<Columns> columns = named_columns(in, lines.number(), words);
-  if (columns && !lines.next_filled('#')) fail(in, "the file holds no point below the column names");
-  return read_rows(in, lines, delimiter, columns.value_or(Columns{}), std::move(g));
-}
+Geometry read_columns(const Input& in, const ColumnDialect& dialect) { return ColumnReader(in, dialect).read(); }
 
 }  // namespace ahm::io

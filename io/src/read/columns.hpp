@@ -7,9 +7,16 @@
 
 namespace ahm::io {
 
-/// Columns separated by blanks.
-Geometry read_blank_separated(const Input& in);
-/// Columns separated by commas, semicolons or tabs, perhaps with names in the first line.
-Geometry read_delimited(const Input& in);
+/// What cannot be told from the file.
+struct ColumnDialect {
+  const char* format;                ///< for messages
+  bool tabs_separate = false;        ///< every tab ends a column, perhaps an empty one; else it is a blank
+  bool fourth_is_intensity = false;  ///< of four columns, and of seven, which end with red green blue
+};
+
+/// Columns separated by semicolons, commas or blanks, one of these in the whole file; perhaps names of the columns first
+/// (also behind //), perhaps a line with the number of points, after which so many follow, and then another such block.
+/// @throws IoError naming the line
+Geometry read_columns(const Input& in, const ColumnDialect& dialect);
 
 }  // namespace ahm::io

@@ -11,6 +11,7 @@
 
 #include "ahm/error.hpp"
 #include "ahm/types.hpp"
+#include "read/gunzip.hpp"
 
 namespace ahm::io {
 namespace {
@@ -27,12 +28,6 @@ struct Descriptor {
 };
 
 [[noreturn]] void fail_with_errno(const Input& in, int error) { fail(in, std::generic_category().message(error)); }
-
-void refuse_compressed(const Input& in) {
-  if (in.bytes.starts_with("\x1f\x8b")) {
-    fail(in, "the file is compressed with gzip; unpack it first (gunzip -k " + in.path.filename().string() + ")");
-  }
-}
 
 }  // namespace
 
@@ -56,7 +51,11 @@ Input load(const std::filesystem::path& path) {
       fail_at_byte(in, done, "the file became shorter while it was read; read it again when it is complete");
     done += static_cast<std::size_t>(got);
   }
-  refuse_compressed(in);
+  if (is_gzip(in)) {
+    gunzip(in);
+  } else if (lower_extension(path) == ".gz") {
+    fail(in, "the file is named .gz, but is not compressed with gzip");
+  }
   return in;
 }
 

@@ -15,7 +15,8 @@ struct Input {
   std::string bytes;
 };
 
-/// Reads a regular file. @throws IoError with the system's reason; empty and compressed files are refused here
+/// Reads a regular file, and unpacks what is compressed with gzip, whatever its name. @throws IoError with the system's
+/// reason; empty files are refused here
 Input load(const std::filesystem::path& path);
 
 /// Throws IoError "cannot read 'path': what".

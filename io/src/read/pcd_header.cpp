@@ -117,16 +117,17 @@ void check_positions(const Input& in, const RawHeader& raw, const PcdHeader& hea
   }
 }
 
+/// WIDTH times HEIGHT and POINTS say the same; either can do without the other.
 void set_points(const Input& in, const RawHeader& raw, PcdHeader& header) {
-  if (!raw.width) fail_at_line(in, header.body_line - 1, "the PCD header has no WIDTH");
-  const std::uint64_t height = raw.height.value_or(1);
-  std::uint64_t product = 0;
-  if (__builtin_mul_overflow(*raw.width, height, &product) || (raw.points && *raw.points != product)) {
+  if (!raw.width && !raw.points) fail_at_line(in, header.body_line - 1, "the PCD header has neither WIDTH nor POINTS");
+  header.height = raw.width ? raw.height.value_or(1) : 1;
+  header.width = raw.width ? *raw.width : *raw.points;
+  if (__builtin_mul_overflow(header.width, header.height, &header.points) ||
+      (raw.points && *raw.points != header.points)) {
     fail_at_line(in, header.body_line - 1,
-                 "WIDTH " + std::to_string(*raw.width) + " times HEIGHT " + std::to_string(height) + " is not POINTS " +
-                     std::to_string(raw.points.value_or(0)));
+                 "WIDTH " + std::to_string(header.width) + " times HEIGHT " + std::to_string(header.height) +
+                     " is not POINTS " + std::to_string(raw.points.value_or(0)));
   }
-  header.points = product;
   check_vertex_count(in, header.points);
 }
 
@@ -205,6 +206,20 @@ PcdHeader check_pcd(const Input& in) {
     check_compressed(in, header, plain);
   }
   return header;
+}
+
+std::string full_header(const PcdHeader& header) {
+  std::string fields = "FIELDS", sizes = "SIZE", types = "TYPE", counts = "COUNT";
+  for (const PcdField& field : header.fields) {
+    fields += " " + field.name;
+    sizes += " " + std::to_string(field.size);
+    types += std::string(" ") + field.type;
+    counts += " " + std::to_string(field.count);
+  }
+  constexpr std::array<const char*, 3> data = {"ascii", "binary", "binary_compressed"};
+  return "VERSION 0.7\n" + fields + "\n" + sizes + "\n" + types + "\n" + counts + "\nWIDTH " +
+         std::to_string(header.width) + "\nHEIGHT " + std::to_string(header.height) + "\nPOINTS " +
+         std::to_string(header.points) + "\nDATA " + data[static_cast<std::size_t>(header.data)] + "\n";
 }
 
 }  // namespace ahm::io

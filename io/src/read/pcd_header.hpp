@@ -22,7 +22,8 @@ struct PcdField {
 
 struct PcdHeader {
   std::vector<PcdField> fields;
-  std::uint64_t points = 0;
+  std::uint64_t width = 0, height = 0;
+  std::uint64_t points = 0;      ///< width times height
   std::uint64_t point_size = 0;  ///< bytes of one point
   PcdData data = PcdData::ascii;
   std::size_t body = 0;        ///< position of the first byte behind the header
@@ -34,5 +35,8 @@ struct PcdHeader {
 /// hand on.
 /// @throws IoError naming the line or byte
 PcdHeader check_pcd(const Input& in);
+
+/// The header in full, as text of a PCD file: what a reader should make of it.
+std::string full_header(const PcdHeader& header);
 
 }  // namespace ahm::io

@@ -1,5 +1,5 @@
-// PCL reads PCD: its format. PCL trusts the header and reads "1,5" as 1, so check_pcd goes first; PCL then works on the
-// same bytes in memory, never on the file again. This file must not be compiled with -march flags: PCL's Eigen types
+// PCL reads PCD: its format. PCL trusts the header and reads "1,5" as 1, so check_pcd goes first; PCL then works on what
+// check_pcd made of the header, and on the same bytes in memory, never on the file again. This file must not be compiled with -march flags: PCL's Eigen types
 // cross the border.
 #include "read/pcl_read_pcd.hpp"
 
@@ -68,7 +68,7 @@ PCLPointCloud2 read_with_pcl(const Input& in, const PcdHeader& header) {
   int version = 0;
   int data = 0;
   unsigned int position = 0;
-  std::istringstream head(in.bytes.substr(0, header.body));
+  std::istringstream head(full_header(header));
   int error = reader.readHeader(head, cloud, origin, orientation, version, data, position);
   // Before PCL copies that many bytes out of the file: it must have understood the header as check_pcd did.
   if (error == 0 && (cloud.point_step != header.point_size || cloud.data.size() != header.points * header.point_size))

@@ -110,7 +110,7 @@ void check_against_size(const Input& in, const PlyHeader& header) {
   }
 }
 
-/// A property that is read must be there once; others may be named as they like.
+/// A property that is read must be there once, in one case of its letters; others may be named as they like.
 void check_names(const Input& in, const PlyHeader& header) {
   static constexpr std::array read_names = {
       "x"sv, "y"sv, "z"sv, "nx"sv, "ny"sv, "nz"sv, "red"sv, "green"sv, "blue"sv, "vertex_indices"sv, "vertex_index"sv};
@@ -123,7 +123,8 @@ void check_names(const Input& in, const PlyHeader& header) {
     }
     for (std::size_t p = 0; p < element.properties.size(); ++p) {
       const std::string& name = element.properties[p].name;
-      if (std::ranges::find(read_names, name) != read_names.end() && element.find(name) != p) {
+      const auto read = std::ranges::find_if(read_names, [&](auto lower) { return equals_ignoring_case(name, lower); });
+      if (read != read_names.end() && element.find(*read) != p) {
         fail_at_line(in, element.line, "element '" + element.name + "' has property '" + name + "' twice");
       }
     }
@@ -153,7 +154,8 @@ std::size_t size_of(PlyType type) noexcept {
 bool is_whole(PlyType type) noexcept { return type != PlyType::float32 && type != PlyType::float64; }
 
 std::optional<std::size_t> PlyElement::find(std::string_view property) const {
-  const auto found = std::ranges::find(properties, property, &PlyProperty::name);
+  const auto found =
+      std::ranges::find_if(properties, [&](const PlyProperty& p) { return equals_ignoring_case(p.name, property); });
   if (found == properties.end()) return std::nullopt;
   return static_cast<std::size_t>(found - properties.begin());
 }
@@ -187,8 +189,11 @@ PlyHeader parse_ply_header(const Input& in) {
       has_format = true;
     } else if (words[0] == "element") {
       header.elements.push_back(parse_element(in, lines.number, words));
-    } else if (words[0] == "property" && !header.elements.empty()) {
+    } else if (words[0] == "property") {
+      if (header.elements.empty()) fail_at_line(in, lines.number, "a property before the first 'element' line");
       header.elements.back().properties.push_back(parse_property(in, lines.number, words));
+    } else if (header.elements.empty() || (has_format && header.format == PlyFormat::ascii)) {
+      ++header.ignored_lines;  // a comment without its word; where a misspelt property would shift nothing unnoticed
     } else {
       fail_at_line(in, lines.number, "unexpected " + in_quotes(words[0]) + " in the PLY header");
     }

@@ -31,7 +31,7 @@ struct PlyElement {
   std::vector<PlyProperty> properties;
   std::int64_t line = 0;  ///< where the header declares it
 
-  /// Position of the property with this name, nullopt when there is none.
+  /// Position of the first property with this name (lower case) in any case of its letters, nullopt when there is none.
   std::optional<std::size_t> find(std::string_view property) const;
   bool has_list() const noexcept;
   /// Bytes of one item when every list is empty.
@@ -41,8 +41,9 @@ struct PlyElement {
 struct PlyHeader {
   PlyFormat format = PlyFormat::ascii;
   std::vector<PlyElement> elements;
-  std::size_t body = 0;        ///< position of the first byte behind the header
-  std::int64_t body_line = 0;  ///< number of the first line behind the header
+  std::size_t ignored_lines = 0;  ///< that have no meaning; text, or before the first element
+  std::size_t body = 0;           ///< position of the first byte behind the header
+  std::int64_t body_line = 0;     ///< number of the first line behind the header
 };
 
 /// @throws IoError naming the line

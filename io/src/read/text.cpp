@@ -28,6 +28,13 @@ bool is_underflow(std::string_view word) noexcept {
   return exponent < 64 && word.substr(exponent + 1).starts_with('-');
 }
 
+/// The word with a point in place of its first comma.
+std::string with_point(std::string_view word) {
+  std::string result(word);
+  if (const std::size_t comma = result.find(','); comma != std::string::npos) result[comma] = '.';
+  return result;
+}
+
 }  // namespace
 
 Lines::Lines(std::string_view text, std::int64_t first_number) : text_(text), number_(first_number - 1) {
@@ -93,10 +100,13 @@ std::optional<std::int64_t> to_whole(std::string_view word) noexcept {
   return value;
 }
 
+bool is_like_number(std::string_view word) { return to_real(with_point(word)).has_value(); }
+
 double real_or_fail(const Input& in, std::int64_t line, std::string_view word) {
   if (const std::optional<double> value = to_real(word)) return *value;
-  fail_at_line(in, line,
-               in_quotes(word) + " is not a number in the range of double precision (use a point for decimals)");
+  if (const std::string decimal = with_point(word); to_real(decimal))
+    fail_at_line(in, line, in_quotes(word) + " is not a number: decimals take a point, as in " + in_quotes(decimal));
+  fail_at_line(in, line, in_quotes(word) + " is not a number in the range of double precision");
 }
 
 std::int64_t whole_or_fail(const Input& in, std::int64_t line, std::string_view word) {

@@ -52,6 +52,9 @@ std::optional<double> to_real(std::string_view word) noexcept;
 /// The whole word as a whole number, nullopt when it is none or does not fit.
 std::optional<std::int64_t> to_whole(std::string_view word) noexcept;
 
+/// Whether the word is a number, or would be one with a point in place of a comma.
+bool is_like_number(std::string_view word);
+
 /// As `to_real`. @throws IoError with the line and the word
 double real_or_fail(const Input& in, std::int64_t line, std::string_view word);
 /// As `to_whole`. @throws IoError with the line and the word

@@ -58,7 +58,7 @@ VoronoiCells voronoi_cells(const ExactGeodesics& geodesics, std::span<const Vert
   });
 }
 
-std::vector<Vertex> farthest_points(const TangentGraph& graph, Vertex first, Index count) {
+std::vector<Vertex> farthest_points(const TangentGraph& graph, Vertex first, Index count, const Progress& progress) {
   const Index n = graph.size();
   if (first.index < 0 || first.index >= n)
     throw InvalidArgument("farthest_points: 'first' " + std::to_string(first.index) + " is outside [0, " +
@@ -70,6 +70,7 @@ std::vector<Vertex> farthest_points(const TangentGraph& graph, Vertex first, Ind
     std::vector<Vertex> points{first};
     UnfoldingFront front(graph);
     while (points.size() < static_cast<std::size_t>(count)) {
+      progress.step("farthest points", static_cast<double>(points.size()) / count);
       front.add(Source::at_vertex(points.back()));
       front.run();
       Vertex farthest{0};

@@ -39,7 +39,8 @@ void check(const CoverageOptions& o) {
 
 /// A line of the raster, `across` away from the source, from left to right along (1, 0).
 std::vector<Vec2> raster_line(double across, double radius, double step) {
-  const double half = std::sqrt(std::max(0.0, (radius - across) * (radius + across)));
+  const double unit = power_of_two_below(radius), r = radius / unit, y = across / unit;
+  const double half = unit * std::sqrt(std::max(0.0, (r - y) * (r + y)));
   const auto steps = static_cast<std::size_t>(std::ceil(2 * half / step * (1 - 1e-12)));
   std::vector<Vec2> line{{-half, across}};
   for (std::size_t k = 1; k <= steps; ++k)
@@ -120,7 +121,8 @@ class Carrier {
     const double norm = length(t);
     p.spacing = std::numeric_limits<double>::quiet_NaN();
     for (double side : {spacing_, -spacing_}) {
-      const auto across = inverse_.at(p.coordinates[0] - side * t[1] / norm, p.coordinates[1] + side * t[0] / norm);
+      const Vec2 left{-t[1] / norm, t[0] / norm};
+      const auto across = inverse_.at(p.coordinates[0] + side * left[0], p.coordinates[1] + side * left[1]);
       if (!across) continue;
       Vec3 way = across->position - p.position;
       if (length(way) > inverse_.max_stretch() * spacing_) continue;  // another sheet

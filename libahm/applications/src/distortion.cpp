@@ -8,6 +8,7 @@
 #include "ahm/error.hpp"
 #include "ahm/util/memory.hpp"
 #include "ahm/util/small_math.hpp"
+#include "ahm/util/vec.hpp"
 
 namespace ahm {
 namespace {
@@ -15,36 +16,33 @@ namespace {
 /// Below this share of the square of its longest side the area of a triangle is rounding.
 constexpr double least_area = 1e-14;
 
+/// a - b in units of a power of two, so that nothing overflows.
 template <std::size_t d>
-std::array<double, d> scaled_difference(const std::array<double, d>& a, const std::array<double, d>& b, int exponent) {
-  std::array<double, d> c;
-  for (std::size_t k = 0; k < d; ++k) c[k] = std::ldexp(a[k], exponent) - std::ldexp(b[k], exponent);
-  return c;
+std::array<double, d> scaled_difference(const std::array<double, d>& a, const std::array<double, d>& b, double unit) {
+  return 1 / unit * a - 1 / unit * b;
 }
 
 TriangleDistortion of_triangle(const std::array<Vec3, 3>& p, const std::array<Vec2, 3>& q) {
   TriangleDistortion result;
-  double largest = 0;  // a power of two near it is taken out, so that nothing overflows
+  double size = 0;
   for (const Vec3& x : p) {
     if (!all_finite(x)) return result;
-    for (std::size_t c = 0; c < 3; ++c) largest = std::max(largest, std::abs(x[c] - p[0][c]));
+    size = std::max(size, largest(x - p[0]));
   }
-  if (!(largest > 0) || !std::isfinite(largest)) return result;
-  const int exponent = -std::ilogb(largest);
-  const Vec3 a = scaled_difference(p[1], p[0], exponent), b = scaled_difference(p[2], p[0], exponent);
+  if (!(size > 0) || !std::isfinite(size)) return result;
+  const double unit = power_of_two_below(size);
+  const Vec3 a = scaled_difference(p[1], p[0], unit), b = scaled_difference(p[2], p[0], unit);
 
   // The triangle laid flat: a = (base, 0), b = (along, height).
-  const double base = length(a), along = base > 0 ? (a[0] * b[0] + a[1] * b[1] + a[2] * b[2]) / base : 0;
-  const double twice_area =
-      length(Vec3{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]});
+  const double base = length(a), along = base > 0 ? dot(a, b) / base : 0, twice_area = length(cross(a, b));
   if (!(twice_area > least_area)) return result;
-  result.area = std::ldexp(twice_area / 2, -2 * exponent);
+  result.side = unit * std::sqrt(twice_area / 2);
   const double height = twice_area / base;
   if (!all_finite(q[0]) || !all_finite(q[1]) || !all_finite(q[2])) return result;
 
   // Gradient J = (qa, qb) (a, b)^-1. Its largest singular value is the sum of the lengths of its conformal and its
   // anticonformal part.
-  const Vec2 qa = scaled_difference(q[1], q[0], exponent), qb = scaled_difference(q[2], q[0], exponent);
+  const Vec2 qa = scaled_difference(q[1], q[0], unit), qb = scaled_difference(q[2], q[0], unit);
   Vec2 x, y;  // columns of J
   for (std::size_t c = 0; c < 2; ++c) x[c] = qa[c] / base, y[c] = (qb[c] - x[c] * along) / height;
   const double determinant = x[0] * y[1] - x[1] * y[0];
@@ -107,19 +105,29 @@ std::vector<TriangleDistortion> corner_distortion(std::span<const Vec3> position
                       [](std::size_t t, std::size_t c) { return 6 * t + 2 * c; });
 }
 
+std::vector<double> relative_areas(std::span<const TriangleDistortion> triangles) {
+  double largest = 0;
+  for (const TriangleDistortion& t : triangles) largest = std::max(largest, t.side);
+  std::vector<double> areas;
+  for (const TriangleDistortion& t : triangles)
+    areas.push_back(largest > 0 ? (t.side / largest) * (t.side / largest) : 0);
+  return areas;
+}
+
 DistortionSummary summary(std::span<const TriangleDistortion> triangles) {
   DistortionSummary s;
   std::vector<std::pair<double, double>> sorted;  // D and area
   double area = 0, sum = 0, flipped_area = 0;
   Offset flipped = 0;
-  for (const TriangleDistortion& t : triangles) {
-    const double value = t.value();
+  const std::vector<double> areas = relative_areas(triangles);
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    const double value = triangles[t].value();
     if (std::isnan(value)) continue;
-    sorted.emplace_back(value, t.area);
-    area += t.area;
-    sum += value * t.area;
-    flipped += t.flipped;
-    flipped_area += t.flipped ? t.area : 0;
+    sorted.emplace_back(value, areas[t]);
+    area += areas[t];
+    sum += value * areas[t];
+    flipped += triangles[t].flipped;
+    flipped_area += triangles[t].flipped ? areas[t] : 0;
   }
   s.measured = static_cast<Offset>(sorted.size());
   s.unmeasured = static_cast<Offset>(triangles.size()) - s.measured;

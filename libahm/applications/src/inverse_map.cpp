@@ -146,7 +146,7 @@ InverseMap::InverseMap(const MappedSurface& surface, const InverseMapOptions& op
   for (const Triangle& t : triangles_)
     for (Index v : t)
       for (std::size_t c : {0, 1}) largest = std::max(largest, std::abs(surface.coordinates[2 * to_size(v) + c]));
-  if (largest > 0) unit_ = std::ldexp(1.0, std::ilogb(largest));
+  unit_ = power_of_two_below(largest);
   for (std::size_t v = 0; v < positions_.size(); ++v)
     plane_.push_back({surface.coordinates[2 * v] / unit_, surface.coordinates[2 * v + 1] / unit_});
   make_buckets();

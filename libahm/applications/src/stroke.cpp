@@ -7,6 +7,7 @@
 
 #include "ahm/error.hpp"
 #include "ahm/util/small_math.hpp"
+#include "ahm/util/vec.hpp"
 
 namespace ahm {
 namespace {
@@ -36,9 +37,26 @@ Vec2 bisector(const Vec2& arriving, const Vec2& leaving, std::size_t k) {
       for (int a = 0; a < 2; ++a) sum[a] += v[a] / norm;
   const double norm = length(sum);
   if (!(norm > 1e-6))
-    throw InvalidArgument("stroke_source: the curve turns back or stands still at position " + std::to_string(k) +
-                          " of 'path'; split it there");
+    throw InvalidArgument("stroke_source: the curve, or its image in the plane, turns back or stands still at point " +
+                          std::to_string(k) + "; split it there");
   return {sum[0] / norm, sum[1] / norm};
+}
+
+/// Which way a curve runs in the plane at each of its points.
+std::vector<Vec2> directions_of(std::span<const Vec2> positions, std::size_t points, bool closed) {
+  if (positions.size() != points)
+    throw InvalidArgument("stroke_source: 'positions' has " + std::to_string(positions.size()) + " entries for " +
+                          std::to_string(points) + " points");
+  for (std::size_t k = 0; k < points; ++k)
+    if (!all_finite(positions[k]))
+      throw InvalidArgument("stroke_source: entry " + std::to_string(k) + " of 'positions' is not finite");
+  std::vector<Vec2> directions;
+  for (std::size_t k = 0; k < points; ++k) {
+    const bool arrives = k > 0 || closed, leaves = k + 1 < points || closed;
+    directions.push_back(bisector(arrives ? positions[k] - positions[(k + points - 1) % points] : Vec2{},
+                                  leaves ? positions[(k + 1) % points] - positions[k] : Vec2{}, k));
+  }
+  return directions;
 }
 
 /// What the graph knows of the curve at each vertex.
@@ -136,6 +154,21 @@ void check_points(std::span<const Source> points, std::span<const double> length
                             ", not positive and finite; leave out points that coincide");
 }
 
+/// Each point by half of the lengths of its two segments. @param place_of  called for one point after the other
+template <class PlaceOf>
+std::vector<StrokePoint> weighted_by_length(std::span<const Source> points, std::span<const double> lengths,
+                                            bool closed, const PlaceOf& place_of) {
+  std::vector<StrokePoint> stroke;
+  stroke.reserve(points.size());
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const double before = k > 0 ? lengths[k - 1] : closed ? lengths.back() : 0;
+    const double after = k < lengths.size() ? lengths[k] : 0;
+    const auto [position, direction] = place_of(k);
+    stroke.push_back({points[k], (before + after) / 2, position, std::atan2(direction[1], direction[0])});
+  }
+  return stroke;
+}
+
 }  // namespace
 
 Source stroke_source(const TangentGraph& graph, std::span<const Vertex> path, const StrokeOptions& options) {
@@ -151,24 +184,11 @@ Source stroke_source(const TangentGraph& graph, std::span<const Vertex> path, co
 
 Source stroke_source(const TangentGraph& graph, std::span<const Vertex> path, std::span<const Vec2> positions,
                      bool closed) {
-  if (positions.size() != path.size())
-    throw InvalidArgument("stroke_source: 'positions' has " + std::to_string(positions.size()) +
-                          " entries, 'path' has " + std::to_string(path.size()));
-  for (std::size_t k = 0; k < positions.size(); ++k)
-    if (!all_finite(positions[k]))
-      throw InvalidArgument("stroke_source: entry " + std::to_string(k) + " of 'positions' is not finite");
+  const std::vector<Vec2> directions = directions_of(positions, path.size(), closed);
   const Curve curve = follow(graph, path, closed);
-  const std::size_t n = path.size();
-  const auto between = [&](std::size_t a, std::size_t b) -> Vec2 {
-    return {positions[b][0] - positions[a][0], positions[b][1] - positions[a][1]};
-  };
   Source source(2);
-  for (std::size_t k = 0; k < n; ++k) {
-    const Vec2 arriving = k > 0 || closed ? between((k + n - 1) % n, k) : Vec2{};
-    const Vec2 leaving = k + 1 < n || closed ? between(k, (k + 1) % n) : Vec2{};
-    add_sample(source, path[k], curve.weights[k], positions[k], curve.tangents[k], curve.sides[k],
-               bisector(arriving, leaving, k));
-  }
+  for (std::size_t k = 0; k < path.size(); ++k)
+    add_sample(source, path[k], curve.weights[k], positions[k], curve.tangents[k], curve.sides[k], directions[k]);
   return source;
 }
 
@@ -196,21 +216,28 @@ std::vector<StrokePoint> stroke_points(std::span<const Source> points, std::span
   check_shape(options);
   check_points(points, lengths, options.closed);
   const double length = std::accumulate(lengths.begin(), lengths.end(), 0.0);
-  std::vector<StrokePoint> stroke;
-  stroke.reserve(points.size());
   double s = 0;
-  for (std::size_t k = 0; k < points.size(); ++k) {
-    const double before = k > 0 ? lengths[k - 1] : options.closed ? lengths.back() : 0;
-    const double after = k < lengths.size() ? lengths[k] : 0;
-    const auto [position, direction] = place(s, length, options.shape);
-    stroke.push_back({points[k], (before + after) / 2, position, std::atan2(direction[1], direction[0])});
-    s += after;
-  }
-  return stroke;
+  return weighted_by_length(points, lengths, options.closed, [&](std::size_t k) {
+    const Place at = place(s, length, options.shape);
+    s += k < lengths.size() ? lengths[k] : 0;
+    return at;
+  });
+}
+
+std::vector<StrokePoint> stroke_points(std::span<const Source> points, std::span<const double> lengths,
+                                       std::span<const Vec2> positions, bool closed) {
+  check_points(points, lengths, closed);
+  const std::vector<Vec2> directions = directions_of(positions, points.size(), closed);
+  return weighted_by_length(points, lengths, closed, [&](std::size_t k) { return Place{positions[k], directions[k]}; });
 }
 
 Source stroke_source(std::span<const Source> points, std::span<const double> lengths, const StrokeOptions& options) {
   return stroke_source(stroke_points(points, lengths, options));
+}
+
+Source stroke_source(std::span<const Source> points, std::span<const double> lengths, std::span<const Vec2> positions,
+                     bool closed) {
+  return stroke_source(stroke_points(points, lengths, positions, closed));
 }
 
 }  // namespace ahm

@@ -20,6 +20,8 @@ constexpr double most_points = 1e6;
 struct CurveSample {
   SurfacePoint point;
   Vec3 position;
+  std::size_t piece;  ///< after which of the given points
+  double along;       ///< the piece: in [0, 1)
 };
 
 /// The faces of a surface for paths; none where it has no flat ones.
@@ -46,6 +48,17 @@ std::vector<Vec3> along_path(const ExactGeodesics& geodesics, const SurfacePoint
   }
   if (!places.empty()) places.pop_back();
   return places;
+}
+
+/// How far along a line from `from` to `to` its places are: shares of its length.
+std::vector<double> shares(const Vec3& from, const std::vector<Vec3>& places, const Vec3& to) {
+  std::vector<double> along;
+  double length = 0;
+  for (std::size_t p = 0; p < places.size(); ++p)
+    along.push_back(length += distance(p > 0 ? places[p - 1] : from, places[p]));
+  length += places.empty() ? 0 : distance(places.back(), to);
+  for (double& x : along) x /= length;
+  return along;
 }
 
 double length_of(const std::vector<Vec3>& corners) {
@@ -78,27 +91,27 @@ std::vector<CurveSample> sample(const Surface& surface, std::span<const CurvePoi
     const auto* on_surface = std::get_if<SurfacePoint>(&end);
     return on_surface ? *on_surface : surface.closest_point(std::get<Vec3>(end)).point;
   };
-  const auto project = [&](const Vec3& p) {
+  const auto project = [&](const Vec3& p, std::size_t piece, double along) {
     ClosestPoint closest = surface.closest_point(p);
-    samples.push_back({std::move(closest.point), closest.position});
+    samples.push_back({std::move(closest.point), closest.position, piece, along});
     gap = std::max(gap, distance(closest.position, p));
   };
   for (std::size_t k = 0; k < corners.size(); ++k) {
     if (k + 1 == corners.size() && closed) break;
     if (const auto* on_surface = std::get_if<SurfacePoint>(&given[k]))
-      samples.push_back({*on_surface, corners[k]});
+      samples.push_back({*on_surface, corners[k], k, 0});
     else
-      project(corners[k]);
+      project(corners[k], k, 0);
     if (k + 1 == corners.size()) break;
     const double straight = distance(corners[k], corners[k + 1]);
-    if (geodesics && straight > 4 * step) {
-      const std::vector<Vec3> places = along_path(*geodesics, end_point(k), end_point(k + 1), step);
-      for (const Vec3& p : places) project(p);
-      if (!places.empty()) continue;
-    }
+    std::vector<Vec3> places;
+    if (geodesics && straight > 4 * step) places = along_path(*geodesics, end_point(k), end_point(k + 1), step);
     const int pieces = static_cast<int>(std::ceil(straight / step));
-    for (int p = 1; p < pieces; ++p)
-      project(corners[k] + static_cast<double>(p) / pieces * (corners[k + 1] - corners[k]));
+    if (places.empty())
+      for (int p = 1; p < pieces; ++p)
+        places.push_back(corners[k] + static_cast<double>(p) / pieces * (corners[k + 1] - corners[k]));
+    const std::vector<double> along = shares(corners[k], places, corners[k + 1]);
+    for (std::size_t p = 0; p < places.size(); ++p) project(places[p], k, along[p]);
   }
   return samples;
 }
@@ -151,14 +164,14 @@ Source mirrored(const Source& source) {
   return result;
 }
 
-}  // namespace
-
-SurfaceCurve draw_curve(const Surface& surface, std::span<const CurvePoint> given, const StrokeOptions& options) {
+/// @param stroke_of  makes the stroke of samples, their sources and the lengths between them
+template <class StrokeOf>
+SurfaceCurve draw(const Surface& surface, std::span<const CurvePoint> given, bool closed, const StrokeOf& stroke_of) {
   const TangentGraph& graph = surface.graph();
   const double edge = graph.mean_edge_length() * graph.length_unit();
   SurfaceCurve curve;
-  std::vector<CurveSample> samples = sample(surface, given, options.closed, edge / 2, curve.gap);
-  thin(samples, options.closed, 1e-6 * edge);
+  std::vector<CurveSample> samples = sample(surface, given, closed, edge / 2, curve.gap);
+  thin(samples, closed, 1e-6 * edge);
 
   const bool may_mirror = graph.transport_kind() == TransportKind::block;
   const std::size_t n = samples.size();
@@ -172,27 +185,50 @@ SurfaceCurve draw_curve(const Surface& surface, std::span<const CurvePoint> give
     if (frame) normal = frame->normal;
   };
   for (std::size_t k = 0; k < n; ++k) {
-    const Vec3 along = tangent(samples, k, options.closed);
+    const Vec3 along = tangent(samples, k, closed);
     const PlacedSource point = surface.source(samples[k].point, along);
     if (k == 0) curve.first = point.frame;
     turn_over(point.frame);
     sources.push_back(side < 0 ? mirrored(point.source) : point.source);
     curve.samples.push_back({samples[k].point, along, {}, 0, side < 0});
     curve.points.push_back(samples[k].position);
-    if (k + 1 < n || options.closed) lengths.push_back(distance(samples[k].position, samples[(k + 1) % n].position));
+    if (k + 1 < n || closed) lengths.push_back(distance(samples[k].position, samples[(k + 1) % n].position));
   }
-  if (options.closed) turn_over(curve.first);
-  if (side < 0 && options.closed)
+  if (closed) turn_over(curve.first);
+  if (side < 0 && closed)
     throw InvalidArgument("curve_one_sided", "the curve runs along a one-sided band, so it has no left",
                           "leave it open");
   for (double length : lengths) curve.length += length, curve.jump = std::max(curve.jump, length);
-  const std::vector<StrokePoint> stroke = stroke_points(sources, lengths, options);
+  const std::vector<StrokePoint> stroke = stroke_of(samples, sources, lengths);
   for (std::size_t k = 0; k < n; ++k) {
     curve.samples[k].position = stroke[k].position;
     curve.samples[k].angle = stroke[k].angle;
   }
   curve.source = stroke_source(stroke);
   return curve;
+}
+
+}  // namespace
+
+SurfaceCurve draw_curve(const Surface& surface, std::span<const CurvePoint> given, const StrokeOptions& options) {
+  return draw(surface, given, options.closed, [&](const auto&, const auto& sources, const auto& lengths) {
+    return stroke_points(sources, lengths, options);
+  });
+}
+
+SurfaceCurve draw_curve(const Surface& surface, std::span<const CurvePoint> given, std::span<const Vec2> positions,
+                        bool closed) {
+  if (positions.size() != given.size())
+    throw InvalidArgument("draw_curve: 'positions' has " + std::to_string(positions.size()) + " entries for " +
+                          std::to_string(given.size()) + " points");
+  return draw(surface, given, closed, [&](const auto& samples, const auto& sources, const auto& lengths) {
+    std::vector<Vec2> places;
+    for (const CurveSample& sample : samples) {
+      const Vec2 &from = positions[sample.piece], &to = positions[(sample.piece + 1) % positions.size()];
+      places.push_back(from + sample.along * (to - from));
+    }
+    return stroke_points(sources, lengths, places, closed);
+  });
 }
 
 }  // namespace ahm

@@ -92,11 +92,9 @@ std::string shortly(const char* format, double value) {
 }  // namespace
 
 Vec2 projected(const Vec3& x, const Vec3& y, const Vec3& vector, const std::string& where) {
-  const double largest = std::max({std::abs(vector[0]), std::abs(vector[1]), std::abs(vector[2])});
-  if (!(largest > 0) || !is_finite(vector))
+  if (!(largest(vector) > 0) || !is_finite(vector))
     throw InvalidArgument("a direction " + where + " must be finite and not zero");
-  const double scale = std::scalbn(1.0, -std::ilogb(largest));  // a power of two: no bit of the result changes
-  const Vec3 scaled = scale * vector;
+  const Vec3 scaled = 1 / power_of_two_below(largest(vector)) * vector;
   const Vec2 result{dot(x, scaled), dot(y, scaled)};
   if (!(length(result) > 1e-9))
     throw InvalidArgument("axis_along_normal", "a direction is perpendicular to the surface " + where,

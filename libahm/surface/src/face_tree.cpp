@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <utility>
 
 #include "ahm/error.hpp"
+#include "ahm/util/small_math.hpp"
 #include "ahm/util/vec.hpp"
 
 namespace ahm {
@@ -100,29 +102,34 @@ void FaceTree::build(std::size_t begin, std::size_t end) {
 }
 
 FaceTree::Hit FaceTree::nearest(const Vec3& position) const {
-  Hit best{{0, {}}, position, infinity};
-  search(0, position, best);
-  return best;
+  const double size = std::max({largest(boxes_[0].low), largest(boxes_[0].high), largest(position)});
+  const double unit = power_of_two_below(size), scale = 1 / unit;
+  Hit best{{0, {}}, {}, infinity};
+  search(0, {scale * position, scale}, best);
+  return {std::move(best.point), unit * best.position, unit * best.distance};
 }
 
-void FaceTree::search(std::size_t number, const Vec3& position, Hit& best) const {
+void FaceTree::search(std::size_t number, const Query& query, Hit& best) const {
   const Box& box = boxes_[number];
   if (box.second == 0) {
-    for (std::size_t t = box.begin; t < box.end; ++t) look_at(pieces_[t], position, best);
+    for (std::size_t t = box.begin; t < box.end; ++t) look_at(pieces_[t], query, best);
     return;
   }
-  const auto away = [&](std::size_t b) { return std::sqrt(squared_distance(position, boxes_[b].low, boxes_[b].high)); };
+  const auto away = [&](std::size_t b) {
+    return std::sqrt(squared_distance(query.position, query.scale * boxes_[b].low, query.scale * boxes_[b].high));
+  };
   std::size_t near = number + 1, far = box.second;
   if (away(far) < away(near)) std::swap(near, far);
-  if (away(near) < best.distance) search(near, position, best);
-  if (away(far) < best.distance) search(far, position, best);
+  if (away(near) < best.distance) search(near, query, best);
+  if (away(far) < best.distance) search(far, query, best);
 }
 
-void FaceTree::look_at(const Piece& piece, const Vec3& position, Hit& best) const {
-  const std::array<Vec3, 3> t{corner(piece, 0), corner(piece, 1), corner(piece, 2)};
-  const std::array<double, 3> weights = nearest_in(t, position);
+void FaceTree::look_at(const Piece& piece, const Query& query, Hit& best) const {
+  std::array<Vec3, 3> t;
+  for (int k = 0; k < 3; ++k) t[static_cast<std::size_t>(k)] = query.scale * corner(piece, k);
+  const std::array<double, 3> weights = nearest_in(t, query.position);
   const Vec3 found = combined(t, weights);
-  const double distance = norm(found - position);
+  const double distance = norm(found - query.position);
   if (!(distance < best.distance)) return;
   std::vector<double> of_corners(faces_[piece.face].size(), 0.0);
   of_corners[0] = weights[0];

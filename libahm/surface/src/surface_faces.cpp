@@ -4,6 +4,7 @@
 
 #include "ahm/graph/components.hpp"
 #include "ahm/surface/star_triangles.hpp"
+#include "ahm/util/small_math.hpp"
 #include "ahm/util/vec.hpp"
 
 namespace ahm {
@@ -40,8 +41,12 @@ SurfaceFaces found_triangles(const TangentGraph& graph, const LogMap& map) {
 /// Positive where the vector area of a face points to the side of the normals of its corners.
 double side(std::span<const Vec3> points, std::span<const Index> face, std::span<const Vec3> normals) {
   Vec3 area{}, normal{};
+  const auto corner = [&](std::size_t c) { return points[face[c % face.size()]] - points[face[0]]; };
+  double size = 0;
+  for (std::size_t c = 0; c < face.size(); ++c) size = std::max(size, largest(corner(c)));
+  const double scale = 1 / power_of_two_below(size);
   for (std::size_t c = 0; c < face.size(); ++c) {
-    area = area + cross(points[face[c]] - points[face[0]], points[face[(c + 1) % face.size()]] - points[face[0]]);
+    area = area + cross(scale * corner(c), scale * corner(c + 1));
     normal = normal + normals[face[c]];
   }
   return dot(area, normal);

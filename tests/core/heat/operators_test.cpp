@@ -2,11 +2,15 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "ahm/error.hpp"
 #include "ahm/heat/heat_operators.hpp"
+#include "ahm/maps/log_map_solver.hpp"
 #include "ahm/testing/curved_graphs.hpp"
 #include "ahm/testing/graph_changes.hpp"
+#include "ahm/testing/triangle_meshes.hpp"
+#include "ahm/trimesh/triangle_mesh_surface.hpp"
 
 namespace ahm::test {
 namespace {
@@ -83,6 +87,30 @@ TEST(HeatOperators, RefuseTimesThatLeaveNoDigits) {
   EXPECT_NO_THROW(HeatOperators(graph, {.t_coef = 1e4}));
   for (double t_coef : {1e12, 1e16, 1e25, 1e200})
     EXPECT_THROW(HeatOperators(graph, {.t_coef = t_coef}), Error) << t_coef;
+}
+
+TEST(HeatOperators, ServeEdgesAThousandTimesAsLongAsOthersAtLongTimes) {
+  // Around a tube 64 edges of 0.1, along it 39 of 100: rounding adds up to the same side everywhere.
+  Mesh tube;
+  constexpr Index around = 64, along = 40;
+  for (Index i = 0; i < along; ++i)
+    for (Index j = 0; j < around; ++j) {
+      const double turn = 2 * std::numbers::pi * j / around;
+      tube.positions.push_back({std::cos(turn), std::sin(turn), 100.0 * i});
+    }
+  for (Index i = 0; i + 1 < along; ++i)
+    for (Index j = 0; j < around; ++j) {
+      const Index a = i * around + j, b = i * around + (j + 1) % around;
+      tube.faces.push_back({a, b, b + around});
+      tube.faces.push_back({a, b + around, a + around});
+    }
+  const auto surface = trimesh::TriangleMeshSurface::build(tube.positions, tube.faces);
+  const auto map = LogMapSolver(surface.graph(), {.t_coef = 30}).solve(Source::at_vertex(Vertex{0}));
+  for (Index i = 3; i < along; ++i)  // where the way round is nothing beside the way along
+    for (Index j = 0; j < around; ++j) {
+      const auto phi = map.coordinates(Vertex(i * around + j));
+      ASSERT_NEAR(std::hypot(phi[0], phi[1]), 100.0 * i, 0.01 * 100 * i);
+    }
 }
 
 TEST(HeatOperators, RefuseGraphsWithoutDigitsForTheirTime) {

@@ -13,11 +13,11 @@
 #include "ahm/testing/curved_graphs.hpp"
 #include "ahm/testing/flat_graphs.hpp"
 #include "ahm/testing/graph_changes.hpp"
+#include "ahm/testing/triangle_meshes.hpp"
+#include "ahm/trimesh/triangle_mesh_surface.hpp"
 
 namespace ahm::test {
 namespace {
-
-constexpr std::array variants{Variant::adaptive, Variant::localized};
 
 std::vector<Vertex> every(Index step, const TangentGraph& graph) {
   std::vector<Vertex> vertices;
@@ -31,7 +31,7 @@ TEST(LocalMaps, AreExactOnFlatGeometryAndComplete) {
     const CsrGraph graph(flat.data);
     const double radius = flat.dimension == 2 ? 0.15 : 0.3;
     const std::vector<Vertex> sources = every(7, graph);
-    for (Variant variant : variants) {
+    for (Variant variant : all_variants) {
       const LocalMaps maps = local_maps(graph, sources, {.radius = radius, .heat = {.variant = variant}});
       ASSERT_EQ(maps.sources(), static_cast<Index>(sources.size()));
       for (std::size_t s = 0; s < sources.size(); ++s) {
@@ -60,7 +60,7 @@ TEST(LocalMaps, ApproachTheMapOfTheWholeGraphWithTheMargin) {
   const LogMapSolver solver(graph);
   const std::vector<Vertex> sources = every(97, graph);
   const double h = graph.mean_edge_length(), radius = 4 * h;
-  for (Variant variant : variants) {
+  for (Variant variant : all_variants) {
     double before = INFINITY;
     for (double margin : {0.0, 1.5, 3.0}) {
       const LocalMaps maps =
@@ -172,6 +172,53 @@ TEST(LocalMaps, RefuseNonsense) {
   EXPECT_THROW(local_maps(graph, {.radius = 1, .margin = -1}), InvalidArgument);
   EXPECT_THROW(local_maps(graph, std::array{Vertex{200}}, {.radius = 1}), InvalidArgument);
   EXPECT_EQ(local_maps(graph, std::vector<Vertex>{}, {.radius = 1}).indptr, std::vector<Offset>{0});
+}
+
+/// Source number s of some local maps.
+std::vector<Index> neighbors_of(const LocalMaps& maps, std::size_t s) {
+  return {maps.indices.begin() + maps.indptr[s], maps.indices.begin() + maps.indptr[s + 1]};
+}
+
+TEST(LocalMaps, OfTheNearestAreThoseOfAWideRadius) {
+  for (const CsrGraphData& data : {sphere_graph(1500), planar_triangulation(30).data}) {
+    const CsrGraph graph(data);
+    constexpr Index nearest = 25;
+    const double radius = 8 * graph.mean_edge_length();
+    const std::vector<Vertex> sources = every(11, graph);
+    const LocalMaps by_number = local_maps(graph, sources, {.nearest = nearest, .margin = 5}),
+                    by_radius = local_maps(graph, sources, {.radius = radius, .nearest = nearest, .margin = 5});
+    for (std::size_t s = 0; s < sources.size(); ++s) {
+      ASSERT_EQ(by_number.indptr[s + 1] - by_number.indptr[s], nearest);
+      // Distances alone: ties may be broken otherwise on a patch of another size.
+      for (auto e = by_number.indptr[s]; e < by_number.indptr[s + 1]; ++e)
+        ASSERT_NEAR(by_number.distances[e], by_radius.distances[e], 1e-6 * radius);
+    }
+  }
+}
+
+TEST(LocalMaps, OfTheNearestHoldThemWhereNoRadiusWould) {
+  // A lattice whose spacings grow from 1 to 1000.
+  Mesh mesh = flat_square(21, 0);
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i)
+    mesh.positions[i] = {std::pow(1000.0, mesh.plane[i][0]), std::pow(1000.0, mesh.plane[i][1]), 0};
+  const auto surface = trimesh::TriangleMeshSurface::build(mesh.positions, mesh.faces);
+  const LocalMaps maps = local_maps(surface.graph(), {.nearest = 12});
+  for (std::size_t s = 0; s < mesh.positions.size(); ++s) {
+    ASSERT_EQ(maps.indptr[s + 1] - maps.indptr[s], 12);
+    std::vector<double> away;
+    for (const Vec3& p : mesh.positions)
+      away.push_back(std::hypot(p[0] - mesh.positions[s][0], p[1] - mesh.positions[s][1]));
+    std::sort(away.begin(), away.end());
+    for (std::size_t k = 0; k < 12; ++k)
+      ASSERT_NEAR(maps.distances[maps.indptr[s] + static_cast<Offset>(k)], away[k], 1e-8 * away[11]) << s;
+  }
+}
+
+TEST(LocalMaps, OfTheNearestEndWithTheComponent) {
+  const CsrGraph graph(sphere_graph(30));
+  const LocalMaps maps = local_maps(graph, {.nearest = 50});
+  for (std::size_t s = 0; s < 30; ++s) EXPECT_EQ(neighbors_of(maps, s).size(), 30U);
+  EXPECT_THROW(local_maps(graph, LocalMapOptions{}), InvalidArgument);
 }
 
 }  // namespace

@@ -1,4 +1,6 @@
 // The banded march: the same map as the global solve, at any distance, for any graph and source.
+#include "maps/march.hpp"
+
 #include <gtest/gtest.h>
 
 #include <array>
@@ -7,6 +9,7 @@
 
 #include "ahm/error.hpp"
 #include "ahm/fields/vector_heat.hpp"
+#include "ahm/grid/grid_graph.hpp"
 #include "ahm/maps/log_map_solver.hpp"
 #include "ahm/testing/curved_graphs.hpp"
 #include "ahm/testing/flat_graphs.hpp"
@@ -16,7 +19,6 @@ namespace ahm::test {
 namespace {
 
 const HeatOptions global{.strategy = Strategy::global}, marching{.strategy = Strategy::march};
-constexpr std::array variants{Variant::adaptive, Variant::localized};
 
 /// Largest difference of two maps, relative to the largest distance; infinite where only one is ok.
 double difference(const LogMap& a, const LogMap& b) {
@@ -51,7 +53,7 @@ TEST(March, AgreesWithTheGlobalSolve) {
     const CsrGraph graph(data);
     const LogMapSolver whole(graph, global), march(graph, marching);
     for (const Source& source : {Source::at_vertex(Vertex{5}), blended(graph)})
-      for (Variant variant : variants) {
+      for (Variant variant : all_variants) {
         const LogMap expected = whole.solve(source, {.variant = variant}),
                      map = march.solve(source, {.variant = variant});
         EXPECT_EQ(map.strategy(), Strategy::march);
@@ -92,7 +94,7 @@ TEST(March, IsExactOnThePlane) {
   const FlatGraph flat = planar_triangulation(150);
   const CsrGraph graph(flat.data);
   const LogMapSolver solver(graph, marching);
-  for (Variant variant : variants) {
+  for (Variant variant : all_variants) {
     const LogMap map = solver.solve(Source::at_vertex(Vertex{77}), {.variant = variant});
     EXPECT_GT(map.march().bands, 1);
     for (Index i = 0; i < flat.size(); ++i)
@@ -103,7 +105,7 @@ TEST(March, IsExactOnThePlane) {
 
 TEST(March, HasNoHorizon) {
   const CsrGraph graph(tube(20000, 6));
-  for (Variant variant : variants) {
+  for (Variant variant : all_variants) {
     const LogMap map = LogMapSolver(graph, marching).solve(Source::at_vertex(Vertex{0}), {.variant = variant});
     EXPECT_EQ(map.count(Status::ok), graph.size());
     const auto away = [&](Index ring) {
@@ -210,6 +212,33 @@ TEST(Strategy, IsChosenFromTheNumberOfMapsAndTheMemory) {
   EXPECT_EQ(chosen(small, {.strategy = Strategy::march}), Strategy::march);
   EXPECT_THROW(chosen(small, {.accuracy = 0.0}), InvalidArgument);
   EXPECT_THROW(chosen(small, {.expected_maps = -1}), InvalidArgument);
+}
+
+TEST(March, TakesMemoryForWhatItReachesOnly) {
+  const auto bytes = [](Index side) {
+    const grid::GridGraph graph({.shape = {side, side}, .spacing = {1, 1}});
+    const ComponentScales scales(graph);
+    March march(graph, {}, scales, {1.0}, Variant::adaptive, 20, 1, {});
+    march.run(Source::at_vertex(Vertex{side / 2 * side + side / 2}));
+    EXPECT_TRUE(march.accepted(side / 2 * side + side / 2 + 15));
+    EXPECT_FALSE(march.accepted(0));
+    EXPECT_TRUE(std::isnan(march.coordinates(0)[0]));
+    return static_cast<double>(march.bytes());
+  };
+  const double small = bytes(150), large = bytes(1000);
+  // A table of one pointer per 256 vertices, and a page of 256 numbers for each row of the grid that was reached.
+  EXPECT_LT(large - small, 1000 * 1000 / 32.0 + 150 * 1024.0);
+  EXPECT_LT(large, 1000 * 1000 * 2.0);
+}
+
+TEST(March, NumbersVerticesAsTheyCome) {
+  ReachedNumbers numbers(1'000'000);
+  for (Index vertex : {5, 999'999, 6, 5}) numbers.number(vertex);
+  EXPECT_EQ(numbers.count(), 3);
+  EXPECT_EQ(numbers.find(5), 0);
+  EXPECT_EQ(numbers.find(999'999), 1);
+  EXPECT_EQ(numbers.find(7), -1);
+  EXPECT_EQ(numbers.find(500'000), -1);
 }
 
 }  // namespace

@@ -18,18 +18,27 @@
 
 namespace ahm::io {
 
+/// A number per point that is neither position, normal nor colour.
+struct Property {
+  std::string name;            ///< "intensity", "classification"
+  std::vector<double> values;  ///< n
+};
+
 /// Points and polygons as they stand in a file: same order, same precision, nothing merged, dropped or checked for
 /// shape.
 struct Geometry {
   std::vector<Vec3> points;                         ///< n; NaN and infinity are passed through as stored
   std::vector<Vec3> normals;                        ///< empty or n, not normalised
   std::vector<std::array<std::uint8_t, 3>> colors;  ///< empty or n; red, green, blue
+  std::vector<Property> properties;
   std::vector<Offset> face_begin;    ///< empty (cloud) or faces + 1; face f = [face_begin[f], face_begin[f + 1])
   std::vector<Index> face_vertices;  ///< vertex numbers, each in [0, n)
   std::string format;                ///< for messages, e.g. "PLY binary little endian"
   /// What was ignored, or taken for something: goes_on_after_faces, goes_on_after_elements (the rest of the file),
-  /// element_ignored (its name), colors_not_uchar, colors_not_packed, normals_not_by_vertex, vertex_extras (numbers behind
-  /// x, y, z), columns_as_colors (4 to 6), columns_ignored (the number of the last; from 4).
+  /// element_ignored (its name), header_lines_ignored (their number), statements_ignored (their number; the first of
+  /// their keywords), colors_unknown (neither fractions of 1 nor whole levels), colors_not_packed, normals_not_by_vertex,
+  /// vertex_extras (numbers behind x, y, z), columns_as_colors (the numbers of the first and the last), columns_ignored
+  /// (the number of the last; from 4).
   std::vector<Warning> warnings;
 
   std::size_t face_count() const noexcept { return faces().size(); }

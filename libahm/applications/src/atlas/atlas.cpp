@@ -45,13 +45,14 @@ struct Fans {
 Index vertex_to_add(const Atlas& atlas, const FaceList& faces, std::span<const Vec3> positions, const Chart& chart,
                     const std::vector<bool>& is_source, const RefineOptions& options) {
   const Fans fans(atlas, faces, positions, chart.faces);
+  const std::vector<double> areas = relative_areas(fans.triangles);
   double area = 0, bad_area = 0, farthest = -1;
   Index vertex = -1;
   for (std::size_t t = 0; t < fans.triangles.size(); ++t) {
     const TriangleDistortion& triangle = fans.triangles[t];
-    area += triangle.area;
+    area += areas[t];
     if (!triangle.flipped && !(triangle.value() > options.max_distortion)) continue;
-    bad_area += triangle.area;
+    bad_area += areas[t];
     for (Offset c : fans.corners[t]) {
       const auto [u, v] = atlas.corner(c);
       const Index candidate = faces.vertices[c];

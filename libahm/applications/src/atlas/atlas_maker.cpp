@@ -8,6 +8,8 @@
 
 #include "ahm/applications/cells.hpp"
 #include "ahm/error.hpp"
+#include "ahm/util/small_math.hpp"
+#include "ahm/util/vec.hpp"
 
 namespace ahm {
 namespace {
@@ -136,13 +138,11 @@ bool is_mirrored(const Atlas& atlas, const FaceList& faces, const Chart& chart) 
   std::ptrdiff_t balance = 0;
   for (Index f : chart.faces) {
     const Offset first = faces.begin[f], last = faces.begin[f + 1];
-    double area = 0;
-    const auto [x0, y0] = atlas.corner(first);
-    for (Offset c = first + 1; c + 1 < last; ++c) {
-      const auto [x1, y1] = atlas.corner(c);
-      const auto [x2, y2] = atlas.corner(c + 1);
-      area += (x1 - x0) * (y2 - y0) - (x2 - x0) * (y1 - y0);
-    }
+    const auto side = [&](Offset c) { return atlas.corner(c) - atlas.corner(first); };
+    double area = 0, size = 0;
+    for (Offset c = first + 1; c < last; ++c) size = std::max(size, largest(side(c)));
+    const double scale = 1 / power_of_two_below(size);
+    for (Offset c = first + 1; c + 1 < last; ++c) area += cross(scale * side(c), scale * side(c + 1));
     balance += (area > 0) - (area < 0);
   }
   return balance < 0;

@@ -7,6 +7,7 @@
 #include "ahm/applications/atlas.hpp"
 #include "ahm/error.hpp"
 #include "ahm/util/memory.hpp"
+#include "ahm/util/small_math.hpp"
 #include "ahm/util/vec.hpp"
 
 namespace ahm {
@@ -72,7 +73,13 @@ std::vector<ChartBox> chart_boxes(const Atlas& atlas, const FaceList& faces) {
       std::vector<Vec2> points;
       for (Index f : chart.faces)
         for (Offset c = faces.begin[f]; c < faces.begin[f + 1]; ++c) points.push_back(atlas.corner(c));
-      boxes.push_back(least_box(convex_hull(std::move(points))));
+      double size = 0;
+      for (const Vec2& p : points) size = std::max(size, largest(p));
+      const double unit = power_of_two_below(size);
+      for (Vec2& p : points) p = 1 / unit * p;
+      ChartBox box = least_box(convex_hull(std::move(points)));
+      box.low = unit * box.low, box.high = unit * box.high;
+      boxes.push_back(box);
     }
     return boxes;
   });

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "ahm/applications/atlas/texture_atlas.hpp"
+#include "ahm/util/small_math.hpp"
 
 #define STB_RECT_PACK_IMPLEMENTATION
 #define STBRP_STATIC
@@ -53,9 +54,11 @@ std::optional<std::vector<TextureBox>> place(const std::vector<ChartBox>& boxes,
 
 /// The largest scale at which all fit, to a hundredth.
 double largest_scale(const std::vector<ChartBox>& boxes, const PackOptions& options) {
-  double area = 0;
-  for (const ChartBox& box : boxes) area += side(box, 0) * side(box, 1);
-  double high = area > 0 ? options.size / std::sqrt(area) : 1, low = 0;
+  double size = 0, area = 0;
+  for (const ChartBox& box : boxes) size = std::max({size, side(box, 0), side(box, 1)});
+  const double unit = power_of_two_below(size);
+  for (const ChartBox& box : boxes) area += side(box, 0) / unit * (side(box, 1) / unit);
+  double high = area > 0 ? options.size / std::sqrt(area) / unit : 1, low = 0;
   for (double scale = high; low == 0 && scale > 1e-4 * high; scale /= 2)
     if (place(boxes, scale, options.size, options.margin)) low = scale;
   if (low == 0)

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include "ahm/util/shortest_paths.hpp"
 #include "ahm/util/small_math.hpp"
 
 namespace ahm {
@@ -35,14 +37,44 @@ double share_of_first(double rate, double c, double relative_disagreement, doubl
                   std::clamp(std::min((relative_disagreement - 0.4) / 0.4, (relative_spread - 0.1) / 0.1), 0.0, 1.0));
 }
 
+/// Lengths of the shortest ways along edges from a source, world units; infinite where there is none.
+std::vector<double> edge_paths(const TangentGraph& graph, const Source& source) {
+  constexpr double none = std::numeric_limits<double>::infinity();
+  std::vector<double> lengths(static_cast<std::size_t>(graph.size()), none);
+  ShortestPaths<double, std::vector<double>> paths(lengths, none);
+  const double unit = graph.length_unit();
+  for (std::size_t k = 0; k < source.vertices().size(); ++k)
+    if (source.weights()[k] > 0) paths.offer(source.vertices()[k].index, source.place(k).distance / unit);
+  paths.run([&](Index vertex, double distance) {
+    const Star star = graph.star(vertex);
+    for (std::size_t e = 0; e < star.degree(); ++e) paths.offer(star.neighbors[e], distance + length(star.log(e)));
+  });
+  for (double& x : lengths) x *= unit;
+  return lengths;
+}
+
+/// Moves phi towards p, which is no longer than `longest`, until phi is no longer either.
+void shorten(std::span<double> phi, std::span<const double> p, double longest) {
+  if (!(length(phi) > longest)) return;
+  double a = 0, b = 0, c = 1;  // of a t^2 + 2 b t = c, in units of `longest`
+  for (std::size_t k = 0; k < phi.size() && longest > 0; ++k) {
+    const double from = p[k] / longest, way = (phi[k] - p[k]) / longest;
+    a += way * way, b += from * way, c -= from * from;
+  }
+  const double t = longest > 0 ? std::clamp((std::sqrt(std::max(0.0, b * b + a * c)) - b) / a, 0.0, 1.0) : 0.0;
+  for (std::size_t k = 0; k < phi.size(); ++k) phi[k] = p[k] + t * (phi[k] - p[k]);
+}
+
 }  // namespace
 
 LogMap extrapolate(const TangentGraph& graph, const ComponentScales& scales, double t_coef, const DiffusionTimes& times,
                    const std::vector<const LogMap*>& maps, double radius) {
   const LogMap &first = *maps.front(), &middle = *maps[maps.size() - 2], &last = *maps.back();
   const auto n = static_cast<std::size_t>(first.size()), d = static_cast<std::size_t>(first.dimension());
-  std::vector<double> coordinates(n * d, NAN), distances(n, NAN), error(n, NAN), difference(d);
+  std::vector<double> coordinates(n * d, NAN), distances(n, NAN), error(n, NAN), difference(d), limit(d);
   std::vector<Status> status(n, Status::ok);
+  const bool is_curve = first.source().is_curve(), unfolded = graph.is_delaunay() || is_curve;
+  const std::vector<double> paths = unfolded ? std::vector<double>() : edge_paths(graph, first.source());
   for (std::size_t i = 0; i < n; ++i) {
     const auto vertex = Vertex(i);
     for (const LogMap* map : maps)
@@ -64,12 +96,17 @@ LogMap extrapolate(const TangentGraph& graph, const ComponentScales& scales, dou
     }
     const double w = share_of_first(length(difference) / step, c, disagreement / correction,
                                     last.spread().empty() ? 0 : last.spread()[i] / std::max(last.distance(vertex), h));
-    for (std::size_t a = 0; a < d; ++a) phi[a] = (1 - w) * phi[a] + w * p1[a];
-    error[i] = std::max(w * correction, disagreement);
+    std::copy(phi.begin(), phi.end(), limit.begin());
+    for (std::size_t a = 0; a < d; ++a) phi[a] = (1 - w) * limit[a] + w * p1[a];
     // Unfolded distances are the same at all times.
     const double r1 = first.distance(vertex), rc = middle.distance(vertex), r2 = last.distance(vertex);
     const double at_zero = std::max(0.0, rc - (r2 - rc) / (std::sqrt(2.0) - 1));
     distances[i] = r1 + (1 - w) * (at_zero - r1);
+    if (!unfolded) distances[i] = std::min(distances[i], std::max(r1, paths[i]));
+    if (!is_curve) shorten(phi, p1, std::max(length(p1), distances[i]));
+    double moved = 0;
+    for (std::size_t a = 0; a < d; ++a) moved = std::hypot(moved, phi[a] - limit[a]);
+    error[i] = std::max(moved, disagreement);
     if (!all_finite(phi))
       status[i] = Status::unreached;
     else if (distances[i] > radius)

@@ -15,62 +15,62 @@ KnownValues::KnownValues(const TangentGraph& graph, const VariantSystem& system)
       d_(static_cast<std::size_t>(graph.dimension())),
       width_(layout_.width()),
       to_units_(graph.length_unit() / solution_unit(graph)),
-      lambda_(static_cast<std::size_t>(graph.size())),
-      value_(lambda_.size() * d_),
-      square_(lambda_.size()),
-      frame_(lambda_.size() * width_),
-      exponents_(lambda_.size()) {}
+      rows_(2 + d_ + width_),
+      exponents_(1) {}
 
-void KnownValues::take(Index vertex, Index place, const AffineHeat& heat, std::size_t source, HeatExponents exponents) {
-  lambda_[vertex] = heat.lambda(source)[place];
-  heat.unknown_at(source, place, value_.data() + vertex * d_);
-  square_[vertex] = heat.square_at(source, place);
-  heat.frames(source).raw(place, frame_.data() + vertex * width_);
-  exponents_[vertex] = exponents;
+void KnownValues::take(Index number, Index place, const AffineHeat& heat, std::size_t source, HeatExponents exponents) {
+  rows_.grow_to(number + 1);
+  exponents_.grow_to(number + 1);
+  double* row = rows_[number];
+  row[0] = heat.lambda(source)[place];
+  row[1] = heat.square_at(source, place);
+  heat.unknown_at(source, place, row + 2);
+  heat.frames(source).raw(place, row + 2 + d_);
+  *exponents_[number] = exponents;
 }
 
-double KnownValues::level(Index vertex) const {
-  return -std::log(lambda_[vertex]) - std::log(2.0) * exponents_[vertex].heat;
+double KnownValues::level(Index number) const {
+  return -std::log(heat(number)) - std::log(2.0) * exponents_[number]->heat;
 }
 
-void KnownValues::axes(Index vertex, double* out) const {
+void KnownValues::axes(Index number, double* out) const {
   // One vertex is a field of its own, a column after the other.
   std::vector<double> columns(width_);
   const int d = layout_.dimension;
   for (int a = 0; a < layout_.columns(); ++a)
-    for (int c = 0; c < d; ++c) columns[a * d + c] = frame(vertex)[layout_.place(c, a)];
+    for (int c = 0; c < d; ++c) columns[a * d + c] = frame(number)[layout_.place(c, a)];
   FrameField(1, layout_, columns).axes(0, out);
 }
 
-HeatExponents KnownValues::exponents_for(std::span<const Index> vertices) const {
+HeatExponents KnownValues::exponents_for(std::span<const Index> numbers) const {
   constexpr std::int32_t none = std::numeric_limits<std::int32_t>::min();
   HeatExponents largest{none, none};
-  for (Index j : vertices) {
-    if (lambda_[j] != 0) largest.heat = std::max(largest.heat, exponents_[j].heat + std::ilogb(lambda_[j]));
+  for (Index j : numbers) {
+    if (heat(j) != 0) largest.heat = std::max(largest.heat, exponents_[j]->heat + std::ilogb(heat(j)));
     for (double u : frame(j))
-      if (u != 0) largest.frame = std::max(largest.frame, exponents_[j].frame + std::ilogb(u));
+      if (u != 0) largest.frame = std::max(largest.frame, exponents_[j]->frame + std::ilogb(u));
   }
   return {largest.heat - std::ilogb(heat_scale), largest.frame - std::ilogb(heat_scale)};
 }
 
-void KnownValues::add_to(Inflow& in, const Star& star, std::size_t edge, double conductance,
+void KnownValues::add_to(Inflow& in, const Star& star, std::size_t edge, Index number, double conductance,
                          HeatExponents exponents) const {
-  const Index j = star.neighbors[edge];
   const Transport R = star.transport(edge);
-  const double heat = std::ldexp(conductance, exponents_[j].heat - exponents.heat);
+  const double heat = std::ldexp(conductance, exponents_[number]->heat - exponents.heat);
   const double pair_factor[] = {-2 * heat * to_units_};
-  const double turn = std::ldexp(conductance, exponents_[j].frame - exponents.frame);
-  in.heat.back() += heat * lambda_[j];
+  const double turn = std::ldexp(conductance, exponents_[number]->frame - exponents.frame);
+  const double lambda = this->heat(number);
+  in.heat.back() += heat * lambda;
   Scratch e(d_);
   double* translation = in.translations.data() + in.translations.size() - d_;
   for (std::size_t a = 0; a < d_; ++a) {
     e.data()[a] = to_units_ * star.log(edge)[a];
-    translation[a] -= heat * lambda_[j] * e.data()[a];
+    translation[a] -= heat * lambda * e.data()[a];
   }
-  in.squares.back() += heat * (square_[j] + dot(e.span(), e.span()) * lambda_[j]);
-  system_.add_pairs(star.only(edge), pair_factor, value(j), in.pairs.data() + in.pairs.size() - d_ * d_);
-  system_.add_known(heat, R, value(j), in.values.data() + in.values.size() - d_);
-  R.add_product(turn, frame(j).data(), in.frames.data() + in.frames.size() - width_);
+  in.squares.back() += heat * (square(number) + dot(e.span(), e.span()) * lambda);
+  system_.add_pairs(star.only(edge), pair_factor, value(number), in.pairs.data() + in.pairs.size() - d_ * d_);
+  system_.add_known(heat, R, value(number), in.values.data() + in.values.size() - d_);
+  R.add_product(turn, frame(number).data(), in.frames.data() + in.frames.size() - width_);
 }
 
 }  // namespace ahm

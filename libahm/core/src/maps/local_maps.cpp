@@ -56,14 +56,14 @@ class Ball {
  public:
   explicit Ball(const TangentGraph& graph) : graph_(graph), known_(static_cast<std::size_t>(graph.size())) {}
 
-  /// Calls visit(vertex) in order of distance for all vertices within `limit` (graph units) of the starts, until it
+  /// Calls visit(vertex, distance) in order of distance for all vertices within `limit` (graph units) of the starts, until it
   /// returns false.
   template <class Visit>
   void grow(std::span<const Vertex> starts, double limit, const Visit& visit) {
     for (Vertex start : starts) offer(start.index, 0);
     bool more = true;
     paths_.run([&](Index vertex, double key) {
-      if (!more || !(more = visit(vertex))) return;
+      if (!more || !(more = visit(vertex, key - 1))) return;
       const Star star = graph_.star(vertex);
       for (std::size_t e = 0; e < star.degree(); ++e)
         if (const double next = key - 1 + length(star.log(e)); star.weights[e] != 0 && next <= limit)
@@ -86,10 +86,12 @@ class Ball {
 };
 
 void check(const TangentGraph& graph, std::span<const Source> sources, const LocalMapOptions& options) {
-  if (!(options.radius > 0) || !std::isfinite(options.radius))
-    throw InvalidArgument("radius is " + detail::number(options.radius) + "; it must be finite and > 0");
   if (options.nearest < 0)
     throw InvalidArgument("nearest is " + std::to_string(options.nearest) + "; it must be >= 0 (0: all)");
+  const bool by_number = options.radius == 0 && options.nearest > 0;
+  if (!by_number && (!(options.radius > 0) || !std::isfinite(options.radius)))
+    throw InvalidArgument("radius is " + detail::number(options.radius) +
+                          "; it must be finite and > 0, or 0 with a number of nearest neighbours");
   if (!(options.margin >= 0) || !std::isfinite(options.margin))
     throw InvalidArgument("margin is " + detail::number(options.margin) + "; it must be finite and >= 0");
   if (options.heat.order != 1)
@@ -115,7 +117,7 @@ std::vector<std::vector<Index>> group(const TangentGraph& graph, std::span<const
   for (std::size_t seed = 0; seed < sources.size(); ++seed) {
     if (grouped[seed]) continue;
     std::vector<Index> members;
-    ball.grow(sources[seed].vertices().first(1), reach(sources[seed].vertices().front()), [&](Index vertex) {
+    ball.grow(sources[seed].vertices().first(1), reach(static_cast<Index>(seed)), [&](Index vertex, double) {
       for (Index s = first[vertex] - 1; s >= 0; s = first[vertex] - 1) {
         if (members.size() == group_size) return false;
         members.push_back(s);
@@ -129,6 +131,23 @@ std::vector<std::vector<Index>> group(const TangentGraph& graph, std::span<const
   return groups;
 }
 
+/// How far from each source its map goes, world units: the radius, or as far as its nearest neighbours are along edges,
+/// where distances are no longer.
+std::vector<double> radii_of(const TangentGraph& graph, std::span<const Source> sources,
+                             const LocalMapOptions& options) {
+  std::vector<double> radii(sources.size(), options.radius);
+  if (options.radius > 0) return radii;
+  Ball ball(graph);
+  for (std::size_t s = 0; s < sources.size(); ++s) {
+    Index count = 0;
+    ball.grow(sources[s].vertices(), std::numeric_limits<double>::infinity(), [&](Index, double distance) {
+      radii[s] = std::max(distance, graph.mean_edge_length() / 4) * graph.length_unit();
+      return ++count < options.nearest;
+    });
+  }
+  return radii;
+}
+
 /// One source's part of the result.
 struct Entries {
   std::vector<Index> vertices;
@@ -138,9 +157,10 @@ struct Entries {
 class Worker {
  public:
   Worker(const TangentGraph& graph, const ComponentScales& scales, std::span<const Source> sources,
-         const LocalMapOptions& options)
+         std::vector<double>& radii, const LocalMapOptions& options)
       : graph_(graph),
         sources_(sources),
+        radii_(radii),
         options_(options),
         operators_(options.heat),
         ball_(graph),
@@ -158,23 +178,43 @@ class Worker {
     for (Index s : members)
       for (Vertex vertex : sources_[s].vertices()) h = std::max(h, scales_.h(vertex.index));
     const double unit = graph_.length_unit(), sqrt_tau = std::sqrt(options_.heat.t_coef) * h;
-    const double reach = options_.radius / unit + options_.margin * sqrt_tau;  // graph units
-    for (double detour = usual_detour; detour < largest_detour; detour *= 1.3)
-      if (solve(members, detour * reach, reach * unit, result)) return;
-    solve(members, largest_detour * reach, 0, result);
+    const auto reach = [&] {  // graph units
+      double radius = 0;
+      for (Index s : members) radius = std::max(radius, radii_[s]);
+      return radius / unit + options_.margin * sqrt_tau;
+    };
+    double detour = usual_detour;
+    while (true) {
+      const bool last = detour >= largest_detour;
+      const double far = reach();
+      switch (solve(members, (last ? largest_detour : detour) * far, last ? 0 : far * unit, result)) {
+        case Outcome::complete:
+          return;
+        case Outcome::patch_too_small:
+          detour *= 1.3;
+          break;
+        case Outcome::radius_too_small:
+          for (Index s : members) radii_[s] *= 1.3;
+      }
+    }
   }
 
  private:
-  /// Returns false when the patch, all vertices within `limit` along edges, does not hold all within `wanted` of a
-  /// source.
-  bool solve(std::span<const Index> members, double limit, double wanted, std::vector<Entries>& result) {
+  enum class Outcome {
+    complete,
+    patch_too_small,   ///< it does not hold all within `wanted` of a source
+    radius_too_small,  ///< fewer vertices than the nearest that are asked for lie within
+  };
+
+  /// On the patch of all vertices within `limit` along edges.
+  Outcome solve(std::span<const Index> members, double limit, double wanted, std::vector<Entries>& result) {
     std::vector<Vertex> starts;
     std::vector<Index> vertices, edge;
     for (Index s : members) {
       const auto samples = sources_[s].vertices();
       starts.insert(starts.end(), samples.begin(), samples.end());
     }
-    ball_.grow(starts, limit, [&](Index vertex) {
+    ball_.grow(starts, limit, [&](Index vertex, double) {
       vertices.push_back(vertex);
       return true;
     });
@@ -205,9 +245,12 @@ class Worker {
       stars_ = UnfoldingFront::stars(patch);
     else
       heat.solve_squares();
-    for (std::size_t m = 0; m < members.size(); ++m)
-      if (!collect(heat, m, patch, local[m], vertices, edge, wanted, result[members[m]])) return false;
-    return true;
+    for (std::size_t m = 0; m < members.size(); ++m) {
+      const Outcome outcome =
+          collect(heat, m, patch, local[m], vertices, edge, wanted, radii_[members[m]], result[members[m]]);
+      if (outcome != Outcome::complete) return outcome;
+    }
+    return Outcome::complete;
   }
 
   /// A source by the places of its vertices.
@@ -225,13 +268,13 @@ class Worker {
 
   /// Distances of the patch from its source number m, as those of a whole map (`LogMap::distance`).
   void measure(const AffineHeat& heat, std::size_t m, const CsrGraph& patch, const Source& source, double root_tau,
-               double wanted) {
+               double radius) {
     const auto n = static_cast<std::size_t>(patch.size());
     distance_.resize(n);
     if (graph_.is_delaunay()) {
       UnfoldingFront front(patch, stars_);
       front.add(source);
-      front.run(std::max(wanted, options_.radius));
+      front.run(radius);
       for (std::size_t k = 0; k < n; ++k) distance_[k] = front.distance(Vertex(k));
       return;
     }
@@ -242,23 +285,27 @@ class Worker {
   }
 
   /// The vertices within the radius, nearest first.
-  bool collect(const AffineHeat& heat, std::size_t m, const CsrGraph& patch, const Source& source,
-               std::span<const Index> vertices, std::span<const Index> edge, double wanted, Entries& entries) {
+  Outcome collect(const AffineHeat& heat, std::size_t m, const CsrGraph& patch, const Source& source,
+                  std::span<const Index> vertices, std::span<const Index> edge, double wanted, double radius,
+                  Entries& entries) {
     const std::size_t n = vertices.size();
     phi_.resize(n * d_);
     for (std::size_t k = 0; k < n; ++k) heat.coordinates_at(m, static_cast<Index>(k), phi_.data() + k * d_);
     const double root_tau = std::sqrt(options_.heat.t_coef) * scales_.h(vertices[source.vertices().front().index]);
-    measure(heat, m, patch, source, root_tau * graph_.length_unit(), wanted);
+    measure(heat, m, patch, source, root_tau * graph_.length_unit(), std::max(wanted, radius));
     order_.clear();
     for (std::size_t k = 0; k < n; ++k) {
       const auto vertex = static_cast<Index>(k);
       const double* phi = phi_.data() + k * d_;
       if (!heat.reached(m, vertex) || !all_finite(std::span(phi, d_)))
         distance_[k] = std::numeric_limits<double>::infinity();
-      if (distance_[k] <= options_.radius) order_.push_back(vertex);
+      if (distance_[k] <= radius) order_.push_back(vertex);
     }
     for (Index k : edge)
-      if (distance_[k] < wanted * (1 - 1e-9)) return false;
+      if (distance_[k] < wanted * (1 - 1e-9)) return Outcome::patch_too_small;
+    // A patch without an edge is all there is.
+    if (options_.radius == 0 && order_.size() < static_cast<std::size_t>(options_.nearest) && !edge.empty())
+      return Outcome::radius_too_small;
     std::sort(order_.begin(), order_.end(),
               [&](Index a, Index b) { return distance_[a] != distance_[b] ? distance_[a] < distance_[b] : a < b; });
     if (options_.nearest > 0 && order_.size() > static_cast<std::size_t>(options_.nearest))
@@ -280,11 +327,12 @@ class Worker {
       frames.frame(k, U.data());
       entries.transports.insert(entries.transports.end(), U.begin(), U.end());
     }
-    return true;
+    return Outcome::complete;
   }
 
   const TangentGraph& graph_;
   std::span<const Source> sources_;
+  std::vector<double>& radii_;  ///< of the sources; those of one group belong to one worker
   const LocalMapOptions& options_;
   HeatOptions operators_;
   Ball ball_;
@@ -315,8 +363,7 @@ LocalMaps joined(const TangentGraph& graph, std::vector<Entries>& entries) {
     maps.transports.insert(maps.transports.end(), e.transports.begin(), e.transports.end());
     e = {};  // so that the peak is little more than the result
   }
-  const double unit = std::pow(graph.length_unit(), graph.dimension());
-  for (Index vertex : maps.indices) maps.weights.push_back(graph.mass(vertex) * unit);
+  for (Index vertex : maps.indices) maps.weights.push_back(world_mass(graph, graph.mass(vertex)));
   return maps;
 }
 
@@ -328,9 +375,10 @@ LocalMaps local_maps(const TangentGraph& graph, std::span<const Source> sources,
     options.heat.progress.step("group", 0.0);
     // Sources whose patches overlap anyway.
     const ComponentScales scales(graph);
-    const auto reach = [&](Vertex seed) {
-      return options.radius / graph.length_unit() +
-             (options.margin + 4) * std::sqrt(options.heat.t_coef) * scales.h(seed.index);
+    std::vector<double> radii = radii_of(graph, sources, options);
+    const auto reach = [&](Index seed) {
+      return radii[seed] / graph.length_unit() +
+             (options.margin + 4) * std::sqrt(options.heat.t_coef) * scales.h(sources[seed].vertices().front().index);
     };
     const auto groups = group(graph, sources, reach);
     std::vector<Entries> entries(sources.size());
@@ -344,7 +392,7 @@ LocalMaps local_maps(const TangentGraph& graph, std::span<const Source> sources,
         std::scoped_lock lock(mutex);
         if (!idle.empty()) worker = std::move(idle.back()), idle.pop_back();
       }
-      if (!worker) worker = std::make_unique<Worker>(graph, scales, sources, options);
+      if (!worker) worker = std::make_unique<Worker>(graph, scales, sources, radii, options);
       without_openmp_regions([&] {
         for (Offset g = begin; g < end; ++g) worker->solve(groups[g], entries);
       });

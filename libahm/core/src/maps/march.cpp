@@ -56,15 +56,13 @@ March::March(const TangentGraph& graph, const HeatOptions& options, const Compon
       progress_(std::move(progress)),
       threads_(threads),
       d_(static_cast<std::size_t>(graph.dimension())),
-      known_(graph, system_of(variant)) {
+      numbers_(graph.size()),
+      ways_(1),
+      known_(graph, system_of(variant)),
+      found_(d_ + 1),
+      nothing_(d_, NAN) {
   options_.progress = {};
   options_.threads = threads;
-  const auto n = static_cast<std::size_t>(graph.size());
-  accepted_.assign(n, 0);
-  place_.assign(n, -1);
-  tentative_.assign(n, far_away);
-  coordinates_.assign(n * d_, NAN);
-  root_mean_squares_.assign(n, NAN);
 }
 
 void March::run(const Source& source) { march(&source); }
@@ -107,10 +105,10 @@ bool March::advance(const Source* source, double depth) {
   // A Dirichlet neighbour behind the front adds tau w to the diagonal and (below) to the right-hand sides.
   std::vector<Link> links;
   const CsrGraph patch = cut_out(
-      graph_, band.vertices, [&](Index j) { return place_[j]; },
+      graph_, band.vertices, [&](Index j) { return place(j); },
       [&](std::size_t k, const Star& star, std::size_t e) {
-        if (!accepted_[star.neighbors[e]]) return 0.0;
-        links.push_back({static_cast<Index>(k), e});
+        if (!accepted(star.neighbors[e])) return 0.0;
+        links.push_back({static_cast<Index>(k), e, numbers_.find(star.neighbors[e])});
         return tau(band.vertices[k]) * star.weights[e];
       });
   std::vector<double> times;
@@ -122,12 +120,12 @@ bool March::advance(const Source* source, double depth) {
   Inflow inflow;
   if (source) {
     inflow = inflow_of(*source, graph_, operators, variant_);
-    for (Index& vertex : inflow.vertices) vertex = place_[vertex];
+    for (Index& vertex : inflow.vertices) vertex = place(vertex);
   } else {
-    exponents = exponents_behind(band, links);
+    exponents = exponents_behind(links);
     inflow = inflow_behind(band, links, operators.scaling(), exponents);
   }
-  for (Index vertex : band.vertices) place_[vertex] = -1;
+  for (Index vertex : band.vertices) way(vertex).place = -1;
 
   AffineHeat heat(patch, operators, variant_, {std::move(inflow)}, threads_);
   heat.diffuse();
@@ -159,13 +157,14 @@ bool March::advance(const Source* source, double depth) {
 /// The vertices ahead of the front within `depth` of heat distance (Dijkstra's algorithm, the levels on the front being
 /// those of the heat that was found there), in the order of the graph.
 March::Band March::find_band(const Source* source, double depth) {
-  ShortestPaths<float, std::vector<float>> paths(tentative_, far_away);
+  Tentative tentative{*this};
+  ShortestPaths<float, Tentative> paths(tentative, far_away);
   std::vector<Ahead> ahead;
   auto spread = [&](Index from, double distance) {
     const Star star = graph_.star(from);
     ahead.clear();  // a copy: the star's life may end when another one is asked for
     for (std::size_t e = 0; e < star.degree(); ++e)
-      if (star.weights[e] != 0 && !accepted_[star.neighbors[e]])
+      if (star.weights[e] != 0 && !accepted(star.neighbors[e]))
         ahead.push_back({star.neighbors[e], star.weights[e], length(star.log(e))});
     for (const Ahead& edge : ahead)
       paths.offer(edge.vertex, static_cast<float>(distance + heat_distance(edge.length, edge.weight, tau(edge.vertex),
@@ -176,31 +175,32 @@ March::Band March::find_band(const Source* source, double depth) {
       if (source->weights()[k] > 0) paths.offer(source->vertices()[k].index, 0);
   } else {
     double base = std::numeric_limits<double>::infinity();
-    for (Index vertex : front_) base = std::min(base, known_.level(vertex));
+    for (Index vertex : front_) base = std::min(base, known_.level(numbers_.find(vertex)));
     for (Index vertex : front_)
-      if (const double beyond = known_.level(vertex) - base; beyond <= depth) spread(vertex, beyond);
+      if (const double beyond = known_.level(numbers_.find(vertex)) - base; beyond <= depth) spread(vertex, beyond);
   }
 
   Band band;
   std::vector<Index> touched;
   const double limit = paths.empty() ? 0 : paths.least() + depth;
   paths.run([&](Index vertex, float distance) {
-    if (place_[vertex] >= 0) return;
+    Way& own = way(vertex);
+    if (own.place >= 0) return;
     if (distance > limit) return touched.push_back(vertex);
-    place_[vertex] = static_cast<Index>(band.vertices.size());
+    own.place = static_cast<Index>(band.vertices.size());
     band.vertices.push_back(vertex);
     spread(vertex, distance);
   });
-  for (Index vertex : touched) tentative_[vertex] = far_away;
+  for (Index vertex : touched) way(vertex).tentative = far_away;
   // The graph's own order keeps neighbours close in memory; that of the distance scatters them all around the front.
   std::sort(band.vertices.begin(), band.vertices.end());
-  for (std::size_t k = 0; k < band.vertices.size(); ++k) place_[band.vertices[k]] = static_cast<Index>(k);
+  for (std::size_t k = 0; k < band.vertices.size(); ++k) way(band.vertices[k]).place = static_cast<Index>(k);
   for (std::size_t k = 0; k < band.vertices.size(); ++k) {
-    tentative_[band.vertices[k]] = far_away;
+    way(band.vertices[k]).tentative = far_away;
     const Star star = graph_.star(band.vertices[k]);
     for (std::size_t e = 0; e < star.degree(); ++e) {
-      const auto j = static_cast<std::size_t>(star.neighbors[e]);
-      if (star.weights[e] == 0 || accepted_[j] || place_[j] >= 0) continue;
+      const Index j = star.neighbors[e];
+      if (star.weights[e] == 0 || accepted(j) || place(j) >= 0) continue;
       band.edge.push_back(static_cast<Index>(k));
       break;
     }
@@ -208,9 +208,9 @@ March::Band March::find_band(const Source* source, double depth) {
   return band;
 }
 
-HeatExponents March::exponents_behind(const Band& band, std::span<const Link> links) const {
+HeatExponents March::exponents_behind(std::span<const Link> links) const {
   std::vector<Index> behind;
-  for (const Link& link : links) behind.push_back(graph_.star(band.vertices[link.place]).neighbors[link.edge]);
+  for (const Link& link : links) behind.push_back(link.number);
   return known_.exponents_for(behind);
 }
 
@@ -230,19 +230,22 @@ Inflow March::inflow_behind(const Band& band, std::span<const Link> links, doubl
       in.pairs.resize(in.pairs.size() + d_ * d_);
     }
     const Star star = graph_.star(band.vertices[link.place]);
-    known_.add_to(in, star, link.edge, scaling * tau(band.vertices[link.place]) * star.weights[link.edge], exponents);
+    known_.add_to(in, star, link.edge, link.number, scaling * tau(band.vertices[link.place]) * star.weights[link.edge],
+                  exponents);
   }
   return in;
 }
 
 void March::accept(Index vertex, Index place, const AffineHeat& heat, std::size_t s, HeatExponents exponents) {
-  accepted_[vertex] = 1;
+  way(vertex).accepted = true;
   ++accepted_count_;
-  known_.take(vertex, place, heat, s, exponents);
-  const std::span phi = std::span(coordinates_).subspan(vertex * d_, d_);
+  const Index number = numbers_.find(vertex);
+  known_.take(number, place, heat, s, exponents);
+  found_.grow_to(number + 1);
+  const std::span phi(found_[number], d_);
   heat.coordinates_at(s, place, phi.data());
-  root_mean_squares_[vertex] = heat.root_mean_square_at(s, place);
-  const bool good = known_.heat(vertex) > 0 && heat.frames(s).heat(place) > 0 && all_finite(phi);
+  found_[number][d_] = heat.root_mean_square_at(s, place);
+  const bool good = known_.heat(number) > 0 && heat.frames(s).heat(place) > 0 && all_finite(phi);
   if (!good) std::fill(phi.begin(), phi.end(), NAN);
 }
 
@@ -253,13 +256,31 @@ void March::update_front(std::span<const Index> added) {
   std::erase_if(front_, [&](Index vertex) { return !sends_heat(vertex); });
 }
 
+March::Way& March::way(Index vertex) {
+  const Index number = numbers_.number(vertex);
+  ways_.grow_to(numbers_.count());
+  return *ways_[number];
+}
+
+/// In the band at hand; -1: not in it.
+Index March::place(Index vertex) const {
+  const Index number = numbers_.find(vertex);
+  return number < 0 ? -1 : ways_[number]->place;
+}
+
+void March::axes(Index vertex, double* out) const {
+  if (accepted(vertex)) return known_.axes(numbers_.find(vertex), out);
+  for (std::size_t a = 0; a < d_; ++a)
+    for (std::size_t c = 0; c < d_; ++c) out[a * d_ + c] = a == c;
+}
+
 bool March::sends_heat(Index vertex) const {
-  const auto phi = std::span(coordinates_).subspan(static_cast<std::size_t>(vertex) * d_, d_);
+  const std::span<const double> phi = coordinates(vertex);
   // A little beyond the radius, since coordinates are not monotone from vertex to vertex.
   if (!(length(phi) <= radius_ + 4 * scales_.h(vertex) * graph_.length_unit())) return false;
   const Star star = graph_.star(vertex);
   for (std::size_t e = 0; e < star.degree(); ++e)
-    if (star.weights[e] != 0 && !accepted_[star.neighbors[e]]) return true;
+    if (star.weights[e] != 0 && !accepted(star.neighbors[e])) return true;
   return false;
 }
 

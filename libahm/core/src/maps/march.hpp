@@ -7,13 +7,14 @@
 /// lies near the band's far end is dropped again, since the graph beyond would have influenced it.
 #pragma once
 
-#include <cstdint>
+#include <cmath>
 #include <vector>
 
 #include "ahm/maps/log_map_solver.hpp"
 #include "heat/component_scales.hpp"
 #include "maps/affine_heat.hpp"
 #include "maps/known_values.hpp"
+#include "maps/reached_rows.hpp"
 
 namespace ahm {
 
@@ -30,14 +31,23 @@ class March {
   void run_on(const AffineHeat& heat, std::size_t s);
 
   /// phi_i in world units; NaN where `accepted` is false or too little heat arrived.
-  std::span<const double> coordinates(Index vertex) const { return std::span(coordinates_).subspan(vertex * d_, d_); }
+  std::span<const double> coordinates(Index vertex) const {
+    return accepted(vertex) ? std::span(found_[numbers_.find(vertex)], d_) : std::span(nothing_);
+  }
   /// sqrt(q_i / lambda_i) in world units; NaN as `coordinates`.
-  double root_mean_square(Index vertex) const { return root_mean_squares_[vertex]; }
+  double root_mean_square(Index vertex) const {
+    return accepted(vertex) ? found_[numbers_.find(vertex)][d_] : nothing_[0];
+  }
   /// Whether the march came to the vertex.
-  bool accepted(Index vertex) const { return accepted_[vertex] != 0; }
-  /// U_i as d x d numbers, row major.
-  void axes(Index vertex, double* out) const { known_.axes(vertex, out); }
+  bool accepted(Index vertex) const {
+    const Index number = numbers_.find(vertex);
+    return number >= 0 && ways_[number]->accepted;
+  }
+  /// U_i as d x d numbers, row major; the identity where `accepted` is false.
+  void axes(Index vertex, double* out) const;
   const MarchStatistics& statistics() const { return statistics_; }
+  /// Memory taken by what is known of vertices.
+  std::size_t bytes() const { return numbers_.bytes() + ways_.bytes() + known_.bytes() + found_.bytes(); }
 
  private:
   struct Band {
@@ -47,15 +57,27 @@ class March {
   struct Link {  ///< an edge from a vertex of the band back to an accepted one
     Index place;
     std::size_t edge;
+    Index number;  ///< of the accepted one
+  };
+  struct Way {  ///< where a vertex is on its way
+    bool accepted = false;
+    Index place = -1;            ///< in the band at hand
+    float tentative = INFINITY;  ///< heat distance, less that of the front
+  };
+  struct Tentative {  ///< the heat distances of a search
+    March& march;
+    float& operator[](Index vertex) const { return march.way(vertex).tentative; }
   };
 
   void march(const Source* source);
   bool advance(const Source* source, double depth);
   Band find_band(const Source* source, double depth);
-  HeatExponents exponents_behind(const Band& band, std::span<const Link> links) const;
+  HeatExponents exponents_behind(std::span<const Link> links) const;
   Inflow inflow_behind(const Band& band, std::span<const Link> links, double scaling, HeatExponents exponents) const;
   void accept(Index vertex, Index place, const AffineHeat& heat, std::size_t s, HeatExponents exponents);
   void update_front(std::span<const Index> added);
+  Way& way(Index vertex);
+  Index place(Index vertex) const;
   bool sends_heat(Index vertex) const;
   double diagonal(Index vertex) const;
   double tau(Index vertex) const { return tau_[scales_.component(vertex)]; }
@@ -71,13 +93,12 @@ class March {
   unsigned threads_;
   std::size_t d_;
 
-  std::vector<std::uint8_t> accepted_;
-  std::vector<Index> place_;      ///< in the band at hand, or -1
-  std::vector<float> tentative_;  ///< heat distance on the way, less that of the front
-  std::vector<Index> front_;      ///< accepted vertices with neighbours that are not
-  KnownValues known_;             ///< of the accepted vertices
-  std::vector<double> coordinates_;
-  std::vector<double> root_mean_squares_;
+  ReachedNumbers numbers_;     ///< of the vertices that were looked at
+  GrowingRows<Way> ways_;      ///< of these
+  KnownValues known_;          ///< of the accepted ones
+  GrowingRows<double> found_;  ///< of the accepted ones: coordinates, root mean square
+  std::vector<double> nothing_;
+  std::vector<Index> front_;  ///< accepted vertices with neighbours that are not
   MarchStatistics statistics_;
   Offset accepted_count_ = 0;
 };

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "ahm/graph/tangent_graph.hpp"
+#include "ahm/progress.hpp"
 #include "ahm/surface/exact/exact_geodesics.hpp"
 
 namespace ahm {
@@ -31,7 +32,9 @@ VoronoiCells voronoi_cells(const ExactGeodesics& geodesics, std::span<const Vert
 
 /// `count` vertices, each the farthest from those before it, beginning with `first`; vertices of components without one
 /// count as infinitely far. Each one costs what is nearer to it than to those before.
-/// @throws InvalidArgument (index, count not in [1, n]), ResourceExhausted
-std::vector<Vertex> farthest_points(const TangentGraph& graph, Vertex first, Index count);
+/// @param progress  stage "farthest points"; asked before every point
+/// @throws InvalidArgument (index, count not in [1, n]), ResourceExhausted, Cancelled
+std::vector<Vertex> farthest_points(const TangentGraph& graph, Vertex first, Index count,
+                                    const Progress& progress = {});
 
 }  // namespace ahm

@@ -22,12 +22,15 @@ struct TriangleDistortion {
   /// most stretched direction. NaN where a corner has no coordinates or no position, or the triangle no area.
   double sigma1 = std::numeric_limits<double>::quiet_NaN();
   double sigma2 = std::numeric_limits<double>::quiet_NaN();
-  double area = 0;       ///< in space, world units squared
+  double side = 0;       ///< square root of its area in space, world units: the area itself may not fit a double
   bool flipped = false;  ///< clockwise in the plane
 
   /// D = max(1/sigma1, sigma2): 1 for an isometry, infinite where the triangle collapses, NaN as above (Eq. 18).
   double value() const noexcept;
 };
+
+/// Areas as shares of the largest.
+std::vector<double> relative_areas(std::span<const TriangleDistortion> triangles);
 
 /// Of a map given per vertex.
 /// @param positions    n, world units

@@ -61,8 +61,15 @@ Source stroke_source(std::span<const StrokePoint> points);
 /// @throws InvalidArgument (counts, a length, a source that is not of dimension 2, `circle` on an open curve)
 std::vector<StrokePoint> stroke_points(std::span<const Source> points, std::span<const double> lengths,
                                        const StrokeOptions& options = {});
-/// One source from these.
+/// The same with the user's own parameterization.
+/// @param positions  one (u, v) per point, world units; consecutive ones differ
+std::vector<StrokePoint> stroke_points(std::span<const Source> points, std::span<const double> lengths,
+                                       std::span<const Vec2> positions, bool closed = false);
+
+/// One source from either.
 Source stroke_source(std::span<const Source> points, std::span<const double> lengths,
                      const StrokeOptions& options = {});
+Source stroke_source(std::span<const Source> points, std::span<const double> lengths, std::span<const Vec2> positions,
+                     bool closed = false);
 
 }  // namespace ahm

@@ -43,4 +43,9 @@ struct SurfaceCurve {
 /// `stroke_source`
 SurfaceCurve draw_curve(const Surface& surface, std::span<const CurvePoint> given, const StrokeOptions& options = {});
 
+/// The same with the user's own parameterization.
+/// @param positions  one (u, v) per given point, world units; straight in between, along which consecutive ones differ
+SurfaceCurve draw_curve(const Surface& surface, std::span<const CurvePoint> given, std::span<const Vec2> positions,
+                        bool closed = false);
+
 }  // namespace ahm

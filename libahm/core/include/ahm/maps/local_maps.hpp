@@ -21,8 +21,9 @@
 namespace ahm {
 
 struct LocalMapOptions {
-  double radius = 0;  ///< world units, > 0, finite
-  /// Keep only so many nearest neighbours within the radius, the source's own vertex included; 0: all.
+  double radius = 0;  ///< world units, finite and > 0; 0 with `nearest`: as far as those are
+  /// Keep only so many nearest neighbours, the source's own vertex included; 0: all within the radius. Fewer where the
+  /// radius or the component holds fewer.
   Index nearest = 0;
   /// How far beyond the radius each patch reaches, in units of sqrt(tau). Flat pieces are exact at any margin; elsewhere
   /// this is what the difference to the map of the whole graph depends on: about 1e-5 of the radius at 2, and ten times
@@ -40,11 +41,11 @@ struct LocalMapOptions {
 struct LocalMaps {
   int dimension = 2;
   TransportKind kind = TransportKind::rotation2;
-  std::vector<Offset> indptr;      ///< sources + 1
-  std::vector<Index> indices;      ///< vertices
-  std::vector<double> logs;        ///< d per entry, world units
-  std::vector<double> distances;   ///< world units
-  std::vector<double> weights;     ///< masses, world units to the power d
+  std::vector<Offset> indptr;     ///< sources + 1
+  std::vector<Index> indices;     ///< vertices
+  std::vector<double> logs;       ///< d per entry, world units
+  std::vector<double> distances;  ///< world units
+  std::vector<double> weights;    ///< masses, world units to the power d; NaN where no double holds that (`world_mass`)
   std::vector<double> transports;  ///< 2 numbers (cos, sin) or d x d, row major, per entry
 
   Index sources() const noexcept { return static_cast<Index>(indptr.size()) - 1; }

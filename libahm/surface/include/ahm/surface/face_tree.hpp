@@ -41,10 +41,16 @@ class FaceTree {
     std::size_t second;      ///< the second half's box, 0 in a leaf; the first half's one follows this one
   };
 
+  struct Query {
+    Vec3 position;
+    double
+        scale;  ///< a power of two that takes lengths into the range of their squares; positions and hits are times it
+  };
+
   const Vec3& corner(const Piece& piece, int k) const;
   void build(std::size_t begin, std::size_t end);
-  void search(std::size_t box, const Vec3& position, Hit& best) const;
-  void look_at(const Piece& piece, const Vec3& position, Hit& best) const;
+  void search(std::size_t box, const Query& query, Hit& best) const;
+  void look_at(const Piece& piece, const Query& query, Hit& best) const;
 
   std::span<const Vec3> positions_;
   FaceList faces_;

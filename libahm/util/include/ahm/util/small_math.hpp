@@ -18,6 +18,12 @@ inline double dot(std::span<const double> a, std::span<const double> b) {
   return sum;
 }
 
+/// The power of two next below |x|, 1 for 0: in units of it squares of lengths near x neither overflow nor underflow, and
+/// no bit of them changes.
+inline double power_of_two_below(double x) {
+  return x == 0 ? 1.0 : std::ldexp(1.0, std::clamp(std::ilogb(x), -1022, 1022));
+}
+
 /// Euclidean length without overflow.
 inline double length(std::span<const double> v) {
   if (v.size() == 2) return std::hypot(v[0], v[1]);

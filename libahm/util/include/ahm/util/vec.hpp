@@ -2,6 +2,7 @@
 /// Arithmetic on vectors of the plane and of space. Not part of the public interface.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -59,6 +60,14 @@ double norm(const std::array<double, d>& a) {
 template <std::size_t d>
 std::array<double, d> normalized(const std::array<double, d>& a) {
   return 1.0 / norm(a) * a;
+}
+
+/// The largest |coordinate|.
+template <std::size_t d>
+double largest(const std::array<double, d>& a) {
+  double result = 0;
+  for (double x : a) result = std::max(result, std::abs(x));
+  return result;
 }
 
 inline bool is_finite(const Vec3& p) { return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]); }

@@ -1,0 +1,18 @@
+/// \file
+/// How much memory this process may take.
+#pragma once
+
+#include <filesystem>
+
+namespace ahm {
+
+/// The least memory limit among a process's control groups, of version 1 and 2, and the groups around them, in bytes;
+/// infinity where there is none.
+/// @param groups  what /proc/self/cgroup says: lines "number:controllers:path"
+/// @param mounts  where the hierarchies are mounted: /sys/fs/cgroup
+double control_group_limit(const std::filesystem::path& groups, const std::filesystem::path& mounts);
+
+/// The lesser of the process's limits of address space and of data (RLIMIT_AS, RLIMIT_DATA); infinity without.
+double resource_limit();
+
+}  // namespace ahm

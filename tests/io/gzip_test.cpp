@@ -1,0 +1,107 @@
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <zlib.h>
+
+#include "files.hpp"
+
+namespace ahm::io::test {
+namespace {
+
+using ReadGzip = Files;
+
+std::string gzip(std::string_view bytes) {
+  z_stream stream{};
+  EXPECT_EQ(::deflateInit2(&stream, 9, Z_DEFLATED, 16 + MAX_WBITS, 9, Z_DEFAULT_STRATEGY), Z_OK);
+  std::string result(::deflateBound(&stream, bytes.size()), '\0');
+  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
+  stream.avail_in = static_cast<uInt>(bytes.size());
+  stream.next_out = reinterpret_cast<Bytef*>(result.data());
+  stream.avail_out = static_cast<uInt>(result.size());
+  EXPECT_EQ(::deflate(&stream, Z_FINISH), Z_STREAM_END);
+  result.resize(stream.total_out);
+  ::deflateEnd(&stream);
+  return result;
+}
+
+const std::string triangle = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+
+TEST_F(ReadGzip, ReadsEveryFormatByTheExtensionBeforeGz) {
+  EXPECT_EQ(read_bytes("a.off.gz", gzip(triangle)).face_vertices, (std::vector<Index>{0, 1, 2}));
+  EXPECT_EQ(read_bytes("A.XYZ.GZ", gzip("1 2 3\n")).points[0], (Vec3{1, 2, 3}));
+  EXPECT_EQ(read_bytes("a.csv.gz", gzip("x,y,z\n1,2,3\n")).points[0], (Vec3{1, 2, 3}));
+}
+
+TEST_F(ReadGzip, KnowsCompressedContentsUnderAnotherName) {
+  EXPECT_EQ(read_bytes("a.off", gzip(triangle)).points.size(), 3u);
+  expect_refused("a.off.gz", triangle, {"not compressed with gzip"});
+  expect_refused("a.gz", gzip(triangle), {"unknown file type"});
+}
+
+TEST_F(ReadGzip, JoinsMembersAndIgnoresZerosBehindThem) {
+  const std::string halves = gzip(triangle.substr(0, 20)) + gzip(triangle.substr(20));
+  EXPECT_EQ(read_bytes("m.off.gz", halves).points.size(), 3u);
+  EXPECT_EQ(read_bytes("m.off.gz", halves + std::string(512, '\0')).points.size(), 3u);
+  expect_refused("m.off.gz", halves + "more", {"byte " + std::to_string(halves.size()), "goes on"});
+}
+
+TEST_F(ReadGzip, GrowsBeyondWhatTheSizeOfTheFileSuggests) {
+  std::string text;
+  for (int k = 0; k < 100000; ++k) text += "1 2 3\n";
+  const std::string packed = gzip(text);
+  ASSERT_LT(packed.size() * 100, text.size());
+  EXPECT_EQ(read_bytes("g.xyz.gz", packed).points.size(), 100000u);
+}
+
+TEST_F(ReadGzip, RefusesEveryTruncation) {
+  const std::string packed = gzip(triangle);
+  for (std::size_t size = 2; size < packed.size(); ++size)
+    expect_refused("t.off.gz", packed.substr(0, size), {"byte " + std::to_string(size), "cut short"});
+}
+
+TEST_F(ReadGzip, RefusesEveryByteChangedInTheDataOrItsSums) {
+  const std::string packed = gzip(triangle);
+  constexpr std::size_t header = 10;
+  for (std::size_t k = header; k < packed.size(); ++k) {
+    std::string damaged = packed;
+    damaged[k] = static_cast<char>(damaged[k] ^ 0x10);
+    EXPECT_THROW(read_bytes("d.off.gz", damaged), IoError) << k;
+  }
+  std::string damaged = packed;
+  damaged[packed.size() - 5] = static_cast<char>(damaged[packed.size() - 5] ^ 1);
+  expect_refused("d.off.gz", damaged, {"damaged", "incorrect data check"});
+}
+
+TEST_F(ReadGzip, RefusesContentsThatAreEmpty) { expect_refused("e.off.gz", gzip(""), {"empty", "unpacked"}); }
+
+TEST_F(ReadGzip, RefusesMoreThanHalfOfTheFreeMemory) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the sanitizer needs the whole address space";
+#endif
+  std::string bomb;
+  const std::string member = gzip(std::string(8 << 20, '\n'));
+  for (int k = 0; k < 32; ++k) bomb += member;
+  const std::filesystem::path packed = make("bomb.xyz.gz", bomb);
+  const pid_t child = ::fork();
+  if (child == 0) {
+    std::ifstream statm("/proc/self/statm");
+    rlim_t pages = 0;
+    statm >> pages;
+    const rlim_t bytes = pages * static_cast<rlim_t>(::sysconf(_SC_PAGESIZE)) + (rlim_t{256} << 20);
+    const rlimit limit{bytes, bytes};
+    ::setrlimit(RLIMIT_AS, &limit);
+    try {
+      read(packed);
+      ::_exit(1);
+    } catch (const ResourceExhausted& error) {
+      ::_exit(std::string_view(error.what()).find("half of the memory") == std::string_view::npos ? 2 : 0);
+    } catch (...) {
+      ::_exit(3);
+    }
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
+}
+
+}  // namespace
+}  // namespace ahm::io::test
