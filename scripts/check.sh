@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # What a compiler and the tests do not see: the format of every source, clang-tidy on what is ours, and the tests of the
 # library, its backends and io under the address and undefined-behaviour sanitizers. Installs what these take.
-#   check.sh [format|tidy|sanitizers ...]     all three without a word
+#   check.sh [format|tidy|tidy-all|sanitizers ...]     format, tidy and sanitizers without a word
+# tidy looks at what differs from main and at what includes that; tidy-all at everything.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -10,13 +11,35 @@ format() {
   git ls-files -z '*.hpp' '*.cpp' | xargs -0 clang-format --dry-run -Werror
 }
 
-# In the build of the sanitizers, which knows how every source is compiled; nothing has to be built for it.
+sources() {
+  git ls-files "$@" ':!benchmarks' ':!examples' ':!python' ':!testing' ':!tests' ':!backends/pointcloud/pcl' ':!io/src/*/pcl_*' \
+    ':!*/no_*.cpp' ':!*/stb.cpp' ':!*/pack.cpp'
+}
+
+# Without precompiled headers: each source must include what it needs. Nothing has to be built for it.
+run_tidy() {
+  cmake -S . -B build/tidy -G Ninja -DCMAKE_BUILD_TYPE=Debug -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON -DAHM_WITH_PCL=OFF \
+    -DAHM_BUILD_TESTS=OFF -DAHM_BUILD_EXAMPLES=OFF -DAHM_INSTALL=OFF >/dev/null
+  xargs -r -n 1 -P "$(nproc)" clang-tidy -p build/tidy --quiet --warnings-as-errors='*'
+}
+
 tidy() {
+  echo "clang-tidy on what differs from main ..."
+  local base changed; base="$(git merge-base HEAD main 2>/dev/null || git rev-parse HEAD)"
+  mapfile -t changed < <(git diff --name-only --diff-filter=d "$base" -- '*.cpp' '*.hpp')
+  {
+    for file in "${changed[@]}"; do
+      case "$file" in
+        *.hpp) sources '*.cpp' | xargs grep -lF "$(basename "$file")\"" || true ;;
+        *) sources "$file" ;;
+      esac
+    done
+  } | sort -u | run_tidy
+}
+
+tidy-all() {
   echo "clang-tidy ..."
-  cmake --preset asan >/dev/null
-  git ls-files -z '*.cpp' ':!benchmarks' ':!examples' ':!testing' ':!tests' ':!backends/pointcloud/pcl' ':!io/src/*/pcl_*' \
-    ':!*/no_*.cpp' ':!*/stb.cpp' ':!*/pack.cpp' |
-    xargs -0 -n 1 -P "$(nproc)" clang-tidy -p build/asan --quiet --warnings-as-errors='*'
+  sources '*.cpp' | run_tidy
 }
 
 sanitizers() {
@@ -34,8 +57,8 @@ sanitizers() {
 for check in "${@:-format tidy sanitizers}"; do
   for one in $check; do
     case "$one" in
-      format | tidy | sanitizers) ;;
-      *) echo "error: check.sh [format|tidy|sanitizers ...]" >&2; exit 2 ;;
+      format | tidy | tidy-all | sanitizers) ;;
+      *) echo "error: check.sh [format|tidy|tidy-all|sanitizers ...]" >&2; exit 2 ;;
     esac
   done
 done

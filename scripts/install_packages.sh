@@ -20,6 +20,7 @@ tests=(
   libminizip-dev                                              # .npz files
   libgtest-dev libbenchmark-dev                               # tests and benchmarks
   libcgal-dev python3-matplotlib                              # exact distances and plots of the experiments
+  pybind11-dev python3-pybind11 python3-dev python3-numpy python3-scipy python3-pytest  # the Python package and its tests
 )
 checks=("${tests[@]}" clang-format clang-tidy)
 case "${1:-tests}" in

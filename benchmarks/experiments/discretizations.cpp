@@ -27,7 +27,7 @@ struct Backend {
 
 void measure(const char* name, std::span<const Vec3> points, const Backend& backend, Table& table) {
   for (double t_coef : {1.0, 4.0})
-    for (Variant variant : {Variant::adaptive, Variant::localized}) {
+    for (Variant variant : all_variants) {
       std::vector<Cell> row{name, points.size(), t_coef, to_string(variant)};
       try {
         const LogMapSolver solver(backend.graph, {.t_coef = t_coef, .strategy = Strategy::global});

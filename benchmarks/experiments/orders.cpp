@@ -83,7 +83,7 @@ Sums squares(const LogMap& exact, const LogMap& map, const std::vector<double>& 
 
 void measure(const Surface& surface, Table& table) {
   const ExactGeodesics exact(surface.mesh());
-  for (Variant variant : {Variant::adaptive, Variant::localized}) {
+  for (Variant variant : all_variants) {
     const LogMapSolver one(surface.graph(), {.variant = variant}),
         two(surface.graph(), {.variant = variant, .order = 2});
     Sums sums[2];

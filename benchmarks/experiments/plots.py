@@ -237,6 +237,14 @@ def discretizations(rows):
     return legend(figure, axes)
 
 
+def polygons(rows):
+    figure, axes = panels(2, width=4.6)
+    for axis, how in zip(axes, ("refined", "polygons")):
+        lines(axis, only(rows, discretization=how, order="1", variant="adaptive"), "vertices", "rms", "mesh", logx=True,
+              logy=True, title=how)
+    return legend(figure, axes)
+
+
 def runtime(rows):
     figure, axes = panels(3, width=3.6)
     methods = ("AHM_a", "AHM_l", "VHM_log")

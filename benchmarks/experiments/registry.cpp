@@ -14,6 +14,7 @@ Table dem(const Settings&);
 Table discretizations(const Settings&);
 Table distance(const Settings&);
 Table distortion(const Settings&);
+Table exact_compared(const Settings&);
 Table flat(const Settings&);
 Table local_maps(const Settings&);
 Table march(const Settings&);
@@ -22,6 +23,7 @@ Table mazes(const Settings&);
 Table mesh_scaling(const Settings&);
 Table methods_compared(const Settings&);
 Table orders(const Settings&);
+Table polygons(const Settings&);
 Table radial(const Settings&);
 Table runtime(const Settings&);
 Table tessellations(const Settings&);
@@ -76,6 +78,10 @@ std::span<const Experiment> experiments() {
           "trust", "after Fig. 20", "Distances and quality against exact maps",
           "Distances are accurate near the source and too short at cut loci; exact vectors are not in the paper.",
           trust},
+      Experiment{
+          "exact", "none", "Exact maps, and heat's against them",
+          "On coarse meshes exact maps cost no more than the first by heat; vectors of heat are off by percents.",
+          exact_compared},
       Experiment{"orders", "after Fig. 24", "Order 2 against order 1",
                  "Maps are of first order in h; the paper does not extrapolate.", orders},
       Experiment{
@@ -86,6 +92,8 @@ std::span<const Experiment> experiments() {
       Experiment{"discretizations", "Fig. 15, 16", "The sphere as triangles, polygons and points",
                  "The same algorithm runs on point clouds and polygon meshes; the paper gives pictures, no numbers.",
                  discretizations},
+      Experiment{"polygons", "after Fig. 15", "The sphere as polygons of many kinds",
+                 "The same algorithm runs on polygon meshes; the paper gives a picture, no numbers.", polygons},
       Experiment{"backends", "after Fig. 16", "What each backend costs",
                  "The same algorithm runs on triangles, polygons and point clouds, with like results.", backends},
       Experiment{"methods", "all", "Every method on the sphere",

@@ -87,7 +87,7 @@ double mean(const std::vector<double>& values) {
 
 void measure(const Surface& surface, Table& table) {
   const exact::PolyhedralSurface polyhedral = polyhedron(surface);
-  for (Variant variant : {Variant::adaptive, Variant::localized}) {
+  for (Variant variant : all_variants) {
     const LogMapSolver solver(surface.graph(), {.variant = variant});
     Found found;
     for (int s = 0; s < source_count; ++s) {

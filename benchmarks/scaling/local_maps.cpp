@@ -44,7 +44,7 @@ Table margins(const Settings& settings) {
   for (Index n : sizes(settings, 6000, {10000})) {
     const auto surface = torus_graph(n);
     const double h = surface.graph().mean_edge_length() * surface.graph().length_unit();
-    for (Variant variant : {Variant::adaptive, Variant::localized})
+    for (Variant variant : all_variants)
       for (double radius : {4.0, 10.0})
         for (double margin : {0.0, 1.0, 2.0, 3.0, 4.0, 6.0, 8.0})
           table.add({surface.graph().size(), to_string(variant), radius, margin,
@@ -66,7 +66,7 @@ Table local_maps(const Settings& settings) {
     const double single =
         median_of_five([&] { solver.solve(Source::at_vertex(Vertex(n / 2)), {.threads = settings.threads}); });
     for (double radius : {5.4, 12.0})
-      for (Variant variant : {Variant::adaptive, Variant::localized}) {
+      for (Variant variant : all_variants) {
         Offset entries = 0;
         const double s = seconds([&] {
           const LocalMapOptions options{

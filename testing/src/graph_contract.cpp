@@ -96,7 +96,7 @@ void closes_every_loop_where_it_is_flat(const TangentGraph& graph) {
   // that the residual of Alg. 2 vanishes whatever the weights.
   LogMapSolver solver(graph);
   const Index source = graph.size() / 2;
-  for (Variant variant : {Variant::adaptive, Variant::localized}) {
+  for (Variant variant : all_variants) {
     const LogMap map = solver.solve(Source::at_vertex(Vertex(source)), {.variant = variant});
     double diameter = 0;
     for (Index i = 0; i < graph.size(); ++i) diameter = std::max(diameter, map.distance(Vertex(i)));
@@ -145,7 +145,7 @@ void starts_between_vertices_exactly_where_it_is_flat(const TangentGraph& graph)
   const LogMapSolver solver(graph);
   const Index p = graph.size() / 3;
   const PointBeside point = point_beside(graph, p);
-  for (Variant variant : {Variant::adaptive, Variant::localized}) {
+  for (Variant variant : all_variants) {
     const LogMap from_vertex = solver.solve(Source::at_vertex(Vertex(p)), {.variant = variant}),
                  map = solver.solve(point.source, {.variant = variant});
     for (Index i = 0; i < graph.size(); ++i)
@@ -157,7 +157,7 @@ void starts_between_vertices_exactly_where_it_is_flat(const TangentGraph& graph)
 
 void agrees_with_the_papers_full_operator(const TangentGraph& graph) {
   LogMapSolver solver(graph);
-  for (Variant variant : {Variant::adaptive, Variant::localized}) {
+  for (Variant variant : all_variants) {
     const LogMap map = solver.solve(Source::at_vertex(Vertex{3}), {.variant = variant});
     const std::vector<double> reference = reference_log_map(graph, 3, variant);
     double largest = 0;
@@ -173,7 +173,7 @@ void does_not_depend_on_the_frames(const TangentGraph& original) {
   const CsrGraph graph(data), other(turned.data);
   const Index p = graph.size() / 3;
   const auto Q_p = std::span(turned.turns).subspan(static_cast<std::size_t>(p) * d * d, d * d);
-  for (Variant variant : {Variant::adaptive, Variant::localized}) {
+  for (Variant variant : all_variants) {
     const LogMap map = map_of(graph, Source::at_vertex(Vertex(p)), variant),
                  same = map_of(other, Source::at_vertex(Vertex(p)), variant);
     for (Index i = 0; i < graph.size(); ++i) {
@@ -190,7 +190,7 @@ void does_not_depend_on_the_numbering(const TangentGraph& original) {
   std::iota(order.begin(), order.end(), 0);
   std::shuffle(order.begin(), order.end(), std::mt19937(3));
   const CsrGraph graph(data), other(relabelled(data, order));
-  for (Variant variant : {Variant::adaptive, Variant::localized}) {
+  for (Variant variant : all_variants) {
     const LogMap map = map_of(graph, Source::at_vertex(Vertex{3}), variant),
                  same = map_of(other, Source::at_vertex(Vertex(order[3])), variant);
     for (Index i = 0; i < graph.size(); ++i)
@@ -231,7 +231,7 @@ void solves_batches_on_any_number_of_threads(const TangentGraph& graph) {
   const LogMapSolver solver(graph);
   std::vector<Source> sources;
   for (Index p = 0; p < 35; ++p) sources.push_back(Source::at_vertex(Vertex(p)));
-  for (Variant variant : {Variant::adaptive, Variant::localized}) {
+  for (Variant variant : all_variants) {
     const auto one = solver.solve(sources, {.variant = variant, .threads = 1}),
                many = solver.solve(sources, {.variant = variant, .threads = 4});
     for (std::size_t s = 0; s < sources.size(); ++s) {

@@ -68,6 +68,47 @@ TEST(ExactMethod, IsThatOfHeatOnAPlaneInEverySubcommandOfOneMap) {
     both({"inverse", input, "--source", source, "--at", "0.1,0.1 -.2,.15"}, {"x", "y", "z", "hx", "hy", "hz"});
     both({"coverage", input, "--source", source, "--radius", ".2", "--spacing", ".05"}, {"x", "y", "z", "arclength"});
   }
+  both({"stroke", input, "--curve", "0.2,0.3,0 0.8,0.6,0"}, {"u", "v", "distance"});
+  both({"cells", input, "--sources", "17 100 201"}, {"distance"});
+}
+
+TEST(ExactMethod, FindsTheCenterOfAPlane) {
+  Folder folder;
+  const std::string input = folder.write("square.off", off(flat_square(15)));
+  for (const char* median : {"", "--median"}) {
+    std::vector<Vec3> found;
+    for (const std::string method : {"heat", "exact"}) {
+      Words words{"center", input, "--points", "20 130 201", "--method", method, "--json", folder / "center.json"};
+      if (*median != 0) words.push_back(median);
+      const Outcome outcome = run(words);
+      ASSERT_EQ(outcome.status, 0) << outcome.err;
+      found.push_back(read_json(folder / "center.json").at("center").at("position").get<Vec3>());
+    }
+    for (std::size_t a = 0; a < 3; ++a) EXPECT_NEAR(found[0][a], found[1][a], 1e-9);
+  }
+}
+
+TEST(ExactMethod, LabelsCellsByExactDistance) {
+  Folder folder;
+  const std::string input = folder.write("cube.off", cube());
+  const Outcome outcome = run({"cells", input, "--sources", "0 7", "--method", "exact", "-o", folder / "cells.csv"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const double expected[] = {0, 1, 1, 1, 1, 1, 1, 0};
+  const auto rows = read_numbers(folder / "cells.csv");
+  for (std::size_t k = 0; k < 8; ++k) EXPECT_NEAR(rows[k].at("distance"), expected[k], 1e-12);
+  for (std::size_t k : {1, 2, 4}) EXPECT_EQ(rows[k].at("label"), 0);
+  for (std::size_t k : {3, 5, 6}) EXPECT_EQ(rows[k].at("label"), 1);
+}
+
+TEST(ExactMethod, MakesAnAtlas) {
+  Folder folder;
+  const std::string input = folder.write("square.off", off(flat_square(15)));
+  const Outcome outcome = run({"atlas", input, "--charts", "5", "--method", "exact", "-o", folder / "atlas.obj",
+                               "--json", folder / "atlas.json"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const auto json = read_json(folder / "atlas.json");
+  EXPECT_EQ(json.at("uncharted"), 0);
+  EXPECT_NEAR(json.at("distortion").at("largest").get<double>(), 1, 1e-9);
 }
 
 TEST(ExactMethod, UnfoldsACube) {

@@ -168,6 +168,24 @@ TEST(Info, TellsTheTopologyOfMeshes) {
   }
 }
 
+TEST(Info, AdvisesExactMapsWhereFacesAreCoarse) {
+  Folder folder;
+  const auto method = [&](const std::string& name, const std::string& text) {
+    return info(folder.write(name, text)).at("method");
+  };
+  const auto coarse = method("coarse.obj", obj(icosphere(4)));
+  EXPECT_EQ(coarse.at("advice"), "exact");
+  EXPECT_GT(coarse.at("median_bend_degrees").get<double>(), 5);
+  // Fine, flat, and without faces.
+  EXPECT_EQ(method("fine.obj", obj(icosphere(30))).at("advice"), "heat");
+  const auto flat = method("flat.obj", obj(holed_square(20)));
+  EXPECT_EQ(flat.at("advice"), "heat");
+  EXPECT_NEAR(flat.at("sharp_bend_degrees").get<double>(), 0, 1e-6);
+  const auto cloud = method("cloud.xyz", xyz(sphere(500)));
+  EXPECT_EQ(cloud.at("advice"), "heat");
+  EXPECT_EQ(cloud.at("exact_possible"), false);
+}
+
 TEST(Info, CountsWhatIsWrongWithAMesh) {
   Folder folder;
   const auto json = info(folder.write("book.obj", book() + "v 5 5 5\n"));

@@ -124,6 +124,20 @@ TEST(Mesh, RefusesWhatHasNoSurface) {
   EXPECT_EQ(map(book, "0", {"--non-manifold", "split"}).size(), 5u);
 }
 
+TEST(MeshCommand, AnAxisAlongTheNormalIsRefusedAndSaysWhy) {
+  const Folder folder;
+  const std::string mesh = folder.write("sheet.obj", sheet(9)), cloud = folder.write("plane.xyz", xyz(plane(12)));
+  for (const auto& [input, source] :
+       {std::pair{mesh, "40"}, std::pair{mesh, "face:30:.3,.3,.4"}, std::pair{cloud, "70"}})
+    for (const char* method : {"heat", "exact"}) {
+      if (input == cloud && method == std::string("exact")) continue;
+      const Outcome outcome =
+          run({"logmap", input, "--source", source, "--u-axis", "0,0,2", "--method", method, "-o", folder / "map.csv"});
+      EXPECT_EQ(outcome.status, 1);
+      EXPECT_NE(outcome.err.find("--u-axis 0,0,2: is perpendicular to the surface"), std::string::npos) << outcome.err;
+    }
+}
+
 /// The faces of an .obj file as lists of (v, vt), each vertex and pair of coordinates as numbers.
 struct Corners {
   std::vector<std::vector<double>> points, places;

@@ -55,6 +55,102 @@ TEST(PathCommand, GoesThroughPointsAndBack) {
   EXPECT_EQ(io::read(folder / "loop.ply").points.size(), read_numbers(folder / "loop.csv").size());
 }
 
+TEST(PathCommand, NamesWhatItLeadsThrough) {
+  Folder folder;
+  const std::string input = folder.write("cube.off", cube_and_square);
+  const auto length = [&](const std::vector<std::string>& words) {
+    std::vector<std::string> all{
+        "path", input, "--from", "face:2:.25,.25,.25,.25", "-o", folder / "path.csv", "--json", folder / "path.json"};
+    all.insert(all.end(), words.begin(), words.end());
+    const Outcome outcome = run(all);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return read_json(folder / "path.json").at("length").get<double>();
+  };
+  const std::string beside = "face:5:.25,.25,.25,.25", behind = "face:3:.25,.25,.25,.25";
+  EXPECT_NEAR(length({"--through", beside, "--to", behind}), 2, 1e-12);
+  EXPECT_EQ(length({"--through", beside, "--to", behind}), length({"--to", beside + " " + behind}));
+}
+
+TEST(PathCommand, FindsAPathForEveryPairOfAFile) {
+  Folder folder;
+  const std::string input = folder.write("cube.off", cube_and_square);
+  const std::string pairs = folder.write("pairs.txt", "# from to\n0 7\n0 3\n\n0 9\n3.5,0,0 3.5,1,0\n0 0 0  0 0 1\n");
+  for (const std::string how : {"", "--fast"}) {
+    std::vector<std::string> words{"path",    input,
+                                   "--pairs", pairs,
+                                   "-o",      folder / "paths.csv",
+                                   "--json",  folder / "paths.json",
+                                   "--view",  folder / "paths.png"};
+    if (!how.empty()) words.push_back(how);
+    const Outcome outcome = run(words);
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_NE(outcome.err.find("1 of 5 pairs"), std::string::npos) << outcome.err;
+    const auto paths = read_json(folder / "paths.json").at("paths");
+    const double expected[] = {std::sqrt(5.0), std::sqrt(2.0), 0, 1, 1};
+    std::vector<double> walked(5, 0), last(5, 0);
+    for (const NumberRow& row : read_numbers(folder / "paths.csv"))
+      last[static_cast<std::size_t>(row.at("curve"))] = row.at("arclength");
+    for (std::size_t k = 0; k < 5; ++k) {
+      EXPECT_EQ(paths[k].at("status"), k == 2 ? "disconnected" : "ok");
+      EXPECT_NEAR(last[k], expected[k], 1e-12);
+      if (k == 2)
+        EXPECT_TRUE(paths[k].at("length").is_null());
+      else
+        EXPECT_NEAR(paths[k].at("length").get<double>(), expected[k], 1e-12);
+    }
+  }
+  for (const char* name : {"paths.obj", "paths.ply"}) {
+    EXPECT_EQ(run({"path", input, "--pairs", pairs, "-o", folder / name}).status, 0);
+    EXPECT_EQ(io::read(folder / name).points.size(), read_numbers(folder / "paths.csv").size());
+  }
+  const std::string curves = read_text(folder / "paths.obj");
+  std::size_t lines = 0;
+  for (std::size_t at = curves.find("\nl "); at != std::string::npos; at = curves.find("\nl ", at + 1)) ++lines;
+  EXPECT_EQ(lines, 4U) << "one for each path";
+}
+
+TEST(PathCommand, NamesTheLineOfABadPair) {
+  Folder folder;
+  const std::string input = folder.write("cube.off", cube_and_square);
+  const Outcome outcome =
+      run({"path", input, "--pairs", folder.write("pairs.txt", "0 7\n0 1 2\n"), "-o", folder / "paths.csv"});
+  EXPECT_NE(outcome.status, 0);
+  EXPECT_NE(outcome.err.find("line 2"), std::string::npos) << outcome.err;
+  EXPECT_NE(run({"path", input, "-o", folder / "paths.csv"}).err.find("--pairs"), std::string::npos);
+}
+
+TEST(PathCommand, TightensALoop) {
+  Folder folder;
+  const std::string input = folder.write("cube.off", cube_and_square);
+  // Wavering about the cube: the shortest such loops are straight and as long as four sides.
+  const std::vector<std::string> words{"path",
+                                       input,
+                                       "--from",
+                                       "face:2:.3,.3,.2,.2",
+                                       "--to",
+                                       "face:5:.2,.4,.2,.2 face:3:.25,.25,.25,.25 face:4:.3,.2,.2,.3",
+                                       "--closed",
+                                       "-o",
+                                       folder / "loop.csv",
+                                       "--json",
+                                       folder / "loop.json"};
+  std::vector<std::string> tight = words;
+  tight.push_back("--tighten");
+  ASSERT_EQ(run(words).status, 0);
+  const double loose = read_json(folder / "loop.json").at("length").get<double>();
+  const Outcome outcome = run(tight);
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const auto json = read_json(folder / "loop.json");
+  EXPECT_NEAR(json.at("length").get<double>(), 4, 1e-9);
+  EXPECT_NEAR(json.at("length_through_stops").get<double>(), loose, 1e-12);
+  EXPECT_GT(loose, 4);
+  // On a flat square a loop goes around nothing.
+  const Outcome flat =
+      run({"path", input, "--from", "8", "--to", "9 10", "--closed", "--tighten", "-o", folder / "flat.csv"});
+  EXPECT_EQ(flat.status, 1);
+  EXPECT_NE(flat.err.find("shrinks"), std::string::npos) << flat.err;
+}
+
 TEST(PathCommand, SaysWhyThereIsNone) {
   Folder folder;
   const std::string input = folder.write("cube.off", cube_and_square);
@@ -91,6 +187,23 @@ TEST(TraceCommand, EndsAtTheBoundary) {
   EXPECT_EQ(json.at("end").at("at"), "boundary");
   EXPECT_NEAR(json.at("length").get<double>(), 0.75, 1e-12);
   EXPECT_NEAR(read_numbers(folder / "line.csv").back().at("x"), 4, 1e-12);
+}
+
+TEST(TraceCommand, GoesAlongEveryLineOfAFile) {
+  Folder folder;
+  const std::string input = folder.write("cube.off", cube_and_square);
+  const std::string lines = folder.write("lines.txt", "face:2:.2,.3,.3,.2 1,0,0\n3.25,.5,0 1,0,7 9\n");
+  const Outcome outcome = run({"trace", input, "--lines", lines, "--length", "4", "-o", folder / "lines.csv", "--json",
+                               folder / "lines.json", "--view", folder / "lines.png"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const auto json = read_json(folder / "lines.json").at("lines");
+  EXPECT_EQ(json[0].at("end"), "length");
+  EXPECT_NEAR(json[0].at("length").get<double>(), 4, 1e-12);
+  EXPECT_EQ(json[1].at("end"), "boundary");
+  EXPECT_NEAR(json[1].at("length").get<double>(), 0.75, 1e-12);
+  EXPECT_EQ(read_numbers(folder / "lines.csv").back().at("curve"), 1);
+  const Outcome endless = run({"trace", input, "--lines", lines, "-o", folder / "lines.csv"});
+  EXPECT_NE(endless.err.find("--length"), std::string::npos) << endless.err;
 }
 
 TEST(TraceCommand, RefusesADirectionAlongTheNormal) {

@@ -134,6 +134,17 @@ TEST(FarthestPoints, VisitEveryComponentFirst) {
   EXPECT_GE(farthest_points(graph, Vertex{0}, 2)[1], Vertex{flat.size()});
 }
 
+TEST(FarthestPoints, StopWhenAsked) {
+  const CsrGraph graph(planar_triangulation(6).data);
+  std::stop_source stop;
+  int asked = 0;
+  const auto report = [&](std::string_view, double) {
+    if (++asked == 3) stop.request_stop();
+  };
+  EXPECT_THROW(farthest_points(graph, Vertex{0}, 20, {report, stop.get_token()}), Cancelled);
+  EXPECT_EQ(asked, 3);
+}
+
 TEST(Cells, RefuseBadArguments) {
   const CsrGraph graph(planar_triangulation(5).data);
   EXPECT_THROW(voronoi_cells(graph, {}), InvalidArgument);

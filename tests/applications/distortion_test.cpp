@@ -118,7 +118,7 @@ TEST(Distortion, ScalesWithThePowersOfTwo) {
 
 TEST(Distortion, IsSummarizedByArea) {
   const auto triangle = [](double sigma2, double area, bool flipped) {
-    return TriangleDistortion{1, sigma2, area, flipped};
+    return TriangleDistortion{1, sigma2, std::sqrt(area), flipped};
   };
   const std::vector<TriangleDistortion> some{triangle(2, 90, false), triangle(10, 6, true), triangle(4, 4, false),
                                              TriangleDistortion{}};

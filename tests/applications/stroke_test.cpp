@@ -55,7 +55,7 @@ TEST(Stroke, GivesThePlaneBackFromAnyCurveWithItsOwnPositions) {
       for (Vec2& z : positions) z[1] = -z[1];
     }
     const Source other = stroke_source(graph, path, positions);
-    for (Variant variant : {Variant::adaptive, Variant::localized}) {
+    for (Variant variant : all_variants) {
       double worst[] = {0, 0};
       for (int which : {0, 1}) {
         const LogMap map = solver.solve(which == 0 ? source : other, {.variant = variant});

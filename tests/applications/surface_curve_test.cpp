@@ -84,6 +84,26 @@ TEST(SurfaceCurve, GoesThroughRowsThatAreGiven) {
   });
 }
 
+TEST(SurfaceCurve, FollowsTheFacesBetweenFewPoints) {
+  // From pole to pole a straight line passes through the middle of the sphere; the curve goes around.
+  const Mesh ball = icosphere(10);
+  const auto mesh = trimesh::TriangleMeshSurface::build(ball.positions, ball.faces);
+  const Vec3 a = mesh.position(Row(3)), b = mesh.position(Row(200));
+  const CurvePoint given[] = {a, b};
+  const SurfaceCurve curve = draw_curve(mesh, given);
+  const double edge = mesh.graph().mean_edge_length() * mesh.graph().length_unit();
+  EXPECT_NEAR(curve.length, ExactGeodesics(mesh).path(std::array<SurfacePoint, 2>{Row(3), Row(200)}).length,
+              0.02 * edge);
+  EXPECT_LT(curve.gap, 1e-12);
+  EXPECT_LT(curve.jump, 0.5 * edge + 1e-12);
+  ASSERT_EQ(curve.samples.size(), curve.points.size());
+  // The samples are the sources of an exact map: u = 0 .. length along the curve.
+  const auto [map, labels] = ExactGeodesics(mesh).log_map(curve.samples);
+  EXPECT_NEAR(map.coordinates(mesh.vertex(Row(3)))[0], 0, 1e-9);
+  EXPECT_NEAR(map.coordinates(mesh.vertex(Row(200)))[0], curve.length, 1e-9);
+  for (Index r : {3, 200}) EXPECT_NEAR(map.coordinates(mesh.vertex(Row(r)))[1], 0, 1e-9);
+}
+
 TEST(SurfaceCurve, SaysWhatIsWrongWithACurve) {
   const Mesh band = moebius_mesh(80, 6);
   const auto surface = trimesh::TriangleMeshSurface::build(band.positions, band.faces);

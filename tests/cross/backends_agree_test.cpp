@@ -142,7 +142,7 @@ TEST_P(Cross, MapsOfTheSameVerticesApproachEachOther) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Variants, Cross, testing::Values(Variant::adaptive, Variant::localized),
+INSTANTIATE_TEST_SUITE_P(Variants, Cross, testing::ValuesIn(all_variants),
                          [](const auto& info) { return std::string(to_string(info.param)); });
 
 }  // namespace

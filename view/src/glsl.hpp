@@ -6,6 +6,7 @@
 
 namespace ahm::view::glsl {
 
+// NOLINTBEGIN(readability-identifier-naming): these names are GLSL's
 struct vec2 {
   float x = 0, y = 0;
   vec2() = default;
@@ -19,6 +20,7 @@ struct vec3 {
   explicit vec3(float all) : x(all), y(all), z(all) {}
   vec3(float first, float second, float third) : x(first), y(second), z(third) {}
 };
+// NOLINTEND(readability-identifier-naming)
 
 inline vec2 operator+(vec2 a, vec2 b) { return {a.x + b.x, a.y + b.y}; }
 inline vec2 operator-(vec2 a, vec2 b) { return {a.x - b.x, a.y - b.y}; }

@@ -11,6 +11,15 @@
 #include "output/picture_options.hpp"
 
 namespace ahm::app {
+namespace {
+
+/// "a, b or c"
+std::string one_of(const std::vector<std::string>& names) {
+  const std::string rest = fmt::format("{}", fmt::join(names.begin(), names.end() - 1, ", "));
+  return rest.empty() ? names.back() : rest + " or " + names.back();
+}
+
+}  // namespace
 
 std::function<Index(const std::string&)> integer_parser(std::int64_t low, std::int64_t high) {
   return [=](const std::string& text) { return static_cast<Index>(parse_integer(text, low, high)); };
@@ -64,11 +73,8 @@ void add_input(CLI::App& app, InputOptions& o) {
 CLI::Option* add_backend(CLI::App& app, InputOptions& o) {
   std::vector<std::string> names;
   for (const Backend& backend : backends()) names.emplace_back(backend.name);
-  const std::string last = names.back();
-  names.pop_back();
-  const std::string help = fmt::format("auto (default): by the faces of INPUT; {} or {}", fmt::join(names, ", "), last);
+  const std::string help = "auto (default): by the faces of INPUT; " + one_of(names);
   names.insert(names.begin(), "auto");
-  names.push_back(last);
   return add_parsed(app, "--backend", o.backend, choice(names), "NAME", help);
 }
 
@@ -128,9 +134,13 @@ CLI::Option* add_method(CLI::App& app, SolveOptions& o) {
 }
 
 CLI::Option* add_variant(CLI::App& app, SolveOptions& o) {
-  return add_parsed(app, "--variant", o.variant,
-                    choice_of<Variant>({{"adaptive", Variant::adaptive}, {"localized", Variant::localized}}), "NAME",
-                    "adaptive (default) or localized");
+  std::vector<std::pair<std::string, Variant>> variants;
+  std::vector<std::string> names;
+  for (Variant variant : all_variants) {
+    variants.emplace_back(to_string(variant), variant);
+    names.push_back(variants.back().first + (variant == o.variant ? " (default)" : ""));
+  }
+  return add_parsed(app, "--variant", o.variant, choice_of(std::move(variants)), "NAME", one_of(names));
 }
 
 CLI::Option* add_t_coef(CLI::App& app, SolveOptions& o) {

@@ -48,9 +48,9 @@ struct AtlasCommandOptions {
   std::string texture;
 };
 
-std::vector<Vertex> choose_sources(const AtlasCommandOptions& options, const Input& input, const LogMapSolver& solver) {
+std::vector<Vertex> choose_sources(const AtlasCommandOptions& options, const Input& input) {
   if (options.sources.empty())
-    return farthest_points(solver.graph(), Vertex{0}, std::min(options.charts, solver.graph().size()));
+    return farthest_points(input.graph(), Vertex{0}, std::min(options.charts, input.graph().size()));
   std::vector<Vertex> result;
   for (const SourceSpec& spec : options.sources) result.push_back(vertex_at(input, spec, "--sources"));
   return result;
@@ -154,17 +154,18 @@ void run(const AtlasCommandOptions& options) {
   Journal journal(options.output.verbose);
   const Input input = open_input(options.input, journal);
   const TangentGraph& graph = input.graph();
-  const LogMapSolver solver = make_solver(options.solve, input.graph(), journal, 0);
+  const Maps maps(options.solve, input, journal, 0);
 
   journal.start("sources");
-  const std::vector<Vertex> sources = choose_sources(options, input, solver);
-  const SurfaceFaces faces = surface_faces(input.surface(), solver, sources);
+  const std::vector<Vertex> sources = choose_sources(options, input);
+  const SurfaceFaces faces =
+      maps.solver ? surface_faces(input.surface(), *maps.solver, sources) : surface_faces(input.surface());
   const std::vector<Vec3> positions = positions_of(faces, graph.size());
   journal.start("charts");
   RefineOptions refine;
   if (options.max_distortion) refine.max_distortion = *options.max_distortion;
-  const Made made(options.max_distortion ? make_atlas(solver, sources, faces.of_vertices(), positions, refine)
-                                         : make_atlas(solver, sources, faces.of_vertices()),
+  const Made made(options.max_distortion ? make_atlas(maps.maker(), sources, faces.of_vertices(), positions, refine)
+                                         : make_atlas(maps.maker(), sources, faces.of_vertices()),
                   faces, graph, positions, options.pack);
   comment(options, made, graph, journal);
 
@@ -191,6 +192,7 @@ void offer(CLI::App& app, AtlasCommandOptions& o) {
   add_parsed(app, "--margin", o.pack.margin, integer_parser(0, 1024), "N", "Texels free around charts (default 4)");
   add_parsed(app, "--texture", o.texture, non_empty, "FILE", "PNG or JPEG instead of a checkerboard");
   add_output(app, o.output)->required();
+  add_method(app, o.solve);
   add_graph_options(app, o.input, o.solve);
   add_json(app, o.output);
   add_view(app, o.output)->description("Draw the result: .png");

@@ -11,6 +11,7 @@
 #include "cli/numbers.hpp"
 #include "cli/option_adders.hpp"
 #include "cli/source_list.hpp"
+#include "commands/solve.hpp"
 #include "commands/subcommand.hpp"
 #include "output/results.hpp"
 #include "output/summary.hpp"
@@ -33,6 +34,7 @@ constexpr const char* cells_footer =
 
 struct CellsOptions {
   InputOptions input;
+  SolveOptions solve;
   OutputOptions output;
   std::vector<SourceSpec> sources;
   Index count = 0;  ///< of spread sources; 0: `sources`
@@ -172,7 +174,9 @@ void run(const CellsOptions& options) {
   if (options.count > 0) sources = spread(options, input, journal);
 
   journal.start("cells");
-  const VoronoiCells cells = voronoi_cells(graph, sources);
+  const VoronoiCells cells = options.solve.method == Method::heat
+                                 ? voronoi_cells(graph, sources)
+                                 : voronoi_cells(ExactGeodesics(input.surface()), sources);
   const CellRows rows = rows_of(input, cells);
   comment_on_statuses(rows.status, options.input.path, journal);
 
@@ -201,6 +205,8 @@ void offer(CLI::App& app, CellsOptions& o) {
       throw CLI::ValidationError("--sources", "give either --sources or --count");
   });
   add_output(app, o.output)->required();
+  add_method(app, o.solve)
+      ->description("heat (default): by unfolding the graph, or exact: by straight lines over the faces of a mesh");
   add_backend(app, o.input);
   add_threads(app, o.input);
   add_cloud_options(app, o.input);

@@ -38,8 +38,7 @@ struct CenterCommandOptions {
   bool median = false;
 };
 
-Center find_center(const CenterCommandOptions& options, const Input& input, const LogMapSolver& solver,
-                   Journal& journal) {
+Center find_center(const CenterCommandOptions& options, const Input& input, const Maps& maps, Journal& journal) {
   std::vector<Vertex> vertices;
   for (const SourceSpec& spec : options.points) vertices.push_back(vertex_at(input, spec, "--points"));
   if (!options.weights.empty() && options.weights.size() != vertices.size())
@@ -48,7 +47,7 @@ Center find_center(const CenterCommandOptions& options, const Input& input, cons
   if (options.start) center.start = vertex_at(input, *options.start, "--start");
   journal.start("search");
   const auto find = options.median ? geometric_median : karcher_mean;
-  return find(solver, vertices, options.weights, center);
+  return find(maps.maker(), vertices, options.weights, center);
 }
 
 void report(const CenterCommandOptions& options, const Input& input, const Center& center, Journal& journal) {
@@ -93,8 +92,8 @@ void run(const CenterCommandOptions& options) {
   check_outputs(options.input.path, {{"--json", options.output.json}});
   Journal journal(options.output.verbose);
   const Input input = open_input(options.input, journal);
-  const LogMapSolver solver = make_solver(options.solve, input.graph(), journal, 6);
-  const Center center = find_center(options, input, solver, journal);
+  const Maps maps(options.solve, input, journal, 6);
+  const Center center = find_center(options, input, maps, journal);
   comment_on(center, input.graph(), journal);
   report(options, input, center, journal);
 }
@@ -105,6 +104,7 @@ void offer(CLI::App& app, CenterCommandOptions& o) {
   add_parsed(app, "--weights", o.weights, parse_weights, "WEIGHTS", "List or file (default: all equal)");
   app.add_flag("--median", o.median, "Least sum of distances instead of squared distances");
   add_parsed(app, "--start", o.start, parse_source, "SPEC", "Where to begin (default: the heaviest point)");
+  add_method(app, o.solve);
   add_graph_options(app, o.input, o.solve);
   add_json(app, o.output);
   add_verbose(app, o.output);

@@ -21,11 +21,20 @@ struct Estimate {
   double bytes, seconds;
 };
 
-Estimate estimate(const GraphSize& size, Strategy strategy, const Backend& graph, int times) {
-  const Cost cost = estimate_cost(size, strategy);
+/// Of the program itself.
+constexpr BuildCost base{.bytes = 10e6, .seconds = 0.01};
+
+Estimate estimate(const GraphSize& size, Strategy strategy, const Backend& graph, int order) {
+  const Cost cost = estimate_cost(size, strategy, order);
   const double n = size.vertices;
-  const double kept = strategy == Strategy::global ? times : 1;  // the factors of every diffusion time stay in memory
-  return {strategy, graph.cost.bytes * n + kept * cost.bytes, graph.cost.seconds * n + times * cost.first_map_seconds};
+  return {strategy, base.bytes + graph.cost.bytes * n + cost.bytes,
+          base.seconds + graph.cost.seconds * n + cost.first_map_seconds};
+}
+
+/// Vertices of the graph: those of the input, and of polygons the virtual ones in their faces.
+Index vertices_of(const io::Geometry& input, const Backend& backend, const InputOptions& options) {
+  const bool refined = backend.name == "polymesh" && options.discretization != "polygons";
+  return static_cast<Index>(input.points.size() + (refined ? input.face_count() : 0));
 }
 
 }  // namespace
@@ -34,8 +43,8 @@ void run_estimate(const InputOptions& options, const SolveOptions& solve, const 
   check_outputs(options.path, {{"--json", json}});
   const io::Geometry input = io::read(options.path);
   const Backend& backend = choose_backend(input, options.backend);
-  const GraphSize size{static_cast<Index>(input.points.size())};
-  const HeatOptions solver{.strategy = solve.strategy, .expected_maps = 1};
+  const GraphSize size{vertices_of(input, backend, options)};
+  const HeatOptions solver{.order = solve.order, .strategy = solve.strategy, .expected_maps = 1};
   const Strategy chosen = choose_strategy(size, solver);
 
   nlohmann::ordered_json j{{"program", "ahm logmap --estimate"},
@@ -44,14 +53,14 @@ void run_estimate(const InputOptions& options, const SolveOptions& solve, const 
                            {"strategy", to_string(chosen)}};
   std::string text = fmt::format("{} vertices, backend {}\n", size.vertices, backend.name);
   for (Strategy strategy : {Strategy::global, Strategy::march}) {
-    const Estimate e = estimate(size, strategy, backend, solve.order == 1 ? 1 : 3);
+    const Estimate e = estimate(size, strategy, backend, solve.order);
     j[std::string(to_string(strategy))] = {{"seconds", e.seconds}, {"peak_bytes", e.bytes}};
     text += fmt::format("{:<7} about {:.2g} s, {}{}\n", to_string(strategy), e.seconds,
                         bytes_as_text(static_cast<std::int64_t>(e.bytes)), strategy == chosen ? "  (chosen)" : "");
   }
   const double memory = machine_memory();
   j["machine_bytes"] = memory;
-  text += fmt::format("this machine has {}\n", bytes_as_text(static_cast<std::int64_t>(memory)));
+  text += fmt::format("this machine lets it take {}\n", bytes_as_text(static_cast<std::int64_t>(memory)));
   write_json(json, j);
   if (json != "-") print(text);
 }

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
+#include <array>
 #include <numeric>
+#include <sstream>
 
 #include "ahm/error.hpp"
 #include "cli/option_adders.hpp"
@@ -16,68 +18,165 @@ constexpr const char* path_footer =
     "  123              a vertex of INPUT, counted from 0\n"
     "  1.5,0,-2         the nearest point of the surface; in files also 1.5 0 -2\n"
     "  face:7:.2,.3,.5  a point in face 7, by barycentric coordinates, one per corner\n"
+    "PAIRS is a file with two SPECs per line: a path for each, all paths from one start at the cost of one map.\n"
     "The path is the shortest over the flat faces, exact up to rounding; of several of one length, one of them.\n"
+    "With --fast it is locally shortest: no curve beside it is shorter, but one on another side of a hill may be.\n"
+    "With --tighten the loop leaves its points and becomes locally shortest, a closed geodesic.\n"
     "\n"
-    "OUTPUT  .csv, .ply with edges, or .obj with a line: x,y,z and arclength (not in .obj) where the path starts,\n"
-    "        crosses an edge, bends, and ends\n"
+    "OUTPUT  .csv, .ply with edges, or .obj with lines: x,y,z and arclength (not in .obj) where the path starts,\n"
+    "        crosses an edge, bends, and ends. Of PAIRS also curve, the place of the pair in the file, from 0\n"
     "\n"
     "Examples:\n"
     "  ahm path mesh.ply --from 17 --to 4711 -o path.csv --json -\n"
-    "  ahm path mesh.obj --from 0.1,0.2,1.4 --to '33 face:7:.2,.3,.5' --closed -o loop.obj --view loop.png";
+    "  ahm path mesh.obj --from 0.1,0.2,1.4 --through '33 face:7:.2,.3,.5' --to 90 --closed -o loop.obj --view "
+    "loop.png\n"
+    "  ahm path scan.ply --pairs pairs.txt -o paths.ply";
 
 struct PathCommandOptions {
   InputOptions input;
   OutputOptions output;
-  SourceSpec from;
-  std::vector<SourceSpec> to;
-  bool closed = false;
+  std::optional<SourceSpec> from;
+  std::vector<SourceSpec> through, to;
+  std::vector<std::array<SourceSpec, 2>> pairs;
+  bool closed = false, tighten = false, fast = false;
 };
 
-/// Adds the shortest ways from stop to stop, as one curve.
-void go_through(const std::vector<SurfacePoint>& stops, const std::vector<SourceSpec>& specs,
-                const ExactGeodesics& geodesics, Polyline& path) {
+/// Two SPECs in a line, or six numbers.
+std::array<SourceSpec, 2> parse_pair(const std::string& line) {
+  std::istringstream stream(line);
+  std::vector<std::string> words;
+  for (std::string word; stream >> word;) words.push_back(word);
+  if (words.size() == 6)
+    return {parse_source(words[0] + "," + words[1] + "," + words[2]),
+            parse_source(words[3] + "," + words[4] + "," + words[5])};
+  if (words.size() != 2)
+    throw std::invalid_argument(fmt::format("'{}' is no pair of points: give two SPECs, or six numbers", line));
+  return {parse_source(words[0]), parse_source(words[1])};
+}
+
+std::vector<std::array<SourceSpec, 2>> read_pairs(const std::string& file) {
+  std::vector<std::array<SourceSpec, 2>> pairs;
+  for_each_line(file, file, "pairs", [&](const std::string& line) { pairs.push_back(parse_pair(line)); });
+  return pairs;
+}
+
+exact::GeodesicPath leg_between(const PathCommandOptions& options, const ExactGeodesics& geodesics,
+                                const SurfacePoint& from, const SurfacePoint& to) {
+  if (options.fast) return geodesics.locally_shortest_path(from, to);
+  return geodesics.path(std::array{from, to});
+}
+
+/// Adds the ways from stop to stop, as one curve.
+void go_through(const PathCommandOptions& options, const std::vector<SurfacePoint>& stops,
+                const std::vector<SourceSpec>& specs, const ExactGeodesics& geodesics, Polylines& path) {
   std::vector<double> lengths;
+  std::vector<exact::MeshPoint> curve;
   for (std::size_t k = 1; k < stops.size(); ++k) {
-    const exact::GeodesicPath leg = geodesics.path(std::span(stops).subspan(k - 1, 2));
+    const exact::GeodesicPath leg = leg_between(options, geodesics, stops[k - 1], stops[k]);
     if (leg.status != Status::ok)
       throw InvalidArgument(fmt::format("there is no path from {} to {}: the surface does not connect them",
                                         to_string(specs[k - 1]), to_string(specs[k])));
-    const std::vector<Vec3> points = positions_of(geodesics, leg.points);
-    path.points.insert(path.points.end(), points.begin() + (k > 1 ? 1 : 0), points.end());
+    curve.insert(curve.end(), leg.points.begin() + (k > 1 ? 1 : 0), leg.points.end());
     lengths.push_back(leg.length);
   }
-  const double length = std::accumulate(lengths.begin(), lengths.end(), 0.0);
-  path.text = fmt::format("a path of {} points, {:.6g} long\n", path.points.size(), length);
+  double length = std::accumulate(lengths.begin(), lengths.end(), 0.0);
+  if (options.tighten) {
+    const exact::GeodesicPath loop = geodesics.shortened(curve, true);
+    if (!(loop.length > 0))
+      throw InvalidArgument("--tighten: the loop goes around nothing that would hold it, and shrinks to a point");
+    curve = loop.points;
+    path.json["length_through_stops"] = length;
+    length = loop.length;
+  }
+  path.add(positions_of(geodesics, curve));
+  path.text = fmt::format("a {} of {} points, {:.6g} long\n", options.tighten ? "closed geodesic" : "path",
+                          path.points.size(), length);
   path.json["points"] = path.points.size();
   path.json["length"] = length;
-  path.json["lengths"] = lengths;
+  if (!options.tighten) path.json["lengths"] = lengths;
 }
 
-Polyline find_path(const PathCommandOptions& options, const ExactGeodesics& geodesics, const Input& input) {
-  std::vector<SourceSpec> specs{options.from};
-  specs.insert(specs.end(), options.to.begin(), options.to.end());
+Polylines find_path(const PathCommandOptions& options, const ExactGeodesics& geodesics, const Input& input) {
+  std::vector<SourceSpec> specs{*options.from};
+  for (const auto& more : {options.through, options.to}) specs.insert(specs.end(), more.begin(), more.end());
   std::vector<SurfacePoint> stops;
-  for (const SourceSpec& spec : specs) stops.push_back(point_on_faces(input, spec, stops.empty() ? "--from" : "--to"));
+  for (std::size_t k = 0; k < specs.size(); ++k)
+    stops.push_back(point_on_faces(input, specs[k],
+                                   k == 0                        ? "--from"
+                                   : k <= options.through.size() ? "--through"
+                                                                 : "--to"));
   if (options.closed) stops.push_back(stops.front()), specs.push_back(specs.front());
-  Polyline path{.from = stops.front()};
+  Polylines path;
+  if (!options.fast) path.from = stops.front();
   for (const SourceSpec& spec : specs) path.json["stops"].push_back(to_string(spec));
   path.json["closed"] = options.closed;
-  go_through(stops, specs, geodesics, path);
+  path.json["fast"] = options.fast;
+  go_through(options, stops, specs, geodesics, path);
   return path;
+}
+
+Polylines find_pairs(const PathCommandOptions& options, const ExactGeodesics& geodesics, const Input& input,
+                     Journal& journal) {
+  std::vector<std::array<SurfacePoint, 2>> ends;
+  for (const auto& [from, to] : options.pairs)
+    ends.push_back({point_on_faces(input, from, "--pairs"), point_on_faces(input, to, "--pairs")});
+  std::vector<exact::GeodesicPath> paths;
+  if (options.fast) {
+    for (const auto& [from, to] : ends) paths.push_back(geodesics.locally_shortest_path(from, to));
+  } else {
+    paths = geodesics.paths(ends, journal.progress(), options.input.threads);
+  }
+  Polylines result;
+  result.numbered = true;
+  result.json["fast"] = options.fast;
+  double length = 0;
+  std::size_t found = 0;
+  for (std::size_t k = 0; k < paths.size(); ++k) {
+    const exact::GeodesicPath& path = paths[k];
+    const bool ok = path.status == Status::ok;
+    result.add(positions_of(geodesics, path.points));
+    result.json["paths"].push_back({{"from", to_string(options.pairs[k][0])},
+                                    {"to", to_string(options.pairs[k][1])},
+                                    {"status", to_string(path.status)},
+                                    {"points", path.points.size()},
+                                    {"length", ok ? nlohmann::ordered_json(path.length) : nlohmann::ordered_json()}});
+    if (ok) ++found, length += path.length;
+  }
+  if (found < paths.size())
+    journal.add_warning(fmt::format("{} of {} pairs are not connected by the surface and have no path",
+                                    paths.size() - found, paths.size()));
+  result.text = fmt::format("{} paths of {} points, {:.6g} long together\n", found, result.points.size(), length);
+  return result;
 }
 
 void run(const PathCommandOptions& options) {
   run_polyline("path", options.input, options.output, {},
-               [&](const auto& geodesics, const Input& input) { return find_path(options, geodesics, input); });
+               [&](const ExactGeodesics& geodesics, const Input& input, Journal& journal) {
+                 return options.pairs.empty() ? find_path(options, geodesics, input)
+                                              : find_pairs(options, geodesics, input, journal);
+               });
 }
 
 void offer(CLI::App& app, PathCommandOptions& o) {
   add_input(app, o.input);
-  add_parsed(app, "--from", o.from, parse_source, "SPEC", "Where the path starts, see below")->required();
-  add_parsed(app, "--to", o.to, parse_sources, "POINTS", "Where it ends, or what it leads through in this order")
-      ->required();
+  auto* from = add_parsed(
+      app, "--from", o.from, [](const std::string& text) { return parse_source(text); }, "SPEC",
+      "Where the path starts, see below");
+  auto* to =
+      add_parsed(app, "--to", o.to, parse_sources, "POINTS", "Where it ends, or what it leads through in this order");
+  auto* through =
+      add_parsed(app, "--through", o.through, parse_sources, "POINTS", "What it leads through before")->needs(to);
+  auto* pairs = add_parsed(app, "--pairs", o.pairs, read_pairs, "PAIRS", "A path for every line of a file instead");
   add_output(app, o.output)->required();
-  app.add_flag("--closed", o.closed, "And back to where it starts");
+  auto* closed = app.add_flag("--closed", o.closed, "And back to where it starts")->excludes(pairs);
+  app.add_flag("--tighten", o.tighten, "The loop as short as it gets in its place, away from its points")
+      ->needs(closed);
+  app.add_flag("--fast", o.fast, "Locally shortest paths, in time on meshes of any size");
+  for (auto* option : {from, to, through}) option->excludes(pairs);
+  app.callback([=] {
+    if (pairs->count() == 0 && (from->count() == 0 || to->count() == 0))
+      throw CLI::ValidationError("--from", "give --from and --to, or --pairs");
+  });
   add_threads(app, o.input);
   add_mesh_options(app, o.input);
   add_map_results(app, o.output);
@@ -86,7 +185,7 @@ void offer(CLI::App& app, PathCommandOptions& o) {
 }  // namespace
 
 Subcommand add_path(CLI::App& program) {
-  return subcommand<PathCommandOptions>(program, "path", "Shortest path over the faces of a mesh", path_footer, offer,
+  return subcommand<PathCommandOptions>(program, "path", "Shortest paths over the faces of a mesh", path_footer, offer,
                                         run);
 }
 

@@ -14,21 +14,30 @@
 namespace ahm::app {
 
 /// What a subcommand found, and what it tells.
-struct Polyline {
-  SurfacePoint from;
-  std::vector<Vec3> points{};
-  nlohmann::ordered_json json{};  ///< to programs, after the head of the summary
-  std::string text{};             ///< to people
-};
-using FindPolyline = std::function<Polyline(const ExactGeodesics& geodesics, const Input& input)>;
+struct Polylines {
+  std::optional<SurfacePoint> from = {};  ///< of the map in the picture; none: the surface alone
+  std::vector<Vec3> points = {};          ///< of all curves, one behind the other
+  std::vector<Index> begin = {};     ///< where each begins; several may begin at the same place, those without points
+  bool numbered = false;             ///< whether the table tells which curve a point belongs to
+  nlohmann::ordered_json json = {};  ///< to programs, after the head of the summary
+  std::string text = {};             ///< to people
 
-/// Opens the input, finds the curve, and writes it: --output (.csv, .ply with edges, or .obj with a line), --view (the
-/// curve on the exact map of its first point) and --json.
+  void add(const std::vector<Vec3>& curve) {
+    begin.push_back(static_cast<Index>(points.size()));
+    points.insert(points.end(), curve.begin(), curve.end());
+  }
+  /// The end of curve k.
+  Index end(std::size_t k) const { return k + 1 < begin.size() ? begin[k + 1] : static_cast<Index>(points.size()); }
+};
+using FindPolylines = std::function<Polylines(const ExactGeodesics& geodesics, const Input& input, Journal& journal)>;
+
+/// Opens the input, finds the curves, and writes them: --output (.csv, .ply with edges, or .obj with lines), --view (the
+/// curves on an exact map) and --json.
 /// @param name    of the subcommand
 /// @param source  --source, where the surface is opened for one
 /// @throws InvalidArgument where the input has no faces; what opening, `find` and writing throw
 void run_polyline(const std::string& name, const InputOptions& options, const OutputOptions& output,
-                  const std::optional<SourceSpec>& source, const FindPolyline& find);
+                  const std::optional<SourceSpec>& source, const FindPolylines& find);
 
 /// The point that the user means; of a position the nearest point of the faces.
 /// @param option  that asked for it, for messages

@@ -5,7 +5,6 @@
 #include "ahm/error.hpp"
 #include "ahm/maps/cost.hpp"
 #include "ahm/maps/quality.hpp"
-#include "ahm/surface/exact/exact_geodesics.hpp"
 #include "cli/system_info.hpp"
 
 namespace ahm::app {
@@ -15,8 +14,7 @@ namespace {
 void check_memory(const SolveOptions& options, const TangentGraph& graph) {
   if (options.strategy != Strategy::global) return;
   const GraphSize size{graph.size(), graph.dimension(), graph.transport_kind()};
-  const double factors = options.order == 1 ? 1 : 3;
-  const double wanted = factors * estimate_cost(size, Strategy::global).bytes, memory = machine_memory();
+  const double wanted = estimate_cost(size, Strategy::global, options.order).bytes, memory = machine_memory();
   if (memory > 0 && wanted > memory)
     throw ResourceExhausted(fmt::format(
         "--strategy global: the factors would take about {}, this machine has {}; leave the choice to auto, which "
@@ -75,6 +73,15 @@ SolvedMap solve(const SolveOptions& options, const Input& input, const SourceSpe
     return {std::move(solver), std::move(map)};
   }
   return {std::nullopt, exact_map(options, input, spec, source, journal)};
+}
+
+Maps::Maps(const SolveOptions& options, const Input& input, Journal& journal, int count) : threads(options.threads) {
+  if (options.method == Method::heat) {
+    solver.emplace(make_solver(options, input.graph(), journal, count));
+  } else {
+    journal.start("layout");
+    geodesics.emplace(input.surface());
+  }
 }
 
 std::vector<double> quality_of(const Input& input, const LogMap& map, const RowLogMap& rows,

@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "ahm/maps/log_map_solver.hpp"
+#include "ahm/applications/map_maker.hpp"
 #include "cli/journal.hpp"
 #include "cli/options.hpp"
 #include "input/open.hpp"
@@ -33,6 +33,17 @@ struct SolvedMap {
 /// @throws InvalidArgument where the method needs faces that the input does not have, and as `make_solver`
 SolvedMap solve(const SolveOptions& options, const Input& input, const SourceSpec& spec, const PlacedSource& source,
                 Journal& journal);
+
+/// What makes the maps of a subcommand that needs several, by the method of the options.
+struct Maps {
+  /// @param count  maps that are expected; 0: many. @throws as `make_solver`, `ExactGeodesics`
+  Maps(const SolveOptions& options, const Input& input, Journal& journal, int count);
+  MapMaker maker() const { return solver ? MapMaker(*solver) : MapMaker(*geodesics, threads); }
+
+  std::optional<LogMapSolver> solver;
+  std::optional<ExactGeodesics> geodesics;
+  unsigned threads;
+};
 
 /// `map_quality` by row. @param rows  of the map
 std::vector<double> quality_of(const Input& input, const LogMap& map, const RowLogMap& rows,

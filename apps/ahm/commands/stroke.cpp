@@ -24,8 +24,9 @@ constexpr const char* stroke_footer =
     "  123              a vertex of INPUT, counted from 0\n"
     "  1.5,0,-2         the nearest point of the surface; in files also 1.5 0 -2\n"
     "  face:7:.2,.3,.5  a point in face 7, by barycentric coordinates, one per corner (meshes)\n"
-    "They are joined by straight lines, sampled every half edge, and each sample is moved to the nearest point of\n"
-    "the surface: give points so close that the lines stay near it.\n"
+    "On meshes they are joined by shortest paths over the faces, on clouds by straight lines, whose samples, one "
+    "every\n"
+    "half edge, are moved to the surface: there, give points so close that the lines stay near it.\n"
     "\n"
     "OUTPUT  .csv, .ply or .pcd; one row per vertex of INPUT, in its order: index,x,y,z,u,v,distance,status\n"
     "          u  arclength along the curve, before and after its ends straight on\n"
@@ -72,6 +73,15 @@ SurfaceCurve draw_curve(const Input& input, const StrokeCommandOptions& options)
   } catch (const InvalidArgument& e) {
     throw InvalidArgument(fmt::format("--curve: {}", worded(e)));
   }
+}
+
+LogMap solve(const SolveOptions& options, const Input& input, const SurfaceCurve& curve, Journal& journal) {
+  const Maps maps(options, input, journal, 1);
+  if (maps.solver) return ahm::app::solve(options, *maps.solver, curve.source, journal);
+  journal.start("solve");
+  ExactMapOptions exact;
+  exact.progress = journal.progress();
+  return maps.geodesics->log_map(curve.samples, exact).map;
 }
 
 void comment_on_curve(const SurfaceCurve& curve, double edge, Journal& journal) {
@@ -140,8 +150,7 @@ void run(const StrokeCommandOptions& options) {
   const SurfaceCurve curve = draw_curve(input, options);
   comment_on_curve(curve, input.mean_edge_length(), journal);
 
-  const LogMapSolver solver = make_solver(options.solve, input.graph(), journal);
-  const LogMap map = solve(options.solve, solver, curve.source, journal);
+  const LogMap map = solve(options.solve, input, curve, journal);
   const RowLogMap rows = input.surface().on_rows(map);
   std::vector<double> distance;
   for (std::size_t i = 0; i < rows.u.size(); ++i)
@@ -171,6 +180,7 @@ void offer(CLI::App& app, StrokeCommandOptions& o) {
       throw CLI::ValidationError("--positions",
                                  fmt::format("{} for the {} points of --curve", o.positions.size(), o.curve.size()));
   });
+  add_method(app, o.solve);
   add_graph_options(app, o.input, o.solve);
   add_map_results(app, o.output);
 }

@@ -1,8 +1,11 @@
 #include <fmt/format.h>
 
+#include <sstream>
+
 #include "ahm/error.hpp"
 #include "cli/numbers.hpp"
 #include "cli/option_adders.hpp"
+#include "cli/source_list.hpp"
 #include "commands/polyline.hpp"
 #include "commands/subcommand.hpp"
 
@@ -13,36 +16,86 @@ constexpr const char* trace_footer =
     "SPEC is 123, x,y,z (the nearest point of the surface) or face:7:.2,.3,.5 as in 'ahm path'.\n"
     "The line goes straight through faces, and through vertices with equal angles on both sides; it ends early at\n"
     "the boundary.\n"
-    "OUTPUT is .csv, .ply or .obj as in 'ahm path'.\n"
+    "LINES is a file: SPEC X,Y,Z and, where it is not --length, L in every line.\n"
+    "OUTPUT is .csv, .ply or .obj as in 'ahm path'; of LINES with curve, the number of the line in the file, from 0.\n"
     "\n"
     "Example:\n"
     "  ahm trace mesh.ply --source 17 --direction 1,0,0 --length 0.5 -o line.csv --view line.png";
 
+/// A line as the user wants it.
+struct WantedLine {
+  std::optional<SourceSpec> source;
+  Vec3 direction{};
+  double length = 0;  ///< 0: not given
+};
+
 struct TraceCommandOptions {
   InputOptions input;
   OutputOptions output;
-  SourceSpec source;
-  Vec3 direction{};
-  double length = 0;
+  WantedLine line;
+  std::vector<WantedLine> lines;  ///< instead
 };
 
-exact::TracedPath trace(const ExactGeodesics& geodesics, const SurfacePoint& from, const TraceCommandOptions& options) {
+WantedLine parse_line(const std::string& text) {
+  std::istringstream stream(text);
+  std::vector<std::string> words;
+  for (std::string word; stream >> word;) words.push_back(word);
+  if (words.size() != 2 && words.size() != 3)
+    throw std::invalid_argument(fmt::format("'{}' is not of the form SPEC X,Y,Z or SPEC X,Y,Z L", text));
+  return {parse_source(words[0]), parse_direction(words[1]), words.size() == 3 ? parse_positive(words[2]) : 0.0};
+}
+
+std::vector<WantedLine> read_lines(const std::string& file) {
+  std::vector<WantedLine> lines;
+  for_each_line(file, file, "lines", [&](const std::string& line) { lines.push_back(parse_line(line)); });
+  return lines;
+}
+
+exact::TracedPath trace(const ExactGeodesics& geodesics, const SurfacePoint& from, const WantedLine& line,
+                        const char* option) {
   try {
-    return geodesics.trace(from, options.direction, options.length);
+    return geodesics.trace(from, line.direction, line.length);
   } catch (const InvalidArgument& e) {
     if (e.fault() != "axis_along_normal") throw;
-    throw InvalidArgument(fmt::format("--direction {},{},{}: is perpendicular to the surface at the source {}",
-                                      options.direction[0], options.direction[1], options.direction[2],
-                                      to_string(options.source)));
+    throw InvalidArgument(fmt::format("{} {},{},{}: is perpendicular to the surface at the source {}", option,
+                                      line.direction[0], line.direction[1], line.direction[2],
+                                      to_string(*line.source)));
   }
 }
 
-Polyline find_line(const TraceCommandOptions& options, const ExactGeodesics& geodesics, const Input& input) {
-  Polyline result{.from = point_on_faces(input, options.source, "--source")};
-  const exact::TracedPath line = trace(geodesics, result.from, options);
-  const std::vector<Vec3>& points = result.points = positions_of(geodesics, line.points);
+Polylines find_lines(const TraceCommandOptions& options, const ExactGeodesics& geodesics, const Input& input) {
+  Polylines result;
+  result.numbered = true;
+  double length = 0;
+  std::size_t at_boundary = 0;
+  for (WantedLine wanted : options.lines) {
+    if (wanted.length == 0) wanted.length = options.line.length;
+    const SurfacePoint from = point_on_faces(input, *wanted.source, "--lines");
+    const exact::TracedPath line = trace(geodesics, from, wanted, "--lines");
+    const std::vector<Vec3> points = positions_of(geodesics, line.points);
+    const bool complete = line.end == exact::TraceEnd::complete;
+    result.add(points);
+    result.json["lines"].push_back({{"source", to_string(*wanted.source)},
+                                    {"end", complete ? "length" : "boundary"},
+                                    {"position", points.back()},
+                                    {"points", points.size()},
+                                    {"length", line.length}});
+    length += line.length;
+    at_boundary += complete ? 0 : 1;
+  }
+  result.text = fmt::format("{} lines of {} points, {:.6g} long together; {} end at the boundary\n",
+                            options.lines.size(), result.points.size(), length, at_boundary);
+  return result;
+}
+
+Polylines find_line(const TraceCommandOptions& options, const ExactGeodesics& geodesics, const Input& input) {
+  Polylines result;
+  result.from = point_on_faces(input, *options.line.source, "--source");
+  const exact::TracedPath line = trace(geodesics, *result.from, options.line, "--direction");
+  result.add(positions_of(geodesics, line.points));
+  const std::vector<Vec3>& points = result.points;
   const bool complete = line.end == exact::TraceEnd::complete;
-  result.json["source"] = {{"spec", to_string(options.source)}, {"position", points.front()}};
+  result.json["source"] = {{"spec", to_string(*options.line.source)}, {"position", points.front()}};
   result.json["end"] = {{"at", complete ? "length" : "boundary"}, {"position", points.back()}};
   result.json["points"] = points.size();
   result.json["length"] = line.length;
@@ -52,16 +105,31 @@ Polyline find_line(const TraceCommandOptions& options, const ExactGeodesics& geo
 }
 
 void run(const TraceCommandOptions& options) {
-  run_polyline("trace", options.input, options.output, options.source,
-               [&](const auto& geodesics, const Input& input) { return find_line(options, geodesics, input); });
+  run_polyline("trace", options.input, options.output, options.line.source,
+               [&](const ExactGeodesics& geodesics, const Input& input, Journal&) {
+                 return options.lines.empty() ? find_line(options, geodesics, input)
+                                              : find_lines(options, geodesics, input);
+               });
 }
 
 void offer(CLI::App& app, TraceCommandOptions& o) {
   add_input(app, o.input);
-  add_parsed(app, "-s,--source", o.source, parse_source, "SPEC", "Where the line starts, see below")->required();
-  add_parsed(app, "--direction", o.direction, parse_direction, "X,Y,Z", "Where to, projected to the surface")
-      ->required();
-  add_parsed(app, "--length", o.length, parse_positive, "L", "How far, along the surface")->required();
+  auto* source = add_parsed(
+      app, "-s,--source", o.line.source, [](const std::string& text) { return parse_source(text); }, "SPEC",
+      "Where the line starts, see below");
+  auto* direction =
+      add_parsed(app, "--direction", o.line.direction, parse_direction, "X,Y,Z", "Where to, projected to the surface");
+  auto* length = add_parsed(app, "--length", o.line.length, parse_positive, "L", "How far, along the surface");
+  auto* lines = add_parsed(app, "--lines", o.lines, read_lines, "LINES", "Many lines instead, see below");
+  source->excludes(lines);
+  direction->excludes(lines);
+  app.callback([=, &o] {
+    if (lines->count() == 0 && (source->count() == 0 || direction->count() == 0 || length->count() == 0))
+      throw CLI::ValidationError("--source", "give --source, --direction and --length, or --lines");
+    for (const WantedLine& line : o.lines)
+      if (line.length == 0 && length->count() == 0)
+        throw CLI::ValidationError("--lines", "some lines have no length; give --length");
+  });
   add_output(app, o.output)->required();
   add_threads(app, o.input);
   add_mesh_options(app, o.input);
@@ -71,7 +139,7 @@ void offer(CLI::App& app, TraceCommandOptions& o) {
 }  // namespace
 
 Subcommand add_trace(CLI::App& program) {
-  return subcommand<TraceCommandOptions>(program, "trace", "Straight line over the faces of a mesh", trace_footer,
+  return subcommand<TraceCommandOptions>(program, "trace", "Straight lines over the faces of a mesh", trace_footer,
                                          offer, run);
 }
 

@@ -156,6 +156,8 @@ void try_surface(const io::Geometry& input, InputOptions options, const Progress
   if (s.as_cloud && s.surface->part_sizes.size() > 20 &&
       can_remove_outliers(input, options, s.surface->central_row, progress))
     flags += " --outliers";
+  s.surface->method = method_advice(*built.surface);
+  if (s.surface->method.exact_first) flags += " --method exact";
   s.surface->options = flags;
   add_warnings(built.surface->warnings(), s);
 }

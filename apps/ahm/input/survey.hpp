@@ -11,6 +11,7 @@
 #include "ahm/report.hpp"
 #include "cli/options.hpp"
 #include "input/mesh_survey.hpp"
+#include "input/method_advice.hpp"
 
 namespace ahm::app {
 
@@ -20,6 +21,7 @@ struct SurfaceSurvey {
   std::vector<Index> part_sizes;  ///< vertices of the input in each part, largest first
   Index central_row = 0;          ///< in the largest part, near its middle: a source to start with
   std::string options;            ///< that it takes, each after a blank
+  MethodAdvice method;
 };
 
 struct Survey {

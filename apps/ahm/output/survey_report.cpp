@@ -154,6 +154,7 @@ std::string as_text(const Survey& s, const std::string& path) {
                                         s.spacing->smallest, s.spacing->median, s.spacing->largest, s.spacing->count));
   if (s.mesh) text += mesh_text(s);
   if (s.surface) text += line("components", parts_text(s));
+  if (s.surface) text += line("method", as_text(s.surface->method));
   for (const std::string& w : s.warnings) text += line("note", w);
   if (!s.problem.empty()) text += line("problem", s.problem);
   const std::string command = suggestion(s, path);
@@ -209,6 +210,12 @@ void add_surface(const Survey& s, nlohmann::ordered_json& j) {
     j["mesh"]["degenerate_faces"] = figure<std::int64_t>(surface, "degenerate_faces");
   }
   j["central_point"] = surface.central_row;
+  const MethodAdvice& method = surface.method;
+  j["method"] = {{"advice", method.exact_first ? "exact" : "heat"}, {"exact_possible", method.exact_possible}};
+  if (method.exact_possible) {
+    j["method"]["median_bend_degrees"] = method.median_bend;
+    j["method"]["sharp_bend_degrees"] = method.sharp_bend;
+  }
 }
 
 }  // namespace

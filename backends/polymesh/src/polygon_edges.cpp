@@ -8,6 +8,7 @@
 
 #include "ahm/error.hpp"
 #include "ahm/maps/cost.hpp"
+#include "ahm/surface/component_lengths.hpp"
 #include "ahm/util/parallel.hpp"
 #include "polygon.hpp"
 
@@ -94,8 +95,9 @@ class FaceMatrices {
   std::vector<Shape> shape_;
 };
 
-/// The mean length of the sides, each edge of the mesh once, and the extremes.
-double measure_sides(const PolygonMesh& mesh, PolygonDetails& report) {
+/// The mean length of the sides of all faces, of all and of each component, and the extremes.
+void measure_sides(const PolygonMesh& mesh, CsrGraphData& g, PolygonDetails& report) {
+  detail::ComponentLengths lengths(static_cast<std::size_t>(mesh.vertex_count()));
   double sum = 0, shortest = std::numeric_limits<double>::infinity(), longest = 0;
   for (Index f = 0; f < mesh.face_count(); ++f) {
     const auto corners = mesh.face(f);
@@ -103,6 +105,7 @@ double measure_sides(const PolygonMesh& mesh, PolygonDetails& report) {
       const Vector3d a(mesh.position(corners[c]).data()), b(mesh.position(corners[(c + 1) % corners.size()]).data());
       const double length = (b - a).norm();
       sum += length;
+      lengths.add(corners[c], corners[(c + 1) % corners.size()], length);
       shortest = std::min(shortest, length);
       longest = std::max(longest, length);
     }
@@ -110,7 +113,8 @@ double measure_sides(const PolygonMesh& mesh, PolygonDetails& report) {
   report.shortest_edge = shortest * mesh.length_unit();
   report.longest_edge = longest * mesh.length_unit();
   if (!(longest > 0)) throw InvalidGeometry("all vertices of the mesh are at the same place");
-  return sum / static_cast<double>(mesh.corners().size());
+  g.mean_edge_length = sum / static_cast<double>(mesh.corners().size());
+  g.component_edge_lengths = lengths.means();
 }
 
 /// The chord in a tangent plane, at its own length as far as it leans to that plane at all.
@@ -144,7 +148,7 @@ CsrGraphData polygon_edges(const PolygonMesh& mesh, const Frames& frames, const 
   CsrGraphData g;
   g.kind = mesh.report().orientable ? TransportKind::rotation2 : TransportKind::block;
   g.length_unit = mesh.length_unit();
-  g.mean_edge_length = measure_sides(mesh, report);
+  measure_sides(mesh, g, report);
   const FaceMatrices matrices(mesh, options);
   matrices.summarize(options.clamp_weights, report);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ahm/surface/component_lengths.hpp"
 #include "ahm/util/parallel.hpp"
 
 namespace ahm::trimesh {
@@ -79,16 +80,19 @@ class Rows {
   /// Edges of the triangulation: mean length, and what was left out.
   void summarize(CsrGraphData& g, MeshDetails& report) const {
     double sum = 0;
+    detail::ComponentLengths lengths(g.masses.size());
     for (Half h = 0; h < edges_.size(); ++h) {
       const Half t = edges_.twin[h];
       if (triangulation_.is_dropped(h / 3) || (t >= 0 && t < h)) continue;
       ++report.edges;
       sum += triangulation_.length(h);
+      lengths.add(edges_.tail[h], edges_.head(h), triangulation_.length(h));
       report.closed_edges += edges_.tail[h] == edges_.head(h);
       report.clamped_weights += clamp_ && cotangents(h) < -least_weight;
       report.capped_weights += clamp_ && cotangents(h) > largest_weight;
     }
     g.mean_edge_length = sum / static_cast<double>(report.edges);
+    g.component_edge_lengths = lengths.means();
   }
 
  private:

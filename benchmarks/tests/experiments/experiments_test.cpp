@@ -160,6 +160,17 @@ TEST(DiscretizationsExperiment, AllAreOfTheSameSizeOfError) {
     EXPECT_LE(table.where("discretization", how).mean("rms"), 2 * triangles) << how;
 }
 
+TEST(PolygonsExperiment, RefinedIsNearer) {
+  const Table table = toy("polygons").where("order", "1").where("variant", "adaptive");
+  for (const char* mesh : {"quads", "globe", "globe, stretched along", "globe, stretched across", "L and squares",
+                           "hexagons", "Voronoi cells"}) {
+    const Table rows = table.where("mesh", mesh);
+    const Table refined = rows.where("discretization", "refined"), polygons = rows.where("discretization", "polygons");
+    EXPECT_LE(refined.mean("rms"), polygons.mean("rms")) << mesh;
+    EXPECT_LE(refined.mean("distance rms"), 0.5 * polygons.mean("distance rms")) << mesh;
+  }
+}
+
 class AnyExperiment : public testing::TestWithParam<std::string> {};
 
 TEST_P(AnyExperiment, FillsItsTableAndSaysWhatIsSeen) {

@@ -257,7 +257,7 @@ TEST(SmoothedExponential, FindsDirectionsBetterWithMoreHeat) {
 TEST(ReferenceOperator, AgreesWithTheElimination) {
   for (const CsrGraphData& data : {sphere_graph(300), bent_lattice(5)}) {
     const CsrGraph graph(data);
-    for (Variant variant : {Variant::adaptive, Variant::localized}) {
+    for (Variant variant : all_variants) {
       const Result direct = methods::reference_operator(graph, variant)->solve(5),
                    eliminated = methods::affine_heat(graph, variant)->solve(5);
       double largest = 0;

@@ -42,7 +42,23 @@ VoronoiCells voronoi_cells(const TangentGraph& graph, std::span<const Vertex> ve
   });
 }
 
-std::vector<Vertex> farthest_points(const TangentGraph& graph, Vertex first, Index count) {
+VoronoiCells voronoi_cells(const ExactGeodesics& geodesics, std::span<const Vertex> vertices) {
+  check_vertices(geodesics.surface().graph(), vertices);
+  return detail::with_memory_check("labelling by the nearest source", [&] {
+    const exact::PolyhedralSurface& triangles = geodesics.triangles().surface;
+    std::vector<exact::MeshPoint> sources;
+    for (Vertex vertex : vertices) sources.push_back(triangles.vertex_point(vertex));
+    const exact::ExactMap map = exact::exact_map(triangles, sources);
+    VoronoiCells cells;
+    for (Index i = 0; i < map.size(); ++i) {
+      cells.labels.push_back(map.source(Vertex(i)));
+      cells.distances.push_back(geodesics.triangles().length_unit * map.distance(Vertex(i)));
+    }
+    return cells;
+  });
+}
+
+std::vector<Vertex> farthest_points(const TangentGraph& graph, Vertex first, Index count, const Progress& progress) {
   const Index n = graph.size();
   if (first.index < 0 || first.index >= n)
     throw InvalidArgument("farthest_points: 'first' " + std::to_string(first.index) + " is outside [0, " +
@@ -54,6 +70,7 @@ std::vector<Vertex> farthest_points(const TangentGraph& graph, Vertex first, Ind
     std::vector<Vertex> points{first};
     UnfoldingFront front(graph);
     while (points.size() < static_cast<std::size_t>(count)) {
+      progress.step("farthest points", static_cast<double>(points.size()) / count);
       front.add(Source::at_vertex(points.back()));
       front.run();
       Vertex farthest{0};

@@ -55,7 +55,7 @@ Slope slope_at(const FlatPoints& points, const VectorXd& x) {
 
 /// The better of Newton's step and Weiszfeld's, which never fails to go down. Newton's may be worse by rounding.
 VectorXd step(const FlatPoints& points, const VectorXd& x, const Slope& slope) {
-  const VectorXd weiszfeld = (1 - slope.weight / slope.pull.norm()) / slope.rate * slope.pull;
+  VectorXd weiszfeld = (1 - slope.weight / slope.pull.norm()) / slope.rate * slope.pull;
   if (slope.weight > 0) return weiszfeld;
   const VectorXd newton = slope.hessian.ldlt().solve(slope.pull);
   if (!newton.allFinite()) return weiszfeld;

@@ -15,7 +15,7 @@ namespace {
 
 /// Weighted vertices, and what is to be least.
 struct Problem {
-  const LogMapSolver& solver;
+  const MapMaker& maps;
   const char* name;  ///< of the function called, for messages
   std::vector<double> (*flat_center)(const FlatPoints&);
   std::vector<Vertex> vertices;
@@ -23,9 +23,9 @@ struct Problem {
 };
 
 void check_vertex(const Problem& problem, Vertex vertex, const std::string& what) {
-  if (vertex.index < 0 || vertex.index >= problem.solver.graph().size())
+  if (vertex.index < 0 || vertex.index >= problem.maps.graph().size())
     throw InvalidArgument(std::string(problem.name) + ": " + what + ", vertex " + std::to_string(vertex.index) +
-                          ", is outside [0, " + std::to_string(problem.solver.graph().size()) + ")");
+                          ", is outside [0, " + std::to_string(problem.maps.graph().size()) + ")");
 }
 
 /// Keeps the points of positive weight.
@@ -59,8 +59,8 @@ struct View {
 };
 
 View look(const Problem& problem, Vertex from, double radius) {
-  const TangentGraph& graph = problem.solver.graph();
-  View view{problem.solver.solve(Source::at_vertex(from), {.radius = radius, .spread = false}), {}, {}};
+  const TangentGraph& graph = problem.maps.graph();
+  View view{problem.maps.map(from, radius), {}, {}};
   view.points.dimension = static_cast<std::size_t>(graph.dimension());
   view.points.weights = problem.weights;
   for (Vertex vertex : problem.vertices) {
@@ -115,7 +115,7 @@ Center search(const Problem& problem, double power, const CenterOptions& options
   if (options.max_maps < 1)
     throw InvalidArgument(std::string(problem.name) + ": 'max_maps' " + std::to_string(options.max_maps) +
                           " must be at least 1");
-  const TangentGraph& graph = problem.solver.graph();
+  const TangentGraph& graph = problem.maps.graph();
   const auto heaviest = std::max_element(problem.weights.begin(), problem.weights.end()) - problem.weights.begin();
   Vertex x = options.start.value_or(problem.vertices[heaviest]);
   check_vertex(problem, x, "'start'");
@@ -149,16 +149,16 @@ Center search(const Problem& problem, double power, const CenterOptions& options
 
 }  // namespace
 
-Center karcher_mean(const LogMapSolver& solver, std::span<const Vertex> vertices, std::span<const double> weights,
+Center karcher_mean(const MapMaker& maps, std::span<const Vertex> vertices, std::span<const double> weights,
                     const CenterOptions& options) {
-  Problem problem{solver, "karcher_mean", flat_mean, {}, {}};
+  Problem problem{maps, "karcher_mean", flat_mean, {}, {}};
   set_points(problem, vertices, weights);
   return search(problem, 2, options);
 }
 
-Center geometric_median(const LogMapSolver& solver, std::span<const Vertex> vertices, std::span<const double> weights,
+Center geometric_median(const MapMaker& maps, std::span<const Vertex> vertices, std::span<const double> weights,
                         const CenterOptions& options) {
-  Problem problem{solver, "geometric_median", flat_median, {}, {}};
+  Problem problem{maps, "geometric_median", flat_median, {}, {}};
   set_points(problem, vertices, weights);
   return search(problem, 1, options);
 }

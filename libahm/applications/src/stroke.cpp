@@ -156,8 +156,8 @@ void check_points(std::span<const Source> points, std::span<const double> length
 
 /// Each point by half of the lengths of its two segments. @param place_of  called for one point after the other
 template <class PlaceOf>
-Source weighted_by_length(std::span<const Source> points, std::span<const double> lengths, bool closed,
-                          const PlaceOf& place_of) {
+std::vector<StrokePoint> weighted_by_length(std::span<const Source> points, std::span<const double> lengths,
+                                            bool closed, const PlaceOf& place_of) {
   std::vector<StrokePoint> stroke;
   stroke.reserve(points.size());
   for (std::size_t k = 0; k < points.size(); ++k) {
@@ -166,7 +166,7 @@ Source weighted_by_length(std::span<const Source> points, std::span<const double
     const auto [position, direction] = place_of(k);
     stroke.push_back({points[k], (before + after) / 2, position, std::atan2(direction[1], direction[0])});
   }
-  return stroke_source(stroke);
+  return stroke;
 }
 
 }  // namespace
@@ -211,7 +211,8 @@ Source stroke_source(std::span<const StrokePoint> points) {
   return source;
 }
 
-Source stroke_source(std::span<const Source> points, std::span<const double> lengths, const StrokeOptions& options) {
+std::vector<StrokePoint> stroke_points(std::span<const Source> points, std::span<const double> lengths,
+                                       const StrokeOptions& options) {
   check_shape(options);
   check_points(points, lengths, options.closed);
   const double length = std::accumulate(lengths.begin(), lengths.end(), 0.0);
@@ -223,11 +224,20 @@ Source stroke_source(std::span<const Source> points, std::span<const double> len
   });
 }
 
-Source stroke_source(std::span<const Source> points, std::span<const double> lengths, std::span<const Vec2> positions,
-                     bool closed) {
+std::vector<StrokePoint> stroke_points(std::span<const Source> points, std::span<const double> lengths,
+                                       std::span<const Vec2> positions, bool closed) {
   check_points(points, lengths, closed);
   const std::vector<Vec2> directions = directions_of(positions, points.size(), closed);
   return weighted_by_length(points, lengths, closed, [&](std::size_t k) { return Place{positions[k], directions[k]}; });
+}
+
+Source stroke_source(std::span<const Source> points, std::span<const double> lengths, const StrokeOptions& options) {
+  return stroke_source(stroke_points(points, lengths, options));
+}
+
+Source stroke_source(std::span<const Source> points, std::span<const double> lengths, std::span<const Vec2> positions,
+                     bool closed) {
+  return stroke_source(stroke_points(points, lengths, positions, closed));
 }
 
 }  // namespace ahm

@@ -1,7 +1,9 @@
 #include "ahm/applications/surface_curve.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -22,14 +24,51 @@ struct CurveSample {
   double along;       ///< the piece: in [0, 1)
 };
 
+/// The faces of a surface for paths; none where it has no flat ones.
+std::optional<ExactGeodesics> geodesics_of(const Surface& surface) {
+  if (surface.faces().size() == 0 || surface.positions().empty()) return std::nullopt;
+  try {
+    return std::optional<ExactGeodesics>(std::in_place, surface);
+  } catch (const Cancelled&) {
+    throw;
+  } catch (const Error&) {  // twisted polygons, faces of no area
+    return std::nullopt;
+  }
+}
+
+/// Places on the shortest path between two points, no farther apart than a step; empty where the faces do not join them.
+std::vector<Vec3> along_path(const ExactGeodesics& geodesics, const SurfacePoint& from, const SurfacePoint& to,
+                             double step) {
+  const exact::GeodesicPath path = geodesics.path(std::array{from, to});
+  std::vector<Vec3> places;
+  for (std::size_t k = 1; k < path.points.size(); ++k) {
+    const Vec3 a = geodesics.position(path.points[k - 1]), b = geodesics.position(path.points[k]);
+    const int pieces = std::max(1, static_cast<int>(std::ceil(distance(a, b) / step)));
+    for (int p = 1; p <= pieces; ++p) places.push_back(a + static_cast<double>(p) / pieces * (b - a));
+  }
+  if (!places.empty()) places.pop_back();
+  return places;
+}
+
+/// How far along a line from `from` to `to` its places are: shares of its length.
+std::vector<double> shares(const Vec3& from, const std::vector<Vec3>& places, const Vec3& to) {
+  std::vector<double> along;
+  double length = 0;
+  for (std::size_t p = 0; p < places.size(); ++p)
+    along.push_back(length += distance(p > 0 ? places[p - 1] : from, places[p]));
+  length += places.empty() ? 0 : distance(places.back(), to);
+  for (double& x : along) x /= length;
+  return along;
+}
+
 double length_of(const std::vector<Vec3>& corners) {
   double length = 0;
   for (std::size_t k = 0; k + 1 < corners.size(); ++k) length += distance(corners[k], corners[k + 1]);
   return length;
 }
 
-/// The given points as corners, and points on the straight lines between them; the largest distance of these from the
-/// surface.
+/// The given points as corners, and points between them: on the shortest path over flat faces, else, and between points
+/// closer than four steps, on the straight line. The largest distance of these from the surface.
 std::vector<CurveSample> sample(const Surface& surface, std::span<const CurvePoint> given, bool closed, double step,
                                 double& gap) {
   std::vector<Vec3> corners;
@@ -46,6 +85,12 @@ std::vector<CurveSample> sample(const Surface& surface, std::span<const CurvePoi
                           "is it in the units of the surface?");
 
   std::vector<CurveSample> samples;
+  const std::optional<ExactGeodesics> geodesics = geodesics_of(surface);
+  const auto end_point = [&](std::size_t k) {
+    const CurvePoint& end = given[k % given.size()];
+    const auto* on_surface = std::get_if<SurfacePoint>(&end);
+    return on_surface ? *on_surface : surface.closest_point(std::get<Vec3>(end)).point;
+  };
   const auto project = [&](const Vec3& p, std::size_t piece, double along) {
     ClosestPoint closest = surface.closest_point(p);
     samples.push_back({std::move(closest.point), closest.position, piece, along});
@@ -58,11 +103,15 @@ std::vector<CurveSample> sample(const Surface& surface, std::span<const CurvePoi
     else
       project(corners[k], k, 0);
     if (k + 1 == corners.size()) break;
-    const int pieces = static_cast<int>(std::ceil(distance(corners[k], corners[k + 1]) / step));
-    for (int p = 1; p < pieces; ++p) {
-      const double along = static_cast<double>(p) / pieces;
-      project(corners[k] + along * (corners[k + 1] - corners[k]), k, along);
-    }
+    const double straight = distance(corners[k], corners[k + 1]);
+    std::vector<Vec3> places;
+    if (geodesics && straight > 4 * step) places = along_path(*geodesics, end_point(k), end_point(k + 1), step);
+    const int pieces = static_cast<int>(std::ceil(straight / step));
+    if (places.empty())
+      for (int p = 1; p < pieces; ++p)
+        places.push_back(corners[k] + static_cast<double>(p) / pieces * (corners[k + 1] - corners[k]));
+    const std::vector<double> along = shares(corners[k], places, corners[k + 1]);
+    for (std::size_t p = 0; p < places.size(); ++p) project(places[p], k, along[p]);
   }
   return samples;
 }
@@ -115,9 +164,9 @@ Source mirrored(const Source& source) {
   return result;
 }
 
-/// @param source_of  makes the source of sources and lengths of a curve of these samples
-template <class SourceOf>
-SurfaceCurve draw(const Surface& surface, std::span<const CurvePoint> given, bool closed, const SourceOf& source_of) {
+/// @param stroke_of  makes the stroke of samples, their sources and the lengths between them
+template <class StrokeOf>
+SurfaceCurve draw(const Surface& surface, std::span<const CurvePoint> given, bool closed, const StrokeOf& stroke_of) {
   const TangentGraph& graph = surface.graph();
   const double edge = graph.mean_edge_length() * graph.length_unit();
   SurfaceCurve curve;
@@ -136,10 +185,12 @@ SurfaceCurve draw(const Surface& surface, std::span<const CurvePoint> given, boo
     if (frame) normal = frame->normal;
   };
   for (std::size_t k = 0; k < n; ++k) {
-    const PlacedSource point = surface.source(samples[k].point, tangent(samples, k, closed));
+    const Vec3 along = tangent(samples, k, closed);
+    const PlacedSource point = surface.source(samples[k].point, along);
     if (k == 0) curve.first = point.frame;
     turn_over(point.frame);
     sources.push_back(side < 0 ? mirrored(point.source) : point.source);
+    curve.samples.push_back({samples[k].point, along, {}, 0, side < 0});
     curve.points.push_back(samples[k].position);
     if (k + 1 < n || closed) lengths.push_back(distance(samples[k].position, samples[(k + 1) % n].position));
   }
@@ -148,7 +199,12 @@ SurfaceCurve draw(const Surface& surface, std::span<const CurvePoint> given, boo
     throw InvalidArgument("curve_one_sided", "the curve runs along a one-sided band, so it has no left",
                           "leave it open");
   for (double length : lengths) curve.length += length, curve.jump = std::max(curve.jump, length);
-  curve.source = source_of(samples, sources, lengths);
+  const std::vector<StrokePoint> stroke = stroke_of(samples, sources, lengths);
+  for (std::size_t k = 0; k < n; ++k) {
+    curve.samples[k].position = stroke[k].position;
+    curve.samples[k].angle = stroke[k].angle;
+  }
+  curve.source = stroke_source(stroke);
   return curve;
 }
 
@@ -156,7 +212,7 @@ SurfaceCurve draw(const Surface& surface, std::span<const CurvePoint> given, boo
 
 SurfaceCurve draw_curve(const Surface& surface, std::span<const CurvePoint> given, const StrokeOptions& options) {
   return draw(surface, given, options.closed, [&](const auto&, const auto& sources, const auto& lengths) {
-    return stroke_source(sources, lengths, options);
+    return stroke_points(sources, lengths, options);
   });
 }
 
@@ -171,7 +227,7 @@ SurfaceCurve draw_curve(const Surface& surface, std::span<const CurvePoint> give
       const Vec2 &from = positions[sample.piece], &to = positions[(sample.piece + 1) % positions.size()];
       places.push_back(from + sample.along * (to - from));
     }
-    return stroke_source(sources, lengths, places, closed);
+    return stroke_points(sources, lengths, places, closed);
   });
 }
 

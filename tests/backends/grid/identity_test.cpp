@@ -51,7 +51,7 @@ class GridMap : public testing::TestWithParam<Grid> {
 };
 
 TEST_P(GridMap, IsTheIdentityFromEveryVertex) {
-  for (Variant variant : {Variant::adaptive, Variant::localized})
+  for (Variant variant : all_variants)
     for (Index p : {Index{0}, grid.size() / 3, grid.size() / 2, grid.size() - 1})
       expect_identity(solver.solve(Source::at_vertex(Vertex(p)), {.variant = variant}), at(p));
 }
@@ -59,8 +59,7 @@ TEST_P(GridMap, IsTheIdentityFromEveryVertex) {
 TEST_P(GridMap, IsTheIdentityFromEveryPoint) {
   // In the middle, near and on the border, on a face of a cell, on a vertex.
   for (const auto& p : {point(0.53, 0.41, 0.37), point(0.001, 1, 0.5), point(0, 0.3, 0), point(1, 1, 1)})
-    for (Variant variant : {Variant::adaptive, Variant::localized})
-      expect_identity(solver.solve(grid.source_at(p), {.variant = variant}), p);
+    for (Variant variant : all_variants) expect_identity(solver.solve(grid.source_at(p), {.variant = variant}), p);
 }
 
 TEST_P(GridMap, TurnsWithTheSourceFrame) {
@@ -109,7 +108,7 @@ TEST(GridMarch, IsTheIdentityInSpace) {
   const GridGraph grid({.shape = {34, 28, 30}, .spacing = {1, 1.3, 0.8}});
   const Vertex p = grid.vertex(std::array<Index, 3>{3, 14, 11});
   const LogMapSolver solver(grid, {.strategy = Strategy::march});
-  for (Variant variant : {Variant::adaptive, Variant::localized}) {
+  for (Variant variant : all_variants) {
     const LogMap map = solver.solve(Source::at_vertex(Vertex(p)), {.variant = variant});
     EXPECT_GT(map.march().bands, 3);
     for (Index i = 0; i < grid.size(); ++i)
@@ -124,7 +123,7 @@ TEST(GridBlocks, GiveTheMapOfComplexNumbers) {
   const CsrGraph blocks(as_blocks(stored(grid)));
   const LogMapSolver solver(grid), solver_on_blocks(blocks);
   const Source source = grid.source_at(std::array{0.213, 0.77});
-  for (Variant variant : {Variant::adaptive, Variant::localized}) {
+  for (Variant variant : all_variants) {
     const LogMap map = solver.solve(source, {.variant = variant}),
                  other = solver_on_blocks.solve(source, {.variant = variant});
     for (std::size_t k = 0; k < map.coordinates().size(); ++k)

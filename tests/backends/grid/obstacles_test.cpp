@@ -50,7 +50,7 @@ TEST(GridObstacles, LeaveTheIdentityInAMaze) {
     const GridGraph grid(maze(8, wide));
     const LogMapSolver solver(grid);
     const double p[] = {0.03, 0.07}, diameter = 0.1 * grid.grid().shape[0] * std::sqrt(2.0);
-    for (Variant variant : {Variant::adaptive, Variant::localized}) {
+    for (Variant variant : all_variants) {
       const LogMap map = solver.solve(grid.source_at(p), {.variant = variant});
       EXPECT_EQ(connected_components(grid).count,
                 1 + map.count(Status::disconnected));  // vertices inside walls stand alone

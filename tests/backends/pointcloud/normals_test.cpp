@@ -189,7 +189,7 @@ TEST(Normals, OfAMoebiusBandMakeReflections) {
   EXPECT_EQ(solved.graph.graph().transport_kind(), TransportKind::block);
   EXPECT_GT(solved.graph.details().reflections, 0);
   EXPECT_EQ(solved.graph.details().components, 1);
-  for (Variant variant : {Variant::adaptive, Variant::localized}) {
+  for (Variant variant : all_variants) {
     const RowLogMap map = solved.map(0, variant);
     double farthest = 0;
     for (std::size_t i = 0; i < band.points.size(); ++i) {

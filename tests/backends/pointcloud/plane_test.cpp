@@ -41,7 +41,7 @@ TEST(FlatCloud, IsTheIdentityFromInteriorAndBoundary) {
     sources.push_back(static_cast<Index>(nearest - cloud.plane.begin()));
   }
   for (Index p : sources)
-    for (Variant variant : {Variant::adaptive, Variant::localized})
+    for (Variant variant : all_variants)
       EXPECT_LT(flat_error(cloud, solved, p, variant), gate * std::sqrt(2.0)) << "source " << p;
 }
 
@@ -128,7 +128,7 @@ TEST(RolledCloud, ConvergesToThePlaneWithSecondOrder) {
                                          on_points.v[i] - (cloud.plane[i][1] - cloud.plane[p][1])));
     return worst;
   };
-  for (Variant variant : {Variant::adaptive, Variant::localized}) {
+  for (Variant variant : all_variants) {
     const double coarse = error(30, variant), fine = error(60, variant);
     EXPECT_GE(std::log2(coarse / fine), 1.8) << coarse << " -> " << fine;
   }

@@ -34,7 +34,7 @@ TEST(SphereCloud, ConvergesOnRandomPointsInBothVariants) {
     const Cloud cloud = random_sphere(n);
     const Solved solved(cloud);
     EXPECT_EQ(solved.graph.details().reflections, 0);
-    for (Variant variant : {Variant::adaptive, Variant::localized}) {
+    for (Variant variant : all_variants) {
       // The error of one source is partly luck: average over some.
       double angle_sum = 0, rms_sum = 0;
       for (Index p : {5, n / 3, n / 2, n - 9}) {

@@ -29,7 +29,7 @@ TEST(PolygonPlane, IsTheIdentityFromAVertex) {
       const auto surface = build(mesh, {.clamp_weights = clamp});
       const LogMapSolver solver(surface.graph());
       for (Index source : {Index{0}, mesh.vertices() / 2, mesh.vertices() - 1})
-        for (Variant variant : {Variant::adaptive, Variant::localized}) {
+        for (Variant variant : all_variants) {
           // Where heat has lost its sign its frames are wrong, and the adaptive variant takes them along.
           if (!clamp && variant == Variant::adaptive && surface.details().negative_weights > 0) continue;
           const Vec3 u{mesh.positions[1][0] - mesh.positions[0][0], mesh.positions[1][1] - mesh.positions[0][1],
@@ -61,7 +61,7 @@ TEST(PolygonPlane, IsTheIdentityFromInsideAFace) {
       const auto &p = mesh.plane[corners[0]], &q = mesh.plane[corners[1]];
       const double length = std::hypot(q[0] - p[0], q[1] - p[1]);
       const std::array<double, 2> u{(q[0] - p[0]) / length, (q[1] - p[1]) / length};
-      for (Variant variant : {Variant::adaptive, Variant::localized}) {
+      for (Variant variant : all_variants) {
         const auto map =
             surface.on_rows(solver.solve(surface.source(FacePoint{face, weights}).source, {.variant = variant}));
         EXPECT_LT(plane_error(mesh, map, origin, u), 1e-11 * mesh.diameter()) << name << ", " << to_string(variant);

@@ -39,7 +39,7 @@ double refined_error(const Polygons& mesh, Variant variant) {
 }
 
 TEST(PolygonSphere, ConvergesOnQuadsAndHexagons) {
-  for (Variant variant : {Variant::adaptive, Variant::localized}) {
+  for (Variant variant : all_variants) {
     // Halving h must at least nearly halve the error: measured 0.9 and more.
     const double quads[] = {polygon_error(cube_sphere(12), variant), polygon_error(cube_sphere(24), variant)};
     EXPECT_GT(std::log2(quads[0] / quads[1]), 0.7) << to_string(variant) << ": " << quads[0] << ", " << quads[1];
@@ -49,7 +49,7 @@ TEST(PolygonSphere, ConvergesOnQuadsAndHexagons) {
 }
 
 TEST(PolygonSphere, ConvergesOnRandomCellsWhenRefined) {
-  for (Variant variant : {Variant::adaptive, Variant::localized}) {
+  for (Variant variant : all_variants) {
     const double coarse = refined_error(voronoi_sphere(600), variant),
                  fine = refined_error(voronoi_sphere(2400), variant);
     EXPECT_GT(std::log2(coarse / fine), 0.4) << to_string(variant) << ": " << coarse << ", " << fine;

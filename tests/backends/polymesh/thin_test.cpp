@@ -78,7 +78,7 @@ void expect_identity(const Polygons& mesh, const std::string& name) {
     EXPECT_NO_THROW(validate(surface.graph())) << name;
     const LogMapSolver solver(surface.graph());
     for (Index source : {Index{0}, mesh.vertices() / 2, mesh.vertices() - 1})
-      for (Variant variant : {Variant::adaptive, Variant::localized}) {
+      for (Variant variant : all_variants) {
         const RowLogMap map = surface.on_rows(solver.solve(surface.source(Row(source)).source, {.variant = variant}));
         for (Index i = 0; i < mesh.vertices(); ++i) {
           const Vec2 &p = mesh.plane[i], &q = mesh.plane[source];

@@ -30,7 +30,7 @@ double unrolled_error(const Mesh& mesh, Variant variant, const std::array<double
 }
 
 TEST(Cylinder, ConvergesWithSecondOrderToThePlane) {
-  for (Variant variant : {Variant::adaptive, Variant::localized}) {
+  for (Variant variant : all_variants) {
     const double coarse = unrolled_error(rolled_square(21, 0.3), variant, {0.5, 0.5});
     const double fine = unrolled_error(rolled_square(81, 0.3), variant, {0.5, 0.5});
     EXPECT_GT(std::log2(coarse / fine) / 2, 1.8) << to_string(variant) << ": " << coarse << ", " << fine;
@@ -38,7 +38,7 @@ TEST(Cylinder, ConvergesWithSecondOrderToThePlane) {
 }
 
 TEST(Cone, ConvergesToThePlaneItIsRolledFrom) {
-  for (Variant variant : {Variant::adaptive, Variant::localized}) {
+  for (Variant variant : all_variants) {
     // One radian of the plane on a cone of 1.4 radians: seen from its middle the patch is convex enough for straight
     // lines.
     const double coarse = unrolled_error(cone_patch(21, 1.4), variant, {0.9, 0.5});

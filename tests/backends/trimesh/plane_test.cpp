@@ -51,7 +51,7 @@ TEST(MeshPlane, IsTheIdentityFromAnyVertex) {
     for (bool flips : {true, false}) {
       const SolvedMesh solved(mesh, {.intrinsic_delaunay = flips});
       for (Index source : {0, 1, 3, mesh.vertices() / 2, mesh.vertices() - 1})
-        for (Variant variant : {Variant::adaptive, Variant::localized}) {
+        for (Variant variant : all_variants) {
           const RowLogMap map = solved.map(solved.surface.source(Row(source)).source, variant);
           EXPECT_LT(vertex_error(mesh, map, source), tolerance * mesh.diameter())
               << name << (flips ? " flipped" : "") << ", vertex " << source << ", " << to_string(variant);

@@ -72,7 +72,7 @@ void expect_identity(const Mesh& mesh, bool flips, const std::string& name) {
   EXPECT_NO_THROW(validate(surface.graph())) << name;
   for (int order : {1, 2}) {
     const LogMapSolver solver(surface.graph(), {.order = order});
-    for (Variant variant : {Variant::adaptive, Variant::localized})
+    for (Variant variant : all_variants)
       for (const auto& [where, point, plane] : places(mesh)) {
         const LogMap map = solver.solve(surface.source(point).source, {.variant = variant});
         const PlaneErrors errors(mesh, surface.on_rows(map), plane);
@@ -191,7 +191,7 @@ TEST(CoincidentVertices, OfCurvedMeshesChangeNothing) {
     EXPECT_EQ(b.surface.details().topology.euler_characteristic, a.surface.details().topology.euler_characteristic);
     EXPECT_EQ(b.surface.details().topology.boundary_edges, a.surface.details().topology.boundary_edges);
     for (Index source : {0, 77, 200})
-      for (Variant variant : {Variant::adaptive, Variant::localized}) {
+      for (Variant variant : all_variants) {
         const Vec3 axis{0.3, 0.5, 0.7};
         const RowLogMap p = a.map(a.surface.source(Row(source), axis).source, variant),
                         q = b.map(b.surface.source(Row(source), axis).source, variant);

@@ -41,5 +41,25 @@ TEST(Cost, OfBlocksIsThatOfTheirNumbers) {
   EXPECT_NEAR(blocks.bytes / rotations.bytes, 5.0 / 3.0, 1e-12);  // 1 + 4 numbers per entry instead of 1 + 2
 }
 
+TEST(Cost, OfOrderTwoIsThatOfItsTimes) {
+  for (const auto& [n, times] : {std::pair{5000, 2.0}, std::pair{50000, 3.0}}) {
+    const GraphSize size{n, 2, TransportKind::rotation2};
+    const Cost one = estimate_cost(size, Strategy::global), two = estimate_cost(size, Strategy::global, 2);
+    EXPECT_NEAR(two.first_map_seconds / one.first_map_seconds, times, 1e-12);
+    EXPECT_LT(two.bytes, times * one.bytes);  // the factors are kept, all else is used again
+    EXPECT_GT(two.bytes, one.bytes * (1 + (times - 1) / 2));
+    const Cost march = estimate_cost(size, Strategy::march), marches = estimate_cost(size, Strategy::march, 2);
+    EXPECT_NEAR(marches.first_map_seconds / march.first_map_seconds, times, 1e-12);
+    EXPECT_GT(marches.bytes, march.bytes);  // the bands of longer times are deeper
+  }
+}
+
+TEST(Cost, OfOrderTwoCountsForTheChoice) {
+  constexpr GraphSize size{200'000, 2, TransportKind::rotation2};
+  const auto memory = static_cast<std::size_t>(1.5 * estimate_cost(size, Strategy::global).bytes);
+  EXPECT_EQ(choose_strategy(size, {.order = 1, .memory = memory}), Strategy::global);
+  EXPECT_EQ(choose_strategy(size, {.order = 2, .memory = memory}), Strategy::march);
+}
+
 }  // namespace
 }  // namespace ahm::test

@@ -23,7 +23,7 @@ void expect_identity(const FlatGraph& flat, const LogMap& map, Index p) {
 void expect_identity_from_everywhere(const FlatGraph& flat, double t_coef) {
   const CsrGraph graph(flat.data);
   const LogMapSolver solver(graph, {.t_coef = t_coef});
-  for (Variant variant : {Variant::adaptive, Variant::localized})
+  for (Variant variant : all_variants)
     for (Index p : {Index{0}, flat.size() / 2, flat.size() / 3, flat.size() - 1})
       expect_identity(flat, solver.solve(Source::at_vertex(Vertex(p)), {.variant = variant}), p);
 }
@@ -77,7 +77,7 @@ TEST(LogMap, IsExactFromASourceBetweenVertices) {
       const double offset[] = {flat.positions[corners[k] * 2] - p[0], flat.positions[corners[k] * 2 + 1] - p[1]};
       source.add(Vertex(corners[k]), weights[k], offset, std::span(flat.frames).subspan(corners[k] * 4, 4));
     }
-    for (Variant variant : {Variant::adaptive, Variant::localized}) {
+    for (Variant variant : all_variants) {
       const LogMap map = solver.solve(source, {.variant = variant});
       for (Index i = 0; i < flat.size(); ++i)
         for (int a = 0; a < 2; ++a)
@@ -95,7 +95,7 @@ TEST(LogMap, IsExactFromAStraightCurve) {
     curve.add(Vertex(k), 1.0 + 0.1 * k, std::span(flat.positions).subspan(2 * k, 2),
               std::span(flat.frames).subspan(4 * k, 4));
   const LogMapSolver solver(graph);
-  for (Variant variant : {Variant::adaptive, Variant::localized}) {
+  for (Variant variant : all_variants) {
     const LogMap map = solver.solve(curve, {.variant = variant});
     for (Index i = 0; i < flat.size(); ++i)
       for (int a = 0; a < 2; ++a)

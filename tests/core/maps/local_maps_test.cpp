@@ -19,8 +19,6 @@
 namespace ahm::test {
 namespace {
 
-constexpr std::array variants{Variant::adaptive, Variant::localized};
-
 std::vector<Vertex> every(Index step, const TangentGraph& graph) {
   std::vector<Vertex> vertices;
   for (Index v = 0; v < graph.size(); v += step) vertices.emplace_back(v);
@@ -33,7 +31,7 @@ TEST(LocalMaps, AreExactOnFlatGeometryAndComplete) {
     const CsrGraph graph(flat.data);
     const double radius = flat.dimension == 2 ? 0.15 : 0.3;
     const std::vector<Vertex> sources = every(7, graph);
-    for (Variant variant : variants) {
+    for (Variant variant : all_variants) {
       const LocalMaps maps = local_maps(graph, sources, {.radius = radius, .heat = {.variant = variant}});
       ASSERT_EQ(maps.sources(), static_cast<Index>(sources.size()));
       for (std::size_t s = 0; s < sources.size(); ++s) {
@@ -62,7 +60,7 @@ TEST(LocalMaps, ApproachTheMapOfTheWholeGraphWithTheMargin) {
   const LogMapSolver solver(graph);
   const std::vector<Vertex> sources = every(97, graph);
   const double h = graph.mean_edge_length(), radius = 4 * h;
-  for (Variant variant : variants) {
+  for (Variant variant : all_variants) {
     double before = INFINITY;
     for (double margin : {0.0, 1.5, 3.0}) {
       const LocalMaps maps =

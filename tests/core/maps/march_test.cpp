@@ -19,7 +19,6 @@ namespace ahm::test {
 namespace {
 
 const HeatOptions global{.strategy = Strategy::global}, marching{.strategy = Strategy::march};
-constexpr std::array variants{Variant::adaptive, Variant::localized};
 
 /// Largest difference of two maps, relative to the largest distance; infinite where only one is ok.
 double difference(const LogMap& a, const LogMap& b) {
@@ -54,7 +53,7 @@ TEST(March, AgreesWithTheGlobalSolve) {
     const CsrGraph graph(data);
     const LogMapSolver whole(graph, global), march(graph, marching);
     for (const Source& source : {Source::at_vertex(Vertex{5}), blended(graph)})
-      for (Variant variant : variants) {
+      for (Variant variant : all_variants) {
         const LogMap expected = whole.solve(source, {.variant = variant}),
                      map = march.solve(source, {.variant = variant});
         EXPECT_EQ(map.strategy(), Strategy::march);
@@ -95,7 +94,7 @@ TEST(March, IsExactOnThePlane) {
   const FlatGraph flat = planar_triangulation(150);
   const CsrGraph graph(flat.data);
   const LogMapSolver solver(graph, marching);
-  for (Variant variant : variants) {
+  for (Variant variant : all_variants) {
     const LogMap map = solver.solve(Source::at_vertex(Vertex{77}), {.variant = variant});
     EXPECT_GT(map.march().bands, 1);
     for (Index i = 0; i < flat.size(); ++i)
@@ -106,7 +105,7 @@ TEST(March, IsExactOnThePlane) {
 
 TEST(March, HasNoHorizon) {
   const CsrGraph graph(tube(20000, 6));
-  for (Variant variant : variants) {
+  for (Variant variant : all_variants) {
     const LogMap map = LogMapSolver(graph, marching).solve(Source::at_vertex(Vertex{0}), {.variant = variant});
     EXPECT_EQ(map.count(Status::ok), graph.size());
     const auto away = [&](Index ring) {

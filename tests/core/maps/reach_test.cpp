@@ -25,7 +25,7 @@ TEST(Reach, IsExactAsFarAsHeatCanBeToldFromNothingAndSaysWhereItEnds) {
   const FlatGraph flat = strip(3000);
   const CsrGraph graph(flat.data);
   const LogMapSolver solver(graph, {.strategy = Strategy::global});
-  for (Variant variant : {Variant::adaptive, Variant::localized}) {
+  for (Variant variant : all_variants) {
     const LogMap map = solver.solve(Source::at_vertex(Vertex{1}), {.variant = variant});
     expect_nan_exactly_where_not_ok(map);
     Index farthest = 0;
@@ -52,7 +52,7 @@ TEST(Reach, IsNeverOverstatedWhereFactorsHoldLongJumps) {
   for (double t_coef : {1e-1, 1e-2, 1e-4})
     for (Ordering ordering : {Ordering::amd, Ordering::nested_dissection}) {
       const LogMapSolver solver(graph, {.t_coef = t_coef, .strategy = Strategy::global, .ordering = ordering});
-      for (Variant variant : {Variant::adaptive, Variant::localized}) {
+      for (Variant variant : all_variants) {
         const LogMap map = solver.solve(Source::at_vertex(Vertex{0}), {.variant = variant});
         for (Index i = 0; i < flat.size(); ++i) {
           if (map.status(Vertex(i)) != Status::ok) continue;

@@ -20,7 +20,6 @@
 namespace ahm::test {
 namespace {
 
-const std::array variants{Variant::adaptive, Variant::localized};
 const std::array strategies{Strategy::global, Strategy::march};
 
 // Any triangulation, any weights, both arithmetic paths, one to three dimensions.
@@ -31,7 +30,7 @@ TEST(SecondMoment, IsTheDistanceOnFlatGraphs) {
     ASSERT_FALSE(graph.is_delaunay());
     for (Strategy strategy : strategies)
       for (int order : {1, 2})
-        for (Variant variant : variants) {
+        for (Variant variant : all_variants) {
           const LogMapSolver solver(graph, {.variant = variant, .order = order, .strategy = strategy});
           const LogMap map = solver.solve(Source::at_vertex(Vertex{33}));
           for (Index i = 0; i < graph.size(); ++i) {
@@ -48,7 +47,7 @@ TEST(SecondMoment, IsTheDistanceOnFlatGraphs) {
 TEST(SecondMoment, HasAVarianceThatIsNotNegative) {
   for (const CsrGraphData& data : {sphere_graph(2500), as_blocks(sphere_graph(900)), bent_lattice(10), tube(60, 9)}) {
     const CsrGraph graph(data);
-    for (Variant variant : variants) {
+    for (Variant variant : all_variants) {
       const LogMap map = LogMapSolver(graph).solve(Source::at_vertex(Vertex{7}), {.variant = variant});
       for (Index i = 0; i < graph.size(); ++i)
         if (i != 7) ASSERT_GE(map.distance(Vertex(i)), length(map.coordinates(Vertex(i))) * (1 - 1e-12));
@@ -77,7 +76,7 @@ double error_on_sphere(Index parts, Variant variant) {
 }
 
 TEST(SecondMoment, HoldsOnTheWholeSphereAndConverges) {
-  for (Variant variant : variants) {
+  for (Variant variant : all_variants) {
     const double coarse = error_on_sphere(10, variant), fine = error_on_sphere(32, variant);
     EXPECT_LT(coarse, 0.12);
     EXPECT_LT(fine, 0.5 * coarse);
@@ -87,7 +86,7 @@ TEST(SecondMoment, HoldsOnTheWholeSphereAndConverges) {
 TEST(SecondMoment, IsTheSameByMarch) {
   for (const CsrGraphData& data : {sphere_graph(6000), as_blocks(sphere_graph(3000)), bent_lattice(12)}) {
     const CsrGraph graph(data);
-    for (Variant variant : variants) {
+    for (Variant variant : all_variants) {
       const LogMap expected =
           LogMapSolver(graph, {.variant = variant, .strategy = Strategy::global}).solve(Source::at_vertex(Vertex{5}));
       const LogMap map =
@@ -116,7 +115,7 @@ TEST(SecondMoment, MayBeLeftOut) {
   for (const CsrGraphData& data : {delaunay, tube(60, 9)}) {
     const CsrGraph graph(data);
     const LogMapSolver solver(graph, {.strategy = Strategy::automatic});
-    for (Variant variant : variants) {
+    for (Variant variant : all_variants) {
       const LogMap all = solver.solve(Source::at_vertex(Vertex{7}), {.variant = variant});
       const LogMap map = solver.solve(Source::at_vertex(Vertex{7}), {.variant = variant, .spread = false});
       ASSERT_EQ(map.strategy(), all.strategy());
@@ -136,7 +135,7 @@ TEST(SecondMoment, MayBeLeftOut) {
 TEST(Distances, AreZeroAtTheSourceInEveryOrder) {
   const CsrGraph graph(sphere_graph(500));
   for (int order : {1, 2})
-    for (Variant variant : variants)
+    for (Variant variant : all_variants)
       EXPECT_EQ(LogMapSolver(graph, {.variant = variant, .order = order})
                     .solve(Source::at_vertex(Vertex{9}))
                     .distance(Vertex{9}),
@@ -149,7 +148,7 @@ TEST(Components, HaveAMapOfTheirOwn) {
   const CsrGraph alone(one), with_a_large_one(joined(one, scaled(sphere_graph(900), 32)));
   for (int order : {1, 2})
     for (Strategy strategy : strategies)
-      for (Variant variant : variants) {
+      for (Variant variant : all_variants) {
         const HeatOptions options{.variant = variant, .order = order, .strategy = strategy};
         const LogMap a = LogMapSolver(alone, options).solve(Source::at_vertex(Vertex{11})),
                      b = LogMapSolver(with_a_large_one, options).solve(Source::at_vertex(Vertex{11}));

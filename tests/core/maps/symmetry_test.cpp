@@ -87,7 +87,7 @@ TEST_P(Symmetry, HasTheSourceAtTheOrigin) {
   EXPECT_LT(std::hypot(map[10], map[11]), 1e-3 * largest(map));
 }
 
-INSTANTIATE_TEST_SUITE_P(Variants, Symmetry, testing::Values(Variant::adaptive, Variant::localized),
+INSTANTIATE_TEST_SUITE_P(Variants, Symmetry, testing::ValuesIn(all_variants),
                          [](const auto& info) { return std::string(to_string(info.param)); });
 
 }  // namespace

@@ -1,6 +1,7 @@
 // Exact maps beside those of heat: one result, whichever way it was made.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
@@ -150,20 +151,82 @@ TEST(ExactLogMap, HasGradientsAlongGreatCircles) {
   }
 }
 
-TEST(ExactLogMap, IsTrustedWhereItIsOk) {
-  const Mesh sphere = icosphere(8);
+TEST(ExactLogMap, IsTrustedButAtItsCutLocus) {
+  const Mesh sphere = icosphere(12);
   const auto surface = TriangleMeshSurface::build(sphere.positions, sphere.faces);
-  const LogMap map = exact_log_map(surface, Row(100), std::nullopt, {.radius = 2});
-  const std::vector<double> quality = map_quality(surface.graph(), map);
-  Index trusted = 0;
-  for (Index v = 0; v < map.size(); ++v) {
-    const bool ok = map.status(Vertex(v)) == Status::ok;
-    EXPECT_EQ(std::isnan(quality[v]), !ok);
-    if (ok) EXPECT_NEAR(quality[v], 1, 1e-12);
-    trusted += ok;
+  const ExactGeodesics geodesics(surface);
+  const LogMap near = geodesics.log_map(Row(100), std::nullopt, {.radius = 2});
+  const std::vector<double> inside = map_quality(surface.graph(), near);
+  for (Index v = 0; v < near.size(); ++v) {
+    EXPECT_EQ(std::isnan(inside[v]), near.status(Vertex(v)) != Status::ok);
+    if (near.status(Vertex(v)) == Status::ok) EXPECT_GT(inside[v], 0.97);
   }
-  EXPECT_GT(trusted, map.size() / 2);
-  EXPECT_LT(trusted, map.size());
+  // The antipode is the cut locus.
+  const LogMap whole = geodesics.log_map(Row(100));
+  const std::vector<double> quality = map_quality(surface.graph(), whole);
+  Index doubted = 0;
+  for (Index v = 0; v < whole.size(); ++v) {
+    if (whole.distance(Vertex(v)) < 2.5) EXPECT_GT(quality[v], trusted_quality);
+    doubted += quality[v] < trusted_quality;
+  }
+  EXPECT_GT(doubted, 2);
+  const auto farthest =
+      std::max_element(whole.distances().begin(), whole.distances().end()) - whole.distances().begin();
+  EXPECT_LT(quality[farthest], trusted_quality);
+}
+
+TEST(ExactLogMap, IsTrustedEverywhereOnPlanes) {
+  const Mesh mesh = flat_square(15);
+  const auto surface = TriangleMeshSurface::build(mesh.positions, mesh.faces);
+  for (double q : map_quality(surface.graph(), exact_log_map(surface, Row(40)))) EXPECT_EQ(q, 1);
+}
+
+TEST(ExactLogMap, OfSeveralSourcesIsThatOfTheNearest) {
+  const Mesh mesh = icosphere(9);
+  const auto surface = TriangleMeshSurface::build(mesh.positions, mesh.faces);
+  const ExactGeodesics geodesics(surface);
+  std::vector<ExactSource> sources;
+  // None in the middle of anything: two ways of one length would be a tie.
+  for (Index face : {3, 50, 133, 390}) sources.push_back({FacePoint{face, {0.21, 0.33, 0.46}}, Vec3{0.2, -0.3, 0.4}});
+  sources.push_back({EdgePoint{Row(mesh.faces[77][0]), Row(mesh.faces[77][1]), 0.37}, Vec3{0.2, -0.3, 0.4}});
+  std::vector<LogMap> single;
+  for (const ExactSource& s : sources) single.push_back(geodesics.log_map(s.point, s.u_axis));
+  // Moved in the plane of coordinates, which changes neither labels nor distances.
+  for (std::size_t k = 0; k < sources.size(); ++k) {
+    sources[k].position = {static_cast<double>(k), 0.5};
+    sources[k].angle = 0.4 * static_cast<double>(k);
+    sources[k].mirrored = k % 3 == 1;
+  }
+  const auto [map, labels] = geodesics.log_map(sources, {.radius = 9, .frames = true, .progress = {}});
+  for (Index v = 0; v < map.size(); ++v) {
+    const Vertex vertex(v);
+    double least = HUGE_VAL, next = HUGE_VAL;
+    for (const LogMap& one : single) {
+      next = std::min(next, std::max(least, one.distance(vertex)));
+      least = std::min(least, one.distance(vertex));
+    }
+    EXPECT_NEAR(map.distance(vertex), least, 1e-12);
+    if (next - least < 1e-9) continue;  // either may be the nearest
+    const ExactSource& s = sources[labels[v]];
+    const auto phi = single[labels[v]].coordinates(vertex);
+    const double side = s.mirrored ? -phi[1] : phi[1], c = std::cos(s.angle), t = std::sin(s.angle);
+    EXPECT_NEAR(map.coordinates(vertex)[0], s.position[0] + c * phi[0] - t * side, 1e-9);
+    EXPECT_NEAR(map.coordinates(vertex)[1], s.position[1] + t * phi[0] + c * side, 1e-9);
+  }
+  EXPECT_EQ(map.source().is_curve(), true);
+}
+
+TEST(ExactLogMap, OfRowsIsNoCurve) {
+  const Mesh mesh = icosphere(9);
+  const auto surface = TriangleMeshSurface::build(mesh.positions, mesh.faces);
+  const ExactGeodesics geodesics(surface);
+  const std::vector<ExactSource> sources{{Row(3)}, {Row(70)}, {Row(200)}};
+  const auto [map, labels] = geodesics.log_map(sources);
+  EXPECT_FALSE(map.source().is_curve());
+  const std::vector<double> quality = map_quality(surface.graph(), map);
+  // Borders between sources are no cut locus.
+  for (Index v = 0; v < map.size(); ++v) EXPECT_GT(quality[v], trusted_quality);
+  EXPECT_THROW(geodesics.log_map(std::span<const ExactSource>{}), InvalidArgument);
 }
 
 TEST(ExactLogMap, SaysWhyAVertexHasNoCoordinates) {
@@ -235,6 +298,24 @@ TEST(ExactLogMap, IsCancelled) {
   std::stop_source stop;
   stop.request_stop();
   EXPECT_THROW(exact_log_map(surface, Row(0), {}, {.progress = {{}, stop.get_token()}}), Cancelled);
+}
+
+TEST(ExactLogMap, TellsHowFarItIs) {
+  const Mesh sphere = icosphere(8);
+  const auto surface = TriangleMeshSurface::build(sphere.positions, sphere.faces);
+  std::vector<double> told;
+  std::stop_source stop;
+  ExactMapOptions options;
+  options.progress = {[&](std::string_view, double fraction) { told.push_back(fraction); }, {}};
+  exact_log_map(surface, Row(0), {}, options);
+  ASSERT_GT(told.size(), 10U);
+  EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
+  EXPECT_EQ(told.back(), 1);
+  options.progress = {[&](std::string_view, double fraction) {
+                        if (fraction > 0.5) stop.request_stop();
+                      },
+                      stop.get_token()};
+  EXPECT_THROW(exact_log_map(surface, Row(0), {}, options), Cancelled);
 }
 
 TEST(ExactGeodesics, PathsAndTracesAreStraightOnPlanes) {

@@ -101,23 +101,23 @@ AtlasDistortion distortion(const Atlas& atlas, const FaceList& faces, std::span<
   });
 }
 
-Atlas make_atlas(const LogMapSolver& solver, std::span<const Vertex> sources, const FaceList& faces) {
-  return detail::with_memory_check("making an atlas", [&] { return AtlasMaker(solver, faces).make(sources); });
+Atlas make_atlas(const MapMaker& maps, std::span<const Vertex> sources, const FaceList& faces) {
+  return detail::with_memory_check("making an atlas", [&] { return AtlasMaker(maps, faces).make(sources); });
 }
 
-Atlas make_atlas(const LogMapSolver& solver, std::span<const Vertex> sources, const FaceList& faces,
+Atlas make_atlas(const MapMaker& maps, std::span<const Vertex> sources, const FaceList& faces,
                  std::span<const Vec3> positions, const RefineOptions& refine) {
   if (!(refine.max_distortion > 1))
     throw InvalidArgument("make_atlas: max_distortion is " + detail::number(refine.max_distortion) +
                           "; it must be > 1");
   if (!(refine.share >= 0 && refine.share < 1))
     throw InvalidArgument("make_atlas: share is " + detail::number(refine.share) + "; it must be in [0, 1)");
-  if (positions.size() != static_cast<std::size_t>(solver.graph().size()))
+  if (positions.size() != static_cast<std::size_t>(maps.graph().size()))
     throw InvalidArgument("make_atlas: 'positions' has " + std::to_string(positions.size()) + " entries, not " +
-                          std::to_string(solver.graph().size()));
+                          std::to_string(maps.graph().size()));
   return detail::with_memory_check("making an atlas", [&] {
-    AtlasMaker maker(solver, faces);
-    Atlas atlas = maker.make(one_per_component(solver.graph(), sources, faces, refine.max_sources));
+    AtlasMaker maker(maps, faces);
+    Atlas atlas = maker.make(one_per_component(maps.graph(), sources, faces, refine.max_sources));
     std::vector<bool> is_source(positions.size(), false);
     for (Vertex vertex : atlas.sources) is_source[vertex.index] = true;
     while (true) {

@@ -182,18 +182,31 @@ Atlas assemble(const FaceNeighbors& neighbors, const FaceList& faces, const Regi
 
 }  // namespace
 
-AtlasMaker::AtlasMaker(const LogMapSolver& solver, const FaceList& faces)
-    : solver_(solver), faces_(faces), neighbors_((check(solver.graph(), faces), FaceNeighbors(faces))) {}
+AtlasMaker::AtlasMaker(const MapMaker& maps, const FaceList& faces)
+    : maps_(maps), faces_(faces), neighbors_((check(maps.graph(), faces), FaceNeighbors(faces))) {}
+
+/// From every source as far as to all corners of the faces that touch its cell.
+std::vector<double> AtlasMaker::reach(const VoronoiCells& cells, std::size_t sources) const {
+  std::vector<double> farthest(sources, 0);
+  for (std::size_t v = 0; v < cells.labels.size(); ++v)
+    if (const Index s = cells.labels[v]; s != nobody) farthest[s] = std::max(farthest[s], cells.distances[v]);
+  const double across = maps_.longest_way(faces_);
+  for (double& d : farthest) d = 1.001 * (d + across);
+  return farthest;
+}
 
 Atlas AtlasMaker::make(std::span<const Vertex> sources) {
-  const std::vector<Index> label = voronoi_cells(solver_.graph(), sources).labels;
+  const VoronoiCells cells = maps_.cells(sources);
+  const std::vector<Index>& label = cells.labels;
+  const std::vector<double> reach = this->reach(cells, sources.size());
   Regions regions(faces_, label, sources.size());
   const std::vector<Index> missing = regions.adopt(regions_);
   for (std::size_t first = 0; first < missing.size(); first += block_size) {
     const auto block = std::span(missing).subspan(first, std::min(block_size, missing.size() - first));
-    std::vector<Source> starts;
-    for (Index s : block) starts.push_back(Source::at_vertex(sources[s]));
-    const std::vector<LogMap> maps = solver_.solve(starts, {.spread = false});
+    std::vector<Vertex> starts;
+    std::vector<double> far;
+    for (Index s : block) starts.push_back(sources[s]), far.push_back(reach[s]);
+    const std::vector<LogMap> maps = maps_.maps(starts, far);
     for (std::size_t k = 0; k < maps.size(); ++k) regions.keep(block[k], maps[k]);
   }
   regions_ = std::move(regions);

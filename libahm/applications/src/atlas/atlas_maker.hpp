@@ -13,14 +13,16 @@ namespace ahm {
 class AtlasMaker {
  public:
   /// @throws as `make_atlas`
-  AtlasMaker(const LogMapSolver& solver, const FaceList& faces);
+  AtlasMaker(const MapMaker& maps, const FaceList& faces);
 
   /// @param sources  begin with those of the call before: their cells have only shrunk since, so that their maps need
   /// not be made again
   Atlas make(std::span<const Vertex> sources);
 
  private:
-  const LogMapSolver& solver_;
+  std::vector<double> reach(const VoronoiCells& cells, std::size_t sources) const;
+
+  MapMaker maps_;
   FaceList faces_;
   FaceNeighbors neighbors_;
   Regions regions_;

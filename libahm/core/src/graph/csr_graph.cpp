@@ -49,6 +49,7 @@ CsrGraph::CsrGraph(CsrGraphData data) : data_(std::move(data)) {
   expect_length("logs", g.logs.size(), edges * d);
   expect_length("transports", g.transports.size(), edges * TransportLayout{g.kind, g.dimension}.width());
   if (!g.frames.empty()) expect_length("frames", g.frames.size(), n);
+  if (!g.component_edge_lengths.empty()) expect_length("component_edge_lengths", g.component_edge_lengths.size(), n);
   check_rows(g);
   if (!data_.mean_edge_length) data_.mean_edge_length = mean_log_length(data_);
 }

@@ -43,6 +43,11 @@ ComponentScales::ComponentScales(const TangentGraph& graph)
       sizes(edge_length.size(), 0) {
   for (Index c : components.of_vertex) ++sizes[c];
   if (components.count < 2) return;
+  if (graph.component_edge_length(0) > 0) {
+    for (Index i = 0; i < graph.size(); ++i)
+      if (const double h = graph.component_edge_length(i); h > 0) edge_length[components.of_vertex[i]] = h;
+    return;
+  }
   const MeanLengths mean = mean_lengths(graph, components);
   for (std::size_t c = 0; c < edge_length.size(); ++c)
     if (mean.of_component[c] > 0) edge_length[c] *= mean.of_component[c] / mean.of_all;

@@ -35,8 +35,9 @@ double control_group_limit(const std::filesystem::path& groups, const std::files
   for (std::string line; std::getline(lines, line);) {
     const std::size_t first = line.find(':'), second = line.find(':', first + 1);
     if (first == std::string::npos || second == std::string::npos) continue;
-    const std::string controllers = "," + line.substr(first + 1, second - first - 1) + ",",
-                      group = line.substr(second + 1);
+    const std::string group = line.substr(second + 1);
+    std::string controllers(1, ',');
+    controllers.append(line, first + 1, second - first - 1).push_back(',');
     if (controllers == ",,")
       for (const char* mount : {"", "unified"})
         least = std::min(least, least_upwards(mounts / mount, group, "memory.max"));

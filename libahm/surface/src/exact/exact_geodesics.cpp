@@ -112,42 +112,155 @@ Axes ExactGeodesics::axes(const SurfacePoint& at, const PlacedSource& placed, co
   return at_corner(static_cast<exact::Half>(3 * inside.face + (corner - inside.barycentric.begin())), u);
 }
 
+ExactGeodesics::Placed ExactGeodesics::placed(std::span<const ExactSource> sources) const {
+  Placed result;
+  for (const ExactSource& s : sources) {
+    PlacedSource placed = surface_->source(s.point, s.u_axis);
+    result.points.push_back(point(s.point));
+    const Axes own = axes(s.point, placed, result.points.back());
+    const double side = s.mirrored ? -1 : 1, c = std::cos(s.angle), t = std::sin(s.angle);
+    const Vec2 u{own[0], own[2]}, v{side * own[1], side * own[3]};
+    const Vec2 turned_u = c * u - t * v, turned_v = t * u + c * v;
+    result.axes.push_back({turned_u[0], turned_v[0], turned_u[1], turned_v[1]});
+    result.sources.push_back(std::move(placed.source));
+    result.positions.push_back(s.position);
+  }
+  return result;
+}
+
+/// Several sources as one.
+Source ExactGeodesics::joined(std::span<const ExactSource> given, const Placed& placed) {
+  if (given.size() == 1 && given[0].position == Vec2{} && given[0].angle == 0 && !given[0].mirrored)
+    return placed.sources[0];
+  const bool plain = std::all_of(given.begin(), given.end(), [](const ExactSource& s) {
+    return std::holds_alternative<Row>(s.point) && !s.u_axis && s.position == Vec2{} && s.angle == 0 && !s.mirrored;
+  });
+  if (plain) {
+    std::vector<Vertex> vertices;
+    for (const Source& source : placed.sources) vertices.push_back(source.vertices()[0]);
+    return Source::at_vertices(vertices);
+  }
+  Source all(2);
+  for (std::size_t k = 0; k < given.size(); ++k) {
+    const Source& source = placed.sources[k];
+    const double side = given[k].mirrored ? -1 : 1, c = std::cos(given[k].angle), s = std::sin(given[k].angle);
+    for (std::size_t i = 0; i < source.vertices().size(); ++i) {
+      Vec2 z{};
+      Axes axes{1, 0, 0, 1};
+      if (!source.offsets().empty()) z = {source.offsets()[2 * i], side * source.offsets()[2 * i + 1]};
+      if (!source.axes().empty())
+        std::copy_n(source.axes().begin() + static_cast<std::ptrdiff_t>(4 * i), 4, axes.begin());
+      const Vec2 u{axes[0], axes[2]}, v{side * axes[1], side * axes[3]};
+      const Vec2 there = given[k].position + Vec2{c * z[0] - s * z[1], s * z[0] + c * z[1]};
+      const Vec2 turned_u = c * u - s * v, turned_v = s * u + c * v;
+      all.add(source.vertices()[i], source.weights()[i], there,
+              Axes{turned_u[0], turned_v[0], turned_u[1], turned_v[1]}, {static_cast<Index>(k), norm(z)});
+    }
+  }
+  return all;
+}
+
+/// Per vertex half of what its longest side to a neighbour of the same source has too much in the map, graph units.
+std::vector<double> ExactGeodesics::jumps(std::span<const double> coordinates, std::span<const Index> labels) const {
+  std::vector<double> jump(labels.size(), 0);
+  for (exact::Half h = 0; h < 3 * flat_.surface.face_count(); ++h) {
+    const exact::HalfRecord& r = flat_.surface.record(h);
+    if (labels[r.tail] != labels[r.head] || labels[r.tail] < 0) continue;
+    const double apart = std::hypot(coordinates[2 * r.head] - coordinates[2 * r.tail],
+                                    coordinates[2 * r.head + 1] - coordinates[2 * r.tail + 1]);
+    const double excess = (apart - flat_.length_unit * r.length) / 2;
+    // Less than this is rounding.
+    if (!(excess > 1e-9 * apart)) continue;
+    jump[r.tail] = std::max(jump[r.tail], excess);
+    jump[r.head] = std::max(jump[r.head], excess);
+  }
+  for (std::size_t v = 0; v < labels.size(); ++v)
+    if (labels[v] < 0) jump[v] = std::numeric_limits<double>::quiet_NaN();
+  return jump;
+}
+
 LogMap ExactGeodesics::log_map(const SurfacePoint& source, const std::optional<Vec3>& u_axis,
                                const ExactMapOptions& options) const {
-  const exact::MeshPoint from = point(source);
-  PlacedSource placed = surface_->source(source, u_axis);
-  const Axes a = axes(source, placed, from);
+  const ExactSource one{source, u_axis};
+  return log_map(std::span(&one, 1), options).map;
+}
+
+LogMap ExactGeodesics::log_map(Vertex source, const ExactMapOptions& options) const {
+  const Placed from{{flat_.surface.vertex_point(source)}, {Axes{1, 0, 0, 1}}, {}, {Vec2{}}};
+  return log_map(from, Source::at_vertex(source), options).map;
+}
+
+LabelledLogMap ExactGeodesics::log_map(std::span<const ExactSource> sources, const ExactMapOptions& options) const {
+  const Placed from = placed(sources);
+  return log_map(from, joined(sources, from), options);
+}
+
+LabelledLogMap ExactGeodesics::log_map(const Placed& from, Source source, const ExactMapOptions& options) const {
   exact::ExactOptions exact_options;
   exact_options.radius = options.radius / flat_.length_unit;
-  exact_options.stop = options.progress.stop;
-  options.progress.step("windows", 0);
-  const exact::ExactMap exact = exact::exact_map(flat_.surface, from, exact_options);
-  options.progress.step("windows", 1);
+  exact_options.progress = options.progress;
+  const exact::ExactMap exact = exact::exact_map(flat_.surface, from.points, exact_options);
 
   std::vector<double> coordinates;
+  std::vector<Index> labels;
   MapExtras extras;
   extras.method = Method::exact;
   for (Index i = 0; i < exact.size(); ++i) {
     const Vertex v(i);
+    const Index label = exact.source(v);
+    const Axes a = label < 0 ? Axes{1, 0, 0, 1} : from.axes[label];
     const Vec2 w = flat_.length_unit * exact.coordinates(v);
     const Vec2 phi{a[0] * w[0] + a[2] * w[1], a[1] * w[0] + a[3] * w[1]};
-    coordinates.insert(coordinates.end(), phi.begin(), phi.end());
+    const Vec2 start = label < 0 ? Vec2{} : from.positions[label];
+    coordinates.insert(coordinates.end(), {start[0] + phi[0], start[1] + phi[1]});
     extras.distances.push_back(flat_.length_unit * exact.distance(v));
-    extras.spread.push_back(0 * exact.distance(v));
+    labels.push_back(label);
     if (!options.frames) continue;
     Axes frame{1, 0, 0, 1};
     if (exact.status(v) == Status::ok)
       frame = exact.arrival(v).half >= 0 ? arriving(flat_.surface, exact.arrival(v), phi) : a;
     extras.frames.insert(extras.frames.end(), frame.begin(), frame.end());
   }
-  return LogMap(2, Variant::adaptive, Strategy::automatic, std::move(placed.source), std::move(coordinates),
-                {exact.status().begin(), exact.status().end()}, std::move(extras));
+  if (!source.is_curve()) extras.spread = jumps(coordinates, labels);
+  LogMap map(2, Variant::adaptive, Strategy::automatic, std::move(source), std::move(coordinates),
+             {exact.status().begin(), exact.status().end()}, std::move(extras));
+  return {std::move(map), std::move(labels)};
 }
 
 exact::GeodesicPath ExactGeodesics::path(std::span<const SurfacePoint> stops, bool closed) const {
   std::vector<exact::MeshPoint> points;
   for (const SurfacePoint& stop : stops) points.push_back(point(stop));
   exact::GeodesicPath path = exact::geodesic_path(flat_.surface, points, closed);
+  path.length *= flat_.length_unit;
+  return path;
+}
+
+std::vector<exact::GeodesicPath> ExactGeodesics::paths(std::span<const std::array<SurfacePoint, 2>> pairs,
+                                                       const Progress& progress, unsigned threads) const {
+  std::vector<exact::PointPair> ends;
+  for (const auto& [from, to] : pairs) ends.push_back({point(from), point(to)});
+  std::vector<exact::GeodesicPath> paths = exact::geodesic_paths(flat_.surface, ends, progress, threads);
+  for (exact::GeodesicPath& path : paths) path.length *= flat_.length_unit;
+  return paths;
+}
+
+exact::GeodesicPath ExactGeodesics::shortened(std::span<const exact::MeshPoint> curve, bool closed) const {
+  exact::GeodesicPath path =
+      closed ? exact::shortened_loop(flat_.surface, curve) : exact::shortened_path(flat_.surface, curve);
+  path.length *= flat_.length_unit;
+  return path;
+}
+
+exact::GeodesicPath ExactGeodesics::locally_shortest_path(const SurfacePoint& from, const SurfacePoint& to) const {
+  const exact::MeshPoint start = point(from), end = point(to);
+  std::function<double(Vertex)> straight;
+  if (!flat_.positions.empty()) {
+    // A little less than the straight line, against rounding.
+    straight = [this, at = position(end), scale = (1 - 1e-12) / flat_.length_unit](Vertex v) {
+      return scale * distance(flat_.positions[v.index], at);
+    };
+  }
+  exact::GeodesicPath path = exact::locally_shortest_path(flat_.surface, start, end, straight);
   path.length *= flat_.length_unit;
   return path;
 }

@@ -101,7 +101,7 @@ ExactMap exact_map(const PolyhedralSurface& surface, std::span<const MeshPoint> 
     for (const MeshPoint& p : options.targets) to.push_back(checked(surface, p, "target"));
     Propagation propagation(surface, options.radius, to, options.only_targets);
     for (const MeshPoint& p : from) propagation.add_source(p);
-    propagation.run(options.stop);
+    propagation.run(options.progress);
     return MapBuilder(surface, std::move(from), std::move(to)).build(propagation);
   });
 }

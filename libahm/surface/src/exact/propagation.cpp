@@ -94,6 +94,7 @@ void Propagation::add_source(const MeshPoint& point) {
 }
 
 void Propagation::add_vertex_source(std::uint32_t origin2, Index vertex) {
+  if (distance_[vertex] == infinity) ++met_;
   distance_[vertex] = 0;
   Reached& reached = reached_[vertex];
   reached = {-1, static_cast<Index>(origin2 / 2), {}, 0};
@@ -305,6 +306,7 @@ Reached Propagation::reach(const Ray& ray, const Place& at) const {
 
 void Propagation::offer(Index vertex, double distance, const Ray& ray, const Place& at) {
   if (!(distance < distance_[vertex])) return;
+  if (distance_[vertex] == infinity) ++met_;
   distance_[vertex] = distance;
   reached_[vertex] = reach(ray, at);
   if (distance <= horizon_ && surface_.bends_paths(vertex)) bends_.push(distance, {vertex, distance});
@@ -339,9 +341,10 @@ void Propagation::see_targets(const Window& w, double sigma) {
   }
 }
 
-void Propagation::run(const std::stop_token& stop) {
+void Propagation::run(const Progress& progress) {
+  const double all = static_cast<double>(distance_.size());
   while (!windows_.empty() || !bends_.empty()) {
-    if (stop.stop_requested()) throw Cancelled("cancelled while tracing windows");
+    progress.step("windows", met_ / all);
     if (windows_.key() > horizon_ || (only_targets_ && targets_final())) break;
     while (!windows_.bucket_empty() || !bends_.bucket_empty()) {
       while (!bends_.bucket_empty()) bends_.drain_chunk([this](const Bend& b) { bend(b); });
@@ -350,6 +353,7 @@ void Propagation::run(const std::stop_token& stop) {
     windows_.advance();
     bends_.advance();
   }
+  progress.step("windows", 1);
   copy_vertex_targets();
 }
 

@@ -38,7 +38,7 @@ class Propagation {
 
   void add_source(const MeshPoint& point);
   /// @throws Cancelled
-  void run(const std::stop_token& stop = {});
+  void run(const Progress& progress = {});
 
   std::span<const double> distances() const { return distance_; }  ///< of the vertices; infinite: not reached
   std::span<const double> target_distances() const { return target_distance_; }
@@ -107,6 +107,7 @@ class Propagation {
   BucketQueue<Window> windows_;
   BucketQueue<Bend> bends_;
   Offset made_ = 0;
+  Index met_ = 0;  ///< vertices that were offered a distance
 };
 
 }  // namespace ahm::exact

@@ -47,7 +47,7 @@ struct CloudOptions {
 };
 
 /// Measured on clouds of 10,000 to 5,000,000 points.
-inline constexpr BuildCost build_cost{.bytes = 800, .seconds = 5.5e-6};
+inline constexpr BuildCost build_cost{.bytes = 500, .seconds = 10e-6};
 
 /// What was found and done on the way. Counts are of points, edges or triangles as named.
 struct CloudDetails {

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "ahm/applications/distortion.hpp"
-#include "ahm/maps/log_map_solver.hpp"
+#include "ahm/applications/map_maker.hpp"
 
 namespace ahm {
 
@@ -43,10 +43,11 @@ struct Atlas {
 /// Faces cut off from the rest of their cell go to the neighbouring chart with which they share most sides, where its
 /// source knows them, else they are charts of their own. One log map per source, a block of sources at a time: memory
 /// O(n + corners), whatever the number of sources.
+/// @param maps     a `LogMapSolver`, or `ExactGeodesics`: cells and charts are then exact over the flat faces
 /// @param sources  vertices; their order is that of the charts
 /// @param faces    of the graph's vertices, in any order
-/// @throws InvalidArgument (dimension, sources, faces), as LogMapSolver::solve
-Atlas make_atlas(const LogMapSolver& solver, std::span<const Vertex> sources, const FaceList& faces);
+/// @throws InvalidArgument (dimension, sources, faces), as `MapMaker::maps`
+Atlas make_atlas(const MapMaker& maps, std::span<const Vertex> sources, const FaceList& faces);
 
 struct RefineOptions {
   double max_distortion = 2;       ///< of a good triangle, which is not flipped; > 1
@@ -59,8 +60,8 @@ struct RefineOptions {
 /// becomes another source, and the surface is cut anew, until nothing is to be added. Components without a source get
 /// one. One log map per source.
 /// @param positions  n, of the graph's vertices, world units
-/// @throws InvalidArgument (also positions, options), as LogMapSolver::solve
-Atlas make_atlas(const LogMapSolver& solver, std::span<const Vertex> sources, const FaceList& faces,
+/// @throws InvalidArgument (also positions, options), as `MapMaker::maps`
+Atlas make_atlas(const MapMaker& maps, std::span<const Vertex> sources, const FaceList& faces,
                  std::span<const Vec3> positions, const RefineOptions& refine);
 
 /// Distortion of an atlas, faces cut into fans of triangles.

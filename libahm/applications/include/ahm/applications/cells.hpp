@@ -11,6 +11,8 @@
 #include <vector>
 
 #include "ahm/graph/tangent_graph.hpp"
+#include "ahm/progress.hpp"
+#include "ahm/surface/exact/exact_geodesics.hpp"
 
 namespace ahm {
 
@@ -25,10 +27,14 @@ struct VoronoiCells {
 /// Delaunay triangulations without holes.
 /// @throws InvalidArgument (empty, index, a vertex given twice), ResourceExhausted
 VoronoiCells voronoi_cells(const TangentGraph& graph, std::span<const Vertex> vertices);
+/// The same by exact distances over the flat faces. @throws as above, as `ExactGeodesics::log_map`
+VoronoiCells voronoi_cells(const ExactGeodesics& geodesics, std::span<const Vertex> vertices);
 
 /// `count` vertices, each the farthest from those before it, beginning with `first`; vertices of components without one
 /// count as infinitely far. Each one costs what is nearer to it than to those before.
-/// @throws InvalidArgument (index, count not in [1, n]), ResourceExhausted
-std::vector<Vertex> farthest_points(const TangentGraph& graph, Vertex first, Index count);
+/// @param progress  stage "farthest points"; asked before every point
+/// @throws InvalidArgument (index, count not in [1, n]), ResourceExhausted, Cancelled
+std::vector<Vertex> farthest_points(const TangentGraph& graph, Vertex first, Index count,
+                                    const Progress& progress = {});
 
 }  // namespace ahm

@@ -14,7 +14,7 @@
 #include <span>
 #include <vector>
 
-#include "ahm/maps/log_map_solver.hpp"
+#include "ahm/applications/map_maker.hpp"
 
 namespace ahm {
 
@@ -45,11 +45,12 @@ struct Center {
 /// exp_x leads to the vertex of the nearest coordinates; what remains at the last vertex is the offset. A step back
 /// to a vertex seen before is halved, and the vertex with the least offset counts. Exact on flat graphs, where it takes
 /// two or three maps; elsewhere the error is that of the log map.
+/// @param maps      a `LogMapSolver`, or `ExactGeodesics`
 /// @param vertices  the points p_k
 /// @param weights   w_k >= 0, not all zero; empty: all equal. Points of weight 0 do not count
 /// @throws InvalidArgument (empty, lengths, index, weight, points of different components or out of the map's reach);
-/// as LogMapSolver::solve
-Center karcher_mean(const LogMapSolver& solver, std::span<const Vertex> vertices, std::span<const double> weights = {},
+/// as `MapMaker::map`
+Center karcher_mean(const MapMaker& maps, std::span<const Vertex> vertices, std::span<const double> weights = {},
                     const CenterOptions& options = {});
 
 /// The geometric median: where sum_k w_k d(x, p_k) is least, near the start [FVJ09].
@@ -57,8 +58,8 @@ Center karcher_mean(const LogMapSolver& solver, std::span<const Vertex> vertices
 ///     x <- exp_x(geometric median of log_x(p_k) in the tangent space)
 ///
 /// One map per step: Weiszfeld's and Newton's steps run in the tangent space, to rounding. Otherwise as `karcher_mean`.
-Center geometric_median(const LogMapSolver& solver, std::span<const Vertex> vertices,
-                        std::span<const double> weights = {}, const CenterOptions& options = {});
+Center geometric_median(const MapMaker& maps, std::span<const Vertex> vertices, std::span<const double> weights = {},
+                        const CenterOptions& options = {});
 
 /// The source at a center; its axes are those of the frame of `center.vertex`.
 Source source_at(const Center& center);

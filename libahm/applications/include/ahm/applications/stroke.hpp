@@ -55,15 +55,20 @@ struct StrokePoint {
 /// @throws InvalidArgument (no points, a source that is not of dimension 2)
 Source stroke_source(std::span<const StrokePoint> points);
 
-/// The same by arclength: weights, positions and angles follow from the lengths of the segments.
+/// The points of a polyline by arclength: weights, positions and angles follow from the lengths of the segments.
 /// @param points   at least 2, closed: 3; sources whose u axis runs along the curve and whose v axis is left of it
 /// @param lengths  > 0: lengths[k] from point k to the next one, world units; one fewer than points, closed: as many
 /// @throws InvalidArgument (counts, a length, a source that is not of dimension 2, `circle` on an open curve)
-Source stroke_source(std::span<const Source> points, std::span<const double> lengths,
-                     const StrokeOptions& options = {});
-
+std::vector<StrokePoint> stroke_points(std::span<const Source> points, std::span<const double> lengths,
+                                       const StrokeOptions& options = {});
 /// The same with the user's own parameterization.
 /// @param positions  one (u, v) per point, world units; consecutive ones differ
+std::vector<StrokePoint> stroke_points(std::span<const Source> points, std::span<const double> lengths,
+                                       std::span<const Vec2> positions, bool closed = false);
+
+/// One source from either.
+Source stroke_source(std::span<const Source> points, std::span<const double> lengths,
+                     const StrokeOptions& options = {});
 Source stroke_source(std::span<const Source> points, std::span<const double> lengths, std::span<const Vec2> positions,
                      bool closed = false);
 

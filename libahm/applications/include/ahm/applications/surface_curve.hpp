@@ -5,6 +5,7 @@
 /// const ahm::CurvePoint given[] = {ahm::Vec3{0, 0, 1.2}, ahm::Row{17}, ahm::FacePoint{7, {0.2, 0.3, 0.5}}};
 /// ahm::SurfaceCurve curve = ahm::draw_curve(surface, given);
 /// ahm::LogMap map = solver.solve(curve.source);                  // u: arclength, v: signed distance (left > 0)
+/// ahm::LogMap exact = geodesics.log_map(curve.samples);          // the same over the flat faces of a mesh
 /// \endcode
 #pragma once
 
@@ -14,6 +15,7 @@
 #include <vector>
 
 #include "ahm/applications/stroke.hpp"
+#include "ahm/surface/exact/exact_geodesics.hpp"
 #include "ahm/surface/surface.hpp"
 
 namespace ahm {
@@ -23,16 +25,19 @@ using CurvePoint = std::variant<Vec3, SurfacePoint>;
 
 /// A curve on a surface and what it amounts to.
 struct SurfaceCurve {
-  Source source{2};
-  std::vector<Vec3> points;    ///< as sampled, on the surface, world units
-  std::optional<Frame> first;  ///< u along the curve, v left of it, at its first point
-  double length = 0;           ///< world units
-  double gap = 0;              ///< largest distance of the polyline in space from the surface
-  double jump = 0;             ///< largest distance between consecutive points
+  Source source{2};                  ///< for heat
+  std::vector<ExactSource> samples;  ///< the same for `ExactGeodesics::log_map`: one per point
+  std::vector<Vec3> points;          ///< as sampled, on the surface, world units
+  std::optional<Frame> first;        ///< u along the curve, v left of it, at its first point
+  double length = 0;                 ///< world units
+  double gap = 0;                    ///< largest distance of the polyline in space from the surface
+  double jump = 0;                   ///< largest distance between consecutive points
 };
 
-/// Joins the given points by straight lines, cuts these into pieces of half a mean edge length at the most, and takes
-/// the nearest points of the surface (`Surface::closest_point`). Give points so close that the lines stay near the surface.
+/// Joins the given points, cuts the lines into pieces of half a mean edge length at the most, and takes the nearest points
+/// of the surface (`Surface::closest_point`). On flat faces the lines are shortest paths between these; on clouds and twisted
+/// polygons, and between points closer than two edges, they are straight in space: give points so close that they stay near
+/// the surface.
 /// @throws InvalidArgument (as `Surface::source`; faults curve_too_long: more than a million pieces, curve_too_short: fewer
 /// than 2 different points, closed: 3, curve_turns_back, curve_one_sided: closed along a one-sided band), as
 /// `stroke_source`

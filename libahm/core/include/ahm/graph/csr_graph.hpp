@@ -36,6 +36,8 @@ struct CsrGraphData {
   double length_unit = 1.0;                ///< power of two; see TangentGraph::length_unit
   std::optional<double> mean_edge_length;  ///< default: the mean of |e_ij| over all edges
   bool is_delaunay = false;                ///< see TangentGraph::is_delaunay
+  /// n, or empty; see TangentGraph::component_edge_length
+  std::vector<double> component_edge_lengths{};
 };
 
 /// A `TangentGraph` held in flat arrays.
@@ -50,6 +52,9 @@ class CsrGraph final : public TangentGraph {
   int dimension() const noexcept override { return data_.dimension; }
   TransportKind transport_kind() const noexcept override { return data_.kind; }
   double mean_edge_length() const noexcept override { return *data_.mean_edge_length; }
+  double component_edge_length(Index vertex) const override {
+    return data_.component_edge_lengths.empty() ? 0 : data_.component_edge_lengths[vertex];
+  }
   double mass(Index vertex) const override { return data_.masses[vertex]; }
   Star star(Index vertex) const override;
   Offset edge_count() const noexcept override { return static_cast<Offset>(data_.neighbors.size()); }

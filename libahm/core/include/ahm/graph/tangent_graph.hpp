@@ -68,6 +68,9 @@ class TangentGraph {
   TransportLayout transport_layout() const noexcept { return {transport_kind(), dimension()}; }
   /// Mean edge length h > 0; the diffusion time is tau = t_coef h^2.
   virtual double mean_edge_length() const noexcept = 0;
+  /// The same of the connected component of a vertex alone, whose diffusion time it sets, where the backend has measured it;
+  /// 0: not, and `mean_edge_length` is shared out in the ratio of the components' mean |e_ij|.
+  virtual double component_edge_length(Index) const { return 0; }
   /// Lumped mass (dual area or volume) m_i > 0.
   virtual double mass(Index vertex) const = 0;
   /// The out-edges of `vertex`. A star lives until the next call on the same thread, no longer: whoever needs two at a

@@ -9,13 +9,11 @@
 
 #include <cstddef>
 
+#include "ahm/heat/variant.hpp"
 #include "ahm/progress.hpp"
 #include "ahm/types.hpp"
 
 namespace ahm {
-
-/// Alg. 2 (adaptive) or Alg. 1 (localized) of [SS25].
-enum class Variant { adaptive, localized };
 
 /// How the linear systems are solved (docs/march.md).
 enum class Strategy {

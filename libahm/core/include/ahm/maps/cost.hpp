@@ -26,11 +26,12 @@ struct Cost {
   double next_map_seconds = 0;   ///< for each further source
 };
 
-/// From the size alone: fits to measurements on surfaces and regular volumes (docs/march.md), on one core of a 3 GHz
-/// machine with an optimized BLAS. Good to a factor of two in time and a half in memory.
+/// From the size alone: fits to measurements on surfaces (good to a third, docs/march.md) and regular volumes (to a factor of
+/// two), on one core of a 3 GHz machine with an optimized BLAS.
 /// @param strategy  global or march
+/// @param order     of the maps, 1 or 2: two times a map's diffusion times of order 1 and more (`HeatOptions::order`)
 /// @throws InvalidArgument (automatic)
-Cost estimate_cost(const GraphSize& size, Strategy strategy);
+Cost estimate_cost(const GraphSize& size, Strategy strategy, int order = 1);
 
 /// The strategy itself, or for `automatic`: `march` for a single map of a large graph, and wherever the factors would
 /// need more than the allowed memory; else `global`.

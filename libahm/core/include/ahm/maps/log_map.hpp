@@ -99,8 +99,8 @@ class LogMap {
   double distance(Vertex vertex) const { return extras_.distances[vertex.index]; }
   std::span<const double> distances() const noexcept { return extras_.distances; }
   /// sqrt(q_i / lambda_i - |phi_i|^2), the standard deviation of the coordinates over the ways by which heat arrives, world
-  /// units: 0 on flat graphs, small inside the cut locus, about the distance on it. NaN where not ok; 0 of an exact map,
-  /// which takes one way; empty from a curve and without MapOptions::spread.
+  /// units: 0 on flat graphs, small inside the cut locus, about the distance on it. NaN where not ok; of an exact map half
+  /// of the longest jump to a neighbour, beyond the length of the side; empty from a curve and without MapOptions::spread.
   std::span<const double> spread() const noexcept { return extras_.spread; }
   /// Number of vertices with this status.
   Index count(Status status) const noexcept;

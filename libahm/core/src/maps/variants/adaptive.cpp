@@ -10,8 +10,6 @@ namespace {
 
 class Adaptive final : public VariantSystem {
  public:
-  std::string_view name() const noexcept override { return "adaptive"; }
-
   void add_sample(double b, std::span<const double>, std::span<const double> z, double* out) const override {
     for (std::size_t a = 0; a < z.size(); ++a) out[a] += b * z[a];
   }

@@ -12,8 +12,6 @@ namespace {
 
 class Localized final : public VariantSystem {
  public:
-  std::string_view name() const noexcept override { return "localized"; }
-
   void add_sample(double b, std::span<const double> U, std::span<const double> z, double* out) const override {
     const std::size_t d = z.size();
     for (std::size_t c = 0; c < d; ++c) {

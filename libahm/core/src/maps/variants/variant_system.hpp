@@ -1,11 +1,10 @@
 /// \file
 /// What a variant of the method puts into its linear system and reads out of it. All else is common: AffineHeat, March
 /// and local maps ask the object, never for its name. A further variant is one file beside these, and its line in
-/// variants.cpp.
+/// ahm/heat/variant.hpp.
 #pragma once
 
 #include <span>
-#include <string_view>
 #include <vector>
 
 #include "ahm/graph/transport.hpp"
@@ -25,8 +24,6 @@ struct UnknownLayout {
 class VariantSystem {
  public:
   virtual ~VariantSystem() = default;
-
-  virtual std::string_view name() const noexcept = 0;
 
   /// A sample of the source, heat b at z (d numbers), whose axes are U (d x d, row major): adds to out, d numbers.
   virtual void add_sample(double b, std::span<const double> U, std::span<const double> z, double* out) const = 0;
@@ -52,11 +49,7 @@ class VariantSystem {
                     double* out) const = 0;
 };
 
-/// @throws InvalidArgument when it is none of the table's
+/// @throws InvalidArgument when it is none of AHM_VARIANTS
 const VariantSystem& system_of(Variant variant);
-
-/// The table's entries, one per file.
-const VariantSystem& adaptive_system();
-const VariantSystem& localized_system();
 
 }  // namespace ahm

@@ -4,17 +4,22 @@
 #include "maps/variants/variant_system.hpp"
 
 namespace ahm {
+
+#define AHM_DECLARATION(name) const VariantSystem& name##_system();
+AHM_VARIANTS(AHM_DECLARATION)
+#undef AHM_DECLARATION
+
 namespace {
 
 struct Entry {
   Variant variant;
+  std::string_view name;
   const VariantSystem& (*system)();
 };
 
-constexpr Entry table[] = {
-    {Variant::adaptive, adaptive_system},
-    {Variant::localized, localized_system},
-};
+#define AHM_ENTRY(name) Entry{Variant::name, #name, name##_system},
+constexpr Entry table[] = {AHM_VARIANTS(AHM_ENTRY)};
+#undef AHM_ENTRY
 
 }  // namespace
 
@@ -26,7 +31,7 @@ const VariantSystem& system_of(Variant variant) {
 
 std::string_view to_string(Variant variant) noexcept {
   for (const Entry& entry : table)
-    if (entry.variant == variant) return entry.system().name();
+    if (entry.variant == variant) return entry.name;
   return "unknown";
 }
 

@@ -16,11 +16,13 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "ahm/maps/log_map.hpp"
 #include "ahm/progress.hpp"
 #include "ahm/surface/exact/flat_triangles.hpp"
 #include "ahm/surface/exact/geodesic_path.hpp"
+#include "ahm/surface/exact/shortened_path.hpp"
 #include "ahm/surface/surface.hpp"
 
 namespace ahm {
@@ -32,6 +34,21 @@ struct ExactMapOptions {
   Progress progress;
 };
 
+/// One of several sources of an exact map; of a curve, one of its points.
+struct ExactSource {
+  SurfacePoint point;
+  std::optional<Vec3> u_axis = {};  ///< as of `Surface::source`
+  Vec2 position{};                  ///< coordinates of the point, world units
+  double angle = 0;                 ///< of the u axis in the plane of coordinates, radians
+  bool mirrored = false;            ///< v to the right of the u axis
+};
+
+/// A map from several sources, and which of them each vertex is nearest to; -1 where the status is not ok.
+struct LabelledLogMap {
+  LogMap map;
+  std::vector<Index> labels;
+};
+
 /// A surface laid out in triangles, once for many maps and paths. Immutable; all members may be called from many threads at
 /// once. Refers to the surface, which has to stay where it is.
 class ExactGeodesics {
@@ -41,20 +58,40 @@ class ExactGeodesics {
   explicit ExactGeodesics(const Surface& surface);
   explicit ExactGeodesics(Surface&&) = delete;
 
+  const Surface& surface() const noexcept { return *surface_; }
   const FlatTriangles& triangles() const noexcept { return flat_; }
 
   /// The log map from a point, with the axes, statuses and vertices that a map by heat has. `LogMap::method` is exact;
-  /// its spread is 0, so its `map_quality` is 1, and it has no error estimate. Its frames turn the direction in which the shortest path leaves the source
-  /// to that in which it arrives, so that U_i phi_i / |phi_i| is the gradient of the distance; they are rotations, also
-  /// where the path reverses the orientation (surfaces that are not orientable).
+  /// its `map_quality` is low where neighbours jump, at the cut locus, and it has no error estimate. Its frames turn the
+  /// direction in which the shortest path leaves the source to that in which it arrives, so that U_i phi_i / |phi_i| is
+  /// the gradient of the distance; they are rotations, also where the path reverses the orientation (surfaces that are
+  /// not orientable).
   /// @param u_axis  as of `Surface::source`
   /// @throws InvalidArgument (as `Surface::source`, `exact::exact_map`), ResourceExhausted, Cancelled
   LogMap log_map(const SurfacePoint& source, const std::optional<Vec3>& u_axis = {},
                  const ExactMapOptions& options = {}) const;
+  /// The map from a vertex of the graph, in the axes of its frame. @throws as above
+  LogMap log_map(Vertex source, const ExactMapOptions& options = {}) const;
+  /// The map from several points at once: every vertex is seen from the nearest, whose number is its label, in the axes
+  /// of that one, turned by its angle and moved on from its position. From points of a curve, with u axes along it and
+  /// positions by arclength, these are coordinates along the curve and across it (`SurfaceCurve::samples`).
+  /// @throws InvalidArgument (no source), as above
+  LabelledLogMap log_map(std::span<const ExactSource> sources, const ExactMapOptions& options = {}) const;
 
   /// The shortest path through points in their order. Its length is in world units; `position` tells where its points lie.
   /// @throws InvalidArgument (fewer than two points; as `Surface::source`)
   exact::GeodesicPath path(std::span<const SurfacePoint> stops, bool closed = false) const;
+
+  /// Shortest paths between many pairs of points (`exact::geodesic_paths`).
+  /// @throws InvalidArgument (as `Surface::source`), Cancelled
+  std::vector<exact::GeodesicPath> paths(std::span<const std::array<SurfacePoint, 2>> pairs,
+                                         const Progress& progress = {}, unsigned threads = 0) const;
+  /// The same curve made locally shortest: pulled taut, its ends apart. `closed`: a loop, no point of which is kept.
+  /// @throws as `exact::shortened_path`
+  exact::GeodesicPath shortened(std::span<const exact::MeshPoint> curve, bool closed = false) const;
+  /// A locally shortest path, without an exact map: fast on surfaces of any size, not always the shortest
+  /// (`exact::locally_shortest_path`). @throws InvalidArgument (as `Surface::source`)
+  exact::GeodesicPath locally_shortest_path(const SurfacePoint& from, const SurfacePoint& to) const;
 
   /// The straightest geodesic from a point along a vector of space, projected to the surface.
   /// @param length  >= 0, world units, as of the result
@@ -70,6 +107,17 @@ class ExactGeodesics {
  private:
   /// Axes of a source in the tangent plane in which `exact::ExactMap::direction` counts: u is (a[0], a[2]), v (a[1], a[3]).
   using Axes = std::array<double, 4>;
+  /// The sources as heat has them, and what they are in the triangles.
+  struct Placed {
+    std::vector<exact::MeshPoint> points;
+    std::vector<Axes> axes;
+    std::vector<Source> sources;
+    std::vector<Vec2> positions;
+  };
+  LabelledLogMap log_map(const Placed& from, Source source, const ExactMapOptions& options) const;
+  Placed placed(std::span<const ExactSource> sources) const;
+  static Source joined(std::span<const ExactSource> given, const Placed& placed);
+  std::vector<double> jumps(std::span<const double> coordinates, std::span<const Index> labels) const;
   Axes axes(const SurfacePoint& at, const PlacedSource& placed, const exact::MeshPoint& point) const;
   double u_in_face(const SurfacePoint& at, const PlacedSource& placed, Index face) const;
   Axes at_corner(exact::Half corner, double u) const;

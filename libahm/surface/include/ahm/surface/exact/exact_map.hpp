@@ -9,10 +9,10 @@
 
 #include <limits>
 #include <span>
-#include <stop_token>
 #include <vector>
 
 #include "ahm/maps/log_map.hpp"
+#include "ahm/progress.hpp"
 #include "ahm/surface/exact/polyhedral_surface.hpp"
 
 namespace ahm::exact {
@@ -24,7 +24,7 @@ struct ExactOptions {
   std::vector<MeshPoint> targets;
   /// End when the distances of all targets are final; vertices beyond the farthest of them get `Status::beyond_radius`.
   bool only_targets = false;
-  std::stop_token stop;  ///< asked between bands of windows
+  Progress progress;  ///< the fraction is that of the vertices met; asked between bands of windows
 };
 
 /// How the last straight piece of a shortest path comes in.

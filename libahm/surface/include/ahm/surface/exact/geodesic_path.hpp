@@ -7,6 +7,7 @@
 /// \endcode
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -41,6 +42,17 @@ GeodesicPath geodesic_path(const PolyhedralSurface& surface, const MeshPoint& fr
 /// @return the status of the first stop that cannot be reached, without points, where there is one
 /// @throws InvalidArgument (fewer than two points), as `exact_map`
 GeodesicPath geodesic_path(const PolyhedralSurface& surface, std::span<const MeshPoint> stops, bool closed = false);
+
+/// Start and end of a path.
+using PointPair = std::array<MeshPoint, 2>;
+
+/// Shortest paths between many pairs of points, each as `geodesic_path` finds it: one propagation for every distinct start,
+/// which ends where all its ends are reached, on several threads.
+/// @param threads  0: one per core; the result does not depend on it
+/// @return one per pair; a status that is not ok, and no points, where the surface does not connect it
+/// @throws as `exact_map`
+std::vector<GeodesicPath> geodesic_paths(const PolyhedralSurface& surface, std::span<const PointPair> pairs,
+                                         const Progress& progress = {}, unsigned threads = 0);
 
 /// How a straightest geodesic ended.
 enum class TraceEnd {

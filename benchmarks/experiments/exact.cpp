@@ -1,0 +1,149 @@
+// Exact maps beside CGAL's exact distances and the maps of heat: cost, agreement, errors of vectors; fast paths.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <ctime>
+#include <optional>
+#include <random>
+
+#include "ahm/maps/log_map_solver.hpp"
+#include "ahm/surface/exact/exact_geodesics.hpp"
+#include "experiments/comparison.hpp"
+
+namespace ahm::bench {
+namespace {
+
+constexpr int source_count = 3, path_count = 100;
+/// CGAL's exact geodesics take minutes and gigabytes beyond.
+constexpr Index most_for_cgal = 15000;
+
+/// Processor time of all threads.
+template <class Work>
+double cpu_seconds(const Work& work) {
+  const std::clock_t before = std::clock();
+  work();
+  return static_cast<double>(std::clock() - before) / CLOCKS_PER_SEC;
+}
+
+/// Relative errors of heat's vectors, their axes being those of the exact ones, beyond two edges from the source.
+std::vector<double> vector_errors(const Surface& surface, const LogMap& exact, const LogMap& heat) {
+  std::vector<double> errors;
+  for (Index i = 0; i < surface.size(); ++i) {
+    const Vertex v(i);
+    if (heat.status(v) != Status::ok || !(exact.distance(v) > 2 * surface.mean_edge())) continue;
+    const auto a = exact.coordinates(v), b = heat.coordinates(v);
+    errors.push_back(std::hypot(a[0] - b[0], a[1] - b[1]) / exact.distance(v));
+  }
+  return errors;
+}
+
+struct HeatRow {
+  double first = 0, further = 0;
+  std::vector<double> errors;
+};
+
+HeatRow with_heat(const Surface& surface, std::span<const Vertex> sources, std::span<const LogMap> exact, int order) {
+  HeatRow row;
+  std::optional<LogMapSolver> solver;
+  row.first = cpu_seconds([&] { solver.emplace(surface.graph(), HeatOptions{.order = order}); });
+  for (std::size_t s = 0; s < sources.size(); ++s) {
+    std::optional<LogMap> map;
+    row.further = cpu_seconds([&] { map.emplace(solver->solve(Source::at_vertex(sources[s]))); });
+    if (s == 0) row.first += row.further;
+    const std::vector<double> errors = vector_errors(surface, exact[s], *map);
+    row.errors.insert(row.errors.end(), errors.begin(), errors.end());
+  }
+  return row;
+}
+
+struct Against {
+  Cell seconds, difference;
+};
+
+Against cgal([[maybe_unused]] const Surface& surface, [[maybe_unused]] Vertex source,
+             [[maybe_unused]] const LogMap& exact) {
+  Against against;
+#ifdef AHM_METHODS_CGAL
+  if (surface.size() > most_for_cgal) return against;
+  std::vector<double> distance;
+  against.seconds = cpu_seconds(
+      [&] { distance = methods::exact_distance(surface.points(), surface.faces())->solve(source.index).distance; });
+  double worst = 0, farthest = 0;
+  for (std::size_t i = 0; i < distance.size(); ++i) {
+    if (std::isnan(distance[i])) continue;
+    farthest = std::max(farthest, distance[i]);
+    worst = std::max(worst, std::abs(distance[i] - exact.distances()[i]));
+  }
+  against.difference = worst / farthest;
+#endif
+  return against;
+}
+
+/// Fast paths between random vertices: milliseconds each, and how much longer than exact ones they are.
+struct Paths {
+  double milliseconds = 0;
+  std::vector<double> longer;
+};
+
+Paths fast_paths(const Surface& surface, const ExactGeodesics& geodesics, std::span<const Vertex> sources,
+                 std::span<const LogMap> exact) {
+  Paths paths;
+  std::mt19937_64 random(1);
+  const auto& triangles = geodesics.triangles().surface;
+  for (int k = 0; k < path_count; ++k) {
+    const std::size_t s = k % sources.size();
+    const Vertex to(static_cast<Index>(random() % static_cast<unsigned>(surface.size())));
+    if (exact[s].status(to) != Status::ok || !(exact[s].distance(to) > 0)) continue;
+    double length = 0;
+    paths.milliseconds += 1000 * cpu_seconds([&] {
+                            length = exact::locally_shortest_path(triangles, triangles.vertex_point(sources[s]),
+                                                                  triangles.vertex_point(to))
+                                         .length;
+                          });
+    paths.longer.push_back(length * geodesics.triangles().length_unit / exact[s].distance(to) - 1);
+  }
+  paths.milliseconds /= static_cast<double>(paths.longer.size());
+  return paths;
+}
+
+void measure(const Surface& surface, Table& table) {
+  std::optional<ExactGeodesics> geodesics;
+  const double layout = cpu_seconds([&] { geodesics.emplace(surface.mesh()); });
+  std::vector<Vertex> sources;
+  std::vector<LogMap> exact;
+  double map_seconds = 0;
+  for (int s = 0; s < source_count; ++s) {
+    sources.emplace_back(surface.size() / 11 + s * (surface.size() / source_count));
+    map_seconds += cpu_seconds([&] { exact.push_back(geodesics->log_map(sources.back())); }) / source_count;
+  }
+  const HeatRow first = with_heat(surface, sources, exact, 1), second = with_heat(surface, sources, exact, 2);
+  const Against against = cgal(surface, sources[0], exact[0]);
+  const Paths paths = fast_paths(surface, *geodesics, sources, exact);
+  table.add({surface.name(), surface.size(), layout, map_seconds, against.seconds, against.difference, first.first,
+             first.further, quantile(first.errors, 0.5), quantile(first.errors, 0.95), second.first,
+             quantile(second.errors, 0.5), quantile(second.errors, 0.95), paths.milliseconds,
+             quantile(paths.longer, 0.95), quantile(paths.longer, 1)});
+}
+
+}  // namespace
+
+Table exact_compared(const Settings& settings) {
+  Table table({"mesh", "vertices", "layout s", "exact map s", "CGAL s", "difference / diameter", "first heat map s",
+               "further heat map s", "vector median", "vector 95%", "order 2 first map s", "order 2 vector median",
+               "order 2 vector 95%", "fast path ms", "fast path longer 95%", "fast path longer max"});
+  std::vector<Index> sizes{640};
+  if (!settings.toy) sizes.insert(sizes.end(), {2560, 10000, 40000, 160000});
+  for (Index n : sizes) measure(Surface("sphere", test::split_icosphere(n)), table);
+  measure(Surface("torus", torus(settings.toy ? 640 : 10000)), table);
+  for_user_surfaces(settings, 50000, [&](const Surface& surface) { measure(surface, table); });
+  table.seen = fmt::format(
+      "Exact maps take n^{:.2f} on all shapes, {:.2f} of the first map by heat (median). Vectors of heat are off by "
+      "{:.3f} of the "
+      "distance, of order 2 by {:.3f} (medians of the medians).",
+      fitted_order(table.numbers("vertices"), table.numbers("exact map s")),
+      quantile(table.numbers("exact map s"), 0.5) / quantile(table.numbers("first heat map s"), 0.5),
+      quantile(table.numbers("vector median"), 0.5), quantile(table.numbers("order 2 vector median"), 0.5));
+  return table;
+}
+
+}  // namespace ahm::bench

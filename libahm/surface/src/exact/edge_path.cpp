@@ -1,0 +1,112 @@
+#include <algorithm>
+#include <limits>
+#include <queue>
+#include <vector>
+
+#include "ahm/surface/exact/shortened_path.hpp"
+#include "check_point.hpp"
+#include "unfold.hpp"
+
+namespace ahm::exact {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// The shortest way along the edges, by Dijkstra's algorithm or, with a lower bound, A* [HNR68].
+class EdgeSearch {
+ public:
+  EdgeSearch(const PolyhedralSurface& surface, const std::function<double(Vertex)>& at_least)
+      : surface_(surface),
+        at_least_(at_least),
+        distance_(static_cast<std::size_t>(surface.vertex_count()), infinity),
+        before_(distance_.size(), -1) {}
+
+  /// The vertices of the way; none where there is none.
+  std::vector<Index> run(const MeshPoint& from, const MeshPoint& to) {
+    double after[3];
+    for (int s = 0; s < 3; ++s) after[s] = to_corner(to, s);
+    for (int s = 0; s < 3; ++s)
+      if (const double d = to_corner(from, s); d < infinity) offer(surface_.record(3 * from.face + s).tail, -1, d);
+    double best = infinity;
+    Index last = -1;
+    while (!queue_.empty() && queue_.top().key < best) {
+      const Entry entry = queue_.top();
+      queue_.pop();
+      if (entry.distance > distance_[entry.vertex]) continue;
+      for (int s = 0; s < 3; ++s)
+        if (surface_.record(3 * to.face + s).tail == entry.vertex && entry.distance + after[s] < best) {
+          best = entry.distance + after[s];
+          last = entry.vertex;
+        }
+      go_on(entry);
+    }
+    std::vector<Index> way;
+    for (Index v = last; v >= 0; v = before_[v]) way.push_back(v);
+    std::reverse(way.begin(), way.end());
+    return way;
+  }
+
+ private:
+  struct Entry {
+    double key, distance;
+    Index vertex;
+    bool operator<(const Entry& other) const { return key != other.key ? key > other.key : vertex > other.vertex; }
+  };
+
+  /// From a point of a face; a point at a corner goes there alone.
+  double to_corner(const MeshPoint& point, int s) const {
+    if (vertex_of(surface_, point) >= 0) return point.barycentric[s] > 0 ? 0 : infinity;
+    MeshPoint corner{point.face, {0, 0, 0}};
+    corner.barycentric[s] = 1;
+    return distance(surface_.place(point), surface_.place(corner));
+  }
+
+  void go_on(const Entry& entry) {
+    const Corner first = surface_.first_corner(entry.vertex);
+    Corner c = first;
+    do {
+      const HalfRecord& r = surface_.record(c.half);
+      offer(r.head, entry.vertex, entry.distance + r.length);
+      offer(r.apex, entry.vertex, entry.distance + r.left);
+      c = surface_.turn_left(c);
+    } while (c.half >= 0 && c != first);
+  }
+
+  void offer(Index vertex, Index before, double distance) {
+    if (!(distance < distance_[vertex])) return;
+    distance_[vertex] = distance;
+    before_[vertex] = before;
+    queue_.push({distance + (at_least_ ? at_least_(Vertex(vertex)) : 0.0), distance, vertex});
+  }
+
+  const PolyhedralSurface& surface_;
+  const std::function<double(Vertex)>& at_least_;
+  std::vector<double> distance_;
+  std::vector<Index> before_;
+  std::priority_queue<Entry> queue_;
+};
+
+}  // namespace
+
+GeodesicPath locally_shortest_path(const PolyhedralSurface& surface, const MeshPoint& from, const MeshPoint& to,
+                                   const std::function<double(Vertex)>& at_least) {
+  const MeshPoint start = checked(surface, from, "from"), end = checked(surface, to, "to");
+  const Index start_vertex = vertex_of(surface, start), end_vertex = vertex_of(surface, end);
+  std::vector<MeshPoint> curve{start};
+  if (start.face == end.face) {
+    curve.push_back(end);
+    return shortened_path(surface, curve);
+  }
+  const auto component = [&](const MeshPoint& p) { return surface.component(surface.record(3 * p.face).tail); };
+  if (component(start) != component(end)) {
+    GeodesicPath none;
+    none.status = Status::disconnected;
+    return none;
+  }
+  for (Index v : EdgeSearch(surface, at_least).run(start, end))
+    if (v != start_vertex && v != end_vertex) curve.push_back(surface.vertex_point(Vertex(v)));
+  curve.push_back(end);
+  return shortened_path(surface, curve);
+}
+
+}  // namespace ahm::exact

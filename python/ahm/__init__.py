@@ -1,0 +1,45 @@
+"""Direction and distance along a surface, from one point to every other: logarithmic maps by the Affine Heat Method.
+
+>>> import ahm
+>>> mesh = ahm.TriangleMesh(*ahm.shapes.sphere(3))     # or ahm.read("scan.ply"), ahm.PointCloud(points), ...
+>>> m = ahm.log_map(mesh, 0)                           # m.uv, m.distance, m.angle, m.status: one entry per row
+>>> solver = ahm.LogMapSolver(mesh)                    # factors once, then serves any number of sources
+>>> maps = solver.log_maps([0, 7, 12])
+
+Arrays go in and out by row of the input; positions in world units; floats are float64. Wrong arguments raise ValueError
+(or TypeError) naming argument, index and value. Long computations let other threads run and end with Ctrl-C.
+"""
+
+from . import _core
+
+if not _core.in_main_interpreter():
+    raise ImportError("ahm works in the main interpreter only; use threads or processes instead of subinterpreters")
+
+import atexit as _atexit
+
+from . import shapes
+from ._applications import Cells, Center, Stroke, cells, farthest_points, geometric_median, karcher_mean, stroke
+from ._core import (Cancelled, Error, InvalidArgument, InvalidGeometry, InvalidGraph, IoError, NotPositiveDefinite,
+                    ResourceExhausted)
+from ._fields import (Curvature, DistanceField, Operators, curvature, distance, distance_and_gradient,
+                      distance_and_nearest, extend, operators, transport)
+from ._geodesics import Path, geodesic_path, geodesic_paths, trace
+from ._local_maps import LocalMaps, PaddedMaps, local_maps
+from ._maps import InverseMap, InversePoints, LogMap, LogMapSolver, MapSource, Status, log_map
+from ._surfaces import (ClosestPoints, Graph, Grid, PointCloud, PolygonMesh, Surface, TangentGraph, TriangleMesh, read,
+                        surface)
+from ._textures import Atlas, Coverage, Decal, atlas, coverage, decal, decal_coordinates
+
+_atexit.register(_core.wait_for_background)
+
+__version__ = "0.1.0"
+
+__all__ = [
+    "Atlas", "Cancelled", "Cells", "Center", "ClosestPoints", "Coverage", "Curvature", "Decal", "DistanceField", "Error",
+    "Graph", "Grid", "InvalidArgument", "InvalidGeometry", "InvalidGraph", "InverseMap", "InversePoints", "IoError",
+    "LocalMaps", "LogMap", "LogMapSolver", "MapSource", "NotPositiveDefinite", "Operators", "PaddedMaps", "Path",
+    "PointCloud", "PolygonMesh", "ResourceExhausted", "Status", "Stroke", "Surface", "TangentGraph", "TriangleMesh",
+    "atlas", "cells", "coverage", "curvature", "decal", "decal_coordinates", "distance", "distance_and_gradient",
+    "distance_and_nearest", "extend", "farthest_points", "geodesic_path", "geodesic_paths", "geometric_median",
+    "karcher_mean", "local_maps", "log_map", "operators", "read", "shapes", "stroke", "surface", "trace", "transport",
+]

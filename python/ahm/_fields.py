@@ -1,0 +1,223 @@
+"""Distance, transport and extension; and the operators they stand on."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple, Optional
+
+import numpy as np
+
+from . import _arguments as arguments
+from . import _core
+from ._maps import LogMapSolver, as_body, as_solver
+from ._progress import Progress, reporting
+
+
+def distance(surface: Any, sources: Any, *, targets: Any = None, method: str = "unfold", radius: Optional[float] = None,
+             progress: Progress = None) -> np.ndarray:
+    """Geodesic distance from the nearest of the sources, world units.
+
+    surface : a `Surface`, a `LogMapSolver` (method "heat" uses its factors), or what `ahm.surface` takes.
+    sources : one or more points: rows, positions, `(faces, barycentric)`. By heat several ones must be rows or positions.
+    targets : None: all rows, result (n,); or points, result (k,). Other targets than rows take method "exact".
+    method : "unfold": a front over the triangles, no heat, best for distances on meshes; "heat": by one solve each of A and
+        B, smooth, best on noisy clouds; "exact": of the flat triangles of a mesh.
+    radius : NaN beyond this distance; world units. Not for "heat".
+
+    >>> import ahm
+    >>> mesh = ahm.TriangleMesh(*ahm.shapes.plane(4, 3))
+    >>> ahm.distance(mesh, [0, 3], targets=[1, 2, 4]).round(9).tolist()
+    [1.0, 1.0, 1.0]
+    >>> ahm.distance(mesh, (0, [0.5, 0.5, 0]), targets=[[2.5, 0, 0]], method="exact").round(9).tolist()
+    [2.0]
+
+    NaN where there is no way. Raises ValueError naming argument, index and value.
+    """
+    return distance_and_nearest(surface, sources, targets=targets, method=method, radius=radius, progress=progress)[0]
+
+
+def distance_and_nearest(surface: Any, sources: Any, *, targets: Any = None, method: str = "unfold",
+                         radius: Optional[float] = None, progress: Progress = None) -> tuple:
+    """As `distance`, and the number of the nearest source, int32, -1 without a way; None by heat."""
+    on = as_body(surface)
+    arguments.choice(method, "method", ("unfold", "heat", "exact"))
+    at = arguments.points(sources, "sources", on)
+    reach = float("inf") if radius is None else arguments.real(radius, "radius", positive=True, finite=False)
+    if method == "exact":
+        to = None if targets is None else arguments.points(targets, "targets", on)
+        with reporting(progress) as report:
+            return _core.exact_distance(on._body, at, to, reach, report)
+    rows = None if targets is None else _target_rows(targets, on, method)
+    with reporting(progress) as report:
+        if method == "heat":
+            if radius is not None:
+                raise ValueError("radius: method 'heat' has none")
+            found, nearest = _core.heat_distance(as_solver(surface)._core, at, report)[0], None
+        else:
+            found, nearest = _core.front_distance(on._body, at, reach, report)
+    if rows is None:
+        return found, nearest
+    return found[rows], None if nearest is None else nearest[rows]
+
+
+def _target_rows(targets: Any, on: Any, method: str) -> np.ndarray:
+    if isinstance(targets, tuple) or np.ndim(targets) > 1:
+        raise ValueError(f"targets: method {method!r} takes rows only; method 'exact' takes other points")
+    return arguments.rows(targets, "targets", len(on))
+
+
+class DistanceField(NamedTuple):
+    """Distance and its gradient, by rows."""
+
+    distance: np.ndarray  #: (n,) world units
+    gradient: np.ndarray  #: (n, 3) unit vectors of space away from the source; (n, d) in frames on grids and graphs
+
+
+def distance_and_gradient(solver: Any, sources: Any, *, progress: Progress = None) -> DistanceField:
+    """Length and direction of the radial field (Lemma 1): by heat, without differentiating a distance.
+
+    solver : a `LogMapSolver`, or a surface.
+    sources : as of `distance`.
+
+    >>> import ahm
+    >>> field = ahm.distance_and_gradient(ahm.TriangleMesh(*ahm.shapes.plane(4, 3)), 0)
+    >>> field.gradient[3, 0].round(9), field.distance[3].round(9)
+    (1.0, 3.0)
+    """
+    made = as_solver(solver)
+    at = arguments.points(sources, "sources", made.surface)
+    with reporting(progress) as report:
+        return DistanceField(*_core.heat_distance(made._core, at, report))
+
+
+def extend(solver: Any, points: Any, values: Any, *, progress: Progress = None) -> np.ndarray:
+    """Extends scalars given at points to all rows: each takes the value of the nearest one, blended at ties ([SSC19] Sec. 4).
+
+    solver : a `LogMapSolver`, or a surface.
+    points : k rows or positions (the nearest row). values : (k,).
+
+    >>> import ahm
+    >>> ahm.extend(ahm.shapes.plane(9, 2), [0, 8], [1.0, 3.0])[:9].round(1).tolist()
+    [1.0, 1.0, 1.1, 1.3, 2.0, 2.7, 2.9, 3.0, 3.0]
+
+    Returns (n,), NaN where no heat comes. Raises ValueError.
+    """
+    made = as_solver(solver)
+    at = arguments.points(points, "points", made.surface)
+    given = arguments.floats([values] if np.ndim(values) == 0 else values, "values", (len(at[2]),), finite=True)
+    with reporting(progress) as report:
+        return _core.extend(made._core, at, given, report)[0]
+
+
+def transport(solver: Any, points: Any, vectors: Any, *, progress: Progress = None) -> np.ndarray:
+    """Carries vectors given at points along shortest geodesics to all rows ([SSC19] Alg. 1).
+
+    solver : a `LogMapSolver`, or a surface.
+    points : k rows or positions (the nearest row).
+    vectors : (k, 3) vectors of space, projected to the tangent planes; or (k, d) components in the frames of the rows. One
+        vector may be given as (3,) or (d,).
+
+    >>> import ahm
+    >>> ahm.transport(ahm.shapes.plane(4, 3), 0, [1, 2, 0])[11, :2].round(9).tolist()
+    [1.0, 2.0]
+
+    Returns (n, 3) or (n, d), as given; NaN where no heat comes. Raises ValueError.
+    """
+    made = as_solver(solver)
+    at = arguments.points(points, "points", made.surface)
+    given = arguments.array(vectors, "vectors")
+    if given.ndim == 1:
+        given = given[None]
+    width, d = given.shape[-1], made.surface.dimension
+    if width not in ((3, d) if made.surface._body.has_surface else (d,)):
+        raise ValueError(f"vectors: 3 numbers of space or {d} in a frame are needed for each, not shape {given.shape}")
+    given = arguments.floats(given, "vectors", (len(at[2]), width), finite=True)
+    with reporting(progress) as report:
+        return _core.transport(made._core, at, given, report)[0]
+
+
+class Curvature(NamedTuple):
+    """Principal curvatures, by rows; NaN where there are too few neighbours to tell."""
+
+    values: np.ndarray  #: (n, 2) kappa_1, kappa_2 with |kappa_1| >= |kappa_2|, 1 / world units
+    direction: np.ndarray  #: (n, 3) unit vector of space along which the curvature is kappa_1, up to its sign
+
+
+def curvature(surface: Any, *, progress: Progress = None) -> Curvature:
+    """Principal curvatures and directions, of a paraboloid fitted around every row [CP05].
+
+    >>> import ahm
+    >>> k = ahm.curvature(ahm.shapes.sphere(3)).values
+    >>> bool(abs(k - 1).max() < 0.05)
+    True
+    """
+    with reporting(progress) as report:
+        return Curvature(*_core.curvature(as_body(surface)._body, report))
+
+
+class Operators(NamedTuple):
+    """The operators of the affine heat method as scipy matrices, in units of the graph (lengths are `length_unit` world units)."""
+
+    mass: Any  #: (n, n) diagonal M
+    laplacian: Any  #: (n, n) L, positive semi-definite: L u_i = sum_j w_ij (u_i - u_j)
+    connection_laplacian: Any  #: (n, n) complex Hermitian, or (n d, n d) real: L^nabla
+    transports: Any  #: R_ji per edge, from the frame of j to that of i: complex, or blocks
+    tau: np.ndarray  #: (n,) diffusion time of the component of every vertex, squared graph units
+    length_unit: float
+    vertex_of_row: np.ndarray  #: (rows,) int32; -1: removed. Matrices are by vertices
+    row_of_vertex: np.ndarray  #: (n,) int32; -1: a vertex that the input does not have
+
+    @property
+    def A(self) -> Any:
+        """M + tau L, symmetric positive definite."""
+        return _plus(self.mass, self.tau, self.laplacian)
+
+    @property
+    def B(self) -> Any:
+        """M + tau L^nabla, Hermitian positive definite."""
+        repeat = self.connection_laplacian.shape[0] // len(self.tau)
+        from scipy.sparse import identity, kron
+
+        mass = self.mass if repeat == 1 else kron(self.mass, identity(repeat))
+        return _plus(mass, np.repeat(self.tau, repeat), self.connection_laplacian)
+
+
+def _plus(mass: Any, tau: np.ndarray, laplacian: Any) -> Any:
+    from scipy.sparse import diags
+
+    return (mass + diags(tau) @ laplacian).tocsr()
+
+
+def operators(surface: Any, *, t_coef: float = 1.0) -> Operators:
+    """The matrices of a surface, by vertices of its graph (see `vertex_of_row`).
+
+    tau is t_coef h^2 with h the mean edge length of the vertex's component.
+
+    >>> import ahm
+    >>> ops = ahm.operators(ahm.shapes.sphere(2))
+    >>> ops.A.shape, bool(abs(ops.laplacian.sum(axis=1)).max() < 1e-12)
+    ((162, 162), True)
+    """
+    from scipy.sparse import bsr_matrix, coo_matrix, csr_matrix, diags
+
+    on = as_body(surface)
+    factor = arguments.real(t_coef, "t_coef", positive=True)
+    indptr, indices, weights, logs, turns, masses = on._body.csr()
+    n, d = len(masses), logs.shape[1]
+    row = np.repeat(np.arange(n), np.diff(indptr))
+    degree = np.bincount(row, weights, n)
+    laplacian = (diags(degree) - coo_matrix((weights, (row, indices)), (n, n))).tocsr()
+    if turns.ndim == 2:
+        R = coo_matrix((turns[:, 0] + 1j * turns[:, 1], (row, indices)), (n, n)).tocsr()
+        weighted = coo_matrix((weights * (turns[:, 0] + 1j * turns[:, 1]), (row, indices)), (n, n))
+        connection = (diags(degree).astype(complex) - weighted).tocsr()
+    else:
+        R = bsr_matrix((turns, indices, indptr), (n * d, n * d)).tocsr()
+        weighted = bsr_matrix((weights[:, None, None] * turns, indices, indptr), (n * d, n * d))
+        connection = csr_matrix(diags(np.repeat(degree, d)) - weighted)
+    tau = _core.diffusion_times(on._body, factor)
+    return Operators(diags(masses).tocsr(), laplacian, connection, R, tau, on._body.length_unit,
+                     on._body.vertex_of_row(), on._body.row_of_vertex())
+
+
+__all__ = ("Curvature", "DistanceField", "LogMapSolver", "Operators", "curvature", "distance", "distance_and_gradient",
+           "distance_and_nearest", "extend", "operators", "transport")

@@ -1,0 +1,133 @@
+"""Decals, tool paths and atlases."""
+
+from __future__ import annotations
+
+from typing import Any, Dict, List, NamedTuple, Optional, Union
+
+import numpy as np
+
+from . import _arguments as arguments
+from . import _core
+from ._maps import InverseMap, LogMap, as_solver
+from ._options import checked
+from ._progress import Progress, reporting
+
+
+def _inverse(thing: Union[LogMap, InverseMap]) -> InverseMap:
+    return thing if isinstance(thing, InverseMap) else InverseMap(thing)
+
+
+class Decal(NamedTuple):
+    """A piece of the surface under an image: a small mesh of its own."""
+
+    points: np.ndarray  #: (p, 3) world units
+    normals: np.ndarray  #: (p, 3)
+    faces: List[np.ndarray]  #: corners, counter-clockwise: triangles of the surface, cut along the borders of the image
+    uv: np.ndarray  #: (p, 2) in [0, 1]: (0, 0) the lower left corner of the image
+    hidden: int  #: triangles left out, since another sheet of the map lies over the same place
+
+
+def decal(map: Union[LogMap, InverseMap], width: float, height: float, *, angle: float = 0.0, mirrored: bool = False,
+          radius: Optional[float] = None, lift: float = 0.0) -> Decal:
+    """A rectangle of the (u, v) plane with its middle at the source, carried to the surface.
+
+    map : a `LogMap` with frames, or an `InverseMap`.
+    width, height : world units. angle : radians from the u axis to the image's direction from left to right.
+    mirrored : left and right exchanged. radius : cut off what is farther. lift : along the normals, world units.
+
+    >>> import ahm
+    >>> m = ahm.log_map(ahm.shapes.plane(9, 9), 40, u_axis=[1, 0, 0])
+    >>> piece = ahm.decal(m, 3.0, 2.0)
+    >>> piece.points.min(axis=0).round(6).tolist(), piece.points.max(axis=0).round(6).tolist()
+    ([2.5, 3.0, 0.0], [5.5, 5.0, 0.0])
+
+    Raises ValueError naming the argument.
+    """
+    options = checked(width=width, height=height, angle=angle, mirrored=mirrored, radius=radius, lift=lift)
+    points, normals, begin, corners, uv, hidden = _inverse(map)._core.decal(options)
+    return Decal(points, normals, [corners[b:e] for b, e in zip(begin[:-1], begin[1:])], uv, hidden)
+
+
+def decal_coordinates(map: Union[LogMap, InverseMap], width: float, height: float, *, angle: float = 0.0,
+                      mirrored: bool = False, radius: Optional[float] = None) -> np.ndarray:
+    """Where every row lies in the image, (n, 2) in [0, 1]; NaN where it does not: to paint clouds. Arguments as of `decal`.
+
+    >>> import ahm
+    >>> m = ahm.log_map(ahm.shapes.plane(9, 9), 40, u_axis=[1, 0, 0])
+    >>> ahm.decal_coordinates(m, 4.0, 2.0)[41].round(6).tolist()
+    [0.75, 0.5]
+    """
+    options = checked(width=width, height=height, angle=angle, mirrored=mirrored, radius=radius)
+    return _inverse(map)._core.image_coordinates(options)
+
+
+class Coverage(NamedTuple):
+    """A path that covers a disc of the surface, k points in order of travel."""
+
+    position: np.ndarray  #: (k, 3) world units
+    normal: np.ndarray  #: (k, 3) unit
+    heading: np.ndarray  #: (k, 3) unit, perpendicular to the normal
+    uv: np.ndarray  #: (k, 2)
+    piece: np.ndarray  #: (k,) int32, from 0; a tool must lift between pieces
+    line: np.ndarray  #: (k,) int32 of the raster; 0 on a spiral
+    arclength: np.ndarray  #: (k,) from the start of the piece, in space
+    spacing: np.ndarray  #: (k,) distance in space to the neighbouring line; NaN where there is none
+    pieces: int
+    planned: int  #: points of the pattern in the plane; those missing lie outside of the valid region
+
+
+def coverage(map: Union[LogMap, InverseMap], radius: float, spacing: float, *, pattern: str = "raster",
+             step: Optional[float] = None, angle: float = 0.0) -> Coverage:
+    """Lines of equal spacing in log coordinates, carried to space, normals included.
+
+    map : a `LogMap` with frames, or an `InverseMap`.
+    radius : of the disc about the source. spacing : between lines or turns. step : between points; None: half of the
+        spacing. All in world units. pattern : "raster" or "spiral". angle : radians from the u axis.
+
+    >>> import ahm
+    >>> m = ahm.log_map(ahm.shapes.plane(9, 9), 40, u_axis=[1, 0, 0])
+    >>> path = ahm.coverage(m, radius=3, spacing=1)
+    >>> path.pieces, path.normal[0].tolist()
+    (5, [0.0, 0.0, 1.0])
+
+    Raises ValueError naming the argument.
+    """
+    options = checked(radius=radius, spacing=spacing, pattern=pattern, step=step, angle=angle)
+    return Coverage(*_inverse(map)._core.coverage(options))
+
+
+class Atlas(NamedTuple):
+    """The surface cut into charts, each flattened by its own log map, and packed into one square texture."""
+
+    points: np.ndarray  #: (p, 3): the rows of a mesh, or the vertices of a cloud's graph
+    faces: List[np.ndarray]  #: places in `points` of the corners, all oriented alike where that is possible
+    chart: np.ndarray  #: (faces,) int32; -1: no chart
+    chart_uv: np.ndarray  #: (corners, 2) world units, in the frame of the chart's source; NaN without a chart
+    uv: np.ndarray  #: (corners, 2) in [0, 1] of the texture, (0, 0) the lower left corner; NaN without a chart
+    sources: np.ndarray  #: (charts,) int32 row of every chart's source; -1: a vertex that the input does not have
+    distortion: Dict[str, float]  #: of D = max(1 / sigma1, sigma2): mean, median, percentile_95, largest; flipped, flipped_area
+
+
+def atlas(solver: Any, sources: Any = None, *, charts: int = 20, max_distortion: Optional[float] = None,
+          size: int = 2048, margin: int = 4, progress: Progress = None) -> Atlas:
+    """A texture atlas: geodesic cells around sources, each flattened by the log map from its source.
+
+    solver : a `LogMapSolver`, or a mesh or cloud.
+    sources : rows or positions; None: `charts` points spread evenly.
+    max_distortion : > 1: adds sources until the charts are as good as that; None: keeps to the sources.
+    size, margin : texels of a side of the square, and free around each chart.
+
+    >>> import ahm
+    >>> a = ahm.atlas(ahm.shapes.torus(24, 12), charts=6)
+    >>> len(a.faces), a.uv.shape, bool((a.chart >= 0).all())
+    (576, (1728, 2), True)
+
+    Raises ValueError naming the argument.
+    """
+    made = as_solver(solver)
+    at = None if sources is None else arguments.points(sources, "sources", made.surface)
+    options = checked(max_distortion=max_distortion, size=size)
+    options["margin"] = arguments.integer(margin, "margin")
+    with reporting(progress) as report:
+        points, begin, corners, *rest = _core.atlas(made._core, at, arguments.integer(charts, "charts", 1), options, report)
+    return Atlas(points, [corners[b:e] for b, e in zip(begin[:-1], begin[1:])], *rest)

@@ -1,0 +1,327 @@
+"""The names and signatures of the package potpourri3d, so that `import ahm.potpourri3d as pp3d` keeps a script running.
+
+Results are those of this library: distances of components without a source are NaN, indices out of range raise ValueError, and
+paths are the shortest. What this library does not have raises NotImplementedError. Tangent vectors have two components in the
+frames of `get_tangent_frames`, which are a choice of gauge and not that package's.
+
+>>> import ahm
+>>> import ahm.potpourri3d as pp3d
+>>> V, F = ahm.shapes.sphere(3)
+>>> solver = pp3d.MeshVectorHeatSolver(V, F)
+>>> solver.compute_log_map(0).shape, len(solver.compute_log_maps([0, 5, 7]))
+((642, 2), 3)
+"""
+
+from __future__ import annotations
+
+import os
+from typing import Any, List, Optional, Sequence, Tuple
+
+import numpy as np
+
+from . import _arguments as arguments
+from . import _core
+from ._fields import DistanceField, distance_and_gradient, extend, operators, transport
+from ._geodesics import geodesic_path, trace
+from ._maps import LogMapSolver
+from ._surfaces import PointCloud, PolygonMesh, Surface, TriangleMesh
+
+_STRATEGIES = {"AffineLocal": "localized", "AffineAdaptive": "adaptive"}
+
+
+def read_mesh(filename: Any) -> Tuple[np.ndarray, np.ndarray]:
+    """(n, 3) vertices and (m, 3) triangles of a file."""
+    got = _core.read_file(os.fspath(filename))
+    begin = got["face_begin"]
+    if begin is None or not (np.diff(begin) == 3).all():
+        raise ValueError(f"filename: {os.fspath(filename)} holds no triangle mesh")
+    return got["points"], got["face_vertices"].reshape(-1, 3)
+
+
+def read_polygon_mesh(filename: Any) -> Tuple[np.ndarray, List[List[int]]]:
+    """(n, 3) vertices and the corners of every face of a file."""
+    got = _core.read_file(os.fspath(filename))
+    begin, corners = got["face_begin"], got["face_vertices"]
+    if begin is None:
+        raise ValueError(f"filename: {os.fspath(filename)} holds no faces")
+    return got["points"], [corners[b:e].tolist() for b, e in zip(begin[:-1], begin[1:])]
+
+
+def read_point_cloud(filename: Any) -> np.ndarray:
+    """(n, 3) points of a file."""
+    return _core.read_file(os.fspath(filename))["points"]
+
+
+def write_mesh(V: Any, F: Any, filename: Any, UV_coords: Any = None, UV_type: Optional[str] = None) -> None:
+    """Writes .obj, .off or .ply (text). UV_type: "per-vertex" (n, 2) or "per-corner" (corners, 2), .obj only."""
+    points = arguments.floats(V, "V", (None, 3))
+    faces = [arguments.integers(f, f"F[{k}]", 1, 0, len(points) - 1).tolist() for k, f in enumerate(F)]
+    ending = os.path.splitext(os.fspath(filename))[1].lower()
+    if (UV_coords is None) != (UV_type is None):
+        raise ValueError("UV_type: goes with UV_coords, and the other way round")
+    if UV_type is not None and (UV_type not in ("per-vertex", "per-corner") or ending != ".obj"):
+        raise NotImplementedError("UV_type: 'per-vertex' and 'per-corner' can be written, to .obj files")
+    rows = [" ".join(repr(float(x)) for x in p) for p in points]
+    if ending == ".obj":
+        lines = ["v " + row for row in rows] + _obj_faces(faces, UV_coords, UV_type, len(points))
+    elif ending == ".off":
+        lines = ["OFF", f"{len(rows)} {len(faces)} 0", *rows, *(_counted(f) for f in faces)]
+    elif ending == ".ply":
+        lines = ["ply", "format ascii 1.0", *_ply_points(len(rows)), f"element face {len(faces)}",
+                 "property list uchar int vertex_indices", "end_header", *rows, *(_counted(f) for f in faces)]
+    else:
+        raise NotImplementedError(f"filename: {ending or 'no ending'} cannot be written; .obj, .off and .ply can")
+    _write(filename, lines)
+
+
+def write_point_cloud(V: Any, filename: Any) -> None:
+    """Writes .ply (text), .obj or .xyz."""
+    rows = [" ".join(repr(float(x)) for x in p) for p in arguments.floats(V, "V", (None, 3))]
+    ending = os.path.splitext(os.fspath(filename))[1].lower()
+    if ending not in (".ply", ".obj", ".xyz"):
+        raise NotImplementedError(f"filename: {ending or 'no ending'} cannot be written; .ply, .obj and .xyz can")
+    head = ["ply", "format ascii 1.0", *_ply_points(len(rows)), "end_header"] if ending == ".ply" else []
+    _write(filename, head + [("v " if ending == ".obj" else "") + row for row in rows])
+
+
+def _write(filename: Any, lines: Sequence[str]) -> None:
+    with open(filename, "w", encoding="ascii") as file:
+        file.write("\n".join(lines) + "\n")
+
+
+def _counted(face: Sequence[int]) -> str:
+    return " ".join(map(str, (len(face), *face)))
+
+
+def _ply_points(count: int) -> List[str]:
+    return [f"element vertex {count}", *(f"property double {axis}" for axis in "xyz")]
+
+
+def _obj_faces(faces: Sequence[Sequence[int]], uv: Any, kind: Optional[str], points: int) -> List[str]:
+    if uv is None:
+        return ["f " + " ".join(str(v + 1) for v in face) for face in faces]
+    corners = sum(len(face) for face in faces)
+    given = arguments.floats(uv, "UV_coords", (points if kind == "per-vertex" else corners, 2))
+    lines, corner = [f"vt {float(u)!r} {float(v)!r}" for u, v in given], 0
+    for face in faces:
+        places = face if kind == "per-vertex" else range(corner, corner + len(face))
+        lines.append("f " + " ".join(f"{v + 1}/{t + 1}" for v, t in zip(face, places)))
+        corner += len(face)
+    return lines
+
+
+def _mesh(V: Any, F: Any) -> Tuple[np.ndarray, np.ndarray]:
+    points = arguments.floats(V, "V", (None, 3))
+    faces = arguments.integers(F, "F", 2, 0, len(points) - 1)
+    if faces.shape[1] != 3:
+        raise ValueError(f"F: shape (m, 3) is needed, not {faces.shape}")
+    return points, faces
+
+
+def face_areas(V: Any, F: Any) -> np.ndarray:
+    """(m,) areas of triangles.
+
+    >>> import ahm, ahm.potpourri3d as pp3d
+    >>> pp3d.face_areas(*ahm.shapes.plane(2, 2)).tolist()
+    [0.5, 0.5]
+    """
+    points, faces = _mesh(V, F)
+    a, b, c = (points[faces[:, k]] for k in range(3))
+    return np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
+
+
+def vertex_areas(V: Any, F: Any) -> np.ndarray:
+    """(n,) a third of the areas of the triangles at every vertex."""
+    points, faces = _mesh(V, F)
+    return np.bincount(faces.ravel(), np.repeat(face_areas(points, faces) / 3, 3), len(points))
+
+
+def cotan_laplacian(V: Any, F: Any, denom_eps: float = 0.0) -> Any:
+    """(n, n) scipy CSR, positive semi-definite: half the cotangents opposite each edge, of the triangles as given."""
+    from scipy.sparse import coo_matrix, diags
+
+    points, faces = _mesh(V, F)
+    rows, columns, weights = [], [], []
+    for k in range(3):
+        apex, i, j = (faces[:, (k + s) % 3] for s in range(3))
+        a, b = points[i] - points[apex], points[j] - points[apex]
+        weights.append(0.5 * np.einsum("ij,ij->i", a, b) / (np.linalg.norm(np.cross(a, b), axis=1) + denom_eps))
+        rows.append(i)
+        columns.append(j)
+    n, w = len(points), np.concatenate(weights)
+    W = coo_matrix((w, (np.concatenate(rows), np.concatenate(columns))), (n, n))
+    W = (W + W.T).tocsr()
+    return (diags(np.asarray(W.sum(axis=1)).ravel()) - W).tocsr()
+
+
+def edges(V: Any, F: Any) -> np.ndarray:
+    """(e, 2) vertices of every edge, the smaller one first, sorted."""
+    faces = _mesh(V, F)[1]
+    return np.unique(np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1), axis=0)
+
+
+class _Heat:
+    """What all solvers by heat offer."""
+
+    def __init__(self, surface: Surface, t_coef: float) -> None:
+        self.surface = surface
+        self.solver = LogMapSolver(surface, t_coef=t_coef)
+
+    def _distance(self, sources: Any) -> np.ndarray:
+        field: DistanceField = distance_and_gradient(self.solver, arguments.rows(sources, "v_inds", len(self.surface)))
+        return field.distance
+
+    def extend_scalar(self, v_inds: Any, values: Any) -> np.ndarray:
+        """(n,) each vertex takes the value of the nearest one of v_inds, blended at ties."""
+        return extend(self.solver, arguments.rows(v_inds, "v_inds", len(self.surface)), values)
+
+    def get_tangent_frames(self) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Three (n, 3) arrays: the tangent axes x and y, and the normals."""
+        frames = self.surface.frames
+        assert frames is not None
+        return frames[:, 0], frames[:, 1], frames[:, 2]
+
+    def transport_tangent_vector(self, v_ind: int, vector: Any) -> np.ndarray:
+        """(n, 2) the vector at v_ind carried to every vertex, in the frames of `get_tangent_frames`."""
+        return self.transport_tangent_vectors([v_ind], [vector])
+
+    def transport_tangent_vectors(self, v_inds: Any, vectors: Any) -> np.ndarray:
+        """(n, 2) the same, of several vectors: the nearest one counts, blended at ties."""
+        given = arguments.floats(vectors, "vectors", (None, 2), finite=True)
+        return transport(self.solver, arguments.rows(v_inds, "v_inds", len(self.surface)), given)
+
+    def compute_log_map(self, v_ind: int, strategy: str = "AffineLocal") -> np.ndarray:
+        """(n, 2) in the frame of v_ind. strategy: "AffineLocal" or "AffineAdaptive"."""
+        return self.compute_log_maps([v_ind], strategy)[0]
+
+    def compute_log_maps(self, v_inds: Any, strategy: str = "AffineLocal") -> List[np.ndarray]:
+        """One map for each source, in blocks."""
+        if strategy not in _STRATEGIES:
+            raise NotImplementedError(f"strategy: {strategy!r} is not there; 'AffineLocal' and 'AffineAdaptive' are")
+        rows = arguments.rows(v_inds, "v_inds", len(self.surface))
+        return [m.uv for m in self.solver.log_maps(rows, variant=_STRATEGIES[strategy])]
+
+    def compute_signed_distance(self, *given: Any, **options: Any) -> np.ndarray:
+        raise NotImplementedError("compute_signed_distance is not there; `ahm.stroke` gives signed distances along a curve")
+
+
+class MeshHeatMethodDistanceSolver(_Heat):
+    """Geodesic distance on a triangle mesh by heat (`ahm.distance_and_gradient`); use_robust: intrinsic Delaunay triangulation."""
+
+    def __init__(self, V: Any, F: Any, t_coef: float = 1.0, use_robust: bool = True) -> None:
+        super().__init__(TriangleMesh(V, F, delaunay=bool(use_robust)), t_coef)
+
+    def compute_distance(self, v_ind: int) -> np.ndarray:
+        """(n,) from a vertex."""
+        return self._distance([v_ind])
+
+    def compute_distance_multisource(self, v_inds: Any) -> np.ndarray:
+        """(n,) from the nearest of several vertices."""
+        return self._distance(v_inds)
+
+
+def compute_distance(V: Any, F: Any, v_ind: int) -> np.ndarray:
+    """(n,) distance from a vertex of a triangle mesh."""
+    return MeshHeatMethodDistanceSolver(V, F).compute_distance(v_ind)
+
+
+def compute_distance_multisource(V: Any, F: Any, v_inds: Any) -> np.ndarray:
+    """(n,) distance from the nearest of several vertices of a triangle mesh."""
+    return MeshHeatMethodDistanceSolver(V, F).compute_distance_multisource(v_inds)
+
+
+class MeshVectorHeatSolver(_Heat):
+    """Log maps, transport and extension on a triangle mesh."""
+
+    def __init__(self, V: Any, F: Any, t_coef: float = 1.0, use_intrinsic_delaunay: bool = True, *,
+                 useIntrinsicDelaunay: Optional[bool] = None) -> None:
+        delaunay = use_intrinsic_delaunay if useIntrinsicDelaunay is None else useIntrinsicDelaunay
+        super().__init__(TriangleMesh(V, F, delaunay=bool(delaunay)), t_coef)
+
+    def get_connection_laplacian(self) -> Any:
+        """(n, n) complex Hermitian scipy CSR, in the frames of `get_tangent_frames`."""
+        found = operators(self.surface)
+        if not np.array_equal(found.vertex_of_row, np.arange(len(self.surface))) or found.tau.shape != (len(self.surface),):
+            raise NotImplementedError("get_connection_laplacian: of meshes whose vertices all are used by faces, uncut")
+        if found.connection_laplacian.dtype != complex:
+            raise NotImplementedError("get_connection_laplacian: a surface that is not orientable has none of complex numbers")
+        return found.connection_laplacian
+
+
+class PolygonMeshHeatSolver(_Heat):
+    """Distance, log maps, transport and extension on a polygon mesh."""
+
+    def __init__(self, V: Any, F: Any, t_coef: float = 1.0) -> None:
+        super().__init__(PolygonMesh(V, F), t_coef)
+
+    def compute_distance(self, v_inds: Any) -> np.ndarray:
+        """(n,) from the nearest of one or more vertices."""
+        return self._distance(v_inds)
+
+
+class PointCloudHeatSolver(_Heat):
+    """Distance, log maps, transport and extension on a point cloud."""
+
+    def __init__(self, P: Any, t_coef: float = 1.0) -> None:
+        super().__init__(PointCloud(P), t_coef)
+
+    def compute_distance(self, p_ind: int) -> np.ndarray:
+        """(n,) from a point."""
+        return self._distance([p_ind])
+
+    def compute_distance_multisource(self, p_inds: Any) -> np.ndarray:
+        """(n,) from the nearest of several points."""
+        return self._distance(p_inds)
+
+
+class EdgeFlipGeodesicSolver:
+    """Shortest paths on a triangle mesh, exact (`ahm.geodesic_path`): not only straight, the shortest of all."""
+
+    def __init__(self, V: Any, F: Any, t_coef: float = 1.0) -> None:
+        self.surface = TriangleMesh(V, F)
+
+    def find_geodesic_path(self, v_start: int, v_end: int, max_iterations: Optional[int] = None,
+                           max_relative_length_decrease: Optional[float] = None) -> np.ndarray:
+        """(k, 3) points of the shortest path. Raises ValueError where there is none."""
+        if max_iterations is not None or max_relative_length_decrease is not None:
+            raise NotImplementedError("max_iterations, max_relative_length_decrease: shortest paths are not found by iterations")
+        ends = arguments.rows([v_start, v_end], "v_start, v_end", len(self.surface))
+        path = geodesic_path(self.surface, int(ends[0]), int(ends[1]))
+        if path is None:
+            raise ValueError(f"v_end: no path leads from vertex {v_start} to vertex {v_end}")
+        return path.points
+
+    def find_geodesic_path_poly(self, v_list: Any, *given: Any, **options: Any) -> np.ndarray:
+        raise NotImplementedError("find_geodesic_path_poly is not there; `ahm.geodesic_path` leads through points and bends there")
+
+    def find_geodesic_loop(self, v_list: Any, *given: Any, **options: Any) -> np.ndarray:
+        raise NotImplementedError("find_geodesic_loop is not there")
+
+
+class GeodesicTracer:
+    """Straightest geodesics on a triangle mesh (`ahm.trace`), as long as `direction_xyz` is."""
+
+    def __init__(self, V: Any, F: Any, t_coef: float = 1.0) -> None:
+        self.surface = TriangleMesh(V, F)
+
+    def trace_geodesic_from_vertex(self, start_vert: int, direction_xyz: Any, max_iterations: Optional[int] = None) -> np.ndarray:
+        """(k, 3) points; it ends at the boundary."""
+        return self._trace(arguments.integer(start_vert, "start_vert"), direction_xyz, max_iterations)
+
+    def trace_geodesic_from_face(self, start_face: int, bary_coords: Any, direction_xyz: Any,
+                                 max_iterations: Optional[int] = None) -> np.ndarray:
+        """(k, 3) points; it ends at the boundary."""
+        return self._trace((arguments.integer(start_face, "start_face"), bary_coords), direction_xyz, max_iterations)
+
+    def _trace(self, start: Any, direction: Any, max_iterations: Optional[int]) -> np.ndarray:
+        if max_iterations is not None:
+            raise NotImplementedError("max_iterations: geodesics are traced to their end")
+        return trace(self.surface, start, direction).points
+
+
+__all__ = [
+    "EdgeFlipGeodesicSolver", "GeodesicTracer", "MeshHeatMethodDistanceSolver", "MeshVectorHeatSolver",
+    "PointCloudHeatSolver", "PolygonMeshHeatSolver", "compute_distance", "compute_distance_multisource",
+    "cotan_laplacian", "edges", "face_areas", "read_mesh", "read_point_cloud", "read_polygon_mesh",
+    "vertex_areas", "write_mesh", "write_point_cloud",
+]

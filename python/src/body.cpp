@@ -1,0 +1,93 @@
+#include "body.hpp"
+
+#include <algorithm>
+
+#include "ahm/error.hpp"
+#include "errors.hpp"
+
+namespace ahm::python {
+
+const Surface& Body::surface_for(const char* what) const {
+  if (!surface_) throw InvalidArgument(std::string(what) + " needs a mesh or a cloud; this is a grid or a graph");
+  return *surface_;
+}
+
+std::optional<Row> Body::row(Vertex vertex) const {
+  return surface_ ? surface_->rows().row(vertex) : std::optional(Row(vertex.index));
+}
+
+SurfacePoint Body::point(const Place& place) const {
+  if (const auto* point = std::get_if<SurfacePoint>(&place)) return *point;
+  return surface_for("a position").closest_point(std::get<Vec3>(place)).point;
+}
+
+PlacedSource Body::source(const Place& place, const std::optional<Vec3>& u_axis) const {
+  if (surface_) return surface_->source(point(place), u_axis);
+  if (u_axis) throw InvalidArgument("a u axis needs a mesh or a cloud; grids and graphs keep the axes they have");
+  if (const auto* position = std::get_if<Vec3>(&place)) {
+    if (grid_ == nullptr) throw InvalidArgument("a position needs a surface or a grid; name a row");
+    const auto d = static_cast<std::size_t>(grid_->dimension());
+    return {grid_->source_at(std::span(*position).first(d)), *position, std::nullopt, std::nullopt};
+  }
+  const auto* row = std::get_if<Row>(&std::get<SurfacePoint>(place));
+  if (row == nullptr) throw InvalidArgument("grids and graphs have no faces; name a row");
+  PlacedSource result{Source::at_vertex(vertex(*row)), {}, graph_->frame(row->index), *row};
+  if (grid_ != nullptr) result.position = grid_->position(Vertex(row->index));
+  return result;
+}
+
+std::vector<PlacedSource> Body::sources(const Places& places, const std::optional<Vec3>& u_axis) const {
+  std::vector<PlacedSource> result;
+  for (std::size_t k = 0; k < places.size(); ++k)
+    result.push_back(naming(places.where(k), [&] { return source(places.places[k], u_axis); }));
+  return result;
+}
+
+Vertex Body::vertex_near(const Place& place) const {
+  if (const auto* position = std::get_if<Vec3>(&place)) {
+    const Surface& all = surface_for("a position");
+    return all.vertex(all.nearest_row(*position));
+  }
+  const auto* row = std::get_if<Row>(&std::get<SurfacePoint>(place));
+  if (row == nullptr) throw InvalidArgument("a point in a face cannot be used here; name a row or a position");
+  return vertex(*row);
+}
+
+std::vector<Vertex> Body::vertices_near(const Places& places) const {
+  std::vector<Vertex> result;
+  for (std::size_t k = 0; k < places.size(); ++k)
+    result.push_back(naming(places.where(k), [&] { return vertex_near(places.places[k]); }));
+  return result;
+}
+
+const ExactGeodesics& Body::geodesics() const {
+  const Surface& all = surface_for("method 'exact'");
+  std::call_once(once_, [&] { geodesics_ = std::make_unique<const ExactGeodesics>(all); });
+  return *geodesics_;
+}
+
+Places places(const py::tuple& given) {
+  Places result{given[0].cast<std::string>(), given[1].cast<bool>(), {}};
+  const auto kinds = given[2].cast<Bytes>();
+  const auto index = given[3].cast<Indices>(), count = given[4].cast<Indices>();
+  const auto values = given[5].cast<Doubles>();
+  const py::ssize_t width = values.shape(1);
+  for (py::ssize_t k = 0; k < kinds.size(); ++k) {
+    const double* row = values.data() + k * width;
+    if (kinds.at(k) == 0)
+      result.places.emplace_back(SurfacePoint(Row(index.at(k))));
+    else if (kinds.at(k) == 1)
+      result.places.emplace_back(Vec3{row[0], row[1], row[2]});
+    else
+      result.places.emplace_back(SurfacePoint(FacePoint{index.at(k), std::vector<double>(row, row + count.at(k))}));
+  }
+  return result;
+}
+
+std::optional<Vec3> optional_vector(const py::object& given) {
+  if (given.is_none()) return std::nullopt;
+  const auto array = given.cast<Doubles>();
+  return Vec3{array.at(0), array.at(1), array.at(2)};
+}
+
+}  // namespace ahm::python

@@ -1,0 +1,160 @@
+// Transport, extension and distance, by rows; and the factored operators themselves.
+#include <limits>
+#include <utility>
+
+#include "ahm/error.hpp"
+#include "ahm/fields/distance.hpp"
+#include "ahm/fields/vector_heat.hpp"
+#include "ahm/maps/unfolding_front.hpp"
+#include "ahm/surface/directions.hpp"
+#include "compute.hpp"
+#include "heat/component_scales.hpp"
+#include "map.hpp"
+#include "options.hpp"
+#include "parts.hpp"
+
+namespace ahm::python {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+/// A field by rows: of the first vertex of each.
+VertexField by_rows(const Body& body, VertexField field) {
+  if (body.surface() == nullptr) return field;
+  const auto width = static_cast<std::size_t>(field.width);
+  const auto n = static_cast<std::size_t>(body.rows());
+  VertexField result{field.width, std::vector<double>(n * width, nan), std::vector<Status>(n, Status::removed)};
+  for (std::size_t r = 0; r < n; ++r) {
+    const auto vertex = body.surface()->rows().vertex(Row(static_cast<Index>(r)));
+    if (!vertex) continue;
+    const auto v = static_cast<std::size_t>(vertex->index);
+    for (std::size_t k = 0; k < width; ++k) result.values[r * width + k] = field.values[v * width + k];
+    result.status[r] = field.status[v];
+  }
+  return result;
+}
+
+/// Components in frames as vectors of space; and back.
+std::vector<double> in_space(const TangentGraph& graph, const VertexField& field) {
+  std::vector<double> result(3 * field.status.size(), nan);
+  for (std::size_t v = 0; v < field.status.size(); ++v) {
+    const auto frame = graph.frame(static_cast<Index>(v));
+    if (!frame) throw InvalidArgument("vectors: the surface has no frames in space; give components in its frames");
+    for (std::size_t c = 0; c < 3; ++c)
+      result[3 * v + c] = field.values[2 * v] * frame->x[c] + field.values[2 * v + 1] * frame->y[c];
+  }
+  return result;
+}
+
+std::vector<double> in_frames(const TangentGraph& graph, std::span<const Vertex> at, std::span<const double> vectors) {
+  std::vector<double> result;
+  for (std::size_t k = 0; k < at.size(); ++k) {
+    const auto frame = graph.frame(at[k].index);
+    if (!frame) throw InvalidArgument("vectors: the surface has no frames in space; give components in its frames");
+    for (const Vec3* axis : {&frame->x, &frame->y}) {
+      double sum = 0;
+      for (std::size_t c = 0; c < 3; ++c) sum += (*axis)[c] * vectors[3 * k + c];
+      result.push_back(sum);
+    }
+  }
+  return result;
+}
+
+py::tuple arrays(VertexField&& field) {
+  const auto n = static_cast<py::ssize_t>(field.status.size());
+  const Shape shape = field.width == 1 ? Shape{n} : Shape{n, field.width};
+  return py::make_tuple(owned<double>(std::move(field.values), shape),
+                        owned<Status, std::uint8_t>(std::move(field.status), {n}));
+}
+
+py::tuple extend(const SolverPtr& solver, const py::tuple& points, const Doubles& values, const py::object& report) {
+  const Places at = places(points);
+  const auto given = numbers(values);
+  return arrays(compute(report, values, [=](const Progress&) {
+    const Body& body = *solver->body;
+    return by_rows(body, extend_scalar(solver->solver, body.vertices_near(at), given));
+  }));
+}
+
+py::tuple transport(const SolverPtr& solver, const py::tuple& points, const Doubles& vectors,
+                    const py::object& report) {
+  const Places at = places(points);
+  const auto given = numbers(vectors);
+  const bool space = vectors.shape(1) == 3 && solver->body->graph().dimension() == 2;
+  return arrays(compute(report, vectors, [=](const Progress&) {
+    const Body& body = *solver->body;
+    const std::vector<Vertex> vertices = body.vertices_near(at);
+    const std::vector<double> local =
+        space ? in_frames(body.graph(), vertices, given) : std::vector<double>(given.begin(), given.end());
+    VertexField field = transport_vectors(solver->solver, vertices, local);
+    if (space) field = {3, in_space(body.graph(), field), field.status};
+    return by_rows(body, std::move(field));
+  }));
+}
+
+/// All sources in one; they are rows or positions.
+Source together(const Body& body, const Places& at) {
+  if (at.size() == 1) return body.sources(at)[0].source;
+  return Source::at_vertices(body.vertices_near(at));
+}
+
+py::tuple heat_distance(const SolverPtr& solver, const py::tuple& sources, const py::object& report) {
+  const Places at = places(sources);
+  auto found = compute(report, py::none(), [=](const Progress&) {
+    const Body& body = *solver->body;
+    DistanceField field = distance_and_gradient(solver->solver, together(body, at));
+    if (body.surface() != nullptr && body.graph().frame(0))
+      field.gradient = {3, in_space(body.graph(), field.gradient), field.gradient.status};
+    return std::pair(by_rows(body, std::move(field.distance)), by_rows(body, std::move(field.gradient)));
+  });
+  const py::tuple distance = arrays(std::move(found.first));
+  return py::make_tuple(distance[0], arrays(std::move(found.second))[0]);
+}
+
+/// Distance, and the number of the nearest source or -1.
+py::tuple front_distance(const BodyPtr& body, const py::tuple& sources, double radius, const py::object& report) {
+  const Places at = places(sources);
+  auto found = compute(report, py::none(), [=](const Progress&) {
+    UnfoldingFront front(body->graph());
+    for (const PlacedSource& source : body->sources(at)) front.add(source.source);
+    front.run(radius);
+    const auto n = static_cast<std::size_t>(body->rows());
+    std::pair result(std::vector<double>(n, nan), std::vector<Index>(n, -1));
+    for (std::size_t r = 0; r < n; ++r) {
+      const Row row(static_cast<Index>(r));
+      const auto vertex = body->surface() ? body->surface()->rows().vertex(row) : Vertex(row.index);
+      if (!vertex || front.nearest(*vertex) < 0 || front.distance(*vertex) > radius) continue;
+      result.first[r] = front.distance(*vertex), result.second[r] = front.nearest(*vertex);
+    }
+    return result;
+  });
+  return py::make_tuple(owned(std::move(found.first)), owned(std::move(found.second)));
+}
+
+/// tau per vertex, in squared graph units.
+py::array taus(const BodyPtr& body, double t_coef) {
+  return owned(diffusion_times(ComponentScales(body->graph()), t_coef));
+}
+
+py::tuple curvature(const BodyPtr& body, const py::object& report) {
+  PrincipalCurvatures k =
+      compute(report, py::none(), [body](const Progress&) { return curvature_directions(body->graph()); });
+  VertexField values =
+      by_rows(*body, {2, std::move(k.values), std::vector<Status>(static_cast<std::size_t>(body->graph().size()))});
+  VertexField field{2, std::move(k.directions), std::vector<Status>(static_cast<std::size_t>(body->graph().size()))};
+  VertexField directions = by_rows(*body, {3, in_space(body->graph(), field), field.status});
+  return py::make_tuple(arrays(std::move(values))[0], arrays(std::move(directions))[0]);
+}
+
+}  // namespace
+
+void add_fields(py::module_& module) {
+  module.def("extend", &extend);
+  module.def("transport", &transport);
+  module.def("heat_distance", &heat_distance);
+  module.def("front_distance", &front_distance);
+  module.def("diffusion_times", &taus);
+  module.def("curvature", &curvature);
+}
+
+}  // namespace ahm::python

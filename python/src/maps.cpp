@@ -1,0 +1,244 @@
+// Solvers, and log maps by rows.
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "ahm/error.hpp"
+#include "ahm/maps/quality.hpp"
+#include "compute.hpp"
+#include "errors.hpp"
+#include "map.hpp"
+#include "options.hpp"
+#include "parts.hpp"
+
+namespace ahm::python {
+
+Map::Map(BodyPtr on, PlacedSource from, LogMap made)
+    : body(std::move(on)), source(std::move(from)), map(std::move(made)) {
+  if (body->surface() == nullptr) return;
+  rows = body->surface()->on_rows(map);
+  uv.resize(2 * rows.u.size());
+  for (std::size_t r = 0; r < rows.u.size(); ++r) uv[2 * r] = rows.u[r], uv[2 * r + 1] = rows.v[r];
+  rows.u = {}, rows.v = {};
+}
+
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+SolverPtr make_solver(const BodyPtr& body, const py::dict& options, const py::object& report) {
+  HeatOptions o = heat_options(options);
+  return compute(report, py::none(), [body, o](const Progress& progress) mutable {
+    o.progress = progress;
+    return std::make_shared<Solver>(body, LogMapSolver(body->graph(), o));
+  });
+}
+
+MapOptions map_options(const py::dict& options) {
+  MapOptions o;
+  if (Variant variant{}; options.contains("variant")) {
+    read_variant(options, variant);
+    o.variant = variant;
+  }
+  read(options, "radius", o.radius);
+  if (unsigned threads = 0; read(options, "threads", threads)) o.threads = threads;
+  read(options, "frames", o.frames);
+  read(options, "spread", o.spread);
+  return o;
+}
+
+py::list listed(const std::vector<MapPtr>& maps) {
+  py::list result;
+  for (const MapPtr& map : maps) result.append(map);
+  return result;
+}
+
+/// One map for each source.
+py::list heat_maps(const SolverPtr& solver, const py::tuple& sources, const py::object& u_axis, const py::dict& options,
+                   const py::object& report) {
+  MapOptions o = map_options(options);
+  const Places from = places(sources);
+  const auto axis = optional_vector(u_axis);
+  return listed(compute(report, py::none(), [=](const Progress& progress) mutable {
+    o.progress = progress;
+    std::vector<PlacedSource> placed = solver->body->sources(from, axis);
+    std::vector<Source> plain;
+    for (const PlacedSource& p : placed) plain.push_back(p.source);
+    // One source takes another way than a block of one.
+    std::vector<LogMap> maps;
+    if (plain.size() == 1)
+      maps.push_back(solver->solver.solve(plain[0], o));
+    else
+      maps = solver->solver.solve(plain, o);
+    std::vector<MapPtr> result;
+    for (std::size_t k = 0; k < maps.size(); ++k)
+      result.push_back(std::make_shared<Map>(solver->body, std::move(placed[k]), std::move(maps[k])));
+    return result;
+  }));
+}
+
+py::list exact_maps(const BodyPtr& body, const py::tuple& sources, const py::object& u_axis, const py::dict& options,
+                    const py::object& report) {
+  ExactMapOptions o;
+  read(options, "radius", o.radius);
+  read(options, "frames", o.frames);
+  const Places from = places(sources);
+  const auto axis = optional_vector(u_axis);
+  return listed(compute(report, py::none(), [=](const Progress& progress) mutable {
+    o.progress = progress;
+    const ExactGeodesics& geodesics = body->geodesics();
+    std::vector<MapPtr> result;
+    for (std::size_t k = 0; k < from.size(); ++k)
+      naming(from.where(k), [&] {
+        const SurfacePoint point = body->point(from.places[k]);
+        result.push_back(
+            std::make_shared<Map>(body, body->surface()->source(point, axis), geodesics.log_map(point, axis, o)));
+      });
+    return result;
+  }));
+}
+
+/// Calls put(row, vertex) for the rows whose numbers are from a vertex.
+template <class Put>
+void for_rows(const Map& map, const Put& put) {
+  if (map.body->surface() == nullptr) {
+    for (Index v = 0; v < map.map.size(); ++v) put(static_cast<std::size_t>(v), static_cast<std::size_t>(v));
+    return;
+  }
+  for (std::size_t r = 0; r < map.rows.vertex.size(); ++r)
+    if (const auto& vertex = map.rows.vertex[r]) put(r, static_cast<std::size_t>(vertex->index));
+}
+
+py::array uv(const MapPtr& m) {
+  const py::ssize_t d = m->map.dimension();
+  if (m->body->surface() != nullptr) return viewed<double>(std::span<const double>(m->uv), {m->body->rows(), 2}, m);
+  return viewed<double>(m->map.coordinates(), {m->map.size(), d}, m);
+}
+
+/// Views by row: from the rows of a surface, else from the map.
+py::array column(const MapPtr& m, const std::vector<double> RowLogMap::*rows, std::span<const double> vertices) {
+  const std::span<const double> values =
+      m->body->surface() != nullptr ? std::span<const double>(m->rows.*rows) : vertices;
+  return viewed<double>(values, {length(values)}, m);
+}
+
+py::array status(const MapPtr& m) {
+  const auto values = m->body->surface() != nullptr ? std::span<const Status>(m->rows.status) : m->map.status();
+  return viewed<std::uint8_t>(values, {length(values)}, m);
+}
+
+py::array angle(const MapPtr& m) {
+  if (m->body->surface() != nullptr) return column(m, &RowLogMap::angle, {});
+  const auto d = static_cast<std::size_t>(m->map.dimension());
+  if (d < 2) throw InvalidArgument("angle: the map has one dimension only");
+  const auto phi = m->map.coordinates();
+  std::vector<double> result;
+  for (std::size_t i = 0; i < phi.size(); i += d) result.push_back(std::atan2(phi[i + 1], phi[i]));
+  return owned(std::move(result));
+}
+
+/// One number per vertex, by rows.
+std::vector<double> by_rows(const Map& map, std::span<const double> values, std::size_t width) {
+  std::vector<double> result(static_cast<std::size_t>(map.body->rows()) * width, nan);
+  for_rows(map, [&](std::size_t row, std::size_t vertex) {
+    for (std::size_t k = 0; k < width; ++k) result[row * width + k] = values[vertex * width + k];
+  });
+  return result;
+}
+
+py::array quality(const MapPtr& m) {
+  return owned(compute(py::none(), py::none(),
+                       [m](const Progress&) { return by_rows(*m, map_quality(m->body->graph(), m->map), 1); }));
+}
+
+void require_frames(const Map& map) {
+  if (map.map.frames().empty()) throw InvalidArgument("the map was made without frames; make it with frames=True");
+}
+
+py::array frames(const MapPtr& m) {
+  require_frames(*m);
+  const py::ssize_t d = m->map.dimension();
+  return owned<double>(by_rows(*m, m->map.frames(), static_cast<std::size_t>(d * d)), {m->body->rows(), d, d});
+}
+
+/// The source's axes carried to every row, as vectors of space: rows x 2 x 3.
+py::array axes(const MapPtr& m) {
+  require_frames(*m);
+  const auto frames = m->map.frames();
+  std::vector<Vec3> result(2 * static_cast<std::size_t>(m->surface().rows().row_count()), Vec3{nan, nan, nan});
+  for_rows(*m, [&](std::size_t row, std::size_t vertex) {
+    const auto at = m->body->graph().frame(static_cast<Index>(vertex));
+    if (!at) return;
+    const double* U = frames.data() + 4 * vertex;
+    for (std::size_t a = 0; a < 2; ++a)
+      for (std::size_t c = 0; c < 3; ++c) result[2 * row + a][c] = U[a] * at->x[c] + U[2 + a] * at->y[c];
+  });
+  return owned<Vec3, double>(std::move(result), {m->body->rows(), 2, 3});
+}
+
+py::array gradient(const MapPtr& m) {
+  require_frames(*m);
+  return owned(distance_gradients(m->surface(), m->map, m->rows));
+}
+
+py::array corners(const MapPtr& m) {
+  std::vector<Vec2> result = m->surface().on_corners(m->map);
+  const auto n = static_cast<py::ssize_t>(result.size());
+  return owned<Vec2, double>(std::move(result), {n, 2});
+}
+
+/// u, v and status at points.
+py::tuple sample(const MapPtr& m, const py::tuple& points) {
+  const Places at = places(points);
+  const auto found = compute(py::none(), py::none(), [m, at](const Progress&) {
+    std::vector<Sample> all;
+    for (std::size_t k = 0; k < at.size(); ++k)
+      all.push_back(naming(at.where(k), [&] { return m->surface().at(m->map, m->body->point(at.places[k])); }));
+    return all;
+  });
+  std::vector<Vec2> values;
+  std::vector<std::uint8_t> statuses;
+  for (const Sample& s : found) values.push_back({s.u, s.v}), statuses.push_back(static_cast<std::uint8_t>(s.status));
+  const auto n = static_cast<py::ssize_t>(values.size());
+  return py::make_tuple(owned<Vec2, double>(std::move(values), {n, 2}), owned(std::move(statuses)));
+}
+
+/// Where the source lies and its axes: position, (u, v, normal) or None, row or None.
+py::tuple source(const MapPtr& m) {
+  const PlacedSource& s = m->source;
+  py::object frame = py::none(), row = py::none();
+  if (s.frame) frame = owned(std::vector<Vec3>{s.frame->x, s.frame->y, s.frame->normal});
+  if (s.row) row = py::int_(s.row->index);
+  return py::make_tuple(owned(std::vector<double>{s.position[0], s.position[1], s.position[2]}), frame, row);
+}
+
+}  // namespace
+
+void add_maps(py::module_& module) {
+  py::class_<Solver, SolverPtr>(module, "Solver")
+      .def(py::init(&make_solver))
+      .def("maps", &heat_maps)
+      .def_property_readonly(
+          "strategy", [](const Solver& s) { return s.solver.strategy() == Strategy::march ? "march" : "global"; });
+  py::class_<Map, MapPtr>(module, "Map")
+      .def_property_readonly("dimension", [](const Map& m) { return m.map.dimension(); })
+      .def_property_readonly("method", [](const Map& m) { return std::string(to_string(m.map.method())); })
+      .def_property_readonly("has_frames", [](const Map& m) { return !m.map.frames().empty(); })
+      .def("source", &source)
+      .def("uv", &uv)
+      .def("distance", [](const MapPtr& m) { return column(m, &RowLogMap::distance, m->map.distances()); })
+      .def("spread", [](const MapPtr& m) { return column(m, &RowLogMap::spread, m->map.spread()); })
+      .def("error_estimate",
+           [](const MapPtr& m) { return column(m, &RowLogMap::error_estimate, m->map.error_estimate()); })
+      .def("angle", &angle)
+      .def("status", &status)
+      .def("quality", &quality)
+      .def("frames", &frames)
+      .def("axes", &axes)
+      .def("gradient", &gradient)
+      .def("corners", &corners)
+      .def("sample", &sample);
+  module.def("exact_maps", &exact_maps);
+}
+
+}  // namespace ahm::python

@@ -1,0 +1,23 @@
+// The extension module ahm._core: thin functions on arrays. What people use stands in python/ahm.
+#include <pybind11/pybind11.h>
+
+#include "compute.hpp"
+#include "errors.hpp"
+#include "parts.hpp"
+
+namespace py = pybind11;
+
+PYBIND11_MODULE(_core, module) {
+  module.doc() = "The C++ library under the package ahm. Not for direct use: its functions trust their arguments.";
+  module.def("in_main_interpreter", [] { return PyInterpreterState_Get() == PyInterpreterState_Main(); });
+  module.def("wait_for_background", &ahm::python::wait_for_background);
+  ahm::python::add_errors(module);
+  ahm::python::add_surfaces(module);
+  ahm::python::add_files(module);
+  ahm::python::add_maps(module);
+  ahm::python::add_local_maps(module);
+  ahm::python::add_fields(module);
+  ahm::python::add_geodesics(module);
+  ahm::python::add_applications(module);
+  ahm::python::add_textures(module);
+}

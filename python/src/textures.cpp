@@ -1,0 +1,178 @@
+// Inverse maps and what stands on them: decals and tool paths; atlases.
+#include <utility>
+
+#include "ahm/applications/atlas/texture_atlas.hpp"
+#include "ahm/applications/cells.hpp"
+#include "ahm/applications/coverage.hpp"
+#include "ahm/applications/decal.hpp"
+#include "ahm/error.hpp"
+#include "ahm/surface/surface_faces.hpp"
+#include "compute.hpp"
+#include "map.hpp"
+#include "options.hpp"
+#include "parts.hpp"
+
+namespace ahm::python {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+using InversePtr = std::shared_ptr<InverseMap>;
+
+InversePtr inverse(const MapPtr& map, const py::dict& options) {
+  InverseMapOptions o;
+  read(options, "max_stretch", o.max_stretch);
+  read(options, "min_quality", o.min_quality);
+  return compute(py::none(), py::none(), [=](const Progress&) {
+    if (map->map.frames().empty()) throw InvalidArgument("the map was made without frames; make it with frames=True");
+    return std::make_shared<InverseMap>(inverse_map(map->surface(), map->map, o));
+  });
+}
+
+py::array triangles(const InversePtr& map) {
+  return viewed<Index>(map->triangles(), {length(map->triangles()), 3}, map);
+}
+
+/// Position, normal, du, dv, rows of the triangle (-1: none) and weights, for each (u, v).
+py::tuple at(const InversePtr& map, const Doubles& uv) {
+  const auto n = static_cast<std::size_t>(uv.shape(0));
+  const Vec3 none{nan, nan, nan};
+  std::vector<Vec3> position(n, none), normal(n, none), du(n, none), dv(n, none), weights(n, none);
+  std::vector<Triangle> rows(n, Triangle{-1, -1, -1});
+  {
+    const py::gil_scoped_release release;
+    for (std::size_t k = 0; k < n; ++k)
+      if (const auto point = map->at(uv.data()[2 * k], uv.data()[2 * k + 1])) {
+        position[k] = point->position, normal[k] = point->normal, du[k] = point->du, dv[k] = point->dv;
+        rows[k] = point->vertices, weights[k] = point->weights;
+      }
+  }
+  return py::make_tuple(owned(std::move(position)), owned(std::move(normal)), owned(std::move(du)),
+                        owned(std::move(dv)), owned<Triangle, Index>(std::move(rows), {uv.shape(0), 3}),
+                        owned(std::move(weights)));
+}
+
+DecalOptions decal_options(const py::dict& options) {
+  DecalOptions o;
+  read(options, "width", o.width);
+  read(options, "height", o.height);
+  read(options, "angle", o.angle);
+  read(options, "mirrored", o.mirrored);
+  read(options, "radius", o.radius);
+  read(options, "lift", o.lift);
+  return o;
+}
+
+/// points, normals, face_begin, face_vertices, uv, number of hidden triangles.
+py::tuple decal(const InversePtr& map, const py::dict& options) {
+  const DecalOptions o = decal_options(options);
+  Decal made = compute(py::none(), py::none(), [=](const Progress&) { return make_decal(*map, o); });
+  const py::ssize_t n = length(made.points);
+  return py::make_tuple(owned(std::move(made.points)), owned(std::move(made.normals)),
+                        owned(std::move(made.face_begin)), owned(std::move(made.face_vertices)),
+                        owned<double>(std::move(made.image_coordinates), {n, 2}), made.hidden);
+}
+
+py::array image_coordinates(const InversePtr& map, const py::dict& options) {
+  const DecalOptions o = decal_options(options);
+  const auto n = static_cast<py::ssize_t>(map->positions().size());
+  return owned<double>(
+      compute(py::none(), py::none(), [=](const Progress&) { return image_coordinates_of_vertices(*map, o); }), {n, 2});
+}
+
+/// position, normal, heading, (u, v), piece, line, arclength, spacing; number of pieces, of planned points.
+py::tuple coverage(const InversePtr& map, const py::dict& options) {
+  CoverageOptions o;
+  read(options, "radius", o.radius);
+  read(options, "spacing", o.spacing);
+  read(options, "step", o.step);
+  read(options, "angle", o.angle);
+  read_choice(options, "pattern", o.pattern,
+              {{"raster", CoveragePattern::raster}, {"spiral", CoveragePattern::spiral}});
+  const CoveragePath path = compute(py::none(), py::none(), [=](const Progress&) { return coverage_path(*map, o); });
+  std::vector<Vec3> position, normal, heading;
+  std::vector<Vec2> uv;
+  std::vector<Index> piece, line;
+  std::vector<double> arclength, spacing;
+  for (const CoveragePoint& p : path.points) {
+    position.push_back(p.position), normal.push_back(p.normal), heading.push_back(p.heading);
+    uv.push_back(p.coordinates), piece.push_back(p.piece), line.push_back(p.line);
+    arclength.push_back(p.arclength), spacing.push_back(p.spacing);
+  }
+  const py::ssize_t n = length(uv);
+  return py::make_tuple(owned(std::move(position)), owned(std::move(normal)), owned(std::move(heading)),
+                        owned<Vec2, double>(std::move(uv), {n, 2}), owned(std::move(piece)), owned(std::move(line)),
+                        owned(std::move(arclength)), owned(std::move(spacing)), path.pieces, path.planned);
+}
+
+struct AtlasAndFaces {
+  Atlas atlas;
+  SurfaceFaces faces;
+  AtlasDistortion distortion;
+  TextureAtlas packed;
+};
+
+AtlasAndFaces make(const Solver& solver, std::vector<Vertex> sources, const RefineOptions* refine,
+                   const PackOptions& pack_options) {
+  const Body& body = *solver.body;
+  const Surface& surface = body.surface_for("an atlas");
+  AtlasAndFaces result;
+  result.faces = surface_faces(surface, solver.solver, sources);
+  const SurfaceFaces& faces = result.faces;
+  std::vector<Vec3> positions(static_cast<std::size_t>(body.graph().size()));
+  for (std::size_t c = 0; c < faces.corner_vertices.size(); ++c)
+    positions[faces.corner_vertices[c]] = faces.points[faces.corner_points[c]];
+  const FaceList list = faces.of_vertices();
+  result.atlas = refine != nullptr ? make_atlas(solver.solver, sources, list, positions, *refine)
+                                   : make_atlas(solver.solver, sources, list);
+  result.distortion = distortion(result.atlas, list, positions);
+  result.packed = pack(result.atlas, list, pack_options);
+  return result;
+}
+
+py::tuple atlas(const SolverPtr& solver, const py::object& sources, Index charts, const py::dict& options,
+                const py::object& report) {
+  std::optional<Places> at;
+  if (!sources.is_none()) at = places(sources.cast<py::tuple>());
+  RefineOptions refine;
+  const bool refined = read(options, "max_distortion", refine.max_distortion);
+  PackOptions pack_options;
+  read(options, "size", pack_options.size);
+  read(options, "margin", pack_options.margin);
+  AtlasAndFaces made = compute(report, py::none(), [=](const Progress&) {
+    const TangentGraph& graph = solver->body->graph();
+    return make(
+        *solver,
+        at ? solver->body->vertices_near(*at) : farthest_points(graph, Vertex(0), std::min(charts, graph.size())),
+        refined ? &refine : nullptr, pack_options);
+  });
+  using namespace py::literals;
+  std::vector<Index> rows;
+  for (const Chart& chart : made.atlas.charts) {
+    const auto row = solver->body->row(made.atlas.sources[chart.source]);
+    rows.push_back(row ? row->index : -1);
+  }
+  const auto corners = static_cast<py::ssize_t>(made.atlas.coordinates.size() / 2);
+  const DistortionSummary& d = made.distortion.all;
+  return py::make_tuple(owned(std::move(made.faces.points)), owned(std::move(made.faces.begin)),
+                        owned(std::move(made.faces.corner_points)), owned(std::move(made.atlas.chart_of_face)),
+                        owned<double>(std::move(made.atlas.coordinates), {corners, 2}),
+                        owned<double>(std::move(made.packed.coordinates), {corners, 2}), owned(std::move(rows)),
+                        py::dict("mean"_a = d.mean, "median"_a = d.median, "percentile_95"_a = d.percentile_95,
+                                 "largest"_a = d.largest, "flipped"_a = d.flipped, "flipped_area"_a = d.flipped_area));
+}
+
+}  // namespace
+
+void add_textures(py::module_& module) {
+  py::class_<InverseMap, InversePtr>(module, "Inverse")
+      .def(py::init(&inverse))
+      .def("triangles", &triangles)
+      .def("at", &at)
+      .def("decal", &decal)
+      .def("image_coordinates", &image_coordinates)
+      .def("coverage", &coverage);
+  module.def("atlas", &atlas);
+}
+
+}  // namespace ahm::python

@@ -1,0 +1,223 @@
+"""Fields, geodesics, local maps and applications against closed forms and each other."""
+
+import numpy as np
+import pytest
+
+import ahm
+
+
+def test_local_maps_are_the_maps_around_every_row(flat_surfaces):
+    for kind in ("triangles", "refined", "cloud", "grid"):
+        s = flat_surfaces[kind]
+        maps = ahm.local_maps(s, radius=0.6)
+        P = np.asarray(s.points)
+        near = np.linalg.norm(P[:, None] - P[None], axis=2) <= 0.6
+        assert maps.indptr[-1] == near.sum() and len(maps) == len(s)
+        source = np.repeat(np.arange(len(s)), np.diff(maps.indptr))
+        assert near[source, maps.indices].all()
+        np.testing.assert_allclose(maps.distance, np.linalg.norm(P[source] - P[maps.indices], axis=1), atol=1e-8)
+        np.testing.assert_allclose(maps.distance, np.linalg.norm(maps.log, axis=1), atol=1e-12)
+
+
+def test_local_maps_in_csr_and_padded_hold_the_same_numbers(sphere):
+    maps = ahm.local_maps(sphere, 0.4, sources=[5, 0, 77])
+    for values in ("distance", "weight", "u", "v", "transport"):
+        matrix = maps.csr(values)
+        assert matrix.shape == (3, 642) and matrix.has_canonical_format in (True, False)
+    u = maps.csr("u")
+    for k in (None, 4):
+        padded = maps.padded(k, np.float64)
+        assert padded.log.dtype == np.float64 and maps.padded(k).log.dtype == np.float32
+        for s in range(3):
+            rows = padded.indices[s][padded.mask[s]]
+            assert rows[0] == maps.sources[s]
+            np.testing.assert_array_equal(padded.log[s, padded.mask[s], 0], u[s].toarray()[0][rows])
+            assert (padded.log[s][~padded.mask[s]] == 0).all()
+            assert len(rows) == (np.diff(maps.indptr)[s] if k is None else 4)
+    most = ahm.local_maps(sphere, 0.4, k=4, sources=[5, 0, 77])
+    np.testing.assert_array_equal(most.padded(dtype=float).log, maps.padded(4, float).log)
+
+
+def test_local_maps_of_the_nearest_rows_need_no_radius(flat_surfaces):
+    for kind in ("triangles", "refined", "cloud"):
+        maps = ahm.local_maps(flat_surfaces[kind], k=7)
+        P = np.asarray(flat_surfaces[kind].points)
+        away = np.sort(np.linalg.norm(P[:, None] - P[None], axis=2), axis=1)[:, :7]
+        np.testing.assert_allclose(np.sort(maps.distance.reshape(-1, 7), axis=1), away, atol=1e-8)
+    assert np.diff(ahm.local_maps(flat_surfaces["refined"], k=1000, sources=[4]).indptr).tolist() == [143]
+
+
+def test_distances_by_three_methods_on_the_plane(flat_surfaces):
+    s = flat_surfaces["triangles"]
+    solver = ahm.LogMapSolver(s)
+    P = s.points
+    for method, tolerance in (("unfold", 1e-9), ("exact", 1e-9), ("heat", 1e-9)):
+        np.testing.assert_allclose(ahm.distance(solver, 20, method=method), np.linalg.norm(P - P[20], axis=1), atol=tolerance)
+    truth = np.minimum(np.linalg.norm(P - P[0], axis=1), np.linalg.norm(P - P[142], axis=1))
+    for method in ("unfold", "exact"):
+        found, nearest = ahm.distance_and_nearest(s, [0, 142], method=method)
+        np.testing.assert_allclose(found, truth, atol=1e-9)
+        clear = np.abs(np.linalg.norm(P - P[0], axis=1) - np.linalg.norm(P - P[142], axis=1)) > 1e-9
+        np.testing.assert_array_equal(nearest[clear], (np.linalg.norm(P - P[0], axis=1) > np.linalg.norm(P - P[142], axis=1))[clear])
+    assert np.nanmax(ahm.distance(s, 0, radius=1.0)) <= 1.0
+    np.testing.assert_allclose(ahm.distance(s, [[0.1, 0.2, 0]], targets=[[1.1, 0.2, 0], [0.1, 1.2, 0]], method="exact"), 1.0)
+
+
+def test_distance_and_gradient_point_away_on_the_plane(flat_surfaces):
+    for kind in ("triangles", "cloud"):
+        s = flat_surfaces[kind]
+        field = ahm.distance_and_gradient(s, 20)
+        np.testing.assert_allclose(field.gradient * field.distance[:, None], s.points - s.points[20], atol=1e-9)
+
+
+def test_transport_keeps_vectors_on_the_plane_and_lengths_on_the_sphere(flat_surfaces, sphere):
+    carried = ahm.transport(flat_surfaces["cloud"], 3, [1.0, 2.0, 0.0])
+    np.testing.assert_allclose(carried, np.tile([1.0, 2, 0], (143, 1)), atol=1e-9)
+    carried = ahm.transport(sphere, 0, [[0, 0, 3.0]])
+    length = np.linalg.norm([0, 0, 3.0] - sphere.normals[0] * sphere.normals[0, 2] * 3)
+    np.testing.assert_allclose(np.linalg.norm(carried, axis=1), length, rtol=1e-9)
+    np.testing.assert_allclose(np.einsum("ij,ij->i", carried, sphere.normals), 0, atol=1e-9)
+    # The same in frames.
+    local = sphere.frames[0, :2] @ [0, 0, 3.0]
+    frames = ahm.transport(sphere, 0, local)
+    np.testing.assert_allclose(np.einsum("ia,iax->ix", frames, sphere.frames[:, :2]), carried, atol=1e-12)
+
+
+def test_extension_is_the_quotient_of_solutions_by_the_operators(sphere):
+    from scipy.sparse.linalg import spsolve
+
+    ops = ahm.operators(sphere, t_coef=2.0)
+    solver = ahm.LogMapSolver(sphere, t_coef=2.0)
+    values, ones = np.zeros(642), np.zeros(642)
+    rows = [3, 300, 555]
+    values[rows], ones[rows] = [1.0, -2.0, 5.0], 1.0
+    A = ops.A.tocsc()
+    np.testing.assert_array_equal(ops.vertex_of_row, np.arange(642))
+    expected = spsolve(A, values) / spsolve(A, ones)
+    np.testing.assert_allclose(ahm.extend(solver, rows, [1.0, -2.0, 5.0]), expected, rtol=1e-6)
+
+
+def test_transported_directions_solve_the_connection_operator(sphere):
+    from scipy.sparse.linalg import spsolve
+
+    ops = ahm.operators(sphere)
+    assert abs(ops.B - ops.B.getH()).max() < 1e-12 and ops.connection_laplacian.dtype == complex
+    rhs = np.zeros(642, complex)
+    rhs[9] = 0.6 + 0.8j
+    y = spsolve(ops.B.tocsc(), rhs)
+    carried = ahm.transport(sphere, 9, [0.6, 0.8])
+    known = sphere.points @ sphere.points[9] > -0.99  # at the antipode all directions cancel
+    np.testing.assert_allclose((carried[:, 0] + 1j * carried[:, 1])[known], (y / np.abs(y))[known], atol=1e-6)
+
+
+def test_operators_of_reflecting_graphs_are_real_blocks(flat_surfaces):
+    for kind in ("cloud", "grid"):
+        ops = ahm.operators(flat_surfaces[kind])
+        n = len(ops.tau)
+        assert ops.B.shape in ((n, n), (2 * n, 2 * n)) and ops.A.shape == (n, n)
+        assert abs(ops.B - ops.B.getH()).max() < 1e-12
+
+
+def test_curvatures_of_the_torus():
+    mesh = ahm.TriangleMesh(*ahm.shapes.torus(120, 60))
+    k = ahm.curvature(mesh)
+    np.testing.assert_allclose(np.abs(k.values[:, 0]), 1 / 0.4, rtol=0.05)
+    assert np.abs(k.direction @ np.array([0, 0, 1.0]))[:60].max() > 0.99
+
+
+def test_paths_are_straight_lines_on_the_plane(flat_surfaces):
+    s = flat_surfaces["triangles"]
+    path = ahm.geodesic_path(s, [0.1, 0.2, 0], [2.7, 1.9, 0])
+    assert path.length == pytest.approx(np.hypot(2.6, 1.7), abs=1e-9)
+    line = np.array([2.6, 1.7]) / np.hypot(2.6, 1.7)
+    np.testing.assert_allclose((path.points[:, :2] - [0.1, 0.2]) @ [-line[1], line[0]], 0, atol=1e-9)
+    np.testing.assert_allclose(path.points[[0, -1]], [[0.1, 0.2, 0], [2.7, 1.9, 0]], atol=1e-12)
+    around = ahm.geodesic_path(s, [0, 12, 142], closed=True)
+    assert around.length == pytest.approx(3 + 2.5 + np.hypot(3, 2.5))
+    legs = ahm.geodesic_paths(s, [0], [12, 142, (3, [0.2, 0.3, 0.5])])
+    assert [leg.length for leg in legs[:2]] == pytest.approx([3, np.hypot(3, 2.5)])
+
+
+def test_traces_undo_paths_and_end_at_the_boundary(sphere, flat_surfaces):
+    m = ahm.log_map(sphere, 0, method="exact", u_axis=[0, 0, 1])
+    for row in (33, 401):
+        along = m.uv[row] @ m.source.axes[:2]
+        end = ahm.trace(sphere, 0, along)
+        np.testing.assert_allclose(end.points[-1], sphere.points[row], atol=1e-6)
+        assert end.complete
+    ray = ahm.trace(flat_surfaces["triangles"], 20, [1, 0, 0], 99)
+    assert not ray.complete and ray.points[-1][0] == pytest.approx(3)
+
+
+def test_surfaces_that_are_not_connected_have_no_path():
+    V, F = ahm.shapes.plane(3, 3)
+    two = ahm.TriangleMesh(np.concatenate([V, V + 9]), np.concatenate([F, F + 9]))
+    assert ahm.geodesic_path(two, 0, 9) is None
+    assert ahm.geodesic_paths(two, 0, [1, 9])[1] is None
+    assert np.isnan(ahm.distance(two, 0)[9:]).all() and np.isnan(ahm.distance(two, 0, method="exact")[9:]).all()
+
+
+def test_cells_and_spread_points(flat_surfaces):
+    s = flat_surfaces["triangles"]
+    seeds = ahm.farthest_points(s, 5, first=[0.0, 0.0, 0.0])
+    assert seeds.tolist()[:2] == [0, 142] and len(set(seeds.tolist())) == 5
+    cells = ahm.cells(s, seeds)
+    away = np.linalg.norm(s.points[:, None] - s.points[seeds][None], axis=2)
+    np.testing.assert_allclose(cells.distance, away.min(axis=1), atol=1e-9)
+    np.testing.assert_allclose(away[np.arange(143), cells.labels], away.min(axis=1), atol=1e-9)
+
+
+def test_means_and_medians_on_the_plane(flat_surfaces):
+    for kind in ("triangles", "cloud"):
+        s = flat_surfaces[kind]
+        rows = [0, 12, 130, 142, 40]
+        weights = [1.0, 2, 1, 1, 3]
+        mean = ahm.karcher_mean(s, rows, weights)
+        np.testing.assert_allclose(mean.position, np.average(s.points[rows], axis=0, weights=weights), atol=1e-8)
+        assert mean.converged
+        assert ahm.geometric_median(s, rows, [9.0, 1, 1, 1, 1]).row == 0
+
+
+def test_strokes_on_the_plane(flat_surfaces):
+    for kind in ("triangles", "cloud"):
+        s = flat_surfaces[kind]
+        found = ahm.stroke(s, [[0.5, 1.25, 0], [2.5, 1.25, 0]])
+        assert found.length == pytest.approx(2)
+        inside = (s.points[:, 0] > 0.6) & (s.points[:, 0] < 2.4)
+        expected = s.points[:, :2] - [0.5, 1.25]
+        side = np.sign(found.map.source.axes[2, 2])
+        np.testing.assert_allclose(found.map.uv[inside], (expected * [1, side])[inside], atol=1e-6)
+
+
+def test_decals_keep_their_area_and_paint_rows(flat_surfaces):
+    m = ahm.log_map(flat_surfaces["triangles"], 70, u_axis=[1, 0, 0])
+    piece = ahm.decal(m, 1.1, 0.7, angle=0.3)
+    area = sum(np.linalg.norm(np.cross(piece.points[f[k]] - piece.points[f[0]], piece.points[f[k + 1]] - piece.points[f[0]])) / 2
+               for f in piece.faces for k in range(1, len(f) - 1))
+    assert area == pytest.approx(1.1 * 0.7) and piece.uv.min() >= 0 and piece.uv.max() <= 1
+    places = ahm.decal_coordinates(m, 1.1, 0.7)
+    np.testing.assert_allclose(places[70], 0.5)
+
+
+def test_coverage_lines_are_equally_spaced_on_the_plane(flat_surfaces):
+    m = ahm.log_map(flat_surfaces["triangles"], 70, u_axis=[1, 0, 0])
+    for pattern in ("raster", "spiral"):
+        path = ahm.coverage(m, 1.0, 0.2, pattern=pattern)
+        assert np.linalg.norm(path.position - m.source.position, axis=1).max() <= 1.0 + 1e-9
+        np.testing.assert_allclose(np.einsum("ij,ij->i", path.normal, path.heading), 0, atol=1e-12)
+    path = ahm.coverage(m, 1.0, 0.2)
+    assert path.pieces == len(set(path.piece.tolist())) and np.nanmax(np.abs(path.spacing - 0.2)) < 1e-9
+
+
+def test_atlases_cover_every_face_and_stay_within_the_texture():
+    mesh = ahm.TriangleMesh(*ahm.shapes.torus(40, 20))
+    rough = ahm.atlas(mesh, [0, 400], size=512)
+    fine = ahm.atlas(mesh, charts=4, max_distortion=1.5, size=512)
+    assert fine.distortion["percentile_95"] < 1.5 and len(fine.sources) > len(rough.sources)
+    assert (fine.chart >= 0).all() and fine.uv.min() >= 0 and fine.uv.max() <= 1
+    assert len(fine.uv) == sum(len(f) for f in fine.faces)
+
+
+def test_clouds_have_atlases_too(sphere):
+    a = ahm.atlas(ahm.PointCloud(sphere.points, sphere.points), charts=8, size=256)
+    assert len(a.faces) > 1000 and len(a.points) == 642

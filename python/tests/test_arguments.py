@@ -1,0 +1,171 @@
+"""Wrong arguments raise errors that name argument, index and value; none crashes, hangs or passes."""
+
+import pickle
+
+import numpy as np
+import pytest
+
+import ahm
+
+NAN = float("nan")
+
+
+@pytest.mark.parametrize("call, text", [
+    (lambda s: ahm.log_map(s, 642), r"source: row 642 is out of range; there are 642 rows"),
+    (lambda s: ahm.log_map(s, -1), r"source: row -1 is out of range"),
+    (lambda s: ahm.log_map(s, [0.0, NAN, 0.0]), r"source: the position \[0.0, nan, 0.0\] is not finite"),
+    (lambda s: ahm.log_map(s, (1280, [1, 0, 0])), r"source: face 1280 is out of range; there are 1280 faces"),
+    (lambda s: ahm.log_map(s, (3, [1, 0])), r"source: face 3 has 3 corners"),
+    (lambda s: ahm.log_map(s, (3, [0.5, 0.5, 0.5])), r"source: .*sum"),
+    (lambda s: ahm.log_map(s, (3, [-0.5, 0.75, 0.75])), r"source: .*-0.5"),
+    (lambda s: ahm.LogMapSolver(s).log_maps([0, 5, 9999]), r"sources\[2\]: row 9999"),
+    (lambda s: ahm.LogMapSolver(s).log_maps(np.array([[0, 0, 1], [0, NAN, 1]])), r"sources\[1\]: the position"),
+    (lambda s: ahm.LogMapSolver(s).log_maps([]), r"sources: is empty"),
+    (lambda s: ahm.LogMapSolver(s).log_maps([2**40]), r"sources\[0\]: row 1099511627776"),
+    (lambda s: ahm.LogMapSolver(s, t_coef=-1), r"t_coef: -1.0 is not greater than 0"),
+    (lambda s: ahm.LogMapSolver(s, order=3), r"order: 3 is out of range; 1 to 2"),
+    (lambda s: ahm.LogMapSolver(s, variant="best"), r"variant: 'best' is none of 'adaptive', 'localized'"),
+    (lambda s: ahm.log_map(s, 0, radius=NAN), r"radius: nan is not finite"),
+    (lambda s: ahm.log_map(s, 0, radius=0), r"radius: 0.0 is not greater than 0"),
+    (lambda s: ahm.log_map(s, 0, u_axis=[0, NAN, 0]), r"u_axis\[1\]: nan is not finite"),
+    (lambda s: ahm.log_map(s, 0, u_axis=[0, 1]), r"u_axis: shape \(3,\) is needed, not \(2,\)"),
+    (lambda s: ahm.log_map(s, 0, u_axis=s.normals[0]), r"source: "),
+    (lambda s: ahm.log_map(s, 0, method="magic"), r"method: 'magic' is none of"),
+    (lambda s: ahm.local_maps(s, radius=0), r"radius"),
+    (lambda s: ahm.local_maps(s), r"radius: is missing"),
+    (lambda s: ahm.local_maps(s, 0.2, sources=[1, 2, -7]), r"sources\[2\]: row -7"),
+    (lambda s: ahm.distance(s, 0, targets=[0.5]), r"targets: rows are whole numbers"),
+    (lambda s: ahm.extend(s, [0, 1], [1.0]), r"values: shape \(2,\) is needed, not \(1,\)"),
+    (lambda s: ahm.extend(s, [0, 1], [1.0, NAN]), r"values\[1\]: nan is not finite"),
+    (lambda s: ahm.transport(s, [0], [[1, 2, 3, 4]]), r"vectors: 3 numbers of space or 2 in a frame"),
+    (lambda s: ahm.karcher_mean(s, [0, 700]), r"points\[1\]: row 700"),
+    (lambda s: ahm.karcher_mean(s, [0, (3, [0.2, 0.3, 0.5])]), r"points\[1\]: a point in a face cannot be used here"),
+    (lambda s: ahm.trace(s, 0, [1, 0, 0], -1), r"length"),
+    (lambda s: ahm.geodesic_path(s, 0, 99999), r"to: row 99999"),
+    (lambda s: ahm.coverage(ahm.log_map(s, 0), 1.0, 0.0), r"spacing: 0.0 is not greater than 0"),
+    (lambda s: s.closest_points([[0, 0, float("inf")]]), r"positions\[0, 2\]: inf is not finite"),
+    (lambda s: ahm.TriangleMesh(s.points, [[0, 1, 99999]]), r"99999"),
+    (lambda s: ahm.TriangleMesh(s.points, [[0, 1, -1]]), r"-1"),
+    (lambda s: ahm.TriangleMesh(s.points, [[0, 1, 2.5]]), r"faces\[0, 2\]: 2.5 is not a whole number"),
+    (lambda s: ahm.TriangleMesh(s.points, [[0, 1, 2**35]]), r"faces\[0, 2\]: 34359738368 is out of range"),
+    (lambda s: ahm.TriangleMesh(s.points[:, :2], s.faces), r"vertices: shape \(n, 3\) is needed, not \(642, 2\)"),
+    (lambda s: ahm.TriangleMesh(np.where(s.points == s.points[7], NAN, s.points), s.faces), r"7"),
+    (lambda s: ahm.TriangleMesh(np.empty((0, 3)), np.empty((0, 3), int)), r""),
+    (lambda s: ahm.PolygonMesh(s.points, [[0, 1]]), r"corner"),
+    (lambda s: ahm.PolygonMesh(s.points, [[0, 1, 2], [3, "a", 4]]), r"faces\[1\]"),
+    (lambda s: ahm.PointCloud([[0, 0, 0], [1, 0, 0]]), r"2 points; at least 3"),
+    (lambda s: ahm.PointCloud(s.points, s.points[:5]), r"normals: shape \(642, 3\)"),
+    (lambda s: ahm.Grid((1, 5)), r"2"),
+    (lambda s: ahm.Grid((4, 5), blocked=np.ones((4, 5), bool)), r"blocked: .*\(3, 4\)"),
+    (lambda s: ahm.Graph([0, 1, 2], [1, 5], [1, 1], [[1], [-1]], np.ones((2, 1, 1)), [1, 1]), r"5"),
+    (lambda s: ahm.log_map(ahm.Grid((4, 4)), 0, method="exact"), r"mesh"),
+    (lambda s: ahm.log_map(ahm.PointCloud(s.points), 0, method="exact"), r"faces"),
+])
+def test_errors_name_argument_index_and_value(sphere, call, text):
+    with pytest.raises((ValueError, TypeError), match=text):
+        call(sphere)
+
+
+def test_types_that_are_no_numbers_raise_type_errors(sphere):
+    for bad in ("3", b"3", True, None, 1.5, 3 + 0j, object(), {"a": 1}, {1, 2}, [None], ["a"], [[1, 2], [3]]):
+        with pytest.raises((TypeError, ValueError)):
+            ahm.log_map(sphere, bad)
+        with pytest.raises((TypeError, ValueError)):
+            ahm.LogMapSolver(sphere).log_maps([0, bad])
+    for bad in ("abc", None, 7, object(), [[1, 2], [3]], np.array([["a"] * 3]), np.ones((4, 3), complex)):
+        with pytest.raises((TypeError, ValueError)):
+            ahm.TriangleMesh(bad, [[0, 1, 2]])
+        with pytest.raises((TypeError, ValueError)):
+            ahm.TriangleMesh(np.eye(3), bad)
+    with pytest.raises(ValueError, match="masked"):
+        ahm.PointCloud(np.ma.masked_greater(sphere.points, 0.9))
+
+
+def test_exceptions_are_pythons_and_the_librarys(sphere, tmp_path):
+    with pytest.raises(ahm.InvalidGeometry) as caught:
+        ahm.TriangleMesh(sphere.points, [[0, 1, 1]])
+    assert isinstance(caught.value, ValueError) and isinstance(caught.value, ahm.Error)
+    with pytest.raises(ahm.IoError) as caught:
+        ahm.read(tmp_path / "nothing.ply")
+    assert isinstance(caught.value, OSError) and "nothing.ply" in str(caught.value)
+    unused = ahm.TriangleMesh(np.concatenate([sphere.points, [[9, 9, 9]]]), sphere.faces)
+    with pytest.raises(ahm.InvalidArgument, match="source: row 642 is used by no face") as caught:
+        ahm.log_map(unused, 642)
+    assert caught.value.fault == "row_unused" and issubclass(ahm.ResourceExhausted, MemoryError)
+    assert issubclass(ahm.NotPositiveDefinite, RuntimeError) and pickle.loads(pickle.dumps(caught.value)).args
+
+
+def random_thing(rng):
+    shape = tuple(rng.integers(0, 5, rng.integers(0, 4)))
+    values = rng.choice([0, 1, 2, 3, -1, 7, 1e9, 0.5, NAN, np.inf], shape)
+    kind = rng.integers(0, 8)
+    if kind < 4:
+        with np.errstate(invalid="ignore"):
+            return values.astype(rng.choice(["f4", "f8", "i4", "i8", "u1", "?", "c16", ">f8"]))
+    if kind == 4:
+        return values.tolist()
+    if kind == 5:
+        return (int(rng.integers(-2, 9)), values.tolist())
+    return rng.choice(np.array([None, "x", -1, 3, 10**30, NAN, True, b"", 2.5], object))
+
+
+def test_random_arguments_give_results_or_errors(sphere, plane):
+    """Anything may be refused by ValueError or TypeError; what is not is a result of the right shape."""
+    rng = np.random.default_rng(7)
+    solver, flat = ahm.LogMapSolver(sphere), ahm.TriangleMesh(*plane)
+    m = solver.log_map(0)
+    calls = [
+        lambda x, y: solver.log_map(x, u_axis=y), lambda x, y: solver.log_maps(x, radius=y),
+        lambda x, y: ahm.extend(solver, x, y), lambda x, y: ahm.transport(solver, x, y),
+        lambda x, y: ahm.distance(flat, x, targets=y), lambda x, y: ahm.distance(flat, x, targets=y, method="exact"),
+        lambda x, y: ahm.geodesic_path(flat, x, y), lambda x, y: ahm.geodesic_paths(flat, x, y),
+        lambda x, y: ahm.trace(flat, x, y), lambda x, y: ahm.cells(flat, x), lambda x, y: ahm.farthest_points(flat, y, x),
+        lambda x, y: ahm.karcher_mean(solver, x, y), lambda x, y: ahm.stroke(solver, x), lambda x, y: m.sample(x),
+        lambda x, y: m.inverse(x), lambda x, y: ahm.local_maps(flat, x, y), lambda x, y: ahm.local_maps(flat, 0.3, sources=x),
+        lambda x, y: ahm.TriangleMesh(x, y), lambda x, y: ahm.PolygonMesh(x, y), lambda x, y: ahm.PointCloud(x, y),
+        lambda x, y: ahm.Grid(np.clip(np.nan_to_num(np.real(x)), -2, 7) if np.ndim(x) else x, y), lambda x, y: ahm.decal(m, x, y),
+        lambda x, y: ahm.coverage(m, x, y), lambda x, y: ahm.surface(x), lambda x, y: flat.closest_points(x),
+        lambda x, y: ahm.Graph(x, y, x, y, x, y), lambda x, y: ahm.atlas(solver, x, charts=y, size=64),
+    ]
+    refused = 0
+    for round_ in range(40):
+        for call in calls:
+            try:
+                call(random_thing(rng), random_thing(rng))
+            except (ValueError, TypeError):
+                refused += 1
+    assert refused > 500
+
+
+def test_objects_of_other_packages_are_taken_by_what_they_have(plane, sphere):
+    V, F = plane
+
+    class Thing:
+        def __init__(self, **given):
+            self.__dict__.update(given)
+
+    padded = np.concatenate([np.full((len(F), 1), 3), F], axis=1).ravel()
+    quads = {"quad": np.array([[0, 1, 14, 13]])}
+    for thing in (Thing(points=V, regular_faces=F), Thing(points=V, faces=padded), Thing(vertices=V, faces=F),
+                  Thing(vertices=V, triangles=F), Thing(points=V, cells_dict={"triangle": F})):
+        assert repr(ahm.surface(thing)) == repr(ahm.TriangleMesh(V, F))
+    assert isinstance(ahm.surface(Thing(points=V, cells_dict=quads)), ahm.PolygonMesh)
+    assert isinstance(ahm.surface(Thing(points=V, cells_dict={**quads, "triangle": np.delete(F, [0, 120], axis=0)})), ahm.PolygonMesh)
+    assert isinstance(ahm.surface(Thing(points=sphere.points)), ahm.PointCloud)
+    assert isinstance(ahm.surface(Thing(points=sphere.points, normals=sphere.normals)), ahm.PointCloud)
+    tensor = Thing(numpy=lambda: sphere.points.astype(np.float32))
+    assert isinstance(ahm.surface(Thing(point=Thing(positions=tensor))), ahm.PointCloud)
+    assert ahm.surface(sphere) is sphere
+    with pytest.raises(TypeError, match="no points"):
+        ahm.surface(3)
+
+
+def test_files_are_read_as_what_they_hold(tmp_path):
+    obj = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
+    for faces, kind in (("f 1 2 3\nf 1 3 4\n", ahm.TriangleMesh), ("f 1 2 3 4\n", ahm.PolygonMesh), ("", ahm.PointCloud)):
+        path = tmp_path / "shape.obj"
+        path.write_text(obj + faces)
+        s = ahm.read(path)
+        assert type(s) is kind and s.points.tolist() == [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
+    with pytest.raises(ValueError, match="no faces"):
+        ahm.read(path, kind="triangles")

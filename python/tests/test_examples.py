@@ -1,0 +1,37 @@
+"""Every example runs, at small size; the page for Python is true."""
+
+import doctest
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+HOME = Path(__file__).parents[2]
+SMALL = {"01": ["--size", "2000"], "02": ["--level", "3"], "03": ["--level", "4"], "04": ["--level", "4"],
+         "05": ["--size", "40"]}
+EXAMPLES = sorted((HOME / "examples/python").glob("0*.py"))
+
+
+def test_there_are_five_examples():
+    assert [path.name[:2] for path in EXAMPLES] == sorted(SMALL)
+
+
+@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
+def test_examples_run(path):
+    result = subprocess.run([sys.executable, str(path), *SMALL[path.name[:2]]], capture_output=True, text=True, timeout=600)
+    assert result.returncode == 0, result.stderr
+
+
+def test_pictures_are_drawn_where_matplotlib_is_there(tmp_path):
+    pytest.importorskip("matplotlib")
+    picture = tmp_path / "map.png"
+    result = subprocess.run([sys.executable, str(EXAMPLES[0]), "--size", "1000", "--save", str(picture)],
+                            capture_output=True, text=True, timeout=600)
+    assert result.returncode == 0 and picture.read_bytes()[:4] == b"\x89PNG", result.stderr
+
+
+def test_the_page_for_python_is_true(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    failed, tried = doctest.testfile(str(HOME / "docs/python.md"), module_relative=False)
+    assert failed == 0 and tried > 20

@@ -1,0 +1,199 @@
+"""Threads, signals, forks, pickles, and the order in which things go away."""
+
+import gc
+import os
+import pickle
+import signal
+import subprocess
+import sys
+import textwrap
+import threading
+import time
+
+import numpy as np
+import pytest
+
+import ahm
+
+
+def run_python(code):
+    return subprocess.run([sys.executable, "-c", textwrap.dedent(code)], capture_output=True, text=True, timeout=300)
+
+
+@pytest.fixture(scope="module")
+def big():
+    """40,000 vertices: computations that take long enough to be interrupted."""
+    return ahm.TriangleMesh(*ahm.shapes.plane(200, 200))
+
+
+def test_surfaces_outlive_what_is_made_from_them(plane):
+    solver = ahm.LogMapSolver(ahm.TriangleMesh(*plane))
+    m = solver.log_map(0)
+    expected = m.uv.copy()
+    inverse = ahm.InverseMap(m)
+    del solver, m
+    gc.collect()
+    np.testing.assert_array_equal(inverse.map.uv, expected)
+    assert inverse([[0.1, 0.1]]).valid.all()
+
+
+def test_two_threads_on_one_solver_get_what_one_gets(sphere):
+    solver = ahm.LogMapSolver(sphere)
+    expected = [solver.log_map(r).uv.copy() for r in range(20)]
+    found = {}
+
+    def work(k):
+        found[k] = [solver.log_map(r).uv.copy() for r in range(20)]
+
+    threads = [threading.Thread(target=work, args=(k,)) for k in range(4)]
+    for t in threads:
+        t.start()
+    for t in threads:
+        t.join()
+    for results in found.values():
+        for a, b in zip(results, expected):
+            np.testing.assert_array_equal(a, b)
+    assert len(found) == 4
+
+
+def test_other_threads_run_during_a_computation(big):
+    ticks, done = [], threading.Event()
+
+    def tick():
+        while not done.is_set():
+            ticks.append(len(ticks))
+            time.sleep(0.001)
+
+    other = threading.Thread(target=tick)
+    other.start()
+    before = len(ticks)
+    ahm.LogMapSolver(big)
+    during = len(ticks) - before
+    done.set()
+    other.join()
+    assert during > 3
+
+
+INTERRUPTED = {
+    "factorization": lambda mesh, arrays: ahm.LogMapSolver(mesh),
+    "exact map": lambda mesh, arrays: ahm.log_map(mesh, 0, method="exact"),
+    "local maps": lambda mesh, arrays: ahm.local_maps(mesh, 20.0),
+    "spread points": lambda mesh, arrays: ahm.farthest_points(mesh, 8000),
+    "building": lambda mesh, arrays: ahm.TriangleMesh(*arrays),
+}
+
+
+@pytest.fixture
+def interruptible():
+    """Python's own handler, also where the tests run in the background of a shell, which ignores SIGINT."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+@pytest.mark.parametrize("name", INTERRUPTED)
+def test_ctrl_c_ends_a_computation_and_leaves_the_session_usable(big, name, interruptible):
+    """It is repeated until the signal comes; KeyboardInterrupt comes out of it."""
+    arrays = ahm.shapes.plane(500, 500)
+    timer = threading.Timer(0.05, lambda: os.kill(os.getpid(), signal.SIGINT))
+    with pytest.raises(KeyboardInterrupt):
+        timer.start()
+        while True:
+            INTERRUPTED[name](big, arrays)
+    timer.join()
+    assert ahm.log_map(ahm.shapes.plane(5, 5), 0).ok.all()
+
+
+def test_progress_is_reported_and_its_exceptions_end_the_computation(big, capsys):
+    seen = []
+    ahm.LogMapSolver(big, progress=lambda stage, fraction: seen.append((stage, fraction)))
+    assert seen and all(isinstance(stage, str) and 0 <= fraction <= 1 for stage, fraction in seen)
+
+    def refuse(stage, fraction):
+        raise LookupError(stage)
+
+    with pytest.raises(LookupError):
+        ahm.TriangleMesh(*ahm.shapes.plane(100, 100), progress=refuse)
+    ahm.TriangleMesh(*ahm.shapes.plane(30, 30), progress=True)
+    assert capsys.readouterr().err
+    with pytest.raises(TypeError, match="progress"):
+        ahm.LogMapSolver(big, progress=3)
+
+
+def test_a_forked_child_computes(sphere):
+    solver = ahm.LogMapSolver(sphere)
+    expected = solver.log_map(3).uv.copy()
+    child = os.fork()
+    if child == 0:
+        ok = False
+        try:
+            ok = np.array_equal(solver.log_map(3).uv, expected) and ahm.log_map(sphere, 3).ok.all()
+        finally:
+            os._exit(0 if ok else 1)
+    assert os.waitpid(child, 0)[1] == 0
+
+
+def test_the_interpreter_ends_while_work_goes_on_in_the_background():
+    result = run_python("""
+        import ahm, os, signal, threading
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+        mesh = ahm.TriangleMesh(*ahm.shapes.plane(400, 400))
+        threading.Timer(0.1, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+        try:
+            while True:
+                ahm.distance(mesh, 0)
+        except KeyboardInterrupt:
+            print("ended")
+    """)
+    assert result.returncode == 0 and result.stdout == "ended\n", result.stderr
+
+
+def test_subinterpreters_are_refused():
+    result = run_python("""
+        import ahm, _xxsubinterpreters as sub
+        made = sub.create()
+        try:
+            sub.run_string(made, "import ahm")
+        except sub.RunFailedError as error:
+            print("refused" if "main interpreter" in str(error) else error)
+    """)
+    assert result.stdout == "refused\n", result.stderr
+
+
+def test_pickles_make_the_same_thing_again(flat_surfaces, sphere):
+    for s in (*flat_surfaces.values(), sphere, ahm.Grid((4, 3), [1, 2], blocked=np.eye(3, 2, dtype=bool))):
+        again = pickle.loads(pickle.dumps(s))
+        assert repr(again) == repr(s)
+        np.testing.assert_array_equal(ahm.log_map(again, 0).uv, ahm.log_map(s, 0).uv)
+    solver = ahm.LogMapSolver(sphere, t_coef=2.0, order=2)
+    again = pickle.loads(pickle.dumps(solver))
+    assert again.options == solver.options
+    m = solver.log_map((7, [0.2, 0.3, 0.5]), u_axis=[1, 0, 0])
+    for thing in (m, solver.log_maps([3, 4])[1], ahm.log_map(sphere, 5, method="exact"), ahm.log_map(sphere, 5),
+                  ahm.stroke(sphere, [0, 12, 40]).map):
+        np.testing.assert_array_equal(pickle.loads(pickle.dumps(thing)).uv, thing.uv)
+    inverse = pickle.loads(pickle.dumps(ahm.InverseMap(m, max_stretch=3.0)))
+    np.testing.assert_array_equal(inverse([[0.1, 0.1]]).position, ahm.InverseMap(m, max_stretch=3.0)([[0.1, 0.1]]).position)
+
+
+def test_graphs_with_frames_and_reflections_pickle(flat_surfaces):
+    for kind in ("cloud", "triangles"):
+        g = flat_surfaces[kind].graph
+        graph = ahm.Graph(*g[:6], frames=g.frames, length_unit=g.length_unit)
+        np.testing.assert_array_equal(ahm.log_map(pickle.loads(pickle.dumps(graph)), 0).uv, ahm.log_map(graph, 0).uv)
+
+
+def test_processes_share_work_by_pickles(sphere):
+    from concurrent.futures import ProcessPoolExecutor
+    from multiprocessing import get_context
+
+    with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:
+        found = pool.submit(ahm.distance, sphere, 7).result(timeout=300)
+    np.testing.assert_array_equal(found, ahm.distance(sphere, 7))
+
+
+def test_reprs_tell_what_things_are(sphere):
+    assert repr(ahm.LogMapSolver(sphere)) == "<ahm.LogMapSolver: global, on <ahm.TriangleMesh: 642 vertices, 1280 faces>>"
+    assert repr(ahm.log_map(sphere, 4)) == "<ahm.LogMap: heat, 642 rows, 642 ok, from row 4>"
+    assert repr(ahm.Grid((3, 4, 5))) == "<ahm.Grid: 3 x 4 x 5 vertices>"
+    assert "LocalMaps: 642 sources" in repr(ahm.local_maps(sphere, 0.2))

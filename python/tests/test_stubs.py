@@ -1,0 +1,62 @@
+"""The stubs of the extension module say what is in it; everything public has types, a docstring and, of functions, an example."""
+
+import ast
+import inspect
+import re
+from pathlib import Path
+
+import ahm
+from ahm import _core
+
+
+def parameters(function):
+    return [a.arg for a in function.args.args]
+
+
+def test_the_stubs_list_what_the_module_has():
+    stubs = ast.parse(Path(_core.__file__).with_name("_core.pyi").read_text())
+    classes = {n.name: n for n in stubs.body if isinstance(n, ast.ClassDef)}
+    functions = {n.name: n for n in stubs.body if isinstance(n, ast.FunctionDef)}
+    public = {name for name in dir(_core) if not name.startswith("_")}
+    assert public == set(classes) | set(functions)
+    for name, node in classes.items():
+        real = getattr(_core, name)
+        assert [base.__name__ for base in real.__bases__ if base.__name__ != "pybind11_object"] == [b.id for b in node.bases]
+        if issubclass(real, BaseException):
+            continue
+        members = {n.name: n for n in node.body if isinstance(n, ast.FunctionDef)}
+        assert {m for m in vars(real) if not m.startswith("_")} == {m for m in members if m != "__init__"}
+        for member, stub in members.items():
+            is_property = isinstance(inspect.getattr_static(real, member), property)
+            assert is_property == any(getattr(d, "id", "") == "property" for d in stub.decorator_list)
+            if not is_property:
+                assert count(getattr(real, member)) == len(parameters(stub)), f"{name}.{member}"
+    for name, stub in functions.items():
+        assert count(getattr(_core, name)) == len(parameters(stub)), name
+
+
+def count(function):
+    """Number of parameters, of the signature that pybind11 puts first in the docstring."""
+    inside = function.__doc__.split("\n")[0].split("(", 1)[1].rsplit(")", 1)[0]
+    return len(re.findall(r"(?:^|, )(?:self|arg\d+)\b", inside))
+
+
+def test_everything_public_has_types_and_text():
+    for name in ahm.__all__:
+        thing = getattr(ahm, name)
+        assert thing.__doc__, name
+        if inspect.isfunction(thing):
+            signature = inspect.signature(thing)
+            assert signature.return_annotation is not inspect.Signature.empty, name
+            assert all(p.annotation is not inspect.Parameter.empty for p in signature.parameters.values()), name
+            assert ">>>" in thing.__doc__ or name in ("read", "distance_and_nearest"), f"{name} has no example"
+        if inspect.isclass(thing) and thing.__module__.startswith("ahm."):
+            for member, value in vars(thing).items():
+                if not member.startswith("_") and (inspect.isfunction(value) or isinstance(value, property)):
+                    assert value.__doc__, f"{name}.{member}"
+
+
+def test_all_lists_everything_that_is_public():
+    assert sorted(ahm.__all__) == sorted(set(ahm.__all__))
+    public = {name for name in vars(ahm) if not name.startswith("_") and not inspect.ismodule(getattr(ahm, name))}
+    assert public | {"shapes"} == set(ahm.__all__)
