@@ -30,7 +30,8 @@ namespace ahm::io {
 /// - PTS: the fourth of 4 or 7 columns is the property intensity, the last three of 7 are colours.
 /// - GLB, GLTF: the triangles and points of the scene, placed by their nodes; triangles are welded at equal positions.
 /// @throws IoError naming the file, the line or byte, the value, and what to do
-/// @throws ResourceExhausted when memory does not suffice, or a file would fill more than half of it when unpacked
+/// @throws ResourceExhausted when memory does not suffice, or a file would fill more than a third of what is free when
+/// unpacked
 Geometry read(const std::filesystem::path& path);
 
 }  // namespace ahm::io
