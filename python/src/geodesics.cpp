@@ -41,9 +41,9 @@ struct Distances {
 };
 
 Distances exact_distances(const Body& body, const Places& from, const std::optional<Places>& to, double radius,
-                          const std::stop_token& stop) {
+                          const Progress& progress) {
   const exact::PolyhedralSurface& flat = body.geodesics().triangles().surface;
-  exact::ExactOptions options{.radius = radius, .targets = {}, .only_targets = to.has_value(), .stop = stop};
+  exact::ExactOptions options{.radius = radius, .targets = {}, .only_targets = to.has_value(), .progress = progress};
   if (to) options.targets = mesh_points(body, *to);
   const exact::ExactMap map = exact::exact_map(flat, mesh_points(body, from), options);
   Distances result;
@@ -68,9 +68,8 @@ py::tuple exact_distance(const BodyPtr& body, const py::tuple& sources, const py
   const Places from = places(sources);
   std::optional<Places> to;
   if (!targets.is_none()) to = places(targets.cast<py::tuple>());
-  Distances found = compute(report, py::none(), [=](const Progress& progress) {
-    return exact_distances(*body, from, to, radius, progress.stop);
-  });
+  Distances found = compute(
+      report, py::none(), [=](const Progress& progress) { return exact_distances(*body, from, to, radius, progress); });
   return py::make_tuple(owned(std::move(found.distance)), owned(std::move(found.source)));
 }
 
@@ -115,7 +114,7 @@ py::list paths(const BodyPtr& body, const py::tuple& sources, const py::tuple& t
     const exact::PolyhedralSurface& flat = geodesics.triangles().surface;
     const exact::ExactMap map =
         exact::exact_map(flat, mesh_points(*body, from),
-                         {.targets = mesh_points(*body, to), .only_targets = true, .stop = progress.stop});
+                         {.targets = mesh_points(*body, to), .only_targets = true, .progress = progress});
     std::vector<Curve> all;
     for (std::size_t k = 0; k < to.size(); ++k) {
       const exact::GeodesicPath one = exact::path_to_target(flat, map, k);
