@@ -20,7 +20,7 @@ using polymesh::Discretization;
 using std::numbers::pi;
 using test::Polygons;
 
-constexpr int source_count = 8;
+constexpr int source_count = 6;
 
 /// Quads between parallels and meridians, triangles about the poles: with 2 `rings` sectors square at the equator.
 Polygons globe(Index rings, Index sectors) {
@@ -124,13 +124,13 @@ Table polygons(const Settings& settings) {
                "distance, hemisphere", "missing"});
   for (Index k : settings.toy ? std::vector<Index>{1} : std::vector<Index>{2, 4, 8}) {
     measure("quads", test::cube_sphere(10 * k), table);
-    measure("globe", globe(18 * k, 36 * k), table);
+    measure("globe", globe(35 * k / 2, 35 * k), table);
     if (k == 8) continue;
-    measure("globe, stretched along", globe(36 * k, 18 * k), table);
-    measure("globe, stretched across", globe(9 * k, 72 * k), table);
+    measure("globe, stretched along", globe(35 * k, 35 * k / 2), table);
+    measure("globe, stretched across", globe(9 * k, 70 * k), table);
     measure("L and squares", concave_sphere(10 * k), table);
     measure("hexagons", test::dual_sphere(static_cast<Index>(5.5 * k)), table);
-    measure("Voronoi cells", test::voronoi_sphere(310 * k * k), table);
+    measure("Voronoi cells", test::voronoi_sphere(1250 * k * k / 4), table);
   }
   const auto smallest = [&](const char* how, const char* number) {
     return table.where("discretization", how).smallest(number);

@@ -93,6 +93,18 @@ TEST_F(ReadPcd, ReadsWholeNumberFieldsAndOrganisedClouds) {
   EXPECT_EQ(g.points.size(), 4u);
 }
 
+TEST_F(ReadPcd, ReadsFilesWithoutPointsOrWithoutWidth) {
+  const std::string fields = "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\n";
+  std::string binary;
+  for (const float x : {1.f, 2.f, 3.f, 4.f, 5.f, 6.f}) binary += bytes_of(x);
+  for (const char* size : {"WIDTH 2\nHEIGHT 1\n", "WIDTH 1\nHEIGHT 2\n", "WIDTH 2\n", "POINTS 2\n"}) {
+    for (const Geometry& g : {read_bytes("s.pcd", fields + size + "DATA ascii\n1 2 3\n4 5 6\n"),
+                              read_bytes("s.pcd", fields + size + "DATA binary\n" + binary)})
+      EXPECT_EQ(g.points, (std::vector<Vec3>{{1, 2, 3}, {4, 5, 6}})) << size;
+  }
+  expect_refused("s.pcd", fields + "DATA ascii\n1 2 3\n", {"WIDTH"});
+}
+
 TEST_F(ReadPcd, RefusesCountsBeyondTheFile) {
   for (const char* data : {"ascii", "binary", "binary_compressed"}) {
     const std::string body = bytes_of<std::uint32_t>(10) + bytes_of<std::uint32_t>(0xfffffff0) + std::string(20, '\x1');

@@ -71,7 +71,7 @@ TEST_F(ReadLas, ReadsEveryVersionAndPointFormat) {
       EXPECT_EQ(g.properties[1].name, "classification");
       EXPECT_EQ(g.properties[1].values, (std::vector<double>{2, 6}));
       EXPECT_EQ(g.colors.size(), las.has_color() ? 2u : 0u);
-      if (las.has_color()) EXPECT_EQ(g.colors[1], (std::array<std::uint8_t, 3>{10, 20, 255}));
+      for (const auto& color : g.colors) EXPECT_EQ(color, (std::array<std::uint8_t, 3>{10, 20, 255}));
       EXPECT_TRUE(g.face_begin.empty());
       EXPECT_TRUE(g.warnings.empty());
     }
@@ -98,7 +98,7 @@ TEST_F(ReadLas, CountsPointsOf14In64Bits) {
 }
 
 TEST_F(ReadLas, RefusesEveryTruncation) {
-  for (const Las las : {Las{.format = 3}, Las{.minor = 4, .format = 7, .extra = 2}}) {
+  for (const Las& las : {Las{.format = 3}, Las{.minor = 4, .format = 7, .extra = 2}}) {
     const std::string whole = las.file();
     for (std::size_t size = 1; size < whole.size(); ++size)
       EXPECT_THROW(read_bytes("t.las", whole.substr(0, size)), IoError) << size;

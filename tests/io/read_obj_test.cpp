@@ -67,10 +67,6 @@ TEST_F(ReadObj, KeepsNormalsOnlyWhenNumberedLikeTheVertices) {
   EXPECT_EQ(g.warnings.size(), 1u);
 }
 
-TEST_F(ReadObj, WarnsOfNumbersBehindTheCoordinates) {
-  EXPECT_EQ(read_bytes("c.obj", "v 0 0 0 1 0 0\n").warnings.size(), 1u);
-}
-
 TEST_F(ReadObj, SkipsStatementsItDoesNotKnowAndNamesThem) {
   const Geometry g = read_bytes("s.obj", points + "zebra 1\nV 9 9 9\nzebra 2\nf 1 2 3\nadobe_x y\n");
   EXPECT_EQ(g.points.size(), 4u);

@@ -100,7 +100,7 @@ std::string orientation_text(const TopologyReport& t) {
 std::string non_manifold_text(const TopologyReport& t) {
   if (t.non_manifold_edges == 0 && t.non_manifold_vertices == 0) return "nowhere";
   return fmt::format(
-      "{} edges of more than two faces, {} vertices where fans of faces meet: --non-manifold split cuts there",
+      "{} edges of more than two faces; --non-manifold split cuts there and where fans of faces meet: {} vertices more",
       t.non_manifold_edges, t.non_manifold_vertices);
 }
 

@@ -28,6 +28,7 @@ constexpr Sentence sentences[] = {
     {"normals_not_by_vertex", "normals are ignored: they are not numbered like the vertices"},
     {"vertex_extras", "numbers behind x, y, z of a vertex are ignored"},
     {"columns_as_colors", "columns {0:.0f} to {1:.0f} are taken as colours: whole numbers from 0 to 255"},
+    {"lines_ignored", "{0:.0f} sets of lines are ignored"},
     {"columns_ignored", "columns 4 to {0:.0f} are ignored"},
     // meshes
     {"unreferenced", "{0:.0f} vertices are used by no face and were left out"},
@@ -73,6 +74,8 @@ struct Advice {
 constexpr Advice advices[] = {
     {"non_manifold_edges", "repair them, or cut the mesh there with --non-manifold split"},
     {"non_manifold_vertices", "repair them, or split them with --non-manifold split"},
+    {"diffusion_time_range", "give a --t-coef near 1"},
+    {"heat_lost", "give a smaller --t-coef"},
     {"twisted_faces", "use --discretization polygons"},
     {"collinear_faces", "remove them, or use --method heat"},
     {"no_flat_triangles", "use --method heat"},

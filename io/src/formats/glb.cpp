@@ -6,6 +6,7 @@
 
 #include "ahm/util/text.hpp"
 #include "formats/format.hpp"
+#include "formats/gltf.hpp"
 #include "little_endian.hpp"
 #include "write/parts.hpp"
 
@@ -176,6 +177,6 @@ void write(const std::filesystem::path& path, std::span<const MeshPart> parts) {
 
 }  // namespace
 
-Format glb_format() { return {.extensions = {".glb"}, .write_textured = write}; }
+Format glb_format() { return {.extensions = {".glb"}, .read = read_gltf, .write_textured = write}; }
 
 }  // namespace ahm::io

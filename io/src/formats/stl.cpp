@@ -2,12 +2,12 @@
 // Read by our own code like the other mesh formats: Assimp, the library in Debian 12 that reads STL, rounds coordinates
 // to float.
 #include <algorithm>
-#include <cmath>
-#include <numeric>
+#include <utility>
 
 #include "formats/format.hpp"
 #include "little_endian.hpp"
 #include "read/text.hpp"
+#include "read/weld.hpp"
 
 namespace ahm::io {
 namespace {
@@ -80,30 +80,6 @@ std::vector<Vec3> read_text(const Input& in) {
   return corners;
 }
 
-/// Gives equal corners one number.
-void weld(const std::vector<Vec3>& corners, Geometry& g) {
-  std::vector<std::size_t> order(corners.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  // NaN equals nothing, itself included, so such corners stay apart; they are put last to keep the order strict.
-  auto is_number = [&](std::size_t c) {
-    return std::ranges::none_of(corners[c], [](double x) { return std::isnan(x); });
-  };
-  const auto numbers = std::stable_partition(order.begin(), order.end(), is_number);
-  std::stable_sort(order.begin(), numbers, [&](std::size_t a, std::size_t b) { return corners[a] < corners[b]; });
-  std::vector<std::size_t> first(corners.size());
-  for (std::size_t k = 0; k < order.size(); ++k)
-    first[order[k]] = k > 0 && corners[order[k]] == corners[order[k - 1]] ? first[order[k - 1]] : order[k];
-  std::vector<Index> number(corners.size());
-  for (std::size_t c = 0; c < corners.size(); ++c) {
-    if (first[c] == c) {
-      number[c] = static_cast<Index>(g.points.size());
-      g.points.push_back(corners[c]);
-    }
-    g.face_vertices.push_back(number[first[c]]);
-  }
-  for (std::size_t f = 0; 3 * f <= corners.size(); ++f) g.face_begin.push_back(static_cast<Offset>(3 * f));
-}
-
 Geometry read(const Input& in) {
   Geometry g;
   const bool binary = is_binary(in);
@@ -111,7 +87,10 @@ Geometry read(const Input& in) {
   g.format = binary ? "STL binary" : "STL text";
   check_vertex_count(in, corners.size());
   if (corners.empty()) fail(in, "it holds no triangles");
-  weld(corners, g);
+  Welded welded = weld(corners);
+  for (const Index corner : welded.first) g.points.push_back(corners[corner]);
+  g.face_vertices = std::move(welded.number);
+  for (std::size_t f = 0; 3 * f <= corners.size(); ++f) g.face_begin.push_back(static_cast<Offset>(3 * f));
   return g;
 }
 

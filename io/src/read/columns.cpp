@@ -105,7 +105,8 @@ class ColumnReader {
 
   /// A line of one whole number: so many points follow.
   bool begins_block() {
-    if (line_.find_first_of(" \t,;") != std::string_view::npos || (left_ ? *left_ > 0 : columns_ > 0)) return false;
+    if (line_.find_first_of(" \t,;") != std::string_view::npos || (left_ ? *left_ > 0 : !g_.points.empty()))
+      return false;
     const std::optional<std::int64_t> count = to_whole(line_);
     if (!count || *count < 0) return false;
     left_ = *count;

@@ -42,7 +42,7 @@ class Inflater {
     constexpr std::size_t least = 1 << 16;
     if (result.size() >= most_)
       throw ResourceExhausted("cannot read " + quoted_path(in_.path) + ": unpacked it is larger than " +
-                              std::to_string(most_ >> 20) + " MB, half of the memory that is free");
+                              std::to_string(most_ >> 20) + " MB, a third of the memory that is free");
     const std::uint64_t wanted = result.empty() ? 4 * in_.bytes.size() : 2 * result.size();
     result.resize(std::min<std::uint64_t>(most_, std::max<std::uint64_t>(wanted, least)));
   }
@@ -86,7 +86,7 @@ class Inflater {
 bool is_gzip(const Input& in) { return in.bytes.starts_with("\x1f\x8b"); }
 
 void gunzip(Input& in) {
-  in.bytes = Inflater(in, free_memory() / 2).all();
+  in.bytes = Inflater(in, free_memory() / 3).all();
   if (in.bytes.empty()) fail(in, "the file is empty (0 bytes) when unpacked");
 }
 

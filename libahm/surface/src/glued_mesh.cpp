@@ -16,13 +16,14 @@ struct Fans {
   std::vector<Half> corner;    ///< per fan: its lowest half-edge
   std::vector<Index> first;    ///< per input vertex: its first fan, -1: none
   std::vector<Index> later;    ///< the others
-  ItemList pinched;            ///< vertices of the others
+  ItemList pinched;            ///< vertices that have others, each once
 };
 
 Fans find_fans(const HalfEdges& edges, Index vertices, std::span<const std::uint8_t> dropped) {
   Fans fans;
   fans.of_half.assign(edges.tail.size(), -1);
   fans.first.assign(vertices, -1);
+  std::vector<bool> listed(vertices);
   for (Half h = 0; h < edges.size(); ++h) {
     if (fans.of_half[h] >= 0 || (!dropped.empty() && dropped[h / 3])) continue;
     const auto number = static_cast<Index>(fans.corner.size());
@@ -30,7 +31,8 @@ Fans find_fans(const HalfEdges& edges, Index vertices, std::span<const std::uint
     if (Index& first = fans.first[edges.tail[h]]; first < 0) {
       first = number;
     } else {
-      fans.pinched.add(std::to_string(edges.tail[h]));
+      if (!listed[edges.tail[h]]) fans.pinched.add(std::to_string(edges.tail[h]));
+      listed[edges.tail[h]] = true;
       fans.later.push_back(number);
     }
     for (Corner c = edges.rightmost({h, true}); c.half >= 0 && fans.of_half[c.half] < 0; c = edges.turn_left(c))
@@ -92,7 +94,7 @@ void GluedMesh::build_half_edges(const FaceList& faces, NonManifold non_manifold
 /// others.
 void GluedMesh::number_vertices(NonManifold non_manifold) {
   Fans fans = find_fans(half_edges(), report_.vertices, dropped_);
-  report_.non_manifold_vertices = static_cast<Index>(fans.pinched.count());
+  report_.non_manifold_vertices = static_cast<Index>(fans.later.size());
   if (fans.pinched.count() > 0 && non_manifold == NonManifold::error)
     throw InvalidGeometry("non_manifold_vertices",
                           std::to_string(fans.pinched.count()) +

@@ -168,8 +168,9 @@ std::vector<Vec3> distance_gradients(const Surface& surface, const LogMap& map, 
     const std::optional<Frame> frame = graph.frame(rows.vertex[r]->index);
     if (!frame) continue;
     const auto U = map.frames().subspan(4 * static_cast<std::size_t>(rows.vertex[r]->index), 4);
-    const double away = std::hypot(rows.u[r], rows.v[r]), scale = away > at_source ? 1 / away : 0;
-    const double a = scale * (U[0] * rows.u[r] + U[1] * rows.v[r]), b = scale * (U[2] * rows.u[r] + U[3] * rows.v[r]);
+    const double away = std::hypot(rows.u[r], rows.v[r]);
+    const double u = away > at_source ? rows.u[r] / away : 0, v = away > at_source ? rows.v[r] / away : 0;
+    const double a = U[0] * u + U[1] * v, b = U[2] * u + U[3] * v;
     result[r] = a * frame->x + b * frame->y;
   }
   return result;

@@ -23,11 +23,11 @@ Polygons beside(const Polygons& a, const Polygons& b, double scale) {
 }
 
 TEST(Components, HaveTheSameNumbersAloneAndBesideOthers) {
-  const Polygons quads = cube_sphere(9), cells = voronoi_sphere(150), triangles = quad_grid(12, true);
+  const Polygons quads = cube_sphere(7), cells = voronoi_sphere(100), triangles = quad_grid(12, true);
   for (Discretization how : {Discretization::polygons, Discretization::refined})
     for (int order : {1, 2})
       for (const auto& [a, b] : {std::pair{quads, cells}, {cells, quads}, {cells, triangles}, {triangles, cells}})
-        for (double scale : {0.03, 1.0, 30.0}) {
+        for (double scale : {0.03, 30.0}) {
           const Polygons both = beside(a, b, scale);
           auto mapped = [&](const Polygons& mesh) {
             const auto surface =

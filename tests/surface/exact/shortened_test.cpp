@@ -249,6 +249,30 @@ TEST(ShortenedLoop, GoesRoundATubeStraight) {
   EXPECT_NEAR(loop.length * solid.mesh.length_unit(), 2 * n * std::sin(pi / n), 1e-12);
 }
 
+TEST(ShortenedLoop, FindsTheClosedGeodesicsOfACube) {
+  // Simple ones are 4, 3 sqrt 2 and 2 sqrt 5 long; none runs through a corner, whose angles are less than 2 pi.
+  Mesh mesh;
+  for (int k = 0; k < 8; ++k) mesh.positions.push_back({1.0 * (k & 1), 1.0 * (k >> 1 & 1), 1.0 * (k >> 2 & 1)});
+  mesh.faces = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
+                {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+  const Polyhedron solid(mesh);
+  std::mt19937_64 random(11);
+  int closed = 0;
+  for (int k = 0; k < 60; ++k) {
+    std::vector<MeshPoint> stops;
+    for (int j = 0; j < 5; ++j) stops.push_back(random_point(solid.surface, random));
+    const GeodesicPath loop = exact::shortened_loop(solid.surface, around(solid.surface, stops));
+    EXPECT_NEAR(solid.length(loop.points), loop.length, 1e-12);
+    if (loop.length == 0) continue;
+    ++closed;
+    const double length = loop.length * solid.mesh.length_unit();
+    double off = HUGE_VAL;
+    for (double known : {4.0, 3 * std::sqrt(2.0), 2 * std::sqrt(5.0)}) off = std::min(off, std::abs(length - known));
+    EXPECT_LT(off, 1e-9) << length;
+  }
+  EXPECT_GT(closed, 5);
+}
+
 TEST(ShortenedLoop, ShrinksToAPointWhereItGoesAroundNothing) {
   for (const Mesh& mesh : {flat_square(12), icosphere(6)}) {
     const Polyhedron solid(mesh);

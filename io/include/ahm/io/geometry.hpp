@@ -38,7 +38,7 @@ struct Geometry {
   /// element_ignored (its name), header_lines_ignored (their number), statements_ignored (their number; the first of
   /// their keywords), colors_unknown (neither fractions of 1 nor whole levels), colors_not_packed, normals_not_by_vertex,
   /// vertex_extras (numbers behind x, y, z), columns_as_colors (the numbers of the first and the last), columns_ignored
-  /// (the number of the last; from 4).
+  /// (the number of the last; from 4), lines_ignored (the number of sets of lines).
   std::vector<Warning> warnings;
 
   std::size_t face_count() const noexcept { return faces().size(); }

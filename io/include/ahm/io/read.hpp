@@ -14,7 +14,7 @@
 
 namespace ahm::io {
 
-/// Reads .ply, .pcd, .las, .xyz, .txt, .asc, .csv, .pts, .off, .obj or .stl; the extension (in any case) chooses the
+/// Reads .ply, .pcd, .las, .xyz, .txt, .asc, .csv, .pts, .off, .obj, .stl, .glb or .gltf; the extension (in any case) chooses the
 /// format. Files compressed with gzip are unpacked first; theirs is the extension before .gz.
 ///
 /// Text numbers are read the same way in every locale and keep double precision; vertices and polygons keep the file's
@@ -28,8 +28,10 @@ namespace ahm::io {
 /// - XYZ, TXT, ASC, PTS, CSV: columns separated by blanks, commas, semicolons (CSV: or tabs), named x, y, z (nx, ny, nz;
 ///   r, g, b) or 3, 6 with normals (or colours, when all are whole numbers up to 255) or 9 with both.
 /// - PTS: the fourth of 4 or 7 columns is the property intensity, the last three of 7 are colours.
+/// - GLB, GLTF: the triangles and points of the scene, placed by their nodes; triangles are welded at equal positions.
 /// @throws IoError naming the file, the line or byte, the value, and what to do
-/// @throws ResourceExhausted when memory does not suffice, or a file would fill more than half of it when unpacked
+/// @throws ResourceExhausted when memory does not suffice, or a file would fill more than a third of what is free when
+/// unpacked
 Geometry read(const std::filesystem::path& path);
 
 }  // namespace ahm::io

@@ -58,9 +58,11 @@ double diffusion_time(double t_coef, double h) {
   if (!(t_coef > 0) || !std::isfinite(t_coef))
     throw InvalidArgument("t_coef is " + detail::number(t_coef) + "; it must be finite and > 0 (default 1)");
   if (!(tau >= 1e-290) || !(tau <= 1e290))
-    throw InvalidArgument("tau = t_coef h^2 leaves the range of double precision (t_coef " + detail::number(t_coef) +
-                          ", mean edge length " + detail::number(h) +
-                          "): give the graph a length_unit near its edge length");
+    throw InvalidArgument("diffusion_time_range",
+                          "the diffusion time " + detail::number(t_coef) +
+                              " times the square of the mean edge length " + detail::number(h) +
+                              " leaves the range of double precision",
+                          "give a t_coef near 1 and the graph a length_unit near its edge length");
   return tau;
 }
 

@@ -45,8 +45,10 @@ void check_conservation(const HeatSystem& system, const TangentGraph& graph) {
   double worst = 0;
   for (double value : x) worst = std::isfinite(value) ? std::max(worst, std::abs(value - 1)) : INFINITY;
   if (!(worst <= most_loss))
-    throw NotPositiveDefinite("operator A = M + tau L loses heat (" + detail::number(worst) +
-                              " relative): t_coef is too large for this graph, or its weights differ too much");
+    throw NotPositiveDefinite("heat_lost",
+                              "the diffusion loses heat (" + detail::number(worst) +
+                                  " of it): its time is too long, or the sizes of faces and edges differ too much",
+                              "give a smaller t_coef");
 }
 
 /// A and B as two objects of one kind that solve: CholeskyFactor or ConjugateGradient.

@@ -1,0 +1,48 @@
+/// \file
+/// What a glTF file is made of: its JSON, its buffers, and arrays of numbers in these.
+#pragma once
+
+#include <array>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "read/input.hpp"
+
+namespace ahm::io {
+
+/// An array of vectors of `width` numbers.
+struct GltfArray {
+  std::uint64_t count = 0;
+  std::size_t width = 0;
+  std::vector<double> values;  ///< count x width
+};
+
+/// A .gltf or .glb with its buffers: in the file, in its JSON, or in files beside it.
+class GltfFile {
+ public:
+  using Json = nlohmann::json;
+
+  /// @throws IoError
+  explicit GltfFile(const Input& in);
+
+  const Json& root() const noexcept { return root_; }
+  /// Number `index` of a list of the root. @throws IoError
+  const Json& item(const char* list, std::uint64_t index) const;
+  /// A whole number >= 0, `none` when there is no such member. @throws IoError when it is something else
+  std::uint64_t whole(const Json& object, const char* member, std::uint64_t none) const;
+  /// `count` numbers; empty when there is no such member. @throws IoError when it is something else
+  std::vector<double> numbers(const Json& object, const char* member, std::size_t count) const;
+  /// The numbers of an accessor, normalized ones in [0, 1] or [-1, 1]. @throws IoError
+  GltfArray array(std::uint64_t accessor);
+
+ private:
+  const std::string& buffer(std::uint64_t index);
+
+  const Input& in_;
+  Json root_;
+  std::string chunk_;                 ///< the binary chunk of a .glb
+  std::vector<std::string> buffers_;  ///< empty: not loaded yet
+};
+
+}  // namespace ahm::io
