@@ -118,6 +118,17 @@ TEST(LocalMapsCommand, FindsTheNearestRowsBetweenVirtualVertices) {
   for (std::size_t s = 0; s < 64; ++s) ASSERT_EQ(indptr[s + 1] - indptr[s], 13);
 }
 
+TEST(LocalMapsCommand, FindsAllRowsWhereMoreAreAskedFor) {
+  Folder folder;
+  const std::string cube =
+      "OFF\n8 6 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n"
+      "4 3 2 1 0\n4 4 5 6 7\n4 0 1 5 4\n4 1 2 6 5\n4 2 3 7 6\n4 3 0 4 7\n";
+  const std::string out = folder / "maps.npz";
+  const Outcome outcome = run({"local-maps", folder.write("cube.off", cube), "--k", "100", "-o", out});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(array<std::int64_t>(out, "indptr"), (std::vector<std::int64_t>{0, 8, 16, 24, 32, 40, 48, 56, 64}));
+}
+
 TEST(LocalMapsCommand, RefusesNonsense) {
   Folder folder;
   const auto input = folder.write("plane.xyz", xyz(plane(10)));

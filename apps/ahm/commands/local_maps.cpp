@@ -138,7 +138,7 @@ LocalMaps maps_on_rows(const LocalMapsOptions& options, const Input& input, cons
         break;
       else if (s + 1 == vertices.size())
         enough = true;
-    if (enough) return maps;
+    if (enough || map_options.nearest == rows.vertex_count()) return maps;
     map_options.nearest = std::min(2 * map_options.nearest, rows.vertex_count());
   }
 }
