@@ -18,6 +18,8 @@ constexpr Index none = -1;
 constexpr double least_gain = 1e-12;
 /// An entry is bettered no more often: where triangles contradict each other they could go on for ever.
 constexpr Index most_gains = 40;
+/// Points whose distances a vertex knows: the samples of a curve are many, and all but equally near.
+constexpr Index most_points = 8;
 /// Sides that are shorter than this share of the other two, or of a distance, no longer tell where its point lies.
 constexpr double shortest_side = 1e-6, shortest_side_far_away = 1e-13;
 
@@ -179,14 +181,31 @@ const UnfoldingFront::Entry* UnfoldingFront::find(Index vertex, Index point) con
   return nullptr;
 }
 
+/// Gives the entry of the farthest point to a nearer one; none where there is no farther.
+Index UnfoldingFront::replace_farthest(Index vertex, Index point, double distance) {
+  Index farthest = head_[vertex];
+  for (Index e = head_[vertex]; e != none; e = entries_[e].next)
+    if (entries_[e].distance > entries_[farthest].distance) farthest = e;
+  if (!(distance < entries_[farthest].distance * (1 - least_gain))) return none;
+  entries_[farthest].point = point;
+  entries_[farthest].gains = 0;
+  return farthest;
+}
+
 /// Keeps a distance if it is the least from its point, and that point the nearest or nearly so.
 void UnfoldingFront::offer(Index vertex, Index point, double distance, double slack,
                            std::span<const double> displacement) {
   Index own = head_[vertex], before = none;
   const double nearest = own == none ? std::numeric_limits<double>::infinity() : entries_[own].distance;
   if (!(distance <= nearest + slack)) return;
-  while (own != none && entries_[own].point != point) before = own, own = entries_[own].next;
-  if (own == none) {
+  Index points = 0;
+  while (own != none && entries_[own].point != point) before = own, own = entries_[own].next, ++points;
+  if (own == none && points >= most_points) {
+    own = replace_farthest(vertex, point, distance);
+    if (own == none) return;
+    before = none;
+    for (Index e = head_[vertex]; e != own; e = entries_[e].next) before = e;
+  } else if (own == none) {
     own = static_cast<Index>(entries_.size());
     entries_.push_back({distance, point, head_[vertex], 0});
     if (d_ != 2) displacements_.resize(displacements_.size() + d_);

@@ -81,6 +81,7 @@ class UnfoldingFront {
 
   const Entry* find(Index vertex, Index point) const;
   void offer(Index vertex, Index point, double distance, double slack, std::span<const double> displacement);
+  Index replace_farthest(Index vertex, Index point, double distance);
   void spread(Index from, Index point, double distance);
   void carry(Index from, Index point);
   std::span<const Corner> around(Index vertex);
