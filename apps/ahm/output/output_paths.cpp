@@ -57,7 +57,7 @@ void check_outputs(const std::string& input, const std::vector<OutputPath>& outp
 
 void check_ending(const OutputPath& output, const std::vector<std::string>& endings) {
   if (std::find(endings.begin(), endings.end(), extension_of(output.path)) != endings.end()) return;
-  const std::string last = endings.back();
+  const std::string& last = endings.back();
   const std::string others = fmt::format("{}", fmt::join(endings.begin(), endings.end() - 1, ", "));
   throw InvalidArgument(fmt::format("{} {}: the name must end in {}{}{}", output.option, output.path, others,
                                     others.empty() ? "" : " or ", last));
