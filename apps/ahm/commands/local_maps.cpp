@@ -1,5 +1,3 @@
-#include "ahm/maps/local_maps.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "ahm/io/npz.hpp"
+#include "ahm/surface/row_local_maps.hpp"
 #include "cli/numbers.hpp"
 #include "cli/option_adders.hpp"
 #include "cli/source_list.hpp"
@@ -75,35 +74,6 @@ std::vector<Row> wanted_rows(const LocalMapsOptions& options, const RowMap& rows
   return result;
 }
 
-/// Entries on rows of the input, at most `most` per source (0: all): those on virtual vertices are left out.
-void keep_rows(LocalMaps& maps, const RowMap& rows, Index most) {
-  const std::size_t width = maps.transport_width();
-  std::size_t kept = 0;
-  for (std::size_t s = 0; s + 1 < maps.indptr.size(); ++s) {
-    const auto begin = static_cast<std::size_t>(maps.indptr[s]), end = static_cast<std::size_t>(maps.indptr[s + 1]);
-    maps.indptr[s] = static_cast<Offset>(kept);
-    for (std::size_t e = begin; e < end; ++e) {
-      const std::optional<Row> row = rows.row(Vertex(maps.indices[e]));
-      const auto taken = static_cast<Offset>(kept) - maps.indptr[s];
-      if (!row || (most > 0 && taken == most)) continue;
-      maps.indices[kept] = row->index;
-      maps.distances[kept] = maps.distances[e];
-      maps.weights[kept] = maps.weights[e];
-      std::copy_n(maps.logs.begin() + static_cast<std::ptrdiff_t>(2 * e), 2,
-                  maps.logs.begin() + static_cast<std::ptrdiff_t>(2 * kept));
-      std::copy_n(maps.transports.begin() + static_cast<std::ptrdiff_t>(width * e), width,
-                  maps.transports.begin() + static_cast<std::ptrdiff_t>(width * kept));
-      ++kept;
-    }
-  }
-  maps.indptr.back() = static_cast<Offset>(kept);
-  maps.indices.resize(kept);
-  maps.distances.resize(kept);
-  maps.weights.resize(kept);
-  maps.logs.resize(2 * kept);
-  maps.transports.resize(width * kept);
-}
-
 /// Rows of `count` entries: `values` has `width` numbers per entry, what is missing is 0.
 template <class T>
 std::vector<T> padded(const LocalMaps& maps, const std::vector<T>& values, std::size_t width, std::size_t count) {
@@ -113,34 +83,6 @@ std::vector<T> padded(const LocalMaps& maps, const std::vector<T>& values, std::
               values.begin() + maps.indptr[s + 1] * static_cast<Offset>(width),
               result.begin() + static_cast<std::ptrdiff_t>(s * count * width));
   return result;
-}
-
-/// The local maps of these vertices with their entries on rows of the input.
-LocalMaps maps_on_rows(const LocalMapsOptions& options, const Input& input, const std::vector<Vertex>& vertices,
-                       const Progress& progress) {
-  const RowMap& rows = input.surface().rows();
-  LocalMapOptions map_options;
-  map_options.radius = options.radius;
-  map_options.heat = options.solve;
-  map_options.heat.progress = progress;
-  Index on_rows = 0;
-  for (Vertex v(0); v.index < rows.vertex_count(); ++v.index) on_rows += rows.row(v) ? 1 : 0;
-  const bool all_on_rows = on_rows == rows.vertex_count();
-  map_options.nearest = all_on_rows || options.radius == 0 ? options.nearest : 0;
-  while (true) {
-    LocalMaps maps = local_maps(input.graph(), vertices, map_options);
-    const std::vector<Offset> found = maps.indptr;
-    keep_rows(maps, rows, options.nearest);
-    // Of the nearest some may have been virtual; then it takes more of them, where there are more.
-    bool enough = all_on_rows || options.radius > 0;
-    for (std::size_t s = 0; s < vertices.size() && !enough; ++s)
-      if (maps.indptr[s + 1] - maps.indptr[s] < options.nearest && found[s + 1] - found[s] == map_options.nearest)
-        break;
-      else if (s + 1 == vertices.size())
-        enough = true;
-    if (enough || map_options.nearest == rows.vertex_count()) return maps;
-    map_options.nearest = std::min(2 * map_options.nearest, rows.vertex_count());
-  }
 }
 
 void write(const LocalMapsOptions& options, const LocalMaps& maps, const std::vector<Row>& rows,
@@ -193,7 +135,12 @@ void run(const LocalMapsOptions& options) {
   for (Row row : wanted) vertices.push_back(*rows.vertex(row));
 
   journal.start("solve");
-  const LocalMaps maps = maps_on_rows(options, input, vertices, journal.progress());
+  LocalMapOptions map_options;
+  map_options.radius = options.radius;
+  map_options.nearest = options.nearest;
+  map_options.heat = options.solve;
+  map_options.heat.progress = journal.progress();
+  const LocalMaps maps = local_maps_on_rows(input.surface(), vertices, map_options);
 
   if (std::any_of(maps.weights.begin(), maps.weights.end(), [](double w) { return std::isnan(w); }))
     journal.add_warning("weight: no double holds squares of such lengths; they are given as nan");

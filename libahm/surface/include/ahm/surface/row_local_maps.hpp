@@ -1,0 +1,23 @@
+/// \file
+/// Local maps whose neighbours are rows of the input.
+///
+/// \code
+/// const ahm::Vertex here = surface.vertex(ahm::Row{42});
+/// const ahm::LocalMaps maps = ahm::local_maps_on_rows(surface, {&here, 1}, {.radius = 0.02});
+/// for (ahm::Index row : maps.indices) use(row);
+/// \endcode
+#pragma once
+
+#include <span>
+
+#include "ahm/maps/local_maps.hpp"
+#include "ahm/surface/surface.hpp"
+
+namespace ahm {
+
+/// `local_maps` with `LocalMaps::indices` as rows (the first ones of their vertices). Neighbours that the input does not have,
+/// as inside refined polygons, are left out; `LocalMapOptions::nearest` counts those that are left.
+/// @throws as `local_maps`
+LocalMaps local_maps_on_rows(const Surface& surface, std::span<const Vertex> sources, const LocalMapOptions& options);
+
+}  // namespace ahm
