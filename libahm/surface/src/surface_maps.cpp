@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "ahm/error.hpp"
+#include "ahm/fields/distance.hpp"
 #include "ahm/surface/surface.hpp"
 #include "ahm/util/vec.hpp"
 #include "visit_point.hpp"
@@ -158,20 +159,13 @@ std::vector<double> on_rows(const RowLogMap& rows, std::span<const double> value
 }
 
 std::vector<Vec3> distance_gradients(const Surface& surface, const LogMap& map, const RowLogMap& rows) {
-  const TangentGraph& graph = surface.graph();
-  if (map.size() != graph.size() || map.frames().empty())
-    throw InvalidArgument("distance_gradients: the map has no frames, or belongs to another graph");
-  const double at_source = 1e-8 * graph.mean_edge_length() * graph.length_unit();
+  const VertexField gradient = distance_gradient(surface.graph(), map);
   std::vector<Vec3> result(rows.vertex.size(), Vec3{nan, nan, nan});
   for (std::size_t r = 0; r < result.size(); ++r) {
     if (!rows.vertex[r]) continue;
-    const std::optional<Frame> frame = graph.frame(rows.vertex[r]->index);
-    if (!frame) continue;
-    const auto U = map.frames().subspan(4 * static_cast<std::size_t>(rows.vertex[r]->index), 4);
-    const double away = std::hypot(rows.u[r], rows.v[r]);
-    const double u = away > at_source ? rows.u[r] / away : 0, v = away > at_source ? rows.v[r] / away : 0;
-    const double a = U[0] * u + U[1] * v, b = U[2] * u + U[3] * v;
-    result[r] = a * frame->x + b * frame->y;
+    const Index vertex = rows.vertex[r]->index;
+    const double* g = gradient.values.data() + 2 * static_cast<std::size_t>(vertex);
+    if (const std::optional<Frame> frame = surface.graph().frame(vertex)) result[r] = g[0] * frame->x + g[1] * frame->y;
   }
   return result;
 }

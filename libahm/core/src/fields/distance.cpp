@@ -2,9 +2,28 @@
 
 #include <utility>
 
+#include "ahm/error.hpp"
 #include "ahm/util/small_math.hpp"
 
 namespace ahm {
+
+VertexField distance_gradient(const TangentGraph& graph, const LogMap& map) {
+  if (map.size() != graph.size() || map.frames().empty())
+    throw InvalidArgument("distance_gradient: the map has no frames, or belongs to another graph");
+  const double at_source = 1e-8 * graph.mean_edge_length() * graph.length_unit();  // what rounding leaves there
+  const auto d = static_cast<std::size_t>(map.dimension());
+  VertexField gradient{
+      map.dimension(), std::vector<double>(map.coordinates().size()), {map.status().begin(), map.status().end()}};
+  for (std::size_t i = 0; i < gradient.status.size(); ++i) {
+    const auto phi = map.coordinates(Vertex(i));
+    const auto U = map.frames().subspan(i * d * d, d * d);
+    const double away = length(phi);
+    if (away <= at_source) continue;
+    for (std::size_t c = 0; c < d; ++c)
+      for (std::size_t a = 0; a < d; ++a) gradient.values[i * d + c] += U[c * d + a] * (phi[a] / away);
+  }
+  return gradient;
+}
 
 DistanceField distance_and_gradient(const LogMapSolver& solver, const Source& source, const MapOptions& options) {
   MapOptions wanted = options;
@@ -12,23 +31,9 @@ DistanceField distance_and_gradient(const LogMapSolver& solver, const Source& so
   wanted.frames = true;
   wanted.spread = false;
   const LogMap map = solver.solve(source, wanted);
-  const TangentGraph& graph = solver.graph();
-  const double at_source = 1e-8 * graph.mean_edge_length() * graph.length_unit();  // what rounding leaves there
-  const auto d = static_cast<std::size_t>(map.dimension());
-  const std::vector<Status> status(map.status().begin(), map.status().end());
-  DistanceField field{{1, {map.distances().begin(), map.distances().end()}, status},
-                      {map.dimension(), std::vector<double>(status.size() * d), status}};
-  for (std::size_t i = 0; i < status.size(); ++i) {
-    const auto phi = map.coordinates(Vertex(i));
-    const double away = length(phi), scale = away < at_source ? 0.0 : 1 / away;
-    const auto U = map.frames().subspan(i * d * d, d * d);
-    for (std::size_t c = 0; c < d; ++c) {
-      double sum = 0;
-      for (std::size_t a = 0; a < d; ++a) sum += U[c * d + a] * phi[a];
-      field.gradient.values[i * d + c] = scale * sum;
-    }
-  }
-  return field;
+  VertexField gradient = distance_gradient(solver.graph(), map);
+  VertexField distance{1, {map.distances().begin(), map.distances().end()}, gradient.status};
+  return {std::move(distance), std::move(gradient)};
 }
 
 }  // namespace ahm

@@ -6,6 +6,7 @@
 
 #include "ahm/util/shortest_paths.hpp"
 #include "ahm/util/small_math.hpp"
+#include "maps/heat_distance.hpp"
 
 namespace ahm {
 
@@ -73,7 +74,7 @@ LogMap extrapolate(const TangentGraph& graph, const ComponentScales& scales, dou
   const auto n = static_cast<std::size_t>(first.size()), d = static_cast<std::size_t>(first.dimension());
   std::vector<double> coordinates(n * d, NAN), distances(n, NAN), error(n, NAN), difference(d), limit(d);
   std::vector<Status> status(n, Status::ok);
-  const bool is_curve = first.source().is_curve(), unfolded = graph.is_delaunay() || is_curve;
+  const bool is_curve = first.source().is_curve(), unfolded = unfolds(graph, first.source());
   const std::vector<double> paths = unfolded ? std::vector<double>() : edge_paths(graph, first.source());
   for (std::size_t i = 0; i < n; ++i) {
     const auto vertex = Vertex(i);

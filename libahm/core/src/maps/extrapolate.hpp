@@ -32,14 +32,17 @@ class DiffusionTimes {
 /// the same w.
 ///
 ///     phi* = phi(c) + (phi(c) - phi(2c)) / (sqrt 2 - 1)
-///     a    = |phi(2c) - phi(c)| / (sqrt(tau_2c) - sqrt(tau_c)),   w = clamp((a - 3)/2, 0, 1)
+///     a    = |phi(2c) - phi(c)| / (sqrt(tau_2c) - sqrt(tau_c))
+///     b    = |phi* - phi*(1, c)| / |phi* - phi(1)|,   s = spread(2c) / max(d, h)
+///     w    = max( clamp((a - 3)/2, 0, 1),  min( clamp((b - .4)/.4, 0, 1), clamp((s - .1)/.1, 0, 1) ) )
 ///     phi  = (1 - w) phi* + w phi(1)
 ///
 /// No distance is made longer than the shortest way along edges, and phi no longer than its distance, if the shortest time
 /// did not make them so already: there phi is as near to phi* as it may be on the line to phi(1). (Not from curves, where
 /// |phi| is no distance.)
 ///
-/// a is about 1 where phi is smooth in sqrt(tau); where it is not (cut loci), the shortest time is kept. A vertex that
+/// a is about 1 where phi is smooth in sqrt(tau); where it is not (cut loci, and with three times beside them), the shortest
+/// time is kept. A vertex that
 /// lacks coordinates at any of the times keeps that status.
 LogMap extrapolate(const TangentGraph& graph, const ComponentScales& scales, double t_coef, const DiffusionTimes& times,
                    const std::vector<const LogMap*>& maps, double radius);

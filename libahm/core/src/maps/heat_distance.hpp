@@ -5,9 +5,15 @@
 #include <algorithm>
 #include <span>
 
+#include "ahm/graph/tangent_graph.hpp"
 #include "ahm/maps/source.hpp"
 
 namespace ahm {
+
+/// How distances are measured: unfolded on triangulations and from curves, elsewhere by the second moment of heat.
+inline bool unfolds(const TangentGraph& graph, const Source& source) {
+  return graph.is_delaunay() || source.is_curve();
+}
 
 /// From |phi| and the root mean square of z at a vertex, all in the same unit.
 ///

@@ -52,9 +52,6 @@ struct Found {
   double root_mean_square = 0;  ///< sqrt(q / lambda), world units
 };
 
-/// How distances are measured: unfolded on triangulations and from curves, elsewhere by the second moment of heat.
-bool unfolds(const TangentGraph& graph, const Source& source) { return graph.is_delaunay() || source.is_curve(); }
-
 /// Distances unfolded from a source; empty: they are measured by heat.
 std::vector<double> unfolded(const TangentGraph& graph, const std::shared_ptr<const UnfoldingFront::Stars>& stars,
                              const Source& source, double radius) {

@@ -11,11 +11,15 @@
 
 namespace ahm {
 
+/// Width d, in the frame of each vertex: U_i phi_i / |phi_i|, the unit vector away from the map's source; 0 at the source itself
+/// and where opposite ways to it cancel.
+/// @param map  with frames, of this graph
+/// @throws InvalidArgument
+VertexField distance_gradient(const TangentGraph& graph, const LogMap& map);
+
 struct DistanceField {
   VertexField distance;  ///< width 1, world units: `LogMap::distance`
-  /// Width d, in the frame of each vertex: the unit vector away from the source; 0 at the source itself and where opposite
-  /// ways to it cancel.
-  VertexField gradient;
+  VertexField gradient;  ///< `distance_gradient`
 };
 
 /// The distance from a source, and the direction U_i phi_i / |phi_i| of half the gradient of its square (Lemma 1): nothing
