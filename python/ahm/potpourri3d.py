@@ -23,8 +23,10 @@ from . import _arguments as arguments
 from . import _core
 from ._fields import DistanceField, distance_and_gradient, extend, operators, transport
 from ._geodesics import geodesic_path, trace
-from ._maps import LogMapSolver
-from ._surfaces import PointCloud, PolygonMesh, Surface, TriangleMesh
+from ._clouds import PointCloud
+from ._meshes import PolygonMesh, TriangleMesh
+from ._solvers import LogMapSolver
+from ._surfaces import Surface
 
 _STRATEGIES = {"AffineLocal": "localized", "AffineAdaptive": "adaptive"}
 

@@ -1,10 +1,12 @@
 // Solvers, and log maps by rows.
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <utility>
 
 #include "ahm/error.hpp"
 #include "ahm/maps/quality.hpp"
+#include "ahm/util/parallel.hpp"
 #include "compute.hpp"
 #include "errors.hpp"
 #include "map.hpp"
@@ -20,6 +22,13 @@ Map::Map(BodyPtr on, PlacedSource from, LogMap made)
   uv.resize(2 * rows.u.size());
   for (std::size_t r = 0; r < rows.u.size(); ++r) uv[2 * r] = rows.u[r], uv[2 * r + 1] = rows.v[r];
   rows.u = {}, rows.v = {};
+}
+
+Maker::Maker(const py::object& given) {
+  if (py::isinstance<Solver>(given))
+    solver_ = given.cast<SolverPtr>();
+  else
+    body_ = given.cast<BodyPtr>();
 }
 
 namespace {
@@ -77,24 +86,38 @@ py::list heat_maps(const SolverPtr& solver, const py::tuple& sources, const py::
   }));
 }
 
+/// One map for each source, several at a time.
+std::vector<MapPtr> solve_exactly(const BodyPtr& body, const Places& from, const std::optional<Vec3>& axis,
+                                  ExactMapOptions options, unsigned threads) {
+  const ExactGeodesics& geodesics = body->geodesics();
+  const Progress progress = options.progress;
+  if (from.size() > 1) options.progress.report = {};  // each would begin anew
+  std::vector<MapPtr> result(from.size());
+  std::atomic<std::size_t> done = 0;
+  detail::parallel_chunks(static_cast<Offset>(from.size()), 1, threads, [&](Offset k, Offset) {
+    naming(from.where(static_cast<std::size_t>(k)), [&] {
+      const SurfacePoint point = body->point(from.places[k]);
+      result[k] =
+          std::make_shared<Map>(body, body->surface()->source(point, axis), geodesics.log_map(point, axis, options));
+    });
+    const auto share = static_cast<double>(++done) / static_cast<double>(from.size());
+    if (from.size() > 1) progress.step("exact maps", share);
+  });
+  return result;
+}
+
 py::list exact_maps(const BodyPtr& body, const py::tuple& sources, const py::object& u_axis, const py::dict& options,
                     const py::object& report) {
   ExactMapOptions o;
   read(options, "radius", o.radius);
   read(options, "frames", o.frames);
+  unsigned threads = 0;
+  read(options, "threads", threads);
   const Places from = places(sources);
   const auto axis = optional_vector(u_axis);
   return listed(compute(report, py::none(), [=](const Progress& progress) mutable {
     o.progress = progress;
-    const ExactGeodesics& geodesics = body->geodesics();
-    std::vector<MapPtr> result;
-    for (std::size_t k = 0; k < from.size(); ++k)
-      naming(from.where(k), [&] {
-        const SurfacePoint point = body->point(from.places[k]);
-        result.push_back(
-            std::make_shared<Map>(body, body->surface()->source(point, axis), geodesics.log_map(point, axis, o)));
-      });
-    return result;
+    return solve_exactly(body, from, axis, o, threads);
   }));
 }
 

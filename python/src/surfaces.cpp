@@ -177,6 +177,11 @@ py::tuple csr(const BodyPtr& body) {
                         owned(std::move(masses)));
 }
 
+/// Makes the triangles of exact geodesics now.
+void lay_out(const BodyPtr& body, const py::object& report) {
+  compute(report, py::none(), [body](const Progress&) { return &body->geodesics(); });
+}
+
 py::object figure(const Figure& figure) {
   if (const auto* text = std::get_if<std::string_view>(&figure.value)) return py::str(std::string(*text));
   if (const auto* flag = std::get_if<bool>(&figure.value)) return py::bool_(*flag);
@@ -251,6 +256,7 @@ void add_surfaces(py::module_& module) {
       .def("vertex_of_row", &vertex_of_row)
       .def("row_of_vertex", &row_of_vertex)
       .def("csr", &csr)
+      .def("lay_out", &lay_out)
       .def("components", [](const Body& b) { return owned(connected_components(b.graph()).of_vertex); })
       .def("report", &report)
       .def("warnings", &warnings)
