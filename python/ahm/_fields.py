@@ -132,8 +132,7 @@ def transport(solver: Any, points: Any, vectors: Any, *, progress: Progress = No
     made = as_solver(solver)
     at = places.points(points, "points", made.surface)
     given = arguments.array(vectors, "vectors")
-    if given.ndim == 1:
-        given = given[None]
+    given = np.atleast_2d(given)
     width, d = given.shape[-1], made.surface.dimension
     if width not in ((3, d) if made.surface._body.has_surface else (d,)):
         raise ValueError(f"vectors: 3 numbers of space or {d} in a frame are needed for each, not shape {given.shape}")

@@ -34,7 +34,7 @@ class Places:
             self._add(IN_FACE, *self._in_face(*value))
         elif _is_edge_point(value, self.surface):
             self._add(ON_EDGE, *self._on_edge(*value))
-        elif isinstance(value, (str, bytes)) or np.ndim(value) == 0:
+        elif isinstance(value, (str, bytes)) or not hasattr(value, "__len__") or getattr(value, "ndim", 1) == 0:
             raise TypeError(f"{self.here()}: a row, a position, (face, barycentric) or ((row, row), t) is needed, "
                             f"not {arguments.describe(value)}")
         else:
@@ -92,7 +92,10 @@ def point(value: Any, name: str, surface: Any) -> tuple:
 
 
 def points(value: Any, name: str, surface: Any) -> tuple:
-    """Points: one; or rows (k,), positions (k, 3), `(faces, barycentric)`, `(edges, t)`, or a list of any."""
+    """Points: one; or rows (k,), positions (k, 3), `(faces, barycentric)`, `(edges, t)`, or a list of any.
+
+    Three whole numbers are rows, three others a position.
+    """
     if is_row(value) or _is_face_point(value) or _is_edge_point(value, surface):
         return point(value, name, surface)
     if isinstance(value, (str, bytes)) or not hasattr(value, "__len__"):
@@ -111,6 +114,8 @@ def points(value: Any, name: str, surface: Any) -> tuple:
             return of_rows(arguments.rows(whole, name, len(surface)), name)
         if whole is not None and whole.ndim == 2:
             return _of_positions(positions(whole, result.where, 0, surface), name)
+        if whole is not None and whole.shape == (surface._position_width,) and whole.dtype.kind == "f":
+            return point(whole, name, surface)
         if whole is not None and whole.ndim == 1:
             raise TypeError(f"{name}: rows are whole numbers, and a list of positions has the shape (k, 3), "
                             f"not {arguments.describe(value, whole)}")
@@ -211,8 +216,10 @@ def _is_face_point(value: Any) -> bool:
 
 
 def _is_edge_point(value: Any, surface: Any) -> bool:
-    if not (isinstance(value, tuple) and len(value) == 2 and surface._face_count > 0 and not isinstance(value[1], (str, bytes))):
+    if not (isinstance(value, tuple) and len(value) == 2 and not isinstance(value[1], (str, bytes))):
         return False
     edge, t = value
+    if surface._position_width == 2:  # of a grid, which has no edges: a position and a row
+        return False
     return (hasattr(edge, "__len__") and not isinstance(edge, (str, bytes, dict, set)) and len(edge) == 2
             and all(is_row(row) for row in edge) and np.ndim(t) == 0)
