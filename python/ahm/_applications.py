@@ -56,11 +56,11 @@ def stroke(solver: Any, points: Any, *, closed: bool = False, shape: str = "line
         if shape != "line":
             raise ValueError("positions: have a shape of their own; leave `shape` out")
     with reporting(progress) as report:
-        found, *drawn = _core.stroke(made._core, at, uv, arguments.flag(closed, "closed"), shape == "circle",
-                                     checked(radius=radius, frames=frames), report)
+        found, drawn, length, gap, jump = _core.stroke(made._core, at, uv, arguments.flag(closed, "closed"), shape == "circle",
+                                                       checked(radius=radius, frames=frames), report)
     recipe = (_StrokeMap(made), "map", (points,),
               dict(closed=closed, shape=shape, positions=positions, radius=radius, frames=frames))
-    return Stroke(LogMap(found, made.surface, recipe), *drawn)
+    return Stroke(LogMap(found, made.surface, recipe), drawn, length, gap, jump)
 
 
 class _StrokeMap:

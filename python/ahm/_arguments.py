@@ -11,11 +11,13 @@ INT32 = np.iinfo(np.int32)
 
 
 def array(value: Any, name: str) -> np.ndarray:
-    """Any array of real numbers: NumPy's, a list, what has `__array__` or DLPack."""
+    """Any array of real numbers: NumPy's, a list, what has `__array__`, DLPack or `numpy()`."""
     if isinstance(value, np.ma.MaskedArray) and np.ma.is_masked(value):
         raise ValueError(f"{name}: has masked entries; fill them or leave their rows out")
     if not hasattr(value, "__array__") and hasattr(value, "__dlpack__"):
         value = np.from_dlpack(value)
+    if not isinstance(value, np.ndarray) and not hasattr(value, "__array__") and callable(getattr(value, "numpy", None)):
+        value = value.numpy()
     try:
         result = np.asarray(value)
     except (ValueError, TypeError, OverflowError) as error:

@@ -8,7 +8,7 @@ Indices = NDArray[np.int32]
 Offsets = NDArray[np.int64]
 Bytes = NDArray[np.uint8]
 Options = Dict[str, Any]
-Places = Tuple[str, bool, Bytes, Indices, Indices, Doubles]
+Places = Tuple[Any, ...]  # name, single, kinds, indices, counts, values
 Report = Optional[Callable[[str, float], Any]]
 Curve = Tuple[Doubles, Indices, Any, float, bool]
 

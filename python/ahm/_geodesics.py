@@ -49,9 +49,9 @@ def geodesic_path(surface: Any, stops: Any, to: Any = None, *, closed: bool = Fa
         at = places.points(stops, "stops", on)
     else:
         at = places.joined(places.point(stops, "stops", on), places.point(to, "to", on))
-    flags = [arguments.flag(value, name) for value, name in ((closed, "closed"), (fast, "fast"), (taut, "taut"))]
+    arguments.flag(closed, "closed"), arguments.flag(fast, "fast"), arguments.flag(taut, "taut")
     with reporting(progress) as report:
-        found = _core.path(on._body, at, *flags, report)
+        found = _core.path(on._body, at, closed, fast, taut, report)
     return None if found is None else Path(*found)
 
 
@@ -90,8 +90,8 @@ def geodesic_paths(surface: Any, sources: Any, targets: Any, *, pairwise: bool =
     """
     on = as_body(surface)
     start, end = places.points(sources, "sources", on), places.points(targets, "targets", on)
-    arguments.flag(fast, "fast")
-    if arguments.flag(pairwise, "pairwise"):
+    arguments.flag(fast, "fast"), arguments.flag(pairwise, "pairwise")
+    if pairwise:
         if len(start[2]) != len(end[2]):
             raise ValueError(f"targets: {len(end[2])} points for the {len(start[2])} sources; pairwise there are as many")
         with reporting(progress) as report:

@@ -61,13 +61,24 @@ def surface(thing: Any, **options: Any) -> Surface:
         found = getattr(thing, name, None)
         if found is not None and not callable(found):
             return _mesh(np.asarray(found), _faces_of(thing), options, getattr(thing, "normals", None))
-    tensor = getattr(getattr(thing, "point", None), "positions", None) or getattr(getattr(thing, "vertex", None), "positions", None)
-    if tensor is not None:
-        triangle = getattr(getattr(thing, "triangle", None), "indices", None)
-        return _mesh(tensor.numpy(), None if triangle is None else triangle.numpy(), options)
+    for name in ("point", "vertex"):  # Open3D's tensors, of clouds and meshes
+        columns = _attribute(thing, name)
+        found = _attribute(columns, "positions")
+        if found is not None:
+            faces = _attribute(_attribute(thing, "triangle"), "indices")
+            return _mesh(arguments.array(found, "positions"), None if faces is None else arguments.array(faces, "indices"), options,
+                         _attribute(columns, "normals"))
     if hasattr(thing, "__len__") or hasattr(thing, "__array__"):
         return PointCloud(thing, **options)
     raise TypeError(f"surface: {type(thing).__name__} has no points, vertices or faces")
+
+
+def _attribute(thing: Any, name: str) -> Any:
+    """None where it is not there; Open3D's columns raise KeyError then."""
+    try:
+        return getattr(thing, name, None)
+    except KeyError:
+        return None
 
 
 def _mesh(points: Any, faces: Any, options: Dict[str, Any], normals: Any = None) -> Surface:
@@ -87,7 +98,7 @@ def _mesh(points: Any, faces: Any, options: Dict[str, Any], normals: Any = None)
 def _faces_of(thing: Any) -> Any:
     """The faces of an object: an (m, c) array, a list, compressed rows, or None."""
     try:
-        regular = getattr(thing, "regular_faces", None)  # PyVista; raises where faces differ
+        regular: Any = getattr(thing, "regular_faces", None)  # PyVista; raises where faces differ
     except ValueError:
         regular = None
     if regular is not None:
@@ -96,6 +107,9 @@ def _faces_of(thing: Any) -> Any:
         return np.asarray(thing.triangles)
     cells = getattr(thing, "cells_dict", None)  # meshio
     if cells is not None:
+        solid = sorted(set(cells) - {"triangle", "quad", "polygon", "vertex", "line"})
+        if solid:
+            raise ValueError(f"surface: cells of the kind {solid[0]!r} are no faces; take the surface of the volume")
         kinds = [cells[kind] for kind in ("triangle", "quad", "polygon") if kind in cells]
         return [face for block in kinds for face in block] if len(kinds) != 1 else np.asarray(kinds[0])
     faces = getattr(thing, "faces", None)

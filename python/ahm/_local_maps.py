@@ -83,17 +83,16 @@ class LocalMaps:
         ([0, 0, 1, 9], [True, True, True, False], dtype('float32'))
         """
         counts = np.diff(self.indptr)
-        k = int(counts.max(initial=0)) if k is None else arguments.integer(k, "k", 1)
+        width = int(counts.max(initial=0)) if k is None else arguments.integer(k, "k", 1)
         place = np.arange(len(self.indices)) - np.repeat(self.indptr[:-1], counts)
         source = np.repeat(np.arange(len(counts)), counts)
-        if counts.max(initial=0) > k:
-            source, kept = source[place < k], place < k
-            place = place[kept]
-        else:
-            kept = slice(None)
+        kept: Any = slice(None)
+        if counts.max(initial=0) > width:
+            kept = place < width
+            source, place = source[kept], place[kept]
 
         def spread(values: np.ndarray, dtype: Any) -> np.ndarray:
-            result = np.zeros((len(counts), k) + values.shape[1:], dtype)
+            result = np.zeros((len(counts), width) + values.shape[1:], dtype)
             result[source, place] = values[kept]
             return result
 

@@ -176,11 +176,44 @@ def test_objects_of_other_packages_are_taken_by_what_they_have(plane, sphere):
     assert isinstance(ahm.surface(Thing(points=V, cells_dict={**quads, "triangle": np.delete(F, [0, 120], axis=0)})), ahm.PolygonMesh)
     assert isinstance(ahm.surface(Thing(points=sphere.points)), ahm.PointCloud)
     assert isinstance(ahm.surface(Thing(points=sphere.points, normals=sphere.normals)), ahm.PointCloud)
-    tensor = Thing(numpy=lambda: sphere.points.astype(np.float32))
-    assert isinstance(ahm.surface(Thing(point=Thing(positions=tensor))), ahm.PointCloud)
+    for kind in ("tetra", "hexahedron"):
+        with pytest.raises(ValueError, match=f"'{kind}' are no faces"):
+            ahm.surface(Thing(points=V, cells_dict={"triangle": F, kind: np.array([[0, 1, 2, 3]])}))
     assert ahm.surface(sphere) is sphere
     with pytest.raises(TypeError, match="no points"):
         ahm.surface(3)
+
+
+class Tensor:
+    """As those of Open3D: no `__array__`, and no truth value."""
+
+    def __init__(self, values):
+        self.values = values
+
+    def numpy(self):
+        return self.values
+
+    def __len__(self):
+        return len(self.values)
+
+    def __bool__(self):
+        raise RuntimeError("a tensor of many elements has no truth value")
+
+
+def test_tensors_are_arrays(sphere):
+    class Columns:
+        def __init__(self, **given):
+            self.__dict__.update(given)
+
+        def __getattr__(self, name):
+            raise KeyError(name)
+
+    points, normals = Tensor(sphere.points.astype(np.float32)), Tensor(sphere.normals)
+    assert repr(ahm.surface(Columns(point=Columns(positions=points)))) == "<ahm.PointCloud: 642 points>"
+    assert "with normals" in repr(ahm.surface(Columns(point=Columns(positions=points, normals=normals))))
+    mesh = Columns(vertex=Columns(positions=points), triangle=Columns(indices=Tensor(sphere.faces.astype(np.int64))))
+    assert repr(ahm.surface(mesh)) == repr(sphere)
+    assert repr(ahm.TriangleMesh(points, Tensor(sphere.faces))) == repr(sphere)
 
 
 def test_files_are_read_as_what_they_hold(tmp_path):
