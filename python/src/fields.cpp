@@ -136,7 +136,7 @@ py::tuple front_distance(const BodyPtr& body, const py::tuple& sources, double r
 
 /// tau per vertex, in squared graph units.
 py::array taus(const BodyPtr& body, double t_coef) {
-  return owned(diffusion_times(ComponentScales(body->graph()), t_coef));
+  return owned(released([&] { return diffusion_times(ComponentScales(body->graph()), t_coef); }));
 }
 
 py::tuple curvature(const BodyPtr& body, const py::object& report) {

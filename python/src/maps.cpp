@@ -181,7 +181,8 @@ void require_frames(const Map& map) {
 py::array frames(const MapPtr& m) {
   require_frames(*m);
   const py::ssize_t d = m->map.dimension();
-  return owned<double>(by_rows(*m, m->map.frames(), static_cast<std::size_t>(d * d)), {m->body->rows(), d, d});
+  return owned<double>(released([&] { return by_rows(*m, m->map.frames(), static_cast<std::size_t>(d * d)); }),
+                       {m->body->rows(), d, d});
 }
 
 /// The source's axes carried to every row, as vectors of space: rows x 2 x 3.
@@ -189,23 +190,24 @@ py::array axes(const MapPtr& m) {
   require_frames(*m);
   const auto frames = m->map.frames();
   std::vector<Vec3> result(2 * static_cast<std::size_t>(m->surface().rows().row_count()), Vec3{nan, nan, nan});
-  for_rows(*m, [&](std::size_t row, std::size_t vertex) {
+  const auto put = [&](std::size_t row, std::size_t vertex) {
     const auto at = m->body->graph().frame(static_cast<Index>(vertex));
     if (!at) return;
     const double* U = frames.data() + 4 * vertex;
     for (std::size_t a = 0; a < 2; ++a)
       for (std::size_t c = 0; c < 3; ++c) result[2 * row + a][c] = U[a] * at->x[c] + U[2 + a] * at->y[c];
-  });
+  };
+  released([&] { for_rows(*m, put); });
   return owned<Vec3, double>(std::move(result), {m->body->rows(), 2, 3});
 }
 
 py::array gradient(const MapPtr& m) {
   require_frames(*m);
-  return owned(distance_gradients(m->surface(), m->map, m->rows));
+  return owned(released([&] { return distance_gradients(m->surface(), m->map, m->rows); }));
 }
 
 py::array corners(const MapPtr& m) {
-  std::vector<Vec2> result = m->surface().on_corners(m->map);
+  std::vector<Vec2> result = released([&] { return m->surface().on_corners(m->map); });
   const auto n = static_cast<py::ssize_t>(result.size());
   return owned<Vec2, double>(std::move(result), {n, 2});
 }
