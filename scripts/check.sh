@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # What a compiler and the tests do not see: the format of every source, clang-tidy on what is ours, and the tests of the
-# library, its backends and io under the address and undefined-behaviour sanitizers. Installs what these take.
-#   check.sh [format|tidy|tidy-all|sanitizers ...]     format, tidy and sanitizers without a word
+# library, its backends and io under the address and undefined-behaviour sanitizers; with sanitizers-python those of the Python
+# package, too. Installs what these take.
+#   check.sh [format|tidy|tidy-all|sanitizers|sanitizers-python ...]     format, tidy and sanitizers without a word
 # tidy looks at what differs from main and at what includes that; tidy-all at everything.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -54,11 +55,18 @@ sanitizers() {
   done
 }
 
+sanitizers-python() {
+  echo "Sanitizers, the Python package (build/asan) ..."
+  cmake --preset asan >/dev/null
+  cmake --build build/asan --target ahm_python
+  ctest --test-dir build/asan -R '^Python$' --no-tests=error --output-on-failure
+}
+
 for check in "${@:-format tidy sanitizers}"; do
   for one in $check; do
     case "$one" in
-      format | tidy | tidy-all | sanitizers) ;;
-      *) echo "error: check.sh [format|tidy|tidy-all|sanitizers ...]" >&2; exit 2 ;;
+      format | tidy | tidy-all | sanitizers | sanitizers-python) ;;
+      *) echo "error: check.sh [format|tidy|tidy-all|sanitizers|sanitizers-python ...]" >&2; exit 2 ;;
     esac
   done
 done

@@ -22,9 +22,11 @@ import numpy as np
 from . import _arguments as arguments
 from . import _core
 from ._fields import DistanceField, distance_and_gradient, extend, operators, transport
-from ._geodesics import geodesic_path, trace
-from ._maps import LogMapSolver
-from ._surfaces import PointCloud, PolygonMesh, Surface, TriangleMesh
+from ._geodesics import geodesic_loop, geodesic_path, geodesic_paths, trace
+from ._clouds import PointCloud
+from ._meshes import PolygonMesh, TriangleMesh
+from ._solvers import LogMapSolver
+from ._surfaces import Surface
 
 _STRATEGIES = {"AffineLocal": "localized", "AffineAdaptive": "adaptive"}
 
@@ -171,6 +173,10 @@ class _Heat:
         field: DistanceField = distance_and_gradient(self.solver, arguments.rows(sources, "v_inds", len(self.surface)))
         return field.distance
 
+    def compute_distances(self, v_inds: Any) -> np.ndarray:
+        """(k, n) distances from each of k vertices alone."""
+        return np.array([self._distance([v]) for v in arguments.rows(v_inds, "v_inds", len(self.surface))])
+
     def extend_scalar(self, v_inds: Any, values: Any) -> np.ndarray:
         """(n,) each vertex takes the value of the nearest one of v_inds, blended at ties."""
         return extend(self.solver, arguments.rows(v_inds, "v_inds", len(self.surface)), values)
@@ -206,7 +212,13 @@ class _Heat:
 
 
 class MeshHeatMethodDistanceSolver(_Heat):
-    """Geodesic distance on a triangle mesh by heat (`ahm.distance_and_gradient`); use_robust: intrinsic Delaunay triangulation."""
+    """Geodesic distance on a triangle mesh by heat (`ahm.distance_and_gradient`); use_robust: intrinsic Delaunay triangulation.
+
+    >>> import ahm, ahm.potpourri3d as pp3d
+    >>> solver = pp3d.MeshHeatMethodDistanceSolver(*ahm.shapes.plane(4, 3))
+    >>> solver.compute_distance(0)[:4].round(9).tolist()
+    [0.0, 1.0, 2.0, 3.0]
+    """
 
     def __init__(self, V: Any, F: Any, t_coef: float = 1.0, use_robust: bool = True) -> None:
         super().__init__(TriangleMesh(V, F, delaunay=bool(use_robust)), t_coef)
@@ -231,7 +243,15 @@ def compute_distance_multisource(V: Any, F: Any, v_inds: Any) -> np.ndarray:
 
 
 class MeshVectorHeatSolver(_Heat):
-    """Log maps, transport and extension on a triangle mesh."""
+    """Log maps, transport and extension on a triangle mesh.
+
+    >>> import ahm, ahm.potpourri3d as pp3d
+    >>> solver = pp3d.MeshVectorHeatSolver(*ahm.shapes.plane(4, 3))
+    >>> x, y, n = solver.get_tangent_frames()
+    >>> uv = solver.compute_log_map(0)
+    >>> (uv[11, 0] * x[0] + uv[11, 1] * y[0]).round(9).tolist()          # in space: from row 0 to row 11
+    [3.0, 2.0, 0.0]
+    """
 
     def __init__(self, V: Any, F: Any, t_coef: float = 1.0, use_intrinsic_delaunay: bool = True, *,
                  useIntrinsicDelaunay: Optional[bool] = None) -> None:
@@ -249,7 +269,14 @@ class MeshVectorHeatSolver(_Heat):
 
 
 class PolygonMeshHeatSolver(_Heat):
-    """Distance, log maps, transport and extension on a polygon mesh."""
+    """Distance, log maps, transport and extension on a polygon mesh.
+
+    >>> import ahm.potpourri3d as pp3d
+    >>> V = [[x, y, 0] for y in range(3) for x in range(4)]
+    >>> quads = [[i + 4 * j, i + 1 + 4 * j, i + 5 + 4 * j, i + 4 + 4 * j] for j in range(2) for i in range(3)]
+    >>> pp3d.PolygonMeshHeatSolver(V, quads).compute_distance([0])[:4].round(9).tolist()
+    [0.0, 1.0, 2.0, 3.0]
+    """
 
     def __init__(self, V: Any, F: Any, t_coef: float = 1.0) -> None:
         super().__init__(PolygonMesh(V, F), t_coef)
@@ -260,7 +287,13 @@ class PolygonMeshHeatSolver(_Heat):
 
 
 class PointCloudHeatSolver(_Heat):
-    """Distance, log maps, transport and extension on a point cloud."""
+    """Distance, log maps, transport and extension on a point cloud.
+
+    >>> import ahm, ahm.potpourri3d as pp3d
+    >>> solver = pp3d.PointCloudHeatSolver(ahm.shapes.plane(9, 9)[0])
+    >>> solver.compute_distance(0)[:4].round(9).tolist()
+    [0.0, 1.0, 2.0, 3.0]
+    """
 
     def __init__(self, P: Any, t_coef: float = 1.0) -> None:
         super().__init__(PointCloud(P), t_coef)
@@ -273,9 +306,33 @@ class PointCloudHeatSolver(_Heat):
         """(n,) from the nearest of several points."""
         return self._distance(p_inds)
 
+    # The same as of meshes, under the names that parameters of clouds have.
+
+    def extend_scalar(self, p_inds: Any, values: Any) -> np.ndarray:
+        """(n,) each point takes the value of the nearest one of p_inds, blended at ties."""
+        return super().extend_scalar(p_inds, values)
+
+    def transport_tangent_vector(self, p_ind: int, vector: Any) -> np.ndarray:
+        """(n, 2) the vector at p_ind carried to every point, in the frames of `get_tangent_frames`."""
+        return super().transport_tangent_vector(p_ind, vector)
+
+    def transport_tangent_vectors(self, p_inds: Any, vectors: Any) -> np.ndarray:
+        """(n, 2) the same, of several vectors: the nearest one counts, blended at ties."""
+        return super().transport_tangent_vectors(p_inds, vectors)
+
+    def compute_log_map(self, p_ind: int, strategy: str = "AffineLocal") -> np.ndarray:
+        """(n, 2) in the frame of p_ind. strategy: "AffineLocal" or "AffineAdaptive"."""
+        return super().compute_log_map(p_ind, strategy)
+
 
 class EdgeFlipGeodesicSolver:
-    """Shortest paths on a triangle mesh, exact (`ahm.geodesic_path`): not only straight, the shortest of all."""
+    """Paths on a triangle mesh: between two vertices the shortest of all; through several, locally shortest.
+
+    >>> import ahm, ahm.potpourri3d as pp3d
+    >>> paths = pp3d.EdgeFlipGeodesicSolver(*ahm.shapes.plane(4, 3))
+    >>> paths.find_geodesic_path(0, 11)[[0, -1]].tolist()
+    [[0.0, 0.0, 0.0], [3.0, 2.0, 0.0]]
+    """
 
     def __init__(self, V: Any, F: Any, t_coef: float = 1.0) -> None:
         self.surface = TriangleMesh(V, F)
@@ -283,23 +340,50 @@ class EdgeFlipGeodesicSolver:
     def find_geodesic_path(self, v_start: int, v_end: int, max_iterations: Optional[int] = None,
                            max_relative_length_decrease: Optional[float] = None) -> np.ndarray:
         """(k, 3) points of the shortest path. Raises ValueError where there is none."""
-        if max_iterations is not None or max_relative_length_decrease is not None:
-            raise NotImplementedError("max_iterations, max_relative_length_decrease: shortest paths are not found by iterations")
-        ends = arguments.rows([v_start, v_end], "v_start, v_end", len(self.surface))
-        path = geodesic_path(self.surface, int(ends[0]), int(ends[1]))
+        return self._path(geodesic_path, [v_start, v_end], max_iterations, max_relative_length_decrease)
+
+    def find_geodesic_paths(self, v_starts: Any, v_ends: Any) -> List[np.ndarray]:
+        """One shortest path from each vertex to the one beside it, as of `find_geodesic_path`."""
+        starts, ends = (arguments.rows(v, name, len(self.surface)) for v, name in ((v_starts, "v_starts"), (v_ends, "v_ends")))
+        found = geodesic_paths(self.surface, starts, ends, pairwise=True)
+        return [self._points(path, [a, b]) for path, a, b in zip(found, starts, ends)]
+
+    def find_geodesic_path_poly(self, v_list: Any, max_iterations: Optional[int] = None,
+                                max_relative_length_decrease: Optional[float] = None) -> np.ndarray:
+        """(k, 3) points: the way through the vertices, made locally shortest; only its two ends stay where they are."""
+        return self._path(_pulled_taut, v_list, max_iterations, max_relative_length_decrease)
+
+    def find_geodesic_loop(self, v_list: Any, max_iterations: Optional[int] = None,
+                           max_relative_length_decrease: Optional[float] = None) -> np.ndarray:
+        """(k, 3) points of a closed geodesic: the closed way through the vertices, made locally shortest. One point is left
+        where nothing holds it."""
+        return self._path(geodesic_loop, v_list, max_iterations, max_relative_length_decrease)
+
+    def _path(self, find: Any, vertices: Any, *limits: Any) -> np.ndarray:
+        if any(limit is not None for limit in limits):
+            raise NotImplementedError("max_iterations, max_relative_length_decrease: paths are not found by iterations")
+        rows = arguments.rows(vertices, "v_list", len(self.surface))
+        return self._points(find(self.surface, rows), rows)
+
+    @staticmethod
+    def _points(path: Any, rows: Any) -> np.ndarray:
         if path is None:
-            raise ValueError(f"v_end: no path leads from vertex {v_start} to vertex {v_end}")
+            raise ValueError(f"v_list: no path leads through the vertices {[int(r) for r in rows]}")
         return path.points
 
-    def find_geodesic_path_poly(self, v_list: Any, *given: Any, **options: Any) -> np.ndarray:
-        raise NotImplementedError("find_geodesic_path_poly is not there; `ahm.geodesic_path` leads through points and bends there")
 
-    def find_geodesic_loop(self, v_list: Any, *given: Any, **options: Any) -> np.ndarray:
-        raise NotImplementedError("find_geodesic_loop is not there")
+def _pulled_taut(surface: Surface, rows: np.ndarray) -> Any:
+    return geodesic_path(surface, rows, taut=True)
 
 
 class GeodesicTracer:
-    """Straightest geodesics on a triangle mesh (`ahm.trace`), as long as `direction_xyz` is."""
+    """Straightest geodesics on a triangle mesh (`ahm.trace`), as long as `direction_xyz` is.
+
+    >>> import ahm, ahm.potpourri3d as pp3d
+    >>> tracer = pp3d.GeodesicTracer(*ahm.shapes.plane(4, 3))
+    >>> tracer.trace_geodesic_from_vertex(0, [1.5, 1.0, 0.0])[-1].round(9).tolist()
+    [1.5, 1.0, 0.0]
+    """
 
     def __init__(self, V: Any, F: Any, t_coef: float = 1.0) -> None:
         self.surface = TriangleMesh(V, F)
@@ -312,6 +396,12 @@ class GeodesicTracer:
                                  max_iterations: Optional[int] = None) -> np.ndarray:
         """(k, 3) points; it ends at the boundary."""
         return self._trace((arguments.integer(start_face, "start_face"), bary_coords), direction_xyz, max_iterations)
+
+    def trace_geodesics_from_vertices(self, start_verts: Any, directions_xyz: Any) -> List[np.ndarray]:
+        """One curve for each vertex and the direction (k, 3) beside it."""
+        starts = arguments.rows(start_verts, "start_verts", len(self.surface))
+        directions = arguments.floats(directions_xyz, "directions_xyz", (len(starts), 3), finite=True)
+        return [self._trace(int(v), d, None) for v, d in zip(starts, directions)]
 
     def _trace(self, start: Any, direction: Any, max_iterations: Optional[int]) -> np.ndarray:
         if max_iterations is not None:

@@ -162,8 +162,8 @@ class Worker {
     else
       heat.solve_squares();
     for (std::size_t m = 0; m < members.size(); ++m) {
-      const Outcome outcome =
-          collect(heat, m, patch, local[m], vertices, edge, wanted, radii_[members[m]], result[members[m]]);
+      const Outcome outcome = collect(heat, m, patch, local[m], unfolds(graph_, sources_[members[m]]), vertices, edge,
+                                      wanted, radii_[members[m]], result[members[m]]);
       if (outcome != Outcome::complete) return outcome;
     }
     return Outcome::complete;
@@ -183,11 +183,12 @@ class Worker {
   }
 
   /// Distances of the patch from its source number m, as those of a whole map (`LogMap::distance`).
-  void measure(const AffineHeat& heat, std::size_t m, const CsrGraph& patch, const Source& source, double root_tau,
-               double radius) {
+  /// @param by_front  unfolded (`unfolds`)
+  void measure(const AffineHeat& heat, std::size_t m, const CsrGraph& patch, const Source& source, bool by_front,
+               double root_tau, double radius) {
     const auto n = static_cast<std::size_t>(patch.size());
     distance_.resize(n);
-    if (graph_.is_delaunay()) {
+    if (by_front) {
       UnfoldingFront front(patch, stars_);
       front.add(source);
       front.run(radius);
@@ -201,14 +202,14 @@ class Worker {
   }
 
   /// The vertices within the radius, nearest first.
-  Outcome collect(const AffineHeat& heat, std::size_t m, const CsrGraph& patch, const Source& source,
+  Outcome collect(const AffineHeat& heat, std::size_t m, const CsrGraph& patch, const Source& source, bool by_front,
                   std::span<const Index> vertices, std::span<const Index> edge, double wanted, double radius,
                   Entries& entries) {
     const std::size_t n = vertices.size();
     phi_.resize(n * d_);
     for (std::size_t k = 0; k < n; ++k) heat.coordinates_at(m, static_cast<Index>(k), phi_.data() + k * d_);
     const double root_tau = std::sqrt(options_.heat.t_coef) * scales_.h(vertices[source.vertices().front().index]);
-    measure(heat, m, patch, source, root_tau * graph_.length_unit(), std::max(wanted, radius));
+    measure(heat, m, patch, source, by_front, root_tau * graph_.length_unit(), std::max(wanted, radius));
     order_.clear();
     for (std::size_t k = 0; k < n; ++k) {
       const auto vertex = static_cast<Index>(k);
