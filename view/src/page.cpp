@@ -181,6 +181,8 @@ PageSurface::~PageSurface() = default;
 
 const std::string& PageSurface::bundle() const noexcept { return impl_->bundle; }
 
+double PageSurface::scale() const noexcept { return impl_->camera.scale; }
+
 Vec3 PageSurface::to_page(const Vec3& position) const {
   const Vector3d x = impl_->to_page(position);
   return {x.x(), x.y(), x.z()};

@@ -111,8 +111,7 @@ class SurfaceBuilder {
     return sum.norm() > 0 ? sum.normalized() : own;
   }
 
-  std::uint32_t add(Index point, const Vector3d& position, const Vector3d& normal, const Vector3d& value,
-                    float known) {
+  std::uint32_t add(Index point, const Vector3d& position, const Vector3d& normal, const Vector3d& value, float known) {
     out_.points.push_back(point);
     out_.positions.push_back(position.cast<float>());
     out_.normals.push_back(normal.cast<float>());

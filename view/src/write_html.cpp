@@ -22,7 +22,9 @@ std::string base64(std::string_view data) {
   std::string out;
   out.reserve((size + 2) / 3 * 4);
   for (std::size_t i = 0; i < size; i += 3) {
-    const auto at = [&](std::size_t k) { return k < size ? static_cast<unsigned>(static_cast<unsigned char>(data[k])) : 0U; };
+    const auto at = [&](std::size_t k) {
+      return k < size ? static_cast<unsigned>(static_cast<unsigned char>(data[k])) : 0U;
+    };
     const unsigned word = at(i) << 16U | at(i + 1) << 8U | at(i + 2);
     out += digits[word >> 18U];
     out += digits[word >> 12U & 63U];
@@ -82,9 +84,9 @@ void fill_in(std::string_view page, const Values& values, const Write& write) {
 /// The page but for its data.
 Values fixed_values() {
   using namespace resources;
-  return {{"@STYLE@", style}, {"@PALETTE@", palette}, {"@THREE@", three}, {"@ORBIT_CONTROLS@", orbit_controls},
-          {"@DATA_JS@", data}, {"@PICK_JS@", pick}, {"@TEAR_JS@", tear}, {"@PAINT_JS@", paint},
-          {"@MARKS_JS@", marks}, {"@STAGE_JS@", stage}, {"@PANEL_JS@", panel}, {"@MAIN_JS@", main}};
+  return {{"@STYLE@", style},    {"@PALETTE@", palette}, {"@THREE@", three},    {"@ORBIT_CONTROLS@", orbit_controls},
+          {"@DATA_JS@", data},   {"@PICK_JS@", pick},    {"@TEAR_JS@", tear},   {"@PAINT_JS@", paint},
+          {"@MARKS_JS@", marks}, {"@STAGE_JS@", stage},  {"@PANEL_JS@", panel}, {"@MAIN_JS@", main}};
 }
 
 }  // namespace

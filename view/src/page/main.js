@@ -259,9 +259,9 @@ Ahm.Viewer = class {
     this.element("decal_turn_text").textContent = turn + "°";
     stage.set_decal(this.tool === "decal" ? this.decal : null, width, turn * Math.PI / 180);
     if (this.tool !== "decal" || !this.decal || !stage.map || !stage.map.decal) return;
-    const height = width * this.decal.image.height / this.decal.image.width, size = [width, height].map((x) => Ahm.number(this.panel.length_of(x), 4));
+    const height = width * this.decal.image.height / this.decal.image.width, size = Ahm.number(this.panel.length_of(Math.max(width, height)), 4);
     this.element("command").textContent =
-      stage.map.decal.replace("@IMAGE@", this.decal_name).replace("@SIZE@", size.join(",")).replace("@ROTATE@", turn);
+      stage.map.decal.replace("@IMAGE@", this.decal_name).replace("@SIZE@", size).replace("@ANGLE@", turn);
   }
 
   load_decal(file) {

@@ -41,6 +41,8 @@ class PageSurface {
   /// @param more   further entries of the JSON text: an object, as text
   /// @throws as `draw_picture`
   std::string map_bundle(const Scene& scene, const PictureOptions& options, const std::string& more = "{}") const;
+  /// World units in one of the page's.
+  double scale() const noexcept;
   /// A position in the page's units.
   Vec3 to_page(const Vec3& position) const;
 
