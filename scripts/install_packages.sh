@@ -11,6 +11,7 @@ program=(
   libnanoflann-dev                                            # neighbour search
   libcli11-dev nlohmann-json3-dev libfmt-dev                  # the program
   libstb-dev libjs-three                                      # pictures
+  libcpp-httplib-dev pkgconf                                  # ahm view
   zlib1g-dev                                                  # files compressed with gzip
 )
 tests=(
@@ -20,6 +21,7 @@ tests=(
   libminizip-dev                                              # .npz files
   libgtest-dev libbenchmark-dev                               # tests and benchmarks
   libcgal-dev python3-matplotlib                              # exact distances and plots of the experiments
+  chromium chromium-driver python3-selenium                   # the viewer in a browser
   pybind11-dev python3-pybind11 python3-dev python3-numpy python3-scipy python3-pytest  # the Python package and its tests
 )
 checks=("${tests[@]}" clang-format clang-tidy)
