@@ -44,7 +44,19 @@ TEST_P(Interrupt, EndsTheRunInAnyStageAndLeavesNothingHalfDone) {
   EXPECT_GT(interrupted, 0);
 }
 
-INSTANTIATE_TEST_SUITE_P(BySignal, Interrupt, testing::Values(SIGINT, SIGTERM));
+INSTANTIATE_TEST_SUITE_P(BySignal, Interrupt, testing::Values(SIGINT, SIGTERM, SIGHUP));
+
+TEST(Killed, LeavesWhatTheNextRunRemoves) {
+  Folder folder;
+  const auto input = folder.write("sphere.xyz", xyz(sphere(2000)));
+  const Running running = start({"logmap", input, "--source", "0", "-o", folder / "map.csv", "--verbose"});
+  read_until(running, "read");
+  kill(running.pid, SIGKILL);
+  finish(running);
+  folder.write(".ahm-" + std::to_string(running.pid) + "-0.tmp", "index,x,");
+  EXPECT_EQ(run({"logmap", input, "--source", "0", "-o", folder / "map.csv"}).status, 0);
+  EXPECT_EQ(folder.files(), (Words{"map.csv", "sphere.xyz"}));
+}
 
 TEST(ClosedPipe, IsNoSuccessAndNoNoise) {
   Folder folder;

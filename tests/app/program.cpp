@@ -75,14 +75,22 @@ Running start(const std::vector<std::string>& arguments, bool on_terminal) {
   posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
   posix_spawn_file_actions_adddup2(&actions, out[1], 1);
   posix_spawn_file_actions_adddup2(&actions, err[1], 2);
+  posix_spawnattr_t attributes;  // SIGHUP as it is, also where the tests run under nohup
+  posix_spawnattr_init(&attributes);
+  sigset_t hangup;
+  sigemptyset(&hangup);
+  sigaddset(&hangup, SIGHUP);
+  posix_spawnattr_setsigdefault(&attributes, &hangup);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF);
   std::vector<std::string> words = arguments;
   words.insert(words.begin(), AHM_PROGRAM);
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
   Running running{-1, out[0], err[0]};
-  const int failure = posix_spawn(&running.pid, AHM_PROGRAM, &actions, nullptr, argv.data(), environ);
+  const int failure = posix_spawn(&running.pid, AHM_PROGRAM, &actions, &attributes, argv.data(), environ);
   posix_spawn_file_actions_destroy(&actions);
+  posix_spawnattr_destroy(&attributes);
   close(out[1]);
   close(err[1]);
   if (failure != 0) throw std::runtime_error("cannot start " AHM_PROGRAM);

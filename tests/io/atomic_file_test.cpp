@@ -1,6 +1,7 @@
 #include "ahm/io/atomic_file.hpp"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -123,6 +124,42 @@ TEST_F(AtomicFileTest, IsRemovedByASignalHandler) {
   ASSERT_EQ(::waitpid(child, &status, 0), child);
   EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
   EXPECT_EQ(files_left(), 0u);
+}
+
+/// A process that has been and is no more.
+pid_t dead_process() {
+  const pid_t child = ::fork();
+  if (child == 0) ::_exit(0);
+  ::waitpid(child, nullptr, 0);
+  return child;
+}
+
+TEST_F(AtomicFileTest, RemovesWhatKilledProcessesLeft) {
+  const std::string dead = ".ahm-" + std::to_string(dead_process());
+  make(dead + "-0.tmp", "half");
+  make(dead + "-17.tmp", "half");
+  AtomicFile file(path("a.txt"));
+  file.commit();
+  EXPECT_EQ(files_left(), 1u);
+}
+
+TEST_F(AtomicFileTest, LeavesTheFilesOfOthersAlone) {
+  const std::string dead = ".ahm-" + std::to_string(dead_process());
+  const std::string locked = dead + "-0.tmp";  // as by a process on another machine
+  const std::vector<std::string> names{locked,          ".ahm-" + std::to_string(::getpid()) + "-900.tmp",
+                                       ".ahm-1-0.tmp",  ".ahm-0-0.tmp",
+                                       ".ahm--5-0.tmp", dead + "-0.x",
+                                       ".ahm-x-0.tmp",  "ahm-2-0.tmp",
+                                       ".ahm-.tmp",     ".ahm-99999999999999-0.tmp"};
+  for (const std::string& name : names) make(name, "precious");
+  std::filesystem::create_directory(path(dead + "-3.tmp"));
+  const int descriptor = ::open(path(locked).c_str(), O_RDONLY);
+  ASSERT_EQ(::flock(descriptor, LOCK_EX | LOCK_NB), 0);
+  AtomicFile file(path("a.txt"));
+  file.commit();
+  ::close(descriptor);
+  for (const std::string& name : names) EXPECT_EQ(contents(path(name)), "precious") << name;
+  EXPECT_EQ(files_left(), names.size() + 2);
 }
 
 TEST_F(AtomicFileTest, ForgetsCommittedFiles) {

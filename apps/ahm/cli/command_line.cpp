@@ -27,7 +27,7 @@ constexpr const char* main_footer =
     "A logarithmic map flattens a surface around a source point: each point gets the direction and the length\n"
     "of the shortest path that leads to it from the source.\n"
     "\n"
-    "Exit status: 0 success, 1 the work failed, 2 the command line is wrong, 130 or 143 interrupted.";
+    "Exit status: 0 success, 1 the work failed, 2 the command line is wrong, 129, 130 or 143 interrupted.";
 
 std::function<void()> print_later(std::string text) {
   return [text = std::move(text)] { print(text); };

@@ -23,11 +23,15 @@ extern "C" void on_signal(int number) {
 void install_interrupt_handling() {
   signal(SIGPIPE, SIG_IGN);  // writing reports EPIPE
   signal(SIGXFSZ, SIG_IGN);  // writing reports EFBIG
-  struct sigaction action {};
+  constexpr int ending[] = {SIGINT, SIGTERM, SIGHUP};
+  struct sigaction action {
+  }, before{};
   action.sa_handler = on_signal;
   sigemptyset(&action.sa_mask);
-  for (int number : {SIGINT, SIGTERM}) sigaddset(&action.sa_mask, number);
-  for (int number : {SIGINT, SIGTERM}) sigaction(number, &action, nullptr);
+  for (const int number : ending) sigaddset(&action.sa_mask, number);
+  for (const int number : ending)
+    if (number != SIGHUP || sigaction(number, nullptr, &before) != 0 || before.sa_handler != SIG_IGN)  // nohup
+      sigaction(number, &action, nullptr);
 }
 
 }  // namespace ahm::app

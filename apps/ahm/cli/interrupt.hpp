@@ -4,7 +4,7 @@
 
 namespace ahm::app {
 
-/// On SIGINT and SIGTERM removes unfinished output files and ends the process with 128 + the signal's number; makes
+/// On SIGINT, SIGTERM and (unless it is ignored, as under nohup) SIGHUP removes unfinished output files and ends the process with 128 + the signal's number; makes
 /// writing to a closed pipe, or past a limit of the file size, an error instead of a signal. Call once, before any
 /// thread is started.
 ///

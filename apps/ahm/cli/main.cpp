@@ -1,6 +1,8 @@
 /// \file
 /// The program ahm: reads the command line, runs the command, turns exceptions into messages and exit statuses.
 
+#include <unistd.h>
+
 #include <exception>
 #include <new>
 #include <stdexcept>
@@ -25,9 +27,7 @@ int report(const std::string& message, int status) {
   return status;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) try {
+int run(int argc, char** argv) try {
   install_interrupt_handling();
   parse_command_line(argc, argv)();
   return 0;
@@ -46,3 +46,9 @@ int main(int argc, char** argv) try {
 } catch (...) {
   return report("unknown failure", failed);
 }
+
+}  // namespace
+
+// Everything is written by now. Ends without the destructors of libraries: OpenBLAS would wait for its threads, which never
+// end where address space does not suffice for their buffers.
+int main(int argc, char** argv) { _exit(run(argc, argv)); }

@@ -79,6 +79,7 @@ constexpr Advice advices[] = {
     {"twisted_faces", "use --discretization polygons"},
     {"collinear_faces", "remove them, or use --method heat"},
     {"no_flat_triangles", "use --method heat"},
+    {"windows_without_end", "repair the mesh, or use --method heat"},
     {"polygons_not_refined", "use --discretization refined, or --method heat"},
     {"no_bending_direction", "give the axis as X,Y,Z"},
     {"row_left_out", "--voxel, --outliers, --drop-nan or --local removed it; choose another one, or write x,y,z"},

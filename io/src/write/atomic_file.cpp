@@ -1,7 +1,9 @@
 #include "ahm/io/atomic_file.hpp"
 
+#include <dirent.h>
 #include <fcntl.h>
 #include <signal.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -9,8 +11,12 @@
 #include <array>
 #include <atomic>
 #include <cerrno>
+#include <charconv>
 #include <cstring>
 #include <ctime>
+#include <memory>
+#include <mutex>
+#include <set>
 #include <system_error>
 #include <utility>
 
@@ -75,11 +81,53 @@ class NoPipeSignal {
   bool was_pending_ = false;
 };
 
+constexpr std::string_view prefix = ".ahm-", suffix = ".tmp";
+
 /// A name nobody else uses: process and running number, then a retry should a leftover have it.
 std::filesystem::path temporary_name(const std::filesystem::path& target) {
   static std::atomic<unsigned> running{0};
-  const std::string name = ".ahm-" + std::to_string(::getpid()) + "-" + std::to_string(running++) + ".tmp";
-  return target.parent_path() / name;
+  std::string name(prefix);
+  name += std::to_string(::getpid()) + "-" + std::to_string(running++);
+  return target.parent_path() / name.append(suffix);
+}
+
+/// The process in a temporary name; 0 where it is none.
+pid_t process_of(std::string_view name) {
+  if (!name.starts_with(prefix) || !name.ends_with(suffix)) return 0;
+  name.remove_prefix(prefix.size());
+  pid_t process = 0;
+  const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), process);
+  return error == std::errc() && *end == '-' && process > 0 ? process : 0;
+}
+
+/// Whether a process is still there, on this machine.
+bool is_alive(pid_t process) { return ::kill(process, 0) == 0 || errno != ESRCH; }
+
+/// Removes what processes that were killed left half written in a directory. Nobody has a file that is no longer locked: on
+/// file systems that are shared, its process may live on another machine.
+void remove_leftovers(const std::filesystem::path& directory) {
+  const std::unique_ptr<DIR, int (*)(DIR*)> entries(::opendir(directory.empty() ? "." : directory.c_str()), ::closedir);
+  if (!entries) return;
+  const int folder = ::dirfd(entries.get());
+  while (const dirent* entry = ::readdir(entries.get())) {
+    const pid_t process = process_of(entry->d_name);
+    if (process == 0 || is_alive(process)) continue;
+    const int file = ::openat(folder, entry->d_name, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+    if (file < 0) continue;
+    struct stat info {};
+    if (::fstat(file, &info) == 0 && S_ISREG(info.st_mode) && info.st_uid == ::geteuid() &&
+        ::flock(file, LOCK_EX | LOCK_NB) == 0)
+      ::unlinkat(folder, entry->d_name, 0);
+    ::close(file);
+  }
+}
+
+/// Once for each directory.
+void tidy_up(const std::filesystem::path& directory) {
+  static std::mutex mutex;
+  static std::set<std::filesystem::path> done;
+  const std::scoped_lock lock(mutex);
+  if (done.insert(directory).second) remove_leftovers(directory);
 }
 
 }  // namespace
@@ -106,6 +154,7 @@ AtomicFile::AtomicFile(const std::filesystem::path& path) : path_(path), target_
     if (descriptor_ < 0) fail(errno);
     return;
   }
+  tidy_up(target_.parent_path());
   for (int tries = 0; descriptor_ < 0; ++tries) {
     temporary_ = temporary_name(target_);
     // The name is registered first: a signal between the two steps finds nothing to delete, which is harmless.
@@ -117,6 +166,7 @@ AtomicFile::AtomicFile(const std::filesystem::path& path) : path_(path), target_
     forget(slot_);
     if (error != EEXIST || tries == 100) fail(error);
   }
+  ::flock(descriptor_, LOCK_EX | LOCK_NB);  // see remove_leftovers
   if (exists) ::fchmod(descriptor_, info.st_mode & 0777);
 }
 

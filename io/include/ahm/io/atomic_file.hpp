@@ -17,7 +17,7 @@
 namespace ahm::io {
 
 /// Writes to a temporary name in the target's directory and renames on `commit`; without a commit nothing is left
-/// behind.
+/// behind. What a process that was killed left in that directory is removed when the next one writes there.
 ///
 /// A target that is a pipe or a device (/dev/stdout) is written to directly. A symbolic link is followed, and the file
 /// it leads to is replaced, with its permissions kept.
@@ -51,7 +51,7 @@ class AtomicFile {
 };
 
 /// Deletes the temporary files of all uncommitted `AtomicFile`s of the process. Async-signal-safe: for a handler of
-/// SIGINT or SIGTERM that ends the process afterwards.
+/// SIGINT, SIGTERM or SIGHUP that ends the process afterwards.
 void remove_unfinished_files() noexcept;
 
 }  // namespace ahm::io

@@ -1,12 +1,21 @@
 #include "heat/blas_control.hpp"
 
 #include <dlfcn.h>
+#include <sys/mman.h>
 
 #include <climits>
+#include <cmath>
+#include <condition_variable>
 #include <cstdlib>
 #include <exception>
+#include <fstream>
 #include <mutex>
+#include <system_error>
 #include <thread>
+#include <vector>
+
+#include "ahm/error.hpp"
+#include "maps/memory_limits.hpp"
 
 namespace ahm {
 namespace {
@@ -38,12 +47,73 @@ OneBlasThread::~OneBlasThread() {
   if (--users == 0 && set && threads_before > 1) set(threads_before);
 }
 
+namespace {
+
+/// OpenBLAS has room for 50 at least and complains on standard error when it is exceeded; twice this number may be held.
+constexpr int most_buffers = 16;
+constexpr std::size_t buffer_bytes = std::size_t{128} << 20;
+constexpr std::size_t room_for_others = std::size_t{32} << 20;  ///< who allocate between our trial and OpenBLAS's
+
+std::condition_variable buffer_is_free;
+int buffers = 0;        // that OpenBLAS keeps for us
+int buffers_taken = 0;  // by callers
+
+/// Whether the system may refuse address space before memory is used up.
+bool address_space_is_limited() {
+  static const bool strict = [] {
+    int policy = 0;
+    return std::ifstream("/proc/sys/vm/overcommit_memory") >> policy && policy == 2;
+  }();
+  return strict || std::isfinite(resource_limit());
+}
+
+bool there_is_room_for(std::size_t bytes) {
+  void* const trial = ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  return trial != MAP_FAILED && ::munmap(trial, bytes) == 0;
+}
+
+/// Makes OpenBLAS keep one buffer more, if there is room. Callers at work may hold buffers or not, so as many as there are
+/// are held at once here, and there must be room for all callers to be at work.
+bool add_buffer(void* (*take)(int), void (*give_back)(void*)) {
+  if (!there_is_room_for((static_cast<std::size_t>(buffers_taken) + 1) * buffer_bytes + room_for_others)) return false;
+  std::vector<void*> held;
+  held.reserve(static_cast<std::size_t>(buffers) + 1);
+  while (held.size() <= static_cast<std::size_t>(buffers)) held.push_back(take(0));
+  for (void* buffer : held) give_back(buffer);
+  ++buffers;
+  return true;
+}
+
+}  // namespace
+
+BlasBuffer::BlasBuffer() : counted_(false) {
+  static auto* const take = find_function<void*(int)>("blas_memory_alloc");
+  static auto* const give_back = find_function<void(void*)>("blas_memory_free");
+  if (!take || !give_back || !address_space_is_limited()) return;
+  std::unique_lock lock(mutex);
+  if (buffers_taken == buffers && buffers < most_buffers) add_buffer(take, give_back);
+  if (buffers == 0)
+    throw ResourceExhausted("out of memory: the BLAS has no room for its working buffer of 128 MB of address space");
+  buffer_is_free.wait(lock, [] { return buffers_taken < buffers; });
+  ++buffers_taken;
+  counted_ = true;
+}
+
+BlasBuffer::~BlasBuffer() {
+  if (!counted_) return;
+  {
+    std::scoped_lock lock(mutex);
+    --buffers_taken;
+  }
+  buffer_is_free.notify_one();
+}
+
 void without_openmp_regions(const std::function<void()>& work) {
   static auto* const set_levels = find_function<void(int)>("omp_set_max_active_levels");
   thread_local bool done = false;
   if (done) return work();
   std::exception_ptr error;
-  std::jthread([&] {
+  const auto run = [&] {
     done = true;
     if (set_levels) set_levels(0);
     try {
@@ -51,7 +121,12 @@ void without_openmp_regions(const std::function<void()>& work) {
     } catch (...) {
       error = std::current_exception();
     }
-  }).join();
+  };
+  try {
+    std::jthread(run).join();
+  } catch (const std::system_error&) {
+    throw ResourceExhausted("out of memory: there is no room for a thread to factor on");
+  }
   if (error) std::rethrow_exception(error);
 }
 

@@ -18,9 +18,25 @@ class OneBlasThread {
   OneBlasThread& operator=(const OneBlasThread&) = delete;
 };
 
+/// While an object of this class lives, its thread may call the BLAS; not to be nested. OpenBLAS takes a working buffer of
+/// 128 MB of address space for each call at a time, keeps it for later calls, and where it cannot have one tries for ever.
+/// So where address space is limited, buffers are had before calls are made, and callers wait for each other where there
+/// are fewer than callers. Without a limit, and with other BLAS libraries, this does nothing.
+class BlasBuffer {
+ public:
+  /// @throws ResourceExhausted where there is no room for a single buffer
+  BlasBuffer();
+  ~BlasBuffer();
+  BlasBuffer(const BlasBuffer&) = delete;
+  BlasBuffer& operator=(const BlasBuffer&) = delete;
+
+ private:
+  bool counted_;
+};
+
 /// Runs `work` where CHOLMOD's OpenMP regions stay on one thread, since at our sizes they cost more than they give: on a
 /// thread of its own, so that the caller's settings are left alone, or at once where that has been done already. Rethrows
-/// what it throws.
+/// what it throws, and ResourceExhausted where there is no room for a thread.
 void without_openmp_regions(const std::function<void()>& work);
 
 /// Configuration string of OpenBLAS, else the file that provides `dgemm`.

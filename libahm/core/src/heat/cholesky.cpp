@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <new>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -43,6 +43,14 @@ class Common {
       throw Error(std::string(what) + ": CHOLMOD failed with status " + std::to_string(common_.status));
   }
 
+  /// What CHOLMOD allocated. A failure may be forgotten: each allocation that succeeds resets the status.
+  template <class Object>
+  Object* check(Object* object, const char* what) const {
+    check(what);
+    if (object == nullptr) throw ResourceExhausted(std::string(what) + ": out of memory in the sparse factorization");
+    return object;
+  }
+
  private:
   cholmod_common common_;
 };
@@ -55,6 +63,24 @@ struct FreeFactor {
   }
 };
 using FactorPointer = std::unique_ptr<cholmod_factor, FreeFactor>;
+
+/// A dense matrix of CHOLMOD's, or none yet.
+class Dense {
+ public:
+  explicit Dense(Common& common) : common_(common) {}
+  Dense(Common& common, std::size_t rows, std::size_t columns, int xtype, const char* what)
+      : common_(common),
+        matrix_(common.check(cholmod_l_allocate_dense(rows, columns, rows, xtype, common.get()), what)) {}
+  ~Dense() { cholmod_l_free_dense(&matrix_, common_.get()); }
+  Dense(const Dense&) = delete;
+  Dense& operator=(const Dense&) = delete;
+
+  cholmod_dense** handle() { return &matrix_; }
+
+ private:
+  Common& common_;
+  cholmod_dense* matrix_ = nullptr;
+};
 
 /// A view of the matrix in CHOLMOD's terms; nothing is copied.
 cholmod_sparse view(const SparseUpper& matrix, bool with_values) {
@@ -142,6 +168,8 @@ double largest(const std::vector<double>& v) {
 
 }  // namespace
 
+constexpr const char* solving = "triangular solve";
+
 struct SymbolicCholesky::Impl {
   FactorPointer L;
   bool supernodal;
@@ -155,8 +183,7 @@ SymbolicCholesky::SymbolicCholesky(const SparseUpper& pattern, Ordering ordering
   common.get()->postorder = 1;
   cholmod_sparse matrix = view(pattern, false);
   impl_->supernodal = supernodal;
-  impl_->L.reset(cholmod_l_analyze(&matrix, common.get()));
-  common.check("symbolic analysis");
+  impl_->L.reset(common.check(cholmod_l_analyze(&matrix, common.get()), "symbolic analysis"));
 }
 
 SymbolicCholesky::SymbolicCholesky(const SparseUpper& blocks, const SymbolicCholesky& scalar, int width)
@@ -173,8 +200,8 @@ SymbolicCholesky::SymbolicCholesky(const SparseUpper& blocks, const SymbolicChol
   common.get()->method[0].ordering = CHOLMOD_GIVEN;
   common.get()->postorder = 0;  // the scalar ordering is postordered already
   cholmod_sparse matrix = view(blocks, false);
-  impl_->L.reset(cholmod_l_analyze_p(&matrix, order.data(), nullptr, 0, common.get()));
-  common.check("symbolic analysis");
+  impl_->L.reset(
+      common.check(cholmod_l_analyze_p(&matrix, order.data(), nullptr, 0, common.get()), "symbolic analysis"));
 }
 
 SymbolicCholesky::~SymbolicCholesky() = default;
@@ -191,6 +218,27 @@ struct CholeskyFactor::Impl {
       throw NotPositiveDefinite(std::string("operator ") + name + " is not positive definite (column " +
                                 std::to_string(L->minor) + " of " + std::to_string(L->n) +
                                 " in elimination order): check the graph's weights; negative ones can cause this");
+  }
+
+  void solve(cholmod_dense& X, Dense& solution, Dense& Y, Dense& E, Common& common) const {
+    const int done = cholmod_l_solve2(CHOLMOD_A, L.get(), &X, nullptr, solution.handle(), nullptr, Y.handle(),
+                                      E.handle(), common.get());
+    const cholmod_dense& result = *common.check(*solution.handle(), solving);
+    if (!done) throw Error(std::string(solving) + ": CHOLMOD failed");
+    std::memcpy(X.x, result.x, X.nzmax * (is_complex ? 2 : 1) * sizeof(double));
+  }
+
+  void solve_simplicial(cholmod_dense& X, Common& common) const {
+    Dense solution(common), Y(common), E(common);
+    solve(X, solution, Y, E, common);
+  }
+
+  /// With all workspace made beforehand: CHOLMOD's own code for it uses what it could not allocate.
+  void solve_supernodal(cholmod_dense& X, Common& common) const {
+    Dense solution(common, X.nrow, X.ncol, X.xtype, solving), Y(common, X.nrow, X.ncol, X.xtype, solving),
+        E(common, X.ncol, L->maxesize, X.xtype, solving);
+    const BlasBuffer buffer;
+    solve(X, solution, Y, E, common);
   }
 
   /// CHOLMOD reports success on some broken factorizations, so one solve with a known right-hand side is checked.
@@ -217,10 +265,13 @@ CholeskyFactor::CholeskyFactor(const SparseUpper& matrix, const SymbolicCholesky
   Common common(symbolic.impl_->supernodal);
   impl_->rows = matrix.size();
   impl_->is_complex = matrix.is_complex;
-  impl_->L.reset(cholmod_l_copy_factor(symbolic.impl_->L.get(), common.get()));
-  common.check(name);
+  impl_->L.reset(common.check(cholmod_l_copy_factor(symbolic.impl_->L.get(), common.get()), name));
   cholmod_sparse K = view(matrix, true);
-  cholmod_l_factorize(&K, impl_->L.get(), common.get());
+  {
+    std::optional<BlasBuffer> buffer;
+    if (impl_->L->is_super) buffer.emplace();
+    if (!cholmod_l_factorize(&K, impl_->L.get(), common.get())) common.check(name);
+  }
   common.check(name);
   impl_->check_pivots(*common.get(), name);
   impl_->check_residual(*this, matrix, name);
@@ -234,14 +285,7 @@ void CholeskyFactor::solve(std::span<double> X, Offset columns) const {
   OneBlasThread one_thread;
   Common common;
   cholmod_dense B = dense_view(X, impl_->rows, columns, impl_->is_complex);
-  cholmod_dense *solution = nullptr, *Y = nullptr, *E = nullptr;
-  const int done = cholmod_l_solve2(CHOLMOD_A, impl_->L.get(), &B, nullptr, &solution, nullptr, &Y, &E, common.get());
-  if (done && solution) std::memcpy(X.data(), solution->x, X.size_bytes());
-  cholmod_l_free_dense(&solution, common.get());
-  cholmod_l_free_dense(&Y, common.get());
-  cholmod_l_free_dense(&E, common.get());
-  common.check("triangular solve");
-  if (!done) throw Error("triangular solve: CHOLMOD failed");
+  impl_->L->is_super ? impl_->solve_supernodal(B, common) : impl_->solve_simplicial(B, common);
 }
 
 Offset CholeskyFactor::nonzeros() const noexcept {

@@ -341,14 +341,28 @@ void Propagation::see_targets(const Window& w, double sigma) {
   }
 }
 
+namespace {
+
+/// Many times what has been seen of any mesh, and no less than the bound of [MMP87]. Windows beyond run in circles, where
+/// lengths are below the rounding of distances.
+double most_windows(double faces) { return 1e6 + faces * faces; }
+
+}  // namespace
+
 void Propagation::run(const Progress& progress) {
-  const double all = static_cast<double>(distance_.size());
+  const double all = static_cast<double>(distance_.size()), most = most_windows(surface_.face_count());
+  Offset chunks = 0;
   while (!windows_.empty() || !bends_.empty()) {
     progress.step("windows", met_ / all);
     if (windows_.key() > horizon_ || (only_targets_ && targets_final())) break;
     while (!windows_.bucket_empty() || !bends_.bucket_empty()) {
       while (!bends_.bucket_empty()) bends_.drain_chunk([this](const Bend& b) { bend(b); });
-      if (!windows_.bucket_empty()) windows_.drain_chunk([this](const Window& w) { cross_face(w); });
+      if (windows_.bucket_empty()) continue;
+      windows_.drain_chunk([this](const Window& w) { cross_face(w); });
+      if (static_cast<double>(made_) > most)
+        throw InvalidGeometry("windows_without_end", "windows without end: lengths of sides differ too much",
+                              "repair the mesh, or use heat");
+      if (++chunks % 65536 == 0) progress.step("windows", met_ / all);
     }
     windows_.advance();
     bends_.advance();

@@ -104,7 +104,8 @@ class ExactMap {
 /// Shortest paths on the polyhedral surface, exact up to rounding, by the improved algorithm of Chen and Han: windows,
 /// unfolded from face to face [CH90], discarded where a vertex is known to be nearer [XW09], in the order of buckets.
 /// @param sources  one or more points; each keeps its own axes
-/// @throws InvalidArgument (no source, a point outside its face, radius), ResourceExhausted, Cancelled
+/// @throws InvalidArgument (no source, a point outside its face, radius), InvalidGeometry (fault windows_without_end: lengths
+/// below the rounding of distances), ResourceExhausted, Cancelled
 ExactMap exact_map(const PolyhedralSurface& surface, std::span<const MeshPoint> sources,
                    const ExactOptions& options = {});
 ExactMap exact_map(const PolyhedralSurface& surface, const MeshPoint& source, const ExactOptions& options = {});

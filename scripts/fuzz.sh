@@ -1,0 +1,36 @@
+#!/usr/bin/env bash
+# Fuzzes: fuzz.sh SECONDS [NAME ...], each NAME of tests/fuzz (all without) for SECONDS of time on one core, as many at once as
+# there are cores. A finding ends it and is left in build/fuzz/findings; build/fuzz/bin/fuzz_NAME FILE runs it again. Starts from
+# generated seeds and tests/fuzz/corpus; what is new is kept in build/fuzz/corpus.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+seconds="${1:?fuzz.sh SECONDS [NAME ...]}"
+shift
+
+cmake --preset fuzz >/dev/null
+if [ "$#" -eq 0 ]; then
+  cmake --build --preset fuzz
+  mapfile -t names < <(cd build/fuzz/bin && printf '%s\n' fuzz_* | sed 's/^fuzz_//')
+else
+  names=("$@")
+  cmake --build build/fuzz --target make_seeds "${names[@]/#/fuzz_}"
+fi
+cd build/fuzz
+bin/make_seeds seeds
+mkdir -p findings
+fuzz() {
+  name="$1"
+  folders=("corpus/$name" "seeds/$name")
+  [ ! -d "../../tests/fuzz/corpus/$name" ] || folders+=("../../tests/fuzz/corpus/$name")
+  mkdir -p "${folders[@]:0:2}" "findings/$name"
+  # A case may take minutes on a busy machine; 4 GB are more than the inputs' bounds allow.
+  if ! "bin/fuzz_$name" -max_total_time="$2" -timeout=300 -rss_limit_mb=4096 -malloc_limit_mb=2048 -max_len=16384 \
+    -print_final_stats=1 -artifact_prefix="findings/$name/" "${folders[@]}" >"findings/$name.log" 2>&1; then
+    echo "$name: a finding"
+    tail -n 40 "findings/$name.log"
+    return 1
+  fi
+  echo "$name: $(sed -n 's/^stat::number_of_executed_units: *//p' "findings/$name.log") runs, no finding"
+}
+export -f fuzz
+printf '%s\n' "${names[@]}" | xargs -P "$(nproc)" -I '{}' bash -c "fuzz '{}' $seconds"

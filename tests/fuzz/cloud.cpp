@@ -1,0 +1,27 @@
+// Point clouds, with and without normals.
+#include "ahm/pointcloud/point_cloud_surface.hpp"
+#include "maps.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace ahm;
+  return fuzz::allow_refusals([&] {
+    fuzz::Bytes bytes(data, size);
+    const std::uint8_t way = bytes.byte();
+    std::vector<Vec3> points(bytes.byte()), normals((way & 2) == 0 ? 0 : points.size());
+    for (Vec3& point : points) point = bytes.point((way & 1) == 0);
+    for (Vec3& normal : normals) normal = bytes.point((way & 1) == 0);
+    pointcloud::CloudOptions options{.threads = 1};
+    if ((way & 4) != 0) options.k = bytes.number(40);
+    options.normal_signs = std::array{pointcloud::NormalSigns::automatic, pointcloud::NormalSigns::oriented,
+                                      pointcloud::NormalSigns::unoriented}[(way >> 3) % 3];
+    options.drop_non_finite = (way & 32) == 0;
+    const auto surface = pointcloud::PointCloudSurface::build(points, normals, options);
+    validate(surface.graph());
+    (void)surface.report();
+    (void)surface.warnings();
+    fuzz::solve(surface.graph(), bytes);
+    const LogMapSolver solver(surface.graph(), {.threads = 1});
+    const Row row(bytes.number(static_cast<Index>(points.size()) - 1));
+    (void)surface.on_rows(solver.solve(surface.source(row).source));
+  });
+}

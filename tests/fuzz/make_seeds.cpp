@@ -1,0 +1,265 @@
+// Writes the seeds of all fuzzers: make_seeds FOLDER. FOLDER/NAME/... are the seeds of fuzz_NAME.
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <string>
+
+#include "ahm/io/formats.hpp"
+#include "ahm/io/textured_mesh.hpp"
+#include "ahm/io/write.hpp"
+#include "ahm/testing/clouds.hpp"
+#include "ahm/testing/polygon_meshes.hpp"
+#include "ahm/testing/triangle_meshes.hpp"
+
+namespace {
+
+using namespace ahm;
+
+class Seeds {
+ public:
+  explicit Seeds(std::filesystem::path folder) : folder_(std::move(folder)) {}
+
+  std::filesystem::path file(const std::string& fuzzer, const std::string& name) const {
+    std::filesystem::create_directories(folder_ / fuzzer);
+    return folder_ / fuzzer / name;
+  }
+  void add(const std::string& fuzzer, const std::string& name, const std::string& bytes) const {
+    std::ofstream(file(fuzzer, name), std::ios::binary) << bytes;
+  }
+
+ private:
+  std::filesystem::path folder_;
+};
+
+template <class Number>
+void put(std::string& bytes, Number number) {
+  bytes.append(reinterpret_cast<const char*>(&number), sizeof number);
+}
+
+template <class... Bytes>
+std::string bytes_of(Bytes... bytes) {
+  return {static_cast<char>(bytes)...};
+}
+
+void put_points(std::string& bytes, const std::vector<Vec3>& points) {
+  for (const Vec3& point : points)
+    for (const double x : point) put(bytes, x);
+}
+
+/// Quarters, as Bytes::coordinate reads them.
+void put_coarse(std::string& bytes, const std::vector<Vec3>& points) {
+  for (const Vec3& point : points)
+    for (const double x : point) put(bytes, static_cast<std::int8_t>(std::lround(32 * x)));
+}
+
+std::string triangles(const test::Mesh& mesh, std::uint8_t way, bool count_from_one) {
+  const std::uint8_t less = count_from_one ? 1 : 0;
+  std::string bytes = bytes_of(way, mesh.positions.size() - less);
+  (way & 1) == 0 ? put_coarse(bytes, mesh.positions) : put_points(bytes, mesh.positions);
+  bytes += bytes_of(mesh.faces.size() - less);
+  for (const Triangle& face : mesh.faces)
+    for (const Index corner : face) put(bytes, static_cast<std::uint16_t>(corner));
+  return bytes + std::string(40, '\1');
+}
+
+void add_meshes(const Seeds& seeds) {
+  const std::vector<std::pair<std::string, test::Mesh>> meshes{{"icosahedron", test::icosphere(1)},
+                                                               {"hexagon", test::hexagon(2)},
+                                                               {"square", test::flat_square(5)},
+                                                               {"moebius", test::moebius_mesh(12, 1)},
+                                                               {"folded", test::folded_strip(5)}};
+  for (const auto& [name, mesh] : meshes) {
+    if (mesh.positions.size() > 32 || mesh.faces.size() > 60) continue;
+    for (const std::uint8_t way : {0, 1}) {
+      seeds.add("triangles", name + std::to_string(way), triangles(mesh, way, false));
+      seeds.add("exact", name + std::to_string(way), triangles(mesh, way, true));
+    }
+    std::string bytes = bytes_of(0, mesh.positions.size(), mesh.faces.size());
+    for (std::size_t i = 0; i <= mesh.positions.size(); ++i) put(bytes, static_cast<std::int8_t>(i % 3));
+    for (const Triangle& face : mesh.faces)
+      for (const Index corner : face) put(bytes, static_cast<std::uint16_t>(corner));
+    seeds.add("lengths", name, bytes + std::string(20, '\1'));
+  }
+}
+
+void add_polygons(const Seeds& seeds) {
+  const std::vector<std::pair<std::string, test::Polygons>> meshes{{"grid", test::quad_grid(5)},
+                                                                   {"bricks", test::brick_wall(3)},
+                                                                   {"ells", test::l_shapes(2)},
+                                                                   {"cube", test::cube_sphere(2)},
+                                                                   {"moebius", test::moebius_quads(9, 1)}};
+  for (const auto& [name, mesh] : meshes) {
+    if (mesh.vertices() > 39 || mesh.faces() > 59) continue;
+    for (const std::uint8_t way : {0, 1, 32, 33, 64, 65}) {
+      std::string bytes = bytes_of(way, mesh.vertices());
+      (way & 1) == 0 ? put_coarse(bytes, mesh.positions) : put_points(bytes, mesh.positions);
+      bytes += bytes_of(mesh.faces());
+      for (Index f = 0; f < mesh.faces(); ++f) {
+        bytes += bytes_of(mesh.face(f).size());
+        for (const Index corner : mesh.face(f)) put(bytes, static_cast<std::uint16_t>(corner));
+      }
+      seeds.add("polygons", name + std::to_string(way), bytes + std::string(20, '\1'));
+    }
+  }
+}
+
+void add_clouds(const Seeds& seeds) {
+  for (const auto& [name, cloud] : {std::pair<std::string, test::Cloud>{"flat", test::flat_cloud(80)},
+                                    {"sphere", test::even_sphere(120)},
+                                    {"moebius", test::moebius_cloud(150)}})
+    for (const std::uint8_t way : {0, 1, 2, 3}) {
+      if (cloud.points.size() > 255) continue;
+      std::string bytes = bytes_of(way, cloud.points.size());
+      for (const auto* part : {&cloud.points, &cloud.normals})
+        if (part == &cloud.points || (way & 2) != 0)
+          (way & 1) == 0 ? put_coarse(bytes, *part) : put_points(bytes, *part);
+      seeds.add("cloud", name + std::to_string(way), bytes + std::string(20, '\1'));
+    }
+}
+
+void add_graphs(const Seeds& seeds) {
+  // A wheel: each spoke and each piece of the rim an edge of weight and length 1.
+  for (const std::uint8_t way : {0, 2}) {
+    const int rim = 8;
+    std::string bytes = bytes_of(way, rim, 2 * rim);
+    const auto add_edge = [&](int a, int b, int direction) {
+      put(bytes, static_cast<std::uint16_t>(a)), put(bytes, static_cast<std::uint16_t>(b));
+      bytes += bytes_of(4, 4, direction, 0);
+      if (way == 2) bytes += bytes_of(a % 2);
+    };
+    for (int k = 0; k < rim; ++k) add_edge(0, 1 + k, 32 * k), add_edge(1 + k, 1 + (k + 1) % rim, 16 * k);
+    seeds.add("solver", "wheel" + std::to_string(way), bytes + std::string(rim + 1, '\4') + std::string(20, '\1'));
+  }
+  // Two vertices on a line.
+  seeds.add("rows", "pair", bytes_of(6, 0, 2, 1, 1, 1, 0, 4, 4, 4, -4, 4, 4, 4, 4) + std::string(20, '\1'));
+}
+
+io::Table table_of(const std::vector<Vec3>& points, const std::vector<Vec3>& normals) {
+  io::Table table{"points"};
+  table.add({"x", "y", "z"}, points);
+  if (!normals.empty()) table.add({"nx", "ny", "nz"}, normals);
+  return table;
+}
+
+void add_files(const Seeds& seeds) {
+  const test::Cloud cloud = test::even_sphere(12);
+  const test::Mesh mesh = test::icosphere(1);
+  std::vector<Offset> begin{0};
+  std::vector<Index> corners;
+  for (const Triangle& face : mesh.faces) {
+    corners.insert(corners.end(), face.begin(), face.end());
+    begin.push_back(static_cast<Offset>(corners.size()));
+  }
+  for (const bool text : {false, true}) {
+    io::Table table = table_of(mesh.positions, mesh.positions);
+    table.faces = {begin, corners};
+    table.text = text;
+    io::write(seeds.file("ply", text ? "text.ply" : "binary.ply"), table);
+  }
+  io::write(seeds.file("csv", "cloud.csv"), table_of(cloud.points, cloud.normals));
+  const std::vector<io::MeshPart> parts{{"ball", mesh.positions, {}, {begin, corners}}};
+  io::write_textured(seeds.file("glb", "ball.glb"), parts);
+  std::string xyz, obj = "# a mesh\n", off = "OFF\n12 20 0\n", stl = "solid ball\n";
+  for (const Vec3& p : mesh.positions) {
+    const std::string words = std::to_string(p[0]) + " " + std::to_string(p[1]) + " " + std::to_string(p[2]) + "\n";
+    xyz += words, off += words, obj += "v " + words;
+  }
+  for (const Triangle& face : mesh.faces) {
+    off += "3 " + std::to_string(face[0]) + " " + std::to_string(face[1]) + " " + std::to_string(face[2]) + "\n";
+    obj += "f " + std::to_string(face[0] + 1) + "/1/1 " + std::to_string(face[1] + 1) + " " +
+           std::to_string(face[2] - 12) + "\n";
+    stl += "facet normal 0 0 1\nouter loop\n";
+    for (const Index corner : face) {
+      const Vec3& p = mesh.positions[corner];
+      stl += "vertex " + std::to_string(p[0]) + " " + std::to_string(p[1]) + " " + std::to_string(p[2]) + "\n";
+    }
+    stl += "endloop\nendfacet\n";
+  }
+  seeds.add("xyz", "ball.xyz", xyz);
+  seeds.add("pts", "ball.pts", "12\n" + xyz);
+  seeds.add("off", "ball.off", off);
+  seeds.add("obj", "ball.obj", obj);
+  seeds.add("stl", "text.stl", stl + "endsolid ball\n");
+  std::string binary(80, ' ');
+  put(binary, static_cast<std::uint32_t>(2));
+  for (int k = 0; k < 2; ++k) {
+    for (int i = 0; i < 12; ++i) put(binary, static_cast<float>(i % 5 + k));
+    put(binary, static_cast<std::uint16_t>(0));
+  }
+  seeds.add("stl", "binary.stl", binary);
+}
+
+/// Two points of format 0 after a header of version 1.2.
+void add_las(const Seeds& seeds) {
+  std::string las(227, '\0');
+  const auto at = [&](std::size_t place, auto number) { std::memcpy(las.data() + place, &number, sizeof number); };
+  las.replace(0, 4, "LASF");
+  at(24, static_cast<std::uint8_t>(1)), at(25, static_cast<std::uint8_t>(2));
+  at(94, static_cast<std::uint16_t>(227)), at(96, std::uint32_t{227});
+  at(105, static_cast<std::uint16_t>(20)), at(107, std::uint32_t{2});
+  for (const std::size_t k : {0, 1, 2}) at(131 + 8 * k, 0.01), at(155 + 8 * k, 1.0);
+  for (int k = 0; k < 2; ++k) {
+    for (int i = 0; i < 3; ++i) put(las, std::int32_t{100 * k + i});
+    las.append(8, '\0');
+  }
+  seeds.add("las", "two.las", las);
+}
+
+void add_gltf(const Seeds& seeds) {
+  std::string bytes;
+  for (const float x : {0.F, 0.F, 0.F, 1.F, 0.F, 0.F, 0.F, 1.F, 0.F}) put(bytes, x);
+  static constexpr char letters[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string coded;
+  for (std::size_t k = 0; k + 2 < bytes.size(); k += 3) {
+    const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(bytes[k + i]); };
+    const unsigned word = byte(0) << 16U | byte(1) << 8U | byte(2);
+    for (const unsigned shift : {18U, 12U, 6U, 0U}) coded += letters[word >> shift & 63U];
+  }
+  seeds.add("gltf", "triangle.gltf",
+            R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0,"scale":[2,1,1]}],)"
+            R"("meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],)"
+            R"("accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}],)"
+            R"("bufferViews":[{"buffer":0,"byteLength":36}],)"
+            R"("buffers":[{"byteLength":36,"uri":"data:application/octet-stream;base64,)" +
+                coded + R"("}]})");
+}
+
+void add_command_lines(const Seeds& seeds) {
+  const char* lines[] = {
+      "logmap\nscan.ply\n--source\n0\n-o\nmap.csv\n--view\nmap.png",
+      "logmap\nq.obj\n--source\nface:7:.2,.3,.3,.2\n--u-axis\n1,0,0\n--order\n2\n-o\nmap.ply",
+      "path\nmesh.obj\n--from\n7\n--to\n0.1,0.2,1.4\n-o\npath.obj\n--fast",
+      "local-maps\nscan.ply\n--radius\n0.02\n--k\n32\n--pad\n--float32\n-o\nn.npz",
+      "coverage\nscan.ply\n--source\n7\n--radius\n0.2\n--spacing\n0.01\n-o\npath.csv",
+      "atlas\nmesh.obj\n--max-distortion\n2\n-o\natlas.glb",
+      "info\nscan.ply\n--json\n-",
+      "--version",
+      "cells\nm.obj\n--sources\n1,2,3\n-o\nc.csv",
+      "decal\nm.obj\n--image\ni.png\n--size\n1e-3\n--source\n1\n-o\nd.ply",
+      "stroke\nm.obj\n--help",
+  };
+  int number = 0;
+  for (const char* line : lines) seeds.add("command_line", std::to_string(number++), line);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  if (argc != 2) throw std::runtime_error("make_seeds FOLDER");
+  const Seeds seeds(argv[1]);
+  add_meshes(seeds);
+  add_polygons(seeds);
+  add_clouds(seeds);
+  add_graphs(seeds);
+  add_files(seeds);
+  add_las(seeds);
+  add_gltf(seeds);
+  add_command_lines(seeds);
+  return 0;
+} catch (const std::exception& error) {
+  std::cerr << error.what() << '\n';
+  return 1;
+}
