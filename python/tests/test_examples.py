@@ -31,6 +31,16 @@ def test_pictures_are_drawn_where_matplotlib_is_there(tmp_path):
     assert result.returncode == 0 and picture.read_bytes()[:4] == b"\x89PNG", result.stderr
 
 
+def test_the_tour_runs_and_has_its_pictures(tmp_path):
+    pytest.importorskip("matplotlib")
+    result = subprocess.run([sys.executable, str(HOME / "examples/python/run_page.py"), "--level", "4", "--pictures", str(tmp_path)],
+                            capture_output=True, text=True, timeout=900)
+    assert result.returncode == 0, result.stderr
+    pictures = {path.name for path in tmp_path.iterdir()}
+    text = (HOME / "docs/python_tour.md").read_text(encoding="utf-8")
+    assert pictures == {path.name for path in (HOME / "docs/images").glob("python_*.png")} and len(pictures) == text.count("](images/")
+
+
 def test_the_page_for_python_is_true(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     failed, tried = doctest.testfile(str(HOME / "docs/python.md"), module_relative=False)
