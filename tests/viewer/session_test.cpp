@@ -5,8 +5,9 @@
 #include <set>
 #include <thread>
 
-#include "ahm/maps/quality.hpp"
+#include "ahm/maps/log_map_solver.hpp"
 #include "ahm/pointcloud/point_cloud_surface.hpp"
+#include "ahm/surface/exact/exact_geodesics.hpp"
 #include "sphere.hpp"
 
 namespace ahm::viewer::test {

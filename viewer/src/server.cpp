@@ -4,8 +4,11 @@
 #include <sys/socket.h>
 
 #include <algorithm>
-#include <array>
+#include <atomic>
 #include <charconv>
+#include <chrono>
+#include <mutex>
+#include <thread>
 
 #include "token.hpp"
 
@@ -56,6 +59,9 @@ struct Server::Impl {
   std::string token = random_token();
   Listener listener;
   int port = 0;
+  std::mutex mutex;
+  bool is_stopped = false, is_started = false;  ///< guarded by the mutex
+  std::atomic<bool> is_finished{false};
 
   Impl(const Session& given, int wanted) : session(given) {
     listener.new_task_queue = [] { return new httplib::ThreadPool(workers); };  // NOLINT: httplib deletes it
@@ -156,7 +162,28 @@ int Server::port() const { return impl_->port; }
 std::string Server::address() const {
   return "http://127.0.0.1:" + std::to_string(impl_->port) + "/" + impl_->token + "/";
 }
-void Server::run() { impl_->listener.listen_after_bind(); }
-void Server::stop() { impl_->listener.stop(); }
+
+void Server::run() {
+  {
+    const std::lock_guard lock(impl_->mutex);
+    if (impl_->is_stopped) return;
+    impl_->is_started = true;
+  }
+  impl_->listener.listen_after_bind();
+  impl_->is_finished = true;
+}
+
+// httplib forgets a stop that comes before it listens.
+void Server::stop() {
+  {
+    const std::lock_guard lock(impl_->mutex);
+    impl_->is_stopped = true;
+    if (!impl_->is_started) return;
+  }
+  while (!impl_->is_finished) {
+    impl_->listener.stop();
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+}
 
 }  // namespace ahm::viewer
