@@ -33,8 +33,10 @@ void send(const Answer& answer, httplib::Response& response) {
   response.set_content(answer.body, answer.type);
 }
 
-void refuse(httplib::Response& response, int status, const std::string& text) {
-  send({status, "application/json", R"({"error": ")" + text + "\"}"}, response);
+/// Without a body where httplib would cut it into the ranges that were asked for.
+void refuse(const httplib::Request& request, httplib::Response& response, int status, const std::string& text) {
+  response.status = status;
+  if (request.ranges.empty()) send({status, "application/json", R"({"error": ")" + text + "\"}"}, response);
 }
 
 /// Exactly one value, so that no two readers of a request see different ones.
@@ -123,15 +125,14 @@ struct Server::Impl {
     listener.set_pre_routing_handler([this](const httplib::Request& request, httplib::Response& response) {
       const int status = fault(request);
       if (status == 0) return httplib::Server::HandlerResponse::Unhandled;
-      refuse(response, status, status == 413 ? "a JSON body of at most 1 MiB is expected" : "refused");
+      refuse(request, response, status, status == 413 ? "a JSON body of at most 1 MiB is expected" : "refused");
       return httplib::Server::HandlerResponse::Handled;
     });
-    listener.set_error_handler([](const httplib::Request&, httplib::Response& response) {
-      if (response.body.empty()) refuse(response, response.status, "refused");
+    listener.set_error_handler([](const httplib::Request& request, httplib::Response& response) {
+      if (response.body.empty()) refuse(request, response, response.status, "refused");
     });
-    listener.set_exception_handler([](const httplib::Request&, httplib::Response& response, const std::exception_ptr&) {
-      refuse(response, 500, "failed");
-    });
+    listener.set_exception_handler([](const httplib::Request& request, httplib::Response& response,
+                                      const std::exception_ptr&) { refuse(request, response, 500, "failed"); });
     const std::string base = "/" + token + "/";
     listener.Get(base, [this](const httplib::Request&, httplib::Response& response) { send_page(response); });
     for (const std::string name : gets)

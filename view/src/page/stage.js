@@ -8,7 +8,7 @@ Ahm.Stage = class {
     this.field = "none";
     this.is_dark = false;
     this.quality = 1;  // share of the points, or of the pixels, that are drawn while it moves
-    this.renderer = new THREE.WebGLRenderer({ canvas: canvas, antialias: true, preserveDrawingBuffer: true });
+    this.renderer = new THREE.WebGLRenderer({ canvas: canvas, antialias: surface.is_mesh, preserveDrawingBuffer: true });
     this.renderer.autoClear = false;
     this.uniforms = Ahm.make_uniforms(surface);
     this.viewport = { value: new THREE.Vector2(1, 1) };
@@ -217,19 +217,17 @@ Ahm.Stage = class {
   }
 
   adapt(milliseconds) {
-    if (milliseconds > 70) this.quality = Math.max(this.surface.is_mesh ? 0.25 : 1 / 64, this.quality / 2);
+    if (milliseconds > 70) this.quality = Math.max(this.surface.is_mesh ? 1 / 16 : 1 / 64, this.quality / (milliseconds > 200 ? 4 : 2));
     else if (milliseconds < 24) this.quality = Math.min(1, this.quality * 1.5);
   }
 
-  // For what is coarser while it moves: fewer and larger discs, or fewer pixels.
+  // For what is coarser while it moves: fewer pixels, and of clouds fewer and larger discs.
   apply_quality() {
     const share = this.is_moving ? this.quality : 1, n = this.surface.points.length;
-    let ratio = window.devicePixelRatio;
-    if (this.surface.is_mesh) {
-      ratio *= Math.sqrt(share);
-    } else {
+    const ratio = window.devicePixelRatio * Math.max(0.25, Math.sqrt(share));
+    if (!this.surface.is_mesh) {
       this.object.geometry.setDrawRange(0, Math.max(1, Math.ceil(share * n)));
-      this.uniforms.thin.value = Math.min(3, Math.sqrt(1 / share));
+      this.uniforms.thin.value = Math.min(2, Math.sqrt(1 / share));
     }
     if (Math.abs(ratio - this.renderer.getPixelRatio()) > 1e-9) this.renderer.setPixelRatio(ratio);
   }
