@@ -238,7 +238,7 @@ class Page(unittest.TestCase):
     def test_methods_and_options_change_the_map(self):
         self.open(self.mesh, "--source", 0)
         self.js("document.getElementById('method_section').open = true")
-        Select(self.driver.find_element(By.ID, "method")).select_by_value("exact")
+        Select(self.driver.find_element(By.ID, "method")).select_by_visible_text("exact")
         self.settled()
         self.expect_map(self.library_rows("0", "exact.csv", None, "--method", "exact"))
         self.assertIn("--method exact", self.text("command"))

@@ -4,8 +4,11 @@
 #include <sys/socket.h>
 
 #include <algorithm>
-#include <array>
+#include <atomic>
 #include <charconv>
+#include <chrono>
+#include <mutex>
+#include <thread>
 
 #include "token.hpp"
 
@@ -30,8 +33,10 @@ void send(const Answer& answer, httplib::Response& response) {
   response.set_content(answer.body, answer.type);
 }
 
-void refuse(httplib::Response& response, int status, const std::string& text) {
-  send({status, "application/json", R"({"error": ")" + text + "\"}"}, response);
+/// Without a body where httplib would cut it into the ranges that were asked for.
+void refuse(const httplib::Request& request, httplib::Response& response, int status, const std::string& text) {
+  response.status = status;
+  if (request.ranges.empty()) send({status, "application/json", R"({"error": ")" + text + "\"}"}, response);
 }
 
 /// Exactly one value, so that no two readers of a request see different ones.
@@ -56,6 +61,9 @@ struct Server::Impl {
   std::string token = random_token();
   Listener listener;
   int port = 0;
+  std::mutex mutex;
+  bool is_stopped = false, is_started = false;  ///< guarded by the mutex
+  std::atomic<bool> is_finished{false};
 
   Impl(const Session& given, int wanted) : session(given) {
     listener.new_task_queue = [] { return new httplib::ThreadPool(workers); };  // NOLINT: httplib deletes it
@@ -117,15 +125,14 @@ struct Server::Impl {
     listener.set_pre_routing_handler([this](const httplib::Request& request, httplib::Response& response) {
       const int status = fault(request);
       if (status == 0) return httplib::Server::HandlerResponse::Unhandled;
-      refuse(response, status, status == 413 ? "a JSON body of at most 1 MiB is expected" : "refused");
+      refuse(request, response, status, status == 413 ? "a JSON body of at most 1 MiB is expected" : "refused");
       return httplib::Server::HandlerResponse::Handled;
     });
-    listener.set_error_handler([](const httplib::Request&, httplib::Response& response) {
-      if (response.body.empty()) refuse(response, response.status, "refused");
+    listener.set_error_handler([](const httplib::Request& request, httplib::Response& response) {
+      if (response.body.empty()) refuse(request, response, response.status, "refused");
     });
-    listener.set_exception_handler([](const httplib::Request&, httplib::Response& response, const std::exception_ptr&) {
-      refuse(response, 500, "failed");
-    });
+    listener.set_exception_handler([](const httplib::Request& request, httplib::Response& response,
+                                      const std::exception_ptr&) { refuse(request, response, 500, "failed"); });
     const std::string base = "/" + token + "/";
     listener.Get(base, [this](const httplib::Request&, httplib::Response& response) { send_page(response); });
     for (const std::string name : gets)
@@ -156,7 +163,28 @@ int Server::port() const { return impl_->port; }
 std::string Server::address() const {
   return "http://127.0.0.1:" + std::to_string(impl_->port) + "/" + impl_->token + "/";
 }
-void Server::run() { impl_->listener.listen_after_bind(); }
-void Server::stop() { impl_->listener.stop(); }
+
+void Server::run() {
+  {
+    const std::lock_guard lock(impl_->mutex);
+    if (impl_->is_stopped) return;
+    impl_->is_started = true;
+  }
+  impl_->listener.listen_after_bind();
+  impl_->is_finished = true;
+}
+
+// httplib forgets a stop that comes before it listens.
+void Server::stop() {
+  {
+    const std::lock_guard lock(impl_->mutex);
+    impl_->is_stopped = true;
+    if (!impl_->is_started) return;
+  }
+  while (!impl_->is_finished) {
+    impl_->listener.stop();
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+}
 
 }  // namespace ahm::viewer

@@ -125,20 +125,20 @@ struct Session::Impl {
     return make();
   }
 
-  LogMap map(const SurfacePoint& source, const Settings& settings, const std::stop_token& stop) {
+  LogMap map(const SurfacePoint& source, const Settings& settings, const std::stop_token& stop, bool frames = false) {
     Progress progress;
     progress.stop = stop;
     const double radius = settings.radius.value_or(std::numeric_limits<double>::infinity());
     if (settings.method == Method::exact) {
       const PlacedSource placed = surface.source(source, settings.u_axis);
       const auto u_axis = placed.frame ? std::optional(placed.frame->x) : std::nullopt;
-      return makers.geodesics().log_map(source, u_axis, {.radius = radius, .frames = true, .progress = progress});
+      return makers.geodesics().log_map(source, u_axis, {.radius = radius, .frames = frames, .progress = progress});
     }
     const PlacedSource placed = surface.source(source, settings.u_axis);
     MapOptions heat;
     heat.variant = settings.variant;
     heat.radius = radius;
-    heat.frames = true;
+    heat.frames = frames;
     heat.progress = progress;
     return makers.solver(settings, stop).solve(placed.source, heat);
   }
@@ -241,7 +241,7 @@ struct Session::Impl {
       throw InvalidArgument("request: more than 500 lines from the source; give a wider \"spacing\"");
     const std::string pattern = request.word("pattern", {"raster", "spiral"});
     cover.pattern = pattern == "raster" ? CoveragePattern::raster : CoveragePattern::spiral;
-    const LogMap made = in_turn({}, [&] { return map(source, settings, {}); });
+    const LogMap made = in_turn({}, [&] { return map(source, settings, {}, true); });
     const CoveragePath path = coverage_path(inverse_map(surface, made, {.threads = options.threads}), cover);
     if (path.points.empty()) throw InvalidArgument("no line of the pattern meets a trusted part of the surface");
     std::vector<Vec3> points;

@@ -199,6 +199,7 @@ Ahm.Viewer = class {
 
   show(map, wanted) {
     this.pattern = map.pattern;
+    this.element("export").disabled = !this.request;
     this.panel.show_map(map, wanted);
   }
 
@@ -248,6 +249,7 @@ Ahm.Viewer = class {
     });
     const answer = await (await this.server.post("coverage", request)).json();
     this.stage.set_marks({ curve: answer.points, pieces: answer.pieces });
+    this.panel.say("");
     this.element("command").textContent = answer.command;
     this.element("tool_hint").textContent = Ahm.number(answer.length, 4) + " long, " + (100 * answer.covered).toFixed(1) + " % on the surface";
   }

@@ -1,5 +1,5 @@
 "use strict";
-// The colours: one shader for meshes, whose pattern is computed at every pixel from interpolated (u, v), and one for discs,
+// The colours: one shader for meshes, whose pattern is computed at every pixel from interpolated (u, v), and two for discs,
 // each with the gradient of (u, v) along it.
 Ahm.fields = ["polar", "grid", "cells", "distance", "none", "spread", "quality", "normals", "colors"];
 
@@ -89,52 +89,97 @@ Ahm.make_uniforms = function (surface) {
       }`
   });
 
-  // A disc per point, tilted by its normal; where discs overlap, the nearest centre wins.
-  Ahm.splat_material = (uniforms) => new THREE.ShaderMaterial({
+  // A disc per point, tilted by its normal; where discs overlap, the nearest centre wins. First only which disc it is, since
+  // a pixel is covered many times over; `splat_material` then paints each pixel once.
+  const on_disc = `
+    float rise_of(vec2 offset, vec3 n) { return -dot(n.xy, offset) / max(n.z, 0.25); }
+    float depth_of(vec3 centre, float rise, float t, float radius) {
+      float z = centre.z + rise - 0.5 * sqrt(t) * radius;
+      return 0.5 - 0.5 * (projectionMatrix[2][2] * z + projectionMatrix[3][2]) / z;
+    }
+    vec3 facing(vec3 n, vec3 centre) {
+      n = dot(n, n) > 0.1 ? normalize(n) : vec3(0.0, 0.0, 1.0);
+      return dot(n, centre) > 0.0 ? -n : n;
+    }
+    float size_of(float radius, vec3 centre) { return max(2.0 * radius * thin * pixels_per_unit / max(-centre.z, 1e-6), 2.0); }`;
+
+  Ahm.which_disc_material = (uniforms) => new THREE.ShaderMaterial({
     uniforms: uniforms, extensions: { fragDepth: true },
-    vertexShader: attributes + `
-      attribute vec3 slope_u, slope_v;  // of the map along the disc
-      uniform float largest_radius, pixels_per_unit, steepest, thin;
-      varying vec3 centre, disc_normal, change_u, change_v;
-      varying float disc_radius, disc_size;
+    vertexShader: `
+      attribute vec4 disc;
+      attribute float number;
+      uniform float largest_radius, pixels_per_unit, thin;
+      varying vec3 centre, disc_normal, name;
+      varying float disc_radius;
+      ${on_disc.replace(/float depth_of[^]*?\n    }\n/, "")}
       void main() {
-        ${pass_on}
-        change_u = steepest * (normalMatrix * (2.0 * slope_u - 254.0 / 255.0));
-        change_v = steepest * (normalMatrix * (2.0 * slope_v - 254.0 / 255.0));
         vec4 p = modelViewMatrix * vec4(position, 1.0);
-        float size = max(2.0 * disc.w * largest_radius * thin * pixels_per_unit / max(-p.z, 1e-6), 2.0);
-        vec3 n = normalMatrix * normal_of;
-        n = dot(n, n) > 0.1 ? normalize(n) : vec3(0.0, 0.0, 1.0);
+        float size = size_of(disc.w * largest_radius, p.xyz);
         centre = p.xyz;
-        disc_normal = dot(n, p.xyz) > 0.0 ? -n : n;
+        disc_normal = facing(normalMatrix * (2.0 * disc.xyz - 1.0), centre);
         disc_radius = 0.5 * size * max(-p.z, 1e-6) / pixels_per_unit;
-        disc_size = 0.5 * size;
+        name = floor(mod(vec3(number, floor(number / 256.0), floor(number / 65536.0)), 256.0)) / 255.0;
         gl_PointSize = size;
         gl_Position = projectionMatrix * p;
       }`,
-    fragmentShader: common() + `
+    fragmentShader: `
       uniform mat4 projectionMatrix;
-      varying vec3 centre, disc_normal, change_u, change_v, own, normal_of, uvw;
-      varying float disc_radius, disc_size, map_trust;
+      uniform float pixels_per_unit, thin;
+      varying vec3 centre, disc_normal, name;
+      varying float disc_radius;
+      ${on_disc}
       void main() {
         vec2 offset = (2.0 * gl_PointCoord - 1.0) * vec2(1.0, -1.0) * disc_radius;
-        float rise = -dot(disc_normal.xy, offset) / max(disc_normal.z, 0.25);
-        float t = (dot(offset, offset) + rise * rise) / (disc_radius * disc_radius);
+        float rise = rise_of(offset, disc_normal), t = (dot(offset, offset) + rise * rise) / (disc_radius * disc_radius);
         if (t > 1.0) discard;
-        float z = centre.z + rise - 0.5 * sqrt(t) * disc_radius;
         #if defined(GL_EXT_frag_depth) || __VERSION__ >= 300
-          gl_FragDepthEXT = 0.5 - 0.5 * (projectionMatrix[2][2] * z + projectionMatrix[3][2]) / z;
+          gl_FragDepthEXT = depth_of(centre, rise, t, disc_radius);
         #endif
-        vec3 along = vec3(offset, rise);
+        gl_FragColor = vec4(name, 1.0);
+      }`
+  });
+
+  // Over the whole picture: what is known of a disc is looked up in textures.
+  Ahm.splat_material = (uniforms) => new THREE.ShaderMaterial({
+    uniforms: uniforms, extensions: { fragDepth: true },
+    vertexShader: "varying vec2 ndc; void main() { ndc = position.xy; gl_Position = vec4(position.xy, 0.0, 1.0); }",
+    fragmentShader: common() + `
+      uniform sampler2D which, centres, discs, values, slopes_u, slopes_v, colors;
+      uniform vec2 table;  // columns and rows of the textures
+      uniform mat4 projectionMatrix, view;
+      uniform float steepest, largest_radius, pixels_per_unit, thin;
+      varying vec2 ndc;
+      ${on_disc}
+      vec3 turned(vec3 v) { return (view * vec4(v, 0.0)).xyz; }
+      void main() {
+        vec4 name = texture2D(which, 0.5 * ndc + 0.5);
+        if (name.a < 0.5) discard;
+        vec3 digits = floor(255.0 * name.rgb + 0.5);
+        float number = digits.r + 256.0 * digits.g + 65536.0 * digits.b, row = floor((number + 0.5) / table.x);
+        vec2 at = (vec2(number - row * table.x, row) + 0.5) / table;
+        vec4 disc = texture2D(discs, at), value = texture2D(values, at);
+        vec3 normal = 2.0 * disc.xyz - 1.0, centre = (view * vec4(texture2D(centres, at).xyz, 1.0)).xyz;
+        vec3 disc_normal = facing(turned(normal), centre);
+        float disc_size = 0.5 * size_of(disc.w * largest_radius, centre);
+        float disc_radius = disc_size * max(-centre.z, 1e-6) / pixels_per_unit;
+        vec2 offset = ndc / vec2(projectionMatrix[0][0], projectionMatrix[1][1]) * -centre.z - centre.xy;
+        float rise = rise_of(offset, disc_normal), t = min((dot(offset, offset) + rise * rise) / (disc_radius * disc_radius), 1.0);
+        #if defined(GL_EXT_frag_depth) || __VERSION__ >= 300
+          gl_FragDepthEXT = depth_of(centre, rise, t, disc_radius);
+        #endif
+        vec3 change_u = steepest * turned(2.0 * texture2D(slopes_u, at).xyz - 254.0 / 255.0);
+        vec3 change_v = steepest * turned(2.0 * texture2D(slopes_v, at).xyz - 254.0 / 255.0);
+        vec3 uvw = value.xyz, along = vec3(offset, rise);
         bool is_known = abs(uvw.x) < 1e29;
         float r = max(length(uvw.xy), 1e-6);
-        vec3 change_w = is_known ? (uvw.x * change_u + uvw.y * change_v) / r : vec3(0.0);  // of the distance
-        vec3 here = uvw + (pattern == 3 && !is_known ? vec3(0.0) : vec3(dot(change_u, along), dot(change_v, along), pattern == 3 ? dot(change_w, along) : 0.0));
+        vec3 change_w = is_known && pattern == 3 ? (uvw.x * change_u + uvw.y * change_v) / r : vec3(0.0);  // of the distance
+        vec3 here = uvw + vec3(dot(change_u, along), dot(change_v, along), dot(change_w, along));
         vec2 tilt = -disc_normal.xy / max(disc_normal.z, 0.25);
         float pixel = disc_radius / disc_size;
         vec3 dx = pixel * vec3(change_u.x + tilt.x * change_u.z, change_v.x + tilt.x * change_v.z, change_w.x + tilt.x * change_w.z);
         vec3 dy = pixel * vec3(change_u.y + tilt.y * change_u.z, change_v.y + tilt.y * change_v.z, change_w.y + tilt.y * change_w.z);
-        gl_FragColor = finish(paint(is_known ? here : uvw, dx, dy, normalize(normal_of), own, map_trust), disc_normal, centre);
+        vec3 colour = paint(is_known ? here : uvw, dx, dy, normalize(normal), texture2D(colors, at).rgb, value.w);
+        gl_FragColor = finish(colour, disc_normal, centre);
       }`
   });
 

@@ -24,8 +24,9 @@ Ahm.pick_triangle = function (surface, origin, direction) {
     if (far > 1e-9 && far < best) best = far, found = k / 3, found_v = v, found_w = w;
   }
   if (found < 0) return null;
-  const v = Math.max(0, found_v), w = Math.max(0, found_w), u = Math.max(0, 1 - v - w), sum = u + v + w;
-  return { triangle: found, weights: [u / sum, v / sum, w / sum], position: [ox + best * dx, oy + best * dy, oz + best * dz] };
+  // To a millionth of the triangle, so that they can be read and copied.
+  const short = (x) => Math.min(1, Math.max(0, Number(x.toFixed(6)))), v = short(found_v), w = Math.min(short(found_w), short(1 - v));
+  return { triangle: found, weights: [short(1 - v - w), v, w], position: [ox + best * dx, oy + best * dy, oz + best * dz] };
 };
 
 // {point, position} of the disc met first: within its radius of the ray, the nearest to the ray of those not far behind.

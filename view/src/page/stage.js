@@ -8,7 +8,7 @@ Ahm.Stage = class {
     this.field = "none";
     this.is_dark = false;
     this.quality = 1;  // share of the points, or of the pixels, that are drawn while it moves
-    this.renderer = new THREE.WebGLRenderer({ canvas: canvas, antialias: true, preserveDrawingBuffer: true });
+    this.renderer = new THREE.WebGLRenderer({ canvas: canvas, antialias: surface.is_mesh, preserveDrawingBuffer: true });
     this.renderer.autoClear = false;
     this.uniforms = Ahm.make_uniforms(surface);
     this.viewport = { value: new THREE.Vector2(1, 1) };
@@ -28,28 +28,33 @@ Ahm.Stage = class {
   }
 
   make_object() {
-    const s = this.surface, n = s.points.length, geometry = new THREE.BufferGeometry();
+    const s = this.surface, n = s.points.length;
+    this.values = { map: new Float32Array(2 * n).fill(1e30), value: new Float32Array(n).fill(1e30), trust: new Float32Array(n).fill(1) };
+    if (!s.is_mesh) {
+      this.splats = new Ahm.Splats(s, this.uniforms);
+      return this.splats.object;
+    }
+    const geometry = new THREE.BufferGeometry();
     const add = (name, array, size, normalized) => geometry.setAttribute(name, new THREE.BufferAttribute(array, size, normalized));
     add("position", s.positions, 3);
     add("disc", s.discs, 4, true);
-    add("map", new Float32Array(2 * n).fill(1e30), 2);
-    add("value", new Float32Array(n).fill(1e30), 1);
-    add("trust", new Float32Array(n).fill(1), 1);
+    add("map", this.values.map, 2);
+    add("value", this.values.value, 1);
+    add("trust", this.values.trust, 1);
     if (s.colors) {
       const colors = new THREE.InterleavedBuffer(s.colors, 4);
       geometry.setAttribute("own_color", new THREE.InterleavedBufferAttribute(colors, 3, 0, true));
     }
-    if (s.is_mesh) geometry.setIndex(new THREE.BufferAttribute(s.triangles, 1));
-    else this.set_slopes(geometry, new Uint8Array(6 * n).fill(127));
-    const object = s.is_mesh ? new THREE.Mesh(geometry, Ahm.surface_material(this.uniforms)) : new THREE.Points(geometry, Ahm.splat_material(this.uniforms));
+    geometry.setIndex(new THREE.BufferAttribute(s.triangles, 1));
+    const object = new THREE.Mesh(geometry, Ahm.surface_material(this.uniforms));
     object.frustumCulled = false;
     return object;
   }
 
-  set_slopes(geometry, slopes) {
-    const buffer = new THREE.InterleavedBuffer(slopes, 6);
-    geometry.setAttribute("slope_u", new THREE.InterleavedBufferAttribute(buffer, 3, 0, true));
-    geometry.setAttribute("slope_v", new THREE.InterleavedBufferAttribute(buffer, 3, 3, true));
+  upload() {
+    const { map, value, trust } = this.values;
+    if (this.splats) return this.splats.set_values(map, value, trust);
+    for (const name of ["map", "value", "trust"]) this.object.geometry.attributes[name].needsUpdate = true;
   }
 
   make_legend() {
@@ -83,17 +88,15 @@ Ahm.Stage = class {
     this.map = map;
     this.uniforms.sectors.value = map.sectors;
     this.uniforms.steepest.value = map.steepest;
-    const geometry = this.object.geometry, points = this.surface.points, n = points.length;
-    const uv = geometry.attributes.map, trust = geometry.attributes.trust;
+    const points = this.surface.points, n = points.length, { map: uv, trust } = this.values;
     for (let k = 0; k < n; ++k) {
       const row = points[k], u = map.uv ? map.uv[2 * row] : NaN, known = u === u;
-      uv.array[2 * k] = known ? u : 1e30;
-      uv.array[2 * k + 1] = known ? map.uv[2 * row + 1] : 1e30;
+      uv[2 * k] = known ? u : 1e30;
+      uv[2 * k + 1] = known ? map.uv[2 * row + 1] : 1e30;
       const q = map.quality ? map.quality[row] : 1;
-      trust.array[k] = q === q ? q : 1;
+      trust[k] = q === q ? q : 1;
     }
-    uv.needsUpdate = trust.needsUpdate = true;
-    if (map.slopes) this.set_slopes(geometry, map.slopes);
+    if (map.slopes) this.splats.set_slopes(map.slopes);
     this.set_marks(map);
     this.set_source(map.source, map.axes);
     this.set_field(this.field);
@@ -111,16 +114,16 @@ Ahm.Stage = class {
     this.field = name;
     this.uniforms.pattern.value = Ahm.fields.indexOf(name);
     const values = this.value_by_row(), map = this.map, points = this.surface.points;
-    const target = this.object.geometry.attributes.value;
+    const target = this.values.value;
     let largest = 0;
     for (let k = 0; k < points.length; ++k) {
       const row = points[k];
       let x = values ? values[row] : map && map.uv ? Math.hypot(map.uv[2 * row], map.uv[2 * row + 1]) : NaN;
       if (x !== x) x = 1e30;
       else if (x > largest) largest = x;
-      target.array[k] = x;
+      target[k] = x;
     }
-    target.needsUpdate = true;
+    this.upload();
     this.uniforms.largest_value.value = name === "quality" ? 1 : largest || 1;
     this.cut();
     this.redraw();
@@ -130,7 +133,7 @@ Ahm.Stage = class {
   cut() {
     if (!this.surface.is_mesh || !this.map) return;
     const geometry = this.object.geometry, a = geometry.attributes;
-    const torn = ["polar", "grid", "cells"].includes(this.field) ? Ahm.torn(this.surface, a.map.array, this.field) : [];
+    const torn = ["polar", "grid", "cells"].includes(this.field) ? Ahm.torn(this.surface, this.values.map, this.field) : [];
     if (this.pieces) {
       this.scene.remove(this.pieces);
       this.pieces.geometry.dispose();
@@ -217,20 +220,16 @@ Ahm.Stage = class {
   }
 
   adapt(milliseconds) {
-    if (milliseconds > 70) this.quality = Math.max(this.surface.is_mesh ? 0.25 : 1 / 64, this.quality / 2);
+    if (milliseconds > 70) this.quality = Math.max(this.surface.is_mesh ? 1 / 16 : 1 / 64, this.quality / (milliseconds > 200 ? 4 : 2));
     else if (milliseconds < 24) this.quality = Math.min(1, this.quality * 1.5);
   }
 
-  // For what is coarser while it moves: fewer and larger discs, or fewer pixels.
+  // For what is coarser while it moves: fewer pixels, and of clouds fewer and larger discs.
   apply_quality() {
-    const share = this.is_moving ? this.quality : 1, n = this.surface.points.length;
-    let ratio = window.devicePixelRatio;
-    if (this.surface.is_mesh) {
-      ratio *= Math.sqrt(share);
-    } else {
-      this.object.geometry.setDrawRange(0, Math.max(1, Math.ceil(share * n)));
-      this.uniforms.thin.value = Math.min(3, Math.sqrt(1 / share));
-    }
+    const share = this.is_moving ? this.quality : 1;
+    const ratio = window.devicePixelRatio * Math.max(0.25, Math.sqrt(share));
+    this.uniforms.thin.value = Math.min(2, Math.sqrt(1 / share));
+    this.share = share;
     if (Math.abs(ratio - this.renderer.getPixelRatio()) > 1e-9) this.renderer.setPixelRatio(ratio);
   }
 
@@ -246,6 +245,7 @@ Ahm.Stage = class {
     this.viewport.value.set(width, height);
     if (this.source_position) this.place(this.source, this.source_position, 0.0085, half);
     for (const dot of this.dots || []) dot.scale.setScalar(0.006 * camera.position.distanceTo(dot.position) * 2 * half);
+    if (this.splats) this.splats.draw(this.renderer, camera, this.share);
     this.renderer.setViewport(0, 0, width, height);
     this.renderer.clear();
     this.renderer.render(this.scene, camera);

@@ -35,8 +35,9 @@ class Server {
   int port() const;
   /// With the token, and a slash at the end.
   std::string address() const;
-  /// Serves until `stop`.
+  /// Serves until `stop`; once.
   void run();
+  /// Before `run` or from another thread; returns when nothing is served any more.
   void stop();
 
  private:
