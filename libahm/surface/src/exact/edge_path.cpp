@@ -5,6 +5,7 @@
 
 #include "ahm/surface/exact/shortened_path.hpp"
 #include "check_point.hpp"
+#include "shorten.hpp"
 #include "unfold.hpp"
 
 namespace ahm::exact {
@@ -106,7 +107,9 @@ GeodesicPath locally_shortest_path(const PolyhedralSurface& surface, const MeshP
   for (Index v : EdgeSearch(surface, at_least).run(start, end))
     if (v != start_vertex && v != end_vertex) curve.push_back(surface.vertex_point(Vertex(v)));
   curve.push_back(end);
-  return shortened_path(surface, curve);
+  Strip strip = strip_along(surface, curve);
+  const TautLine line = pass_other_side(surface, strip, shorten(surface, strip));
+  return path_along(surface, strip, line);
 }
 
 }  // namespace ahm::exact
