@@ -148,6 +148,29 @@ TEST(LocallyShortestPath, JoinsPointsOfSides) {
   }
 }
 
+/// A round tip of flat faces: all angles but that at the tip are those of a disk.
+Mesh cone_mesh(Index sides, double height) {
+  Mesh mesh{{{0, 0, height}}, {}, {}};
+  for (Index k = 0; k < sides; ++k) {
+    const double angle = 2 * pi * k / sides;
+    mesh.positions.push_back({std::cos(angle), std::sin(angle), 0});
+    mesh.faces.push_back({0, k + 1, (k + 1) % sides + 1});
+  }
+  return mesh;
+}
+
+TEST(LocallyShortestPath, PassesATipOnTheShorterSide) {
+  std::mt19937_64 random(7);
+  for (double height : {0.1, 0.5, 1.0, 3.0}) {
+    const Polyhedron solid(cone_mesh(13, height));
+    for (int k = 0; k < 100; ++k) {
+      const MeshPoint a = random_point(solid.surface, random), b = random_point(solid.surface, random);
+      EXPECT_NEAR(exact::locally_shortest_path(solid.surface, a, b).length,
+                  exact::geodesic_path(solid.surface, a, b).length, 1e-12);
+    }
+  }
+}
+
 TEST(LocallyShortestPath, IsTheShortestInThePlane) {
   // Where there is one locally shortest path only; beside holes there are several.
   std::mt19937_64 random(8);
