@@ -22,8 +22,7 @@ class FlannSearch final : public NeighborSearch {
 
   Index nearest(const Vec3& query, std::span<Index> indices, std::span<double> squared_distances) const override {
     const std::size_t k = std::min(indices.size(), size_);
-    thread_local std::vector<std::size_t> found;
-    found.resize(k);
+    std::vector<std::size_t> found(k);
     const flann::Matrix<double> point(const_cast<double*>(query.data()), 1, 3);
     flann::Matrix<std::size_t> index_row(found.data(), 1, k);
     flann::Matrix<double> distance_row(squared_distances.data(), 1, k);

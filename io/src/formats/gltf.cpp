@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "ahm/error.hpp"
+#include "ahm/util/text.hpp"
 #include "formats/format.hpp"
 #include "read/colors.hpp"
 #include "read/free_memory.hpp"
@@ -128,8 +129,8 @@ class GltfReader {
     }
     for (const double index : vectors(accessor, 1).values) {
       if (!(index >= 0 && index < static_cast<double>(count)))
-        fail(in_, "a face has vertex number " + std::to_string(static_cast<std::int64_t>(index)) + ", but there are " +
-                      std::to_string(count) + " vertices, counted from 0");
+        fail(in_, "a face has vertex number " + detail::number(index) + ", but there are " + std::to_string(count) +
+                      " vertices, counted from 0");
       result.push_back(static_cast<std::size_t>(index));
     }
     return result;

@@ -34,7 +34,10 @@ class AtomicFile {
   /// The name the file has until `commit`, for libraries that open it themselves (instead of `write`); empty where the
   /// target is written directly.
   const std::filesystem::path& temporary() const noexcept { return temporary_; }
-  /// Writes what is left, waits until it is on the disk, and gives the file its name. @throws IoError as `write`
+  /// Writes what is left and waits until it is on the disk: for several files, of which none is to be had without the others.
+  /// @throws IoError as `write`
+  void finish();
+  /// `finish`, unless that has been done, and gives the file its name. @throws IoError as `write`
   void commit();
 
  private:
@@ -47,6 +50,7 @@ class AtomicFile {
   std::filesystem::path temporary_;  // empty when written directly
   std::string buffer_;
   int descriptor_ = -1;
+  bool finished_ = false;
   int slot_ = -1;  // in the registry of unfinished files
 };
 

@@ -10,6 +10,7 @@
 #include <exception>
 #include <fstream>
 #include <mutex>
+#include <new>
 #include <system_error>
 #include <thread>
 #include <vector>
@@ -115,8 +116,10 @@ void without_openmp_regions(const std::function<void()>& work) {
   std::exception_ptr error;
   const auto run = [&] {
     done = true;
-    if (set_levels) set_levels(0);
     try {
+      // The OpenMP runtime ends the process where it cannot have a few bytes, so they are asked for beforehand.
+      ::operator delete(::operator new (std::size_t{1} << 16));
+      if (set_levels) set_levels(0);
       work();
     } catch (...) {
       error = std::current_exception();

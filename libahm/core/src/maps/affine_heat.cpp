@@ -106,29 +106,31 @@ void AffineHeat::solve() {
 void AffineHeat::solve_squares() {
   const double to_units = graph_.length_unit() / solution_unit(graph_);
   squares_.resize(inflows_.size() * n_);
-  detail::for_each_index(n_, threads_, [&](std::size_t i) {
-    static thread_local std::vector<double> amounts, factors, values;
-    const Star star = graph_.star(static_cast<Index>(i));
-    const double coefficient = -operators_.tau()[i] * operators_.scaling() * to_units;
-    amounts.resize(star.degree());
-    factors.resize(star.degree());
-    values.resize(star.degree() * d_);
-    for (std::size_t k = 0; k < star.degree(); ++k) {
-      factors[k] = 2 * coefficient * star.weights[k];
-      amounts[k] = coefficient * star.weights[k] * to_units * dot(star.log(k), star.log(k));
-    }
+  detail::parallel_chunks(static_cast<Offset>(n_), 1 << 14, threads_, [&](Offset begin, Offset end) {
+    std::vector<double> amounts, factors, values;
     Scratch pairs(d_ * d_);
-    for (std::size_t s = 0; s < inflows_.size(); ++s) {
-      const double *lambda = lambda_.data() + s * n_, *x = unknown_.data() + s * n_ * d_;
-      double squares = 0;
+    for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
+      const Star star = graph_.star(static_cast<Index>(i));
+      const double coefficient = -operators_.tau()[i] * operators_.scaling() * to_units;
+      amounts.resize(star.degree());
+      factors.resize(star.degree());
+      values.resize(star.degree() * d_);
       for (std::size_t k = 0; k < star.degree(); ++k) {
-        const auto j = static_cast<std::size_t>(star.neighbors[k]);
-        squares += amounts[k] * lambda[j];
-        for (std::size_t a = 0; a < d_; ++a) values[k * d_ + a] = x[place_.place(j, a)];
+        factors[k] = 2 * coefficient * star.weights[k];
+        amounts[k] = coefficient * star.weights[k] * to_units * dot(star.log(k), star.log(k));
       }
-      std::fill(pairs.span().begin(), pairs.span().end(), 0.0);
-      system_.add_pairs(star, factors, values, pairs.data());
-      squares_[s * n_ + i] = system_.paired(frames(s), static_cast<Index>(i), pairs.span()) - squares;
+      for (std::size_t s = 0; s < inflows_.size(); ++s) {
+        const double *lambda = lambda_.data() + s * n_, *x = unknown_.data() + s * n_ * d_;
+        double squares = 0;
+        for (std::size_t k = 0; k < star.degree(); ++k) {
+          const auto j = static_cast<std::size_t>(star.neighbors[k]);
+          squares += amounts[k] * lambda[j];
+          for (std::size_t a = 0; a < d_; ++a) values[k * d_ + a] = x[place_.place(j, a)];
+        }
+        std::fill(pairs.span().begin(), pairs.span().end(), 0.0);
+        system_.add_pairs(star, factors, values, pairs.data());
+        squares_[s * n_ + i] = system_.paired(frames(s), static_cast<Index>(i), pairs.span()) - squares;
+      }
     }
   });
   for (std::size_t s = 0; s < inflows_.size(); ++s) {

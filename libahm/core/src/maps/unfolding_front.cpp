@@ -234,7 +234,7 @@ void UnfoldingFront::offer(Index vertex, Index point, double distance, double sl
 
 std::span<const UnfoldingFront::Corner> UnfoldingFront::around(Index vertex) {
   if (stars_) return stars_->of(vertex);
-  static thread_local std::vector<Neighbor> neighbors;
+  std::vector<Neighbor> neighbors;
   around_.clear();
   append_corners(graph_, vertex, neighbors, around_);
   return around_;

@@ -65,7 +65,7 @@ class BucketQueue {
   }
   std::uint32_t take() {
     if (free_ == none) {
-      chunks_.emplace_back(new Chunk);
+      chunks_.push_back(std::make_unique_for_overwrite<Chunk>());
       return static_cast<std::uint32_t>(chunks_.size() - 1);
     }
     const std::uint32_t taken = free_;
