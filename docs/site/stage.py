@@ -72,7 +72,9 @@ def headers():
     pages = {}
     for compound in tags.iter("compound"):
         if compound.get("kind") == "file":
-            pages[compound.findtext("path") + compound.findtext("name")] = compound.findtext("filename")
+            path = (root / compound.findtext("path") / compound.findtext("name")).relative_to(root)
+            if path.suffix == ".hpp":
+                pages[str(path)] = compound.findtext("filename")
     result, last = "", None
     rooms = ["libahm/core", "libahm/surface", "libahm/applications", "backends", "io", "view", "testing"]  # upwards
     for header in sorted(pages, key=lambda h: ([h.startswith(r) for r in rooms].index(True), str(pathlib.Path(h).parent), h)):
