@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Installs Debian packages for what is to be done, and says and does nothing where all are there:
-#   install_packages.sh [program|tests|checks]
+#   install_packages.sh [program|tests|checks|docs]
 # program: the program without PCL, all that scripts/demo.sh needs; tests (default): everything, tests and benchmarks
-# included; checks: that, and clang's tools.
+# included; checks: that, and clang's tools; docs: tests, and what makes the site.
 set -euo pipefail
 
 program=(
@@ -25,11 +25,13 @@ tests=(
   pybind11-dev python3-pybind11 python3-dev python3-numpy python3-scipy python3-pytest  # the Python package and its tests
 )
 checks=("${tests[@]}" clang-format clang-tidy)
+docs=("${tests[@]}" doxygen python3-sphinx python3-myst-parser furo python3-sphinx-copybutton linkchecker pngquant)
 case "${1:-tests}" in
   program) packages=("${program[@]}") ;;
   tests) packages=("${tests[@]}") ;;
   checks) packages=("${checks[@]}") ;;
-  *) echo "error: install_packages.sh [program|tests|checks]" >&2; exit 2 ;;
+  docs) packages=("${docs[@]}") ;;
+  *) echo "error: install_packages.sh [program|tests|checks|docs]" >&2; exit 2 ;;
 esac
 
 missing=()
