@@ -58,7 +58,7 @@ def surface(thing: Any, **options: Any) -> Surface:
     if isinstance(thing, tuple) and len(thing) == 2:
         return _mesh(thing[0], thing[1], options)
     for name in ("points", "vertices"):
-        found = getattr(thing, name, None)
+        found = _attribute(thing, name)
         if found is not None and not callable(found):
             return _mesh(np.asarray(found), _faces_of(thing), options, getattr(thing, "normals", None))
     for name in ("point", "vertex"):  # Open3D's tensors, of clouds and meshes
