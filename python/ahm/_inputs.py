@@ -20,6 +20,13 @@ def read(path: Union[str, "os.PathLike[str]"], kind: Optional[str] = None, **opt
     kind : "triangles", "polygons" or "cloud"; None: as the file has it. A mesh read as a cloud keeps its normals.
     options : of `TriangleMesh`, `PolygonMesh` or `PointCloud`.
 
+    >>> import ahm, tempfile
+    >>> with tempfile.NamedTemporaryFile("w", suffix=".obj") as file:
+    ...     _ = file.write("v 0 0 0\\nv 1 0 0\\nv 0 1 0\\nf 1 2 3\\n"), file.flush()
+    ...     mesh = ahm.read(file.name)
+    >>> mesh
+    <ahm.TriangleMesh: 3 vertices, 1 faces>
+
     Raises IoError (an OSError) naming the file and what is wrong with it, and as these.
     """
     got = _core.read_file(os.fspath(path))

@@ -32,7 +32,15 @@ _STRATEGIES = {"AffineLocal": "localized", "AffineAdaptive": "adaptive"}
 
 
 def read_mesh(filename: Any) -> Tuple[np.ndarray, np.ndarray]:
-    """(n, 3) vertices and (m, 3) triangles of a file."""
+    """(n, 3) vertices and (m, 3) triangles of a file.
+
+    >>> import ahm, ahm.potpourri3d as pp3d, tempfile
+    >>> with tempfile.NamedTemporaryFile(suffix=".ply") as file:
+    ...     pp3d.write_mesh(*ahm.shapes.plane(4, 3), file.name)
+    ...     V, F = pp3d.read_mesh(file.name)
+    >>> V.shape, F.shape
+    ((12, 3), (12, 3))
+    """
     got = _core.read_file(os.fspath(filename))
     begin = got["face_begin"]
     if begin is None or not (np.diff(begin) == 3).all():
@@ -41,7 +49,14 @@ def read_mesh(filename: Any) -> Tuple[np.ndarray, np.ndarray]:
 
 
 def read_polygon_mesh(filename: Any) -> Tuple[np.ndarray, List[List[int]]]:
-    """(n, 3) vertices and the corners of every face of a file."""
+    """(n, 3) vertices and the corners of every face of a file.
+
+    >>> import ahm.potpourri3d as pp3d, tempfile
+    >>> with tempfile.NamedTemporaryFile(suffix=".off") as file:
+    ...     pp3d.write_mesh([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [[0, 1, 2, 3]], file.name)
+    ...     pp3d.read_polygon_mesh(file.name)[1]
+    [[0, 1, 2, 3]]
+    """
     got = _core.read_file(os.fspath(filename))
     begin, corners = got["face_begin"], got["face_vertices"]
     if begin is None:
@@ -50,7 +65,14 @@ def read_polygon_mesh(filename: Any) -> Tuple[np.ndarray, List[List[int]]]:
 
 
 def read_point_cloud(filename: Any) -> np.ndarray:
-    """(n, 3) points of a file."""
+    """(n, 3) points of a file.
+
+    >>> import ahm.potpourri3d as pp3d, tempfile
+    >>> with tempfile.NamedTemporaryFile(suffix=".xyz") as file:
+    ...     pp3d.write_point_cloud([[0, 0, 0], [1, 2, 3]], file.name)
+    ...     pp3d.read_point_cloud(file.name).tolist()
+    [[0.0, 0.0, 0.0], [1.0, 2.0, 3.0]]
+    """
     return _core.read_file(os.fspath(filename))["points"]
 
 
@@ -133,13 +155,24 @@ def face_areas(V: Any, F: Any) -> np.ndarray:
 
 
 def vertex_areas(V: Any, F: Any) -> np.ndarray:
-    """(n,) a third of the areas of the triangles at every vertex."""
+    """(n,) a third of the areas of the triangles at every vertex.
+
+    >>> import ahm, ahm.potpourri3d as pp3d
+    >>> round(float(pp3d.vertex_areas(*ahm.shapes.plane(4, 3)).sum()), 9)
+    6.0
+    """
     points, faces = _mesh(V, F)
     return np.bincount(faces.ravel(), np.repeat(face_areas(points, faces) / 3, 3), len(points))
 
 
 def cotan_laplacian(V: Any, F: Any, denom_eps: float = 0.0) -> Any:
-    """(n, n) scipy CSR, positive semi-definite: half the cotangents opposite each edge, of the triangles as given."""
+    """(n, n) scipy CSR, positive semi-definite: half the cotangents opposite each edge, of the triangles as given.
+
+    >>> import ahm, ahm.potpourri3d as pp3d
+    >>> V, F = ahm.shapes.plane(4, 3)
+    >>> bool(abs((pp3d.cotan_laplacian(V, F) @ V)[5]).max() < 1e-12)           # linear functions are harmonic inside
+    True
+    """
     from scipy.sparse import coo_matrix, diags
 
     points, faces = _mesh(V, F)
@@ -157,7 +190,12 @@ def cotan_laplacian(V: Any, F: Any, denom_eps: float = 0.0) -> Any:
 
 
 def edges(V: Any, F: Any) -> np.ndarray:
-    """(e, 2) vertices of every edge, the smaller one first, sorted."""
+    """(e, 2) vertices of every edge, the smaller one first, sorted.
+
+    >>> import ahm, ahm.potpourri3d as pp3d
+    >>> pp3d.edges(*ahm.shapes.plane(2, 2)).tolist()
+    [[0, 1], [0, 2], [0, 3], [1, 3], [2, 3]]
+    """
     faces = _mesh(V, F)[1]
     return np.unique(np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1), axis=0)
 
@@ -233,12 +271,22 @@ class MeshHeatMethodDistanceSolver(_Heat):
 
 
 def compute_distance(V: Any, F: Any, v_ind: int) -> np.ndarray:
-    """(n,) distance from a vertex of a triangle mesh."""
+    """(n,) distance from a vertex of a triangle mesh.
+
+    >>> import ahm, ahm.potpourri3d as pp3d
+    >>> pp3d.compute_distance(*ahm.shapes.plane(4, 3), 0)[:4].round(9).tolist()
+    [0.0, 1.0, 2.0, 3.0]
+    """
     return MeshHeatMethodDistanceSolver(V, F).compute_distance(v_ind)
 
 
 def compute_distance_multisource(V: Any, F: Any, v_inds: Any) -> np.ndarray:
-    """(n,) distance from the nearest of several vertices of a triangle mesh."""
+    """(n,) distance from the nearest of several vertices of a triangle mesh.
+
+    >>> import ahm, ahm.potpourri3d as pp3d
+    >>> len(pp3d.compute_distance_multisource(*ahm.shapes.plane(4, 3), [0, 3]))
+    12
+    """
     return MeshHeatMethodDistanceSolver(V, F).compute_distance_multisource(v_inds)
 
 
