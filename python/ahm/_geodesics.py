@@ -18,7 +18,8 @@ class Path(NamedTuple):
 
     points: np.ndarray  #: (k, 3) in space, world units
     face: np.ndarray  #: (k,) int32 face of the input of every point
-    barycentric: Any  #: (k, 3) weights of its corners; a list of k arrays where faces have other numbers of corners
+    barycentric: Any  #: (k, 3) weights of its corners; a list of k arrays where faces have other numbers of corners. Of polygons
+    #: that are not flat, of the point of the face nearest to the path, which runs over their triangles
     length: float  #: world units
     complete: bool  #: False of a trace that ended at the boundary
 

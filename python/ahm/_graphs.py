@@ -54,7 +54,12 @@ class Grid(Surface):
         return tuple(int(s) for s in self._shape)
 
     def row(self, steps: Any) -> int:
-        """The row at these steps along the axes. Raises ValueError outside of the grid."""
+        """The row at these steps along the axes. Raises ValueError outside of the grid.
+
+        >>> import ahm
+        >>> ahm.Grid((5, 4)).row((3, 2))
+        13
+        """
         at = arguments.integers(steps, "steps", 1)
         if at.shape != self._shape.shape or (at < 0).any() or (at >= self._shape).any():
             raise ValueError(f"steps: {at.tolist()} lies outside of the grid of shape {self.shape}")

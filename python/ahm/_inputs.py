@@ -20,6 +20,13 @@ def read(path: Union[str, "os.PathLike[str]"], kind: Optional[str] = None, **opt
     kind : "triangles", "polygons" or "cloud"; None: as the file has it. A mesh read as a cloud keeps its normals.
     options : of `TriangleMesh`, `PolygonMesh` or `PointCloud`.
 
+    >>> import ahm, tempfile
+    >>> with tempfile.NamedTemporaryFile("w", suffix=".obj") as file:
+    ...     _ = file.write("v 0 0 0\\nv 1 0 0\\nv 0 1 0\\nf 1 2 3\\n"), file.flush()
+    ...     mesh = ahm.read(file.name)
+    >>> mesh
+    <ahm.TriangleMesh: 3 vertices, 1 faces>
+
     Raises IoError (an OSError) naming the file and what is wrong with it, and as these.
     """
     got = _core.read_file(os.fspath(path))
@@ -58,7 +65,7 @@ def surface(thing: Any, **options: Any) -> Surface:
     if isinstance(thing, tuple) and len(thing) == 2:
         return _mesh(thing[0], thing[1], options)
     for name in ("points", "vertices"):
-        found = getattr(thing, name, None)
+        found = _attribute(thing, name)
         if found is not None and not callable(found):
             return _mesh(np.asarray(found), _faces_of(thing), options, getattr(thing, "normals", None))
     for name in ("point", "vertex"):  # Open3D's tensors, of clouds and meshes

@@ -65,6 +65,11 @@ class LogMapSolver:
         frames : keep the transported frames, which `LogMap.frames`, `axes`, `gradient` and `inverse` need.
         variant, threads, progress : as of the solver.
 
+        >>> import ahm
+        >>> solver = ahm.LogMapSolver(ahm.shapes.plane(4, 3))
+        >>> solver.log_map([0.5, 0.0, 0.0], u_axis=[1, 0, 0]).uv[11].round(9).tolist()
+        [2.5, 2.0]
+
         Raises ValueError naming argument, index and value; NotPositiveDefinite, ResourceExhausted.
         """
         at = places.point(source, "source", self.surface)
@@ -77,6 +82,10 @@ class LogMapSolver:
 
         sources : (k,) rows, (k, 3) positions, `(faces, barycentric)`, `(edges, t)`, or a list of any.
         spread : keep `LogMap.spread`, which `quality` needs and which is a fifth of the work. Otherwise as `log_map`.
+
+        >>> import ahm
+        >>> [m.source.row for m in ahm.LogMapSolver(ahm.shapes.plane(4, 3)).log_maps([0, 7, 11])]
+        [0, 7, 11]
         """
         at = places.points(sources, "sources", self.surface)
         options = dict(u_axis=u_axis, radius=radius, frames=frames, spread=spread, variant=variant, threads=threads)
@@ -139,7 +148,12 @@ class ExactGeodesics:
 
     def log_maps(self, sources: Any, *, u_axis: Any = None, radius: Optional[float] = None, frames: bool = False,
                  threads: int = 0, progress: Progress = None) -> List[LogMap]:
-        """One map for each source, several at a time, and the same numbers. Arguments as of `LogMapSolver.log_maps`."""
+        """One map for each source, several at a time, and the same numbers. Arguments as of `LogMapSolver.log_maps`.
+
+        >>> import ahm
+        >>> [m.method for m in ahm.ExactGeodesics(ahm.shapes.plane(4, 3)).log_maps([0, 7])]
+        ['exact', 'exact']
+        """
         at = places.points(sources, "sources", self.surface)
         options = dict(u_axis=u_axis, radius=radius, frames=frames, threads=threads)
         return self._solve(at, "log_maps", sources, options, progress)

@@ -14,102 +14,20 @@ frames of `get_tangent_frames`, which are a choice of gauge and not that package
 
 from __future__ import annotations
 
-import os
-from typing import Any, List, Optional, Sequence, Tuple
+from typing import Any, List, Optional, Tuple
 
 import numpy as np
 
 from . import _arguments as arguments
-from . import _core
+from ._clouds import PointCloud
 from ._fields import DistanceField, distance_and_gradient, extend, operators, transport
 from ._geodesics import geodesic_loop, geodesic_path, geodesic_paths, trace
-from ._clouds import PointCloud
+from ._mesh_files import read_mesh, read_point_cloud, read_polygon_mesh, write_mesh, write_point_cloud
 from ._meshes import PolygonMesh, TriangleMesh
 from ._solvers import LogMapSolver
 from ._surfaces import Surface
 
 _STRATEGIES = {"AffineLocal": "localized", "AffineAdaptive": "adaptive"}
-
-
-def read_mesh(filename: Any) -> Tuple[np.ndarray, np.ndarray]:
-    """(n, 3) vertices and (m, 3) triangles of a file."""
-    got = _core.read_file(os.fspath(filename))
-    begin = got["face_begin"]
-    if begin is None or not (np.diff(begin) == 3).all():
-        raise ValueError(f"filename: {os.fspath(filename)} holds no triangle mesh")
-    return got["points"], got["face_vertices"].reshape(-1, 3)
-
-
-def read_polygon_mesh(filename: Any) -> Tuple[np.ndarray, List[List[int]]]:
-    """(n, 3) vertices and the corners of every face of a file."""
-    got = _core.read_file(os.fspath(filename))
-    begin, corners = got["face_begin"], got["face_vertices"]
-    if begin is None:
-        raise ValueError(f"filename: {os.fspath(filename)} holds no faces")
-    return got["points"], [corners[b:e].tolist() for b, e in zip(begin[:-1], begin[1:])]
-
-
-def read_point_cloud(filename: Any) -> np.ndarray:
-    """(n, 3) points of a file."""
-    return _core.read_file(os.fspath(filename))["points"]
-
-
-def write_mesh(V: Any, F: Any, filename: Any, UV_coords: Any = None, UV_type: Optional[str] = None) -> None:
-    """Writes .obj, .off or .ply (text). UV_type: "per-vertex" (n, 2) or "per-corner" (corners, 2), .obj only."""
-    points = arguments.floats(V, "V", (None, 3))
-    faces = [arguments.integers(f, f"F[{k}]", 1, 0, len(points) - 1).tolist() for k, f in enumerate(F)]
-    ending = os.path.splitext(os.fspath(filename))[1].lower()
-    if (UV_coords is None) != (UV_type is None):
-        raise ValueError("UV_type: goes with UV_coords, and the other way round")
-    if UV_type is not None and (UV_type not in ("per-vertex", "per-corner") or ending != ".obj"):
-        raise NotImplementedError("UV_type: 'per-vertex' and 'per-corner' can be written, to .obj files")
-    rows = [" ".join(repr(float(x)) for x in p) for p in points]
-    if ending == ".obj":
-        lines = ["v " + row for row in rows] + _obj_faces(faces, UV_coords, UV_type, len(points))
-    elif ending == ".off":
-        lines = ["OFF", f"{len(rows)} {len(faces)} 0", *rows, *(_counted(f) for f in faces)]
-    elif ending == ".ply":
-        lines = ["ply", "format ascii 1.0", *_ply_points(len(rows)), f"element face {len(faces)}",
-                 "property list uchar int vertex_indices", "end_header", *rows, *(_counted(f) for f in faces)]
-    else:
-        raise NotImplementedError(f"filename: {ending or 'no ending'} cannot be written; .obj, .off and .ply can")
-    _write(filename, lines)
-
-
-def write_point_cloud(V: Any, filename: Any) -> None:
-    """Writes .ply (text), .obj or .xyz."""
-    rows = [" ".join(repr(float(x)) for x in p) for p in arguments.floats(V, "V", (None, 3))]
-    ending = os.path.splitext(os.fspath(filename))[1].lower()
-    if ending not in (".ply", ".obj", ".xyz"):
-        raise NotImplementedError(f"filename: {ending or 'no ending'} cannot be written; .ply, .obj and .xyz can")
-    head = ["ply", "format ascii 1.0", *_ply_points(len(rows)), "end_header"] if ending == ".ply" else []
-    _write(filename, head + [("v " if ending == ".obj" else "") + row for row in rows])
-
-
-def _write(filename: Any, lines: Sequence[str]) -> None:
-    with open(filename, "w", encoding="ascii") as file:
-        file.write("\n".join(lines) + "\n")
-
-
-def _counted(face: Sequence[int]) -> str:
-    return " ".join(map(str, (len(face), *face)))
-
-
-def _ply_points(count: int) -> List[str]:
-    return [f"element vertex {count}", *(f"property double {axis}" for axis in "xyz")]
-
-
-def _obj_faces(faces: Sequence[Sequence[int]], uv: Any, kind: Optional[str], points: int) -> List[str]:
-    if uv is None:
-        return ["f " + " ".join(str(v + 1) for v in face) for face in faces]
-    corners = sum(len(face) for face in faces)
-    given = arguments.floats(uv, "UV_coords", (points if kind == "per-vertex" else corners, 2))
-    lines, corner = [f"vt {float(u)!r} {float(v)!r}" for u, v in given], 0
-    for face in faces:
-        places = face if kind == "per-vertex" else range(corner, corner + len(face))
-        lines.append("f " + " ".join(f"{v + 1}/{t + 1}" for v, t in zip(face, places)))
-        corner += len(face)
-    return lines
 
 
 def _mesh(V: Any, F: Any) -> Tuple[np.ndarray, np.ndarray]:
@@ -133,13 +51,24 @@ def face_areas(V: Any, F: Any) -> np.ndarray:
 
 
 def vertex_areas(V: Any, F: Any) -> np.ndarray:
-    """(n,) a third of the areas of the triangles at every vertex."""
+    """(n,) a third of the areas of the triangles at every vertex.
+
+    >>> import ahm, ahm.potpourri3d as pp3d
+    >>> round(float(pp3d.vertex_areas(*ahm.shapes.plane(4, 3)).sum()), 9)
+    6.0
+    """
     points, faces = _mesh(V, F)
     return np.bincount(faces.ravel(), np.repeat(face_areas(points, faces) / 3, 3), len(points))
 
 
 def cotan_laplacian(V: Any, F: Any, denom_eps: float = 0.0) -> Any:
-    """(n, n) scipy CSR, positive semi-definite: half the cotangents opposite each edge, of the triangles as given."""
+    """(n, n) scipy CSR, positive semi-definite: half the cotangents opposite each edge, of the triangles as given.
+
+    >>> import ahm, ahm.potpourri3d as pp3d
+    >>> V, F = ahm.shapes.plane(4, 3)
+    >>> bool(abs((pp3d.cotan_laplacian(V, F) @ V)[5]).max() < 1e-12)           # linear functions are harmonic inside
+    True
+    """
     from scipy.sparse import coo_matrix, diags
 
     points, faces = _mesh(V, F)
@@ -157,7 +86,12 @@ def cotan_laplacian(V: Any, F: Any, denom_eps: float = 0.0) -> Any:
 
 
 def edges(V: Any, F: Any) -> np.ndarray:
-    """(e, 2) vertices of every edge, the smaller one first, sorted."""
+    """(e, 2) vertices of every edge, the smaller one first, sorted.
+
+    >>> import ahm, ahm.potpourri3d as pp3d
+    >>> pp3d.edges(*ahm.shapes.plane(2, 2)).tolist()
+    [[0, 1], [0, 2], [0, 3], [1, 3], [2, 3]]
+    """
     faces = _mesh(V, F)[1]
     return np.unique(np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1), axis=0)
 
@@ -233,12 +167,22 @@ class MeshHeatMethodDistanceSolver(_Heat):
 
 
 def compute_distance(V: Any, F: Any, v_ind: int) -> np.ndarray:
-    """(n,) distance from a vertex of a triangle mesh."""
+    """(n,) distance from a vertex of a triangle mesh.
+
+    >>> import ahm, ahm.potpourri3d as pp3d
+    >>> pp3d.compute_distance(*ahm.shapes.plane(4, 3), 0)[:4].round(9).tolist()
+    [0.0, 1.0, 2.0, 3.0]
+    """
     return MeshHeatMethodDistanceSolver(V, F).compute_distance(v_ind)
 
 
 def compute_distance_multisource(V: Any, F: Any, v_inds: Any) -> np.ndarray:
-    """(n,) distance from the nearest of several vertices of a triangle mesh."""
+    """(n,) distance from the nearest of several vertices of a triangle mesh.
+
+    >>> import ahm, ahm.potpourri3d as pp3d
+    >>> len(pp3d.compute_distance_multisource(*ahm.shapes.plane(4, 3), [0, 3]))
+    12
+    """
     return MeshHeatMethodDistanceSolver(V, F).compute_distance_multisource(v_inds)
 
 
