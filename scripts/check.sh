@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # What a compiler and the tests do not see: the format of every source, clang-tidy on what is ours, and the tests of the
 # library, its backends and io under the address and undefined-behaviour sanitizers. Installs what these take.
-#   check.sh [format|tidy|tidy-all|sanitizers ...]     format, tidy and sanitizers without a word
+#   check.sh [format|tidy|tidy-all|sanitizers|threads ...]     format, tidy and sanitizers without a word
 # tidy looks at what differs from main and at what includes that; tidy-all at everything.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -54,11 +54,18 @@ sanitizers() {
   done
 }
 
+threads() {
+  echo "Thread sanitizer (build/tsan) ..."
+  cmake --preset tsan >/dev/null
+  cmake --build --preset tsan
+  TSAN_OPTIONS="suppressions=$PWD/tests/faults/tsan.supp history_size=4" build/tsan/bin/test_threads --gtest_brief=1
+}
+
 for check in "${@:-format tidy sanitizers}"; do
   for one in $check; do
     case "$one" in
-      format | tidy | tidy-all | sanitizers) ;;
-      *) echo "error: check.sh [format|tidy|tidy-all|sanitizers ...]" >&2; exit 2 ;;
+      format | tidy | tidy-all | sanitizers | threads) ;;
+      *) echo "error: check.sh [format|tidy|tidy-all|sanitizers|threads ...]" >&2; exit 2 ;;
     esac
   done
 done

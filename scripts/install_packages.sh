@@ -22,7 +22,7 @@ tests=(
   libcgal-dev python3-matplotlib                              # exact distances and plots of the experiments
   pybind11-dev python3-pybind11 python3-dev python3-numpy python3-scipy python3-pytest  # the Python package and its tests
 )
-checks=("${tests[@]}" clang-format clang-tidy)
+checks=("${tests[@]}" clang clang-format clang-tidy)
 case "${1:-tests}" in
   program) packages=("${program[@]}") ;;
   tests) packages=("${tests[@]}") ;;
