@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # What a compiler and the tests do not see: the format of every source, clang-tidy on what is ours, and the tests of the
 # library, its backends and io under the address and undefined-behaviour sanitizers. Installs what these take.
+# threads: the thread sanitizer, on the test of what is parallel.
 #   check.sh [format|tidy|tidy-all|sanitizers|threads ...]     format, tidy and sanitizers without a word
 # tidy looks at what differs from main and at what includes that; tidy-all at everything.
 set -euo pipefail
@@ -58,7 +59,7 @@ threads() {
   echo "Thread sanitizer (build/tsan) ..."
   cmake --preset tsan >/dev/null
   cmake --build --preset tsan
-  TSAN_OPTIONS="suppressions=$PWD/tests/faults/tsan.supp history_size=4" build/tsan/bin/test_threads --gtest_brief=1
+  build/tsan/bin/test_threads --gtest_brief=1
 }
 
 for check in "${@:-format tidy sanitizers}"; do
