@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # What a compiler and the tests do not see: the format of every source, clang-tidy on what is ours, and the tests of the
 # library, its backends and io under the address and undefined-behaviour sanitizers; with sanitizers-python those of the Python
-# package, too. Installs what these take.
-#   check.sh [format|tidy|tidy-all|sanitizers|sanitizers-python ...]     format, tidy and sanitizers without a word
+# package, too; with threads what is parallel under the thread sanitizer. Installs what these take.
+#   check.sh [format|tidy|tidy-all|sanitizers|sanitizers-python|threads ...]     format, tidy and sanitizers without a word
 # tidy looks at what differs from main and at what includes that; tidy-all at everything.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -62,11 +62,18 @@ sanitizers-python() {
   ctest --test-dir build/asan -R '^Python$' --no-tests=error --output-on-failure
 }
 
+threads() {
+  echo "Thread sanitizer (build/tsan) ..."
+  cmake --preset tsan >/dev/null
+  cmake --build --preset tsan
+  build/tsan/bin/test_threads --gtest_brief=1
+}
+
 for check in "${@:-format tidy sanitizers}"; do
   for one in $check; do
     case "$one" in
-      format | tidy | tidy-all | sanitizers | sanitizers-python) ;;
-      *) echo "error: check.sh [format|tidy|tidy-all|sanitizers|sanitizers-python ...]" >&2; exit 2 ;;
+      format | tidy | tidy-all | sanitizers | sanitizers-python | threads) ;;
+      *) echo "error: check.sh [format|tidy|tidy-all|sanitizers|sanitizers-python|threads ...]" >&2; exit 2 ;;
     esac
   done
 done

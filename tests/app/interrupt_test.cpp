@@ -88,6 +88,44 @@ TEST(FullDisk, LeavesNothing) {
   EXPECT_EQ(folder.files(), Words{"sphere.xyz"});
 }
 
+/// A run with so little address space. The libraries alone take 110 MB, the BLAS buffers 128 MB each.
+Outcome run_within(rlim_t megabytes, const Words& words) {
+  rlimit before{};
+  getrlimit(RLIMIT_AS, &before);
+  const rlimit small{megabytes << 20, before.rlim_max};
+  // The limit is for the child alone: this process is above it, and only keeps what it has until the child is there.
+  setrlimit(RLIMIT_AS, &small);
+  Running running;
+  try {
+    running = start(words);
+  } catch (...) {
+    setrlimit(RLIMIT_AS, &before);
+    throw;
+  }
+  setrlimit(RLIMIT_AS, &before);
+  return finish(running);
+}
+
+TEST(ScarceMemory, IsNamedAndEndsTheRun) {
+  Folder folder;
+  const auto input = folder.write("sphere.xyz", xyz(sphere(4000)));
+  int refused = 0, done = 0;
+  for (const rlim_t megabytes : {250, 300, 350, 400, 500, 600, 700, 900, 1200, 1600}) {
+    for (const Words& words : {Words{"logmap", input, "--source", "0", "-o", folder / "map.csv"},
+                               Words{"local-maps", input, "--radius", "100", "-o", folder / "maps.npz"}}) {
+      const auto outcome = run_within(megabytes, words);
+      ASSERT_TRUE(outcome.status == 0 || outcome.status == 1) << megabytes << " MB: " << outcome.status << outcome.err;
+      if (outcome.status == 1) {
+        EXPECT_NE(outcome.err.find("memory"), std::string::npos) << megabytes << " MB: " << outcome.err;
+      }
+      ++(outcome.status == 0 ? done : refused);
+      for (const std::string& file : folder.files()) EXPECT_FALSE(file.ends_with(".tmp")) << file;
+    }
+  }
+  EXPECT_GT(refused, 0);
+  EXPECT_GT(done, 0);
+}
+
 TEST(OldOutput, SurvivesAFailure) {
   Folder folder;
   const auto output = folder.write("map.csv", "precious\n");

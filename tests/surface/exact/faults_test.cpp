@@ -6,6 +6,8 @@
 #include <string>
 
 #include "ahm/error.hpp"
+#include "ahm/surface/exact/exact_geodesics.hpp"
+#include "ahm/trimesh/triangle_mesh_surface.hpp"
 #include "polyhedra.hpp"
 
 namespace ahm::test {
@@ -73,6 +75,28 @@ TEST(PolyhedralSurface, KeepsCapsThatAreNearlyFlat) {
     for (Index b = 0; b < 5; ++b)
       EXPECT_NEAR(map.distance(Vertex(b)), distance(solid.mesh.position(a), solid.mesh.position(b)), 1e-15);
   }
+}
+
+/// Sides from 1e-320 to 1e300: windows go in circles about corners far smaller than the rounding of their distances.
+TEST(ExactMap, NamesMeshesOnWhichWindowsDoNotEnd) {
+  Mesh mesh = flat_square(5, 0.0);
+  const Vec3 scattered[] = {
+      {-8.7e-255, 1.2e-90, -6.5e-280}, {-1.6e97, 7.9e-296, -3.3e-99},    {-1.1e129, 2.0e86, 2.0e288},
+      {-3.2e98, 1.5e-123, -7.5e-82},   {-4.2e186, -4.1e-258, 3.6e30},    {-1.3e36, -2.9e-123, 2.1e-29},
+      {-3.2e-290, -1.1e279, -1.1e300}, {-6.6e-235, -3.1e290, -1.5e-103}, {4.2e62, 3.5e151, -1.3e-286},
+      {-2.0e-76, -1.8e-281, -8.0e276}, {3.5e117, -6.5e272, 4.8e-268},    {5.2e132, -6.2e-217, -1.6e-274},
+      {-1.5e59, -7.0e210, -4.2e-20},   {3.2e-308, 1.7e-289, 1.3e-284},   {2.1e-289, 5.8e-275, 0}};
+  std::copy(std::begin(scattered), std::end(scattered), mesh.positions.begin() + 5);
+  const auto surface = trimesh::TriangleMeshSurface::build(mesh.positions, mesh.faces);
+  const ExactGeodesics exact(surface);
+  int refused = 0;
+  for (Index face = 0; face < static_cast<Index>(mesh.faces.size()); ++face) try {
+      (void)exact.log_map(FacePoint{face, {0.25, 0.25, 0.5}});
+    } catch (const InvalidGeometry& e) {
+      EXPECT_EQ(e.fault(), "windows_without_end") << e.what();
+      ++refused;
+    }
+  EXPECT_GT(refused, 0);
 }
 
 TEST(ExactMap, RefusesArgumentsOutOfRange) {

@@ -1,0 +1,135 @@
+// Everything that is parallel, at a size fit for the thread sanitizer: the same bits on any number of threads, and from many
+// threads at once.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstring>
+#include <thread>
+
+#include "ahm/fields/distance.hpp"
+#include "ahm/maps/local_maps.hpp"
+#include "ahm/maps/log_map_solver.hpp"
+#include "ahm/pointcloud/point_cloud_surface.hpp"
+#include "ahm/polymesh/polygon_mesh_surface.hpp"
+#include "ahm/surface/exact/exact_geodesics.hpp"
+#include "ahm/testing/clouds.hpp"
+#include "ahm/testing/polygon_meshes.hpp"
+#include "ahm/testing/triangle_meshes.hpp"
+#include "ahm/trimesh/triangle_mesh_surface.hpp"
+
+namespace ahm::test {
+namespace {
+
+using Numbers = std::vector<double>;
+
+Numbers numbers_of(const std::vector<LogMap>& maps) {
+  Numbers all;
+  for (const LogMap& map : maps) {
+    all.insert(all.end(), map.coordinates().begin(), map.coordinates().end());
+    all.insert(all.end(), map.distances().begin(), map.distances().end());
+  }
+  return all;
+}
+
+/// Bit for bit: NaN where there is no map is the same.
+bool same(std::span<const double> a, std::span<const double> b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size_bytes()) == 0;
+}
+
+trimesh::TriangleMeshSurface surface_of(const Mesh& mesh, unsigned threads) {
+  return trimesh::TriangleMeshSurface::build(mesh.positions, mesh.faces, {.threads = threads});
+}
+
+std::vector<Source> some_sources(const TangentGraph& graph, Index step) {
+  std::vector<Source> sources;
+  for (Index i = 0; i < graph.size(); i += step) sources.push_back(Source::at_vertex(Vertex(i)));
+  return sources;
+}
+
+/// Eight threads ask one solver for maps, alone and in blocks, again and again.
+void ask_from_eight_threads(const HeatOptions& options) {
+  const auto surface = surface_of(holed_square(20), 1);
+  const LogMapSolver solver(surface.graph(), options);
+  const std::vector<Source> sources = some_sources(surface.graph(), 50);
+  const Numbers expected = numbers_of(solver.solve(sources));
+  std::vector<Numbers> expected_alone;  // other sums than those of a block
+  for (const Source& source : sources) expected_alone.push_back(numbers_of({solver.solve(source)}));
+  std::atomic<int> blocks{0}, singles{0};
+  {
+    std::vector<std::jthread> threads;
+    for (int t = 0; t < 8; ++t)
+      threads.emplace_back([&, t] {
+        for (int times = 0; times < 3; ++times) {
+          const auto number = static_cast<std::size_t>(t) % sources.size();
+          if (!same(numbers_of(solver.solve(sources, {.threads = 1U + static_cast<unsigned>(t) % 3})), expected))
+            ++blocks;
+          if (!same(numbers_of({solver.solve(sources[number])}), expected_alone[number])) ++singles;
+        }
+      });
+  }
+  EXPECT_EQ(blocks, 0);
+  EXPECT_EQ(singles, 0);
+}
+
+TEST(Threads, EightOnOneSolverGetWhatOneGets) {
+  ask_from_eight_threads({});
+  ask_from_eight_threads({.variant = Variant::localized, .order = 2});
+  ask_from_eight_threads({.strategy = Strategy::march});
+  ask_from_eight_threads({.supernodal = false});
+}
+
+TEST(Threads, EightFactorAtOnceWhatOneFactors) {
+  const auto surface = surface_of(holed_square(20), 1);
+  const std::vector<Source> sources = some_sources(surface.graph(), 100);
+  const Numbers expected = numbers_of(LogMapSolver(surface.graph(), {.threads = 1}).solve(sources));
+  std::atomic<int> wrong{0};
+  {
+    std::vector<std::jthread> threads;
+    for (int t = 0; t < 8; ++t)
+      threads.emplace_back([&] {
+        if (numbers_of(LogMapSolver(surface.graph(), {.threads = 2}).solve(sources)) != expected) ++wrong;
+      });
+  }
+  EXPECT_EQ(wrong, 0);
+}
+
+TEST(Threads, BuildTheSameSurfaces) {
+  const auto weights = [](unsigned threads) {
+    const auto of_mesh = surface_of(torus(2000), threads);
+    Numbers all = of_mesh.graph().data().weights;
+    const Cloud cloud = flat_cloud(2000);
+    const auto of_cloud = pointcloud::PointCloudSurface::build(cloud.points, {}, {.threads = threads});
+    all.insert(all.end(), of_cloud.graph().data().weights.begin(), of_cloud.graph().data().weights.end());
+    const Polygons polygons = voronoi_square(300);
+    const auto of_polygons =
+        polymesh::PolygonMeshSurface::build(polygons.positions, polygons.begin, polygons.corners, {.threads = threads});
+    all.insert(all.end(), of_polygons.graph().data().weights.begin(), of_polygons.graph().data().weights.end());
+    return all;
+  };
+  const Numbers expected = weights(1);
+  EXPECT_EQ(weights(2), expected);
+  EXPECT_EQ(weights(8), expected);
+}
+
+TEST(Threads, MakeTheSameLocalMapsAndPaths) {
+  const auto surface = surface_of(holed_square(20), 1);
+  const auto numbers = [&](unsigned threads) {
+    LocalMapOptions options{.radius = 0.2};
+    options.heat.threads = threads;
+    const LocalMaps maps = local_maps(surface.graph(), options);
+    Numbers all = maps.logs;
+    all.insert(all.end(), maps.distances.begin(), maps.distances.end());
+    const ExactGeodesics exact(surface);
+    std::vector<std::array<SurfacePoint, 2>> pairs;
+    for (Index i = 0; i + 40 < static_cast<Index>(surface.positions().size()); i += 20)
+      pairs.push_back({Row(i), Row(i + 40)});
+    for (const auto& path : exact.paths(pairs, {}, threads)) all.push_back(path.length);
+    return all;
+  };
+  const Numbers expected = numbers(1);
+  EXPECT_EQ(numbers(2), expected);
+  EXPECT_EQ(numbers(8), expected);
+}
+
+}  // namespace
+}  // namespace ahm::test
