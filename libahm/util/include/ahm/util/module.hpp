@@ -29,7 +29,7 @@ inline void* module_symbol(const std::string& module, const char* symbol, std::s
     if (void* found = library == nullptr ? nullptr : dlsym(library, symbol)) return found;
     const char* text = dlerror();
     if (text != nullptr &&
-        (error.empty() || std::string(text).find("cannot open shared object file: No such file") == std::string::npos))
+        (error.empty() || std::string(text).find("cannot open shared object file") == std::string::npos))
       error = text;
   }
   return nullptr;
