@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # Installs Debian packages for what is to be done, and says and does nothing where all are there:
-#   install_packages.sh [program|tests|checks|docs]
+#   install_packages.sh [program|tests|checks|docs|packages]
 # program: the program without PCL, all that scripts/demo.sh needs; tests (default): everything, tests and benchmarks
-# included; checks: that, and clang's tools; docs: tests, and what makes the site.
+# included; checks: that, and clang's tools; docs: tests, and what makes the site; packages: tests, and
+# what makes Debian packages.
 set -euo pipefail
 
 program=(
@@ -25,13 +26,15 @@ tests=(
   pybind11-dev python3-pybind11 python3-dev python3-numpy python3-scipy python3-pytest  # the Python package and its tests
 )
 checks=("${tests[@]}" clang clang-format clang-tidy)
+debian=("${tests[@]}" dpkg-dev pkg-config file)
 docs=("${tests[@]}" doxygen python3-sphinx python3-myst-parser furo python3-sphinx-copybutton linkchecker pngquant)
 case "${1:-tests}" in
   program) packages=("${program[@]}") ;;
   tests) packages=("${tests[@]}") ;;
   checks) packages=("${checks[@]}") ;;
   docs) packages=("${docs[@]}") ;;
-  *) echo "error: install_packages.sh [program|tests|checks|docs]" >&2; exit 2 ;;
+  packages) packages=("${debian[@]}") ;;
+  *) echo "error: install_packages.sh [program|tests|checks|docs|packages]" >&2; exit 2 ;;
 esac
 
 missing=()

@@ -101,8 +101,8 @@ for path in pages:
     if orphan:
         staged = stage / path
         write(path, "---\norphan: true\n---\n" + staged.read_text(encoding="utf-8").removeprefix("---\norphan: true\n---\n"))
-write("cpp_api.md", (root / "docs/site/cpp_api.md").read_text(encoding="utf-8") + headers())
-write("python_api.md", (root / "docs/site/python_api.md").read_text(encoding="utf-8"))
+page(pathlib.Path("docs/site/cpp_api.md"), pathlib.Path("cpp_api.md"), headers())
+page(pathlib.Path("docs/site/python_api.md"), pathlib.Path("python_api.md"))
 for path in shown:
     show(path)
 for old in stage.rglob("*.md"):

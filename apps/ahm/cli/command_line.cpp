@@ -11,7 +11,9 @@
 #include <string_view>
 #include <vector>
 
+#include "cli/completion.hpp"
 #include "cli/console.hpp"
+#include "cli/manual.hpp"
 #include "cli/system_info.hpp"
 #include "commands/subcommand.hpp"
 
@@ -31,6 +33,21 @@ constexpr const char* main_footer =
 
 std::function<void()> print_later(std::string text) {
   return [text = std::move(text)] { print(text); };
+}
+
+/// `ahm completion SHELL` and `ahm manual [SUBCOMMAND]`, for those who install the program; null where neither is asked for.
+std::function<void()> about_the_program(CLI::App& app, int argc, const char* const* argv) {
+  const std::string_view word = argc > 1 ? argv[1] : "", what = argc > 2 ? argv[2] : "";
+  if (argc > 3) return nullptr;
+  if (word == "completion") {
+    if (const auto text = completion(app, what)) return print_later(*text);
+    throw UsageError{"write ahm completion bash, zsh or fish"};
+  }
+  if (word == "manual") {
+    if (const auto text = manual(app, what, AHM_VERSION)) return print_later(*text);
+    throw UsageError{fmt::format("ahm manual: '{}' is no subcommand", what)};
+  }
+  return nullptr;
 }
 
 /// CLI11 would take a forgotten subcommand for an unknown option.
@@ -58,6 +75,7 @@ std::function<void()> parse_command_line(int argc, const char* const* argv) {
   std::vector<Subcommand> commands;
   for (const AddSubcommand add : subcommands()) commands.push_back(add(*app));
   if (argc == 2 && std::string_view(argv[1]) == "--version") return print_later(versions_as_text());
+  if (auto about = about_the_program(*app, argc, argv)) return about;
   check_first_word(argc > 1 ? argv[1] : "", commands);
   const auto chosen = [&] { return app->get_subcommands().empty() ? nullptr : app->get_subcommands().front(); };
   try {

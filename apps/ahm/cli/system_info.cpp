@@ -8,9 +8,6 @@
 #include <nlohmann/json.hpp>
 
 #include "ahm/heat/heat_operators.hpp"
-#ifdef AHM_WITH_PCL
-#include "ahm/pcl/search.hpp"
-#endif
 
 namespace ahm::app {
 
@@ -36,7 +33,7 @@ nlohmann::ordered_json versions() {
   result["blas_optimized"] = algebra.blas_optimized;
   result["eigen"] = fmt::format("{}.{}.{}", EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION);
 #ifdef AHM_WITH_PCL
-  result["pcl"] = pcl_bridge::version();
+  result["pcl"] = AHM_PCL_VERSION;  // which is loaded only where it is needed
 #endif
   result["cli11"] = CLI11_VERSION;
   result["fmt"] = fmt::format("{}.{}.{}", FMT_VERSION / 10000, FMT_VERSION / 100 % 100, FMT_VERSION % 100);

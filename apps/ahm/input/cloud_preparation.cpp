@@ -10,7 +10,7 @@
 #include "ahm/util/vec.hpp"
 #include "cli/source_list.hpp"
 #ifdef AHM_WITH_PCL
-#include "ahm/pcl/filters.hpp"
+#include "input/pcl_module.hpp"
 #endif
 
 namespace ahm::app {
@@ -65,8 +65,8 @@ void apply_voxel_grid(PreparedCloud& cloud, const io::Geometry& input, const Inp
                       std::optional<Index> source) try {
   const bool with_normals = !input.normals.empty() && options.normals != "estimate";
   const pcl_bridge::ReducedCloud reduced =
-      pcl_bridge::voxel_grid(taken(input.points, cloud.rows),
-                             with_normals ? taken(input.normals, cloud.rows) : std::vector<Vec3>(), *options.voxel);
+      pcl_functions().voxel_grid(taken(input.points, cloud.rows),
+                                 with_normals ? taken(input.normals, cloud.rows) : std::vector<Vec3>(), *options.voxel);
   std::vector<Index> kept = reduced.point_of_row;
   if (source) {  // the source represents its voxel itself
     const auto place = std::lower_bound(cloud.rows.begin(), cloud.rows.end(), *source) - cloud.rows.begin();
@@ -81,7 +81,7 @@ void apply_voxel_grid(PreparedCloud& cloud, const io::Geometry& input, const Inp
 }
 
 void apply_outlier_removal(PreparedCloud& cloud, const io::Geometry& input, std::optional<Index> source) {
-  std::vector<Index> kept = pcl_bridge::outlier_removal(taken(input.points, cloud.rows));
+  std::vector<Index> kept = pcl_functions().outlier_removal(taken(input.points, cloud.rows), 16, 2.0);
   cloud.outliers = static_cast<Index>(cloud.rows.size() - kept.size());
   for (Index& point : kept) point = cloud.rows[point];
   cloud.rows = std::move(kept);

@@ -8,7 +8,7 @@
 #include "input/backend.hpp"
 #include "input/cloud_preparation.hpp"
 #ifdef AHM_WITH_PCL
-#include "ahm/pcl/search.hpp"
+#include "input/pcl_module.hpp"
 #endif
 
 namespace ahm::app {
@@ -32,7 +32,7 @@ pointcloud::NeighborSearchFactory search_factory(const std::string& name) {
   if (name == "flann") return pointcloud::flann_search;
   if (name == "nanoflann") return pointcloud::nanoflann_search;
 #ifdef AHM_WITH_PCL
-  return pcl_bridge::kdtree_search;
+  return pcl_functions().kdtree_search;
 #else
   throw InvalidArgument("--knn pcl: this build of ahm has no PCL; use nanoflann or flann");
 #endif

@@ -8,7 +8,7 @@
 
 #include "ahm/error.hpp"
 #include "ahm/maps/cost.hpp"
-#include "ahm/surface/component_lengths.hpp"
+#include "ahm/util/component_lengths.hpp"
 #include "ahm/util/parallel.hpp"
 #include "polygon.hpp"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ahm/surface/component_lengths.hpp"
+#include "ahm/util/component_lengths.hpp"
 #include "ahm/util/parallel.hpp"
 
 namespace ahm::trimesh {

@@ -1,5 +1,5 @@
 /// \file
-/// Mean edge lengths of the connected components of a mesh. Not part of the public interface.
+/// Mean edge lengths of the connected components of a mesh.
 #pragma once
 
 #include <vector>

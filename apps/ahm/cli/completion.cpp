@@ -1,0 +1,118 @@
+#include "cli/completion.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <vector>
+
+namespace ahm::app {
+namespace {
+
+std::vector<CLI::App*> subcommands_of(CLI::App& program) {
+  return program.get_subcommands([](CLI::App*) { return true; });
+}
+
+/// The options with names; positionals are files.
+std::vector<CLI::Option*> options_of(CLI::App& app) {
+  return app.get_options([](CLI::Option* option) { return !option->get_lnames().empty(); });
+}
+
+/// In single quotes, as every shell reads it.
+std::string quoted(const std::string& text) {
+  std::string result = "'";
+  for (char c : text) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return result + "'";
+}
+
+std::vector<std::string> words(const CLI::Option& option) {
+  std::vector<std::string> result;
+  for (const std::string& name : option.get_snames()) result.push_back("-" + name);
+  for (const std::string& name : option.get_lnames()) result.push_back("--" + name);
+  return result;
+}
+
+std::string bash(CLI::App& program) {
+  std::vector<std::string> names;
+  std::string cases;
+  for (CLI::App* app : subcommands_of(program)) {
+    names.push_back(app->get_name());
+    std::vector<std::string> all;
+    for (const CLI::Option* option : options_of(*app))
+      for (std::string& word : words(*option)) all.push_back(std::move(word));
+    cases += fmt::format("    {}) options={} ;;\n", app->get_name(), quoted(fmt::format("{}", fmt::join(all, " "))));
+  }
+  return fmt::format(
+      "# Completion of ahm for bash.\n"
+      "_ahm() {{\n"
+      "  local word=\"${{COMP_WORDS[COMP_CWORD]}}\" options=''\n"
+      "  if [ \"$COMP_CWORD\" -eq 1 ]; then\n"
+      "    mapfile -t COMPREPLY < <(compgen -W '{} --help --version' -- \"$word\")\n"
+      "    return\n"
+      "  fi\n"
+      "  case \"${{COMP_WORDS[1]}}\" in\n{}  esac\n"
+      "  case \"$word\" in\n"
+      "    -*) mapfile -t COMPREPLY < <(compgen -W \"$options\" -- \"$word\") ;;\n"
+      "    *) mapfile -t COMPREPLY < <(compgen -f -- \"$word\") ;;\n"
+      "  esac\n"
+      "}}\n"
+      "complete -o filenames -F _ahm ahm\n",
+      fmt::join(names, " "), cases);
+}
+
+/// _arguments reads brackets and colons of a description as its own.
+std::string for_zsh(const std::string& text) {
+  std::string result;
+  for (char c : text) result += (c == '[' || c == ']' || c == ':' ? "\\" : "") + std::string(1, c);
+  return result;
+}
+
+std::string zsh(CLI::App& program) {
+  std::string names, cases;
+  for (CLI::App* app : subcommands_of(program)) {
+    names += "    " + quoted(app->get_name() + ":" + first_line(app->get_description())) + "\n";
+    cases += fmt::format("    {}) _arguments", app->get_name());
+    for (const CLI::Option* option : options_of(*app))
+      for (const std::string& word : words(*option))
+        cases +=
+            " \\\n      " + quoted(word + "[" + for_zsh(first_line(option->get_description())) + "]" +
+                                   (takes_value(*option) ? ":" + for_zsh(option->get_type_name()) + ":_files" : ""));
+    cases += " \\\n      '*:file:_files' ;;\n";
+  }
+  return "#compdef ahm\n_ahm() {\n  local -a names=(\n" + names +
+         "  )\n  if (( CURRENT == 2 )); then\n    _describe subcommand names\n    return\n  fi\n"
+         "  local name=$words[2]\n  shift words\n  (( CURRENT-- ))\n  case $name in\n" +
+         cases + "  esac\n}\n_ahm \"$@\"\n";
+}
+
+std::string fish(CLI::App& program) {
+  std::string result =
+      "# Completion of ahm for fish.\ncomplete -c ahm -n __fish_use_subcommand -f -l help -d 'Print help'\n"
+      "complete -c ahm -n __fish_use_subcommand -f -l version -d 'Print versions'\n";
+  for (CLI::App* app : subcommands_of(program)) {
+    result += fmt::format("complete -c ahm -n __fish_use_subcommand -f -a {} -d {}\n", app->get_name(),
+                          quoted(first_line(app->get_description())));
+    for (const CLI::Option* option : options_of(*app)) {
+      result += fmt::format("complete -c ahm -n '__fish_seen_subcommand_from {}'", app->get_name());
+      for (const std::string& name : option->get_snames()) result += " -s " + name;
+      for (const std::string& name : option->get_lnames()) result += " -l " + name;
+      result +=
+          fmt::format("{} -d {}\n", takes_value(*option) ? " -r" : "", quoted(first_line(option->get_description())));
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+std::string first_line(const std::string& description) { return description.substr(0, description.find('\n')); }
+
+bool takes_value(const CLI::Option& option) { return option.get_items_expected_max() > 0; }
+
+std::optional<std::string> completion(CLI::App& program, std::string_view shell) {
+  if (shell == "bash") return bash(program);
+  if (shell == "zsh") return zsh(program);
+  if (shell == "fish") return fish(program);
+  return std::nullopt;
+}
+
+}  // namespace ahm::app
