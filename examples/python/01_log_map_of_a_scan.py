@@ -28,13 +28,13 @@ def draw(cloud, m, file):
     figure, (space, plane) = pyplot.subplots(1, 2, figsize=(11, 5), subplot_kw=None)
     ring = np.floor(8 * m.distance / np.nanmax(m.distance))
     sector = np.floor(6 * (m.angle + np.pi) / np.pi)
-    colour = (ring + sector) % 2 + 2 * (m.quality < 0.5)
+    color = (ring + sector) % 2 + 2 * (m.quality < 0.5)
     front = np.einsum("ij,j->i", cloud.normals, m.source.axes[2]) > 0  # normals of a cloud have no common side
     seen = m.distance < 0.5 * np.nanmax(m.distance)
     u, v = ((cloud.points - m.source.position) @ m.source.axes[:2].T).T
-    space.scatter(u[seen], v[seen], c=colour[seen], s=2, cmap="viridis")
+    space.scatter(u[seen], v[seen], c=color[seen], s=2, cmap="viridis")
     space.set_title("seen from above the source")
-    plane.scatter(*m.uv.T, c=colour, s=2, cmap="viridis")
+    plane.scatter(*m.uv.T, c=color, s=2, cmap="viridis")
     plane.set_title("logarithmic map")
     for axes in (space, plane):
         axes.set_aspect("equal")

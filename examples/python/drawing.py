@@ -25,20 +25,20 @@ def camera(towards, up=(0, 0, 1)):
     return np.stack([x, np.cross(z, x), z])
 
 
-def paint(axes, V, F, colour, view, cmap="viridis", limits=None):
-    """A mesh, by one number or RGB per vertex; numbers that are not finite are grey."""
-    V, colour = np.asarray(V) @ view.T, np.asarray(colour, float)
+def paint(axes, V, F, color, view, cmap="viridis", limits=None):
+    """A mesh, by one number or RGB per vertex; numbers that are not finite are gray."""
+    V, color = np.asarray(V) @ view.T, np.asarray(color, float)
     normal = np.cross(V[F[:, 1]] - V[F[:, 0]], V[F[:, 2]] - V[F[:, 0]])
     normal /= np.maximum(np.linalg.norm(normal, axis=1), 1e-300)[:, None]
     order = np.argsort(V[F].mean(axis=1)[:, 2])
     order = order[normal[order, 2] > 0]
-    if colour.ndim == 1:
-        low, high = limits or (np.nanmin(colour), np.nanmax(colour))
-        known = np.isfinite(colour)
-        shades = pyplot.get_cmap(cmap)((np.where(known, colour, low) - low) / max(high - low, 1e-300))[:, :3]
-        colour = np.where(known[:, None], shades, 0.75)
+    if color.ndim == 1:
+        low, high = limits or (np.nanmin(color), np.nanmax(color))
+        known = np.isfinite(color)
+        shades = pyplot.get_cmap(cmap)((np.where(known, color, low) - low) / max(high - low, 1e-300))[:, :3]
+        color = np.where(known[:, None], shades, 0.75)
     light = 0.55 + 0.45 * normal[order] @ np.array([-0.4, 0.5, 0.77])
-    faces = np.clip(colour[F[order]].mean(axis=1) * light[:, None], 0, 1)
+    faces = np.clip(color[F[order]].mean(axis=1) * light[:, None], 0, 1)
     axes.add_collection(PolyCollection(V[F[order]][:, :, :2], facecolors=faces, edgecolors=faces, linewidths=0.3))
     axes.autoscale_view()
 

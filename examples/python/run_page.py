@@ -20,7 +20,7 @@ def cells(text):
 
 
 def save(figure, path):
-    """In 128 colours, which keeps pages light."""
+    """In 128 colors, which keeps pages light."""
     from PIL import Image
 
     drawn = io.BytesIO()

@@ -101,7 +101,7 @@ TEST_F(Packed, KeepsTheHandednessOfCharts) {
   }
 }
 
-TEST_F(Packed, PaintsEveryChartInItsOwnColour) {
+TEST_F(Packed, PaintsEveryChartInItsOwnColor) {
   const Charts charts(20);
   const TextureAtlas packed = pack(charts.atlas, charts.faces(), {.size = 512, .margin = 4});
   const Image image = checkerboard(packed, 8);

@@ -11,7 +11,7 @@ namespace {
 void check(const io::Geometry& g) {
   const std::size_t n = g.points.size();
   require(g.normals.empty() || g.normals.size() == n, "one normal per point");
-  require(g.colors.empty() || g.colors.size() == n, "one colour per point");
+  require(g.colors.empty() || g.colors.size() == n, "one color per point");
   for (const io::Property& property : g.properties) require(property.values.size() == n, "one value per point");
   for (std::size_t f = 0; f < g.face_count(); ++f) (void)g.face(f).size();
   if (!g.face_begin.empty())

@@ -48,7 +48,7 @@ TEST_F(ReadPcd, ReadsTextWithNanPaddingAndSeveralValuesPerField) {
   EXPECT_EQ(g.format, "PCD text");
 }
 
-TEST_F(ReadPcd, ReadsBinaryWithPaddingDoublesNormalsAndColours) {
+TEST_F(ReadPcd, ReadsBinaryWithPaddingDoublesNormalsAndColors) {
   const std::uint32_t rgb = 0x000a141e;
   std::string body;
   for (int i = 0; i < 2; ++i) {

@@ -103,7 +103,7 @@ TEST_F(ReadGltf, UnfoldsStripsAndFansAndReadsPoints) {
   EXPECT_THROW(faces(7), IoError);
 }
 
-TEST_F(ReadGltf, ReadsColoursOfVertices) {
+TEST_F(ReadGltf, ReadsColorsOfVertices) {
   Json json = square();
   json["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = 2;
   json["accessors"].push_back(

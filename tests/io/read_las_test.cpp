@@ -86,7 +86,7 @@ TEST_F(ReadLas, TakesTheFlagsOffOldClassesOnly) {
   EXPECT_EQ(first_class(recent), 0xE2);
 }
 
-TEST_F(ReadLas, TakesLevelsUpTo255AsTheyAreAndZerosAsNoColours) {
+TEST_F(ReadLas, TakesLevelsUpTo255AsTheyAreAndZerosAsNoColors) {
   EXPECT_EQ(read_bytes("c.las", Las{.format = 2, .color = {10, 20, 255}}.file()).colors[0],
             (std::array<std::uint8_t, 3>{10, 20, 255}));
   EXPECT_TRUE(read_bytes("c.las", Las{.format = 2, .color = {0, 0, 0}}.file()).colors.empty());

@@ -82,7 +82,7 @@ TEST_F(ReadObj, RefusesLinesThatBeginWithNoWord) {
     expect_refused("d.obj", points + damage + "\n", {"line 5", "no OBJ keyword"});
 }
 
-TEST_F(ReadObj, ReadsColoursBehindThePosition) {
+TEST_F(ReadObj, ReadsColorsBehindThePosition) {
   using Color = std::array<std::uint8_t, 3>;
   const Geometry g = read_bytes("c.obj", "v 0 0 0 1.0 0.5 0\nv 1 0 0 0 0 1\n");
   EXPECT_EQ(g.colors, (std::vector<Color>{{255, 128, 0}, {0, 0, 255}}));

@@ -9,7 +9,7 @@ using ReadOff = Files;
 
 const std::string points = "0 0 0\n1 0 0\n0 1 0\n1 1 0\n";
 
-TEST_F(ReadOff, ReadsPolygonsAcrossLinesWithCommentsAndColours) {
+TEST_F(ReadOff, ReadsPolygonsAcrossLinesWithCommentsAndColors) {
   const Geometry g =
       read_bytes("a.off",
                  "# made by hand\r\nOFF # keyword\r\n4 2 0\r\n0 0 0\r\n1 0 0\r\n\r\n0 1 0 # third\r\n1 1 0.5\r\n"
@@ -72,7 +72,7 @@ TEST_F(ReadOff, RefusesOtherKinds) {
   expect_refused("k.off", "ply\n", {"ply"});
 }
 
-TEST_F(ReadOff, ReadsColoursAsLevelsAndAsFractions) {
+TEST_F(ReadOff, ReadsColorsAsLevelsAndAsFractions) {
   using Color = std::array<std::uint8_t, 3>;
   EXPECT_EQ(read_bytes("c.off", "COFF\n1 0 0\n1 2 3 255 7 0 255\n").colors, (std::vector<Color>{{255, 7, 0}}));
   const Geometry g = read_bytes("c.off", "COFF\n2 0 0\n1 2 3 1.0 0.5 0 1\n1 2 3 0 0 1 0.25\n");

@@ -17,7 +17,7 @@ std::string text_header(const std::string& vertices, const std::string& more = "
 const std::string faces = "element face 1\nproperty list uchar int vertex_indices\n";
 const std::string triangle = "0 0 0\n1 0 0\n0 1 0\n";
 
-/// A triangle with a normal and a colour per vertex, an extra property, an extra element between, and a quality per
+/// A triangle with a normal and a color per vertex, an extra property, an extra element between, and a quality per
 /// face.
 std::string rich_binary(std::endian order) {
   std::string file =
@@ -220,7 +220,7 @@ TEST_F(ReadPly, ReadsNamesInAnyCase) {
   expect_refused("u.ply", head + upper + xyz + "end_header\n1 2 3 4 5 6\n", {"twice"});
 }
 
-TEST_F(ReadPly, ReadsColoursOfEveryType) {
+TEST_F(ReadPly, ReadsColorsOfEveryType) {
   using Color = std::array<std::uint8_t, 3>;
   const auto colored = [&](const std::string& type, const std::string& values) {
     return read_bytes("c.ply", "ply\nformat ascii 1.0\nelement vertex 1\n" + std::string(xyz) + "property " + type +

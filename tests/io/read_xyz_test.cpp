@@ -17,7 +17,7 @@ TEST_F(ReadXyz, ReadsPointsInFileOrderWithEveryDigit) {
   EXPECT_TRUE(g.face_begin.empty());
 }
 
-TEST_F(ReadXyz, TakesSixColumnsAsNormalsUnlessTheyAreColours) {
+TEST_F(ReadXyz, TakesSixColumnsAsNormalsUnlessTheyAreColors) {
   EXPECT_EQ(read_bytes("n.xyz", "1 2 3 0 0 1\n4 5 6 0 1 0\n").normals[1], (Vec3{0, 1, 0}));
   const Geometry g = read_bytes("c.txt", "1 2 3 0 0 1\n4 5 6 200 1 0\n");
   EXPECT_TRUE(g.normals.empty());
@@ -88,7 +88,7 @@ TEST_F(ReadXyz, ReadsNamesOfColumns) {
   expect_refused("n.asc", "// only this\n", {"no point"});
 }
 
-TEST_F(ReadXyz, TellsColoursFromNormalsInNineColumns) {
+TEST_F(ReadXyz, TellsColorsFromNormalsInNineColumns) {
   const Geometry g = read_bytes("n.xyz", "1 2 3 200 10 0 0 0 1\n4 5 6 0 0 0 0 1 0\n");
   EXPECT_EQ(g.colors[0], (std::array<std::uint8_t, 3>{200, 10, 0}));
   EXPECT_EQ(g.normals[1], (Vec3{0, 1, 0}));
@@ -111,7 +111,7 @@ TEST_F(ReadXyz, HoldsAnAnnouncedNumberOfPointsToItsWord) {
 
 using ReadPts = Files;
 
-TEST_F(ReadPts, ReadsScansOneAfterTheOtherWithIntensityAndColours) {
+TEST_F(ReadPts, ReadsScansOneAfterTheOtherWithIntensityAndColors) {
   const Geometry g = read_bytes("a.pts", "2\n1 2 3 -700 255 0 7\n4 5 6 12 0 0 0\n1\n7 8 9 2047 1 2 3\n");
   EXPECT_EQ(g.points, (std::vector<Vec3>{{1, 2, 3}, {4, 5, 6}, {7, 8, 9}}));
   EXPECT_EQ(g.colors[2], (std::array<std::uint8_t, 3>{1, 2, 3}));

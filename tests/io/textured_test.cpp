@@ -61,7 +61,7 @@ TEST(ImageSample, IsTheMiddleOfAPixelAndLinearBetween) {
         EXPECT_NEAR(image.sample((x + 0.5) / 4, 1 - (y + 0.5) / 2)[c], image.pixel(x, y)[c] / 255.0, 1e-12);
   EXPECT_NEAR(image.sample(0.4, 0.6)[0] * 255, 40 * (0.4 * 4 - 0.5) + 10 * (0.4 * 2 - 0.5), 1e-12);
   EXPECT_EQ(image.sample(-3, 5), image.sample(0, 1));
-  // What is transparent does not lend its colour.
+  // What is transparent does not lend its color.
   image.pixel(1, 0)[3] = 0;
   EXPECT_NEAR(image.sample(0.25, 0.75)[0] * 255, 0, 1e-12);
   EXPECT_NEAR(image.sample(0.25, 0.75)[3], 0.5, 1e-12);

@@ -162,7 +162,7 @@ TEST_F(Write, PlyHoldsCloudsAndPolygonsWithManyCorners) {
   EXPECT_EQ(read(path("many.ply")).face_vertices, result.face_vertices);
 }
 
-TEST_F(Write, PlyHoldsColours) {
+TEST_F(Write, PlyHoldsColors) {
   const Result result;
   const std::vector<std::array<std::uint8_t, 3>> colors{{0, 100, 255}, {1, 100, 254}, {2, 100, 253}, {3, 100, 252}};
   Table table = result.rows();

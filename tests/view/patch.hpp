@@ -15,15 +15,15 @@
 
 namespace ahm::view::test {
 
-/// The square [-1, 1]^2 in the plane z = 0 around `centre`, source in its middle: u = x, v = y.
+/// The square [-1, 1]^2 in the plane z = 0 around `center`, source in its middle: u = x, v = y.
 struct Patch {
   std::vector<Vec3> points, normals;
   std::vector<Offset> face_begin;
   std::vector<Index> face_vertices;
   std::vector<double> u, v;
-  Vec3 centre;
+  Vec3 center;
 
-  explicit Patch(int n, bool is_mesh, Vec3 at = {0, 0, 0}) : centre(at) {
+  explicit Patch(int n, bool is_mesh, Vec3 at = {0, 0, 0}) : center(at) {
     for (int j = 0; j <= n; ++j)
       for (int i = 0; i <= n; ++i) {
         u.push_back(2.0 * i / n - 1);
@@ -49,7 +49,7 @@ struct Patch {
     scene.face_vertices = face_vertices;
     scene.u = u;
     scene.v = v;
-    scene.source = centre;
+    scene.source = center;
     scene.source_axes = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
     scene.title = "patch";
     return scene;

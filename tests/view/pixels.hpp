@@ -36,7 +36,7 @@ class Pixels {
 inline bool is_white(const Rgb& c) { return c == Rgb{255, 255, 255}; }
 inline bool is_source_red(const Rgb& c) { return c[0] > 200 && c[1] < 50 && c[2] < 60; }
 inline int spread(const Rgb& c) { return std::max({c[0], c[1], c[2]}) - std::min({c[0], c[1], c[2]}); }
-inline bool is_coloured(const Rgb& c) { return spread(c) > 30; }
+inline bool is_colored(const Rgb& c) { return spread(c) > 30; }
 inline int brightness(const Rgb& c) { return c[0] + c[1] + c[2]; }
 
 /// Pixel of the place (x, y) of a patch, seen from straight above in a picture of 400 x 300: the patch fills the height up

@@ -154,7 +154,7 @@ TEST_F(Html, HasEveryElementThatItsScriptAsksFor) {
   EXPECT_GT(count, 5U);
 }
 
-TEST_F(Html, TellsWhatTheColoursOfDistanceStandFor) {
+TEST_F(Html, TellsWhatTheColorsOfDistanceStandFor) {
   const Patch patch(10, true);
   PictureOptions options;
   options.pattern = Pattern::distance;

@@ -36,18 +36,18 @@ TEST_F(Png, HasTheSizeAskedForAndAWhiteBackground) {
   }
 }
 
-std::set<Rgb> colours(const Pixels& pixels) {
+std::set<Rgb> colors(const Pixels& pixels) {
   std::set<Rgb> result;
   pixels.count([&](const Rgb& c) { return result.insert(c).second; });
   return result;
 }
 
-TEST_F(Png, IsPaintedInManyColours) {
+TEST_F(Png, IsPaintedInManyColors) {
   for (const bool is_mesh : {true, false}) {
     const Patch patch(40, is_mesh);
     const Pixels pixels = picture(folder, patch.scene(), options);
-    EXPECT_GT(colours(pixels).size(), 300U);
-    EXPECT_GT(pixels.count(is_coloured), 400 * 300 / 4);
+    EXPECT_GT(colors(pixels).size(), 300U);
+    EXPECT_GT(pixels.count(is_colored), 400 * 300 / 4);
   }
 }
 
@@ -100,7 +100,7 @@ TEST_F(Png, SquaresAreWarmOnTheLeftAndColdOnTheRight) {
   }
 }
 
-TEST_F(Png, NeighbouringCellsDifferAndPointsOfNoCellAreGrey) {
+TEST_F(Png, NeighbouringCellsDifferAndPointsOfNoCellAreGray) {
   for (const bool is_mesh : {true, false}) {
     const Patch patch(60, is_mesh);
     std::vector<Index> labels;
@@ -119,7 +119,7 @@ TEST_F(Png, NeighbouringCellsDifferAndPointsOfNoCellAreGrey) {
     options.pattern = Pattern::cells;
     const Pixels pixels = picture(folder, scene, options);
     const auto brick = [&](int row, int column) { return at_place(pixels, 0.4 * column - 0.8, 0.4 * row - 0.8); };
-    EXPECT_FALSE(is_coloured(brick(2, 2)));
+    EXPECT_FALSE(is_colored(brick(2, 2)));
     for (int row = 0; row < 5; ++row)
       for (int column = 0; column < 5; ++column)
         for (const auto& [r, c] :
@@ -182,13 +182,13 @@ TEST_F(Png, DoesNotDependOnHowFarFromTheOriginTheSceneLies) {
   }
 }
 
-TEST_F(Png, PointsWithoutCoordinatesAreGrey) {
+TEST_F(Png, PointsWithoutCoordinatesAreGray) {
   for (const bool is_mesh : {true, false}) {
     Patch patch(40, is_mesh);
     patch.forget_map();
     const Pixels pixels = picture(folder, patch.scene(), options);
-    EXPECT_GT(pixels.count([](const Rgb& c) { return !is_white(c) && !is_coloured(c); }), 400 * 300 / 4);
-    EXPECT_LT(pixels.count(is_coloured), 400 * 300 / 100);  // the source mark
+    EXPECT_GT(pixels.count([](const Rgb& c) { return !is_white(c) && !is_colored(c); }), 400 * 300 / 4);
+    EXPECT_LT(pixels.count(is_colored), 400 * 300 / 100);  // the source mark
   }
 }
 
@@ -200,7 +200,7 @@ TEST_F(Png, FloatersDoNotShrinkThePicture) {
     patch.u.push_back(x);
     patch.v.push_back(x);
   }
-  EXPECT_GT(picture(folder, patch.scene(), options).count(is_coloured), 400 * 300 / 4);
+  EXPECT_GT(picture(folder, patch.scene(), options).count(is_colored), 400 * 300 / 4);
 }
 
 TEST_F(Png, ShowsSmallAndOddScenes) {

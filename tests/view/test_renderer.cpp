@@ -110,7 +110,7 @@ TEST(Renderer, ADotOnThinGroundIsSeenFromAboveAlone) {
   }
 }
 
-TEST(Renderer, HatchesInGreyWhatIsNotToBeTrusted) {
+TEST(Renderer, HatchesInGrayWhatIsNotToBeTrusted) {
   for (const bool is_mesh : {true, false}) {
     const Patch patch(40, is_mesh);
     std::vector<double> quality;
@@ -120,16 +120,16 @@ TEST(Renderer, HatchesInGreyWhatIsNotToBeTrusted) {
     const Pixels trusted(draw_picture(scene, from_above()));
     scene.quality = quality;
     const Pixels pixels(draw_picture(scene, from_above()));
-    int coloured = 0, light = 0, dark = 0, all = 0;
+    int colored = 0, light = 0, dark = 0, all = 0;
     for (double x = 0.1; x < 0.9; x += 0.02)
       for (double y = -0.9; y < 0.9; y += 0.02) {
         const Rgb right = at_place(pixels, x, y);
         EXPECT_EQ(at_place(pixels, -x, y), at_place(trusted, -x, y));
         ++all;
-        coloured += spread(right) > 45 ? 1 : 0;
+        colored += spread(right) > 45 ? 1 : 0;
         light += brightness(right) > 520 ? 1 : 0, dark += brightness(right) < 460 ? 1 : 0;
       }
-    EXPECT_LT(coloured, all / 50) << is_mesh;
+    EXPECT_LT(colored, all / 50) << is_mesh;
     EXPECT_GT(light, all / 5);
     EXPECT_GT(dark, all / 5);
   }

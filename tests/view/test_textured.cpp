@@ -1,4 +1,4 @@
-// Pictures of textured meshes and coloured points.
+// Pictures of textured meshes and colored points.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -92,7 +92,7 @@ TEST_F(TexturedPicture, LaysTransparentPartsOverWhatLiesBehind) {
   }
 }
 
-TEST_F(TexturedPicture, ShowsPointsAsDiscsInTheirColours) {
+TEST_F(TexturedPicture, ShowsPointsAsDiscsInTheirColors) {
   const std::vector<Vec3> points{{-1, 0, 0}, {1, 0, 0}, {1, 0, -1}};  // the last lies behind the second
   const std::vector<std::array<std::uint8_t, 3>> colors{{200, 0, 0}, {0, 200, 0}, {0, 0, 200}};
   const std::vector<double> radii{0.3, 0.3, 0.3};

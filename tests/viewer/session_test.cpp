@@ -105,7 +105,7 @@ TEST_F(ViewerSession, KnowsTheFaceAndTheRowsOfEveryTriangle) {
       EXPECT_EQ(points[triangles[3 * t + k]], sphere.geometry.face(static_cast<std::size_t>(faces[t]))[k]);
   for (std::size_t i = 0; i < points.size(); ++i)
     for (std::size_t c = 0; c < 3; ++c)
-      EXPECT_NEAR(positions[3 * i + c] * scale + bundle.meta.at("centre")[c].get<double>(),
+      EXPECT_NEAR(positions[3 * i + c] * scale + bundle.meta.at("center")[c].get<double>(),
                   sphere.geometry.points[static_cast<std::size_t>(points[i])][c], 1e-6);
 }
 

@@ -80,24 +80,24 @@ void orient(Camera& camera, const Vector3d& direction, const Vector3d& up) {
 void fit(Camera& camera, const std::vector<Vector3d>& points, const Eigen::AlignedBox3d& box, double aspect,
          double margin) {
   const double tan_y = std::tan(Camera::field_of_view / 2), tan_x = tan_y * aspect;
-  Vector3d centre = box.center();
+  Vector3d center = box.center();
   double distance = 0;
   for (int round = 0; round < 4; ++round) {  // recentring changes the perspective a little, hence the rounds
     distance = 1e-3;
     for (const Vector3d& p : points) {
-      const Vector3d q = p - centre;
+      const Vector3d q = p - center;
       distance =
           std::max({distance, q.z() + std::abs(q.x()) / tan_x * margin, q.z() + std::abs(q.y()) / tan_y * margin});
     }
     Eigen::AlignedBox2d seen;
     for (const Vector3d& p : points) {
-      const Vector3d q = p - centre;
+      const Vector3d q = p - center;
       seen.extend(Eigen::Vector2d(q.head<2>() / (distance - q.z())));
     }
-    centre.head<2>() += distance * seen.center();
+    center.head<2>() += distance * seen.center();
   }
   camera.distance = distance;
-  camera.target = centre.x() * camera.right + centre.y() * camera.up + centre.z() * camera.back;
+  camera.target = center.x() * camera.right + center.y() * camera.up + center.z() * camera.back;
 }
 
 }  // namespace
@@ -144,9 +144,9 @@ Camera choose_camera(const Scene& scene, const std::vector<Index>& shown, const 
   const Eigen::AlignedBox3d box = robust_box(scene, framed, Eigen::Matrix3d::Identity());
 
   Camera camera;
-  camera.centre = box.center();
+  camera.center = box.center();
   camera.scale = box.diagonal().stableNorm() / 2;
-  if (!(camera.scale > 0)) camera.scale = std::max(1.0, camera.centre.stableNorm() * 1e-3);  // a single point
+  if (!(camera.scale > 0)) camera.scale = std::max(1.0, camera.center.stableNorm() * 1e-3);  // a single point
 
   const Vector3d up =
       options.up ? Vector3d(as_vector(*options.up)) : default_up(box.sizes(), !scene.face_vertices.empty());
@@ -157,7 +157,7 @@ Camera choose_camera(const Scene& scene, const std::vector<Index>& shown, const 
   Eigen::Matrix3d axes;
   axes << camera.right, camera.up, camera.back;
   Eigen::AlignedBox3d view_box = robust_box(scene, framed, axes);
-  const Vector3d shift = axes.transpose() * camera.centre;
+  const Vector3d shift = axes.transpose() * camera.center;
   view_box = {(view_box.min() - shift) / camera.scale, (view_box.max() - shift) / camera.scale};
   std::vector<Vector3d> points;
   for (const Index i : framed) {

@@ -13,10 +13,10 @@ inline Eigen::Map<const Eigen::Vector3d> as_vector(const Vec3& x) {
   return Eigen::Map<const Eigen::Vector3d>(x.data());
 }
 
-/// The picture's own coordinates, x -> (x - centre) / scale, and a perspective camera in them.
-/// Centre and scale are taken off in double precision: a scan in UTM coordinates must not tremble in float.
+/// The picture's own coordinates, x -> (x - center) / scale, and a perspective camera in them.
+/// Center and scale are taken off in double precision: a scan in UTM coordinates must not tremble in float.
 struct Camera {
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();
   double scale = 1;
 
   Eigen::Vector3d target = Eigen::Vector3d::Zero();
@@ -27,7 +27,7 @@ struct Camera {
   static constexpr double field_of_view = 0.5;  ///< vertical, in radians: long enough a lens to keep proportions
 
   Eigen::Vector3d eye() const { return target + distance * back; }
-  Eigen::Vector3d to_scene(const Vec3& x) const { return (as_vector(x) - centre) / scale; }
+  Eigen::Vector3d to_scene(const Vec3& x) const { return (as_vector(x) - center) / scale; }
   /// Camera coordinates: x to the right, y up, z towards the viewer, origin at the eye.
   Eigen::Vector3d to_view(const Eigen::Vector3d& x) const;
   /// Pixel position (y down) and size in pixels of one unit at that depth.

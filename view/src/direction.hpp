@@ -5,7 +5,7 @@
 
 namespace ahm::view {
 
-/// From the picture's centre towards the camera. `extent`: sides of the scene's box, world units.
+/// From the picture's center towards the camera. `extent`: sides of the scene's box, world units.
 Eigen::Vector3d choose_direction(const Scene& scene, const std::vector<Index>& shown, const Camera& camera,
                                  const Eigen::Vector3d& up, const Eigen::Vector3d& extent);
 

@@ -5,12 +5,12 @@
 
 namespace ahm::view {
 
-/// Coordinates are samples from the tile's corner; i, j samples from the disc's centre. The disc is taken as seen from
+/// Coordinates are samples from the tile's corner; i, j samples from the disc's center. The disc is taken as seen from
 /// straight ahead, which it is small enough for.
 struct TileDisc {
   const Layer* layer;
   float x, y;
-  float t_ii, t_ij, t_jj;  ///< t(i, j): squared distance from the centre, 1 at the rim
+  float t_ii, t_ij, t_jj;  ///< t(i, j): squared distance from the center, 1 at the rim
   float half_width, half_height;
   float nearness, near_i, near_j;  ///< linear in i, j
   float thickness;                 ///< in nearness: discs within it of the nearest one are blended

@@ -24,7 +24,7 @@ struct Drawable {
   std::vector<Eigen::Vector3f> positions;
   std::vector<Eigen::Vector3f> normals;
   /// What is interpolated between vertices, for the material to paint by: (u, v, quality) as in `Paint`, a place on a
-  /// texture, or a colour in linear light.
+  /// texture, or a color in linear light.
   std::vector<Eigen::Vector3f> values;
   std::vector<float> known;              ///< 1, or 0 where there is no coordinate
   std::vector<float> radii;              ///< of the disc that stands for a point; clouds only

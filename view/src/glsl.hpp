@@ -1,4 +1,4 @@
-// The few words of GLSL that palette.glsl uses, so that one text gives the colours here and in the browser.
+// The few words of GLSL that palette.glsl uses, so that one text gives the colors here and in the browser.
 #pragma once
 
 #include <algorithm>

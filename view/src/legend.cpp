@@ -20,7 +20,7 @@ std::string shortest(double value) {
   return {text.data(), end};
 }
 
-Colour as_colour(glsl::vec3 light) {
+Color as_color(glsl::vec3 light) {
   const auto byte = [](float x) { return glsl::to_srgb_byte(static_cast<std::uint16_t>(std::lround(65535 * x))); };
   return {byte(light.x), byte(light.y), byte(light.z)};
 }
@@ -32,16 +32,16 @@ class Wheel {
         material_(material),
         unit_(std::min(image.width, image.height) / 1200.0),
         radius_(68 * unit_),
-        centre_(radius_ + 36 * unit_, image.height - radius_ - 60 * unit_) {}
+        center_(radius_ + 36 * unit_, image.height - radius_ - 60 * unit_) {}
 
   void draw(double ring_width) {
-    pen_.disc(centre_, 1.12 * radius_, white);
+    pen_.disc(center_, 1.12 * radius_, white);
     const auto step = static_cast<float>(wheel_rings / radius_);
-    pen_.disc(centre_, radius_, [&](const Vector2d& p) {
-      const Vector2d d = p - centre_;
+    pen_.disc(center_, radius_, [&](const Vector2d& p) {
+      const Vector2d d = p - center_;
       const vec2 uv = vec2(static_cast<float>(d.x()), static_cast<float>(-d.y())) * step;
-      return as_colour(glsl::map_colour(static_cast<int>(material_.pattern), uv, vec2(step, 0), vec2(0, step),
-                                        material_.sectors, material_.rings));
+      return as_color(glsl::map_color(static_cast<int>(material_.pattern), uv, vec2(step, 0), vec2(0, step),
+                                      material_.sectors, material_.rings));
     });
     draw_scale(ring_width);
     draw_axes();
@@ -50,30 +50,30 @@ class Wheel {
  private:
   /// The width of one ring below the wheel: |--| 0.05
   void draw_scale(double ring_width) {
-    const double y = centre_.y() + radius_ + 16 * unit_, tick = 5 * unit_;
-    const double left = centre_.x() - radius_, right = left + radius_ / wheel_rings;
-    for (const auto& [width, colour] : {std::pair{5 * unit_, white}, std::pair{2 * unit_, ink}}) {
-      pen_.line({left, y}, {right, y}, width, colour);
-      for (const double x : {left, right}) pen_.line({x, y - tick}, {x, y + tick}, width, colour);
+    const double y = center_.y() + radius_ + 16 * unit_, tick = 5 * unit_;
+    const double left = center_.x() - radius_, right = left + radius_ / wheel_rings;
+    for (const auto& [width, color] : {std::pair{5 * unit_, white}, std::pair{2 * unit_, ink}}) {
+      pen_.line({left, y}, {right, y}, width, color);
+      for (const double x : {left, right}) pen_.line({x, y - tick}, {x, y + tick}, width, color);
     }
     draw_text(pen_, {right + 9 * unit_, y + 6.5 * unit_}, 13 * unit_, unit_, shortest(ring_width));
   }
 
   void draw_axes() {
     const double length = 0.72 * radius_;
-    const Arrow u{centre_, centre_ + Vector2d(length, 0), 2 * unit_},
-        v{centre_, centre_ + Vector2d(0, -length), 2 * unit_};
+    const Arrow u{center_, center_ + Vector2d(length, 0), 2 * unit_},
+        v{center_, center_ + Vector2d(0, -length), 2 * unit_};
     draw_arrows(pen_, {u, v}, unit_);
     draw_text(pen_, u.to + Vector2d(0.28 * radius_ + 12 * unit_, 4 * unit_), 12 * unit_, unit_, "u");
     draw_text(pen_, v.to + Vector2d(-4 * unit_, -0.28 * radius_ - 12 * unit_), 12 * unit_, unit_, "v");
-    pen_.disc(centre_, 4 * unit_, white);
-    pen_.disc(centre_, 3 * unit_, red);
+    pen_.disc(center_, 4 * unit_, white);
+    pen_.disc(center_, 3 * unit_, red);
   }
 
   Pen pen_;
   const Material& material_;
   double unit_, radius_;
-  Vector2d centre_;
+  Vector2d center_;
 };
 
 /// The bar, with about five numbers at its ring lines.
@@ -87,8 +87,8 @@ void draw_bar(Image& image, const Material& material, double ring_width) {
   const auto step = static_cast<float>(rings / height);
   pen.box({left, bottom - height}, {left + width, bottom}, [&](const Vector2d& p) {
     const vec2 uv(static_cast<float>((bottom - p.y()) / height * rings), 0);
-    return as_colour(glsl::map_colour(static_cast<int>(material.pattern), uv, vec2(0), vec2(step, 0), material.sectors,
-                                      material.rings));
+    return as_color(glsl::map_color(static_cast<int>(material.pattern), uv, vec2(0), vec2(step, 0), material.sectors,
+                                    material.rings));
   });
   const int every = std::max(1, static_cast<int>(std::ceil(rings / 6)));
   for (int ring = 0; ring <= rings; ring += every) {

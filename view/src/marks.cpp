@@ -12,15 +12,15 @@ using Eigen::Vector3d;
 
 constexpr double curve_tolerance = 0.02;  // of the scene's size: a polyline dips into what bulges
 
-void draw_arrow(Pen& pen, const Arrow& arrow, double grow, Colour colour) {
+void draw_arrow(Pen& pen, const Arrow& arrow, double grow, Color color) {
   const Vector2d d = arrow.to - arrow.from;
   const double length = d.norm();
   if (length < 3 * arrow.width) return;  // seen end on
   const Vector2d along = d / length, across(-along.y(), along.x());
   const double head = std::min(4.5 * arrow.width, 0.6 * length);
   const Vector2d neck = arrow.to - head * along;
-  pen.line(arrow.from, neck, arrow.width + 2 * grow, colour);
-  pen.triangle(arrow.to, neck + 0.42 * head * across, neck - 0.42 * head * across, grow, colour);
+  pen.line(arrow.from, neck, arrow.width + 2 * grow, color);
+  pen.triangle(arrow.to, neck + 0.42 * head * across, neck - 0.42 * head * across, grow, color);
 }
 
 void draw_letter(Pen& pen, const Arrow& arrow, double unit, std::string_view letter) {
@@ -30,9 +30,9 @@ void draw_letter(Pen& pen, const Arrow& arrow, double unit, std::string_view let
   draw_text(pen, at, 12 * unit, unit, letter);
 }
 
-void draw_dot(Pen& pen, const Vector2d& at, double radius, double rim, Colour colour) {
+void draw_dot(Pen& pen, const Vector2d& at, double radius, double rim, Color color) {
   pen.disc(at, radius + rim, white);
-  pen.disc(at, radius, colour);
+  pen.disc(at, radius, color);
 }
 
 class Marks {
@@ -72,25 +72,25 @@ class Marks {
           pixels.insert(pixels.end(), {pixel(from), pixel(to)});
       }
     }
-    for (const auto& [width, colour] : {std::pair{8 * unit_, white}, std::pair{5 * unit_, red}})
-      for (std::size_t k = 0; k < pixels.size(); k += 2) pen_.line(pixels[k], pixels[k + 1], width, colour);
+    for (const auto& [width, color] : {std::pair{8 * unit_, white}, std::pair{5 * unit_, red}})
+      for (std::size_t k = 0; k < pixels.size(); k += 2) pen_.line(pixels[k], pixels[k + 1], width, color);
   }
 
   void draw_source() {
     const Vector3d source = camera_.to_scene(scene_.source);
     if (!shows(film_, camera_, source, dot_tolerance_)) return;
-    const Vector2d centre = pixel(source);
+    const Vector2d center = pixel(source);
     if (scene_.source_axes) {
       const double length = 70 * unit_ / camera_.to_pixels(source, film_.width, film_.height).z();
       std::vector<Arrow> arrows;
       for (std::size_t k = 0; k < 2; ++k) {
         const Vector3d tip = source + length * as_vector((*scene_.source_axes)[k]).normalized();
-        arrows.push_back({centre, pixel(tip), 3 * unit_});
+        arrows.push_back({center, pixel(tip), 3 * unit_});
       }
       draw_arrows(pen_, arrows, unit_);
       for (std::size_t k = 0; k < 2; ++k) draw_letter(pen_, arrows[k], unit_, k == 0 ? "u" : "v");
     }
-    draw_dot(pen_, centre, 8 * unit_, 2.5 * unit_, red);
+    draw_dot(pen_, center, 8 * unit_, 2.5 * unit_, red);
   }
 
   const Film& film_;

@@ -6,14 +6,14 @@
 
 namespace ahm::view {
 
-constexpr Colour white = {255, 255, 255}, ink = {25, 25, 30}, red = {225, 20, 30};
+constexpr Color white = {255, 255, 255}, ink = {25, 25, 30}, red = {225, 20, 30};
 
 struct Arrow {
   Eigen::Vector2d from, to;
   double width;
 };
 
-/// In ink, on a rim of white: visible on any colour. `unit` is a 1200th of the picture's smaller side.
+/// In ink, on a rim of white: visible on any color. `unit` is a 1200th of the picture's smaller side.
 void draw_arrows(Pen& pen, const std::vector<Arrow>& arrows, double unit);
 void draw_text(Pen& pen, const Eigen::Vector2d& at, double height, double unit, std::string_view text);
 

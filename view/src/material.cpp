@@ -8,28 +8,28 @@ namespace {
 using glsl::vec2;
 using glsl::vec3;
 
-vec3 map_colour(const Material& material, const Fragment& f) {
+vec3 map_color(const Material& material, const Fragment& f) {
   const vec2 uv(f.value.x, f.value.y);
-  if (!f.known) return material.pattern == Pattern::none ? glsl::plain_colour() : glsl::unknown_colour();
-  const vec3 colour =
-      glsl::map_colour(static_cast<int>(material.pattern), uv, f.dx, f.dy, material.sectors, material.rings);
-  if (material.pattern == Pattern::none || !(f.value.z < static_cast<float>(trusted_quality))) return colour;
-  return glsl::untrusted_colour(colour, f.pixel * material.pixel_size, material.pixel_size);
+  if (!f.known) return material.pattern == Pattern::none ? glsl::plain_color() : glsl::unknown_color();
+  const vec3 color =
+      glsl::map_color(static_cast<int>(material.pattern), uv, f.dx, f.dy, material.sectors, material.rings);
+  if (material.pattern == Pattern::none || !(f.value.z < static_cast<float>(trusted_quality))) return color;
+  return glsl::untrusted_color(color, f.pixel * material.pixel_size, material.pixel_size);
 }
 
 }  // namespace
 
 vec3 shade(const Material& material, Fragment& f) {
-  vec3 colour = f.value;
-  if (material.kind == Material::Kind::pattern) colour = map_colour(material, f);
+  vec3 color = f.value;
+  if (material.kind == Material::Kind::pattern) color = map_color(material, f);
   if (material.kind == Material::Kind::texture) {
     const auto [red, green, blue, opacity] = material.image->sample(f.value.x, f.value.y);
-    colour = {glsl::from_srgb(static_cast<float>(red)), glsl::from_srgb(static_cast<float>(green)),
-              glsl::from_srgb(static_cast<float>(blue))};
+    color = {glsl::from_srgb(static_cast<float>(red)), glsl::from_srgb(static_cast<float>(green)),
+             glsl::from_srgb(static_cast<float>(blue))};
     f.opacity = material.transparent ? static_cast<float>(opacity) : 1;
   }
   const bool glossy = material.kind == Material::Kind::pattern;  // images keep their hues
-  return glsl::clamp(glossy ? glsl::lit(colour, f.normal, vec3(0, 0, 1)) : glsl::matte(colour, f.normal), 0, 1);
+  return glsl::clamp(glossy ? glsl::lit(color, f.normal, vec3(0, 0, 1)) : glsl::matte(color, f.normal), 0, 1);
 }
 
 }  // namespace ahm::view

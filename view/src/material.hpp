@@ -7,7 +7,7 @@
 
 namespace ahm::view {
 
-/// A layer's values (`Drawable::values`) as colours.
+/// A layer's values (`Drawable::values`) as colors.
 struct Material {
   enum class Kind {
     pattern,  ///< (u, v, quality)
@@ -17,7 +17,7 @@ struct Material {
   Kind kind = Kind::pattern;
   Pattern pattern = Pattern::polar;
   float sectors = 24;
-  float rings = 12;      ///< what the last colour of distances stands for
+  float rings = 12;      ///< what the last color of distances stands for
   float pixel_size = 1;  ///< of a pixel, in 1200ths of the picture's height
   const Image* image = nullptr;
   bool transparent = false;  ///< images only: laid over what is behind

@@ -102,7 +102,7 @@ struct PageSurface::Impl {
     return std::move(out).finish({{"title", scene.title},
                                   {"is_mesh", drawable.is_mesh()},
                                   {"rows", scene.points.size()},
-                                  {"centre", triple(camera.centre)},
+                                  {"center", triple(camera.center)},
                                   {"scale", camera.scale},
                                   {"largest_radius", largest_radius(drawable)},
                                   {"spacing", typical_spacing(drawable)},
@@ -122,7 +122,7 @@ struct PageSurface::Impl {
     return out;
   }
 
-  /// What is painted by row: (u, v), or (colour, distance) of cells.
+  /// What is painted by row: (u, v), or (color, distance) of cells.
   std::vector<Eigen::Vector2f> painted(const Scene& scene, const Paint& paint) const {
     std::vector<Eigen::Vector2f> out(scene.points.size(), Eigen::Vector2f::Constant(NAN));
     const bool is_cells = paint.pattern == Pattern::cells;

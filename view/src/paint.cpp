@@ -11,7 +11,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr std::size_t colours = 12;  // of `cell_colour` in palette.glsl
+constexpr std::size_t colors = 12;  // of `cell_color` in palette.glsl
 
 struct Cell {
   Index label;
@@ -35,11 +35,11 @@ std::vector<Cell> cells_of(const Scene& scene, const std::vector<Index>& shown) 
   return cells;
 }
 
-/// Per cell the colour whose cells so far are the farthest away.
-std::vector<double> colours_of(const std::vector<Cell>& cells) {
+/// Per cell the color whose cells so far are the farthest away.
+std::vector<double> colors_of(const std::vector<Cell>& cells) {
   std::vector<double> result;
   for (std::size_t c = 0; c < cells.size(); ++c) {
-    std::array<double, colours> nearest;
+    std::array<double, colors> nearest;
     nearest.fill(std::numeric_limits<double>::infinity());
     for (std::size_t other = 0; other < c; ++other) {
       double& distance = nearest[result[other]];
@@ -72,7 +72,7 @@ Paint make_paint(const Scene& scene, const std::vector<Index>& shown, const Pict
   if (options.pattern == Pattern::distance) paint.rings = largest_distance(scene, shown) / paint.ring_width;
   const bool is_cells = options.pattern == Pattern::cells;
   const std::vector<Cell> cells = is_cells ? cells_of(scene, shown) : std::vector<Cell>();
-  const std::vector<double> colour = colours_of(cells);
+  const std::vector<double> color = colors_of(cells);
   for (const Index point : shown) {
     if (!has_coordinate(scene, point)) continue;
     const auto i = static_cast<std::size_t>(point);
@@ -84,7 +84,7 @@ Paint make_paint(const Scene& scene, const std::vector<Index>& shown, const Pict
     } else if (is_cells) {
       const auto cell = std::lower_bound(cells.begin(), cells.end(), scene.labels[i],
                                          [](const Cell& c, Index label) { return c.label < label; });
-      paint.uv[i] = {colour[cell - cells.begin()], scene.distance[i] / paint.ring_width};
+      paint.uv[i] = {color[cell - cells.begin()], scene.distance[i] / paint.ring_width};
     } else {
       paint.uv[i] = Vector2d(scene.u[i], scene.v[i]) / paint.ring_width;
     }

@@ -1,4 +1,4 @@
-// The colours of every picture, for GLSL ES 1.00 and, with glsl.hpp, for C++ alike.
+// The colors of every picture, for GLSL ES 1.00 and, with glsl.hpp, for C++ alike.
 const float pi = 3.14159265;
 
 // OKLCh (Ottosson 2020): hues of equal lightness look equally bright, which HSV's do not. Result: linear RGB.
@@ -16,7 +16,7 @@ vec3 oklch(float lightness, float chroma, float hue) {
 // Integral of the wave that is +1 on even and -1 on odd unit intervals.
 float triangle_wave(float x) { return 1.0 - abs(2.0 * fract(0.5 * x) - 1.0); }
 
-// That wave averaged over a pixel of this width: sharp near by, plain grey where cells are smaller than pixels.
+// That wave averaged over a pixel of this width: sharp near by, plain gray where cells are smaller than pixels.
 float square_wave(float x, float width) {
   float w = max(width, 0.004);
   return (triangle_wave(x + 0.5 * w) - triangle_wave(x - 0.5 * w)) / w;
@@ -25,7 +25,7 @@ float square_wave(float x, float width) {
 // Below, dx and dy are the changes of uv over one pixel; the result is linear RGB.
 
 // Rings and sectors about the source; uv in ring widths.
-vec3 polar_colour(vec2 uv, vec2 dx, vec2 dy, float sectors) {
+vec3 polar_color(vec2 uv, vec2 dx, vec2 dy, float sectors) {
   float r = max(length(uv), 1e-6);
   vec2 radial = uv / r, around = vec2(-radial.y, radial.x);
   float ring_width = abs(dot(radial, dx)) + abs(dot(radial, dy));
@@ -38,7 +38,7 @@ vec3 polar_colour(vec2 uv, vec2 dx, vec2 dy, float sectors) {
 }
 
 // Squares of u and v: warm to the left of the curve (v > 0), cold to its right, further round the hues with every stripe.
-vec3 grid_colour(vec2 uv, vec2 dx, vec2 dy) {
+vec3 grid_color(vec2 uv, vec2 dx, vec2 dy) {
   vec2 width = abs(dx) + abs(dy);
   float checker = square_wave(uv.x, width.x) * square_wave(uv.y, width.y);
   float left = clamp(0.5 + uv.y / max(width.y, 1e-6), 0.0, 1.0);
@@ -48,9 +48,9 @@ vec3 grid_colour(vec2 uv, vec2 dx, vec2 dy) {
   return mix(dark, light, 0.5 + 0.5 * checker);
 }
 
-// Cells: uv.x is one of twelve colours, uv.y the distance from the cell's source in ring widths. Neighbouring hues
-// differ in lightness, and colours of successive numbers are far apart.
-vec3 cell_colour(vec2 uv, vec2 dx, vec2 dy) {
+// Cells: uv.x is one of twelve colors, uv.y the distance from the cell's source in ring widths. Neighbouring hues
+// differ in lightness, and colors of successive numbers are far apart.
+vec3 cell_color(vec2 uv, vec2 dx, vec2 dy) {
   float number = floor(uv.x + 0.5);
   float hue = mod(5.0 * number, 12.0) * pi / 6.0 + 0.5;
   float ring = square_wave(uv.y, abs(dx.y) + abs(dy.y));
@@ -58,8 +58,8 @@ vec3 cell_colour(vec2 uv, vec2 dx, vec2 dy) {
   return oklch(lightness + 0.035 * ring, 0.115, hue);
 }
 
-// Distances from 0 to 1 in colours of evenly rising lightness: violet, blue, green, yellow.
-vec3 distance_colour(float t) {
+// Distances from 0 to 1 in colors of evenly rising lightness: violet, blue, green, yellow.
+vec3 distance_color(float t) {
   t = clamp(t, 0.0, 1.0);
   float lightness = 0.28 + 0.62 * t;
   float chroma = 0.13 + 0.05 * t * t - 0.12 * t * (1.0 - t);
@@ -71,39 +71,39 @@ vec3 distance_with_lines(vec2 uv, vec2 dx, vec2 dy, float rings) {
   float width = max(abs(dx.x) + abs(dy.x), 1e-6);
   float from_line = abs(uv.x - floor(uv.x + 0.5)) / width;
   float line = (1.0 - clamp(from_line - 0.4, 0.0, 1.0)) * clamp(0.25 / width - 0.5, 0.0, 1.0);
-  return distance_colour(uv.x / rings) * (1.0 - 0.30 * line);
+  return distance_color(uv.x / rings) * (1.0 - 0.30 * line);
 }
 
-vec3 plain_colour() { return vec3(0.58, 0.56, 0.53); }
+vec3 plain_color() { return vec3(0.58, 0.56, 0.53); }
 
-// The numbers of ahm::view::Pattern. `sectors` of the polar pattern; `rings` is what the last colour stands for.
-vec3 map_colour(int pattern, vec2 uv, vec2 dx, vec2 dy, float sectors, float rings) {
-  if (pattern == 1) return grid_colour(uv, dx, dy);
-  if (pattern == 2) return cell_colour(uv, dx, dy);
+// The numbers of ahm::view::Pattern. `sectors` of the polar pattern; `rings` is what the last color stands for.
+vec3 map_color(int pattern, vec2 uv, vec2 dx, vec2 dy, float sectors, float rings) {
+  if (pattern == 1) return grid_color(uv, dx, dy);
+  if (pattern == 2) return cell_color(uv, dx, dy);
   if (pattern == 3) return distance_with_lines(uv, dx, dy, rings);
-  if (pattern == 4) return plain_colour();
-  return polar_colour(uv, dx, dy, sectors);
+  if (pattern == 4) return plain_color();
+  return polar_color(uv, dx, dy, sectors);
 }
 
-vec3 unknown_colour() { return vec3(0.42); }
+vec3 unknown_color() { return vec3(0.42); }
 
 // Where the map is not to be trusted: pale, under dark stripes across the picture. `pixel` in 1200ths of its height.
-vec3 untrusted_colour(vec3 colour, vec2 pixel, float pixel_size) {
-  float grey = 0.45 + 0.35 * dot(colour, vec3(0.3, 0.5, 0.2));
+vec3 untrusted_color(vec3 color, vec2 pixel, float pixel_size) {
+  float gray = 0.45 + 0.35 * dot(color, vec3(0.3, 0.5, 0.2));
   float width = 0.1414 * pixel_size;
   float stripe = 0.5 + 0.5 * square_wave(0.1414 * (pixel.x + pixel.y), 2.0 * width);
-  return mix(vec3(grey), colour, 0.18) * (1.0 - 0.62 * stripe);
+  return mix(vec3(gray), color, 0.18) * (1.0 - 0.62 * stripe);
 }
 
 // Light from over the viewer's left shoulder, in camera coordinates; the normal looks towards the viewer.
-vec3 matte(vec3 colour, vec3 normal) {
+vec3 matte(vec3 color, vec3 normal) {
   vec3 key = normalize(vec3(-0.35, 0.55, 0.85));
   float diffuse = max(0.0, 0.75 * dot(normal, key) + 0.25);
   float sky = 0.5 + 0.5 * normal.y;
-  return colour * (0.20 + 0.12 * sky + 0.86 * diffuse);
+  return color * (0.20 + 0.12 * sky + 0.86 * diffuse);
 }
 
-vec3 lit(vec3 colour, vec3 normal, vec3 to_eye) {
+vec3 lit(vec3 color, vec3 normal, vec3 to_eye) {
   vec3 half_way = normalize(normalize(vec3(-0.35, 0.55, 0.85)) + to_eye);
-  return matte(colour, normal) + vec3(0.03 * pow(max(0.0, dot(normal, half_way)), 60.0));
+  return matte(color, normal) + vec3(0.03 * pow(max(0.0, dot(normal, half_way)), 60.0));
 }

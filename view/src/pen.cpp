@@ -43,44 +43,44 @@ constexpr std::array<std::string_view, letters.size()> strokes = {
 
 /// Paints where the signed distance is negative, with half a pixel of soft edge.
 template <class PaintAt, class Distance>
-void Pen::fill(Vector2d low, Vector2d high, const PaintAt& colour_at, const Distance& distance) {
+void Pen::fill(Vector2d low, Vector2d high, const PaintAt& color_at, const Distance& distance) {
   const auto clip = [](double x, int size) { return static_cast<int>(std::clamp(x, 0.0, static_cast<double>(size))); };
   for (int y = clip(low.y() - 1, image_.height); y < clip(high.y() + 2, image_.height); ++y)
     for (int x = clip(low.x() - 1, image_.width); x < clip(high.x() + 2, image_.width); ++x) {
       const Vector2d place(x + 0.5, y + 0.5);
       const double cover = std::clamp(0.5 - distance(place), 0.0, 1.0);
       if (cover <= 0) continue;
-      const Colour colour = colour_at(place);
+      const Color color = color_at(place);
       std::uint8_t* p = image_.pixel(x, y);
       for (std::size_t k = 0; k < 3; ++k)
-        p[k] = static_cast<std::uint8_t>(std::lround(p[k] + cover * (static_cast<double>(colour[k]) - p[k])));
+        p[k] = static_cast<std::uint8_t>(std::lround(p[k] + cover * (static_cast<double>(color[k]) - p[k])));
     }
 }
 
-void Pen::disc(Vector2d centre, double radius, Colour colour) {
-  disc(centre, radius, [=](const Vector2d&) { return colour; });
+void Pen::disc(Vector2d center, double radius, Color color) {
+  disc(center, radius, [=](const Vector2d&) { return color; });
 }
 
-void Pen::disc(Vector2d centre, double radius, const ColourAt& colour) {
+void Pen::disc(Vector2d center, double radius, const ColorAt& color) {
   const Vector2d r(radius, radius);
-  fill(centre - r, centre + r, colour, [&](const Vector2d& p) { return (p - centre).norm() - radius; });
+  fill(center - r, center + r, color, [&](const Vector2d& p) { return (p - center).norm() - radius; });
 }
 
-void Pen::box(Vector2d low, Vector2d high, const ColourAt& colour) {
-  fill(low, high, colour, [&](const Vector2d& p) { return (low - p).cwiseMax(p - high).maxCoeff(); });
+void Pen::box(Vector2d low, Vector2d high, const ColorAt& color) {
+  fill(low, high, color, [&](const Vector2d& p) { return (low - p).cwiseMax(p - high).maxCoeff(); });
 }
 
-void Pen::line(Vector2d from, Vector2d to, double width, Colour colour) {
+void Pen::line(Vector2d from, Vector2d to, double width, Color color) {
   const Vector2d r(width, width);
   fill(
-      from.cwiseMin(to) - r, from.cwiseMax(to) + r, [=](const Vector2d&) { return colour; },
+      from.cwiseMin(to) - r, from.cwiseMax(to) + r, [=](const Vector2d&) { return color; },
       [&](const Vector2d& p) { return distance_to_line(p, from, to) - width / 2; });
 }
 
-void Pen::triangle(Vector2d a, Vector2d b, Vector2d c, double rounding, Colour colour) {
+void Pen::triangle(Vector2d a, Vector2d b, Vector2d c, double rounding, Color color) {
   const Vector2d r(rounding, rounding);
   fill(
-      a.cwiseMin(b).cwiseMin(c) - r, a.cwiseMax(b).cwiseMax(c) + r, [=](const Vector2d&) { return colour; },
+      a.cwiseMin(b).cwiseMin(c) - r, a.cwiseMax(b).cwiseMax(c) + r, [=](const Vector2d&) { return color; },
       [&](const Vector2d& p) {
         const double edge = std::min({distance_to_line(p, a, b), distance_to_line(p, b, c), distance_to_line(p, c, a)});
         const bool first = cross(b - a, p - a) > 0, second = cross(c - b, p - b) > 0, third = cross(a - c, p - c) > 0;
@@ -88,7 +88,7 @@ void Pen::triangle(Vector2d a, Vector2d b, Vector2d c, double rounding, Colour c
       });
 }
 
-double Pen::text(Vector2d at, double height, double stroke, std::string_view text, Colour colour) {
+double Pen::text(Vector2d at, double height, double stroke, std::string_view text, Color color) {
   const double unit = height / 6;
   double x = 0;
   for (const char character : text) {
@@ -104,7 +104,7 @@ double Pen::text(Vector2d at, double height, double stroke, std::string_view tex
         return Vector2d(at.x() + x + (path[i] - '0') * unit, at.y() - (path[i + 1] - '0') * unit);
       };
       advance = std::max(advance, (path[k] - '0') * unit);
-      if (k + 2 < path.size() && path[k + 2] == ' ') line(point(k), point(k + 3), stroke, colour);
+      if (k + 2 < path.size() && path[k + 2] == ' ') line(point(k), point(k + 3), stroke, color);
     }
     x += advance + 2 * unit;
   }

@@ -16,7 +16,7 @@ struct SplatGradient {
   const std::vector<Eigen::Vector3f>& normals;
   const std::vector<std::array<std::uint32_t, splat_ring>>& rings;
   double values_per_length;  ///< how far the map moves per unit of length where it is an isometry
-  bool is_cells = false;     ///< the first value is a colour
+  bool is_cells = false;     ///< the first value is a color
 
   /// @param position, value, is_known  by number of the disc: where it is, its two values, whether it has any
   template <class Position, class Value, class Known>

@@ -131,7 +131,7 @@ class SurfaceBuilder {
 
   /// Two corners whose coordinates lie much farther apart than the corners (and, around a source, point in different
   /// directions): geodesics arrive there from two sides, and between the corners the map jumps. Interpolated, that would
-  /// be a sheaf of stripes. Between cells the colour jumps.
+  /// be a sheaf of stripes. Between cells the color jumps.
   bool is_torn(const Triangle& t) const {
     for (std::size_t k = 0; k < 3; ++k) {
       const auto i = static_cast<std::size_t>(t[k]), j = static_cast<std::size_t>(t[(k + 1) % 3]);
@@ -180,8 +180,8 @@ class SurfaceBuilder {
         const Vector2d uv = with_distance(own.head<2>(), shared);
         return add(out_.points[vertex[k]], position, normal, {uv.x(), uv.y(), own.z()}, 1);
       };
-      const std::uint32_t a = part({k, next}), centre = part({0, 1, 2}), b = part({k, previous});
-      out_.triangles.insert(out_.triangles.end(), {vertex[k], a, centre, vertex[k], centre, b});
+      const std::uint32_t a = part({k, next}), center = part({0, 1, 2}), b = part({k, previous});
+      out_.triangles.insert(out_.triangles.end(), {vertex[k], a, center, vertex[k], center, b});
     }
   }
 

@@ -63,11 +63,11 @@ Painted painted_points(const TexturedScene& scene, const Camera& camera, unsigne
     d.known[k] = 1;
     if (!scene.radii.empty()) d.radii[k] = static_cast<float>(scene.radii[shown[k]] / camera.scale);
   }
-  d.values_per_length = std::numeric_limits<float>::infinity();  // colours blend, however they differ
+  d.values_per_length = std::numeric_limits<float>::infinity();  // colors blend, however they differ
   return {std::move(d), {.kind = Material::Kind::color}};
 }
 
-/// All points of the scene, those of textured parts and coloured points as mapped, for the camera.
+/// All points of the scene, those of textured parts and colored points as mapped, for the camera.
 class Gathered {
  public:
   explicit Gathered(const TexturedScene& textured) {

@@ -8,7 +8,7 @@ namespace {
 using glsl::vec2;
 using glsl::vec3;
 
-/// Whole samples whose centres lie between two coordinates, within the tile: [first, last).
+/// Whole samples whose centers lie between two coordinates, within the tile: [first, last).
 struct Range {
   int first, last;
   Range(float from, float to)
@@ -16,7 +16,7 @@ struct Range {
         last(static_cast<int>(std::clamp(std::floor(to + 0.5F), 0.0F, static_cast<float>(Tiles::side)))) {}
 };
 
-/// The samples of a disc in the row j below its centre.
+/// The samples of a disc in the row j below its center.
 Range columns_of(const TileDisc& d, float j) {
   const float middle = -d.t_ij * j / d.t_ii;
   const float half = std::sqrt(std::max(0.0F, middle * middle + (1 - d.t_jj * j * j) / d.t_ii));
@@ -84,7 +84,7 @@ void TileRenderer::find_nearest(const TileTriangle& t, std::uint32_t id) {
 void TileRenderer::find_nearest(const TileDisc& disc, std::uint32_t id) {
   const TileDisc d = disc;  // a copy, which no buffer overlaps: the inner loops become vector instructions
   const Range rows(d.y - d.half_height, d.y + d.half_height);
-  const float bias = 0.3F * d.thickness;  // a slight bulge: among overlapping discs the nearest centre wins
+  const float bias = 0.3F * d.thickness;  // a slight bulge: among overlapping discs the nearest center wins
   for (int row = rows.first; row < rows.last; ++row) {
     const float j = static_cast<float>(row) + 0.5F - d.y;
     const Range columns = columns_of(d, j);
@@ -231,9 +231,9 @@ void TileRenderer::lay_over(const TileTriangle& t) {
       for (std::size_t k = 0; k < 3; ++k) inside = inside && t.a[k] * x + t.b[k] * y + t.c[k] >= 0;
       if (!inside) continue;
       Fragment f = t.at(x, y, lens_);
-      const vec3 colour = shade(t.layer->material(), f);
+      const vec3 color = shade(t.layer->material(), f);
       if (!covered_[s]) light_[s] = vec3(1), covered_[s] = true;
-      light_[s] = glsl::mix(light_[s], colour, f.opacity);
+      light_[s] = glsl::mix(light_[s], color, f.opacity);
     }
 }
 

@@ -1,4 +1,4 @@
-// One square of the picture: what is nearest at every sample, its colour, and the pixels they make.
+// One square of the picture: what is nearest at every sample, its color, and the pixels they make.
 #pragma once
 
 #include "disc.hpp"

@@ -86,7 +86,7 @@ void comment(const AtlasCommandOptions& options, const Made& made, const Tangent
   if (made.uncharted > 0) {
     const Index components = connected_components(graph).count;
     journal.add_warning(
-        fmt::format("{} of {} faces have no chart and are grey{}", made.uncharted, made.faces,
+        fmt::format("{} of {} faces have no chart and are gray{}", made.uncharted, made.faces,
                     components > static_cast<Index>(made.atlas.sources.size())
                         ? fmt::format(": the surface has {} components, give at least one source to each", components)
                         : ": no map reaches them"));

@@ -26,9 +26,9 @@ constexpr const char* decal_footer =
     "SPEC is 123, x,y,z or face:7:.2,.3,.5 as in 'ahm logmap'; the middle of the image lies there. The image's\n"
     "direction from left to right is the u axis, turned by --angle.\n"
     "\n"
-    "OUTPUT  .obj or .glb  the surface in grey and, a little above it, the piece under the image, cut at its borders,\n"
+    "OUTPUT  .obj or .glb  the surface in gray and, a little above it, the piece under the image, cut at its borders,\n"
     "                      with its texture (opacity included); of clouds, the piece alone\n"
-    "        .ply          the points of INPUT, coloured where the image lies on them\n"
+    "        .ply          the points of INPUT, colored where the image lies on them\n"
     "Where the map is not to be trusted there is no decal, and where it folds it lies on one sheet only.\n"
     "\n"
     "Examples:\n"
@@ -106,7 +106,7 @@ void write_mesh(const DecalCommandOptions& options, const Input& input, const De
   view::write_textured_png(options.output.view, scene, picture_options(options.output.picture, options.input.threads));
 }
 
-/// The colours of the input, light grey where there are none, under the image.
+/// The colors of the input, light gray where there are none, under the image.
 std::vector<std::array<std::uint8_t, 3>> painted(const Input& input, const std::vector<double>& places,
                                                  const Image& image) {
   std::vector<std::array<std::uint8_t, 3>> colors = input.geometry.colors;
@@ -132,7 +132,7 @@ void write_points(const DecalCommandOptions& options, const Input& input, const 
   const auto colors = painted(input, image_coordinates_of_vertices(inverse, options.decal), image);
   const std::vector<Vec3> normals = input.surface().normals();
   const io::Geometry& given = input.geometry;
-  io::Table table{.title = "coloured by libahm"};
+  io::Table table{.title = "colored by libahm"};
   table.add({"x", "y", "z"}, given.points);
   if (!given.normals.empty()) table.add({"nx", "ny", "nz"}, given.normals);
   table.add({"red", "green", "blue"}, colors);

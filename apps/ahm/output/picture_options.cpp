@@ -50,7 +50,7 @@ void add_map_picture(CLI::App& app, PictureChoice& choice) {
       ->group(group)
       ->needs("--view");
   add_parsed(app, "--color", choice.color, ahm::app::choice({"polar", "distance", "none"}), "BY",
-             "polar (default): rings and sectors, squares along a curve, a colour per cell;\n"
+             "polar (default): rings and sectors, squares along a curve, a color per cell;\n"
              "distance: with a bar that tells the numbers; none: the surface alone")
       ->group(group)
       ->needs("--view");

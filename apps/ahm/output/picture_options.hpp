@@ -31,7 +31,7 @@ void add_texture_picture(CLI::App& app, PictureChoice& choice);
 /// @param threads  0: one per core
 view::PictureOptions picture_options(const PictureChoice& choice, unsigned threads);
 
-/// Writes the picture of a map. @param usual  the subcommand's own pattern, where the colours are not chosen
+/// Writes the picture of a map. @param usual  the subcommand's own pattern, where the colors are not chosen
 void draw(const std::string& path, const view::Scene& scene, view::Pattern usual, const PictureChoice& choice,
           unsigned threads);
 

@@ -137,7 +137,7 @@ std::string as_text(const Survey& s, const std::string& path) {
   text += line("points", fmt::format("{}", s.points));
   text += line("faces", s.mesh ? fmt::format("{}: {}", s.faces, faces_text(*s.mesh)) : "0");
   text += line("normals", normals_text(s));
-  text += line("colours", s.colors ? "yes" : "none");
+  text += line("colors", s.colors ? "yes" : "none");
   text += line("non-finite points",
                s.non_finite == 0 ? "0" : fmt::format("{}{}", s.non_finite, s.as_cloud ? ": use --drop-nan" : ""));
   text += line("exact duplicates",

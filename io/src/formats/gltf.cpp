@@ -115,7 +115,7 @@ class GltfReader {
     const GltfArray array = vectors(accessor, 3);
     if (array.count != count)
       fail(in_,
-           "a primitive has " + std::to_string(count) + " positions and " + std::to_string(array.count) + " colours");
+           "a primitive has " + std::to_string(count) + " positions and " + std::to_string(array.count) + " colors");
     has_colors_ = true;
     for (std::uint64_t k = 0; k < count; ++k)
       for (std::size_t c = 0; c < 3; ++c) colors_[first + k][c] = array.values[k * array.width + c];

@@ -102,7 +102,7 @@ LasHeader parse_header(const Input& in) {
   return header;
 }
 
-/// What there is of colours; writers that have none leave zeros.
+/// What there is of colors; writers that have none leave zeros.
 void read_colors(const Input& in, const LasHeader& header, std::size_t at, Geometry& g) {
   std::vector<Vec3> values(header.points);
   bool any = false;

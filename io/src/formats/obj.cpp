@@ -206,7 +206,7 @@ class ObjReader {
   std::vector<Vec3> normals_;
   bool normals_match_ = true;
   bool extras_ = false;
-  std::vector<Vec3> extra_;  ///< three more numbers of the first vertices; of all, when they may be colours
+  std::vector<Vec3> extra_;  ///< three more numbers of the first vertices; of all, when they may be colors
   std::size_t ignored_ = 0;
   std::vector<std::string> named_;
   std::string ignored_names_;

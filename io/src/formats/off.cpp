@@ -95,7 +95,7 @@ OffHeader parse_header(const Input& in, Words& words) {
   return header;
 }
 
-/// Red, green, blue, of which `word` is the first; opacity may follow. Fewer numbers stand for a colour in a table.
+/// Red, green, blue, of which `word` is the first; opacity may follow. Fewer numbers stand for a color in a table.
 void read_color(const Input& in, std::int64_t line, std::string_view word, std::string_view rest,
                 std::vector<Vec3>& colors) {
   Vec3 color;
@@ -149,7 +149,7 @@ void read_faces(const Input& in, Words& words, const OffHeader& header, Geometry
       g.face_vertices.push_back(static_cast<Index>(vertex));
     }
     g.face_begin.push_back(static_cast<Offset>(g.face_vertices.size()));
-    words.rest_of_line();  // perhaps a colour
+    words.rest_of_line();  // perhaps a color
   }
 }
 

@@ -137,11 +137,11 @@ class Body {
   std::uint64_t item_ = 0;
 };
 
-/// What a scalar property of the vertices is for: 0-2 position, 3-5 normal, 6-8 colour.
+/// What a scalar property of the vertices is for: 0-2 position, 3-5 normal, 6-8 color.
 constexpr std::size_t unused = 9;
 constexpr std::array<std::string_view, unused> roles = {"x", "y", "z", "nx", "ny", "nz", "red", "green", "blue"};
 
-/// The role of every property; normals and colours count only when complete.
+/// The role of every property; normals and colors count only when complete.
 std::vector<std::size_t> assign_roles(const Input& in, const PlyElement& vertex) {
   std::vector<std::size_t> role_of(vertex.properties.size(), unused);
   for (std::size_t group = 0; group < unused; group += 3) {
@@ -159,7 +159,7 @@ std::vector<std::size_t> assign_roles(const Input& in, const PlyElement& vertex)
   return role_of;
 }
 
-/// Colours as bytes, or as numbers that are to become bytes.
+/// Colors as bytes, or as numbers that are to become bytes.
 class Colors {
  public:
   Colors(const std::vector<std::size_t>& role_of, const PlyElement& vertex, std::size_t n) {
@@ -179,7 +179,7 @@ class Colors {
       return;
     }
     const std::int64_t level = body.whole(type);
-    if (level < 0 || level > 255) body.fail_here("colour " + std::to_string(level) + " is not in 0..255");
+    if (level < 0 || level > 255) body.fail_here("color " + std::to_string(level) + " is not in 0..255");
     levels_[i][channel] = static_cast<std::uint8_t>(level);
   }
 

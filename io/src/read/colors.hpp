@@ -1,5 +1,5 @@
 /// \file
-/// Colours that stand in a file as plain numbers.
+/// Colors that stand in a file as plain numbers.
 #pragma once
 
 #include <array>

@@ -160,7 +160,7 @@ class ColumnReader {
     return result;
   }
 
-  /// Unnamed columns are normals unless they can only be colours. Of two, one must be each.
+  /// Unnamed columns are normals unless they can only be colors. Of two, one must be each.
   void finish() {
     if (intensity_) g_.properties.push_back({"intensity", std::move(*intensity_)});
     for (Triple& triple : triples_)

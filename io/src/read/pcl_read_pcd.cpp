@@ -110,7 +110,7 @@ void read_vectors(const Input& in, const PCLPointCloud2& cloud, std::array<const
   }
 }
 
-/// PCL packs colours as 0xAARRGGBB into four bytes, which may be declared a float.
+/// PCL packs colors as 0xAARRGGBB into four bytes, which may be declared a float.
 void read_colors(const PCLPointCloud2& cloud, Geometry& g) {
   const PCLPointField* field = find(cloud, "rgb") ? find(cloud, "rgb") : find(cloud, "rgba");
   if (field == nullptr) return;

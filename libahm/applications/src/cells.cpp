@@ -13,24 +13,23 @@ namespace ahm {
 namespace {
 
 void check_vertices(const TangentGraph& graph, std::span<const Vertex> vertices) {
-  if (vertices.empty()) throw InvalidArgument("voronoi_cells: 'vertices' is empty");
+  if (vertices.empty()) throw InvalidArgument("'vertices' is empty");
   std::vector<bool> taken(static_cast<std::size_t>(graph.size()), false);
   for (const auto [vertex] : vertices) {
     if (vertex < 0 || vertex >= graph.size())
-      throw InvalidArgument("voronoi_cells: vertex " + std::to_string(vertex) + " is outside [0, " +
-                            std::to_string(graph.size()) + ")");
-    if (taken[vertex]) throw InvalidArgument("voronoi_cells: vertex " + std::to_string(vertex) + " is given twice");
+      throw InvalidArgument("vertex " + std::to_string(vertex) + " is outside [0, " + std::to_string(graph.size()) +
+                            ")");
+    if (taken[vertex]) throw InvalidArgument("vertex " + std::to_string(vertex) + " is given twice");
     taken[vertex] = true;
   }
 }
 
 void check_count(Index vertices, Vertex first, Index count) {
   if (first.index < 0 || first.index >= vertices)
-    throw InvalidArgument("farthest_points: 'first' " + std::to_string(first.index) + " is outside [0, " +
-                          std::to_string(vertices) + ")");
+    throw InvalidArgument("'first' " + std::to_string(first.index) + " is outside [0, " + std::to_string(vertices) +
+                          ")");
   if (count < 1 || count > vertices)
-    throw InvalidArgument("farthest_points: 'count' " + std::to_string(count) + " must be in [1, " +
-                          std::to_string(vertices) + "]");
+    throw InvalidArgument("'count' " + std::to_string(count) + " must be in [1, " + std::to_string(vertices) + "]");
 }
 
 }  // namespace

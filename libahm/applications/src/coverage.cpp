@@ -23,17 +23,16 @@ void remove(Vec3& v, const Vec3& axis) {
 void check(const CoverageOptions& o) {
   const auto check_positive = [](const char* name, double value) {
     if (!(value > 0 && std::isfinite(value)))
-      throw InvalidArgument("coverage_path: " + std::string(name) + " is " + std::to_string(value) +
-                            "; give a finite number > 0");
+      throw InvalidArgument(std::string(name) + " is " + std::to_string(value) + "; give a finite number > 0");
   };
   check_positive("radius", o.radius);
   check_positive("spacing", o.spacing);
   if (o.step != 0) check_positive("step", o.step);
-  if (!std::isfinite(o.angle)) throw InvalidArgument("coverage_path: angle is not finite");
+  if (!std::isfinite(o.angle)) throw InvalidArgument("angle is not finite");
   const double step = o.step > 0 ? o.step : o.spacing / 2;
   const double points = (o.radius / o.spacing + 1) * (o.radius / step + 1) * std::numbers::pi;
   if (!(points < 1 << 30))
-    throw InvalidArgument("coverage_path: the pattern has about " + std::to_string(points) +
+    throw InvalidArgument("the pattern has about " + std::to_string(points) +
                           " points, more than 2^30; enlarge spacing or step, or lower radius");
 }
 

@@ -22,14 +22,13 @@ constexpr int circle_corners = 64;
 void check(const DecalOptions& o) {
   const auto check_positive = [](const char* name, double value, bool may_be_infinite) {
     if (!(value > 0) || (!may_be_infinite && !std::isfinite(value)))
-      throw InvalidArgument("make_decal: " + std::string(name) + " is " + detail::number(value) +
-                            "; give a number > 0");
+      throw InvalidArgument(std::string(name) + " is " + detail::number(value) + "; give a number > 0");
   };
   check_positive("width", o.width, false);
   check_positive("height", o.height, false);
   check_positive("radius", o.radius, true);
-  if (!std::isfinite(o.angle)) throw InvalidArgument("make_decal: angle is not finite");
-  if (!std::isfinite(o.lift)) throw InvalidArgument("make_decal: lift is not finite");
+  if (!std::isfinite(o.angle)) throw InvalidArgument("angle is not finite");
+  if (!std::isfinite(o.lift)) throw InvalidArgument("lift is not finite");
 }
 
 /// The image in the plane: places in it, and its borders.

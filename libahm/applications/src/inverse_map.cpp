@@ -29,7 +29,7 @@ void check(const MappedSurface& s, const InverseMapOptions& options) {
   const std::size_t n = s.positions.size();
   const auto check_length = [&](const char* name, std::size_t size, std::size_t wanted) {
     if (size != wanted)
-      throw InvalidArgument("InverseMap: '" + std::string(name) + "' has " + std::to_string(size) + " entries, not " +
+      throw InvalidArgument("'" + std::string(name) + "' has " + std::to_string(size) + " entries, not " +
                             std::to_string(wanted));
   };
   check_length("normals", s.normals.size(), n);
@@ -37,14 +37,14 @@ void check(const MappedSurface& s, const InverseMapOptions& options) {
   check_length("valid", s.valid.size(), n);
   const auto check_index = [&](const std::string& what, Index vertex) {
     if (vertex < 0 || to_size(vertex) >= n)
-      throw InvalidArgument("InverseMap: " + what + " names vertex " + std::to_string(vertex) + ", outside [0, " +
-                            std::to_string(n) + ")");
+      throw InvalidArgument(what + " names vertex " + std::to_string(vertex) + ", outside [0, " + std::to_string(n) +
+                            ")");
   };
   for (std::size_t t = 0; t < s.triangles.size(); ++t)
     for (Index vertex : s.triangles[t]) check_index("triangle " + std::to_string(t), vertex);
   for (Index vertex : s.sources) check_index("'sources'", vertex);
   if (!(options.max_stretch > 1))
-    throw InvalidArgument("InverseMap: max_stretch is " + std::to_string(options.max_stretch) + "; give a number > 1");
+    throw InvalidArgument("max_stretch is " + std::to_string(options.max_stretch) + "; give a number > 1");
 }
 
 /// Whether a map of this triangle has an inverse worth using.

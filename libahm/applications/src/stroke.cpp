@@ -25,7 +25,7 @@ Step step(const TangentGraph& graph, Vertex from, Vertex to) {
     if (star.neighbors[e] != to.index) continue;
     return {{star.log(e)[0] * unit, star.log(e)[1] * unit}, star.transport(e).reflects()};
   }
-  throw InvalidArgument("stroke_source: vertices " + std::to_string(from.index) + " and " + std::to_string(to.index) +
+  throw InvalidArgument("vertices " + std::to_string(from.index) + " and " + std::to_string(to.index) +
                         " follow each other in 'path' but are no neighbours in the graph; add the vertices between");
 }
 
@@ -37,7 +37,7 @@ Vec2 bisector(const Vec2& arriving, const Vec2& leaving, std::size_t k) {
       for (int a = 0; a < 2; ++a) sum[a] += v[a] / norm;
   const double norm = length(sum);
   if (!(norm > 1e-6))
-    throw InvalidArgument("stroke_source: the curve, or its image in the plane, turns back or stands still at point " +
+    throw InvalidArgument("the curve, or its image in the plane, turns back or stands still at point " +
                           std::to_string(k) + "; split it there");
   return {sum[0] / norm, sum[1] / norm};
 }
@@ -45,11 +45,11 @@ Vec2 bisector(const Vec2& arriving, const Vec2& leaving, std::size_t k) {
 /// Which way a curve runs in the plane at each of its points.
 std::vector<Vec2> directions_of(std::span<const Vec2> positions, std::size_t points, bool closed) {
   if (positions.size() != points)
-    throw InvalidArgument("stroke_source: 'positions' has " + std::to_string(positions.size()) + " entries for " +
+    throw InvalidArgument("'positions' has " + std::to_string(positions.size()) + " entries for " +
                           std::to_string(points) + " points");
   for (std::size_t k = 0; k < points; ++k)
     if (!all_finite(positions[k]))
-      throw InvalidArgument("stroke_source: entry " + std::to_string(k) + " of 'positions' is not finite");
+      throw InvalidArgument("entry " + std::to_string(k) + " of 'positions' is not finite");
   std::vector<Vec2> directions;
   for (std::size_t k = 0; k < points; ++k) {
     const bool arrives = k > 0 || closed, leaves = k + 1 < points || closed;
@@ -70,13 +70,13 @@ struct Curve {
 
 void check_path(const TangentGraph& graph, std::span<const Vertex> path, bool closed) {
   if (graph.dimension() != 2)
-    throw InvalidArgument("stroke_source: the graph has dimension " + std::to_string(graph.dimension()) + ", not 2");
+    throw InvalidArgument("the graph has dimension " + std::to_string(graph.dimension()) + ", not 2");
   if (path.size() < (closed ? 3U : 2U))
-    throw InvalidArgument("stroke_source: 'path' has " + std::to_string(path.size()) + " vertices; give at least " +
+    throw InvalidArgument("'path' has " + std::to_string(path.size()) + " vertices; give at least " +
                           (closed ? "3" : "2"));
   for (const auto [vertex] : path)
     if (vertex < 0 || vertex >= graph.size())
-      throw InvalidArgument("stroke_source: vertex " + std::to_string(vertex) + " of 'path' is outside [0, " +
+      throw InvalidArgument("vertex " + std::to_string(vertex) + " of 'path' is outside [0, " +
                             std::to_string(graph.size()) + ")");
 }
 
@@ -108,8 +108,7 @@ Curve follow(const TangentGraph& graph, std::span<const Vertex> path, bool close
     if (there.mirrored) side = -side;
   }
   if (closed && side < 0)
-    throw InvalidArgument(
-        "stroke_source: the closed 'path' runs along a one-sided band, so it has no left; leave it open");
+    throw InvalidArgument("the closed 'path' runs along a one-sided band, so it has no left; leave it open");
   return curve;
 }
 
@@ -126,7 +125,7 @@ void add_sample(Source& source, Vertex vertex, double weight, const Vec2& z, con
 
 void check_shape(const StrokeOptions& options) {
   if (options.shape == StrokeShape::circle && !options.closed)
-    throw InvalidArgument("stroke_source: shape 'circle' needs a closed curve");
+    throw InvalidArgument("shape 'circle' needs a closed curve");
 }
 
 /// Where the point at arclength s lies in the plane of coordinates, and which way the curve runs there.
@@ -143,14 +142,14 @@ Place place(double s, double length, StrokeShape shape) {
 void check_points(std::span<const Source> points, std::span<const double> lengths, bool closed) {
   const std::size_t least = closed ? 3 : 2;
   if (points.size() < least)
-    throw InvalidArgument("stroke_source: 'points' has " + std::to_string(points.size()) + " entries; give at least " +
+    throw InvalidArgument("'points' has " + std::to_string(points.size()) + " entries; give at least " +
                           std::to_string(least));
   if (lengths.size() != points.size() - (closed ? 0 : 1))
-    throw InvalidArgument("stroke_source: 'lengths' has " + std::to_string(lengths.size()) + " entries for " +
+    throw InvalidArgument("'lengths' has " + std::to_string(lengths.size()) + " entries for " +
                           std::to_string(points.size()) + " points; an open curve has one fewer, a closed one as many");
   for (std::size_t k = 0; k < lengths.size(); ++k)
     if (!(lengths[k] > 0) || !std::isfinite(lengths[k]))
-      throw InvalidArgument("stroke_source: 'lengths' [" + std::to_string(k) + "] is " + std::to_string(lengths[k]) +
+      throw InvalidArgument("'lengths' [" + std::to_string(k) + "] is " + std::to_string(lengths[k]) +
                             ", not positive and finite; leave out points that coincide");
 }
 
@@ -193,12 +192,12 @@ Source stroke_source(const TangentGraph& graph, std::span<const Vertex> path, st
 }
 
 Source stroke_source(std::span<const StrokePoint> points) {
-  if (points.empty()) throw InvalidArgument("stroke_source: 'points' is empty");
+  if (points.empty()) throw InvalidArgument("'points' is empty");
   Source source(2);
   for (std::size_t k = 0; k < points.size(); ++k) {
     const auto& [point, weight, position, angle] = points[k];
     if (point.dimension() != 2)
-      throw InvalidArgument("stroke_source: point " + std::to_string(k) + " is a source of dimension " +
+      throw InvalidArgument("point " + std::to_string(k) + " is a source of dimension " +
                             std::to_string(point.dimension().value_or(0)) + ", not 2; give its u axis");
     const double c = std::cos(angle), s = std::sin(angle);
     for (std::size_t i = 0; i < point.vertices().size(); ++i) {

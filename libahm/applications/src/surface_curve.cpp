@@ -229,7 +229,7 @@ SurfaceCurve draw_curve(const Surface& surface, std::span<const CurvePoint> give
 SurfaceCurve draw_curve(const Surface& surface, std::span<const CurvePoint> given, std::span<const Vec2> positions,
                         bool closed) {
   if (positions.size() != given.size())
-    throw InvalidArgument("draw_curve: 'positions' has " + std::to_string(positions.size()) + " entries for " +
+    throw InvalidArgument("'positions' has " + std::to_string(positions.size()) + " entries for " +
                           std::to_string(given.size()) + " points");
   return draw(surface, given, closed, [&](const auto& samples, const auto& sources, const auto& lengths) {
     std::vector<Vec2> places;

@@ -99,7 +99,7 @@ Ahm.Panel = class {
     const names = ["row", "status", "position", "u", "v", "distance", "spread"];
     if (!hit) return names.forEach((name) => put(name, "–"));
     const k = hit.vertex, row = hit.row, p = surface.positions, length = (x) => Ahm.number(this.length_of(x));
-    const at = [0, 1, 2].map((c) => Ahm.number(surface.centre[c] + surface.scale * p[3 * k + c]));
+    const at = [0, 1, 2].map((c) => Ahm.number(surface.center[c] + surface.scale * p[3 * k + c]));
     const of = (array, index) => (map && map[array] ? length(map[array][index]) : "–");
     put("row", row);
     put("position", at.join(" "));

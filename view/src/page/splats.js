@@ -1,5 +1,5 @@
 "use strict";
-// A cloud as discs, in two passes: which disc is seen at a pixel, and then its colour, once.
+// A cloud as discs, in two passes: which disc is seen at a pixel, and then its color, once.
 Ahm.Splats = class {
   constructor(surface, uniforms) {
     const n = surface.points.length;
@@ -11,7 +11,7 @@ Ahm.Splats = class {
     this.values = new Float32Array(4 * this.columns * this.lines);
     Object.assign(uniforms, {
       which: { value: this.target.texture }, table: { value: new THREE.Vector2(this.columns, this.lines) }, view: { value: new THREE.Matrix4() },
-      centres: { value: this.texture(this.spread(surface.positions, 3, Float32Array), THREE.FloatType) },
+      centers: { value: this.texture(this.spread(surface.positions, 3, Float32Array), THREE.FloatType) },
       discs: { value: this.texture(this.spread(surface.discs, 4, Uint8Array)) },
       values: { value: this.texture(this.values, THREE.FloatType) },
       colors: { value: this.texture(this.spread(surface.colors || new Uint8Array(4 * n), 4, Uint8Array)) },

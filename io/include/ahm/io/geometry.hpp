@@ -1,5 +1,5 @@
 /// \file
-/// What a file holds: points, perhaps normals and colours, perhaps polygons.
+/// What a file holds: points, perhaps normals and colors, perhaps polygons.
 ///
 /// \code
 /// ahm::io::Geometry g = ahm::io::read("bunny.ply");
@@ -18,7 +18,7 @@
 
 namespace ahm::io {
 
-/// A number per point that is neither position, normal nor colour.
+/// A number per point that is neither position, normal nor color.
 struct Property {
   std::string name;            ///< "intensity", "classification"
   std::vector<double> values;  ///< n

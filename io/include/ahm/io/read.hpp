@@ -19,15 +19,15 @@ namespace ahm::io {
 ///
 /// Text numbers are read the same way in every locale and keep double precision; vertices and polygons keep the file's
 /// order. A file that is cut short, lies about its counts, or holds something that is no number is refused as a whole.
-/// - PLY: text or binary of either byte order; normals nx ny nz and colours red green blue when present.
+/// - PLY: text or binary of either byte order; normals nx ny nz and colors red green blue when present.
 /// - PLY triangle strips become triangles; other elements are ignored with a warning.
-/// - OFF: text, polygons; the normals of NOFF, the colours of COFF.
-/// - OBJ: polygons, relative indices; `vn` only when numbered like the vertices; colours behind x y z.
+/// - OFF: text, polygons; the normals of NOFF, the colors of COFF.
+/// - OBJ: polygons, relative indices; `vn` only when numbered like the vertices; colors behind x y z.
 /// - PCD: text, binary or compressed, through PCL (build option AHM_WITH_PCL).
 /// - LAS: versions 1.0 to 1.4, point formats 0 to 10, not compressed; intensity and classification as properties.
 /// - XYZ, TXT, ASC, PTS, CSV: columns separated by blanks, commas, semicolons (CSV: or tabs), named x, y, z (nx, ny, nz;
-///   r, g, b) or 3, 6 with normals (or colours, when all are whole numbers up to 255) or 9 with both.
-/// - PTS: the fourth of 4 or 7 columns is the property intensity, the last three of 7 are colours.
+///   r, g, b) or 3, 6 with normals (or colors, when all are whole numbers up to 255) or 9 with both.
+/// - PTS: the fourth of 4 or 7 columns is the property intensity, the last three of 7 are colors.
 /// - GLB, GLTF: the triangles and points of the scene, placed by their nodes; triangles are welded at equal positions.
 /// @throws IoError naming the file, the line or byte, the value, and what to do
 /// @throws ResourceExhausted when memory does not suffice, or a file would fill more than a third of what is free when

@@ -1,5 +1,5 @@
 /// \file
-/// Meshes with textures and colours to files.
+/// Meshes with textures and colors to files.
 ///
 /// \code
 /// ahm::io::MeshPart part{.name = "atlas", .points = points, .faces = geometry.faces()};

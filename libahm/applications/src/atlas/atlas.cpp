@@ -108,12 +108,11 @@ Atlas make_atlas(const MapMaker& maps, std::span<const Vertex> sources, const Fa
 Atlas make_atlas(const MapMaker& maps, std::span<const Vertex> sources, const FaceList& faces,
                  std::span<const Vec3> positions, const RefineOptions& refine) {
   if (!(refine.max_distortion > 1))
-    throw InvalidArgument("make_atlas: max_distortion is " + detail::number(refine.max_distortion) +
-                          "; it must be > 1");
+    throw InvalidArgument("max_distortion is " + detail::number(refine.max_distortion) + "; it must be > 1");
   if (!(refine.share >= 0 && refine.share < 1))
-    throw InvalidArgument("make_atlas: share is " + detail::number(refine.share) + "; it must be in [0, 1)");
+    throw InvalidArgument("share is " + detail::number(refine.share) + "; it must be in [0, 1)");
   if (positions.size() != static_cast<std::size_t>(maps.graph().size()))
-    throw InvalidArgument("make_atlas: 'positions' has " + std::to_string(positions.size()) + " entries, not " +
+    throw InvalidArgument("'positions' has " + std::to_string(positions.size()) + " entries, not " +
                           std::to_string(maps.graph().size()));
   return detail::with_memory_check("making an atlas", [&] {
     AtlasMaker maker(maps, faces);

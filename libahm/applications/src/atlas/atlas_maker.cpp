@@ -20,16 +20,16 @@ constexpr std::size_t block_size = 16;
 
 void check(const TangentGraph& graph, const FaceList& faces) {
   if (graph.dimension() != 2)
-    throw InvalidArgument("make_atlas: the graph has dimension " + std::to_string(graph.dimension()) +
+    throw InvalidArgument("the graph has dimension " + std::to_string(graph.dimension()) +
                           "; an atlas is of a surface, dimension 2");
   if (faces.begin.empty() || faces.begin.front() != 0 || faces.begin.back() != std::ssize(faces.vertices) ||
       !std::is_sorted(faces.begin.begin(), faces.begin.end()))
-    throw InvalidArgument("make_atlas: 'faces.begin' must rise from 0 to the number of corners, " +
+    throw InvalidArgument("'faces.begin' must rise from 0 to the number of corners, " +
                           std::to_string(faces.vertices.size()));
   for (std::size_t c = 0; c < faces.vertices.size(); ++c)
     if (faces.vertices[c] < 0 || faces.vertices[c] >= graph.size())
-      throw InvalidArgument("make_atlas: corner " + std::to_string(c) + " names vertex " +
-                            std::to_string(faces.vertices[c]) + ", outside [0, " + std::to_string(graph.size()) + ")");
+      throw InvalidArgument("corner " + std::to_string(c) + " names vertex " + std::to_string(faces.vertices[c]) +
+                            ", outside [0, " + std::to_string(graph.size()) + ")");
 }
 
 /// Sum of the distances of a face's corners from a source; NaN where one is unknown.

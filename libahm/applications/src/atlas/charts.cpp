@@ -64,7 +64,7 @@ ChartBox least_box(const std::vector<Vec2>& hull) {
 std::vector<ChartBox> chart_boxes(const Atlas& atlas, const FaceList& faces) {
   return detail::with_memory_check("bounding charts", [&] {
     if (faces.size() != atlas.chart_of_face.size() || 2 * faces.vertices.size() != atlas.coordinates.size())
-      throw InvalidArgument("chart_boxes: there are " + std::to_string(faces.size()) + " faces with " +
+      throw InvalidArgument("there are " + std::to_string(faces.size()) + " faces with " +
                             std::to_string(faces.vertices.size()) + " corners, but the atlas has " +
                             std::to_string(atlas.chart_of_face.size()) + " with " +
                             std::to_string(atlas.coordinates.size() / 2));

@@ -62,9 +62,9 @@ double largest_scale(const std::vector<ChartBox>& boxes, const PackOptions& opti
   for (double scale = high; low == 0 && scale > 1e-4 * high; scale /= 2)
     if (place(boxes, scale, options.size, options.margin)) low = scale;
   if (low == 0)
-    throw InvalidArgument("pack: " + std::to_string(boxes.size()) + " charts with margins of " +
-                          std::to_string(options.margin) + " texels do not fit into a texture of " +
-                          std::to_string(options.size) + "; enlarge size, or lower margin or the number of charts");
+    throw InvalidArgument(std::to_string(boxes.size()) + " charts with margins of " + std::to_string(options.margin) +
+                          " texels do not fit into a texture of " + std::to_string(options.size) +
+                          "; enlarge size, or lower margin or the number of charts");
   high = std::min(high, 2 * low);
   while (high > 1.01 * low) {
     const double middle = (low + high) / 2;
@@ -79,8 +79,8 @@ bool can_pack() noexcept { return true; }
 
 TextureAtlas pack(const Atlas& atlas, const FaceList& faces, const PackOptions& options) {
   if (options.size < 16 || options.size > 32768)
-    throw InvalidArgument("pack: size is " + std::to_string(options.size) + "; it must be 16 to 32768");
-  if (options.margin < 0) throw InvalidArgument("pack: margin is " + std::to_string(options.margin) + "; give >= 0");
+    throw InvalidArgument("size is " + std::to_string(options.size) + "; it must be 16 to 32768");
+  if (options.margin < 0) throw InvalidArgument("margin is " + std::to_string(options.margin) + "; give >= 0");
   std::vector<ChartBox> boxes = chart_boxes(atlas, faces);
   TextureAtlas result;
   result.size = options.size;

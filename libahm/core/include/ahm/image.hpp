@@ -19,7 +19,7 @@ namespace ahm {
 /// Pixels, eight bits each of red, green, blue and opacity.
 struct Image {
   int width = 0, height = 0;
-  std::vector<std::uint8_t> rgba;  ///< height x width x 4, the uppermost row first; colours not multiplied by opacity
+  std::vector<std::uint8_t> rgba;  ///< height x width x 4, the uppermost row first; colors not multiplied by opacity
 
   Image() = default;
   /// Transparent black.
@@ -33,8 +33,8 @@ struct Image {
     return rgba.data() + 4 * (static_cast<std::size_t>(row) * static_cast<std::size_t>(width) + column);
   }
 
-  /// Colour at (u, v), (0, 0) the lower left corner and (1, 1) the upper right one; bilinear between the middles of the
-  /// pixels, colours weighted by opacity, constant outside. Four numbers in [0, 1].
+  /// Color at (u, v), (0, 0) the lower left corner and (1, 1) the upper right one; bilinear between the middles of the
+  /// pixels, colors weighted by opacity, constant outside. Four numbers in [0, 1].
   std::array<double, 4> sample(double u, double v) const {
     const double x = std::clamp(u * width - 0.5, 0.0, width - 1.0);
     const double y = std::clamp((1 - v) * height - 0.5, 0.0, height - 1.0);

@@ -10,7 +10,7 @@
 /// A bundle is "AHM1", the length of a JSON text as little-endian u32, that text, and arrays. The text's "arrays" tells of
 /// each by its name the type (f32, u8, u16, i32, u32), where it begins, counted from the end of the text, and how many
 /// numbers it has. Both are multiples of four bytes. Lengths are in units of the surface's "scale", positions relative to
-/// its "centre".
+/// its "center".
 ///
 /// Of a surface: positions (3), discs (normal as 255ths of [-1, 1], radius as 255ths of "largest_radius"), points (the
 /// row of each vertex), colors (4), triangles, origins (face, corners, sides; where faces have more than three).
@@ -27,7 +27,7 @@ namespace ahm::view {
 /// A surface made ready to be drawn by the page. Immutable; safe to use from many threads.
 class PageSurface {
  public:
-  /// @param scene  its points, normals, faces, colours and title; if it has a map, the camera shows that
+  /// @param scene  its points, normals, faces, colors and title; if it has a map, the camera shows that
   /// @throws as `draw_picture`
   explicit PageSurface(const Scene& scene, const PictureOptions& options = {});
   ~PageSurface();

@@ -1,6 +1,6 @@
 /// \file
 /// Pictures of what was found on a surface or scan: a logarithmic map as a polar checkerboard, coordinates along a curve
-/// as squares, cells in colours. As a PNG file or as one HTML page.
+/// as squares, cells in colors. As a PNG file or as one HTML page.
 ///
 /// \code
 /// ahm::view::Scene scene;
@@ -27,9 +27,9 @@ namespace ahm::view {
 /// What the points are painted by.
 enum class Pattern {
   polar,     ///< (u, v): rings of equal distance, sectors of equal direction
-  grid,      ///< (u, v): squares, warm colours where v > 0 (left of a curve), cold ones where v < 0
-  cells,     ///< labels: neighbouring cells in different colours, with rings of equal distance
-  distance,  ///< distance: colours of evenly rising lightness, with a bar that tells the numbers, and lines at the rings
+  grid,      ///< (u, v): squares, warm colors where v > 0 (left of a curve), cold ones where v < 0
+  cells,     ///< labels: neighbouring cells in different colors, with rings of equal distance
+  distance,  ///< distance: colors of evenly rising lightness, with a bar that tells the numbers, and lines at the rings
   none,      ///< the surface alone
 };
 
@@ -43,14 +43,14 @@ struct Scene {
   /// cloud.
   std::span<const Offset> face_begin;
   std::span<const Index> face_vertices;
-  /// The map, one number per point in world units; NaN where there is no coordinate (painted grey). Empty for cells.
+  /// The map, one number per point in world units; NaN where there is no coordinate (painted gray). Empty for cells.
   std::span<const double> u, v;
   /// For cells: the number of each point's cell, and the distance from the cell's source in world units. Points are
-  /// grey where the one is negative or the other is not finite.
+  /// gray where the one is negative or the other is not finite.
   std::span<const Index> labels;
   /// For cells, and for `Pattern::distance`, where empty means |(u, v)|.
   std::span<const double> distance;
-  /// How far the map can be trusted, one number per point (`map_quality`): hatched in grey where it is below
+  /// How far the map can be trusted, one number per point (`map_quality`): hatched in gray where it is below
   /// `trusted_quality`. Not finite, or empty: trusted.
   std::span<const double> quality;
   /// Position of the source (need not be one of the points), a red dot; drawn where nothing stands before it, as all marks are.
@@ -83,7 +83,7 @@ struct PictureOptions {
   std::optional<double> ring_width;
   /// Number of angle sectors; even and positive, so that the checkerboard closes.
   int sectors = 24;
-  /// From the picture's centre towards the camera. Default: a free view of the source, or of a curve in one piece,
+  /// From the picture's center towards the camera. Default: a free view of the source, or of a curve in one piece,
   /// slightly from above.
   std::optional<Vec3> view_direction;
   /// Upwards in the picture. Default: z for flat scans (z is by far the thinnest side of the box), else y.

@@ -1,5 +1,5 @@
 /// \file
-/// Pictures of textured meshes and coloured points, as a PNG file.
+/// Pictures of textured meshes and colored points, as a PNG file.
 ///
 /// \code
 /// ahm::view::write_textured_png("atlas.png", {.parts = parts, .towards = source});
@@ -20,7 +20,7 @@ namespace ahm::view {
 struct TexturedScene {
   /// Meshes as they are written to files (`io::write_textured`). Transparent parts are laid over the others.
   std::span<const io::MeshPart> parts;
-  /// Points, with a colour each, and the radius of the disc that is drawn in world units; no radii: as far as the
+  /// Points, with a color each, and the radius of the disc that is drawn in world units; no radii: as far as the
   /// neighbours.
   std::span<const Vec3> points = {};
   std::span<const std::array<std::uint8_t, 3>> colors = {};
