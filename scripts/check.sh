@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # What a compiler and the tests do not see: the format of every source, clang-tidy on what is ours, and the tests of the
-# library, its backends and io under the address and undefined-behaviour sanitizers. Installs what these take.
-# threads: the thread sanitizer, on the test of what is parallel.
-#   check.sh [format|tidy|tidy-all|sanitizers|threads ...]     format, tidy and sanitizers without a word
+# library, its backends and io under the address and undefined-behaviour sanitizers; with sanitizers-python those of the Python
+# package, too; threads: the thread sanitizer, on the test of what is parallel. Installs what these take.
+#   check.sh [format|tidy|tidy-all|sanitizers|sanitizers-python|threads ...]     format, tidy and sanitizers without a word
 # tidy looks at what differs from main and at what includes that; tidy-all at everything.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -62,11 +62,18 @@ threads() {
   build/tsan/bin/test_threads --gtest_brief=1
 }
 
+sanitizers-python() {
+  echo "Sanitizers, the Python package (build/asan) ..."
+  cmake --preset asan >/dev/null
+  cmake --build build/asan --target ahm_python
+  ctest --test-dir build/asan -R '^Python$' --no-tests=error --output-on-failure
+}
+
 for check in "${@:-format tidy sanitizers}"; do
   for one in $check; do
     case "$one" in
-      format | tidy | tidy-all | sanitizers | threads) ;;
-      *) echo "error: check.sh [format|tidy|tidy-all|sanitizers|threads ...]" >&2; exit 2 ;;
+      format | tidy | tidy-all | sanitizers | sanitizers-python | threads) ;;
+      *) echo "error: check.sh [format|tidy|tidy-all|sanitizers|sanitizers-python|threads ...]" >&2; exit 2 ;;
     esac
   done
 done

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Installs Debian packages for what is to be done, and says and does nothing where all are there:
-#   install_packages.sh [program|tests|checks]
+#   install_packages.sh [program|tests|checks|docs]
 # program: the program without PCL, all that scripts/demo.sh needs; tests (default): everything, tests and benchmarks
-# included; checks: that, and clang's tools.
+# included; checks: that, and clang's tools; docs: tests, and what makes the site.
 set -euo pipefail
 
 program=(
@@ -11,6 +11,7 @@ program=(
   libnanoflann-dev                                            # neighbour search
   libcli11-dev nlohmann-json3-dev libfmt-dev                  # the program
   libstb-dev libjs-three                                      # pictures
+  libcpp-httplib-dev pkgconf                                  # ahm view
   zlib1g-dev                                                  # files compressed with gzip
 )
 tests=(
@@ -20,14 +21,17 @@ tests=(
   libminizip-dev                                              # .npz files
   libgtest-dev libbenchmark-dev                               # tests and benchmarks
   libcgal-dev python3-matplotlib                              # exact distances and plots of the experiments
+  chromium chromium-driver python3-selenium                   # the viewer in a browser
   pybind11-dev python3-pybind11 python3-dev python3-numpy python3-scipy python3-pytest  # the Python package and its tests
 )
 checks=("${tests[@]}" clang clang-format clang-tidy)
+docs=("${tests[@]}" doxygen python3-sphinx python3-myst-parser furo python3-sphinx-copybutton linkchecker pngquant)
 case "${1:-tests}" in
   program) packages=("${program[@]}") ;;
   tests) packages=("${tests[@]}") ;;
   checks) packages=("${checks[@]}") ;;
-  *) echo "error: install_packages.sh [program|tests|checks]" >&2; exit 2 ;;
+  docs) packages=("${docs[@]}") ;;
+  *) echo "error: install_packages.sh [program|tests|checks|docs]" >&2; exit 2 ;;
 esac
 
 missing=()

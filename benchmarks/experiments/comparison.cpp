@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <queue>
 
 #include "ahm/error.hpp"
 #include "ahm/testing/closed_forms.hpp"
+#include "ahm/util/shortest_paths.hpp"
 
 namespace ahm::bench {
 
@@ -52,25 +52,15 @@ std::vector<double> Surface::sphere_log(Index source) const {
 }
 
 std::vector<double> Surface::path_lengths(Index source) const {
-  std::vector<double> length(points_.size(), std::numeric_limits<double>::infinity());
-  using Entry = std::pair<double, Index>;
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
-  length[source] = 0;
-  queue.push({0, source});
-  while (!queue.empty()) {
-    const auto [here, i] = queue.top();
-    queue.pop();
-    if (here > length[i]) continue;
+  constexpr double unknown = std::numeric_limits<double>::infinity();
+  std::vector<double> length(points_.size(), unknown);
+  ShortestPaths paths(length, unknown);
+  paths.offer(source, 0);
+  paths.run([&](Index i, double here) {
     const Star star = graph().star(i);
-    for (std::size_t e = 0; e < star.degree(); ++e) {
-      const double there = here + graph().length_unit() * std::hypot(star.log(e)[0], star.log(e)[1]);
-      double& known = length[star.neighbors[e]];
-      if (there < known) {
-        known = there;
-        queue.push({there, star.neighbors[e]});
-      }
-    }
-  }
+    for (std::size_t e = 0; e < star.degree(); ++e)
+      paths.offer(star.neighbors[e], here + graph().length_unit() * std::hypot(star.log(e)[0], star.log(e)[1]));
+  });
   return length;
 }
 

@@ -2,12 +2,11 @@
 #include <Eigen/Dense>
 #include <Eigen/Geometry>
 #include <cmath>
-#include <functional>
 #include <numbers>
-#include <queue>
 #include <utility>
 
 #include "ahm/error.hpp"
+#include "ahm/util/shortest_paths.hpp"
 #include "methods/heat_fields.hpp"
 #include "methods/method.hpp"
 
@@ -62,28 +61,17 @@ class Propagation {
         vector_(d_) {}
 
   std::vector<double> run(Index source) {
-    path_[source] = 0;
-    queue_.emplace(0.0, source);
-    while (!queue_.empty()) {
-      const auto [length, i] = queue_.top();
-      queue_.pop();
-      if (settled_[i]) continue;
+    paths_.offer(source, 0);
+    paths_.run([&](Index i, double length) {
       const Star star = graph_.star(i);
       i == source ? start(i) : place(i, star);
       settled_[i] = true;
-      for (std::size_t e = 0; e < star.degree(); ++e) relax(star.neighbors[e], length + log_length(star, e));
-    }
+      for (std::size_t e = 0; e < star.degree(); ++e) paths_.offer(star.neighbors[e], length + log_length(star, e));
+    });
     return std::move(coordinates_);
   }
 
  private:
-  void relax(Index j, double length) {
-    if (double& path = path_[j]; length < path) {
-      path = length;
-      queue_.emplace(length, j);
-    }
-  }
-
   void start(Index source) {
     if (options_.turn == FrameTurn::in_space) source_frame_ = *graph_.frame(source);
     for (std::size_t a = 0; a < d_; ++a) {
@@ -137,7 +125,7 @@ class Propagation {
   std::vector<double> path_;  ///< length of the shortest path of edges found so far
   std::vector<bool> settled_;
   std::vector<double> coordinates_, turns_, vector_;
-  std::priority_queue<std::pair<double, Index>, std::vector<std::pair<double, Index>>, std::greater<>> queue_;
+  ShortestPaths<double, std::vector<double>> paths_{path_, HUGE_VAL};
 };
 
 Result DiscreteExponential::solve(Index source) const {

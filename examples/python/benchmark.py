@@ -1,6 +1,6 @@
-"""What calls from Python cost: not a test, since it measures time.
+"""What calls from Python cost: not a test, since it measures time. CPU seconds of the best of several calls.
 
-    PYTHONPATH=build/release/python /usr/bin/python3 examples/python/benchmark.py [--level N]
+    PYTHONPATH=build/release/python /usr/bin/python3 examples/python/benchmark.py [--vertices N]
 """
 
 import argparse
@@ -10,11 +10,10 @@ import time
 import numpy as np
 
 import ahm
-from ahm import _arguments, _core
+from ahm import _core, _places
 
 
-def best(call, repeats=5):
-    """Seconds of CPU of the best of several calls."""
+def best(call, repeats=7):
     times = []
     for _ in range(repeats):
         start = time.process_time()
@@ -23,44 +22,59 @@ def best(call, repeats=5):
     return min(times)
 
 
-def memory():
+def peak():
+    """MB, as large as it ever was."""
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--level", type=int, default=7, help="10 * 4^N + 2 vertices")
-    options = parser.parse_args()
-    V, F = ahm.shapes.sphere(options.level)
-
-    before = memory()
-    mesh = ahm.TriangleMesh(V, F)
-    print(f"{mesh}: {memory() - before:.0f} MB more, input {(V.nbytes + F.nbytes) / 2**20:.0f} MB")
-    solver = ahm.LogMapSolver(mesh)
-    at = _arguments.point(0, "source", mesh)
+def overhead(solver):
+    """What a call takes beside the extension module's own work, and what it takes where there is nothing to do."""
+    at = _places.point(0, "source", solver.surface)
     core = best(lambda: solver._core.maps(at, None, {"frames": True}, None))
     whole = best(lambda: solver.log_map(0).uv)
     small = ahm.LogMapSolver(ahm.shapes.plane(3, 3))
     tiny = best(lambda: [small.log_map(0).uv for _ in range(1000)]) / 1000
-    print(f"log map: {1e3 * whole:.1f} ms of CPU, of which the extension module {1e3 * core:.1f} ms")
+    print(f"log map: {1e3 * whole:.1f} ms, of which the extension module {1e3 * core:.1f} ms")
     print(f"the same call on 9 vertices, solve and all: {1e6 * tiny:.0f} us, {100 * tiny / whole:.2f} % of it")
 
-    m = solver.log_map(0)
-    before = memory()
-    columns = [m.uv, m.distance, m.angle, m.spread, m.status]
-    held = sum(c.nbytes for c in columns) / 2**20
-    print(f"{held:.1f} MB of results as arrays: {memory() - before:.1f} MB more")
 
+def memory(solver):
+    """Arrays of a map are views; what they show is there already."""
+    m = solver.log_map(0)
+    before = peak()
+    columns = [m.uv, m.distance, m.angle, m.spread, m.status]
+    print(f"{sum(c.nbytes for c in columns) / 2**20:.1f} MB of results as arrays: {peak() - before:.1f} MB more")
+
+
+def local(mesh):
     radius = 3 * mesh.mean_edge_length
-    body = mesh._body
-    core = best(lambda: _core.local_maps(body, None, {"radius": radius}, None), 1)
-    start = time.process_time()
+    before = peak()
+    core = best(lambda: _core.local_maps(mesh._body, None, None, {"radius": radius}, None), 2)
+    between = peak()
+    whole = best(lambda: ahm.local_maps(mesh, radius), 2)
     maps = ahm.local_maps(mesh, radius)
-    whole = time.process_time() - start
-    print(f"{maps}: {whole:.2f} s of CPU, of which the extension module {core:.2f} s")
-    start = time.process_time()
-    maps.padded(16)
-    print(f"padded to 16 entries: {time.process_time() - start:.2f} s of CPU")
+    held = sum(x.nbytes for x in (maps.indptr, maps.indices, maps.log, maps.distance, maps.weight, maps.transport)) / 2**20
+    print(f"{maps}: {whole:.2f} s, of which the extension module {core:.2f} s")
+    print(f"{held:.0f} MB of results: peak {between - before:.0f} MB more by the extension module, {peak() - between:.0f} MB by the rest")
+    before = peak()
+    distances = maps.csr("distance")
+    print(f"as a scipy matrix: {peak() - before:.1f} MB more, over the same memory: {np.shares_memory(distances.data, maps.distance)}")
+    padded = best(lambda: maps.padded(16), 3)
+    print(f"padded to 16 entries: {padded:.2f} s")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--vertices", type=int, default=100_000)
+    options = parser.parse_args()
+    around = max(8, round((1.6 * options.vertices) ** 0.5))
+    V, F = ahm.shapes.torus(around, max(5, options.vertices // around))
+    mesh = ahm.TriangleMesh(V, F)
+    print(mesh)
+    solver = ahm.LogMapSolver(mesh)
+    overhead(solver)
+    memory(solver)
+    local(mesh)
 
 
 if __name__ == "__main__":

@@ -23,11 +23,15 @@ from ._core import (Cancelled, Error, InvalidArgument, InvalidGeometry, InvalidG
                     ResourceExhausted)
 from ._fields import (Curvature, DistanceField, Operators, curvature, distance, distance_and_gradient,
                       distance_and_nearest, extend, operators, transport)
-from ._geodesics import Path, geodesic_path, geodesic_paths, trace
-from ._local_maps import LocalMaps, PaddedMaps, local_maps
-from ._maps import InverseMap, InversePoints, LogMap, LogMapSolver, MapSource, Status, log_map
-from ._surfaces import (ClosestPoints, Graph, Grid, PointCloud, PolygonMesh, Surface, TangentGraph, TriangleMesh, read,
-                        surface)
+from ._clouds import PointCloud
+from ._geodesics import Path, geodesic_loop, geodesic_path, geodesic_paths, trace
+from ._graphs import Graph, Grid
+from ._inputs import read, surface
+from ._local_maps import LocalMaps, LocalStroke, PaddedMaps, local_maps, local_stroke
+from ._maps import InverseMap, InversePoints, LogMap, MapSource, Status
+from ._meshes import PolygonMesh, TriangleMesh
+from ._solvers import ExactGeodesics, LogMapSolver, log_map
+from ._surfaces import ClosestPoints, Surface, TangentGraph
 from ._textures import Atlas, Coverage, Decal, atlas, coverage, decal, decal_coordinates
 
 _atexit.register(_core.wait_for_background)
@@ -35,11 +39,12 @@ _atexit.register(_core.wait_for_background)
 __version__ = "0.1.0"
 
 __all__ = [
-    "Atlas", "Cancelled", "Cells", "Center", "ClosestPoints", "Coverage", "Curvature", "Decal", "DistanceField", "Error",
-    "Graph", "Grid", "InvalidArgument", "InvalidGeometry", "InvalidGraph", "InverseMap", "InversePoints", "IoError",
-    "LocalMaps", "LogMap", "LogMapSolver", "MapSource", "NotPositiveDefinite", "Operators", "PaddedMaps", "Path",
-    "PointCloud", "PolygonMesh", "ResourceExhausted", "Status", "Stroke", "Surface", "TangentGraph", "TriangleMesh",
-    "atlas", "cells", "coverage", "curvature", "decal", "decal_coordinates", "distance", "distance_and_gradient",
-    "distance_and_nearest", "extend", "farthest_points", "geodesic_path", "geodesic_paths", "geometric_median",
-    "karcher_mean", "local_maps", "log_map", "operators", "read", "shapes", "stroke", "surface", "trace", "transport",
+    "Atlas", "Cancelled", "Cells", "Center", "ClosestPoints", "Coverage", "Curvature", "Decal", "DistanceField",
+    "Error", "ExactGeodesics", "Graph", "Grid", "InvalidArgument", "InvalidGeometry", "InvalidGraph", "InverseMap",
+    "InversePoints", "IoError", "LocalMaps", "LocalStroke", "LogMap", "LogMapSolver", "MapSource",
+    "NotPositiveDefinite", "Operators", "PaddedMaps", "Path", "PointCloud", "PolygonMesh", "ResourceExhausted",
+    "Status", "Stroke", "Surface", "TangentGraph", "TriangleMesh", "atlas", "cells", "coverage", "curvature", "decal",
+    "decal_coordinates", "distance", "distance_and_gradient", "distance_and_nearest", "extend", "farthest_points",
+    "geodesic_loop", "geodesic_path", "geodesic_paths", "geometric_median", "karcher_mean", "local_maps",
+    "local_stroke", "log_map", "operators", "read", "shapes", "stroke", "surface", "trace", "transport",
 ]

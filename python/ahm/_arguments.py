@@ -11,11 +11,13 @@ INT32 = np.iinfo(np.int32)
 
 
 def array(value: Any, name: str) -> np.ndarray:
-    """Any array of real numbers: NumPy's, a list, what has `__array__` or DLPack."""
+    """Any array of real numbers: NumPy's, a list, what has `__array__`, DLPack or `numpy()`."""
     if isinstance(value, np.ma.MaskedArray) and np.ma.is_masked(value):
         raise ValueError(f"{name}: has masked entries; fill them or leave their rows out")
     if not hasattr(value, "__array__") and hasattr(value, "__dlpack__"):
         value = np.from_dlpack(value)
+    if not isinstance(value, np.ndarray) and not hasattr(value, "__array__") and callable(getattr(value, "numpy", None)):
+        value = value.numpy()
     try:
         result = np.asarray(value)
     except (ValueError, TypeError, OverflowError) as error:
@@ -118,135 +120,3 @@ def choice(value: Any, name: str, choices: Tuple[str, ...]) -> str:
 
 def vector(value: Any, name: str) -> Optional[np.ndarray]:
     return None if value is None else floats(value, name, (3,), finite=True)
-
-
-def is_row(value: Any) -> bool:
-    if isinstance(value, (bool, np.bool_)):
-        return False
-    try:
-        operator.index(value)
-    except TypeError:
-        return False
-    return True
-
-
-class Points:
-    """Points of one surface, collected: rows, positions and points in faces."""
-
-    def __init__(self, name: str, single: bool, surface: Any) -> None:
-        self.name, self.single, self.surface = name, single, surface
-        self.kinds: list = []
-        self.index: list = []
-        self.values: list = []
-
-    def where(self, k: int) -> str:
-        return self.name if self.single else f"{self.name}[{k}]"
-
-    def add_row(self, row: int) -> None:
-        count = len(self.surface)
-        if not 0 <= row < count:
-            raise ValueError(f"{self.where(len(self.kinds))}: row {row} is out of range; there are {count} rows, "
-                             "counted from 0")
-        self._add(0, row, ())
-
-    def add_position(self, position: Any) -> None:
-        where = self.where(len(self.kinds))
-        given = array(position, where)
-        wanted = self.surface._position_width
-        if given.shape != (wanted,):
-            raise ValueError(f"{where}: a position has {wanted} numbers, not shape {given.shape}")
-        given = np.concatenate([np.asarray(given, float), np.zeros(3 - wanted)])
-        if not np.isfinite(given).all():
-            raise ValueError(f"{where}: the position {given.tolist()} is not finite")
-        self._add(1, -1, given)
-
-    def add_face(self, face: Any, barycentric: Any) -> None:
-        where = self.where(len(self.kinds))
-        face = integer(face, where + ", face", 0, INT32.max)
-        count = self.surface._face_count
-        if face >= count:
-            raise ValueError(f"{where}: face {face} is out of range; there are {count} faces, counted from 0")
-        given = array(barycentric, where + ", barycentric coordinates")
-        corners = self.surface._corner_count(face)
-        if given.shape != (corners,):
-            raise ValueError(f"{where}: face {face} has {corners} corners; its barycentric coordinates are so many, "
-                             f"not shape {given.shape}")
-        weights = np.asarray(given, float)
-        if not np.isfinite(weights).all():
-            raise ValueError(f"{where}: the barycentric coordinates {weights.tolist()} are not finite")
-        # Single precision is not precise enough for the sum to be 1 in double precision.
-        if given.dtype.itemsize < 8 and abs(weights.sum() - 1) < 1e-5:
-            weights = weights / weights.sum()
-        self._add(2, face, weights)
-
-    def _add(self, kind: int, index: int, values: Any) -> None:
-        self.kinds.append(kind)
-        self.index.append(index)
-        self.values.append(values)
-
-    def packed(self) -> tuple:
-        count = np.array([len(v) for v in self.values], np.int32)
-        values = np.zeros((len(count), max(3, int(count.max(initial=0)))))
-        for k, v in enumerate(self.values):
-            values[k, : len(v)] = v
-        return (self.name, self.single, np.array(self.kinds, np.uint8), np.array(self.index, np.int32), count, values)
-
-
-def point(value: Any, name: str, surface: Any) -> tuple:
-    """One point: a row, a position, or `(face, barycentric)`."""
-    result = Points(name, True, surface)
-    _add_one(result, value)
-    return result.packed()
-
-
-def points(value: Any, name: str, surface: Any) -> tuple:
-    """Points: one, or an array of rows (k,) or positions (k, 3), arrays `(faces, barycentric)`, or a list of any."""
-    if is_row(value) or _is_face_point(value):
-        return point(value, name, surface)
-    result = Points(name, False, surface)
-    if isinstance(value, tuple) and len(value) == 2 and np.ndim(value[0]) == 1 and np.ndim(value[1]) == 2:
-        faces, weights = array(value[0], name + ", faces"), array(value[1], name + ", barycentric coordinates")
-        if len(faces) != len(weights):
-            raise ValueError(f"{name}: {len(faces)} faces, but {len(weights)} rows of barycentric coordinates")
-        for f, w in zip(faces, weights):
-            result.add_face(f, w)
-        return result.packed()
-    if isinstance(value, (str, bytes)) or not hasattr(value, "__len__"):
-        raise TypeError(f"{name}: rows, positions or (face, barycentric) are needed, not {describe(value)}")
-    if len(value) == 0:
-        raise ValueError(f"{name}: is empty; at least one point is needed")
-    try:
-        mixed = isinstance(value, (list, tuple)) and any(isinstance(one, (bool, np.bool_)) for one in value)
-        whole = None if mixed else array(value, name)
-    except (TypeError, ValueError):
-        whole = None
-    if whole is not None and whole.ndim == 1 and whole.dtype.kind in "iu":
-        numbers = rows(whole, name, len(surface))
-        k = len(numbers)
-        return (name, False, np.zeros(k, np.uint8), numbers, np.zeros(k, np.int32), np.zeros((k, 3)))
-    if whole is not None and whole.ndim == 2:
-        for position in whole:
-            result.add_position(position)
-        return result.packed()
-    if whole is not None and whole.ndim == 1:
-        raise TypeError(f"{name}: rows are whole numbers, and a list of positions has the shape (k, 3), "
-                        f"not {describe(value, whole)}")
-    for one in value:
-        _add_one(result, one)
-    return result.packed()
-
-
-def _is_face_point(value: Any) -> bool:
-    return isinstance(value, tuple) and len(value) == 2 and is_row(value[0]) and not is_row(value[1])
-
-
-def _add_one(result: Points, value: Any) -> None:
-    if is_row(value):
-        result.add_row(operator.index(value))
-    elif _is_face_point(value):
-        result.add_face(value[0], value[1])
-    elif isinstance(value, (str, bytes)) or np.ndim(value) == 0:
-        raise TypeError(f"{result.where(len(result.kinds))}: a row, a position or (face, barycentric) is needed, "
-                        f"not {describe(value)}")
-    else:
-        result.add_position(value)

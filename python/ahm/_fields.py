@@ -8,8 +8,9 @@ import numpy as np
 
 from . import _arguments as arguments
 from . import _core
-from ._maps import LogMapSolver, as_body, as_solver
+from . import _places as places
 from ._progress import Progress, reporting
+from ._solvers import as_body, as_solver
 
 
 def distance(surface: Any, sources: Any, *, targets: Any = None, method: str = "unfold", radius: Optional[float] = None,
@@ -17,7 +18,8 @@ def distance(surface: Any, sources: Any, *, targets: Any = None, method: str = "
     """Geodesic distance from the nearest of the sources, world units.
 
     surface : a `Surface`, a `LogMapSolver` (method "heat" uses its factors), or what `ahm.surface` takes.
-    sources : one or more points: rows, positions, `(faces, barycentric)`. By heat several ones must be rows or positions.
+    sources : one or more points: rows, positions, `(faces, barycentric)`, `(edges, t)`. By heat several ones count as their
+        nearest rows.
     targets : None: all rows, result (n,); or points, result (k,). Other targets than rows take method "exact".
     method : "unfold": a front over the triangles, no heat, best for distances on meshes; "heat": by one solve each of A and
         B, smooth, best on noisy clouds; "exact": of the flat triangles of a mesh.
@@ -37,13 +39,18 @@ def distance(surface: Any, sources: Any, *, targets: Any = None, method: str = "
 
 def distance_and_nearest(surface: Any, sources: Any, *, targets: Any = None, method: str = "unfold",
                          radius: Optional[float] = None, progress: Progress = None) -> tuple:
-    """As `distance`, and the number of the nearest source, int32, -1 without a way; None by heat."""
+    """As `distance`, and the number of the nearest source, int32, -1 without a way; None by heat.
+
+    >>> import ahm
+    >>> ahm.distance_and_nearest(ahm.shapes.plane(5, 2), [0, 4], targets=[1, 3])[1].tolist()
+    [0, 1]
+    """
     on = as_body(surface)
     arguments.choice(method, "method", ("unfold", "heat", "exact"))
-    at = arguments.points(sources, "sources", on)
+    at = places.points(sources, "sources", on)
     reach = float("inf") if radius is None else arguments.real(radius, "radius", positive=True, finite=False)
     if method == "exact":
-        to = None if targets is None else arguments.points(targets, "targets", on)
+        to = None if targets is None else places.points(targets, "targets", on)
         with reporting(progress) as report:
             return _core.exact_distance(on._body, at, to, reach, report)
     rows = None if targets is None else _target_rows(targets, on, method)
@@ -84,7 +91,7 @@ def distance_and_gradient(solver: Any, sources: Any, *, progress: Progress = Non
     (1.0, 3.0)
     """
     made = as_solver(solver)
-    at = arguments.points(sources, "sources", made.surface)
+    at = places.points(sources, "sources", made.surface)
     with reporting(progress) as report:
         return DistanceField(*_core.heat_distance(made._core, at, report))
 
@@ -93,7 +100,7 @@ def extend(solver: Any, points: Any, values: Any, *, progress: Progress = None) 
     """Extends scalars given at points to all rows: each takes the value of the nearest one, blended at ties ([SSC19] Sec. 4).
 
     solver : a `LogMapSolver`, or a surface.
-    points : k rows or positions (the nearest row). values : (k,).
+    points : k rows; of any other point the nearest one. values : (k,).
 
     >>> import ahm
     >>> ahm.extend(ahm.shapes.plane(9, 2), [0, 8], [1.0, 3.0])[:9].round(1).tolist()
@@ -102,7 +109,7 @@ def extend(solver: Any, points: Any, values: Any, *, progress: Progress = None) 
     Returns (n,), NaN where no heat comes. Raises ValueError.
     """
     made = as_solver(solver)
-    at = arguments.points(points, "points", made.surface)
+    at = places.points(points, "points", made.surface)
     given = arguments.floats([values] if np.ndim(values) == 0 else values, "values", (len(at[2]),), finite=True)
     with reporting(progress) as report:
         return _core.extend(made._core, at, given, report)[0]
@@ -112,7 +119,7 @@ def transport(solver: Any, points: Any, vectors: Any, *, progress: Progress = No
     """Carries vectors given at points along shortest geodesics to all rows ([SSC19] Alg. 1).
 
     solver : a `LogMapSolver`, or a surface.
-    points : k rows or positions (the nearest row).
+    points : k rows; of any other point the nearest one.
     vectors : (k, 3) vectors of space, projected to the tangent planes; or (k, d) components in the frames of the rows. One
         vector may be given as (3,) or (d,).
 
@@ -123,10 +130,9 @@ def transport(solver: Any, points: Any, vectors: Any, *, progress: Progress = No
     Returns (n, 3) or (n, d), as given; NaN where no heat comes. Raises ValueError.
     """
     made = as_solver(solver)
-    at = arguments.points(points, "points", made.surface)
+    at = places.points(points, "points", made.surface)
     given = arguments.array(vectors, "vectors")
-    if given.ndim == 1:
-        given = given[None]
+    given = np.atleast_2d(given)
     width, d = given.shape[-1], made.surface.dimension
     if width not in ((3, d) if made.surface._body.has_surface else (d,)):
         raise ValueError(f"vectors: 3 numbers of space or {d} in a frame are needed for each, not shape {given.shape}")
@@ -218,6 +224,3 @@ def operators(surface: Any, *, t_coef: float = 1.0) -> Operators:
     return Operators(diags(masses).tocsr(), laplacian, connection, R, tau, on._body.length_unit,
                      on._body.vertex_of_row(), on._body.row_of_vertex())
 
-
-__all__ = ("Curvature", "DistanceField", "LogMapSolver", "Operators", "curvature", "distance", "distance_and_gradient",
-           "distance_and_nearest", "extend", "operators", "transport")

@@ -8,9 +8,10 @@ import numpy as np
 
 from . import _arguments as arguments
 from . import _core
-from ._maps import as_body
+from . import _places as places
 from ._options import checked
 from ._progress import Progress, reporting
+from ._solvers import as_body
 
 
 class PaddedMaps(NamedTuple):
@@ -30,7 +31,12 @@ class LocalMaps:
     indptr : (s + 1,) int64. indices : (e,) int32 rows. log : (e, d) coordinates in the source's frame, world units.
     distance : (e,) geodesic, as `LogMap.distance`. weight : (e,) masses, world units to the power d, as integration weights.
     transport : (e, 2) (cos, sin), or (e, d, d): components in the source's frame -> components in the neighbour's.
-    sources : (s,) int32 rows.
+    sources : (s,) int32 rows; -1 of sources that are no rows.
+
+    >>> import ahm
+    >>> maps = ahm.local_maps(ahm.shapes.plane(9, 9), radius=1.0, sources=[40, 0])
+    >>> maps, sorted(maps.indices[maps.indptr[1] : maps.indptr[2]].tolist())
+    (<ahm.LocalMaps: 2 sources, 8 entries>, [0, 1, 9])
     """
 
     def __init__(self, sources: np.ndarray, columns: int, indptr: np.ndarray, indices: np.ndarray, log: np.ndarray,
@@ -43,6 +49,11 @@ class LocalMaps:
         """A scipy.sparse.csr_matrix, sources x rows, over the arrays themselves.
 
         values : "distance", "weight", "u", "v", "transport" (complex), or (e,) numbers of your own.
+
+        >>> import ahm
+        >>> maps = ahm.local_maps(ahm.shapes.plane(9, 9), radius=1.0)
+        >>> maps.csr().shape, round(float(maps.csr("weight")[40].sum()), 9)
+        ((81, 81), 5.0)
         """
         from scipy.sparse import csr_matrix
 
@@ -64,19 +75,24 @@ class LocalMaps:
         return result
 
     def padded(self, k: Optional[int] = None, dtype: Any = np.float32) -> PaddedMaps:
-        """The k nearest entries of every source; None: as many as the longest has. For torch: `torch.from_numpy(p.log)`."""
+        """The k nearest entries of every source; None: as many as the longest has. For torch: `torch.from_numpy(p.log)`.
+
+        >>> import ahm
+        >>> p = ahm.local_maps(ahm.shapes.plane(9, 9), radius=1.0).padded(4)
+        >>> sorted(p.indices[0].tolist()), p.mask[0].tolist(), p.log.dtype
+        ([0, 0, 1, 9], [True, True, True, False], dtype('float32'))
+        """
         counts = np.diff(self.indptr)
-        k = int(counts.max(initial=0)) if k is None else arguments.integer(k, "k", 1)
+        width = int(counts.max(initial=0)) if k is None else arguments.integer(k, "k", 1)
         place = np.arange(len(self.indices)) - np.repeat(self.indptr[:-1], counts)
         source = np.repeat(np.arange(len(counts)), counts)
-        if counts.max(initial=0) > k:
-            source, kept = source[place < k], place < k
-            place = place[kept]
-        else:
-            kept = slice(None)
+        kept: Any = slice(None)
+        if counts.max(initial=0) > width:
+            kept = place < width
+            source, place = source[kept], place[kept]
 
         def spread(values: np.ndarray, dtype: Any) -> np.ndarray:
-            result = np.zeros((len(counts), k) + values.shape[1:], dtype)
+            result = np.zeros((len(counts), width) + values.shape[1:], dtype)
             result[source, place] = values[kept]
             return result
 
@@ -91,13 +107,15 @@ class LocalMaps:
         return f"<ahm.LocalMaps: {len(self)} sources, {len(self.indices)} entries>"
 
 
-def local_maps(surface: Any, radius: Optional[float] = None, k: Optional[int] = None, *, sources: Any = None, margin: float = 2.0,
+def local_maps(surface: Any, radius: Optional[float] = None, k: Optional[int] = None, *, sources: Any = None, u_axis: Any = None, margin: float = 2.0,
                t_coef: float = 1.0, variant: str = "adaptive", threads: int = 0, progress: Progress = None) -> LocalMaps:
     """The log map around every row, or around `sources`, of everything within a radius or of the k nearest rows.
 
     radius : world units, > 0; None, with k: as far as those are.
     k : keep only so many nearest entries per source, the source itself included; None: all within the radius.
-    sources : (s,) rows; None: all rows, of which those without a vertex have no entries.
+    sources : points (rows, positions, `(faces, barycentric)`, `(edges, t)`); None: all rows, of which those without a vertex
+        have no entries.
+    u_axis : (3,) a vector of space, projected to the surface at every source that is given; None: as of `LogMapSolver.log_map`.
     margin : how far beyond the radius each patch reaches, in units of sqrt(tau).
     t_coef, variant, threads, progress : as of `LogMapSolver`.
 
@@ -118,7 +136,49 @@ def local_maps(surface: Any, radius: Optional[float] = None, k: Optional[int] = 
         radius = arguments.real(radius, "radius", positive=True)
     options = checked(radius=radius, k=k, margin=margin, t_coef=t_coef,
                       variant=variant, threads=threads)
-    rows = None if sources is None else arguments.rows(sources, "sources", len(on))
+    axis = arguments.vector(u_axis, "u_axis")
+    if sources is None:
+        if axis is not None:
+            raise ValueError("u_axis: goes with `sources`")
+        at, rows = None, np.arange(len(on), dtype=np.int32)
+    else:
+        empty = hasattr(sources, "__len__") and not isinstance(sources, (str, bytes)) and len(sources) == 0
+        at = places.of_rows(np.empty(0, np.int32), "sources") if empty else places.points(sources, "sources", on)
+        rows = np.where(at[2] == places.ROW, at[3], -1).astype(np.int32)
     with reporting(progress) as report:
-        found = _core.local_maps(on._body, rows, options, report)
-    return LocalMaps(np.arange(len(on), dtype=np.int32) if rows is None else rows, len(on), **found)
+        found = _core.local_maps(on._body, at, axis, options, report)
+    return LocalMaps(rows, len(on), **found)
+
+
+class LocalStroke(NamedTuple):
+    """The surroundings of a curve, nearest first."""
+
+    rows: np.ndarray  #: (e,) int32
+    uv: np.ndarray  #: (e, 2) as of `stroke`, world units
+    distance: np.ndarray  #: (e,) from the curve, world units
+    points: np.ndarray  #: (k, 3) the curve as drawn, world units
+    length: float  #: world units
+
+
+def local_stroke(surface: Any, points: Any, radius: float, *, closed: bool = False, shape: str = "line", margin: float = 2.0,
+                 t_coef: float = 1.0, variant: str = "adaptive", progress: Progress = None) -> LocalStroke:
+    """`stroke` within a radius alone: time and memory of what lies there, however large the surface is.
+
+    points, closed, shape : as of `stroke`. radius, margin, t_coef, variant, progress : as of `local_maps`.
+
+    >>> import ahm
+    >>> near = ahm.local_stroke(ahm.shapes.plane(40, 40), [[10, 20, 0], [20, 20, 0]], radius=2.5)
+    >>> above = list(near.rows).index(22 * 40 + 15)
+    >>> near.uv[above].round(3).tolist(), len(near.rows) < 100
+    ([5.0, 2.0], True)
+
+    Raises ValueError naming argument, index and value.
+    """
+    on = as_body(surface)
+    arguments.choice(shape, "shape", ("line", "circle"))
+    options = checked(radius=arguments.real(radius, "radius", positive=True), margin=margin, t_coef=t_coef, variant=variant)
+    at = places.points(points, "points", on)
+    with reporting(progress) as report:
+        found, drawn, length = _core.local_stroke(on._body, at, arguments.flag(closed, "closed"), shape == "circle", options,
+                                                  report)
+    return LocalStroke(found["indices"], found["log"], found["distance"], drawn, length)

@@ -1,17 +1,17 @@
-"""Logarithmic maps: the solver, and the result by rows of the input."""
+"""Logarithmic maps by rows of the input, and the way back."""
 
 from __future__ import annotations
 
 import enum
-from typing import Any, Dict, List, NamedTuple, Optional, Sequence
+from typing import Any, Dict, NamedTuple, Optional
 
 import numpy as np
 
 from . import _arguments as arguments
 from . import _core
+from . import _places as places
 from ._options import checked
-from ._progress import Progress, reporting
-from ._surfaces import Surface, surface as as_surface
+from ._surfaces import Surface
 
 
 class Status(enum.IntEnum):
@@ -150,7 +150,7 @@ class LogMap:
         return self._map.method
 
     def sample(self, points: Any) -> np.ndarray:
-        """(k, 2) coordinates at points of the surface: rows, positions (k, 3), or (faces, barycentric).
+        """(k, 2) coordinates at points of the surface: rows, positions (k, 3), (faces, barycentric), (edges, t).
 
         NaN where the map is not ok. In the tangent planes of a cloud it takes a map with frames.
 
@@ -161,7 +161,7 @@ class LogMap:
 
         Raises ValueError naming the point.
         """
-        return self._map.sample(arguments.points(points, "points", self._surface))[0]
+        return self._map.sample(places.points(points, "points", self._surface))[0]
 
     def inverse(self, uv: Any) -> InversePoints:
         """What lies at coordinates (k, 2), world units; see `InverseMap`, which has options.
@@ -235,146 +235,3 @@ class InverseMap:
 
 def _inverse_again(map_: LogMap, options: Dict[str, Any]) -> InverseMap:
     return InverseMap(map_, **options)
-
-
-class LogMapSolver:
-    """Solves for log maps on one surface: factors once, then serves any number of sources. Immutable, shared by threads.
-
-    surface : a `Surface`, or what `ahm.surface` takes.
-    t_coef : tau = t_coef h^2, the diffusion time; > 0.
-    variant : "adaptive" (Alg. 2) or "localized" (Alg. 1) of [SS25].
-    order : 1, or 2: extrapolates from two or three diffusion times, with an error estimate.
-    strategy : "automatic", "global" (one factorization) or "march" (band by band, any size and distance).
-    expected_maps : for "automatic": the number of maps to be made; 0: many.
-    memory : for "automatic": bytes that factors may take; 0: half of the machine's memory.
-    accuracy : of marches, against a global solve, relative.
-    ordering : "amd", or "nested_dissection": for many maps.
-    threads : 0: one per core. No result depends on it.
-    progress : None, True (a bar), or a callable (stage, fraction).
-
-    Raises ValueError naming the option; NotPositiveDefinite (a RuntimeError), ResourceExhausted (a MemoryError).
-
-    >>> import ahm
-    >>> solver = ahm.LogMapSolver(ahm.TriangleMesh(*ahm.shapes.sphere(2)))
-    >>> solver
-    <ahm.LogMapSolver: global, on <ahm.TriangleMesh: 162 vertices, 320 faces>>
-    >>> maps = solver.log_maps([0, 7, 12])
-    """
-
-    def __init__(self, surface: Any, *, t_coef: float = 1.0, variant: str = "adaptive", order: int = 1,
-                 strategy: str = "automatic", expected_maps: int = 0, memory: int = 0, accuracy: float = 1e-9,
-                 ordering: str = "amd", supernodal: bool = True, threads: int = 0, progress: Progress = None) -> None:
-        self.surface = as_surface(surface)
-        self.options = checked(t_coef=t_coef, variant=variant, order=order, strategy=strategy,
-                               expected_maps=expected_maps, memory=memory, accuracy=accuracy, ordering=ordering,
-                               supernodal=supernodal, threads=threads)
-        with reporting(progress) as report:
-            self._core = _core.Solver(self.surface._body, self.options, report)
-
-    @property
-    def strategy(self) -> str:
-        """What was chosen: "global" or "march"."""
-        return self._core.strategy
-
-    def log_map(self, source: Any, *, u_axis: Any = None, radius: Optional[float] = None, frames: bool = True,
-                variant: Optional[str] = None, threads: Optional[int] = None, progress: Progress = None) -> LogMap:
-        """The log map of one source: a row, a position (the nearest point of the surface), or `(face, barycentric)`.
-
-        u_axis : (3,) a vector of space, projected to the surface; None: the x axis of the row's frame, or the face's first side.
-        radius : rows farther than this, world units, get `Status.beyond_radius`.
-        frames : keep the transported frames, which `LogMap.frames`, `axes`, `gradient` and `inverse` need.
-        variant, threads, progress : as of the solver.
-
-        Raises ValueError naming argument, index and value; NotPositiveDefinite, ResourceExhausted.
-        """
-        at = arguments.point(source, "source", self.surface)
-        options = dict(u_axis=u_axis, radius=radius, frames=frames, variant=variant, threads=threads)
-        return self._solve(at, "log_map", source, options, progress)[0]
-
-    def log_maps(self, sources: Any, *, u_axis: Any = None, radius: Optional[float] = None, frames: bool = False,
-                 spread: bool = True, variant: Optional[str] = None, threads: Optional[int] = None, progress: Progress = None) -> List[LogMap]:
-        """One map for each source, in blocks, which is faster than one by one, and the same numbers.
-
-        sources : (k,) rows, (k, 3) positions, `(faces, barycentric)`, or a list of any.
-        spread : keep `LogMap.spread`, which `quality` needs and which is a fifth of the work. Otherwise as `log_map`.
-        """
-        at = arguments.points(sources, "sources", self.surface)
-        options = dict(u_axis=u_axis, radius=radius, frames=frames, spread=spread, variant=variant, threads=threads)
-        return self._solve(at, "log_maps", sources, options, progress)
-
-    def _solve(self, at: tuple, name: str, given: Any, options: Dict[str, Any], progress: Progress) -> List[LogMap]:
-        axis = arguments.vector(options["u_axis"], "u_axis")
-        core = checked(**{key: value for key, value in options.items() if key != "u_axis"})
-        with reporting(progress) as report:
-            found = self._core.maps(at, axis, core, report)
-        single = name == "log_map"
-        return [LogMap(m, self.surface, (self, "log_map", (given,), options) if single
-                       else (self, "_one_of", (given, k), options)) for k, m in enumerate(found)]
-
-    def _one_of(self, sources: Any, k: int, **options: Any) -> LogMap:
-        return self.log_maps(sources, **options)[k]
-
-    def __reduce__(self) -> tuple:
-        return _solver_again, (self.surface, self.options)
-
-    def __repr__(self) -> str:
-        return f"<ahm.LogMapSolver: {self.strategy}, on {self.surface!r}>"
-
-
-def _solver_again(on: Surface, options: Dict[str, Any]) -> LogMapSolver:
-    return LogMapSolver(on, **options)
-
-
-class _Exact:
-    """Makes exact maps again, for pickles."""
-
-    def __init__(self, on: Surface) -> None:
-        self.surface = on
-
-    def log_map(self, source: Any, **options: Any) -> LogMap:
-        return log_map(self.surface, source, method="exact", **options)
-
-
-def log_map(surface: Any, source: Any, *, method: str = "heat", u_axis: Any = None, radius: Optional[float] = None,
-            frames: bool = True, threads: int = 0, progress: Progress = None, **options: Any) -> LogMap:
-    """The log map of one source. For many sources on one surface make a `LogMapSolver`.
-
-    surface : a `Surface`, or what `ahm.surface` takes.
-    source : a row, a position, or `(face, barycentric)`.
-    method : "heat": by diffusion, on any surface; "exact": by straight lines over the flat triangles of a mesh.
-    u_axis, radius, frames, progress : as of `LogMapSolver.log_map`.
-    options : of `LogMapSolver`, for method "heat": order, t_coef, variant, ...
-
-    >>> import ahm
-    >>> m = ahm.log_map(ahm.shapes.sphere(3), 0, method="exact")
-    >>> bool(abs(m.distance.max() - 3.14159) < 0.02)
-    True
-
-    Raises ValueError naming argument, index and value; NotPositiveDefinite, ResourceExhausted.
-    """
-    on = as_surface(surface)
-    arguments.choice(method, "method", ("heat", "exact"))
-    if method == "heat":
-        options.setdefault("expected_maps", 1)
-        solver = LogMapSolver(on, threads=threads, progress=progress, **options)
-        return solver.log_map(source, u_axis=u_axis, radius=radius, frames=frames, progress=progress)
-    if options:
-        raise TypeError(f"log_map: method 'exact' has no option {sorted(options)[0]!r}")
-    at = arguments.point(source, "source", on)
-    given = dict(u_axis=u_axis, radius=radius, frames=frames)
-    with reporting(progress) as report:
-        found = _core.exact_maps(on._body, at, arguments.vector(u_axis, "u_axis"),
-                                 checked(radius=radius, frames=frames), report)
-    return LogMap(found[0], on, (_Exact(on), "log_map", (source,), given))
-
-
-def as_solver(thing: Any, options: Optional[Dict[str, Any]] = None) -> LogMapSolver:
-    """The solver itself, or one on this surface."""
-    return thing if isinstance(thing, LogMapSolver) else LogMapSolver(thing, **(options or {}))
-
-
-def as_body(thing: Any) -> Surface:
-    return thing.surface if isinstance(thing, LogMapSolver) else as_surface(thing)
-
-
-__all__: Sequence[str] = ("InverseMap", "InversePoints", "LogMap", "LogMapSolver", "MapSource", "Status", "log_map")

@@ -8,9 +8,11 @@ import numpy as np
 
 from . import _arguments as arguments
 from . import _core
-from ._maps import InverseMap, LogMap, as_solver
+from . import _places as places
+from ._maps import InverseMap, LogMap
 from ._options import checked
 from ._progress import Progress, reporting
+from ._solvers import as_maker
 
 
 def _inverse(thing: Union[LogMap, InverseMap]) -> InverseMap:
@@ -109,11 +111,12 @@ class Atlas(NamedTuple):
 
 
 def atlas(solver: Any, sources: Any = None, *, charts: int = 20, max_distortion: Optional[float] = None,
-          size: int = 2048, margin: int = 4, progress: Progress = None) -> Atlas:
+          method: Optional[str] = None, size: int = 2048, margin: int = 4, progress: Progress = None) -> Atlas:
     """A texture atlas: geodesic cells around sources, each flattened by the log map from its source.
 
-    solver : a `LogMapSolver`, or a mesh or cloud.
-    sources : rows or positions; None: `charts` points spread evenly.
+    solver : a `LogMapSolver` or `ExactGeodesics`, or a mesh or cloud.
+    sources : rows; of any other point the nearest one; None: `charts` points spread evenly.
+    method : of a surface: "heat" (default), or "exact" over the flat triangles of a mesh: cells and charts.
     max_distortion : > 1: adds sources until the charts are as good as that; None: keeps to the sources.
     size, margin : texels of a side of the square, and free around each chart.
 
@@ -124,8 +127,8 @@ def atlas(solver: Any, sources: Any = None, *, charts: int = 20, max_distortion:
 
     Raises ValueError naming the argument.
     """
-    made = as_solver(solver)
-    at = None if sources is None else arguments.points(sources, "sources", made.surface)
+    made = as_maker(solver, method)
+    at = None if sources is None else places.points(sources, "sources", made.surface)
     options = checked(max_distortion=max_distortion, size=size)
     options["margin"] = arguments.integer(margin, "margin")
     with reporting(progress) as report:

@@ -14,100 +14,20 @@ frames of `get_tangent_frames`, which are a choice of gauge and not that package
 
 from __future__ import annotations
 
-import os
-from typing import Any, List, Optional, Sequence, Tuple
+from typing import Any, List, Optional, Tuple
 
 import numpy as np
 
 from . import _arguments as arguments
-from . import _core
+from ._clouds import PointCloud
 from ._fields import DistanceField, distance_and_gradient, extend, operators, transport
-from ._geodesics import geodesic_path, trace
-from ._maps import LogMapSolver
-from ._surfaces import PointCloud, PolygonMesh, Surface, TriangleMesh
+from ._geodesics import geodesic_loop, geodesic_path, geodesic_paths, trace
+from ._mesh_files import read_mesh, read_point_cloud, read_polygon_mesh, write_mesh, write_point_cloud
+from ._meshes import PolygonMesh, TriangleMesh
+from ._solvers import LogMapSolver
+from ._surfaces import Surface
 
 _STRATEGIES = {"AffineLocal": "localized", "AffineAdaptive": "adaptive"}
-
-
-def read_mesh(filename: Any) -> Tuple[np.ndarray, np.ndarray]:
-    """(n, 3) vertices and (m, 3) triangles of a file."""
-    got = _core.read_file(os.fspath(filename))
-    begin = got["face_begin"]
-    if begin is None or not (np.diff(begin) == 3).all():
-        raise ValueError(f"filename: {os.fspath(filename)} holds no triangle mesh")
-    return got["points"], got["face_vertices"].reshape(-1, 3)
-
-
-def read_polygon_mesh(filename: Any) -> Tuple[np.ndarray, List[List[int]]]:
-    """(n, 3) vertices and the corners of every face of a file."""
-    got = _core.read_file(os.fspath(filename))
-    begin, corners = got["face_begin"], got["face_vertices"]
-    if begin is None:
-        raise ValueError(f"filename: {os.fspath(filename)} holds no faces")
-    return got["points"], [corners[b:e].tolist() for b, e in zip(begin[:-1], begin[1:])]
-
-
-def read_point_cloud(filename: Any) -> np.ndarray:
-    """(n, 3) points of a file."""
-    return _core.read_file(os.fspath(filename))["points"]
-
-
-def write_mesh(V: Any, F: Any, filename: Any, UV_coords: Any = None, UV_type: Optional[str] = None) -> None:
-    """Writes .obj, .off or .ply (text). UV_type: "per-vertex" (n, 2) or "per-corner" (corners, 2), .obj only."""
-    points = arguments.floats(V, "V", (None, 3))
-    faces = [arguments.integers(f, f"F[{k}]", 1, 0, len(points) - 1).tolist() for k, f in enumerate(F)]
-    ending = os.path.splitext(os.fspath(filename))[1].lower()
-    if (UV_coords is None) != (UV_type is None):
-        raise ValueError("UV_type: goes with UV_coords, and the other way round")
-    if UV_type is not None and (UV_type not in ("per-vertex", "per-corner") or ending != ".obj"):
-        raise NotImplementedError("UV_type: 'per-vertex' and 'per-corner' can be written, to .obj files")
-    rows = [" ".join(repr(float(x)) for x in p) for p in points]
-    if ending == ".obj":
-        lines = ["v " + row for row in rows] + _obj_faces(faces, UV_coords, UV_type, len(points))
-    elif ending == ".off":
-        lines = ["OFF", f"{len(rows)} {len(faces)} 0", *rows, *(_counted(f) for f in faces)]
-    elif ending == ".ply":
-        lines = ["ply", "format ascii 1.0", *_ply_points(len(rows)), f"element face {len(faces)}",
-                 "property list uchar int vertex_indices", "end_header", *rows, *(_counted(f) for f in faces)]
-    else:
-        raise NotImplementedError(f"filename: {ending or 'no ending'} cannot be written; .obj, .off and .ply can")
-    _write(filename, lines)
-
-
-def write_point_cloud(V: Any, filename: Any) -> None:
-    """Writes .ply (text), .obj or .xyz."""
-    rows = [" ".join(repr(float(x)) for x in p) for p in arguments.floats(V, "V", (None, 3))]
-    ending = os.path.splitext(os.fspath(filename))[1].lower()
-    if ending not in (".ply", ".obj", ".xyz"):
-        raise NotImplementedError(f"filename: {ending or 'no ending'} cannot be written; .ply, .obj and .xyz can")
-    head = ["ply", "format ascii 1.0", *_ply_points(len(rows)), "end_header"] if ending == ".ply" else []
-    _write(filename, head + [("v " if ending == ".obj" else "") + row for row in rows])
-
-
-def _write(filename: Any, lines: Sequence[str]) -> None:
-    with open(filename, "w", encoding="ascii") as file:
-        file.write("\n".join(lines) + "\n")
-
-
-def _counted(face: Sequence[int]) -> str:
-    return " ".join(map(str, (len(face), *face)))
-
-
-def _ply_points(count: int) -> List[str]:
-    return [f"element vertex {count}", *(f"property double {axis}" for axis in "xyz")]
-
-
-def _obj_faces(faces: Sequence[Sequence[int]], uv: Any, kind: Optional[str], points: int) -> List[str]:
-    if uv is None:
-        return ["f " + " ".join(str(v + 1) for v in face) for face in faces]
-    corners = sum(len(face) for face in faces)
-    given = arguments.floats(uv, "UV_coords", (points if kind == "per-vertex" else corners, 2))
-    lines, corner = [f"vt {float(u)!r} {float(v)!r}" for u, v in given], 0
-    for face in faces:
-        places = face if kind == "per-vertex" else range(corner, corner + len(face))
-        lines.append("f " + " ".join(f"{v + 1}/{t + 1}" for v, t in zip(face, places)))
-        corner += len(face)
-    return lines
 
 
 def _mesh(V: Any, F: Any) -> Tuple[np.ndarray, np.ndarray]:
@@ -131,13 +51,24 @@ def face_areas(V: Any, F: Any) -> np.ndarray:
 
 
 def vertex_areas(V: Any, F: Any) -> np.ndarray:
-    """(n,) a third of the areas of the triangles at every vertex."""
+    """(n,) a third of the areas of the triangles at every vertex.
+
+    >>> import ahm, ahm.potpourri3d as pp3d
+    >>> round(float(pp3d.vertex_areas(*ahm.shapes.plane(4, 3)).sum()), 9)
+    6.0
+    """
     points, faces = _mesh(V, F)
     return np.bincount(faces.ravel(), np.repeat(face_areas(points, faces) / 3, 3), len(points))
 
 
 def cotan_laplacian(V: Any, F: Any, denom_eps: float = 0.0) -> Any:
-    """(n, n) scipy CSR, positive semi-definite: half the cotangents opposite each edge, of the triangles as given."""
+    """(n, n) scipy CSR, positive semi-definite: half the cotangents opposite each edge, of the triangles as given.
+
+    >>> import ahm, ahm.potpourri3d as pp3d
+    >>> V, F = ahm.shapes.plane(4, 3)
+    >>> bool(abs((pp3d.cotan_laplacian(V, F) @ V)[5]).max() < 1e-12)           # linear functions are harmonic inside
+    True
+    """
     from scipy.sparse import coo_matrix, diags
 
     points, faces = _mesh(V, F)
@@ -155,7 +86,12 @@ def cotan_laplacian(V: Any, F: Any, denom_eps: float = 0.0) -> Any:
 
 
 def edges(V: Any, F: Any) -> np.ndarray:
-    """(e, 2) vertices of every edge, the smaller one first, sorted."""
+    """(e, 2) vertices of every edge, the smaller one first, sorted.
+
+    >>> import ahm, ahm.potpourri3d as pp3d
+    >>> pp3d.edges(*ahm.shapes.plane(2, 2)).tolist()
+    [[0, 1], [0, 2], [0, 3], [1, 3], [2, 3]]
+    """
     faces = _mesh(V, F)[1]
     return np.unique(np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1), axis=0)
 
@@ -170,6 +106,10 @@ class _Heat:
     def _distance(self, sources: Any) -> np.ndarray:
         field: DistanceField = distance_and_gradient(self.solver, arguments.rows(sources, "v_inds", len(self.surface)))
         return field.distance
+
+    def compute_distances(self, v_inds: Any) -> np.ndarray:
+        """(k, n) distances from each of k vertices alone."""
+        return np.array([self._distance([v]) for v in arguments.rows(v_inds, "v_inds", len(self.surface))])
 
     def extend_scalar(self, v_inds: Any, values: Any) -> np.ndarray:
         """(n,) each vertex takes the value of the nearest one of v_inds, blended at ties."""
@@ -206,7 +146,13 @@ class _Heat:
 
 
 class MeshHeatMethodDistanceSolver(_Heat):
-    """Geodesic distance on a triangle mesh by heat (`ahm.distance_and_gradient`); use_robust: intrinsic Delaunay triangulation."""
+    """Geodesic distance on a triangle mesh by heat (`ahm.distance_and_gradient`); use_robust: intrinsic Delaunay triangulation.
+
+    >>> import ahm, ahm.potpourri3d as pp3d
+    >>> solver = pp3d.MeshHeatMethodDistanceSolver(*ahm.shapes.plane(4, 3))
+    >>> solver.compute_distance(0)[:4].round(9).tolist()
+    [0.0, 1.0, 2.0, 3.0]
+    """
 
     def __init__(self, V: Any, F: Any, t_coef: float = 1.0, use_robust: bool = True) -> None:
         super().__init__(TriangleMesh(V, F, delaunay=bool(use_robust)), t_coef)
@@ -221,17 +167,35 @@ class MeshHeatMethodDistanceSolver(_Heat):
 
 
 def compute_distance(V: Any, F: Any, v_ind: int) -> np.ndarray:
-    """(n,) distance from a vertex of a triangle mesh."""
+    """(n,) distance from a vertex of a triangle mesh.
+
+    >>> import ahm, ahm.potpourri3d as pp3d
+    >>> pp3d.compute_distance(*ahm.shapes.plane(4, 3), 0)[:4].round(9).tolist()
+    [0.0, 1.0, 2.0, 3.0]
+    """
     return MeshHeatMethodDistanceSolver(V, F).compute_distance(v_ind)
 
 
 def compute_distance_multisource(V: Any, F: Any, v_inds: Any) -> np.ndarray:
-    """(n,) distance from the nearest of several vertices of a triangle mesh."""
+    """(n,) distance from the nearest of several vertices of a triangle mesh.
+
+    >>> import ahm, ahm.potpourri3d as pp3d
+    >>> len(pp3d.compute_distance_multisource(*ahm.shapes.plane(4, 3), [0, 3]))
+    12
+    """
     return MeshHeatMethodDistanceSolver(V, F).compute_distance_multisource(v_inds)
 
 
 class MeshVectorHeatSolver(_Heat):
-    """Log maps, transport and extension on a triangle mesh."""
+    """Log maps, transport and extension on a triangle mesh.
+
+    >>> import ahm, ahm.potpourri3d as pp3d
+    >>> solver = pp3d.MeshVectorHeatSolver(*ahm.shapes.plane(4, 3))
+    >>> x, y, n = solver.get_tangent_frames()
+    >>> uv = solver.compute_log_map(0)
+    >>> (uv[11, 0] * x[0] + uv[11, 1] * y[0]).round(9).tolist()          # in space: from row 0 to row 11
+    [3.0, 2.0, 0.0]
+    """
 
     def __init__(self, V: Any, F: Any, t_coef: float = 1.0, use_intrinsic_delaunay: bool = True, *,
                  useIntrinsicDelaunay: Optional[bool] = None) -> None:
@@ -249,7 +213,14 @@ class MeshVectorHeatSolver(_Heat):
 
 
 class PolygonMeshHeatSolver(_Heat):
-    """Distance, log maps, transport and extension on a polygon mesh."""
+    """Distance, log maps, transport and extension on a polygon mesh.
+
+    >>> import ahm.potpourri3d as pp3d
+    >>> V = [[x, y, 0] for y in range(3) for x in range(4)]
+    >>> quads = [[i + 4 * j, i + 1 + 4 * j, i + 5 + 4 * j, i + 4 + 4 * j] for j in range(2) for i in range(3)]
+    >>> pp3d.PolygonMeshHeatSolver(V, quads).compute_distance([0])[:4].round(9).tolist()
+    [0.0, 1.0, 2.0, 3.0]
+    """
 
     def __init__(self, V: Any, F: Any, t_coef: float = 1.0) -> None:
         super().__init__(PolygonMesh(V, F), t_coef)
@@ -260,7 +231,13 @@ class PolygonMeshHeatSolver(_Heat):
 
 
 class PointCloudHeatSolver(_Heat):
-    """Distance, log maps, transport and extension on a point cloud."""
+    """Distance, log maps, transport and extension on a point cloud.
+
+    >>> import ahm, ahm.potpourri3d as pp3d
+    >>> solver = pp3d.PointCloudHeatSolver(ahm.shapes.plane(9, 9)[0])
+    >>> solver.compute_distance(0)[:4].round(9).tolist()
+    [0.0, 1.0, 2.0, 3.0]
+    """
 
     def __init__(self, P: Any, t_coef: float = 1.0) -> None:
         super().__init__(PointCloud(P), t_coef)
@@ -273,9 +250,33 @@ class PointCloudHeatSolver(_Heat):
         """(n,) from the nearest of several points."""
         return self._distance(p_inds)
 
+    # The same as of meshes, under the names that parameters of clouds have.
+
+    def extend_scalar(self, p_inds: Any, values: Any) -> np.ndarray:
+        """(n,) each point takes the value of the nearest one of p_inds, blended at ties."""
+        return super().extend_scalar(p_inds, values)
+
+    def transport_tangent_vector(self, p_ind: int, vector: Any) -> np.ndarray:
+        """(n, 2) the vector at p_ind carried to every point, in the frames of `get_tangent_frames`."""
+        return super().transport_tangent_vector(p_ind, vector)
+
+    def transport_tangent_vectors(self, p_inds: Any, vectors: Any) -> np.ndarray:
+        """(n, 2) the same, of several vectors: the nearest one counts, blended at ties."""
+        return super().transport_tangent_vectors(p_inds, vectors)
+
+    def compute_log_map(self, p_ind: int, strategy: str = "AffineLocal") -> np.ndarray:
+        """(n, 2) in the frame of p_ind. strategy: "AffineLocal" or "AffineAdaptive"."""
+        return super().compute_log_map(p_ind, strategy)
+
 
 class EdgeFlipGeodesicSolver:
-    """Shortest paths on a triangle mesh, exact (`ahm.geodesic_path`): not only straight, the shortest of all."""
+    """Paths on a triangle mesh: between two vertices the shortest of all; through several, locally shortest.
+
+    >>> import ahm, ahm.potpourri3d as pp3d
+    >>> paths = pp3d.EdgeFlipGeodesicSolver(*ahm.shapes.plane(4, 3))
+    >>> paths.find_geodesic_path(0, 11)[[0, -1]].tolist()
+    [[0.0, 0.0, 0.0], [3.0, 2.0, 0.0]]
+    """
 
     def __init__(self, V: Any, F: Any, t_coef: float = 1.0) -> None:
         self.surface = TriangleMesh(V, F)
@@ -283,23 +284,50 @@ class EdgeFlipGeodesicSolver:
     def find_geodesic_path(self, v_start: int, v_end: int, max_iterations: Optional[int] = None,
                            max_relative_length_decrease: Optional[float] = None) -> np.ndarray:
         """(k, 3) points of the shortest path. Raises ValueError where there is none."""
-        if max_iterations is not None or max_relative_length_decrease is not None:
-            raise NotImplementedError("max_iterations, max_relative_length_decrease: shortest paths are not found by iterations")
-        ends = arguments.rows([v_start, v_end], "v_start, v_end", len(self.surface))
-        path = geodesic_path(self.surface, int(ends[0]), int(ends[1]))
+        return self._path(geodesic_path, [v_start, v_end], max_iterations, max_relative_length_decrease)
+
+    def find_geodesic_paths(self, v_starts: Any, v_ends: Any) -> List[np.ndarray]:
+        """One shortest path from each vertex to the one beside it, as of `find_geodesic_path`."""
+        starts, ends = (arguments.rows(v, name, len(self.surface)) for v, name in ((v_starts, "v_starts"), (v_ends, "v_ends")))
+        found = geodesic_paths(self.surface, starts, ends, pairwise=True)
+        return [self._points(path, [a, b]) for path, a, b in zip(found, starts, ends)]
+
+    def find_geodesic_path_poly(self, v_list: Any, max_iterations: Optional[int] = None,
+                                max_relative_length_decrease: Optional[float] = None) -> np.ndarray:
+        """(k, 3) points: the way through the vertices, made locally shortest; only its two ends stay where they are."""
+        return self._path(_pulled_taut, v_list, max_iterations, max_relative_length_decrease)
+
+    def find_geodesic_loop(self, v_list: Any, max_iterations: Optional[int] = None,
+                           max_relative_length_decrease: Optional[float] = None) -> np.ndarray:
+        """(k, 3) points of a closed geodesic: the closed way through the vertices, made locally shortest. One point is left
+        where nothing holds it."""
+        return self._path(geodesic_loop, v_list, max_iterations, max_relative_length_decrease)
+
+    def _path(self, find: Any, vertices: Any, *limits: Any) -> np.ndarray:
+        if any(limit is not None for limit in limits):
+            raise NotImplementedError("max_iterations, max_relative_length_decrease: paths are not found by iterations")
+        rows = arguments.rows(vertices, "v_list", len(self.surface))
+        return self._points(find(self.surface, rows), rows)
+
+    @staticmethod
+    def _points(path: Any, rows: Any) -> np.ndarray:
         if path is None:
-            raise ValueError(f"v_end: no path leads from vertex {v_start} to vertex {v_end}")
+            raise ValueError(f"v_list: no path leads through the vertices {[int(r) for r in rows]}")
         return path.points
 
-    def find_geodesic_path_poly(self, v_list: Any, *given: Any, **options: Any) -> np.ndarray:
-        raise NotImplementedError("find_geodesic_path_poly is not there; `ahm.geodesic_path` leads through points and bends there")
 
-    def find_geodesic_loop(self, v_list: Any, *given: Any, **options: Any) -> np.ndarray:
-        raise NotImplementedError("find_geodesic_loop is not there")
+def _pulled_taut(surface: Surface, rows: np.ndarray) -> Any:
+    return geodesic_path(surface, rows, taut=True)
 
 
 class GeodesicTracer:
-    """Straightest geodesics on a triangle mesh (`ahm.trace`), as long as `direction_xyz` is."""
+    """Straightest geodesics on a triangle mesh (`ahm.trace`), as long as `direction_xyz` is.
+
+    >>> import ahm, ahm.potpourri3d as pp3d
+    >>> tracer = pp3d.GeodesicTracer(*ahm.shapes.plane(4, 3))
+    >>> tracer.trace_geodesic_from_vertex(0, [1.5, 1.0, 0.0])[-1].round(9).tolist()
+    [1.5, 1.0, 0.0]
+    """
 
     def __init__(self, V: Any, F: Any, t_coef: float = 1.0) -> None:
         self.surface = TriangleMesh(V, F)
@@ -312,6 +340,12 @@ class GeodesicTracer:
                                  max_iterations: Optional[int] = None) -> np.ndarray:
         """(k, 3) points; it ends at the boundary."""
         return self._trace((arguments.integer(start_face, "start_face"), bary_coords), direction_xyz, max_iterations)
+
+    def trace_geodesics_from_vertices(self, start_verts: Any, directions_xyz: Any) -> List[np.ndarray]:
+        """One curve for each vertex and the direction (k, 3) beside it."""
+        starts = arguments.rows(start_verts, "start_verts", len(self.surface))
+        directions = arguments.floats(directions_xyz, "directions_xyz", (len(starts), 3), finite=True)
+        return [self._trace(int(v), d, None) for v, d in zip(starts, directions)]
 
     def _trace(self, start: Any, direction: Any, max_iterations: Optional[int]) -> np.ndarray:
         if max_iterations is not None:

@@ -32,12 +32,12 @@ def sphere(level: int) -> Mesh:
     162
     """
     g = (1 + 5**0.5) / 2
-    V = [np.array(p, float) for a in (-1, 1) for b in (-g, g) for p in ((0, a, b), (a, b, 0), (b, 0, a))]
-    V = np.array(V) / np.hypot(1, g)
+    corners = [p for a in (-1, 1) for b in (-g, g) for p in ((0, a, b), (a, b, 0), (b, 0, a))]
+    V = np.array(corners, float) / np.hypot(1, g)
     near = np.linalg.norm(V[:, None] - V[None], axis=2) < 1.1
-    F = [(i, j, k) for i in range(12) for j in range(i + 1, 12) for k in range(j + 1, 12)
-         if near[i, j] and near[j, k] and near[i, k]]
-    F = np.array([f if np.linalg.det(V[list(f)]) > 0 else (f[0], f[2], f[1]) for f in F])
+    triples = [(i, j, k) for i in range(12) for j in range(i + 1, 12) for k in range(j + 1, 12)
+               if near[i, j] and near[j, k] and near[i, k]]
+    F = np.array([f if np.linalg.det(V[list(f)]) > 0 else (f[0], f[2], f[1]) for f in triples])
     for _ in range(level):
         V, F = _subdivided(V, F)
         V /= np.linalg.norm(V, axis=1, keepdims=True)

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "ahm/error.hpp"
+#include "ahm/util/vec.hpp"
 #include "errors.hpp"
 
 namespace ahm::python {
@@ -30,7 +31,7 @@ PlacedSource Body::source(const Place& place, const std::optional<Vec3>& u_axis)
     return {grid_->source_at(std::span(*position).first(d)), *position, std::nullopt, std::nullopt};
   }
   const auto* row = std::get_if<Row>(&std::get<SurfacePoint>(place));
-  if (row == nullptr) throw InvalidArgument("grids and graphs have no faces; name a row");
+  if (row == nullptr) throw InvalidArgument("grids and graphs have no faces and edges to stand on; name a row");
   PlacedSource result{Source::at_vertex(vertex(*row)), {}, graph_->frame(row->index), *row};
   if (grid_ != nullptr) result.position = grid_->position(Vertex(row->index));
   return result;
@@ -48,9 +49,22 @@ Vertex Body::vertex_near(const Place& place) const {
     const Surface& all = surface_for("a position");
     return all.vertex(all.nearest_row(*position));
   }
-  const auto* row = std::get_if<Row>(&std::get<SurfacePoint>(place));
-  if (row == nullptr) throw InvalidArgument("a point in a face cannot be used here; name a row or a position");
-  return vertex(*row);
+  const auto& point = std::get<SurfacePoint>(place);
+  if (const auto* row = std::get_if<Row>(&point)) return vertex(*row);
+  const Surface& all = surface_for("a point in a face or on an edge");
+  const Vec3 position = all.position(point);
+  std::vector<Index> corners;
+  if (const auto* inside = std::get_if<FacePoint>(&point)) {
+    const auto face = all.faces()[static_cast<std::size_t>(inside->face)];
+    corners.assign(face.begin(), face.end());
+  } else {
+    const auto& edge = std::get<EdgePoint>(point);
+    all.source(edge);  // checks that there is one
+    corners = {edge.from.index, edge.to.index};
+  }
+  const auto away = [&](Index row) { return distance(all.positions()[row], position); };
+  return all.vertex(
+      Row(*std::min_element(corners.begin(), corners.end(), [&](Index a, Index b) { return away(a) < away(b); })));
 }
 
 std::vector<Vertex> Body::vertices_near(const Places& places) const {
@@ -66,6 +80,12 @@ const ExactGeodesics& Body::geodesics() const {
   return *geodesics_;
 }
 
+const InputFaces& Body::input_faces() const {
+  const ExactGeodesics& on = geodesics();
+  std::call_once(once_faces_, [&] { input_faces_ = std::make_unique<const InputFaces>(on); });
+  return *input_faces_;
+}
+
 Places places(const py::tuple& given) {
   Places result{given[0].cast<std::string>(), given[1].cast<bool>(), {}};
   const auto kinds = given[2].cast<Bytes>();
@@ -78,8 +98,10 @@ Places places(const py::tuple& given) {
       result.places.emplace_back(SurfacePoint(Row(index.at(k))));
     else if (kinds.at(k) == 1)
       result.places.emplace_back(Vec3{row[0], row[1], row[2]});
-    else
+    else if (kinds.at(k) == 2)
       result.places.emplace_back(SurfacePoint(FacePoint{index.at(k), std::vector<double>(row, row + count.at(k))}));
+    else
+      result.places.emplace_back(SurfacePoint(EdgePoint{Row(index.at(k)), Row(static_cast<Index>(row[0])), row[1]}));
   }
   return result;
 }

@@ -13,6 +13,7 @@
 #include "ahm/surface/exact/exact_geodesics.hpp"
 #include "ahm/surface/surface.hpp"
 #include "arrays.hpp"
+#include "input_faces.hpp"
 
 namespace ahm::python {
 
@@ -53,25 +54,30 @@ class Body {
   std::vector<PlacedSource> sources(const Places& places, const std::optional<Vec3>& u_axis = {}) const;
   /// The point of the input, and that one only where a position was named. @throws InvalidArgument (no surface)
   SurfacePoint point(const Place& place) const;
-  /// The vertex at a row, or at the row nearest to a position. @throws InvalidArgument (a point in a face)
+  /// The vertex at a row, at the row nearest to a position, or at the nearest corner of the face or edge of a point.
+  /// @throws InvalidArgument
   Vertex vertex_near(const Place& place) const;
   std::vector<Vertex> vertices_near(const Places& places) const;
 
   /// Made by the first call. @throws as `ExactGeodesics`
   const ExactGeodesics& geodesics() const;
+  /// Of these. Made by the first call.
+  const InputFaces& input_faces() const;
 
  private:
   std::unique_ptr<const Surface> surface_;
   const grid::GridGraph* grid_ = nullptr;
   std::unique_ptr<const TangentGraph> graph_;
-  mutable std::once_flag once_;
+  mutable std::once_flag once_, once_faces_;
   mutable std::unique_ptr<const ExactGeodesics> geodesics_;
+  mutable std::unique_ptr<const InputFaces> input_faces_;
 };
 
 using BodyPtr = std::shared_ptr<Body>;
 
-/// @param given  (name, single, kinds, indices, counts, values): per point the kind (0 row, 1 position, 2 in a face), its row
-/// or face, how many of its row of `values` count, and these: a position or barycentric coordinates
+/// @param given  (name, single, kinds, indices, counts, values): per point the kind (0 row, 1 position, 2 in a face, 3 on an
+/// edge), its row, face or first row, how many of its row of `values` count, and these: a position, barycentric
+/// coordinates, or the edge's second row and t
 Places places(const py::tuple& given);
 
 /// None, or three numbers.

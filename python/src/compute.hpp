@@ -33,6 +33,13 @@ auto compute(const py::object& report, py::object keep, Work work) {
   return std::move(**result);
 }
 
+/// What `work()` returns, without the interpreter lock, on this thread: for what takes no longer than a copy.
+template <class Work>
+auto released(const Work& work) {
+  const py::gil_scoped_release release;
+  return work();
+}
+
 /// Waits for work in the background: before the interpreter ends.
 void wait_for_background();
 

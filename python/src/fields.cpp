@@ -92,7 +92,7 @@ py::tuple transport(const SolverPtr& solver, const py::tuple& points, const Doub
   }));
 }
 
-/// All sources in one; they are rows or positions.
+/// All sources in one; several are their nearest vertices.
 Source together(const Body& body, const Places& at) {
   if (at.size() == 1) return body.sources(at)[0].source;
   return Source::at_vertices(body.vertices_near(at));
@@ -120,9 +120,12 @@ py::tuple front_distance(const BodyPtr& body, const py::tuple& sources, double r
     front.run(radius);
     const auto n = static_cast<std::size_t>(body->rows());
     std::pair result(std::vector<double>(n, nan), std::vector<Index>(n, -1));
+    const auto nearest = [&](Row row) -> std::optional<Vertex> {
+      if (body->surface() == nullptr) return Vertex(row.index);
+      return body->surface()->rows().least(row, [&](Vertex v) { return front.distance(v); });
+    };
     for (std::size_t r = 0; r < n; ++r) {
-      const Row row(static_cast<Index>(r));
-      const auto vertex = body->surface() ? body->surface()->rows().vertex(row) : Vertex(row.index);
+      const auto vertex = nearest(Row(static_cast<Index>(r)));
       if (!vertex || front.nearest(*vertex) < 0 || front.distance(*vertex) > radius) continue;
       result.first[r] = front.distance(*vertex), result.second[r] = front.nearest(*vertex);
     }
@@ -133,7 +136,7 @@ py::tuple front_distance(const BodyPtr& body, const py::tuple& sources, double r
 
 /// tau per vertex, in squared graph units.
 py::array taus(const BodyPtr& body, double t_coef) {
-  return owned(diffusion_times(ComponentScales(body->graph()), t_coef));
+  return owned(released([&] { return diffusion_times(ComponentScales(body->graph()), t_coef); }));
 }
 
 py::tuple curvature(const BodyPtr& body, const py::object& report) {

@@ -1,4 +1,5 @@
 // Exact distances, shortest paths and straightest geodesics over the flat triangles of meshes.
+#include <array>
 #include <limits>
 #include <utility>
 
@@ -13,19 +14,20 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
+/// Checked: each lies on the triangles.
 std::vector<SurfacePoint> points_of(const Body& body, const Places& at) {
   std::vector<SurfacePoint> result;
   for (std::size_t k = 0; k < at.size(); ++k)
-    result.push_back(naming(at.where(k), [&] { return body.point(at.places[k]); }));
+    naming(at.where(k), [&] {
+      result.push_back(body.point(at.places[k]));
+      body.geodesics().point(result.back());
+    });
   return result;
 }
 
 std::vector<exact::MeshPoint> mesh_points(const Body& body, const Places& at) {
-  const ExactGeodesics& geodesics = body.geodesics();
   std::vector<exact::MeshPoint> result;
-  const std::vector<SurfacePoint> points = points_of(body, at);
-  for (std::size_t k = 0; k < at.size(); ++k)
-    result.push_back(naming(at.where(k), [&] { return geodesics.point(points[k]); }));
+  for (const SurfacePoint& point : points_of(body, at)) result.push_back(body.geodesics().point(point));
   return result;
 }
 
@@ -40,24 +42,27 @@ struct Distances {
   }
 };
 
+/// Of targets, or of all rows: an exact map knows lengths in units of the triangles.
 Distances exact_distances(const Body& body, const Places& from, const std::optional<Places>& to, double radius,
                           const Progress& progress) {
-  const exact::PolyhedralSurface& flat = body.geodesics().triangles().surface;
-  exact::ExactOptions options{.radius = radius, .targets = {}, .only_targets = to.has_value(), .progress = progress};
+  const auto& [flat, positions, unit] = body.geodesics().triangles();
+  exact::ExactOptions options{
+      .radius = radius / unit, .targets = {}, .only_targets = to.has_value(), .progress = progress};
   if (to) options.targets = mesh_points(body, *to);
   const exact::ExactMap map = exact::exact_map(flat, mesh_points(body, from), options);
   Distances result;
   if (to) {
     for (std::size_t k = 0; k < to->size(); ++k) {
       const Index origin = map.target_arrival(k).origin;
-      result.add(map.target_status(k), map.target_distance(k), origin < 0 ? -1 : map.origins()[origin].source);
+      result.add(map.target_status(k), unit * map.target_distance(k),
+                 origin < 0 ? -1 : map.origins()[static_cast<std::size_t>(origin)].source);
     }
     return result;
   }
   const RowMap& rows = body.surface()->rows();
   for (Index r = 0; r < rows.row_count(); ++r) {
     const auto vertex = rows.least(Row(r), [&](Vertex v) { return map.distance(v); });
-    vertex ? result.add(map.status(*vertex), map.distance(*vertex), map.source(*vertex))
+    vertex ? result.add(map.status(*vertex), unit * map.distance(*vertex), map.source(*vertex))
            : result.add(Status::removed, nan, -1);
   }
   return result;
@@ -73,67 +78,140 @@ py::tuple exact_distance(const BodyPtr& body, const py::tuple& sources, const py
   return py::make_tuple(owned(std::move(found.distance)), owned(std::move(found.source)));
 }
 
-/// A curve as Python gets it: points in space, face and weights of each, length; None where there is no way.
+/// A curve as Python gets it: points in space and in the input's faces, length; None where there is no way.
 struct Curve {
   bool ok = true;
   std::vector<Vec3> points;
   std::vector<Index> faces;
-  std::vector<Vec3> weights;
+  std::vector<double> weights;
+  std::vector<py::ssize_t> corners;  ///< weights of each point
   double length = 0;
   bool complete = true;
 
-  Curve(const ExactGeodesics& geodesics, bool found, std::span<const exact::MeshPoint> on, double long_)
-      : ok(found), length(long_) {
+  Curve(const Body& body, const exact::GeodesicPath& path) : Curve(body, path.points, path.length) {
+    ok = path.status == Status::ok;
+  }
+  Curve(const Body& body, std::span<const exact::MeshPoint> on, double long_) : length(long_) {
     for (const exact::MeshPoint& point : on) {
-      points.push_back(geodesics.position(point));
-      faces.push_back(point.face);
-      weights.push_back(point.barycentric);
+      const FacePoint inside = body.input_faces().point(point);
+      points.push_back(body.geodesics().position(point));
+      faces.push_back(inside.face);
+      weights.insert(weights.end(), inside.barycentric.begin(), inside.barycentric.end());
+      corners.push_back(length_of(inside));
     }
   }
+
+ private:
+  static py::ssize_t length_of(const FacePoint& point) { return python::length(point.barycentric); }
 };
 
-py::object arrays(Curve&& curve) {
-  if (!curve.ok) return py::none();
-  return py::make_tuple(owned(std::move(curve.points)), owned(std::move(curve.faces)), owned(std::move(curve.weights)),
-                        curve.length, curve.complete);
+/// (k, 3) where all faces of the surface are triangles, else a list.
+py::object weights_of(const Body& body, Curve& curve) {
+  const FaceList faces = body.surface()->faces();
+  if (faces.vertices.size() == 3 * faces.size()) {
+    const py::ssize_t k = length(curve.corners);
+    return owned<double>(std::move(curve.weights), {k, 3});
+  }
+  py::list result;
+  auto at = curve.weights.begin();
+  for (py::ssize_t count : curve.corners) {
+    result.append(owned(std::vector<double>(at, at + count)));
+    at += count;
+  }
+  return result;
 }
 
-py::object path(const BodyPtr& body, const py::tuple& stops, bool closed, const py::object& report) {
+py::object arrays(const Body& body, Curve&& curve) {
+  if (!curve.ok) return py::none();
+  const py::object weights = weights_of(body, curve);
+  return py::make_tuple(owned(std::move(curve.points)), owned(std::move(curve.faces)), weights, curve.length,
+                        curve.complete);
+}
+
+/// From stop to stop; `fast`: locally shortest. Status and no points of the first leg that is not there.
+exact::GeodesicPath through(const ExactGeodesics& geodesics, const std::vector<SurfacePoint>& stops, bool fast,
+                            const Progress& progress) {
+  exact::GeodesicPath whole;
+  for (std::size_t k = 1; k < stops.size(); ++k) {
+    progress.step("paths", static_cast<double>(k - 1) / static_cast<double>(stops.size() - 1));
+    const std::array ends{stops[k - 1], stops[k]};
+    const exact::GeodesicPath leg = fast ? geodesics.locally_shortest_path(ends[0], ends[1]) : geodesics.path(ends);
+    if (leg.status != Status::ok) return leg;
+    whole.points.insert(whole.points.end(), leg.points.begin() + (k > 1 ? 1 : 0), leg.points.end());
+    whole.length += leg.length;
+  }
+  return whole;
+}
+
+/// @param taut  pulled taut: only the ends stay, of a closed path nothing
+py::object path(const BodyPtr& body, const py::tuple& stops, bool closed, bool fast, bool taut,
+                const py::object& report) {
   const Places at = places(stops);
-  return arrays(compute(report, py::none(), [=](const Progress&) {
-    const exact::GeodesicPath found = body->geodesics().path(points_of(*body, at), closed);
-    return Curve(body->geodesics(), found.status == Status::ok, found.points, found.length);
+  return arrays(*body, compute(report, py::none(), [=](const Progress& progress) {
+    const ExactGeodesics& geodesics = body->geodesics();
+    std::vector<SurfacePoint> points = points_of(*body, at);
+    if (points.size() < 2)
+      throw InvalidArgument(at.name + ": " + std::to_string(points.size()) + " point; a path needs at least 2");
+    if (closed) points.push_back(points.front());
+    exact::GeodesicPath found = through(geodesics, points, fast, progress);
+    if (taut && found.status == Status::ok) found = geodesics.shortened(found.points, closed);
+    return Curve(*body, found);
   }));
 }
 
-/// One path to each target, of one propagation.
+py::list listed(const Body& body, std::vector<Curve>&& curves) {
+  py::list result;
+  for (Curve& curve : curves) result.append(arrays(body, std::move(curve)));
+  return result;
+}
+
+/// One path to each target from the nearest source, of one propagation.
 py::list paths(const BodyPtr& body, const py::tuple& sources, const py::tuple& targets, const py::object& report) {
   const Places from = places(sources), to = places(targets);
-  auto found = compute(report, py::none(), [=](const Progress& progress) {
-    const ExactGeodesics& geodesics = body->geodesics();
-    const exact::PolyhedralSurface& flat = geodesics.triangles().surface;
+  return listed(*body, compute(report, py::none(), [=](const Progress& progress) {
+    const auto& [flat, positions, unit] = body->geodesics().triangles();
     const exact::ExactMap map =
         exact::exact_map(flat, mesh_points(*body, from),
                          {.targets = mesh_points(*body, to), .only_targets = true, .progress = progress});
     std::vector<Curve> all;
     for (std::size_t k = 0; k < to.size(); ++k) {
-      const exact::GeodesicPath one = exact::path_to_target(flat, map, k);
-      all.emplace_back(geodesics, one.status == Status::ok, one.points, one.length);
+      exact::GeodesicPath one = exact::path_to_target(flat, map, k);
+      one.length *= unit;
+      all.emplace_back(*body, one);
     }
     return all;
-  });
-  py::list result;
-  for (Curve& curve : found) result.append(arrays(std::move(curve)));
-  return result;
+  }));
+}
+
+/// One path from each source to the target beside it.
+py::list paired_paths(const BodyPtr& body, const py::tuple& sources, const py::tuple& targets, bool fast,
+                      const py::object& report) {
+  const Places from = places(sources), to = places(targets);
+  return listed(*body, compute(report, py::none(), [=](const Progress& progress) {
+    const ExactGeodesics& geodesics = body->geodesics();
+    const std::vector<SurfacePoint> starts = points_of(*body, from), ends = points_of(*body, to);
+    std::vector<std::array<SurfacePoint, 2>> pairs;
+    for (std::size_t k = 0; k < starts.size(); ++k) pairs.push_back({starts[k], ends[k]});
+    std::vector<Curve> all;
+    if (!fast) {
+      for (const exact::GeodesicPath& one : geodesics.paths(pairs, progress)) all.emplace_back(*body, one);
+      return all;
+    }
+    for (std::size_t k = 0; k < pairs.size(); ++k) {
+      progress.step("paths", static_cast<double>(k) / static_cast<double>(pairs.size()));
+      all.emplace_back(*body, geodesics.locally_shortest_path(pairs[k][0], pairs[k][1]));
+    }
+    return all;
+  }));
 }
 
 py::object trace(const BodyPtr& body, const py::tuple& start, const Doubles& direction, double long_,
                  const py::object& report) {
   const Places at = places(start);
   const Vec3 along{direction.at(0), direction.at(1), direction.at(2)};
-  return arrays(compute(report, py::none(), [=](const Progress&) {
+  return arrays(*body, compute(report, py::none(), [=](const Progress&) {
     const exact::TracedPath found = body->geodesics().trace(points_of(*body, at)[0], along, long_);
-    Curve curve(body->geodesics(), true, found.points, found.length);
+    Curve curve(*body, found.points, found.length);
     curve.complete = found.end == exact::TraceEnd::complete;
     return curve;
   }));
@@ -145,6 +223,7 @@ void add_geodesics(py::module_& module) {
   module.def("exact_distance", &exact_distance);
   module.def("path", &path);
   module.def("paths", &paths);
+  module.def("paired_paths", &paired_paths);
   module.def("trace", &trace);
 }
 

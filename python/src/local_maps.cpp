@@ -6,49 +6,49 @@
 #include "ahm/surface/row_local_maps.hpp"
 #include "body.hpp"
 #include "compute.hpp"
+#include "map.hpp"
 #include "options.hpp"
 #include "parts.hpp"
 
 namespace ahm::python {
 namespace {
 
-LocalMaps solve(const Body& body, const std::optional<std::vector<Index>>& rows, LocalMapOptions options) {
+/// Of all rows; those without a vertex have no neighbours.
+LocalMaps solve(const Body& body, const LocalMapOptions& options) {
   std::vector<Vertex> vertices;
   std::vector<std::size_t> place;
-  const std::size_t sources = rows ? rows->size() : static_cast<std::size_t>(body.rows());
-  for (std::size_t s = 0; s < sources; ++s) {
-    const Row row(rows ? (*rows)[s] : static_cast<Index>(s));
-    // Of all rows those without a vertex have no neighbours; one that is asked for by its number has to have one.
-    if (!rows && body.surface() != nullptr && !body.surface()->rows().vertex(row)) continue;
+  const auto rows = static_cast<std::size_t>(body.rows());
+  for (std::size_t r = 0; r < rows; ++r) {
+    const Row row(static_cast<Index>(r));
+    if (body.surface() != nullptr && !body.surface()->rows().vertex(row)) continue;
     vertices.push_back(body.vertex(row));
-    place.push_back(s);
+    place.push_back(r);
   }
   LocalMaps maps = body.surface() ? local_maps_on_rows(*body.surface(), vertices, options)
                                   : local_maps(body.graph(), vertices, options);
-  // Rows without a vertex have empty lists.
-  std::vector<Offset> indptr(sources + 1, 0);
+  std::vector<Offset> indptr(rows + 1, 0);
   for (std::size_t k = 0; k < place.size(); ++k) indptr[place[k] + 1] = maps.indptr[k + 1] - maps.indptr[k];
   std::partial_sum(indptr.begin(), indptr.end(), indptr.begin());
   maps.indptr = std::move(indptr);
   return maps;
 }
 
-py::dict local_maps_of(const BodyPtr& body, const py::object& rows, const py::dict& options, const py::object& report) {
-  using namespace py::literals;
+LocalMaps solve(const Body& body, std::span<const Source> sources, const LocalMapOptions& options) {
+  return body.surface() ? local_maps_on_rows(*body.surface(), sources, options)
+                        : local_maps(body.graph(), sources, options);
+}
+
+LocalMapOptions local_options(const py::dict& options) {
   LocalMapOptions o;
   read(options, "radius", o.radius);
   read(options, "k", o.nearest);
   read(options, "margin", o.margin);
   o.heat = heat_options(options);
-  std::optional<std::vector<Index>> wanted;
-  if (!rows.is_none()) {
-    const auto given = rows.cast<Indices>();
-    wanted.emplace(numbers(given).begin(), numbers(given).end());
-  }
-  LocalMaps maps = compute(report, py::none(), [=](const Progress& progress) mutable {
-    o.heat.progress = progress;
-    return solve(*body, wanted, o);
-  });
+  return o;
+}
+
+py::dict arrays(LocalMaps&& maps) {
+  using namespace py::literals;
   const auto entries = static_cast<py::ssize_t>(maps.indices.size());
   const py::ssize_t d = maps.dimension;
   const bool complex = maps.kind == TransportKind::rotation2;
@@ -59,8 +59,42 @@ py::dict local_maps_of(const BodyPtr& body, const py::object& rows, const py::di
       "transport"_a = owned<double>(std::move(maps.transports), complex ? Shape{entries, 2} : Shape{entries, d, d}));
 }
 
+/// @param sources  points, or None: all rows
+py::dict local_maps_of(const BodyPtr& body, const py::object& sources, const py::object& u_axis,
+                       const py::dict& options, const py::object& report) {
+  LocalMapOptions o = local_options(options);
+  std::optional<Places> at;
+  if (!sources.is_none()) at = places(sources.cast<py::tuple>());
+  const auto axis = optional_vector(u_axis);
+  return arrays(compute(report, py::none(), [=](const Progress& progress) mutable {
+    o.heat.progress = progress;
+    if (!at) return solve(*body, o);
+    std::vector<Source> plain;
+    for (PlacedSource& placed : body->sources(*at, axis)) plain.push_back(std::move(placed.source));
+    return solve(*body, plain, o);
+  }));
+}
+
+/// The neighbourhood of a curve alone: a local map; the curve as drawn, its length.
+py::tuple local_stroke(const BodyPtr& body, const py::tuple& points, bool closed, bool circle, const py::dict& options,
+                       const py::object& report) {
+  LocalMapOptions o = local_options(options);
+  const Places at = places(points);
+  const StrokeOptions shape{closed, circle ? StrokeShape::circle : StrokeShape::line};
+  auto [maps, curve] = compute(report, py::none(), [=](const Progress& progress) mutable {
+    o.heat.progress = progress;
+    SurfaceCurve drawn = draw_stroke(*body, at, {}, shape);
+    LocalMaps found = solve(*body, {&drawn.source, 1}, o);
+    return std::pair(std::move(found), std::move(drawn));
+  });
+  return py::make_tuple(arrays(std::move(maps)), owned(std::move(curve.points)), curve.length);
+}
+
 }  // namespace
 
-void add_local_maps(py::module_& module) { module.def("local_maps", &local_maps_of); }
+void add_local_maps(py::module_& module) {
+  module.def("local_maps", &local_maps_of);
+  module.def("local_stroke", &local_stroke);
+}
 
 }  // namespace ahm::python

@@ -1,5 +1,5 @@
 /// \file
-/// A solver and a log map, as Python holds them.
+/// Solvers, what else makes maps, and log maps, as Python holds them.
 #pragma once
 
 #include <memory>
@@ -7,6 +7,8 @@
 #include <optional>
 #include <vector>
 
+#include "ahm/applications/map_maker.hpp"
+#include "ahm/applications/surface_curve.hpp"
 #include "ahm/maps/log_map_solver.hpp"
 #include "ahm/surface/row_log_map.hpp"
 #include "body.hpp"
@@ -18,6 +20,23 @@ struct Solver {
   LogMapSolver solver;
 };
 using SolverPtr = std::shared_ptr<Solver>;
+
+/// Who makes maps for an application: a solver, or the exact geodesics of a body.
+class Maker {
+ public:
+  /// @param given  a Solver or a Body
+  explicit Maker(const py::object& given);
+
+  const BodyPtr& body() const { return solver_ ? solver_->body : body_; }
+  /// Null where maps are exact.
+  const Solver* solver() const { return solver_.get(); }
+  /// @throws as `Body::geodesics`
+  MapMaker maps() const { return solver_ ? MapMaker(solver_->solver) : MapMaker(body_->geodesics()); }
+
+ private:
+  SolverPtr solver_;
+  BodyPtr body_;
+};
 
 /// A map, and what it is on the rows.
 struct Map {
@@ -32,5 +51,10 @@ struct Map {
   const Surface& surface() const { return body->surface_for("this"); }
 };
 using MapPtr = std::shared_ptr<Map>;
+
+/// A curve through these points; errors name them.
+/// @param positions  empty, or (u, v) of every point
+SurfaceCurve draw_stroke(const Body& body, const Places& points, std::span<const Vec2> positions,
+                         const StrokeOptions& shape);
 
 }  // namespace ahm::python

@@ -1,10 +1,12 @@
 // Solvers, and log maps by rows.
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <utility>
 
 #include "ahm/error.hpp"
 #include "ahm/maps/quality.hpp"
+#include "ahm/util/parallel.hpp"
 #include "compute.hpp"
 #include "errors.hpp"
 #include "map.hpp"
@@ -20,6 +22,13 @@ Map::Map(BodyPtr on, PlacedSource from, LogMap made)
   uv.resize(2 * rows.u.size());
   for (std::size_t r = 0; r < rows.u.size(); ++r) uv[2 * r] = rows.u[r], uv[2 * r + 1] = rows.v[r];
   rows.u = {}, rows.v = {};
+}
+
+Maker::Maker(const py::object& given) {
+  if (py::isinstance<Solver>(given))
+    solver_ = given.cast<SolverPtr>();
+  else
+    body_ = given.cast<BodyPtr>();
 }
 
 namespace {
@@ -77,24 +86,38 @@ py::list heat_maps(const SolverPtr& solver, const py::tuple& sources, const py::
   }));
 }
 
+/// One map for each source, several at a time.
+std::vector<MapPtr> solve_exactly(const BodyPtr& body, const Places& from, const std::optional<Vec3>& axis,
+                                  ExactMapOptions options, unsigned threads) {
+  const ExactGeodesics& geodesics = body->geodesics();
+  const Progress progress = options.progress;
+  if (from.size() > 1) options.progress.report = {};  // each would begin anew
+  std::vector<MapPtr> result(from.size());
+  std::atomic<std::size_t> done = 0;
+  detail::parallel_chunks(static_cast<Offset>(from.size()), 1, threads, [&](Offset k, Offset) {
+    naming(from.where(static_cast<std::size_t>(k)), [&] {
+      const SurfacePoint point = body->point(from.places[k]);
+      result[k] =
+          std::make_shared<Map>(body, body->surface()->source(point, axis), geodesics.log_map(point, axis, options));
+    });
+    const auto share = static_cast<double>(++done) / static_cast<double>(from.size());
+    if (from.size() > 1) progress.step("exact maps", share);
+  });
+  return result;
+}
+
 py::list exact_maps(const BodyPtr& body, const py::tuple& sources, const py::object& u_axis, const py::dict& options,
                     const py::object& report) {
   ExactMapOptions o;
   read(options, "radius", o.radius);
   read(options, "frames", o.frames);
+  unsigned threads = 0;
+  read(options, "threads", threads);
   const Places from = places(sources);
   const auto axis = optional_vector(u_axis);
   return listed(compute(report, py::none(), [=](const Progress& progress) mutable {
     o.progress = progress;
-    const ExactGeodesics& geodesics = body->geodesics();
-    std::vector<MapPtr> result;
-    for (std::size_t k = 0; k < from.size(); ++k)
-      naming(from.where(k), [&] {
-        const SurfacePoint point = body->point(from.places[k]);
-        result.push_back(
-            std::make_shared<Map>(body, body->surface()->source(point, axis), geodesics.log_map(point, axis, o)));
-      });
-    return result;
+    return solve_exactly(body, from, axis, o, threads);
   }));
 }
 
@@ -158,7 +181,8 @@ void require_frames(const Map& map) {
 py::array frames(const MapPtr& m) {
   require_frames(*m);
   const py::ssize_t d = m->map.dimension();
-  return owned<double>(by_rows(*m, m->map.frames(), static_cast<std::size_t>(d * d)), {m->body->rows(), d, d});
+  return owned<double>(released([&] { return by_rows(*m, m->map.frames(), static_cast<std::size_t>(d * d)); }),
+                       {m->body->rows(), d, d});
 }
 
 /// The source's axes carried to every row, as vectors of space: rows x 2 x 3.
@@ -166,23 +190,24 @@ py::array axes(const MapPtr& m) {
   require_frames(*m);
   const auto frames = m->map.frames();
   std::vector<Vec3> result(2 * static_cast<std::size_t>(m->surface().rows().row_count()), Vec3{nan, nan, nan});
-  for_rows(*m, [&](std::size_t row, std::size_t vertex) {
+  const auto put = [&](std::size_t row, std::size_t vertex) {
     const auto at = m->body->graph().frame(static_cast<Index>(vertex));
     if (!at) return;
     const double* U = frames.data() + 4 * vertex;
     for (std::size_t a = 0; a < 2; ++a)
       for (std::size_t c = 0; c < 3; ++c) result[2 * row + a][c] = U[a] * at->x[c] + U[2 + a] * at->y[c];
-  });
+  };
+  released([&] { for_rows(*m, put); });
   return owned<Vec3, double>(std::move(result), {m->body->rows(), 2, 3});
 }
 
 py::array gradient(const MapPtr& m) {
   require_frames(*m);
-  return owned(distance_gradients(m->surface(), m->map, m->rows));
+  return owned(released([&] { return distance_gradients(m->surface(), m->map, m->rows); }));
 }
 
 py::array corners(const MapPtr& m) {
-  std::vector<Vec2> result = m->surface().on_corners(m->map);
+  std::vector<Vec2> result = released([&] { return m->surface().on_corners(m->map); });
   const auto n = static_cast<py::ssize_t>(result.size());
   return owned<Vec2, double>(std::move(result), {n, 2});
 }

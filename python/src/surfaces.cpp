@@ -128,13 +128,17 @@ py::object faces(const BodyPtr& body) {
 
 /// Per vertex; None without.
 py::object frames(const BodyPtr& body) {
-  std::vector<Frame> result;
-  for (Index v = 0; v < body->graph().size(); ++v) {
-    const auto frame = body->graph().frame(v);
-    if (!frame) return py::none();
-    result.push_back(*frame);
-  }
-  const auto n = static_cast<py::ssize_t>(result.size());
+  std::vector<Frame> result = released([&] {
+    std::vector<Frame> all;
+    for (Index v = 0; v < body->graph().size(); ++v) {
+      const auto frame = body->graph().frame(v);
+      if (!frame) return std::vector<Frame>();
+      all.push_back(*frame);
+    }
+    return all;
+  });
+  if (result.empty()) return py::none();
+  const py::ssize_t n = length(result);
   return owned<Frame, double>(std::move(result), {n, 4, 3});
 }
 
@@ -160,7 +164,7 @@ py::tuple csr(const BodyPtr& body) {
   std::vector<Offset> begin{0};
   std::vector<Index> neighbors;
   std::vector<double> weights, logs, transports, masses;
-  for (Index v = 0; v < g.size(); ++v) {
+  const auto add = [&](Index v) {
     const Star star = g.star(v);
     neighbors.insert(neighbors.end(), star.neighbors.begin(), star.neighbors.end());
     weights.insert(weights.end(), star.weights.begin(), star.weights.end());
@@ -168,13 +172,21 @@ py::tuple csr(const BodyPtr& body) {
     transports.insert(transports.end(), star.transports.begin(), star.transports.end());
     begin.push_back(static_cast<Offset>(neighbors.size()));
     masses.push_back(g.mass(v));
-  }
+  };
+  released([&] {
+    for (Index v = 0; v < g.size(); ++v) add(v);
+  });
   const auto edges = static_cast<py::ssize_t>(neighbors.size());
   const py::ssize_t d = g.dimension();
   const Shape layout = g.transport_kind() == TransportKind::rotation2 ? Shape{edges, 2} : Shape{edges, d, d};
   return py::make_tuple(owned(std::move(begin)), owned(std::move(neighbors)), owned(std::move(weights)),
                         owned<double>(std::move(logs), {edges, d}), owned<double>(std::move(transports), layout),
                         owned(std::move(masses)));
+}
+
+/// Makes the triangles of exact geodesics now.
+void lay_out(const BodyPtr& body, const py::object& report) {
+  compute(report, py::none(), [body](const Progress&) { return &body->geodesics(); });
 }
 
 py::object figure(const Figure& figure) {
@@ -246,12 +258,14 @@ void add_surfaces(py::module_& module) {
       .def_property_readonly("is_delaunay", [](const Body& b) { return b.graph().is_delaunay(); })
       .def("positions", &positions)
       .def("faces", &faces)
-      .def("normals", [](const Body& b) { return owned(b.surface_for("normals").normals()); })
+      .def("normals", [](const Body& b) { return owned(released([&] { return b.surface_for("normals").normals(); })); })
       .def("frames", &frames)
       .def("vertex_of_row", &vertex_of_row)
       .def("row_of_vertex", &row_of_vertex)
       .def("csr", &csr)
-      .def("components", [](const Body& b) { return owned(connected_components(b.graph()).of_vertex); })
+      .def("lay_out", &lay_out)
+      .def("components",
+           [](const Body& b) { return owned(released([&] { return connected_components(b.graph()).of_vertex; })); })
       .def("report", &report)
       .def("warnings", &warnings)
       .def("closest_points", &closest_points);

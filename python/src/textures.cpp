@@ -112,25 +112,26 @@ struct AtlasAndFaces {
   TextureAtlas packed;
 };
 
-AtlasAndFaces make(const Solver& solver, std::vector<Vertex> sources, const RefineOptions* refine,
+AtlasAndFaces make(const Maker& by, const std::vector<Vertex>& sources, const RefineOptions* refine,
                    const PackOptions& pack_options) {
-  const Body& body = *solver.body;
+  const Body& body = *by.body();
   const Surface& surface = body.surface_for("an atlas");
+  const MapMaker maps = by.maps();
   AtlasAndFaces result;
-  result.faces = surface_faces(surface, solver.solver, sources);
+  result.faces = by.solver() != nullptr ? surface_faces(surface, by.solver()->solver, sources) : surface_faces(surface);
   const SurfaceFaces& faces = result.faces;
   std::vector<Vec3> positions(static_cast<std::size_t>(body.graph().size()));
   for (std::size_t c = 0; c < faces.corner_vertices.size(); ++c)
     positions[faces.corner_vertices[c]] = faces.points[faces.corner_points[c]];
   const FaceList list = faces.of_vertices();
-  result.atlas = refine != nullptr ? make_atlas(solver.solver, sources, list, positions, *refine)
-                                   : make_atlas(solver.solver, sources, list);
+  result.atlas =
+      refine != nullptr ? make_atlas(maps, sources, list, positions, *refine) : make_atlas(maps, sources, list);
   result.distortion = distortion(result.atlas, list, positions);
   result.packed = pack(result.atlas, list, pack_options);
   return result;
 }
 
-py::tuple atlas(const SolverPtr& solver, const py::object& sources, Index charts, const py::dict& options,
+py::tuple atlas(const py::object& maker, const py::object& sources, Index charts, const py::dict& options,
                 const py::object& report) {
   std::optional<Places> at;
   if (!sources.is_none()) at = places(sources.cast<py::tuple>());
@@ -139,17 +140,18 @@ py::tuple atlas(const SolverPtr& solver, const py::object& sources, Index charts
   PackOptions pack_options;
   read(options, "size", pack_options.size);
   read(options, "margin", pack_options.margin);
-  AtlasAndFaces made = compute(report, py::none(), [=](const Progress&) {
-    const TangentGraph& graph = solver->body->graph();
-    return make(
-        *solver,
-        at ? solver->body->vertices_near(*at) : farthest_points(graph, Vertex(0), std::min(charts, graph.size())),
-        refined ? &refine : nullptr, pack_options);
+  const Maker by(maker);
+  AtlasAndFaces made = compute(report, py::none(), [=](const Progress& progress) {
+    const TangentGraph& graph = by.body()->graph();
+    return make(by,
+                at ? by.body()->vertices_near(*at)
+                   : farthest_points(graph, Vertex(0), std::min(charts, graph.size()), progress),
+                refined ? &refine : nullptr, pack_options);
   });
   using namespace py::literals;
   std::vector<Index> rows;
   for (const Chart& chart : made.atlas.charts) {
-    const auto row = solver->body->row(made.atlas.sources[chart.source]);
+    const auto row = by.body()->row(made.atlas.sources[chart.source]);
     rows.push_back(row ? row->index : -1);
   }
   const auto corners = static_cast<py::ssize_t>(made.atlas.coordinates.size() / 2);

@@ -39,7 +39,27 @@ NAN = float("nan")
     (lambda s: ahm.extend(s, [0, 1], [1.0, NAN]), r"values\[1\]: nan is not finite"),
     (lambda s: ahm.transport(s, [0], [[1, 2, 3, 4]]), r"vectors: 3 numbers of space or 2 in a frame"),
     (lambda s: ahm.karcher_mean(s, [0, 700]), r"points\[1\]: row 700"),
-    (lambda s: ahm.karcher_mean(s, [0, (3, [0.2, 0.3, 0.5])]), r"points\[1\]: a point in a face cannot be used here"),
+    (lambda s: ahm.karcher_mean(s, [0, (3, [0.2, 0.3])]), r"points\[1\]: face 3 has 3 corners"),
+    (lambda s: ahm.log_map(s, ((0, 700), 0.5)), r"source: row 700 is out of range"),
+    (lambda s: ahm.log_map(s, (s.faces[0, :2], NAN)), r"source, t: nan is not finite"),
+    (lambda s: ahm.log_map(s, (s.faces[0, :2], 1.5)), r"source: t is 1.5 on an edge"),
+    (lambda s: ahm.log_map(s, ((0, int(np.argmin(s.points @ s.points[0]))), 0.5)), r"source: .*edge"),
+    (lambda s: ahm.cells(s, [((0, int(np.argmin(s.points @ s.points[0]))), 0.5)], method="exact"), r"sources\[0\]: .*edge"),
+    (lambda s: ahm.karcher_mean(s, [((0, int(np.argmin(s.points @ s.points[0]))), 0.5)]), r"points\[0\]: .*edge"),
+    (lambda s: ahm.log_map(ahm.PointCloud(s.points), ((0, 1), 0.5)), r"source: "),
+    (lambda s: ahm.LogMapSolver(s).log_maps(([[0, 1]], [0.5, 0.5])), r"sources: 1 edges, but 2 values of t"),
+    (lambda s: ahm.cells(s, [4, 5, 4]), r"sources\[2\]: row 4 is given twice"),
+    (lambda s: ahm.log_map(s, 0, method="exact", order=2), r"order: method 'exact' has no such option"),
+    (lambda s: ahm.log_map(ahm.LogMapSolver(s), 0, order=2), r"order: the solver has its options already"),
+    (lambda s: ahm.stroke(s, [0, 12], positions=[[0, 0]]), r"positions: shape \(2, 2\)"),
+    (lambda s: ahm.stroke(s, [0, 12], positions=[[0, 0], [0, NAN]]), r"positions\[1, 1\]: nan"),
+    (lambda s: ahm.stroke(s, [0, 12], positions=[[0, 0], [1, 0]], shape="circle"), r"positions: have a shape"),
+    (lambda s: ahm.stroke(s, [5]), r"points: "),
+    (lambda s: ahm.geodesic_path(s, [5]), r"stops: 1 point; a path needs at least 2"),
+    (lambda s: ahm.geodesic_paths(s, [0, 1], [2], pairwise=True), r"targets: 1 points for the 2 sources"),
+    (lambda s: ahm.geodesic_paths(s, [0], [2], fast=True), r"fast: goes with pairwise"),
+    (lambda s: ahm.local_maps(s, 0.2, u_axis=[1, 0, 0]), r"u_axis: goes with"),
+    (lambda s: ahm.ExactGeodesics(ahm.PointCloud(s.points)), r"faces"),
     (lambda s: ahm.trace(s, 0, [1, 0, 0], -1), r"length"),
     (lambda s: ahm.geodesic_path(s, 0, 99999), r"to: row 99999"),
     (lambda s: ahm.coverage(ahm.log_map(s, 0), 1.0, 0.0), r"spacing: 0.0 is not greater than 0"),
@@ -113,12 +133,15 @@ def test_random_arguments_give_results_or_errors(sphere, plane):
     """Anything may be refused by ValueError or TypeError; what is not is a result of the right shape."""
     rng = np.random.default_rng(7)
     solver, flat = ahm.LogMapSolver(sphere), ahm.TriangleMesh(*plane)
-    m = solver.log_map(0)
+    m, exact = solver.log_map(0), ahm.ExactGeodesics(flat)
     calls = [
         lambda x, y: solver.log_map(x, u_axis=y), lambda x, y: solver.log_maps(x, radius=y),
         lambda x, y: ahm.extend(solver, x, y), lambda x, y: ahm.transport(solver, x, y),
         lambda x, y: ahm.distance(flat, x, targets=y), lambda x, y: ahm.distance(flat, x, targets=y, method="exact"),
-        lambda x, y: ahm.geodesic_path(flat, x, y), lambda x, y: ahm.geodesic_paths(flat, x, y),
+        lambda x, y: ahm.geodesic_path(flat, x, y), lambda x, y: ahm.geodesic_loop(flat, x),
+        lambda x, y: ahm.geodesic_paths(flat, x, y, pairwise=True, fast=True), lambda x, y: ahm.local_stroke(flat, x, y),
+        lambda x, y: ahm.stroke(exact, x, positions=y), lambda x, y: ahm.cells(exact, x), lambda x, y: exact.log_maps(x, radius=y),
+        lambda x, y: ahm.atlas(exact, x, size=64), lambda x, y: exact.log_map((x, y)), lambda x, y: ahm.geodesic_paths(flat, x, y),
         lambda x, y: ahm.trace(flat, x, y), lambda x, y: ahm.cells(flat, x), lambda x, y: ahm.farthest_points(flat, y, x),
         lambda x, y: ahm.karcher_mean(solver, x, y), lambda x, y: ahm.stroke(solver, x), lambda x, y: m.sample(x),
         lambda x, y: m.inverse(x), lambda x, y: ahm.local_maps(flat, x, y), lambda x, y: ahm.local_maps(flat, 0.3, sources=x),
@@ -153,11 +176,44 @@ def test_objects_of_other_packages_are_taken_by_what_they_have(plane, sphere):
     assert isinstance(ahm.surface(Thing(points=V, cells_dict={**quads, "triangle": np.delete(F, [0, 120], axis=0)})), ahm.PolygonMesh)
     assert isinstance(ahm.surface(Thing(points=sphere.points)), ahm.PointCloud)
     assert isinstance(ahm.surface(Thing(points=sphere.points, normals=sphere.normals)), ahm.PointCloud)
-    tensor = Thing(numpy=lambda: sphere.points.astype(np.float32))
-    assert isinstance(ahm.surface(Thing(point=Thing(positions=tensor))), ahm.PointCloud)
+    for kind in ("tetra", "hexahedron"):
+        with pytest.raises(ValueError, match=f"'{kind}' are no faces"):
+            ahm.surface(Thing(points=V, cells_dict={"triangle": F, kind: np.array([[0, 1, 2, 3]])}))
     assert ahm.surface(sphere) is sphere
     with pytest.raises(TypeError, match="no points"):
         ahm.surface(3)
+
+
+class Tensor:
+    """As those of Open3D: no `__array__`, and no truth value."""
+
+    def __init__(self, values):
+        self.values = values
+
+    def numpy(self):
+        return self.values
+
+    def __len__(self):
+        return len(self.values)
+
+    def __bool__(self):
+        raise RuntimeError("a tensor of many elements has no truth value")
+
+
+def test_tensors_are_arrays(sphere):
+    class Columns:
+        def __init__(self, **given):
+            self.__dict__.update(given)
+
+        def __getattr__(self, name):
+            raise KeyError(name)
+
+    points, normals = Tensor(sphere.points.astype(np.float32)), Tensor(sphere.normals)
+    assert repr(ahm.surface(Columns(point=Columns(positions=points)))) == "<ahm.PointCloud: 642 points>"
+    assert "with normals" in repr(ahm.surface(Columns(point=Columns(positions=points, normals=normals))))
+    mesh = Columns(vertex=Columns(positions=points), triangle=Columns(indices=Tensor(sphere.faces.astype(np.int64))))
+    assert repr(ahm.surface(mesh)) == repr(sphere)
+    assert repr(ahm.TriangleMesh(points, Tensor(sphere.faces))) == repr(sphere)
 
 
 def test_files_are_read_as_what_they_hold(tmp_path):

@@ -23,12 +23,28 @@ def test_examples_run(path):
     assert result.returncode == 0, result.stderr
 
 
+def test_the_benchmark_runs():
+    result = subprocess.run([sys.executable, str(HOME / "examples/python/benchmark.py"), "--vertices", "300"], capture_output=True,
+                            text=True, timeout=600)
+    assert result.returncode == 0 and "over the same memory: True" in result.stdout, result.stderr
+
+
 def test_pictures_are_drawn_where_matplotlib_is_there(tmp_path):
     pytest.importorskip("matplotlib")
     picture = tmp_path / "map.png"
     result = subprocess.run([sys.executable, str(EXAMPLES[0]), "--size", "1000", "--save", str(picture)],
                             capture_output=True, text=True, timeout=600)
     assert result.returncode == 0 and picture.read_bytes()[:4] == b"\x89PNG", result.stderr
+
+
+def test_the_tour_runs_and_has_its_pictures(tmp_path):
+    pytest.importorskip("matplotlib")
+    result = subprocess.run([sys.executable, str(HOME / "examples/python/run_page.py"), "--level", "4", "--pictures", str(tmp_path)],
+                            capture_output=True, text=True, timeout=900)
+    assert result.returncode == 0, result.stderr
+    pictures = {path.name for path in tmp_path.iterdir()}
+    text = (HOME / "docs/python_tour.md").read_text(encoding="utf-8")
+    assert pictures == {path.name for path in (HOME / "docs/images").glob("python_*.png")} and len(pictures) == text.count("](images/")
 
 
 def test_the_page_for_python_is_true(tmp_path, monkeypatch):

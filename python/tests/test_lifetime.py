@@ -77,7 +77,12 @@ def test_other_threads_run_during_a_computation(big):
 INTERRUPTED = {
     "factorization": lambda mesh, arrays: ahm.LogMapSolver(mesh),
     "exact map": lambda mesh, arrays: ahm.log_map(mesh, 0, method="exact"),
+    "exact maps": lambda mesh, arrays: ahm.ExactGeodesics(mesh).log_maps([0, 1, 2, 3]),
     "local maps": lambda mesh, arrays: ahm.local_maps(mesh, 20.0),
+    "atlas": lambda mesh, arrays: ahm.atlas(mesh, charts=12),
+    "exact atlas": lambda mesh, arrays: ahm.atlas(mesh, charts=12, method="exact"),
+    "paths": lambda mesh, arrays: ahm.geodesic_paths(mesh, [0, 1, 2], [39999] * 3, pairwise=True),
+    "cloud": lambda mesh, arrays: ahm.PointCloud(arrays[0]),
     "spread points": lambda mesh, arrays: ahm.farthest_points(mesh, 8000),
     "building": lambda mesh, arrays: ahm.TriangleMesh(*arrays),
 }

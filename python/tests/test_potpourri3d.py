@@ -1,5 +1,7 @@
 """The names of potpourri3d, each against a closed form, vectors through the frames that come with them."""
 
+import inspect
+
 import numpy as np
 import pytest
 
@@ -92,6 +94,117 @@ def test_paths_and_traces_are_straight(flat):
     np.testing.assert_allclose(tracer.trace_geodesic_from_face(3, [0.2, 0.3, 0.5], [0.7, 0.9, 0])[-1], start + [0.7, 0.9, 0], atol=1e-9)
 
 
+def test_paths_through_vertices_are_pulled_taut_and_loops_close(flat):
+    paths = pp3d.EdgeFlipGeodesicSolver(*flat)
+    poly = paths.find_geodesic_path_poly([0, 14, 179])
+    assert np.linalg.norm(np.diff(poly, axis=0), axis=1).sum() == pytest.approx(np.hypot(7, 5.5))
+    np.testing.assert_allclose(poly[[0, -1]], flat[0][[0, 179]], atol=1e-12)
+    V, F = ahm.shapes.torus(48, 24)
+    loop = pp3d.EdgeFlipGeodesicSolver(V, F).find_geodesic_loop([12, 24 * 16 + 12, 24 * 32 + 12])
+    assert np.linalg.norm(np.diff(loop, axis=0), axis=1).sum() == pytest.approx(2 * 48 * 0.6 * np.sin(np.pi / 48))
+    np.testing.assert_allclose(loop[0], loop[-1], atol=1e-12)
+    with pytest.raises(ValueError, match="no path"):
+        pp3d.EdgeFlipGeodesicSolver(np.concatenate([V, V + 9]), np.concatenate([F, F + len(V)])).find_geodesic_path(0, len(V))
+
+
+def test_batches_are_the_calls_one_by_one(solvers, flat):
+    V, F = flat
+    for name in ("distance", "polygons", "cloud"):
+        found = solvers[name].compute_distances([3, 99])
+        assert found.shape == (2, 180)
+        np.testing.assert_array_equal(found[1], solvers[name].compute_distance(99))
+    paths, tracer = pp3d.EdgeFlipGeodesicSolver(V, F), pp3d.GeodesicTracer(V, F)
+    for path, ends in zip(paths.find_geodesic_paths([0, 5], [179, 7]), ((0, 179), (5, 7))):
+        np.testing.assert_allclose(path, paths.find_geodesic_path(*ends), atol=1e-12)
+    for curve, start in zip(tracer.trace_geodesics_from_vertices([0, 16], [[1, 0.5, 0], [0.3, 0.3, 0]]), (0, 16)):
+        np.testing.assert_allclose(curve[0], V[start], atol=1e-12)
+
+
+@pytest.fixture(scope="module")
+def balls():
+    V, F = ahm.shapes.sphere(4)
+    return V, {"mesh": pp3d.MeshVectorHeatSolver(V, F), "polygons": pp3d.PolygonMeshHeatSolver(V, F.tolist()),
+               "cloud": pp3d.PointCloudHeatSolver(V)}
+
+
+@pytest.mark.parametrize("name", ["mesh", "polygons", "cloud"])
+def test_vectors_in_the_gauge_are_those_of_the_sphere(balls, name):
+    """Log map and transport of the unit sphere in space, found through the frames that come with the solver."""
+    V, solver = balls[0], balls[1][name]
+    x, y, n = solver.get_tangent_frames()
+    for a, b in ((x, x), (y, y), (n, n)):
+        np.testing.assert_allclose(np.einsum("ij,ij->i", a, b), 1, atol=1e-12)
+    assert np.abs(np.einsum("ij,ij->i", n, V)).min() > 0.999 and np.abs(np.einsum("ij,ij->i", x, V)).max() < 0.05
+    p = V[7]
+    angle = np.arccos(np.clip(V @ p, -1, 1))
+    near = (angle > 0) & (angle < 1)
+    away = V - np.outer(V @ p, p)
+    log = away * (angle / np.maximum(np.linalg.norm(away, axis=1), 1e-30))[:, None]
+    found = in_space(solver, solver.compute_log_map(7), np.full(len(V), 7))
+    assert np.linalg.norm(found - log, axis=1)[near].max() < 0.02
+    start = np.cross(p, [0, 0, 1.0])
+    start /= np.linalg.norm(start)
+    carried = in_space(solver, solver.transport_tangent_vector(7, [x[7] @ start, y[7] @ start]))
+    axis = np.cross(p, V)  # Parallel transport along a great circle is the turn about its axis.
+    along = axis / np.maximum(np.linalg.norm(axis, axis=1), 1e-30)[:, None]
+    turned = start * np.cos(angle)[:, None] + np.cross(along, start) * np.sin(angle)[:, None] + along * (
+        along @ start * (1 - np.cos(angle)))[:, None]
+    assert np.linalg.norm(carried - turned, axis=1)[near].max() < 0.05
+
+
+@pytest.mark.parametrize("make", [pp3d.MeshHeatMethodDistanceSolver, lambda V, F: pp3d.PolygonMeshHeatSolver(V, F.tolist()),
+                                  lambda V, F: pp3d.PointCloudHeatSolver(V)])
+def test_distances_on_the_sphere_are_great_circles(balls, make):
+    V, F = ahm.shapes.sphere(4)
+    angle = np.arccos(np.clip(V @ V[7], -1, 1))
+    assert np.abs(make(V, F).compute_distance(7) - angle)[angle < 2.5].max() < 0.07  # an edge
+
+
+# name: parameters after self, with their defaults, as that package has them
+SIGNATURES = {
+    "MeshHeatMethodDistanceSolver": "V F t_coef=1.0 use_robust=True", "MeshHeatMethodDistanceSolver.compute_distance": "v_ind",
+    "MeshHeatMethodDistanceSolver.compute_distance_multisource": "v_inds", "compute_distance": "V F v_ind",
+    "compute_distance_multisource": "V F v_inds", "MeshVectorHeatSolver": "V F t_coef=1.0 use_intrinsic_delaunay=True",
+    "MeshVectorHeatSolver.extend_scalar": "v_inds values", "MeshVectorHeatSolver.get_tangent_frames": "",
+    "MeshVectorHeatSolver.get_connection_laplacian": "", "MeshVectorHeatSolver.transport_tangent_vector": "v_ind vector",
+    "MeshVectorHeatSolver.transport_tangent_vectors": "v_inds vectors",
+    "MeshVectorHeatSolver.compute_log_map": "v_ind strategy='AffineLocal'", "PolygonMeshHeatSolver": "V F t_coef=1.0",
+    "PolygonMeshHeatSolver.compute_distance": "v_inds", "PolygonMeshHeatSolver.extend_scalar": "v_inds values",
+    "PolygonMeshHeatSolver.get_tangent_frames": "", "PolygonMeshHeatSolver.transport_tangent_vectors": "v_inds vectors",
+    "PolygonMeshHeatSolver.compute_signed_distance": "*given **options", "EdgeFlipGeodesicSolver": "V F t_coef=1.0",
+    "EdgeFlipGeodesicSolver.find_geodesic_path": "v_start v_end max_iterations=None max_relative_length_decrease=None",
+    "EdgeFlipGeodesicSolver.find_geodesic_path_poly": "v_list max_iterations=None max_relative_length_decrease=None",
+    "EdgeFlipGeodesicSolver.find_geodesic_loop": "v_list max_iterations=None max_relative_length_decrease=None",
+    "GeodesicTracer": "V F t_coef=1.0",
+    "GeodesicTracer.trace_geodesic_from_vertex": "start_vert direction_xyz max_iterations=None",
+    "GeodesicTracer.trace_geodesic_from_face": "start_face bary_coords direction_xyz max_iterations=None",
+    "PointCloudHeatSolver": "P t_coef=1.0", "PointCloudHeatSolver.compute_distance": "p_ind",
+    "PointCloudHeatSolver.compute_distance_multisource": "p_inds", "PointCloudHeatSolver.compute_log_map": "p_ind",
+    "PointCloudHeatSolver.extend_scalar": "p_inds values", "PointCloudHeatSolver.transport_tangent_vector": "p_ind vector",
+    "PointCloudHeatSolver.transport_tangent_vectors": "p_inds vectors", "PointCloudHeatSolver.get_tangent_frames": "",
+    "PointCloudHeatSolver.compute_signed_distance": "*given **options",
+    "face_areas": "V F", "vertex_areas": "V F", "cotan_laplacian": "V F denom_eps=0.0", "edges": "V F", "read_mesh": "filename",
+    "read_polygon_mesh": "filename", "read_point_cloud": "filename", "write_point_cloud": "V filename",
+    "write_mesh": "V F filename UV_coords=None UV_type=None",
+}
+
+
+@pytest.mark.parametrize("name", SIGNATURES)
+def test_signatures_are_those_that_scripts_use(name):
+    thing = pp3d
+    for part in name.split("."):
+        thing = getattr(thing, part)
+    wanted = SIGNATURES[name].split()
+    found = []
+    for p in inspect.signature(thing).parameters.values():
+        if p.kind is p.KEYWORD_ONLY or p.name == "self":
+            continue
+        stars = {p.VAR_POSITIONAL: "*", p.VAR_KEYWORD: "**"}.get(p.kind, "")
+        found.append(stars + p.name + ("" if p.default is p.empty else f"={p.default!r}"))
+    # A further parameter, as `strategy` of a cloud's log map, hinders no script.
+    assert found[: len(wanted)] == wanted and all("=" in more for more in found[len(wanted) :])
+
+
 def test_files_come_back_as_they_were_written(flat, tmp_path):
     V, F = flat
     for ending in ("obj", "off", "ply"):
@@ -109,8 +222,9 @@ def test_files_come_back_as_they_were_written(flat, tmp_path):
 def test_what_is_not_there_says_so_and_indices_are_checked(solvers, flat):
     V, F = flat
     paths = pp3d.EdgeFlipGeodesicSolver(V, F)
-    for call in (lambda: solvers["cloud"].compute_signed_distance([[0, 1]], V), lambda: paths.find_geodesic_loop([0, 1, 2]),
-                 lambda: paths.find_geodesic_path_poly([0, 1, 2]), lambda: paths.find_geodesic_path(0, 5, max_iterations=3),
+    for call in (lambda: solvers["cloud"].compute_signed_distance([[0, 1]], V), lambda: paths.find_geodesic_loop([0, 1, 2], 9),
+                 lambda: solvers["polygons"].compute_signed_distance([[0, 1]], level_set_constraint="ZeroSet"),
+                 lambda: paths.find_geodesic_path_poly([0, 1, 2], max_relative_length_decrease=0.1), lambda: paths.find_geodesic_path(0, 5, max_iterations=3),
                  lambda: pp3d.write_mesh(V, F, "x.vtk")):
         with pytest.raises(NotImplementedError):
             call()

@@ -49,11 +49,12 @@ def test_everything_public_has_types_and_text():
             signature = inspect.signature(thing)
             assert signature.return_annotation is not inspect.Signature.empty, name
             assert all(p.annotation is not inspect.Parameter.empty for p in signature.parameters.values()), name
-            assert ">>>" in thing.__doc__ or name in ("read", "distance_and_nearest"), f"{name} has no example"
+            assert ">>>" in thing.__doc__, f"{name} has no example"
         if inspect.isclass(thing) and thing.__module__.startswith("ahm."):
             for member, value in vars(thing).items():
                 if not member.startswith("_") and (inspect.isfunction(value) or isinstance(value, property)):
                     assert value.__doc__, f"{name}.{member}"
+                    assert ">>>" in value.__doc__ or isinstance(value, property), f"{name}.{member} has no example"
 
 
 def test_all_lists_everything_that_is_public():

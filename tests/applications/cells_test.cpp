@@ -14,6 +14,7 @@
 #include "ahm/pointcloud/point_cloud_surface.hpp"
 #include "ahm/testing/flat_graphs.hpp"
 #include "ahm/testing/graph_changes.hpp"
+#include "ahm/testing/triangle_meshes.hpp"
 #include "ahm/trimesh/triangle_mesh_surface.hpp"
 
 namespace ahm::test {
@@ -111,6 +112,27 @@ TEST(Cells, OfALineOfAnyLengthMeetHalfWay) {
   const auto label = voronoi_cells(graph, std::array{Vertex{0}, Vertex(n - 1)}).labels;
   for (Index i = 0; i < n; ++i)
     if (i != n / 2) EXPECT_EQ(label[i], i < n / 2 ? 0 : 1);
+}
+
+TEST(FarthestPoints, AreExactlyTheFarthestOverFlatFaces) {
+  // Two components, so that some are infinitely far at first.
+  Mesh mesh = torus(300);
+  const Mesh ball = icosphere(4);
+  const Index n = mesh.vertices();
+  for (const Vec3& p : ball.positions) mesh.positions.push_back({p[0] + 5, p[1], p[2]});
+  for (const Triangle& f : ball.faces) mesh.faces.push_back({f[0] + n, f[1] + n, f[2] + n});
+  const auto surface = trimesh::TriangleMeshSurface::build(mesh.positions, mesh.faces);
+  const ExactGeodesics geodesics(surface);
+  const auto chosen = farthest_points(geodesics, Vertex{5}, 15);
+  ASSERT_EQ(chosen.size(), 15U);
+  EXPECT_EQ(chosen[0], Vertex{5});
+  EXPECT_GE(chosen[1].index, n);
+  for (std::size_t k = 2; k < chosen.size(); ++k) {
+    const VoronoiCells before = voronoi_cells(geodesics, std::span(chosen).first(k));
+    EXPECT_EQ(before.distances[chosen[k].index], *std::max_element(before.distances.begin(), before.distances.end()));
+  }
+  EXPECT_THROW(farthest_points(geodesics, Vertex{-1}, 2), InvalidArgument);
+  EXPECT_THROW(farthest_points(geodesics, Vertex{0}, surface.graph().size() + 1), InvalidArgument);
 }
 
 TEST(FarthestPoints, AreSpreadAsAGreedyCoverOfThePlane) {

@@ -104,6 +104,39 @@ TEST(SurfaceCurve, FollowsTheFacesBetweenFewPoints) {
   for (Index r : {3, 200}) EXPECT_NEAR(map.coordinates(mesh.vertex(Row(r)))[1], 0, 1e-9);
 }
 
+TEST(SurfaceCurve, TellsWhichLinesAreNoPaths) {
+  // Two squares beside each other: a line within each, and one between them.
+  const Mesh square = flat_square(12);
+  std::vector<Vec3> points = square.positions;
+  std::vector<Triangle> faces = square.faces;
+  for (const Vec3& p : square.positions) points.push_back({p[0] + 2, p[1], p[2]});
+  for (const Triangle& f : square.faces)
+    faces.push_back({f[0] + square.vertices(), f[1] + square.vertices(), f[2] + square.vertices()});
+  const auto at = [&](Index row) { return CurvePoint(SurfacePoint(Row(row))); };
+  const std::vector<CurvePoint> across{at(13), at(square.vertices() - 14), at(square.vertices() + 13),
+                                       at(2 * square.vertices() - 14)};
+  const SurfaceCurve torn = draw_curve(trimesh::TriangleMeshSurface::build(points, faces), across);
+  EXPECT_EQ(torn.straight, 1);
+  EXPECT_EQ(torn.straight_reason, "the surface does not connect their ends");
+  const SurfaceCurve whole = draw_curve(trimesh::TriangleMeshSurface::build(square.positions, square.faces),
+                                        std::vector<CurvePoint>{across[0], across[1]});
+  EXPECT_EQ(whole.straight, 0);
+  EXPECT_EQ(whole.straight_reason, "");
+  // A cloud has no faces: there, straight lines are the rule.
+  EXPECT_EQ(draw_curve(pointcloud::PointCloudSurface::build(square_points()), std::vector{at(17), at(200)}).straight,
+            0);
+  // A square of quadrilaterals one of which is twisted.
+  std::vector<Vec3> bent{{0, 0, 0}, {1, 0, 0}, {1, 1, 0.5}, {0, 1, 0}, {2, 0, 0}, {2, 1, 0},
+                         {3, 0, 0}, {3, 1, 0}, {4, 0, 0},   {4, 1, 0}, {5, 0, 0}, {5, 1, 0}};
+  const std::vector<Index> corners{0, 1, 2, 3, 1, 4, 5, 2, 4, 6, 7, 5, 6, 8, 9, 7, 8, 10, 11, 9};
+  const std::vector<Offset> begin{0, 4, 8, 12, 16, 20};
+  const SurfaceCurve twisted = draw_curve(
+      polymesh::PolygonMeshSurface::build(bent, begin, corners, {.discretization = polymesh::Discretization::polygons}),
+      std::vector{at(0), at(11)});
+  EXPECT_EQ(twisted.straight, 1);
+  EXPECT_NE(twisted.straight_reason, "");
+}
+
 TEST(SurfaceCurve, SaysWhatIsWrongWithACurve) {
   const Mesh band = moebius_mesh(80, 6);
   const auto surface = trimesh::TriangleMeshSurface::build(band.positions, band.faces);

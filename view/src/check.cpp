@@ -64,6 +64,10 @@ void check_map(const Scene& scene, Pattern pattern) {
                  : optional(scene.distance.size(), "distance");
   optional(scene.quality.size(), "quality");
   optional(scene.normals.size(), "normals");
+  optional(scene.colors.size(), "colors");
+  optional(scene.told.distance.size(), "told.distance");
+  optional(scene.told.spread.size(), "told.spread");
+  optional(scene.told.status.size(), "told.status");
 }
 
 }  // namespace

@@ -10,6 +10,15 @@
 
 namespace ahm::view {
 
+inline constexpr std::size_t splat_ring = 6;  ///< neighbours a disc reaches, so that discs overlap
+
+/// Where a drawn triangle is from.
+struct TriangleOrigin {
+  Index face;
+  std::array<std::uint16_t, 3> corners;
+  std::uint16_t sides;  ///< of the face
+};
+
 /// One entry per vertex in every array. Positions in the camera's scene coordinates.
 struct Drawable {
   std::vector<Eigen::Vector3f> positions;
@@ -20,6 +29,11 @@ struct Drawable {
   std::vector<float> known;              ///< 1, or 0 where there is no coordinate
   std::vector<float> radii;              ///< of the disc that stands for a point; clouds only
   std::vector<std::uint32_t> triangles;  ///< three per triangle; meshes only
+  std::vector<Index> points;             ///< of the scene, that the vertices stand for
+  /// One per triangle where the map is torn nowhere.
+  std::vector<TriangleOrigin> origins;
+  /// The points nearest to a point, itself where there are fewer; clouds only.
+  std::vector<std::array<std::uint32_t, splat_ring>> rings;
   /// Change of the first two values per unit of length along the disc; clouds only, empty: they do not change.
   std::vector<std::array<Eigen::Vector3f, 2>> gradients;
   /// Discs that overlap are blended where their values differ by less than this many of their radii.

@@ -8,6 +8,7 @@
 #include "ahm/pointcloud/plane_fit.hpp"
 #include "ahm/util/parallel.hpp"
 #include "drawable.hpp"
+#include "splat_gradient.hpp"
 
 namespace ahm::view {
 namespace {
@@ -15,7 +16,7 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-constexpr std::size_t ring_size = 6;  // neighbours a disc reaches, so that discs overlap
+constexpr std::size_t ring_size = splat_ring;
 constexpr std::size_t neighbours_for_normal = 12;
 
 struct Local {
@@ -58,6 +59,7 @@ class Splatter {
   Drawable make(unsigned threads) {
     const std::size_t n = points_.size();
     out_.positions.resize(n), out_.normals.resize(n), out_.values.resize(n), out_.known.resize(n);
+    out_.points = shown_;
     if (paint_.pattern != Pattern::none) out_.gradients.resize(n);
     out_.values_per_length = static_cast<float>(4 * rings_per_length_);
     std::vector<Local> locals(n);
@@ -66,6 +68,16 @@ class Splatter {
       for (Offset k = begin; k < end; ++k) locals[k] = look_around(*search, static_cast<std::size_t>(k));
     });
     out_.radii = limited_radii(locals);
+    for (const Local& local : locals) out_.rings.push_back(local.ring);
+    if (paint_.pattern == Pattern::none) return std::move(out_);
+    const auto value = [&](std::size_t k) { return paint_.uv[shown_[k]]; };
+    const auto is_known = [&](std::size_t k) { return paint_.known[shown_[k]] != 0; };
+    const auto position = [&](std::size_t k) { return as_vector(points_[k]); };
+    const SplatGradient gradient{out_.normals, out_.rings, rings_per_length_, paint_.pattern == Pattern::cells};
+    detail::parallel_chunks(static_cast<Offset>(n), 4096, threads, [&](Offset begin, Offset end) {
+      for (Offset k = begin; k < end; ++k)
+        out_.gradients[k] = gradient(static_cast<std::size_t>(k), position, value, is_known);
+    });
     return std::move(out_);
   }
 
@@ -99,32 +111,7 @@ class Splatter {
     local.ring.fill(static_cast<std::uint32_t>(k));
     for (std::size_t r = 1; r < used; ++r) local.ring[r - 1] = static_cast<std::uint32_t>(index[r]);
     if (used > 0) local.radius = static_cast<float>(std::sqrt(squared[used - 1]));
-    if (!out_.gradients.empty()) out_.gradients[k] = gradient(k, std::span(index).first(used));
     return local;
-  }
-
-  /// Least squares over the neighbours on the same side of a cut, in the plane of the disc. Zero where they do not
-  /// span it.
-  std::array<Vector3f, 2> gradient(std::size_t k, std::span<const Index> ring) const {
-    const auto own = static_cast<std::size_t>(shown_[k]);
-    const Vector3d normal = out_.normals[k].cast<double>();
-    if (paint_.known[own] == 0 || !(normal.squaredNorm() > 0)) return {Vector3f::Zero(), Vector3f::Zero()};
-    const Vector3d x = normal.unitOrthogonal(), y = normal.cross(x);
-    Eigen::Matrix2d square = Eigen::Matrix2d::Zero(), right = Eigen::Matrix2d::Zero();
-    for (const Index j : ring) {
-      const auto other = static_cast<std::size_t>(shown_[j]);
-      const Vector3d d = as_vector(points_[j]) - as_vector(points_[k]);
-      const Eigen::Vector2d change = paint_.uv[other] - paint_.uv[own];
-      if (paint_.known[other] == 0 || change.norm() > 5 * rings_per_length_ * d.norm()) continue;
-      if (paint_.pattern == Pattern::cells && change.x() != 0) continue;
-      const Eigen::Vector2d flat(d.dot(x), d.dot(y));
-      square += flat * flat.transpose();
-      right += flat * change.transpose();
-    }
-    const double trace = square.trace();
-    if (!(square.determinant() > 1e-3 * trace * trace)) return {Vector3f::Zero(), Vector3f::Zero()};
-    const Eigen::Matrix2d g = square.inverse() * right;  // column c: of value c, along x and y
-    return {(g(0, 0) * x + g(1, 0) * y).cast<float>(), (g(0, 1) * x + g(1, 1) * y).cast<float>()};
   }
 
   const Scene& scene_;

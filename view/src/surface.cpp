@@ -22,8 +22,8 @@ Vector3d area_vector(const std::vector<Vector3d>& points, const Triangle& t) {
 
 /// A fan from the corner whose triangles all look the way the polygon does, so that most non-convex polygons come out
 /// whole.
-void triangulate(const std::vector<Vector3d>& points, std::span<const Index> polygon,
-                 std::vector<Triangle>& triangles) {
+void triangulate(const std::vector<Vector3d>& points, std::size_t face, std::span<const Index> polygon,
+                 std::vector<Triangle>& triangles, std::vector<TriangleOrigin>& origins) {
   const std::size_t n = polygon.size();
   const auto fan = [&](std::size_t apex, std::size_t k) {
     return Triangle{polygon[apex], polygon[(apex + k) % n], polygon[(apex + k + 1) % n]};
@@ -42,7 +42,13 @@ void triangulate(const std::vector<Vector3d>& points, std::span<const Index> pol
       best = apex;
     }
   }
-  for (std::size_t k = 1; k + 1 < n; ++k) triangles.push_back(fan(best, k));
+  const auto corner = [n](std::size_t k) { return static_cast<std::uint16_t>(k % n); };
+  for (std::size_t k = 1; k + 1 < n; ++k) {
+    triangles.push_back(fan(best, k));
+    origins.push_back({static_cast<Index>(face),
+                       {corner(best), corner(best + k), corner(best + k + 1)},
+                       static_cast<std::uint16_t>(n)});
+  }
 }
 
 /// Collects vertices; a vertex asked for again with the same normal is shared.
@@ -59,12 +65,13 @@ class SurfaceBuilder {
       const std::span<const Index> polygon = scene.face_vertices.subspan(begin, end - begin);
       bool usable = polygon.size() >= 3;
       for (const Index i : polygon) usable = usable && points_[i].allFinite();
-      if (usable) triangulate(points_, polygon, triangles_);
+      if (usable) triangulate(points_, f, polygon, triangles_, origins_);
     }
   }
 
   Drawable build() {
     find_corners();
+    out_.origins = std::move(origins_);
     shared_.resize(points_.size());
     for (std::size_t t = 0; t < triangles_.size(); ++t) {
       std::array<std::uint32_t, 3> vertex;
@@ -104,7 +111,8 @@ class SurfaceBuilder {
     return sum.norm() > 0 ? sum.normalized() : own;
   }
 
-  std::uint32_t add(const Vector3d& position, const Vector3d& normal, const Vector3d& value, float known) {
+  std::uint32_t add(Index point, const Vector3d& position, const Vector3d& normal, const Vector3d& value, float known) {
+    out_.points.push_back(point);
     out_.positions.push_back(position.cast<float>());
     out_.normals.push_back(normal.cast<float>());
     out_.values.push_back(value.cast<float>());
@@ -117,7 +125,7 @@ class SurfaceBuilder {
     for (const std::uint32_t candidate : shared_[i])
       if ((out_.normals[candidate].cast<double>() - normal).norm() < 1e-3) return candidate;
     const Vector2d& uv = paint_.uv[i];
-    shared_[i].push_back(add(points_[i], normal, {uv.x(), uv.y(), paint_.quality[i]}, paint_.known[i]));
+    shared_[i].push_back(add(point, points_[i], normal, {uv.x(), uv.y(), paint_.quality[i]}, paint_.known[i]));
     return shared_[i].back();
   }
 
@@ -170,7 +178,7 @@ class SurfaceBuilder {
         Vector3d position, normal;
         const double shared = mean(corners, position, normal);
         const Vector2d uv = with_distance(own.head<2>(), shared);
-        return add(position, normal, {uv.x(), uv.y(), own.z()}, 1);
+        return add(out_.points[vertex[k]], position, normal, {uv.x(), uv.y(), own.z()}, 1);
       };
       const std::uint32_t a = part({k, next}), centre = part({0, 1, 2}), b = part({k, previous});
       out_.triangles.insert(out_.triangles.end(), {vertex[k], a, centre, vertex[k], centre, b});
@@ -181,6 +189,7 @@ class SurfaceBuilder {
   double rings_per_length_;  ///< how far the map may move per unit of length where it is an isometry
   std::vector<Vector3d> points_;
   std::vector<Triangle> triangles_;
+  std::vector<TriangleOrigin> origins_;
   std::vector<Vector3d> areas_;
   std::vector<std::size_t> corner_begin_, triangle_of_corner_;
   std::vector<std::vector<std::uint32_t>> shared_;

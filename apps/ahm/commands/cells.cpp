@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "cli/numbers.hpp"
 #include "cli/option_adders.hpp"
@@ -74,12 +75,15 @@ void move_to_rows(const Surface& surface, std::vector<Vertex>& vertices) {
   }
 }
 
-std::vector<Vertex> spread(const CellsOptions& options, const Input& input, Journal& journal) {
+/// @param geodesics  none: by unfolding the graph
+std::vector<Vertex> spread(const CellsOptions& options, const Input& input,
+                           const std::optional<ExactGeodesics>& geodesics, Journal& journal) {
   journal.start("spread");
   if (const Index size = input.graph().size(); options.count > size)
     throw InvalidArgument(fmt::format("--count {}: the graph has {} vertices only", options.count, size));
   const Vertex first = options.start ? vertex_at(input, *options.start, "--start") : Vertex{0};
-  std::vector<Vertex> result = farthest_points(input.graph(), first, options.count);
+  std::vector<Vertex> result = geodesics ? farthest_points(*geodesics, first, options.count, journal.progress())
+                                         : farthest_points(input.graph(), first, options.count, journal.progress());
   move_to_rows(input.surface(), result);
   return result;
 }
@@ -171,12 +175,12 @@ void run(const CellsOptions& options) {
   const Input input = open_input(options.input, journal);
   const TangentGraph& graph = input.graph();
   std::vector<Vertex> sources = vertices_of(input, options.sources);
-  if (options.count > 0) sources = spread(options, input, journal);
+  std::optional<ExactGeodesics> geodesics;
+  if (options.solve.method == Method::exact) geodesics.emplace(input.surface());
+  if (options.count > 0) sources = spread(options, input, geodesics, journal);
 
   journal.start("cells");
-  const VoronoiCells cells = options.solve.method == Method::heat
-                                 ? voronoi_cells(graph, sources)
-                                 : voronoi_cells(ExactGeodesics(input.surface()), sources);
+  const VoronoiCells cells = geodesics ? voronoi_cells(*geodesics, sources) : voronoi_cells(graph, sources);
   const CellRows rows = rows_of(input, cells);
   comment_on_statuses(rows.status, options.input.path, journal);
 

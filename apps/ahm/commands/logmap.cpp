@@ -83,19 +83,15 @@ double radius_of_local(const LogmapOptions& options) {
   return *options.solve.radius;
 }
 
-void write_results(const PlacedSource& source, const RowLogMap& rows, const std::vector<double>& quality,
-                   const std::vector<Vec3>& away, Results& results, Journal& journal) {
+void write_results(const LogmapOptions& options, const PlacedSource& source, const RowLogMap& rows,
+                   const std::vector<double>& quality, const std::vector<Vec3>& away, Results& results,
+                   Journal& journal) {
   io::Table table = results.table();
-  table.add("u", rows.u);
-  table.add("v", rows.v);
-  table.add("distance", rows.distance);
-  table.add("angle", rows.angle);
-  table.add("status", rows.status);
-  table.add("quality", quality);
-  table.add("spread", rows.spread);
-  if (!rows.error_estimate.empty()) table.add("error_estimate", rows.error_estimate);
+  add_map(table, rows, quality);
   if (!away.empty()) table.add({"gx", "gy", "gz"}, away);
-  results.write(table, results.scene(rows, quality, source), journal);
+  view::Scene scene = results.scene(rows, quality, source);
+  scene.told.source = to_string(options.source.spec);
+  results.write(table, scene, journal);
 }
 
 void check_corners(const LogmapOptions& options) {
@@ -155,7 +151,7 @@ void run(const LogmapOptions& options) {
   Results results(options.output, input, options.input);
   const std::vector<Vec3> away =
       options.gradient ? distance_gradients(input.surface(), map, rows) : std::vector<Vec3>();
-  write_results(source, rows, quality, away, results, journal);
+  write_results(options, source, rows, quality, away, results, journal);
   if (!options.corners.empty()) write_corners(options.corners, input.surface(), map);
   report({options.input.path, options.source.spec, options.solve, input, solved.solver, source, map, rows, quality},
          options.output, journal);

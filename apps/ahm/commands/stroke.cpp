@@ -85,6 +85,11 @@ LogMap solve(const SolveOptions& options, const Input& input, const SurfaceCurve
 }
 
 void comment_on_curve(const SurfaceCurve& curve, double edge, Journal& journal) {
+  if (curve.straight > 0)
+    journal.add_warning(fmt::format(
+        "--curve: {} of the lines between its points {} straight in space and moved to the surface, no shortest path "
+        "over the faces: {}",
+        curve.straight, curve.straight == 1 ? "is" : "are", curve.straight_reason));
   if (curve.gap > 2 * edge)
     journal.add_warning(fmt::format(
         "--curve: the straight lines between its points leave the surface by up to {:.4g}, {:.0f} mean edge lengths; "
@@ -130,7 +135,9 @@ void report(const StrokeCommandOptions& options, const Input& input, const Surfa
                 {"shape", !options.positions.empty()                   ? "positions"
                           : options.shape.shape == StrokeShape::circle ? "circle"
                                                                        : "line"},
-                {"largest_gap", curve.gap}};
+                {"largest_gap", curve.gap},
+                {"straight_lines", curve.straight}};
+  if (curve.straight > 0) j["curve"]["straight_reason"] = curve.straight_reason;
   j["n"] = rows.status.size();
   j["mapped"] = mapped;
   j["largest_distance"] = farthest;

@@ -70,14 +70,27 @@ Results::~Results() {
     if (!is_stream(path)) std::filesystem::remove(path, ignored);
 }
 
-io::Table Results::table() const {
+io::Table table_of(const io::Geometry& input, const std::vector<Vec3>& normals) {
   io::Table table{.title = "logarithmic map by libahm"};
-  table.add({"x", "y", "z"}, input_.points);
-  if (!normals_.empty()) table.add({"nx", "ny", "nz"}, normals_).in_csv = false;
-  for (const io::Property& property : input_.properties) table.add(property.name, property.values);
-  table.faces = input_.faces();
+  table.add({"x", "y", "z"}, input.points);
+  if (!normals.empty()) table.add({"nx", "ny", "nz"}, normals).in_csv = false;
+  for (const io::Property& property : input.properties) table.add(property.name, property.values);
+  table.faces = input.faces();
   return table;
 }
+
+void add_map(io::Table& table, const RowLogMap& rows, const std::vector<double>& quality) {
+  table.add("u", rows.u);
+  table.add("v", rows.v);
+  table.add("distance", rows.distance);
+  table.add("angle", rows.angle);
+  table.add("status", rows.status);
+  table.add("quality", quality);
+  table.add("spread", rows.spread);
+  if (!rows.error_estimate.empty()) table.add("error_estimate", rows.error_estimate);
+}
+
+io::Table Results::table() const { return table_of(input_, normals_); }
 
 view::Scene Results::scene() const {
   view::Scene scene;
@@ -86,6 +99,7 @@ view::Scene Results::scene() const {
   scene.face_begin = input_.face_begin;
   scene.face_vertices = input_.face_vertices;
   scene.title = title_;
+  scene.colors = input_.colors;
   return scene;
 }
 
@@ -96,6 +110,7 @@ view::Scene Results::scene(const RowLogMap& rows, const std::vector<double>& qua
   result.v = rows.v;
   result.quality = quality;
   result.source = source.position;
+  result.told = {rows.distance, rows.spread, rows.status, {}};
   if (source.frame) result.source_axes = {source.frame->x, source.frame->y, source.frame->normal};
   return result;
 }

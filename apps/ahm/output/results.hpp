@@ -25,6 +25,12 @@ void comment_on_statuses(const std::vector<Status>& status, const std::string& i
 /// @param advice   what to do about it in this subcommand
 void comment_on_quality(const std::vector<double>& quality, std::string_view advice, Journal& journal);
 
+/// The points, normals, faces and further columns of the input, which has to outlive the table as the normals have to.
+io::Table table_of(const io::Geometry& input, const std::vector<Vec3>& normals);
+
+/// The columns of a map: u, v, distance, angle, status, quality, spread, error_estimate.
+void add_map(io::Table& table, const RowLogMap& rows, const std::vector<double>& quality);
+
 /// The files of a run: all of them or, after a failure, none.
 class Results {
  public:

@@ -36,7 +36,7 @@ double doubled_area(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
 
 void Polygon::read_corners(const PolygonMesh& mesh, Index face) {
   corner_.clear();
-  for (Index v : mesh.face(face)) corner_.emplace_back(mesh.position(v).data());
+  for (Index v : mesh.face(face)) corner_.emplace_back(mesh.position(Vertex(v)).data());
 }
 
 void Polygon::read(const PolygonMesh& mesh, Index face) {

@@ -102,7 +102,8 @@ void measure_sides(const PolygonMesh& mesh, CsrGraphData& g, PolygonDetails& rep
   for (Index f = 0; f < mesh.face_count(); ++f) {
     const auto corners = mesh.face(f);
     for (std::size_t c = 0; c < corners.size(); ++c) {
-      const Vector3d a(mesh.position(corners[c]).data()), b(mesh.position(corners[(c + 1) % corners.size()]).data());
+      const Vector3d a(mesh.position(Vertex(corners[c])).data()),
+          b(mesh.position(Vertex(corners[(c + 1) % corners.size()])).data());
       const double length = (b - a).norm();
       sum += length;
       lengths.add(corners[c], corners[(c + 1) % corners.size()], length);
@@ -155,7 +156,7 @@ CsrGraphData polygon_edges(const PolygonMesh& mesh, const Frames& frames, const 
   g.row_begin.assign(n + 1, 0);
   for (std::size_t v = 0; v < n; ++v) {
     g.row_begin[v + 1] = g.row_begin[v];
-    for (Offset corner : mesh.corners_at(static_cast<Index>(v)))
+    for (Offset corner : mesh.corners_at(Vertex(v)))
       g.row_begin[v + 1] += static_cast<Offset>(mesh.face(mesh.face_of(corner)).size()) - 1;
   }
   const auto edges = static_cast<std::size_t>(g.row_begin.back());
@@ -167,10 +168,10 @@ CsrGraphData polygon_edges(const PolygonMesh& mesh, const Frames& frames, const 
   g.masses.resize(n);
   detail::for_each_index(n, options.threads, [&](std::size_t k) {
     const auto v = static_cast<Index>(k);
-    const Vector3d origin(mesh.position(v).data());
+    const Vector3d origin(mesh.position(Vertex(v)).data());
     auto at = static_cast<std::size_t>(g.row_begin[k]);
     double mass = 0;
-    for (Offset corner : mesh.corners_at(v)) {
+    for (Offset corner : mesh.corners_at(Vertex(v))) {
       const Index f = mesh.face_of(corner);
       const auto vertices = mesh.face(f);
       mass += matrices.mass(corner);
@@ -180,7 +181,7 @@ CsrGraphData polygon_edges(const PolygonMesh& mesh, const Frames& frames, const 
         const double w = matrices.weight(corner, d);
         g.neighbors[at] = vertices[d];
         g.weights[at] = options.clamp_weights ? std::clamp(w, 0.0, largest_weight) : w;
-        const auto log = log_of_chord(frames.vertex[k], Vector3d(mesh.position(vertices[d]).data()) - origin);
+        const auto log = log_of_chord(frames.vertex[k], Vector3d(mesh.position(Vertex(vertices[d])).data()) - origin);
         g.logs[2 * at] = log.real();
         g.logs[2 * at + 1] = log.imag();
         write_transport(frames.turn[corner], mesh.mirrored(corner), frames.turn[other], mesh.mirrored(other), g.kind,

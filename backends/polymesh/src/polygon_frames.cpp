@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-Vector3d position(const PolygonMesh& mesh, Index v) { return Vector3d(mesh.position(v).data()); }
+Vector3d position(const PolygonMesh& mesh, Index v) { return Vector3d(mesh.position(Vertex(v)).data()); }
 
 /// A unit vector perpendicular to n.
 Vector3d across(const Vector3d& n) { return n.unitOrthogonal(); }
@@ -19,7 +19,7 @@ Vector3d across(const Vector3d& n) { return n.unitOrthogonal(); }
 /// The sum of the vector areas around a vertex, or where they cancel, the largest of them, or anything.
 Vector3d vertex_normal(const PolygonMesh& mesh, const std::vector<Vector3d>& area, Index v) {
   Vector3d sum = Vector3d::Zero(), largest = Vector3d::Zero();
-  for (Offset corner : mesh.corners_at(v)) {
+  for (Offset corner : mesh.corners_at(Vertex(v))) {
     const Vector3d& of_face = area[mesh.face_of(corner)];
     const Vector3d oriented = mesh.mirrored(corner) ? Vector3d(-of_face) : of_face;
     sum += oriented;
@@ -62,7 +62,7 @@ Frames find_frames(const PolygonMesh& mesh, unsigned threads) {
   });
   detail::for_each_index(n, threads, [&](std::size_t k) {
     const auto v = static_cast<Index>(k);
-    const Offset corner = mesh.corners_at(v).front();
+    const Offset corner = mesh.corners_at(Vertex(v)).front();
     const Index f = mesh.face_of(corner);
     const Offset next = corner + 1 == mesh.face_begin()[f + 1] ? mesh.face_begin()[f] : corner + 1;
     frames.vertex[k] =

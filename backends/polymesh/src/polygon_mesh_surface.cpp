@@ -116,7 +116,7 @@ void PolygonMeshSurface::Impl::build_polygons(const PolygonOptions& options) {
   details.clamped = options.clamp_weights;
   CsrGraphData data = polygon_edges(mesh, frames, options, details);
   for (Index v = 0; v < mesh.vertex_count(); ++v)
-    data.frames.push_back(frame_in_space(frames.vertex[v], mesh.original_position(v)));
+    data.frames.push_back(frame_in_space(frames.vertex[v], mesh.original_position(Vertex(v))));
   details.seconds_graph = stopwatch.lap();
   options.progress.step("graph", 1.0);
   polygons.emplace(std::move(data));
@@ -161,15 +161,15 @@ std::vector<double> PolygonMeshSurface::Impl::stored_weights(const FacePoint& po
 Vector3d PolygonMeshSurface::Impl::point(Index face, std::span<const double> stored_weights) const {
   Vector3d sum = Vector3d::Zero();
   for (std::size_t c = 0; c < stored_weights.size(); ++c)
-    sum += stored_weights[c] * Vector3d(mesh.position(mesh.face(face)[c]).data());
+    sum += stored_weights[c] * Vector3d(mesh.position(Vertex(mesh.face(face)[c])).data());
   return sum;
 }
 
 Complex PolygonMeshSurface::Impl::first_side(Index face) const {
   if (!mesh.reversed(face)) return 1.0;  // the x axis
   const auto corners = mesh.face(face);
-  const Complex side = frames.face[face].components(Vector3d(mesh.position(corners.back()).data()) -
-                                                    Vector3d(mesh.position(corners.front()).data()));
+  const Complex side = frames.face[face].components(Vector3d(mesh.position(Vertex(corners.back())).data()) -
+                                                    Vector3d(mesh.position(Vertex(corners.front())).data()));
   return std::abs(side) > 0 ? side / std::abs(side) : 1.0;
 }
 
@@ -181,7 +181,7 @@ Source PolygonMeshSurface::Impl::source(Index face, std::span<const double> stor
     const auto corner = static_cast<std::size_t>(mesh.face_begin()[face]) + c;
     const Index v = mesh.corners()[corner];
     // In the source's frame; at the chord's length, as the edges.
-    const Vector3d chord = Vector3d(mesh.position(v).data()) - p;
+    const Vector3d chord = Vector3d(mesh.position(Vertex(v)).data()) - p;
     Complex z = plane.components(chord) * std::conj(u);
     if (std::abs(z) > 0.1 * chord.norm()) z *= chord.norm() / std::abs(z);
     z *= polygons->length_unit();
@@ -199,7 +199,7 @@ Source PolygonMeshSurface::Impl::source(Index face, std::span<const double> stor
 Frame PolygonMeshSurface::Impl::frame(Index face, std::span<const double> stored_weights) const {
   Vec3 origin{0, 0, 0};
   for (std::size_t c = 0; c < stored_weights.size(); ++c)
-    origin = origin + stored_weights[c] * mesh.original_position(mesh.face(face)[c]);
+    origin = origin + stored_weights[c] * mesh.original_position(Vertex(mesh.face(face)[c]));
   const Axes& plane = frames.face[face];
   const Complex u = first_side(face);
   const Vector3d x = u.real() * plane.x + u.imag() * plane.y;

@@ -71,8 +71,8 @@ std::optional<Frame> TriangleMeshSurface::Impl::frame(const FacePoint& point) co
   Vec3 corner[3], origin{0, 0, 0};
   for (int s = 0; s < 3; ++s) {
     const Index v = mesh.tails()[3 * face + s];
-    corner[s] = mesh.position(v);
-    origin = origin + weight[s] * mesh.original_position(v);
+    corner[s] = mesh.position(Vertex(v));
+    origin = origin + weight[s] * mesh.original_position(Vertex(v));
   }
   const int a = mesh.kept_corner(point.face, 0) % 3, b = mesh.kept_corner(point.face, 1) % 3;
   const Vec3 side = a != b ? corner[b] - corner[a] : corner[1] - corner[0];

@@ -97,7 +97,7 @@ FlatTriangles TriangleMeshSurface::flat_triangles() const {
   for (Half h : mesh.corners()) corners.push_back(place[h]);
   std::vector<Vec3> positions;
   if (mesh.has_positions())
-    for (Index v = 0; v < mesh.vertex_count(); ++v) positions.push_back(mesh.original_position(v));
+    for (Index v = 0; v < mesh.vertex_count(); ++v) positions.push_back(mesh.original_position(Vertex(v)));
   return {{HalfEdges{tail, twin, mirrored}, sides, corners}, std::move(positions), mesh.length_unit()};
 }
 

@@ -121,15 +121,15 @@ Vec3 axis_across(const Vec3& n) {
 class SpatialFan {
  public:
   SpatialFan(const TriangleMesh& mesh, const HalfEdges& edges, Index v)
-      : mesh_(mesh), edges_(edges), start_(reference_corner(mesh, edges, v)), center_(mesh.position(v)) {}
+      : mesh_(mesh), edges_(edges), start_(reference_corner(mesh, edges, v)), center_(mesh.position(Vertex(v))) {}
 
   /// Calls visit(first side, second side), as vectors, for each face counter-clockwise; returns whether the fan is
   /// closed.
   template <class Visit>
   bool for_each_face(const Visit& visit) const {
     for (Corner c = start_;;) {
-      const Vec3 a = mesh_.position(edges_.head(c.half)) - center_,
-                 b = mesh_.position(edges_.tail[previous(c.half)]) - center_;
+      const Vec3 a = mesh_.position(Vertex(edges_.head(c.half))) - center_,
+                 b = mesh_.position(Vertex(edges_.tail[previous(c.half)])) - center_;
       c.forward ? visit(a, b) : visit(b, a);
       c = edges_.turn_left(c);
       if (c.half < 0 || c == start_) return c.half >= 0;
@@ -193,7 +193,7 @@ Frame frame_in_space(const TriangleMesh& mesh, const HalfEdges& edges, Index v) 
   });
   fit = norm(fit) > 1e-12 ? normalized(fit) : Vec2{1, 0};
   const Vec3 fitted = fit[0] * x + fit[1] * y;
-  return {mesh.original_position(v), fitted, cross(normal, fitted), normal};
+  return {mesh.original_position(Vertex(v)), fitted, cross(normal, fitted), normal};
 }
 
 }  // namespace

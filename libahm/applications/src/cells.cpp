@@ -24,6 +24,15 @@ void check_vertices(const TangentGraph& graph, std::span<const Vertex> vertices)
   }
 }
 
+void check_count(Index vertices, Vertex first, Index count) {
+  if (first.index < 0 || first.index >= vertices)
+    throw InvalidArgument("farthest_points: 'first' " + std::to_string(first.index) + " is outside [0, " +
+                          std::to_string(vertices) + ")");
+  if (count < 1 || count > vertices)
+    throw InvalidArgument("farthest_points: 'count' " + std::to_string(count) + " must be in [1, " +
+                          std::to_string(vertices) + "]");
+}
+
 }  // namespace
 
 VoronoiCells voronoi_cells(const TangentGraph& graph, std::span<const Vertex> vertices) {
@@ -60,12 +69,7 @@ VoronoiCells voronoi_cells(const ExactGeodesics& geodesics, std::span<const Vert
 
 std::vector<Vertex> farthest_points(const TangentGraph& graph, Vertex first, Index count, const Progress& progress) {
   const Index n = graph.size();
-  if (first.index < 0 || first.index >= n)
-    throw InvalidArgument("farthest_points: 'first' " + std::to_string(first.index) + " is outside [0, " +
-                          std::to_string(n) + ")");
-  if (count < 1 || count > n)
-    throw InvalidArgument("farthest_points: 'count' " + std::to_string(count) + " must be in [1, " + std::to_string(n) +
-                          "]");
+  check_count(n, first, count);
   return detail::with_memory_check("spreading points", [&] {
     std::vector<Vertex> points{first};
     UnfoldingFront front(graph);
@@ -77,6 +81,29 @@ std::vector<Vertex> farthest_points(const TangentGraph& graph, Vertex first, Ind
       for (Index i = 1; i < n; ++i)
         if (front.distance(Vertex(i)) > front.distance(farthest)) farthest = Vertex(i);
       points.push_back(farthest);
+    }
+    return points;
+  });
+}
+
+std::vector<Vertex> farthest_points(const ExactGeodesics& geodesics, Vertex first, Index count,
+                                    const Progress& progress) {
+  const exact::PolyhedralSurface& triangles = geodesics.triangles().surface;
+  check_count(triangles.vertex_count(), first, count);
+  return detail::with_memory_check("spreading points", [&] {
+    std::vector<Vertex> points{first};
+    std::vector<double> distance(static_cast<std::size_t>(triangles.vertex_count()),
+                                 std::numeric_limits<double>::infinity());
+    exact::ExactOptions options;
+    options.progress.stop = progress.stop;
+    while (points.size() < static_cast<std::size_t>(count)) {
+      progress.step("farthest points", static_cast<double>(points.size()) / count);
+      const exact::ExactMap map = exact::exact_map(triangles, triangles.vertex_point(points.back()), options);
+      for (Index i = 0; i < map.size(); ++i)
+        if (const double d = map.distance(Vertex(i)); d < distance[i]) distance[i] = d;  // never so for NaN
+      const auto farthest = std::max_element(distance.begin(), distance.end());
+      points.emplace_back(static_cast<Index>(farthest - distance.begin()));
+      options.radius = *farthest;  // beyond, no vertex gets nearer
     }
     return points;
   });

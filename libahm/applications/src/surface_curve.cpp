@@ -25,21 +25,24 @@ struct CurveSample {
 };
 
 /// The faces of a surface for paths; none where it has no flat ones.
-std::optional<ExactGeodesics> geodesics_of(const Surface& surface) {
+/// @param reason  why it has faces, but none for paths
+std::optional<ExactGeodesics> geodesics_of(const Surface& surface, std::string& reason) {
   if (surface.faces().size() == 0 || surface.positions().empty()) return std::nullopt;
   try {
     return std::optional<ExactGeodesics>(std::in_place, surface);
   } catch (const Cancelled&) {
     throw;
-  } catch (const Error&) {  // twisted polygons, faces of no area
+  } catch (const Error& e) {  // twisted polygons, faces of no area
+    reason = e.what();
     return std::nullopt;
   }
 }
 
-/// Places on the shortest path between two points, no farther apart than a step; empty where the faces do not join them.
-std::vector<Vec3> along_path(const ExactGeodesics& geodesics, const SurfacePoint& from, const SurfacePoint& to,
-                             double step) {
+/// Places on the shortest path between two points, no farther apart than a step; none where the faces do not join them.
+std::optional<std::vector<Vec3>> along_path(const ExactGeodesics& geodesics, const SurfacePoint& from,
+                                            const SurfacePoint& to, double step) {
   const exact::GeodesicPath path = geodesics.path(std::array{from, to});
+  if (path.status != Status::ok) return std::nullopt;
   std::vector<Vec3> places;
   for (std::size_t k = 1; k < path.points.size(); ++k) {
     const Vec3 a = geodesics.position(path.points[k - 1]), b = geodesics.position(path.points[k]);
@@ -68,9 +71,10 @@ double length_of(const std::vector<Vec3>& corners) {
 }
 
 /// The given points as corners, and points between them: on the shortest path over flat faces, else, and between points
-/// closer than four steps, on the straight line. The largest distance of these from the surface.
+/// closer than four steps, on the straight line. Notes the largest distance of these from the surface, and which lines are
+/// straight against the rule.
 std::vector<CurveSample> sample(const Surface& surface, std::span<const CurvePoint> given, bool closed, double step,
-                                double& gap) {
+                                SurfaceCurve& curve) {
   std::vector<Vec3> corners;
   corners.reserve(given.size() + 1);
   for (const CurvePoint& point : given) {
@@ -85,7 +89,7 @@ std::vector<CurveSample> sample(const Surface& surface, std::span<const CurvePoi
                           "is it in the units of the surface?");
 
   std::vector<CurveSample> samples;
-  const std::optional<ExactGeodesics> geodesics = geodesics_of(surface);
+  const std::optional<ExactGeodesics> geodesics = geodesics_of(surface, curve.straight_reason);
   const auto end_point = [&](std::size_t k) {
     const CurvePoint& end = given[k % given.size()];
     const auto* on_surface = std::get_if<SurfacePoint>(&end);
@@ -94,7 +98,7 @@ std::vector<CurveSample> sample(const Surface& surface, std::span<const CurvePoi
   const auto project = [&](const Vec3& p, std::size_t piece, double along) {
     ClosestPoint closest = surface.closest_point(p);
     samples.push_back({std::move(closest.point), closest.position, piece, along});
-    gap = std::max(gap, distance(closest.position, p));
+    curve.gap = std::max(curve.gap, distance(closest.position, p));
   };
   for (std::size_t k = 0; k < corners.size(); ++k) {
     if (k + 1 == corners.size() && closed) break;
@@ -104,8 +108,14 @@ std::vector<CurveSample> sample(const Surface& surface, std::span<const CurvePoi
       project(corners[k], k, 0);
     if (k + 1 == corners.size()) break;
     const double straight = distance(corners[k], corners[k + 1]);
-    std::vector<Vec3> places;
-    if (geodesics && straight > 4 * step) places = along_path(*geodesics, end_point(k), end_point(k + 1), step);
+    const bool by_path = straight > 4 * step;
+    std::optional<std::vector<Vec3>> path;
+    if (geodesics && by_path) {
+      path = along_path(*geodesics, end_point(k), end_point(k + 1), step);
+      if (!path) curve.straight_reason = "the surface does not connect their ends";
+    }
+    if (by_path && !path && !curve.straight_reason.empty()) ++curve.straight;
+    std::vector<Vec3> places = path.value_or(std::vector<Vec3>{});
     const int pieces = static_cast<int>(std::ceil(straight / step));
     if (places.empty())
       for (int p = 1; p < pieces; ++p)
@@ -170,7 +180,7 @@ SurfaceCurve draw(const Surface& surface, std::span<const CurvePoint> given, boo
   const TangentGraph& graph = surface.graph();
   const double edge = graph.mean_edge_length() * graph.length_unit();
   SurfaceCurve curve;
-  std::vector<CurveSample> samples = sample(surface, given, closed, edge / 2, curve.gap);
+  std::vector<CurveSample> samples = sample(surface, given, closed, edge / 2, curve);
   thin(samples, closed, 1e-6 * edge);
 
   const bool may_mirror = graph.transport_kind() == TransportKind::block;

@@ -38,9 +38,9 @@ void keep_rows(LocalMaps& maps, const RowMap& rows, Index most) {
   maps.logs.resize(d * kept), maps.transports.resize(width * kept);
 }
 
-}  // namespace
-
-LocalMaps local_maps_on_rows(const Surface& surface, std::span<const Vertex> sources, const LocalMapOptions& options) {
+/// @param sources  vertices, or sources
+template <class From>
+LocalMaps on_rows(const Surface& surface, std::span<const From> sources, const LocalMapOptions& options) {
   const RowMap& rows = surface.rows();
   const bool all_on_rows = !has_virtual_vertices(rows);
   LocalMapOptions wanted = options;
@@ -57,6 +57,16 @@ LocalMaps local_maps_on_rows(const Surface& surface, std::span<const Vertex> sou
     if (enough) return maps;
     wanted.nearest = std::min(2 * wanted.nearest, rows.vertex_count());
   }
+}
+
+}  // namespace
+
+LocalMaps local_maps_on_rows(const Surface& surface, std::span<const Vertex> sources, const LocalMapOptions& options) {
+  return on_rows(surface, sources, options);
+}
+
+LocalMaps local_maps_on_rows(const Surface& surface, std::span<const Source> sources, const LocalMapOptions& options) {
+  return on_rows(surface, sources, options);
 }
 
 }  // namespace ahm

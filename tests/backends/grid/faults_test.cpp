@@ -5,21 +5,12 @@
 
 #include "ahm/error.hpp"
 #include "ahm/grid/grid_graph.hpp"
+#include "support/expect_error.hpp"
 
 namespace ahm::test {
 namespace {
 
 using grid::GridGraph;
-
-template <class Exception, class Call>
-void expect_error(const Call& call, const std::string& text) {
-  try {
-    call();
-    ADD_FAILURE() << "no error; expected one that says " << text;
-  } catch (const Exception& e) {
-    EXPECT_NE(std::string(e.what()).find(text), std::string::npos) << e.what();
-  }
-}
 
 TEST(GridFaults, NameTheAxis) {
   expect_error<InvalidGeometry>([] { GridGraph({}); }, "0 axes");

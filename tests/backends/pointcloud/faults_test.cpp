@@ -6,6 +6,7 @@
 
 #include "ahm/error.hpp"
 #include "solved_cloud.hpp"
+#include "support/expect_error.hpp"
 
 namespace ahm::test {
 namespace {
@@ -16,12 +17,7 @@ using pointcloud::PointCloudSurface;
 template <class Exception>
 void expect_error(const std::vector<Vec3>& points, const std::string& text, const CloudOptions& options = {},
                   const std::vector<Vec3>& normals = {}) {
-  try {
-    PointCloudSurface::build(points, normals, options);
-    ADD_FAILURE() << "no error; expected one that says: " << text;
-  } catch (const Exception& e) {
-    EXPECT_NE(std::string(e.what()).find(text), std::string::npos) << e.what();
-  }
+  test::expect_error<Exception>([&] { PointCloudSurface::build(points, normals, options); }, text);
 }
 
 void expect_nan_exactly_where_not_ok(const RowLogMap& map) {

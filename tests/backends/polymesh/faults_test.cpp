@@ -8,6 +8,7 @@
 #include "ahm/graph/validate.hpp"
 #include "ahm/trimesh/triangle_mesh_surface.hpp"
 #include "polygon_graphs.hpp"
+#include "support/expect_error.hpp"
 
 namespace ahm::test {
 namespace {
@@ -16,12 +17,7 @@ using polymesh::PolygonOptions;
 
 template <class Exception>
 void expect_error(const Polygons& mesh, const std::string& text, const PolygonOptions& options = {}) {
-  try {
-    build(mesh, options);
-    ADD_FAILURE() << "no error; expected one that says: " << text;
-  } catch (const Exception& e) {
-    EXPECT_NE(std::string(e.what()).find(text), std::string::npos) << e.what();
-  }
+  test::expect_error<Exception>([&] { build(mesh, options); }, text);
 }
 
 LogMap map_of(const polymesh::PolygonMeshSurface& surface, Index source = 0) {

@@ -7,6 +7,7 @@
 #include "ahm/error.hpp"
 #include "ahm/graph/validate.hpp"
 #include "ahm/testing/paper_band.hpp"
+#include "support/expect_error.hpp"
 #include "support/solved_mesh.hpp"
 
 namespace ahm::test {
@@ -19,12 +20,7 @@ using trimesh::TriangleMeshSurface;
 
 template <class Exception>
 void expect_error(const Mesh& mesh, const std::string& text, const MeshOptions& options = {}) {
-  try {
-    TriangleMeshSurface::build(mesh.positions, mesh.faces, options);
-    ADD_FAILURE() << "no error; expected one that says: " << text;
-  } catch (const Exception& e) {
-    EXPECT_NE(std::string(e.what()).find(text), std::string::npos) << e.what();
-  }
+  test::expect_error<Exception>([&] { TriangleMeshSurface::build(mesh.positions, mesh.faces, options); }, text);
 }
 
 void expect_nan_exactly_where_not_ok(const RowLogMap& map) {

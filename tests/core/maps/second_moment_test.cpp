@@ -152,9 +152,11 @@ TEST(Components, HaveAMapOfTheirOwn) {
         const HeatOptions options{.variant = variant, .order = order, .strategy = strategy};
         const LogMap a = LogMapSolver(alone, options).solve(Source::at_vertex(Vertex{11})),
                      b = LogMapSolver(with_a_large_one, options).solve(Source::at_vertex(Vertex{11}));
+        const auto quality_a = map_quality(alone, a), quality_b = map_quality(with_a_large_one, b);
         for (Index i = 0; i < alone.size(); ++i) {
           ASSERT_NEAR(a.distance(Vertex(i)), b.distance(Vertex(i)), 1e-9);
           for (int c = 0; c < 2; ++c) ASSERT_NEAR(a.coordinates(Vertex(i))[c], b.coordinates(Vertex(i))[c], 1e-9);
+          ASSERT_NEAR(quality_a[i], quality_b[i], 1e-6);  // as the spread, a difference of squares
         }
         EXPECT_EQ(b.count(Status::disconnected), 900);
       }

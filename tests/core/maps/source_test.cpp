@@ -11,6 +11,7 @@
 #include "ahm/testing/curved_graphs.hpp"
 #include "ahm/testing/flat_graphs.hpp"
 #include "ahm/testing/graph_changes.hpp"
+#include "support/expect_error.hpp"
 
 namespace ahm::test {
 namespace {
@@ -18,16 +19,6 @@ namespace {
 const std::array identity{1.0, 0.0, 0.0, 1.0};
 const std::array mirror{1.0, 0.0, 0.0, -1.0};
 const std::array zero{0.0, 0.0};
-
-template <class Exception, class Call>
-void expect_error(const Call& call, const std::string& text) {
-  try {
-    call();
-    ADD_FAILURE() << "no error; expected one that says " << text;
-  } catch (const Exception& e) {
-    EXPECT_NE(std::string(e.what()).find(text), std::string::npos) << e.what();
-  }
-}
 
 // A number may be a row of the input or a vertex of the graph, and the two differ.
 template <class T>

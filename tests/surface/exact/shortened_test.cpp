@@ -106,18 +106,23 @@ TEST(LocallyShortestPath, LiesBetweenTheExactOneAndTheEdges) {
   }
 }
 
+/// A path between them that is locally shortest, no shorter than the shortest, and as long as it says.
+void expect_joined(const Polyhedron& solid, const MeshPoint& a, const MeshPoint& b) {
+  const GeodesicPath path = exact::locally_shortest_path(solid.surface, a, b);
+  EXPECT_GE(path.length, exact::geodesic_path(solid.surface, a, b).length - 1e-12);
+  EXPECT_NEAR(solid.length(path.points), path.length, 1e-12);
+  EXPECT_LT(distance(solid.position(path.points.front()), solid.position(a)), 1e-15);
+  EXPECT_LT(distance(solid.position(path.points.back()), solid.position(b)), 1e-12);
+  expect_locally_shortest(solid.surface, path.points, false);
+}
+
 TEST(LocallyShortestPath, JoinsPointsInsideFaces) {
   std::mt19937_64 random(5);
   for (const Mesh& mesh : shapes()) {
     const Polyhedron solid(mesh);
     for (int k = 0; k < 30; ++k) {
-      const MeshPoint a = random_point(solid.surface, random), b = random_point(solid.surface, random);
-      const GeodesicPath path = exact::locally_shortest_path(solid.surface, a, b);
-      EXPECT_GE(path.length, exact::geodesic_path(solid.surface, a, b).length - 1e-12);
-      EXPECT_NEAR(solid.length(path.points), path.length, 1e-12);
-      EXPECT_LT(distance(solid.position(path.points.front()), solid.position(a)), 1e-15);
-      EXPECT_LT(distance(solid.position(path.points.back()), solid.position(b)), 1e-12);
-      expect_locally_shortest(solid.surface, path.points, false);
+      const MeshPoint a = random_point(solid.surface, random);
+      expect_joined(solid, a, random_point(solid.surface, random));
     }
   }
 }
@@ -137,13 +142,31 @@ TEST(LocallyShortestPath, JoinsPointsOfSides) {
       return p;
     };
     for (int k = 0; k < 30; ++k) {
-      const MeshPoint a = on_side(), b = on_side();
-      const GeodesicPath path = exact::locally_shortest_path(solid.surface, a, b);
-      EXPECT_GE(path.length, exact::geodesic_path(solid.surface, a, b).length - 1e-12);
-      EXPECT_NEAR(solid.length(path.points), path.length, 1e-12);
-      EXPECT_LT(distance(solid.position(path.points.front()), solid.position(a)), 1e-12);
-      EXPECT_LT(distance(solid.position(path.points.back()), solid.position(b)), 1e-12);
-      expect_locally_shortest(solid.surface, path.points, false);
+      const MeshPoint a = on_side();
+      expect_joined(solid, a, on_side());
+    }
+  }
+}
+
+/// A round tip of flat faces: all angles but that at the tip are those of a disk.
+Mesh cone_mesh(Index sides, double height) {
+  Mesh mesh{{{0, 0, height}}, {}, {}};
+  for (Index k = 0; k < sides; ++k) {
+    const double angle = 2 * pi * k / sides;
+    mesh.positions.push_back({std::cos(angle), std::sin(angle), 0});
+    mesh.faces.push_back({0, k + 1, (k + 1) % sides + 1});
+  }
+  return mesh;
+}
+
+TEST(LocallyShortestPath, PassesATipOnTheShorterSide) {
+  std::mt19937_64 random(7);
+  for (double height : {0.1, 0.5, 1.0, 3.0}) {
+    const Polyhedron solid(cone_mesh(13, height));
+    for (int k = 0; k < 100; ++k) {
+      const MeshPoint a = random_point(solid.surface, random), b = random_point(solid.surface, random);
+      EXPECT_NEAR(exact::locally_shortest_path(solid.surface, a, b).length,
+                  exact::geodesic_path(solid.surface, a, b).length, 1e-12);
     }
   }
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "ahm/util/shortest_paths.hpp"
 #include "ahm/util/small_math.hpp"
@@ -66,13 +67,34 @@ void shorten(std::span<double> phi, std::span<const double> p, double longest) {
   for (std::size_t k = 0; k < phi.size(); ++k) phi[k] = p[k] + t * (phi[k] - p[k]);
 }
 
+constexpr double root_2_less_1 = std::numbers::sqrt2 - 1;
+
+double gap(std::span<const double> a, std::span<const double> b) {
+  double sum = 0;
+  for (std::size_t k = 0; k < a.size(); ++k) sum = std::hypot(sum, a[k] - b[k]);
+  return sum;
+}
+
+/// phi at time 0, into `limit`, from those at the times c and 2 c.
+/// @return how far it is from the same limit of the times 1 and c; with two times (c = 1), how far from phi at 1
+double limit_of(std::span<const double> p1, std::span<const double> pc, std::span<const double> p2, double c,
+                std::span<double> limit) {
+  double disagreement = 0;
+  for (std::size_t a = 0; a < limit.size(); ++a) {
+    limit[a] = pc[a] - (p2[a] - pc[a]) / root_2_less_1;
+    const double other = c > 1 ? (std::sqrt(c) * p1[a] - pc[a]) / (std::sqrt(c) - 1) : pc[a];
+    disagreement = std::hypot(disagreement, limit[a] - other);
+  }
+  return disagreement;
+}
+
 }  // namespace
 
 LogMap extrapolate(const TangentGraph& graph, const ComponentScales& scales, double t_coef, const DiffusionTimes& times,
                    const std::vector<const LogMap*>& maps, double radius) {
   const LogMap &first = *maps.front(), &middle = *maps[maps.size() - 2], &last = *maps.back();
   const auto n = static_cast<std::size_t>(first.size()), d = static_cast<std::size_t>(first.dimension());
-  std::vector<double> coordinates(n * d, NAN), distances(n, NAN), error(n, NAN), difference(d), limit(d);
+  std::vector<double> coordinates(n * d, NAN), distances(n, NAN), error(n, NAN), limit(d);
   std::vector<Status> status(n, Status::ok);
   const bool is_curve = first.source().is_curve(), unfolded = unfolds(graph, first.source());
   const std::vector<double> paths = unfolded ? std::vector<double>() : edge_paths(graph, first.source());
@@ -83,31 +105,20 @@ LogMap extrapolate(const TangentGraph& graph, const ComponentScales& scales, dou
     if (status[i] != Status::ok) continue;
     const double c = times.middle(scales.component(vertex.index));
     const double h = scales.h(vertex.index) * graph.length_unit();
-    const double step = (std::sqrt(2.0) - 1) * std::sqrt(t_coef * c) * h;  // sqrt(tau_2c) - sqrt(tau_c)
+    const double step = root_2_less_1 * std::sqrt(t_coef * c) * h;  // sqrt(tau_2c) - sqrt(tau_c)
     const auto p1 = first.coordinates(vertex), pc = middle.coordinates(vertex), p2 = last.coordinates(vertex);
-    for (std::size_t a = 0; a < d; ++a) difference[a] = p2[a] - pc[a];
-    const std::span phi = std::span(coordinates).subspan(i * d, d);
-    double correction = 0, disagreement = 0;
-    for (std::size_t a = 0; a < d; ++a) {
-      phi[a] = pc[a] - difference[a] / (std::sqrt(2.0) - 1);
-      // The same limit from the times 1 and c; with two times, the step that was made.
-      const double other = c > 1 ? (std::sqrt(c) * p1[a] - pc[a]) / (std::sqrt(c) - 1) : pc[a];
-      correction = std::hypot(correction, phi[a] - p1[a]);
-      disagreement = std::hypot(disagreement, phi[a] - other);
-    }
-    const double w = share_of_first(length(difference) / step, c, disagreement / correction,
+    const double disagreement = limit_of(p1, pc, p2, c, limit);
+    const double w = share_of_first(gap(p2, pc) / step, c, disagreement / gap(limit, p1),
                                     last.spread().empty() ? 0 : last.spread()[i] / std::max(last.distance(vertex), h));
-    std::copy(phi.begin(), phi.end(), limit.begin());
+    const std::span phi = std::span(coordinates).subspan(i * d, d);
     for (std::size_t a = 0; a < d; ++a) phi[a] = (1 - w) * limit[a] + w * p1[a];
     // Unfolded distances are the same at all times.
     const double r1 = first.distance(vertex), rc = middle.distance(vertex), r2 = last.distance(vertex);
-    const double at_zero = std::max(0.0, rc - (r2 - rc) / (std::sqrt(2.0) - 1));
+    const double at_zero = std::max(0.0, rc - (r2 - rc) / root_2_less_1);
     distances[i] = r1 + (1 - w) * (at_zero - r1);
     if (!unfolded) distances[i] = std::min(distances[i], std::max(r1, paths[i]));
     if (!is_curve) shorten(phi, p1, std::max(length(p1), distances[i]));
-    double moved = 0;
-    for (std::size_t a = 0; a < d; ++a) moved = std::hypot(moved, phi[a] - limit[a]);
-    error[i] = std::max(moved, disagreement);
+    error[i] = std::max(gap(phi, limit), disagreement);
     if (!all_finite(phi))
       status[i] = Status::unreached;
     else if (distances[i] > radius)

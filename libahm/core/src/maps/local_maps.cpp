@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
 #include <memory>
 #include <mutex>
-#include <new>
 #include <string>
 
 #include "ahm/error.hpp"
@@ -14,7 +12,6 @@
 #include "ahm/maps/unfolding_front.hpp"
 #include "ahm/util/memory.hpp"
 #include "ahm/util/parallel.hpp"
-#include "ahm/util/shortest_paths.hpp"
 #include "ahm/util/small_math.hpp"
 #include "ahm/util/text.hpp"
 #include "graph/patch.hpp"
@@ -23,67 +20,17 @@
 #include "heat/component_scales.hpp"
 #include "heat/heat_system.hpp"
 #include "maps/affine_heat.hpp"
+#include "maps/ball.hpp"
 #include "maps/heat_distance.hpp"
+#include "maps/source_groups.hpp"
 
 namespace ahm {
 namespace {
 
-/// Sources that share a patch. Measured: more make the patch larger, fewer factor more often.
-constexpr std::size_t group_size = 48;
 /// Path lengths along edges exceed distances by up to this factor on good graphs; where it is not enough, a patch grows.
 constexpr double usual_detour = 1.2;
 /// No sensible graph has longer ones. Beyond, it is the map that is short: folded at a cut locus.
 constexpr double largest_detour = 2;
-
-/// n values that are zero until written, of which only those written take memory.
-template <class T>
-class SparseArray {
- public:
-  explicit SparseArray(std::size_t n) : values_(static_cast<T*>(std::calloc(std::max<std::size_t>(n, 1), sizeof(T)))) {
-    if (!values_) throw std::bad_alloc();
-  }
-  T& operator[](Index i) { return values_.get()[i]; }
-
- private:
-  struct Free {
-    void operator()(T* p) const { std::free(p); }
-  };
-  std::unique_ptr<T[], Free> values_;
-};
-
-/// Shortest paths along edges from many starts, to a limit; leaves no trace behind.
-class Ball {
- public:
-  explicit Ball(const TangentGraph& graph) : graph_(graph), known_(static_cast<std::size_t>(graph.size())) {}
-
-  /// Calls visit(vertex, distance) in order of distance for all vertices within `limit` (graph units) of the starts, until it
-  /// returns false.
-  template <class Visit>
-  void grow(std::span<const Vertex> starts, double limit, const Visit& visit) {
-    for (Vertex start : starts) offer(start.index, 0);
-    bool more = true;
-    paths_.run([&](Index vertex, double key) {
-      if (!more || !(more = visit(vertex, key - 1))) return;
-      const Star star = graph_.star(vertex);
-      for (std::size_t e = 0; e < star.degree(); ++e)
-        if (const double next = key - 1 + length(star.log(e)); star.weights[e] != 0 && next <= limit)
-          offer(star.neighbors[e], next);
-    });
-    for (Index vertex : touched_) known_[vertex] = 0;
-    touched_.clear();
-  }
-
- private:
-  void offer(Index vertex, double distance) {
-    if (known_[vertex] == 0) touched_.push_back(vertex);
-    paths_.offer(vertex, 1 + distance);
-  }
-
-  const TangentGraph& graph_;
-  SparseArray<double> known_;  ///< 1 + distance, 0: none
-  ShortestPaths<double, SparseArray<double>> paths_{known_, 0.0};
-  std::vector<Index> touched_;
-};
 
 void check(const TangentGraph& graph, std::span<const Source> sources, const LocalMapOptions& options) {
   if (options.nearest < 0)
@@ -98,37 +45,6 @@ void check(const TangentGraph& graph, std::span<const Source> sources, const Loc
     throw InvalidArgument("order is " + std::to_string(options.heat.order) + "; local maps have order 1");
   check_heat_options(graph, options.heat);
   for (const Source& source : sources) check_source(source, graph);
-}
-
-/// Groups of sources near each other: the first that has no group yet, and those around it.
-template <class Reach>
-std::vector<std::vector<Index>> group(const TangentGraph& graph, std::span<const Source> sources, const Reach& reach) {
-  const auto n = static_cast<std::size_t>(graph.size());
-  SparseArray<Index> first(n);  // 1 + the first source at a vertex that has no group yet
-  std::vector<Index> after(sources.size(), -1);
-  for (auto s = static_cast<Index>(sources.size()); s-- > 0;) {
-    Index& head = first[sources[s].vertices().front().index];
-    after[s] = head - 1;
-    head = s + 1;
-  }
-  std::vector<std::uint8_t> grouped(sources.size(), 0);
-  std::vector<std::vector<Index>> groups;
-  Ball ball(graph);
-  for (std::size_t seed = 0; seed < sources.size(); ++seed) {
-    if (grouped[seed]) continue;
-    std::vector<Index> members;
-    ball.grow(sources[seed].vertices().first(1), reach(static_cast<Index>(seed)), [&](Index vertex, double) {
-      for (Index s = first[vertex] - 1; s >= 0; s = first[vertex] - 1) {
-        if (members.size() == group_size) return false;
-        members.push_back(s);
-        grouped[s] = 1;
-        first[vertex] = after[s] + 1;
-      }
-      return members.size() < group_size;
-    });
-    groups.push_back(std::move(members));
-  }
-  return groups;
 }
 
 /// How far from each source its map goes, world units: the radius, or as far as its nearest neighbours are along edges,
@@ -246,8 +162,8 @@ class Worker {
     else
       heat.solve_squares();
     for (std::size_t m = 0; m < members.size(); ++m) {
-      const Outcome outcome =
-          collect(heat, m, patch, local[m], vertices, edge, wanted, radii_[members[m]], result[members[m]]);
+      const Outcome outcome = collect(heat, m, patch, local[m], unfolds(graph_, sources_[members[m]]), vertices, edge,
+                                      wanted, radii_[members[m]], result[members[m]]);
       if (outcome != Outcome::complete) return outcome;
     }
     return Outcome::complete;
@@ -267,11 +183,12 @@ class Worker {
   }
 
   /// Distances of the patch from its source number m, as those of a whole map (`LogMap::distance`).
-  void measure(const AffineHeat& heat, std::size_t m, const CsrGraph& patch, const Source& source, double root_tau,
-               double radius) {
+  /// @param by_front  unfolded (`unfolds`)
+  void measure(const AffineHeat& heat, std::size_t m, const CsrGraph& patch, const Source& source, bool by_front,
+               double root_tau, double radius) {
     const auto n = static_cast<std::size_t>(patch.size());
     distance_.resize(n);
-    if (graph_.is_delaunay()) {
+    if (by_front) {
       UnfoldingFront front(patch, stars_);
       front.add(source);
       front.run(radius);
@@ -285,14 +202,14 @@ class Worker {
   }
 
   /// The vertices within the radius, nearest first.
-  Outcome collect(const AffineHeat& heat, std::size_t m, const CsrGraph& patch, const Source& source,
+  Outcome collect(const AffineHeat& heat, std::size_t m, const CsrGraph& patch, const Source& source, bool by_front,
                   std::span<const Index> vertices, std::span<const Index> edge, double wanted, double radius,
                   Entries& entries) {
     const std::size_t n = vertices.size();
     phi_.resize(n * d_);
     for (std::size_t k = 0; k < n; ++k) heat.coordinates_at(m, static_cast<Index>(k), phi_.data() + k * d_);
     const double root_tau = std::sqrt(options_.heat.t_coef) * scales_.h(vertices[source.vertices().front().index]);
-    measure(heat, m, patch, source, root_tau * graph_.length_unit(), std::max(wanted, radius));
+    measure(heat, m, patch, source, by_front, root_tau * graph_.length_unit(), std::max(wanted, radius));
     order_.clear();
     for (std::size_t k = 0; k < n; ++k) {
       const auto vertex = static_cast<Index>(k);
@@ -380,7 +297,7 @@ LocalMaps local_maps(const TangentGraph& graph, std::span<const Source> sources,
       return radii[seed] / graph.length_unit() +
              (options.margin + 4) * std::sqrt(options.heat.t_coef) * scales.h(sources[seed].vertices().front().index);
     };
-    const auto groups = group(graph, sources, reach);
+    const auto groups = groups_of(graph, sources, reach);
     std::vector<Entries> entries(sources.size());
     const OneBlasThread one_thread;
     std::mutex mutex;

@@ -132,8 +132,20 @@ bool March::advance(const Source* source, double depth) {
   heat.solve();
   heat.solve_squares();
 
-  // Accept what is farther than the margin from all that was left out, by the heat just found.
-  const auto lambda = heat.lambda(0);
+  const auto near = near_part(band, heat.lambda(0));
+  if (!near) return false;
+  std::vector<Index> added;
+  for (Index k : *near) {
+    added.push_back(band.vertices[k]);
+    accept(added.back(), k, heat, 0, exponents);
+  }
+  update_front(added);
+  return true;
+}
+
+/// Places in the band that are farther than the margin from all that was left out, by the heat just found there; none
+/// where they are too few to be worth the band.
+std::optional<std::vector<Index>> March::near_part(const Band& band, std::span<const double> lambda) const {
   auto level_of = [&](Index k) { return lambda[k] > 0 ? -std::log(lambda[k]) : INFINITY; };
   double limit = std::numeric_limits<double>::infinity();
   for (Index k : band.edge)
@@ -141,17 +153,12 @@ bool March::advance(const Source* source, double depth) {
   const double resolved = -std::log(*std::max_element(lambda.begin(), lambda.end())) + step_;
   const bool too_thin = limit < resolved;
   if (iterative_) limit = std::min(limit, resolved);
-  std::vector<Index> near, added;
+  std::vector<Index> near;
   for (std::size_t k = 0; k < band.vertices.size(); ++k)
     if (const auto place = static_cast<Index>(k); std::isinf(limit) || level_of(place) <= limit) near.push_back(place);
   if (too_thin && static_cast<double>(near.size()) * std::pow(4.0, d_) < static_cast<double>(band.vertices.size()))
-    return false;
-  for (Index k : near) {
-    added.push_back(band.vertices[k]);
-    accept(added.back(), k, heat, 0, exponents);
-  }
-  update_front(added);
-  return true;
+    return std::nullopt;
+  return near;
 }
 
 /// The vertices ahead of the front within `depth` of heat distance (Dijkstra's algorithm, the levels on the front being
@@ -194,9 +201,18 @@ March::Band March::find_band(const Source* source, double depth) {
   for (Index vertex : touched) way(vertex).tentative = far_away;
   // The graph's own order keeps neighbours close in memory; that of the distance scatters them all around the front.
   std::sort(band.vertices.begin(), band.vertices.end());
-  for (std::size_t k = 0; k < band.vertices.size(); ++k) way(band.vertices[k]).place = static_cast<Index>(k);
   for (std::size_t k = 0; k < band.vertices.size(); ++k) {
-    way(band.vertices[k]).tentative = far_away;
+    Way& own = way(band.vertices[k]);
+    own.place = static_cast<Index>(k);
+    own.tentative = far_away;
+  }
+  find_edge(band);
+  return band;
+}
+
+/// The places in the band next to vertices that are neither behind the front nor in the band.
+void March::find_edge(Band& band) {
+  for (std::size_t k = 0; k < band.vertices.size(); ++k) {
     const Star star = graph_.star(band.vertices[k]);
     for (std::size_t e = 0; e < star.degree(); ++e) {
       const Index j = star.neighbors[e];
@@ -205,7 +221,6 @@ March::Band March::find_band(const Source* source, double depth) {
       break;
     }
   }
-  return band;
 }
 
 HeatExponents March::exponents_behind(std::span<const Link> links) const {

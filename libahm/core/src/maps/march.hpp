@@ -8,6 +8,8 @@
 #pragma once
 
 #include <cmath>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "ahm/maps/log_map_solver.hpp"
@@ -72,6 +74,8 @@ class March {
   void march(const Source* source);
   bool advance(const Source* source, double depth);
   Band find_band(const Source* source, double depth);
+  void find_edge(Band& band);
+  std::optional<std::vector<Index>> near_part(const Band& band, std::span<const double> lambda) const;
   HeatExponents exponents_behind(std::span<const Link> links) const;
   Inflow inflow_behind(const Band& band, std::span<const Link> links, double scaling, HeatExponents exponents) const;
   void accept(Index vertex, Index place, const AffineHeat& heat, std::size_t s, HeatExponents exponents);

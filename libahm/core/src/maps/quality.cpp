@@ -8,6 +8,7 @@
 #include "ahm/error.hpp"
 #include "ahm/util/parallel.hpp"
 #include "ahm/util/small_math.hpp"
+#include "heat/component_scales.hpp"
 
 namespace ahm {
 
@@ -19,10 +20,10 @@ std::vector<double> map_quality(const TangentGraph& graph, const LogMap& map, un
     throw InvalidArgument("map_quality: coordinates from a curve are no vectors to it; a point has a quality");
   if (map.spread().empty()) throw InvalidArgument("map_quality: the map was made without MapOptions::spread");
   std::vector<double> quality(static_cast<std::size_t>(graph.size()), std::numeric_limits<double>::quiet_NaN());
-  const double h = graph.mean_edge_length() * graph.length_unit();
+  const ComponentScales scales(graph);
   detail::for_each_index(quality.size(), threads, [&](std::size_t i) {
     if (map.status()[i] != Status::ok) return;
-    const double d = map.distances()[i], away = std::max(d, h);
+    const double d = map.distances()[i], away = std::max(d, scales.h(static_cast<Index>(i)) * graph.length_unit());
     const double spread = map.spread()[i] / away;
     const double off = (length(map.coordinates(Vertex(i))) / away - d / away) * 3;
     const double doubt = std::hypot(spread, off) / 0.3;

@@ -5,28 +5,31 @@
 
 #include "ahm/surface/exact/shortened_path.hpp"
 #include "check_point.hpp"
+#include "shorten.hpp"
 #include "unfold.hpp"
+#include "walk.hpp"
 
 namespace ahm::exact {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// The shortest way along the edges, by Dijkstra's algorithm or, with a lower bound, A* [HNR68].
+/// The shortest way along the edges and straight across them to the vertex beyond, by Dijkstra's algorithm or, with a
+/// lower bound, A* [HNR68].
 class EdgeSearch {
  public:
   EdgeSearch(const PolyhedralSurface& surface, const std::function<double(Vertex)>& at_least)
       : surface_(surface),
         at_least_(at_least),
         distance_(static_cast<std::size_t>(surface.vertex_count()), infinity),
-        before_(distance_.size(), -1) {}
+        step_(distance_.size()) {}
 
-  /// The vertices of the way; none where there is none.
-  std::vector<Index> run(const MeshPoint& from, const MeshPoint& to) {
+  /// The vertices of the way, and where it crosses edges between them; none where there is none.
+  std::vector<MeshPoint> run(const MeshPoint& from, const MeshPoint& to) {
     double after[3];
     for (int s = 0; s < 3; ++s) after[s] = to_corner(to, s);
     for (int s = 0; s < 3; ++s)
-      if (const double d = to_corner(from, s); d < infinity) offer(surface_.record(3 * from.face + s).tail, -1, d);
+      if (const double d = to_corner(from, s); d < infinity) offer(surface_.record(3 * from.face + s).tail, {}, d);
     double best = infinity;
     Index last = -1;
     while (!queue_.empty() && queue_.top().key < best) {
@@ -40,13 +43,22 @@ class EdgeSearch {
         }
       go_on(entry);
     }
-    std::vector<Index> way;
-    for (Index v = last; v >= 0; v = before_[v]) way.push_back(v);
+    std::vector<MeshPoint> way;
+    for (Index v = last; v >= 0; v = step_[v].from) {
+      way.push_back(surface_.vertex_point(Vertex(v)));
+      if (step_[v].across >= 0) way.push_back(point_on(surface_, step_[v].across, step_[v].along));
+    }
     std::reverse(way.begin(), way.end());
     return way;
   }
 
  private:
+  /// How the way comes to a vertex.
+  struct Step {
+    Index from = -1;   ///< vertex; -1: where the way starts
+    Half across = -1;  ///< the half-edge that it crosses; -1: none
+    double along = 0;  ///< from its tail
+  };
   struct Entry {
     double key, distance;
     Index vertex;
@@ -66,23 +78,35 @@ class EdgeSearch {
     Corner c = first;
     do {
       const HalfRecord& r = surface_.record(c.half);
-      offer(r.head, entry.vertex, entry.distance + r.length);
-      offer(r.apex, entry.vertex, entry.distance + r.left);
+      offer(r.head, {entry.vertex}, entry.distance + r.length);
+      offer(r.apex, {entry.vertex}, entry.distance + r.left);
+      if (r.beyond_right >= 0) cross_right(entry, r);
       c = surface_.turn_left(c);
     } while (c.half >= 0 && c != first);
   }
 
-  void offer(Index vertex, Index before, double distance) {
+  /// To the vertex beyond the side opposite to the tail, where it is seen through that side.
+  void cross_right(const Entry& entry, const HalfRecord& r) {
+    const HalfRecord& there = surface_.record(r.beyond_right);
+    Place from = beyond_right(r, {0, 0});
+    if (r.mirrored & 2) from[0] = there.length - from[0];
+    const Place to = apex(there);
+    const double along = from[0] - (to[0] - from[0]) * from[1] / (to[1] - from[1]);
+    if (along > 0 && along < there.length)
+      offer(there.apex, {entry.vertex, r.beyond_right, along}, entry.distance + exact::distance(from, to));
+  }
+
+  void offer(Index vertex, const Step& step, double distance) {
     if (!(distance < distance_[vertex])) return;
     distance_[vertex] = distance;
-    before_[vertex] = before;
+    step_[vertex] = step;
     queue_.push({distance + (at_least_ ? at_least_(Vertex(vertex)) : 0.0), distance, vertex});
   }
 
   const PolyhedralSurface& surface_;
   const std::function<double(Vertex)>& at_least_;
   std::vector<double> distance_;
-  std::vector<Index> before_;
+  std::vector<Step> step_;
   std::priority_queue<Entry> queue_;
 };
 
@@ -103,10 +127,12 @@ GeodesicPath locally_shortest_path(const PolyhedralSurface& surface, const MeshP
     none.status = Status::disconnected;
     return none;
   }
-  for (Index v : EdgeSearch(surface, at_least).run(start, end))
-    if (v != start_vertex && v != end_vertex) curve.push_back(surface.vertex_point(Vertex(v)));
+  for (const MeshPoint& p : EdgeSearch(surface, at_least).run(start, end))
+    if (const Index v = vertex_of(surface, p); v < 0 || (v != start_vertex && v != end_vertex)) curve.push_back(p);
   curve.push_back(end);
-  return shortened_path(surface, curve);
+  Strip strip = strip_along(surface, curve);
+  const TautLine line = pass_other_side(surface, strip, shorten(surface, strip));
+  return path_along(surface, strip, line);
 }
 
 }  // namespace ahm::exact

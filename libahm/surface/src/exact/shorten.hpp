@@ -14,6 +14,16 @@ inline constexpr double straight_margin = 1e-9;
 /// @return that line
 TautLine shorten(const PolyhedralSurface& surface, Strip& strip);
 
+/// Takes the strip of a locally shortest line past vertices to their other side where the line is shorter there, until
+/// there is none: a line that passes an interior vertex has a second one of its kind beyond it where both sides see its
+/// ends at less than pi.
+/// @return the line; as short as the one given at least
+TautLine pass_other_side(const PolyhedralSurface& surface, Strip& strip, TautLine line);
+
+/// The half-edges that lead around the other side of a bend; none where the boundary is there.
+std::optional<std::vector<Half>> other_side(const PolyhedralSurface& surface, const Strip& strip, const TautLine& line,
+                                            const Bend& bend);
+
 /// The half-edge whose face was entered last at a bend, as the corner of that face at the vertex.
 Half corner_after(const Strip& strip, const TautLine& line, const Bend& bend, std::size_t portal);
 

@@ -27,17 +27,6 @@ double angle_in_strip(const PolyhedralSurface& surface, const Strip& strip, cons
   return sum;
 }
 
-/// The half-edges that lead around the other side of a bend; none where the boundary is there.
-std::optional<std::vector<Half>> other_side(const PolyhedralSurface& surface, const Strip& strip, const TautLine& line,
-                                            const Bend& bend) {
-  const Half first = strip.entered[bend.arrives], side = beyond(surface, first);
-  const bool at_tail = line.portals[bend.arrives].tail_left == bend.left;
-  const Half from = at_tail == mirrored_beyond(surface, side) ? side : next(side);
-  // As the face before sees it: the side crossed is the right one of the corner that it starts at, else the left one.
-  const bool left_now = from != side;
-  return turn(surface, from, corner_after(strip, line, bend, bend.leaves), !left_now);
-}
-
 /// Takes the strip around the other side of bends where that is shorter, apart from each other.
 /// @return whether there was one
 bool flip_bends(const PolyhedralSurface& surface, Strip& strip, const TautLine& line) {
@@ -80,6 +69,16 @@ MeshPoint at_corner(Half corner) {
 }
 
 }  // namespace
+
+std::optional<std::vector<Half>> other_side(const PolyhedralSurface& surface, const Strip& strip, const TautLine& line,
+                                            const Bend& bend) {
+  const Half first = strip.entered[bend.arrives], side = beyond(surface, first);
+  const bool at_tail = line.portals[bend.arrives].tail_left == bend.left;
+  const Half from = at_tail == mirrored_beyond(surface, side) ? side : next(side);
+  // As the face before sees it: the side crossed is the right one of the corner that it starts at, else the left one.
+  const bool left_now = from != side;
+  return turn(surface, from, corner_after(strip, line, bend, bend.leaves), !left_now);
+}
 
 Half corner_after(const Strip& strip, const TautLine& line, const Bend& bend, std::size_t portal) {
   const Half h = strip.entered[portal];

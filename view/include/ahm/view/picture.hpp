@@ -12,12 +12,14 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
 
 #include "ahm/image.hpp"
+#include "ahm/maps/log_map.hpp"
 #include "ahm/types.hpp"
 
 namespace ahm::view {
@@ -61,6 +63,14 @@ struct Scene {
   std::optional<std::array<Vec3, 3>> source_axes;
   /// Heading of the HTML page; a PNG has none.
   std::string title;
+  /// Red, green, blue per point, which an HTML page can show instead. May be empty.
+  std::span<const std::array<std::uint8_t, 3>> colors;
+  /// What an HTML page tells of the point under the pointer besides u, v and quality; each may be empty.
+  struct Told {
+    std::span<const double> distance, spread;  ///< world units, NaN where unknown
+    std::span<const Status> status;
+    std::string source;  ///< as the program's --source takes it
+  } told;
 };
 
 /// How it is shown.

@@ -56,8 +56,9 @@ class PolygonMesh {
   std::span<const Index> corners() const noexcept { return topology_.half_edges().tail; }
   std::span<const Index> face(Index f) const { return FaceList{face_begin(), corners()}[f]; }
   /// Faces at a vertex: numbers of its corners, the first oriented like the vertex.
-  std::span<const Offset> corners_at(Index vertex) const {
-    return std::span(at_).subspan(at_begin_[vertex], at_begin_[vertex + 1] - at_begin_[vertex]);
+  std::span<const Offset> corners_at(Vertex vertex) const {
+    const Index v = vertex.index;
+    return std::span(at_).subspan(at_begin_[v], at_begin_[v + 1] - at_begin_[v]);
   }
   /// Face of a corner.
   Index face_of(Offset corner) const { return topology_.face_of(corner); }
@@ -72,9 +73,9 @@ class PolygonMesh {
   std::span<const Index> input_of_vertex() const noexcept { return topology_.input_of_vertex(); }
 
   /// Position of a vertex in units of `length_unit()` about the middle of the bounding box.
-  const Vec3& position(Index vertex) const { return position_[vertex]; }
+  const Vec3& position(Vertex vertex) const { return position_[vertex.index]; }
   /// Position of a vertex as given.
-  const Vec3& original_position(Index vertex) const { return input_[input_of_vertex()[vertex]]; }
+  const Vec3& original_position(Vertex vertex) const { return input_[input_of_vertex()[vertex.index]]; }
   /// Positions of all input vertices as given.
   std::span<const Vec3> input_positions() const noexcept { return input_; }
   /// A power of two near the size of the mesh.

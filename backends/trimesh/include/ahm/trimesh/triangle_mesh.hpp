@@ -72,9 +72,9 @@ class TriangleMesh {
 
   bool has_positions() const noexcept { return !position_.empty(); }
   /// Position of a vertex in units of `length_unit()` about the middle of the bounding box.
-  const Vec3& position(Index vertex) const { return position_[vertex]; }
+  const Vec3& position(Vertex vertex) const { return position_[vertex.index]; }
   /// Position of a vertex as given.
-  const Vec3& original_position(Index vertex) const { return input_[input_of_vertex()[vertex]]; }
+  const Vec3& original_position(Vertex vertex) const { return input_[input_of_vertex()[vertex.index]]; }
   /// Positions of all input vertices as given; empty without positions.
   std::span<const Vec3> input_positions() const noexcept { return input_; }
   /// A power of two near the size of the mesh.

@@ -36,5 +36,9 @@ VoronoiCells voronoi_cells(const ExactGeodesics& geodesics, std::span<const Vert
 /// @throws InvalidArgument (index, count not in [1, n]), ResourceExhausted, Cancelled
 std::vector<Vertex> farthest_points(const TangentGraph& graph, Vertex first, Index count,
                                     const Progress& progress = {});
+/// The same by exact distances over the flat faces; of equally far vertices the first.
+/// @throws as above, as `ExactGeodesics::log_map`
+std::vector<Vertex> farthest_points(const ExactGeodesics& geodesics, Vertex first, Index count,
+                                    const Progress& progress = {});
 
 }  // namespace ahm

@@ -19,5 +19,7 @@ namespace ahm {
 /// as inside refined polygons, are left out; `LocalMapOptions::nearest` counts those that are left.
 /// @throws as `local_maps`
 LocalMaps local_maps_on_rows(const Surface& surface, std::span<const Vertex> sources, const LocalMapOptions& options);
+/// Of any sources: points in faces, curves.
+LocalMaps local_maps_on_rows(const Surface& surface, std::span<const Source> sources, const LocalMapOptions& options);
 
 }  // namespace ahm

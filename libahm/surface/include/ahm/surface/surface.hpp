@@ -116,7 +116,7 @@ class Surface {
   /// @param point  of a face that exists, with as many weights as corners: >= 0 with sum 1 (to 1e-9)
   /// The base has no faces. @throws InvalidArgument as `source`
   virtual PlacedSource source_in_face(const FacePoint& point, const std::optional<Vec3>& u_axis) const;
-  /// @param t  in [0, 1]. Here, of a point in a face with this edge. @throws InvalidArgument (no such edge), as `source`
+  /// @param point  with t in [0, 1]. Here, of a point in a face with this edge. @throws InvalidArgument (no such edge), as `source`
   virtual PlacedSource source_on_edge(const EdgePoint& point, const std::optional<Vec3>& u_axis) const;
   /// @param point  as for `source_in_face`. Here, linear between the vertices at the corners
   virtual Sample sample_in_face(const LogMap& map, const FacePoint& point) const;

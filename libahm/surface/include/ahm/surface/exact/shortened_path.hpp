@@ -27,8 +27,9 @@ GeodesicPath shortened_path(const PolyhedralSurface& surface, std::span<const Me
 /// @throws InvalidArgument as above
 GeodesicPath shortened_loop(const PolyhedralSurface& surface, std::span<const MeshPoint> curve);
 
-/// A locally shortest path between two points: the shortest along the edges, pulled taut. In time near linear in the number
-/// of vertices nearer than `to` along the edges.
+/// A locally shortest path between two points: the shortest along the edges and straight across them, pulled taut, and
+/// moved to the other side of single vertices where it is shorter there. In time near linear in the number of vertices
+/// nearer than `to` along the edges.
 /// @param at_least  no more than the distance of a vertex from `to`: of several such functions the largest searches
 ///                  least; empty: none
 /// @return a status that is not ok, and no points, where the surface does not connect them

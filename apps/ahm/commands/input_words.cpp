@@ -1,0 +1,27 @@
+#include "commands/input_words.hpp"
+
+#include <fmt/format.h>
+
+namespace ahm::app {
+
+std::vector<std::string> words(const InputOptions& o) {
+  const InputOptions usual;
+  std::vector<std::string> out;
+  const auto add = [&](const char* name, const auto& value) {
+    out.insert(out.end(), {name, fmt::format("{}", value)});
+  };
+  if (o.backend != usual.backend) add("--backend", o.backend);
+  if (o.threads != usual.threads) add("--threads", o.threads);
+  if (o.voxel) add("--voxel", *o.voxel);
+  if (o.outliers) out.emplace_back("--outliers");
+  if (o.drop_nan) out.emplace_back("--drop-nan");
+  if (o.k) add("--k", *o.k);
+  if (o.knn != usual.knn) add("--knn", o.knn);
+  if (o.normals != usual.normals) add("--normals", o.normals);
+  if (!o.flips) out.emplace_back("--no-flips");
+  if (o.non_manifold != usual.non_manifold) add("--non-manifold", o.non_manifold);
+  if (o.discretization != usual.discretization) add("--discretization", o.discretization);
+  return out;
+}
+
+}  // namespace ahm::app

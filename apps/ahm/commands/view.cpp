@@ -1,0 +1,108 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "ahm/error.hpp"
+#include "ahm/viewer/server.hpp"
+#include "cli/browser.hpp"
+#include "cli/numbers.hpp"
+#include "cli/option_adders.hpp"
+#include "commands/input_words.hpp"
+#include "commands/solve.hpp"
+#include "commands/subcommand.hpp"
+#include "output/results.hpp"
+
+namespace ahm::app {
+namespace {
+
+constexpr const char* view_footer =
+    "Opens a page in the browser, served by this program, on this machine and to nobody else, until Ctrl-C. Click a\n"
+    "point: the map from there. Its values are told under the pointer; paths, strokes, decals, tool paths, the file\n"
+    "and the command line that gives the same are a click away.\n"
+    "\n"
+    "Examples:\n"
+    "  ahm view scan.ply\n"
+    "  ahm view mesh.obj --source 17 --method exact\n"
+    "  ahm view scan.ply --no-browser --port 8080      over ssh -L 8080:127.0.0.1:8080: open the printed address";
+
+struct ViewOptions {
+  InputOptions input;
+  std::optional<SourceSpec> source;
+  SolveOptions solve;
+  int port = 0;
+  bool no_browser = false, verbose = false;
+};
+
+std::string joined(const std::vector<std::string>& list) {
+  std::string out;
+  for (const std::string& word : list) out.append(out.empty() ? "" : " ").append(word);
+  return out;
+}
+
+viewer::SessionOptions session_options(const ViewOptions& options, const Input& input,
+                                       const std::vector<Vec3>& normals) {
+  viewer::SessionOptions session;
+  session.title = std::filesystem::path(options.input.path).filename().string();
+  session.input = viewer::quoted(options.input.path);
+  session.input_options = joined(words(options.input));
+  session.settings = {options.solve.method, options.solve.variant, options.solve.order,
+                      options.solve.t_coef, options.solve.radius,  {}};
+  if (options.source) session.source = point_of(input.surface(), *options.source);
+  session.threads = options.input.threads;
+  session.formats = {"csv", "ply"};
+#ifdef AHM_WITH_PCL
+  session.formats.emplace_back("pcd");
+#endif
+  session.worded = [](const Error& error) { return worded(error); };
+  session.write = [&input, &normals](const std::filesystem::path& file, const RowLogMap& rows,
+                                     const std::vector<double>& quality) {
+    io::Table table = table_of(input.geometry, normals);
+    add_map(table, rows, quality);
+    io::write(file, table);
+  };
+  return session;
+}
+
+void run(const ViewOptions& options) {
+  if (!viewer::can_serve())
+    throw Error(
+        "this build of ahm has no viewer; install cpp-httplib and three.js (Debian: libcpp-httplib-dev libjs-three "
+        "pkgconf) and build again. 'ahm logmap --view map.html' or .png needs less");
+  Journal journal(options.verbose);
+  const Input input = open_input(options.input, journal, options.source);
+  if (options.source) place(input.surface(), *options.source);  // checks
+  journal.start("page");
+  const std::vector<Vec3> normals = input.surface().normals();
+  const viewer::Session session(input.surface(), input.geometry, session_options(options, input, normals));
+  viewer::Server server(session, options.port);
+  journal.finish();
+  journal.clear_display();
+  const bool opened = !options.no_browser && open_browser(server.address());
+  print(fmt::format("{}\n", server.address()));
+  say(opened ? "ahm: opened in the browser; Ctrl-C ends it\n"
+             : "ahm: open this address in a browser; Ctrl-C ends it\n");
+  server.run();
+}
+
+void offer(CLI::App& app, ViewOptions& o) {
+  add_input(app, o.input);
+  add_parsed(
+      app, "-s,--source", o.source, [](const std::string& text) { return parse_source(text); }, "SPEC",
+      "Where the first map starts (default: in the middle of the picture)");
+  app.add_flag("--no-browser", o.no_browser, "Print the address only");
+  add_parsed(app, "--port", o.port, integer_parser(0, 65535), "N", "Of 127.0.0.1 (default 0: any that is free)");
+  add_method(app, o.solve);
+  add_parsed(app, "--radius", o.solve.radius, parse_positive, "R",
+             "Leave out everything farther than this from the source");
+  add_parsed(app, "--order", o.solve.order, integer_parser(1, 2), "N", "1 (default) or 2, as in 'ahm logmap'");
+  add_graph_options(app, o.input, o.solve);
+  app.add_flag("--verbose", o.verbose, "Print the time of each stage and the peak memory");
+}
+
+}  // namespace
+
+Subcommand add_view(CLI::App& program) {
+  return subcommand<ViewOptions>(program, "view", "The map under the pointer, in the browser", view_footer, offer, run);
+}
+
+}  // namespace ahm::app

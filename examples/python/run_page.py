@@ -1,0 +1,49 @@
+"""Runs the cells of docs/python_tour.md in their order and makes its pictures.
+
+    python3 run_page.py [--page PAGE.md] [--pictures FOLDER] [--level N]
+
+A cell is a block of Python code; what it leaves as `figure` becomes the picture that follows it on the page.
+"""
+
+import argparse
+import io
+import re
+from pathlib import Path
+
+HOME = Path(__file__).resolve().parents[2]
+
+
+def cells(text):
+    """(code, name of the picture or None)."""
+    for code, picture in re.findall(r"```python\n(.*?)```(?:\s*!\[[^\]]*\]\(images/([\w.]+)\))?", text, re.S):
+        yield code, picture or None
+
+
+def save(figure, path):
+    """In 128 colours, which keeps pages light."""
+    from PIL import Image
+
+    drawn = io.BytesIO()
+    figure.savefig(drawn, dpi=90)
+    Image.open(drawn).convert("RGB").quantize(128, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE).save(path, optimize=True)
+    print(path)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--page", type=Path, default=HOME / "docs/python_tour.md")
+    parser.add_argument("--pictures", type=Path, default=HOME / "docs/images")
+    parser.add_argument("--level", type=int, help="of the shapes, instead of the page's own: less is quicker and coarser")
+    options = parser.parse_args()
+    text, names = options.page.read_text(encoding="utf-8"), {"__name__": "page"}
+    if options.level:
+        text = re.sub(r"^level = \d+", f"level = {options.level}", text, flags=re.M)
+    for code, picture in cells(text):
+        names.pop("figure", None)
+        exec(compile(code, str(options.page), "exec"), names)
+        if picture:
+            save(names["figure"], options.pictures / picture)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,130 @@
+"""Grids, and graphs of one's own."""
+
+from __future__ import annotations
+
+from typing import Any, Optional, Tuple
+
+import numpy as np
+
+from . import _arguments as arguments
+from . import _core
+from ._surfaces import Surface
+
+
+class Grid(Surface):
+    """A regular grid in the plane or in space, with or without obstacles. Row numbers run fastest along the first axis.
+
+    shape : vertices along each axis, 2 or 3 numbers >= 2.
+    spacing : lengths along each axis > 0, or one for all; world units.
+    origin : position of row 0; None: zero.
+    blocked : None, or one value per cell, True inside obstacles: an array of shape (shape[0] - 1, shape[1] - 1, ...).
+
+    Raises InvalidGeometry, ResourceExhausted.
+
+    >>> import ahm
+    >>> grid = ahm.Grid((5, 4), 0.5)
+    >>> ahm.log_map(grid, 0).uv[grid.row((3, 2))].round(9).tolist()
+    [1.5, 1.0]
+    """
+
+    def __init__(self, shape: Any, spacing: Any = 1.0, origin: Any = None, blocked: Any = None) -> None:
+        self._shape = arguments.integers(shape, "shape", 1)
+        d = len(self._shape)
+        if np.ndim(spacing) == 0 and not isinstance(spacing, (str, bytes, bool)):
+            spacing = [arguments.real(spacing, "spacing")] * d
+        self._spacing = np.array(arguments.floats(spacing, "spacing", (d,)))
+        self._origin = np.array(arguments.floats([0.0] * d if origin is None else origin, "origin", (d,)))
+        self._blocked = np.empty(0, np.uint8)
+        if blocked is not None:
+            cells = np.asarray(blocked)
+            if cells.dtype.kind not in "biu" or cells.shape != tuple(self._shape - 1):
+                raise ValueError(f"blocked: a bool array of shape {tuple(int(s) for s in self._shape - 1)} is needed, not "
+                                 f"{arguments.describe(blocked, cells)}")
+            self._blocked = np.ascontiguousarray((cells != 0).ravel(order="F"), np.uint8)
+        self._options = {}
+        self._body = _core.grid(self._shape, self._spacing, self._origin, self._blocked)
+
+    @property
+    def _position_width(self) -> int:  # type: ignore[override]
+        return len(self._shape)
+
+    @property
+    def shape(self) -> Tuple[int, ...]:
+        """Vertices along each axis: a result `x` by rows is `x.reshape(grid.shape, order="F")`."""
+        return tuple(int(s) for s in self._shape)
+
+    def row(self, steps: Any) -> int:
+        """The row at these steps along the axes. Raises ValueError outside of the grid.
+
+        >>> import ahm
+        >>> ahm.Grid((5, 4)).row((3, 2))
+        13
+        """
+        at = arguments.integers(steps, "steps", 1)
+        if at.shape != self._shape.shape or (at < 0).any() or (at >= self._shape).any():
+            raise ValueError(f"steps: {at.tolist()} lies outside of the grid of shape {self.shape}")
+        return int(np.ravel_multi_index(tuple(at), self.shape, order="F"))
+
+    def _state(self) -> tuple:
+        cells = self._blocked.reshape(self._shape - 1, order="F").astype(bool) if len(self._blocked) else None
+        return self._shape, self._spacing, self._origin, cells
+
+    def _describe(self) -> str:
+        return " x ".join(str(s) for s in self.shape) + " vertices"
+
+
+class Graph(Surface):
+    """A tangent graph of your own, in compressed rows, whose tangent spaces are R^d (docs/graph_contract.md).
+
+    indptr : (n + 1,), indices : (e,) the neighbour of every directed edge; each edge has its reverse.
+    weights : (e,) w_ij = w_ji.
+    logs : (e, d): where neighbour j lies, seen from i, in the frame of i; world units.
+    transports : (e, 2) (cos, sin) or complex (e,), for d = 2; or (e, d, d): components in the frame of j -> in the frame of i.
+    masses : (n,) dual areas or volumes > 0.
+    frames : (n, 4, 3) origin, x, y and normal of every vertex in space, or None.
+    mean_edge_length : None: the mean of |logs|.
+
+    Raises InvalidGraph (a ValueError) naming the first law that is broken, with its vertex or edge.
+
+    >>> import ahm, numpy as np
+    >>> line = ahm.Graph([0, 1, 3, 4], [1, 0, 2, 1], weights=np.ones(4), logs=[[1], [-1], [1], [-1]],
+    ...                  transports=np.ones((4, 1, 1)), masses=[0.5, 1, 0.5])
+    >>> ahm.log_map(line, 0).uv.ravel().round(9).tolist()
+    [0.0, 1.0, 2.0]
+    """
+
+    def __init__(self, indptr: Any, indices: Any, weights: Any, logs: Any, transports: Any, masses: Any, *,
+                 frames: Any = None, mean_edge_length: Optional[float] = None, length_unit: float = 1.0,
+                 is_delaunay: bool = False) -> None:
+        begin = arguments.integers(indptr, "indptr", 1, 0, 2**62, np.int64)
+        neighbors = arguments.integers(indices, "indices", 1)
+        e = len(neighbors)
+        edges = arguments.floats(logs, "logs", (e, None))
+        d = edges.shape[1]
+        if np.iscomplexobj(transports):
+            given = np.ascontiguousarray(transports, np.complex128)
+            turns = arguments.floats(given.reshape(-1).view(np.float64).reshape(-1, 2), "transports", (e, 2))
+        elif np.ndim(transports) == 2:
+            turns = arguments.floats(transports, "transports", (e, 2))
+        else:
+            turns = arguments.floats(transports, "transports", (e, d, d))
+        self._options = {"length_unit": arguments.real(length_unit, "length_unit", positive=True),
+                         "is_delaunay": arguments.flag(is_delaunay, "is_delaunay")}
+        if mean_edge_length is not None:
+            self._options["mean_edge_length"] = arguments.real(mean_edge_length, "mean_edge_length", positive=True)
+        if frames is not None:
+            self._options["frames"] = arguments.floats(frames, "frames", (None, 4, 3))
+        self._body = _core.graph(begin, neighbors, arguments.floats(weights, "weights", (e,)), edges, turns,
+                                 arguments.floats(masses, "masses", (None,)), self._options)
+
+    def _state(self) -> tuple:
+        return tuple(self._body.csr())
+
+    @property
+    def points(self) -> Optional[np.ndarray]:  # type: ignore[override]
+        """(n, 3) origins of the frames; None without."""
+        frames = self._options.get("frames")
+        return None if frames is None else frames[:, 0]
+
+    def _describe(self) -> str:
+        return f"{len(self)} vertices, {self._body.edge_count} edges, dimension {self.dimension}"

@@ -1,0 +1,114 @@
+"""Files of meshes and clouds as arrays, as potpourri3d reads and writes them."""
+
+from __future__ import annotations
+
+import os
+from typing import Any, List, Optional, Sequence, Tuple
+
+import numpy as np
+
+from . import _arguments as arguments
+from . import _core
+
+
+def read_mesh(filename: Any) -> Tuple[np.ndarray, np.ndarray]:
+    """(n, 3) vertices and (m, 3) triangles of a file.
+
+    >>> import ahm, ahm.potpourri3d as pp3d, tempfile
+    >>> with tempfile.NamedTemporaryFile(suffix=".ply") as file:
+    ...     pp3d.write_mesh(*ahm.shapes.plane(4, 3), file.name)
+    ...     V, F = pp3d.read_mesh(file.name)
+    >>> V.shape, F.shape
+    ((12, 3), (12, 3))
+    """
+    got = _core.read_file(os.fspath(filename))
+    begin = got["face_begin"]
+    if begin is None or not (np.diff(begin) == 3).all():
+        raise ValueError(f"filename: {os.fspath(filename)} holds no triangle mesh")
+    return got["points"], got["face_vertices"].reshape(-1, 3)
+
+
+def read_polygon_mesh(filename: Any) -> Tuple[np.ndarray, List[List[int]]]:
+    """(n, 3) vertices and the corners of every face of a file.
+
+    >>> import ahm.potpourri3d as pp3d, tempfile
+    >>> with tempfile.NamedTemporaryFile(suffix=".off") as file:
+    ...     pp3d.write_mesh([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [[0, 1, 2, 3]], file.name)
+    ...     pp3d.read_polygon_mesh(file.name)[1]
+    [[0, 1, 2, 3]]
+    """
+    got = _core.read_file(os.fspath(filename))
+    begin, corners = got["face_begin"], got["face_vertices"]
+    if begin is None:
+        raise ValueError(f"filename: {os.fspath(filename)} holds no faces")
+    return got["points"], [corners[b:e].tolist() for b, e in zip(begin[:-1], begin[1:])]
+
+
+def read_point_cloud(filename: Any) -> np.ndarray:
+    """(n, 3) points of a file.
+
+    >>> import ahm.potpourri3d as pp3d, tempfile
+    >>> with tempfile.NamedTemporaryFile(suffix=".xyz") as file:
+    ...     pp3d.write_point_cloud([[0, 0, 0], [1, 2, 3]], file.name)
+    ...     pp3d.read_point_cloud(file.name).tolist()
+    [[0.0, 0.0, 0.0], [1.0, 2.0, 3.0]]
+    """
+    return _core.read_file(os.fspath(filename))["points"]
+
+
+def write_mesh(V: Any, F: Any, filename: Any, UV_coords: Any = None, UV_type: Optional[str] = None) -> None:
+    """Writes .obj, .off or .ply (text). UV_type: "per-vertex" (n, 2) or "per-corner" (corners, 2), .obj only."""
+    points = arguments.floats(V, "V", (None, 3))
+    faces = [arguments.integers(f, f"F[{k}]", 1, 0, len(points) - 1).tolist() for k, f in enumerate(F)]
+    ending = os.path.splitext(os.fspath(filename))[1].lower()
+    if (UV_coords is None) != (UV_type is None):
+        raise ValueError("UV_type: goes with UV_coords, and the other way round")
+    if UV_type is not None and (UV_type not in ("per-vertex", "per-corner") or ending != ".obj"):
+        raise NotImplementedError("UV_type: 'per-vertex' and 'per-corner' can be written, to .obj files")
+    rows = [" ".join(repr(float(x)) for x in p) for p in points]
+    if ending == ".obj":
+        lines = ["v " + row for row in rows] + _obj_faces(faces, UV_coords, UV_type, len(points))
+    elif ending == ".off":
+        lines = ["OFF", f"{len(rows)} {len(faces)} 0", *rows, *(_counted(f) for f in faces)]
+    elif ending == ".ply":
+        lines = ["ply", "format ascii 1.0", *_ply_points(len(rows)), f"element face {len(faces)}",
+                 "property list uchar int vertex_indices", "end_header", *rows, *(_counted(f) for f in faces)]
+    else:
+        raise NotImplementedError(f"filename: {ending or 'no ending'} cannot be written; .obj, .off and .ply can")
+    _write(filename, lines)
+
+
+def write_point_cloud(V: Any, filename: Any) -> None:
+    """Writes .ply (text), .obj or .xyz."""
+    rows = [" ".join(repr(float(x)) for x in p) for p in arguments.floats(V, "V", (None, 3))]
+    ending = os.path.splitext(os.fspath(filename))[1].lower()
+    if ending not in (".ply", ".obj", ".xyz"):
+        raise NotImplementedError(f"filename: {ending or 'no ending'} cannot be written; .ply, .obj and .xyz can")
+    head = ["ply", "format ascii 1.0", *_ply_points(len(rows)), "end_header"] if ending == ".ply" else []
+    _write(filename, head + [("v " if ending == ".obj" else "") + row for row in rows])
+
+
+def _write(filename: Any, lines: Sequence[str]) -> None:
+    with open(filename, "w", encoding="ascii") as file:
+        file.write("\n".join(lines) + "\n")
+
+
+def _counted(face: Sequence[int]) -> str:
+    return " ".join(map(str, (len(face), *face)))
+
+
+def _ply_points(count: int) -> List[str]:
+    return [f"element vertex {count}", *(f"property double {axis}" for axis in "xyz")]
+
+
+def _obj_faces(faces: Sequence[Sequence[int]], uv: Any, kind: Optional[str], points: int) -> List[str]:
+    if uv is None:
+        return ["f " + " ".join(str(v + 1) for v in face) for face in faces]
+    corners = sum(len(face) for face in faces)
+    given = arguments.floats(uv, "UV_coords", (points if kind == "per-vertex" else corners, 2))
+    lines, corner = [f"vt {float(u)!r} {float(v)!r}" for u, v in given], 0
+    for face in faces:
+        places = face if kind == "per-vertex" else range(corner, corner + len(face))
+        lines.append("f " + " ".join(f"{v + 1}/{t + 1}" for v, t in zip(face, places)))
+        corner += len(face)
+    return lines

@@ -1,0 +1,143 @@
+"""Triangle meshes and polygon meshes."""
+
+from __future__ import annotations
+
+from typing import Any, List, NamedTuple
+
+import numpy as np
+
+from . import _arguments as arguments
+from . import _core
+from ._options import checked
+from ._progress import Progress, reporting
+from ._surfaces import Surface
+
+
+class TriangleMesh(Surface):
+    """A triangle mesh: intrinsic Delaunay triangulation, vertex tangent spaces, cotangent weights.
+
+    vertices : (n, 3) positions, world units.
+    faces : (m, 3) rows of the vertices.
+    delaunay : flip edges until all are Delaunay; the result still refers to the input mesh.
+    clamp_weights : keep cotangent weights in [0, 1e4].
+    non_manifold : "error", or "split": cut the mesh open where more than two faces meet in an edge.
+    threads : 0: one per core. No result depends on it.
+    progress : None, True (a bar), or a callable (stage, fraction).
+
+    Raises InvalidGeometry (a ValueError) naming the elements: an index out of range, a repeated vertex, a duplicate face, a
+    coordinate that is not finite, a non-manifold edge or vertex; ResourceExhausted (a MemoryError).
+
+    >>> import ahm
+    >>> mesh = ahm.TriangleMesh(*ahm.shapes.sphere(3))
+    >>> mesh
+    <ahm.TriangleMesh: 642 vertices, 1280 faces>
+    """
+
+    def __init__(self, vertices: Any, faces: Any, *, delaunay: bool = True, clamp_weights: bool = True,
+                 non_manifold: str = "error", threads: int = 0, progress: Progress = None) -> None:
+        points = arguments.floats(vertices, "vertices", (None, 3))
+        triangles = arguments.integers(faces, "faces", 2)
+        if triangles.shape[1] != 3:
+            raise ValueError(f"faces: shape (m, 3) is needed, not {triangles.shape}; PolygonMesh takes other polygons")
+        self._options = checked(delaunay=delaunay, clamp_weights=clamp_weights, non_manifold=non_manifold,
+                                threads=threads)
+        with reporting(progress) as report:
+            self._body = _core.triangle_mesh(points, triangles, self._options, report)
+
+    _all_triangles = True
+
+    @property
+    def vertices(self) -> np.ndarray:
+        """The same as `points`."""
+        return self.points
+
+    @property
+    def faces(self) -> np.ndarray:
+        """(m, 3) int32 as given; read-only, not a copy."""
+        return self._body.faces()[1].reshape(-1, 3)
+
+    @property
+    def _face_count(self) -> int:
+        return len(self._body.faces()[0]) - 1
+
+    def _state(self) -> tuple:
+        return np.array(self.points), np.array(self.faces)
+
+    def _describe(self) -> str:
+        return f"{len(self)} vertices, {self._face_count} faces"
+
+
+class PolygonMesh(Surface):
+    """A mesh of polygons with any number of corners, planar or not.
+
+    vertices : (n, 3) positions, world units.
+    faces : a list of lists of rows, or an (m, c) array.
+    discretization : "automatic": refined, unless faces are twisted; "refined": into triangles, with one virtual vertex inside
+        every face; "polygons": as they are [BHKB20].
+    delaunay, clamp_weights, non_manifold, threads, progress : as of `TriangleMesh`.
+
+    Raises as `TriangleMesh`.
+
+    >>> import ahm
+    >>> cube = [[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)]
+    >>> sides = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
+    >>> ahm.PolygonMesh(cube, sides)
+    <ahm.PolygonMesh: 8 vertices, 6 faces>
+    """
+
+    def __init__(self, vertices: Any, faces: Any, *, discretization: str = "automatic", delaunay: bool = True,
+                 clamp_weights: bool = True, non_manifold: str = "error", threads: int = 0,
+                 progress: Progress = None) -> None:
+        points = arguments.floats(vertices, "vertices", (None, 3))
+        begin, corners = polygons(faces)
+        self._options = checked(discretization=discretization, delaunay=delaunay, clamp_weights=clamp_weights,
+                                non_manifold=non_manifold, threads=threads)
+        with reporting(progress) as report:
+            self._body = _core.polygon_mesh(points, begin, corners, self._options, report)
+
+    @property
+    def vertices(self) -> np.ndarray:
+        """The same as `points`."""
+        return self.points
+
+    @property
+    def faces(self) -> List[np.ndarray]:
+        """Views of the corners of every face, int32, as given."""
+        begin, corners = self._body.faces()
+        return [corners[b:e] for b, e in zip(begin[:-1], begin[1:])]
+
+    @property
+    def _face_count(self) -> int:
+        return len(self._body.faces()[0]) - 1
+
+    def _corner_count(self, face: int) -> int:
+        begin = self._body.faces()[0]
+        return int(begin[face + 1] - begin[face])
+
+    def _state(self) -> tuple:
+        begin, corners = self._body.faces()
+        return np.array(self.points), Compressed(np.array(begin), np.array(corners))
+
+    def _describe(self) -> str:
+        return f"{len(self)} vertices, {self._face_count} faces"
+
+
+class Compressed(NamedTuple):
+    """Polygons in compressed rows, inside this package."""
+
+    begin: np.ndarray
+    corners: np.ndarray
+
+
+def polygons(faces: Any) -> Compressed:
+    if isinstance(faces, Compressed):
+        return faces
+    if isinstance(faces, np.ndarray) and faces.dtype != object:
+        whole = arguments.integers(faces, "faces", 2)
+        return Compressed(np.arange(len(whole) + 1, dtype=np.int64) * whole.shape[1], whole.reshape(-1))
+    if isinstance(faces, (str, bytes)) or not hasattr(faces, "__len__"):
+        raise TypeError(f"faces: a list of lists of rows is needed, not {arguments.describe(faces)}")
+    lists = [arguments.integers(face, f"faces[{f}]", 1) if len(np.shape(face)) != 1 or len(face) else np.empty(0, np.int32)
+             for f, face in enumerate(faces)]
+    begin = np.concatenate([[0], np.cumsum([len(face) for face in lists])]).astype(np.int64)
+    return Compressed(begin, np.concatenate(lists).astype(np.int32) if lists else np.empty(0, np.int32))

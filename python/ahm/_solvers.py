@@ -1,0 +1,230 @@
+"""Who makes log maps: diffusion, or exact geodesics."""
+
+from __future__ import annotations
+
+from typing import Any, Dict, List, Optional, Union
+
+import numpy as np
+
+from . import _arguments as arguments
+from . import _core
+from . import _places as places
+from ._inputs import surface as as_surface
+from ._maps import LogMap
+from ._options import checked
+from ._progress import Progress, reporting
+from ._surfaces import Surface
+
+
+class LogMapSolver:
+    """Solves for log maps on one surface: factors once, then serves any number of sources. Immutable, shared by threads.
+
+    surface : a `Surface`, or what `ahm.surface` takes.
+    t_coef : tau = t_coef h^2, the diffusion time; > 0.
+    variant : "adaptive" (Alg. 2) or "localized" (Alg. 1) of [SS25].
+    order : 1, or 2: extrapolates from two or three diffusion times, with an error estimate.
+    strategy : "automatic", "global" (one factorization) or "march" (band by band, any size and distance).
+    expected_maps : for "automatic": the number of maps to be made; 0: many.
+    memory : for "automatic": bytes that factors may take; 0: half of the machine's memory.
+    accuracy : of marches, against a global solve, relative.
+    ordering : "amd", or "nested_dissection": for many maps.
+    threads : 0: one per core. No result depends on it.
+    progress : None, True (a bar), or a callable (stage, fraction).
+
+    Raises ValueError naming the option; NotPositiveDefinite (a RuntimeError), ResourceExhausted (a MemoryError).
+
+    >>> import ahm
+    >>> solver = ahm.LogMapSolver(ahm.TriangleMesh(*ahm.shapes.sphere(2)))
+    >>> solver
+    <ahm.LogMapSolver: global, on <ahm.TriangleMesh: 162 vertices, 320 faces>>
+    >>> maps = solver.log_maps([0, 7, 12])
+    """
+
+    def __init__(self, surface: Any, *, t_coef: float = 1.0, variant: str = "adaptive", order: int = 1,
+                 strategy: str = "automatic", expected_maps: int = 0, memory: int = 0, accuracy: float = 1e-9,
+                 ordering: str = "amd", supernodal: bool = True, threads: int = 0, progress: Progress = None) -> None:
+        self.surface = as_surface(surface)
+        self.options = checked(t_coef=t_coef, variant=variant, order=order, strategy=strategy,
+                               expected_maps=expected_maps, memory=memory, accuracy=accuracy, ordering=ordering,
+                               supernodal=supernodal, threads=threads)
+        with reporting(progress) as report:
+            self._core = _core.Solver(self.surface._body, self.options, report)
+
+    @property
+    def strategy(self) -> str:
+        """What was chosen: "global" or "march"."""
+        return self._core.strategy
+
+    def log_map(self, source: Any, *, u_axis: Any = None, radius: Optional[float] = None, frames: bool = True,
+                variant: Optional[str] = None, threads: Optional[int] = None, progress: Progress = None) -> LogMap:
+        """The log map of one source: a row, a position (the nearest point of the surface), `(face, barycentric)`, or
+        `((row, row), t)`, a point on an edge.
+
+        u_axis : (3,) a vector of space, projected to the surface; None: the x axis of the row's frame, or the face's first side.
+        radius : rows farther than this, world units, get `Status.beyond_radius`.
+        frames : keep the transported frames, which `LogMap.frames`, `axes`, `gradient` and `inverse` need.
+        variant, threads, progress : as of the solver.
+
+        >>> import ahm
+        >>> solver = ahm.LogMapSolver(ahm.shapes.plane(4, 3))
+        >>> solver.log_map([0.5, 0.0, 0.0], u_axis=[1, 0, 0]).uv[11].round(9).tolist()
+        [2.5, 2.0]
+
+        Raises ValueError naming argument, index and value; NotPositiveDefinite, ResourceExhausted.
+        """
+        at = places.point(source, "source", self.surface)
+        options = dict(u_axis=u_axis, radius=radius, frames=frames, variant=variant, threads=threads)
+        return self._solve(at, "log_map", source, options, progress)[0]
+
+    def log_maps(self, sources: Any, *, u_axis: Any = None, radius: Optional[float] = None, frames: bool = False,
+                 spread: bool = True, variant: Optional[str] = None, threads: Optional[int] = None, progress: Progress = None) -> List[LogMap]:
+        """One map for each source, in blocks, which is faster than one by one, and the same numbers.
+
+        sources : (k,) rows, (k, 3) positions, `(faces, barycentric)`, `(edges, t)`, or a list of any.
+        spread : keep `LogMap.spread`, which `quality` needs and which is a fifth of the work. Otherwise as `log_map`.
+
+        >>> import ahm
+        >>> [m.source.row for m in ahm.LogMapSolver(ahm.shapes.plane(4, 3)).log_maps([0, 7, 11])]
+        [0, 7, 11]
+        """
+        at = places.points(sources, "sources", self.surface)
+        options = dict(u_axis=u_axis, radius=radius, frames=frames, spread=spread, variant=variant, threads=threads)
+        return self._solve(at, "log_maps", sources, options, progress)
+
+    def _solve(self, at: tuple, name: str, given: Any, options: Dict[str, Any], progress: Progress) -> List[LogMap]:
+        axis = arguments.vector(options["u_axis"], "u_axis")
+        core = checked(**{key: value for key, value in options.items() if key != "u_axis"})
+        with reporting(progress) as report:
+            return _maps(self, self._core.maps(at, axis, core, report), name, given, options)
+
+    def _one_of(self, sources: Any, k: int, **options: Any) -> LogMap:
+        return self.log_maps(sources, **options)[k]
+
+    def __reduce__(self) -> tuple:
+        return _solver_again, (self.surface, self.options)
+
+    def __repr__(self) -> str:
+        return f"<ahm.LogMapSolver: {self.strategy}, on {self.surface!r}>"
+
+
+def _solver_again(on: Surface, options: Dict[str, Any]) -> LogMapSolver:
+    return LogMapSolver(on, **options)
+
+
+class ExactGeodesics:
+    """Log maps by straight lines over the flat triangles of a mesh, exact up to rounding; laid out once for many maps.
+
+    Stands wherever a `LogMapSolver` does: `stroke`, `cells`, `karcher_mean`, `geometric_median`, `atlas`. Shared by threads.
+
+    surface : a mesh whose faces are flat, or what `ahm.surface` takes.
+
+    Raises ValueError where the surface has no flat faces (clouds, grids, twisted polygons) or a face has no area.
+
+    >>> import ahm
+    >>> geodesics = ahm.ExactGeodesics(ahm.shapes.sphere(3))
+    >>> geodesics
+    <ahm.ExactGeodesics: on <ahm.TriangleMesh: 642 vertices, 1280 faces>>
+    >>> [bool(abs(m.distance.max() - 3.1416) < 0.02) for m in geodesics.log_maps([0, 7, 12])]
+    [True, True, True]
+    """
+
+    def __init__(self, surface: Any, *, progress: Progress = None) -> None:
+        self.surface = as_body(surface)
+        self._core = self.surface._body
+        with reporting(progress) as report:
+            self._core.lay_out(report)
+
+    def log_map(self, source: Any, *, u_axis: Any = None, radius: Optional[float] = None, frames: bool = True,
+                progress: Progress = None) -> LogMap:
+        """The exact log map of one source. Arguments as of `LogMapSolver.log_map`; within a radius it is as much cheaper.
+
+        >>> import ahm
+        >>> m = ahm.ExactGeodesics(ahm.shapes.plane(4, 3)).log_map(((0, 1), 0.5), u_axis=[1, 0, 0])
+        >>> m.uv[[0, 11]].round(9).tolist()
+        [[-0.5, 0.0], [2.5, 2.0]]
+        """
+        at = places.point(source, "source", self.surface)
+        return self._solve(at, "log_map", source, dict(u_axis=u_axis, radius=radius, frames=frames), progress)[0]
+
+    def log_maps(self, sources: Any, *, u_axis: Any = None, radius: Optional[float] = None, frames: bool = False,
+                 threads: int = 0, progress: Progress = None) -> List[LogMap]:
+        """One map for each source, several at a time, and the same numbers. Arguments as of `LogMapSolver.log_maps`.
+
+        >>> import ahm
+        >>> [m.method for m in ahm.ExactGeodesics(ahm.shapes.plane(4, 3)).log_maps([0, 7])]
+        ['exact', 'exact']
+        """
+        at = places.points(sources, "sources", self.surface)
+        options = dict(u_axis=u_axis, radius=radius, frames=frames, threads=threads)
+        return self._solve(at, "log_maps", sources, options, progress)
+
+    def _solve(self, at: tuple, name: str, given: Any, options: Dict[str, Any], progress: Progress) -> List[LogMap]:
+        axis = arguments.vector(options["u_axis"], "u_axis")
+        core = checked(**{key: value for key, value in options.items() if key != "u_axis"})
+        with reporting(progress) as report:
+            return _maps(self, _core.exact_maps(self._core, at, axis, core, report), name, given, options)
+
+    def _one_of(self, sources: Any, k: int, **options: Any) -> LogMap:
+        return self.log_maps(sources, **options)[k]
+
+    def __reduce__(self) -> tuple:
+        return ExactGeodesics, (self.surface,)
+
+    def __repr__(self) -> str:
+        return f"<ahm.ExactGeodesics: on {self.surface!r}>"
+
+
+Maker = Union[LogMapSolver, ExactGeodesics]
+
+
+def _maps(maker: Maker, found: list, name: str, given: Any, options: Dict[str, Any]) -> List[LogMap]:
+    """With what makes them again from a pickle."""
+    if name == "log_map":
+        return [LogMap(found[0], maker.surface, (maker, "log_map", (given,), options))]
+    return [LogMap(m, maker.surface, (maker, "_one_of", (given, k), options)) for k, m in enumerate(found)]
+
+
+def log_map(surface: Any, source: Any, *, method: Optional[str] = None, u_axis: Any = None, radius: Optional[float] = None,
+            frames: bool = True, progress: Progress = None, **options: Any) -> LogMap:
+    """The log map of one source. For many sources on one surface make a `LogMapSolver` or `ExactGeodesics`.
+
+    surface : a `Surface`, or what `ahm.surface` takes.
+    source : a row, a position, `(face, barycentric)`, or `((row, row), t)` on an edge.
+    method : "heat" (default): by diffusion, on any surface; "exact": by straight lines over the flat triangles of a mesh.
+    u_axis, radius, frames, progress : as of `LogMapSolver.log_map`.
+    options : of `LogMapSolver`, for method "heat": order, t_coef, variant, threads, ...
+
+    >>> import ahm
+    >>> m = ahm.log_map(ahm.shapes.sphere(3), 0, method="exact")
+    >>> bool(abs(m.distance.max() - 3.14159) < 0.02)
+    True
+
+    Raises ValueError naming argument, index and value; NotPositiveDefinite, ResourceExhausted.
+    """
+    maker = as_maker(surface, method, dict(expected_maps=1, progress=progress, **options))
+    return maker.log_map(source, u_axis=u_axis, radius=radius, frames=frames, progress=progress)
+
+
+def as_maker(thing: Any, method: Optional[str] = None, options: Optional[Dict[str, Any]] = None) -> Maker:
+    """What makes maps by this method, made from a surface where it is not made yet. None: by heat, or by what is given."""
+    if method is not None:
+        arguments.choice(method, "method", ("heat", "exact"))
+    given = options or {}
+    made = {LogMapSolver: "heat", ExactGeodesics: "exact"}.get(type(thing))
+    ready = made is not None and method in (None, made)
+    exact = method == "exact" or (made == "exact" and ready)
+    unknown = sorted(set(given) - {"expected_maps", "progress", "threads"}) if ready or exact else []
+    if unknown:
+        raise TypeError(f"{unknown[0]}: " + ("the solver has its options already" if ready else "method 'exact' has no such option"))
+    if ready:
+        return thing
+    return ExactGeodesics(as_body(thing), progress=given.get("progress")) if exact else LogMapSolver(as_body(thing), **given)
+
+
+def as_solver(thing: Any) -> LogMapSolver:
+    """The solver itself, or one on this surface."""
+    return thing if isinstance(thing, LogMapSolver) else LogMapSolver(as_body(thing))
+
+
+def as_body(thing: Any) -> Surface:
+    return thing.surface if isinstance(thing, (LogMapSolver, ExactGeodesics)) else as_surface(thing)

@@ -1,0 +1,337 @@
+#!/usr/bin/env python3
+"""The viewer's page in a real, headless Chromium: what a person does, and what the library says to it.
+
+Exit status 77 (skipped) where python3-selenium is not installed. Screenshots are left in --work.
+"""
+import argparse
+import csv
+import json
+import math
+import pathlib
+import shutil
+import signal
+import subprocess
+import sys
+import time
+import unittest
+
+try:
+    from selenium import webdriver
+    from selenium.webdriver.chrome.service import Service
+    from selenium.webdriver.common.action_chains import ActionChains
+    from selenium.webdriver.common.by import By
+    from selenium.webdriver.support.ui import Select, WebDriverWait
+except ImportError:
+    print("skipped: needs python3-selenium (Debian)")
+    sys.exit(77)
+
+options = None
+
+
+def bumpy_sphere(n=40):
+    """Triangles of a sphere with bumps: vertices and faces."""
+    points, faces = [(0.0, 0.0, 1.2)], []
+    for i in range(1, n):
+        for j in range(2 * n):
+            theta, phi = math.pi * i / n, math.pi * j / n
+            r = 1 + 0.15 * math.sin(3 * theta) * math.cos(2 * phi) + 0.2 * math.cos(theta)
+            points.append((r * math.sin(theta) * math.cos(phi), r * math.sin(theta) * math.sin(phi), r * math.cos(theta)))
+    points.append((0.0, 0.0, -0.8))
+    at = lambda i, j: 0 if i == 0 else len(points) - 1 if i == n else 1 + (i - 1) * 2 * n + j % (2 * n)
+    for i in range(n):
+        for j in range(2 * n):
+            if i > 0:
+                faces.append((at(i, j), at(i + 1, j), at(i, j + 1)))
+            if i < n - 1:
+                faces.append((at(i, j + 1), at(i + 1, j), at(i + 1, j + 1)))
+    return points, faces
+
+
+def write_off(path, points, faces):
+    lines = ["OFF", f"{len(points)} {len(faces)} 0"]
+    lines += [" ".join(repr(x) for x in p) for p in points] + ["3 %d %d %d" % f for f in faces]
+    path.write_text("\n".join(lines) + "\n")
+
+
+def rows_of(path):
+    with open(path) as file:
+        return list(csv.DictReader(file))
+
+
+class Viewer:
+    """A running `ahm view`."""
+
+    def __init__(self, *arguments):
+        self.process = subprocess.Popen([options.ahm, "view", *map(str, arguments), "--no-browser"], stdout=subprocess.PIPE, text=True)
+        self.address = self.process.stdout.readline().strip()
+
+    def close(self):
+        self.process.send_signal(signal.SIGTERM)
+        self.process.wait()
+        self.process.stdout.close()
+
+
+class Page(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.work = pathlib.Path(options.work)
+        shutil.rmtree(cls.work, ignore_errors=True)
+        (cls.work / "downloads").mkdir(parents=True)
+        cls.points, cls.faces = bumpy_sphere()
+        cls.mesh, cls.cloud = cls.work / "bumps.off", cls.work / "bumps.xyz"
+        write_off(cls.mesh, cls.points, cls.faces)
+        cls.cloud.write_text("".join("%r %r %r\n" % p for p in cls.points))
+        chrome = webdriver.ChromeOptions()
+        chrome.binary_location = options.chromium
+        for argument in ("--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--use-gl=angle", "--use-angle=swiftshader",
+                         "--enable-unsafe-swiftshader", "--window-size=1366,768", "--hide-scrollbars", "--no-first-run",
+                         f"--user-data-dir={cls.work / 'profile'}"):
+            chrome.add_argument(argument)
+        chrome.add_experimental_option("prefs", {"download.default_directory": str((cls.work / "downloads").resolve())})
+        chrome.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+        cls.driver = webdriver.Chrome(service=Service(options.driver), options=chrome)
+        cls.driver.set_script_timeout(120)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.driver.quit()
+        shutil.rmtree(cls.work / "profile", ignore_errors=True)
+
+    def setUp(self):
+        self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {"width": 1366, "height": 768, "deviceScaleFactor": 1, "mobile": False})
+
+    def tearDown(self):
+        errors = [entry for entry in self.driver.get_log("browser") if entry["level"] in ("SEVERE", "WARNING") and "GPU stall" not in entry["message"] and "swiftshader" not in entry["message"].lower()]
+        self.assertEqual(errors, [])
+
+    def js(self, text, *arguments):
+        return self.driver.execute_script(text, *arguments)
+
+    def wait(self, condition):
+        WebDriverWait(self.driver, 120, 0.05).until(lambda driver: self.js("return " + condition))
+
+    def open(self, *arguments):
+        viewer = Viewer(*arguments)
+        self.addCleanup(viewer.close)
+        self.driver.get(viewer.address)
+        self.wait("window.ahm && ahm.stage.map && !ahm.busy")
+
+    def text(self, name):
+        return self.driver.find_element(By.ID, name).get_attribute("textContent")
+
+    def at(self, x, y):
+        """A chain of actions with the pointer at a pixel of the canvas."""
+        return ActionChains(self.driver, duration=0).move_to_element_with_offset(
+            self.driver.find_element(By.ID, "canvas"), round(x - self.js("return ahm.stage.width") / 2), round(y - self.js("return ahm.stage.height") / 2))
+
+    def visible_rows(self, count):
+        """Rows that are seen, by their pixel: [[row, x, y], ...], away from the marks and each other."""
+        return self.js("""
+            const s = ahm.stage, out = [], p = s.surface.positions;
+            for (let k = 0; k < s.surface.points.length && out.length < arguments[0]; k += 37) {
+              const [x, y] = s.pixel([p[3 * k], p[3 * k + 1], p[3 * k + 2]]).map(Math.round);
+              if (x < 200 || y < 60 || x > s.width - 60 || y > s.height - 60) continue;
+              const source = s.source_position ? s.pixel(s.source_position.toArray()) : [-1e3, 0];
+              if (Math.hypot(x - source[0], y - source[1]) < 40) continue;
+              const hit = s.pick(x, y);
+              if (hit && hit.row === s.surface.points[k]) out.push([hit.row, x, y]);
+            }
+            return out;""", count)
+
+    def settled(self):
+        self.wait("!ahm.busy && !ahm.following && !ahm.stage.pending")
+
+    def click_at(self, x, y):
+        before = self.js("return ahm.server.number")
+        self.at(x, y).click().perform()
+        self.wait(f"ahm.server.number > {before}")
+        self.settled()
+
+    def shot(self, name):
+        self.js("ahm.stage.draw()")
+        self.driver.save_screenshot(str(self.work / (name + ".png")))
+
+    def library_rows(self, source, name="library.csv", path=None, *more):
+        file = self.work / name
+        subprocess.run([options.ahm, "logmap", str(path or self.mesh), "--source", source, "-o", str(file), *more], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        return rows_of(file)
+
+    def expect_map(self, rows):
+        shown = self.js("const m = ahm.stage.map, s = ahm.stage.surface.scale; return [m.uv, m.distance, m.spread].map((a) => Array.from(a, (x) => x * s))")
+        uv, distance, spread = shown
+        largest = max(abs(float(r["distance"])) for r in rows)
+        for i, row in enumerate(rows):
+            for found, name in ((uv[2 * i], "u"), (uv[2 * i + 1], "v"), (distance[i], "distance"), (spread[i], "spread")):
+                self.assertAlmostEqual(found, float(row[name]), delta=3e-7 * largest, msg=f"{name} of row {i}")
+
+    def test_a_click_gives_the_map_the_library_gives(self):
+        self.open(self.mesh)
+        row, x, y = self.visible_rows(8)[-1]
+        self.click_at(x + 2, y + 1)
+        source = self.text("spec")
+        self.assertTrue(source.startswith("face:"), source)
+        self.expect_map(self.library_rows(source))
+        self.assertEqual(self.text("command"), f"ahm logmap {self.mesh} --source {source} -o map.csv")
+        self.shot("mesh_polar")
+
+    def test_hover_tells_the_row_under_the_pointer(self):
+        self.open(self.mesh, "--source", 0)
+        rows = self.library_rows("0")
+        for row, x, y in self.visible_rows(5):
+            self.at(x, y).perform()
+            self.wait(f"document.getElementById('at_row').textContent === '{row}'")
+            self.assertEqual(self.text("at_status"), "ok")
+            for name in ("u", "v", "distance", "spread"):
+                self.assertAlmostEqual(float(self.text("at_" + name)), float(rows[row][name]), delta=1e-5)
+            for told, true in zip(self.text("at_position").split(), self.points[row]):
+                self.assertAlmostEqual(float(told), true, delta=1e-5)
+        self.at(230, 10).perform()
+        self.wait("document.getElementById('at_row').textContent === '–'")
+
+    def test_the_source_can_be_dragged(self):
+        self.open(self.mesh)
+        row, x, y = self.visible_rows(9)[-1]
+        at = self.js("return ahm.stage.pixel(ahm.stage.source_position.toArray())")
+        eye = self.js("return ahm.stage.camera.position.toArray()")
+        chain = self.at(*at).click_and_hold()
+        for k in range(1, 9):
+            chain = chain.move_to_element_with_offset(self.driver.find_element(By.ID, "canvas"),
+                round(at[0] + (x - at[0]) * k / 8 - self.js("return ahm.stage.width") / 2), round(at[1] + (y - at[1]) * k / 8 - self.js("return ahm.stage.height") / 2))
+        chain.release().perform()
+        self.settled()
+        self.assertEqual(self.js("return ahm.stage.camera.position.toArray()"), eye)
+        self.assertEqual(self.js("return ahm.stage.pick(arguments[0], arguments[1]).row", x, y), row)
+        self.assertLess(math.dist(self.js("return ahm.stage.map.position"), self.points[row]), 0.05)
+        self.expect_map(self.library_rows(self.text("spec")))
+
+    def test_a_newer_request_takes_the_place_of_older_ones(self):
+        self.open(self.mesh)
+        self.js("for (let k = 0; k < 20; ++k) ahm.ask_map({ row: 10 + k })")
+        self.settled()
+        self.assertEqual(self.text("spec"), "29")
+        self.expect_map(self.library_rows("29"))
+        # The browser tells of the refusals (409) of those that were on their way.
+        self.driver.get_log("browser")
+
+    def test_export_is_the_file_of_the_command(self):
+        self.open(self.mesh, "--source", 123)
+        self.library_rows("123", "export.csv")
+        self.driver.find_element(By.ID, "export").click()
+        file = self.work / "downloads" / "map.csv"
+        for _ in range(600):
+            if file.exists():
+                break
+            time.sleep(0.1)
+        self.assertEqual(file.read_bytes(), (self.work / "export.csv").read_bytes())
+
+    def test_every_field_is_drawn(self):
+        self.open(self.mesh, "--source", 0)
+        self.js("ahm.stage.turn(0, 0.9)")
+        self.wait("!ahm.stage.is_moving && !ahm.stage.pending")
+        pictures = set()
+        for field in ("polar", "grid", "distance", "spread", "quality", "normals", "none"):
+            self.js("ahm.panel.set_field(arguments[0]); ahm.stage.draw()", field)
+            pictures.add(self.js("return ahm.stage.canvas.toDataURL()"))
+            self.shot("field_" + field)
+        self.assertEqual(len(pictures), 7)
+
+    def test_methods_and_options_change_the_map(self):
+        self.open(self.mesh, "--source", 0)
+        self.js("document.getElementById('method_section').open = true")
+        Select(self.driver.find_element(By.ID, "method")).select_by_visible_text("exact")
+        self.settled()
+        self.expect_map(self.library_rows("0", "exact.csv", None, "--method", "exact"))
+        self.assertIn("--method exact", self.text("command"))
+        self.shot("method")
+        self.js("const r = document.getElementById('radius'); r.value = 'x'; r.dispatchEvent(new Event('change'))")
+        self.wait("document.getElementById('status').textContent.includes('no positive number')")
+
+    def test_tools_draw_on_the_surface(self):
+        self.open(self.mesh)
+        rows = self.visible_rows(12)
+        self.js("ahm.set_tool('path')")
+        for _, x, y in (rows[0], rows[-1]):
+            self.at(x, y).click().perform()
+        self.wait("document.getElementById('command').textContent.startsWith('ahm path')")
+        self.settled()
+        self.shot("path")
+        self.js("ahm.set_tool('coverage')")
+        self.wait("document.getElementById('command').textContent.startsWith('ahm coverage')")
+        self.settled()
+        self.shot("coverage")
+        self.js("ahm.set_tool('stroke')")
+        (_, x, y), (_, to_x, to_y) = rows[0], rows[-1]
+        chain = self.at(x, y).click_and_hold()
+        for k in range(1, 13):
+            chain = chain.move_by_offset(round((to_x - x) * k / 12) - round((to_x - x) * (k - 1) / 12), round((to_y - y) * k / 12) - round((to_y - y) * (k - 1) / 12)).pause(0.05)
+        chain.release().perform()
+        self.wait("ahm.stage.map.pattern === 'grid'")
+        self.settled()
+        self.assertTrue(self.text("command").startswith("ahm stroke"))
+        self.shot("stroke")
+
+    def test_a_decal_lies_on_the_map(self):
+        self.open(self.mesh)
+        image = self.work / "bumps_image.png"
+        self.js("ahm.set_tool('decal')")
+        self.shot("decal_before")
+        from base64 import b64decode
+        image.write_bytes(b64decode(self.js("""const c = document.createElement('canvas'); c.width = 128; c.height = 64;
+            const g = c.getContext('2d'); g.fillStyle = '#ff0'; g.fillRect(0, 0, 128, 64); g.fillStyle = '#00f'; g.font = '48px sans-serif'; g.fillText('ahm', 10, 48);
+            return c.toDataURL().split(',')[1]""")))
+        self.driver.find_element(By.ID, "decal_file").send_keys(str(image.resolve()))
+        self.wait("ahm.decal && !ahm.stage.pending")
+        self.assertIn("--image bumps_image.png", self.text("command"))
+        self.shot("decal")
+        self.assertNotEqual((self.work / "decal.png").read_bytes(), (self.work / "decal_before.png").read_bytes())
+
+    def test_clouds_are_drawn_and_picked(self):
+        self.open(self.cloud, "--source", 0)
+        self.expect_map(self.library_rows("0", "cloud.csv", self.cloud))
+        row, x, y = self.visible_rows(6)[-1]
+        self.at(x, y).perform()
+        self.wait(f"document.getElementById('at_row').textContent === '{row}'")
+        self.click_at(x, y)
+        self.assertEqual(self.text("spec"), str(row))
+        self.shot("cloud_polar")
+        self.js("ahm.panel.set_field('distance')")
+        self.shot("cloud_distance")
+
+    def test_the_file_to_send_is_the_same_page(self):
+        page = self.work / "map.html"
+        rows = self.library_rows("0", "static.csv", None, "--view", str(page))
+        self.driver.get(page.resolve().as_uri())
+        self.wait("window.ahm && ahm.stage.map && !ahm.stage.pending")
+        row, x, y = self.visible_rows(5)[-1]
+        self.at(x, y).perform()
+        self.wait(f"document.getElementById('at_row').textContent === '{row}'")
+        self.assertAlmostEqual(float(self.text("at_u")), float(rows[row]["u"]), delta=1e-5)
+        self.expect_map(rows)
+        self.assertFalse(self.driver.find_element(By.ID, "take").is_displayed())
+        self.shot("static")
+
+    def test_keyboard_theme_and_a_small_screen(self):
+        self.open(self.mesh)
+        body = self.driver.find_element(By.ID, "stage")
+        eye = self.js("return ahm.stage.camera.position.toArray()")
+        body.send_keys("\ue014")  # right
+        self.assertNotEqual(self.js("return ahm.stage.camera.position.toArray()"), eye)
+        body.send_keys("r")
+        self.assertEqual([round(c, 6) for c in self.js("return ahm.stage.camera.position.toArray()")], [round(c, 6) for c in eye])
+        body.send_keys("d")
+        self.assertTrue(self.js("return ahm.stage.is_dark"))
+        self.settled()
+        self.shot("dark")
+        panel = self.js("const p = document.getElementById('panel'); return [p.scrollHeight, p.clientHeight]")
+        self.assertLessEqual(panel[0], panel[1])  # everything is seen at 1366 x 768
+        self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {"width": 390, "height": 780, "deviceScaleFactor": 2, "mobile": True})
+        self.wait("ahm.stage.width === 390 && !ahm.stage.pending")
+        self.shot("phone")
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser()
+    for name in ("ahm", "chromium", "driver", "work"):
+        parser.add_argument("--" + name, required=True)
+    options, rest = parser.parse_known_args()
+    unittest.main(argv=[sys.argv[0], *rest], verbosity=2)

@@ -1,0 +1,206 @@
+// What a page is told is what the library finds.
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <set>
+#include <thread>
+
+#include "ahm/maps/log_map_solver.hpp"
+#include "ahm/pointcloud/point_cloud_surface.hpp"
+#include "ahm/surface/exact/exact_geodesics.hpp"
+#include "sphere.hpp"
+
+namespace ahm::viewer::test {
+namespace {
+
+std::string request(json more) {
+  more["client"] = "test";
+  return more.dump();
+}
+
+std::string error_of(const Answer& answer) { return json::parse(answer.body).at("error"); }
+
+class ViewerSession : public testing::Test {
+ protected:
+  Sphere sphere;
+  Session session{sphere.surface, sphere.geometry, sphere_options()};
+};
+
+/// Or both NaN.
+bool same(float a, double b) { return a == static_cast<float>(b) || (std::isnan(a) && std::isnan(b)); }
+
+void expect_same(const RowLogMap& rows, const Unpacked& bundle, double scale) {
+  const auto uv = bundle.array<float>("uv"), distance = bundle.array<float>("distance");
+  const auto spread = bundle.array<float>("spread");
+  const auto status = bundle.array<std::uint8_t>("status");
+  ASSERT_EQ(uv.size(), 2 * rows.u.size());
+  for (std::size_t i = 0; i < rows.u.size(); ++i) {
+    ASSERT_EQ(status[i], static_cast<std::uint8_t>(rows.status[i]));
+    ASSERT_TRUE(same(uv[2 * i], rows.u[i] / scale)) << i;
+    ASSERT_TRUE(same(uv[2 * i + 1], rows.v[i] / scale)) << i;
+    ASSERT_TRUE(same(distance[i], rows.distance[i] / scale)) << i;
+    ASSERT_TRUE(same(spread[i], rows.spread[i] / scale)) << i;
+  }
+}
+
+double scale_of(const Session& session) {
+  return Unpacked(session.answer("surface", {}).body).meta.at("scale").get<double>();
+}
+
+TEST_F(ViewerSession, GivesTheMapTheLibraryGives) {
+  const LogMapSolver solver(sphere.surface.graph());
+  const auto expected = sphere.surface.on_rows(solver.solve(sphere.surface.source(Row{7}).source));
+  const Answer answer = session.answer("map", request({{"source", {{"row", 7}}}}));
+  ASSERT_EQ(answer.status, 200) << answer.body;
+  expect_same(expected, Unpacked(answer.body), scale_of(session));
+}
+
+TEST_F(ViewerSession, GivesExactSourcesInFaces) {
+  const FacePoint point{11, {0.2, 0.3, 0.5}};
+  const ExactGeodesics geodesics(sphere.surface);
+  const auto u = sphere.surface.source(point).frame->x;
+  const auto expected = sphere.surface.on_rows(geodesics.log_map(point, u, {.frames = true}));
+  const Answer answer =
+      session.answer("map", request({{"source", {{"face", 11}, {"weights", {0.2, 0.3, 0.5}}}}, {"method", "exact"}}));
+  ASSERT_EQ(answer.status, 200) << answer.body;
+  const Unpacked bundle(answer.body);
+  expect_same(expected, bundle, scale_of(session));
+  EXPECT_EQ(bundle.meta.at("spec"), "face:11:0.2,0.3,0.5");
+  EXPECT_EQ(bundle.meta.at("command"), "ahm logmap sphere.ply --source face:11:0.2,0.3,0.5 -o map.csv --method exact");
+}
+
+TEST_F(ViewerSession, HonoursEverySetting) {
+  HeatOptions heat;
+  heat.t_coef = 2;
+  heat.order = 2;
+  const LogMapSolver solver(sphere.surface.graph(), heat);
+  MapOptions options;
+  options.variant = Variant::localized;
+  options.radius = 1;
+  const Vec3 axis{0, 0.3, 1};
+  const auto expected = sphere.surface.on_rows(solver.solve(sphere.surface.source(Row{7}, axis).source, options));
+  const Answer answer = session.answer("map", request({{"source", {{"row", 7}}},
+                                                       {"variant", "localized"},
+                                                       {"order", 2},
+                                                       {"t_coef", 2},
+                                                       {"radius", 1},
+                                                       {"u_axis", {0, 0.3, 1}}}));
+  ASSERT_EQ(answer.status, 200) << answer.body;
+  expect_same(expected, Unpacked(answer.body), scale_of(session));
+  EXPECT_EQ(Unpacked(answer.body).meta.at("command"),
+            "ahm logmap sphere.ply --source 7 -o map.csv --variant localized --order 2 --t-coef 2 --radius 1 "
+            "--u-axis=0,0.3,1");
+}
+
+TEST_F(ViewerSession, KnowsTheFaceAndTheRowsOfEveryTriangle) {
+  const Unpacked bundle(session.answer("surface", {}).body);
+  const auto triangles = bundle.array<std::uint32_t>("triangles");
+  const auto points = bundle.array<std::int32_t>("points"), faces = bundle.array<std::int32_t>("faces");
+  const auto positions = bundle.array<float>("positions");
+  const double scale = bundle.meta.at("scale");
+  ASSERT_EQ(faces.size(), sphere.geometry.face_count());
+  ASSERT_EQ(triangles.size(), 3 * faces.size());
+  for (std::size_t t = 0; t < faces.size(); ++t)
+    for (std::size_t k = 0; k < 3; ++k)
+      EXPECT_EQ(points[triangles[3 * t + k]], sphere.geometry.face(static_cast<std::size_t>(faces[t]))[k]);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    for (std::size_t c = 0; c < 3; ++c)
+      EXPECT_NEAR(positions[3 * i + c] * scale + bundle.meta.at("centre")[c].get<double>(),
+                  sphere.geometry.points[static_cast<std::size_t>(points[i])][c], 1e-6);
+}
+
+TEST_F(ViewerSession, FindsPathsStrokesAndCoverage) {
+  const json path = json::parse(session.answer("path", request({{"from", {{"row", 0}}}, {"to", {{"row", 30}}}})).body);
+  const ExactGeodesics geodesics(sphere.surface);
+  const std::array<SurfacePoint, 2> ends{Row{0}, Row{30}};
+  EXPECT_NEAR(path.at("length").get<double>() * scale_of(session), geodesics.path(ends).length, 1e-12);
+  EXPECT_EQ(path.at("command"), "ahm path sphere.ply --from 0 --to 30 -o path.obj");
+
+  const Answer stroke = session.answer("stroke", request({{"points", {{{"row", 0}}, {{"row", 30}}}}}));
+  ASSERT_EQ(stroke.status, 200) << stroke.body;
+  EXPECT_EQ(Unpacked(stroke.body).meta.at("pattern"), "grid");
+  EXPECT_GT(Unpacked(stroke.body).meta.at("curve").size(), 2U);
+
+  const Answer covered = session.answer(
+      "coverage", request({{"source", {{"row", 0}}}, {"cover", 0.5}, {"spacing", 0.1}, {"pattern", "spiral"}}));
+  ASSERT_EQ(covered.status, 200) << covered.body;
+  EXPECT_GT(json::parse(covered.body).at("points").size(), 20U);
+  EXPECT_GT(json::parse(covered.body).at("covered").get<double>(), 0.9);
+}
+
+TEST_F(ViewerSession, RefusesWhatItCannotAnswer) {
+  for (const json& bad :
+       {json{{"source", {{"row", 1000000}}}}, json{{"source", {{"row", -1}}}}, json{{"source", {{"row", 1.5}}}},
+        json{{"source", "7"}}, json::object(), json{{"source", {{"face", 3}, {"weights", {1, 1, 1}}}}},
+        json{{"source", {{"face", 3}, {"weights", {1}}}}}, json{{"source", {{"row", 7}}}, {"method", "magic"}},
+        json{{"source", {{"row", 7}}}, {"t_coef", 0}}, json{{"source", {{"row", 7}}}, {"order", 3}},
+        json{{"source", {{"row", 7}}}, {"radius", -1}}, json{{"source", {{"row", 7}}}, {"u_axis", {0, 0, 0}}}}) {
+    const Answer answer = session.answer("map", request(bad));
+    EXPECT_EQ(answer.status, 400) << bad;
+    EXPECT_FALSE(error_of(answer).empty());
+  }
+  EXPECT_EQ(session.answer("passwd", request({})).status, 404);
+  EXPECT_EQ(session.answer("map", request({{"source", {{"row", 7}}}})).status, 200);
+}
+
+TEST_F(ViewerSession, OfManyRequestsOfAClientTheNewestIsAnswered) {
+  const std::string body = request({{"source", {{"row", 3}}}});
+  std::vector<Answer> answers(24);
+  {
+    std::vector<std::jthread> threads;
+    for (Answer& answer : answers) threads.emplace_back([&] { answer = session.answer("map", body); });
+  }
+  for (const Answer& answer : answers) EXPECT_TRUE(answer.status == 200 || answer.status == 409) << answer.body;
+  EXPECT_EQ(session.answer("map", body).status, 200);
+}
+
+TEST(ViewerSessionOfACloud, TellsGradientsOfEveryDiscAndHasNoPaths) {
+  io::Geometry geometry;
+  for (int x = 0; x < 20; ++x)
+    for (int y = 0; y < 20; ++y) geometry.points.push_back({0.1 * x, 0.1 * y, 0});
+  const auto cloud = pointcloud::PointCloudSurface::build(geometry.points);
+  const Session session(cloud, geometry, sphere_options());
+  const Answer answer = session.answer("map", request({{"source", {{"row", 0}}}, {"u_axis", {1, 0, 0}}}));
+  ASSERT_EQ(answer.status, 200) << answer.body;
+  const Unpacked map(answer.body);
+  const auto slopes = map.array<std::uint8_t>("slopes");
+  ASSERT_EQ(slopes.size(), 6 * geometry.points.size());
+  const double steepest = map.meta.at("steepest");
+  const auto points = Unpacked(session.answer("surface", {}).body).array<std::int32_t>("points");
+  const std::set<std::int32_t> rows(points.begin(), points.end());
+  EXPECT_EQ(rows.size(), geometry.points.size());    // each once, however they are scattered
+  for (std::size_t k = 0; k < points.size(); ++k) {  // in the plane the map is the identity
+    const double du = steepest * (2.0 * slopes[6 * k] - 254) / 255,
+                 dv = steepest * (2.0 * slopes[6 * k + 4] - 254) / 255;
+    EXPECT_NEAR(du, 1, steepest * 2 / 255) << points[k];
+    EXPECT_NEAR(std::abs(dv), 1, steepest * 2 / 255) << points[k];
+  }
+  EXPECT_EQ(session.answer("path", request({{"from", {{"row", 0}}}, {"to", {{"row", 3}}}})).status, 400);
+}
+
+TEST(ViewerSessionExport, SendsWhatItsWriterWrites) {
+  const Sphere sphere;
+  SessionOptions options = sphere_options();
+  options.formats = {"csv"};
+  std::filesystem::path folder;
+  options.write = [&](const std::filesystem::path& file, const RowLogMap& rows, const std::vector<double>& quality) {
+    folder = file.parent_path();
+    std::ofstream(file) << rows.u.size() << ' ' << quality.size();
+  };
+  const Session session(sphere.surface, sphere.geometry, options);
+  const std::string n = std::to_string(sphere.geometry.points.size());
+  EXPECT_EQ(session.answer("export", request({{"source", {{"row", 0}}}, {"format", "csv"}})).body, n + " " + n);
+  EXPECT_FALSE(folder.empty());
+  EXPECT_FALSE(std::filesystem::exists(folder));
+  EXPECT_EQ(session.answer("export", request({{"source", {{"row", 0}}}, {"format", "../csv"}})).status, 400);
+}
+
+TEST(ViewerCommand, QuotesWhatAShellWouldTakeApart) {
+  EXPECT_EQ(quoted("scan.ply"), "scan.ply");
+  EXPECT_EQ(quoted("my scan.ply"), "'my scan.ply'");
+  EXPECT_EQ(quoted("it's; rm -rf $HOME"), "'it'\\''s; rm -rf $HOME'");
+  EXPECT_EQ(quoted(""), "''");
+}
+
+}  // namespace
+}  // namespace ahm::viewer::test

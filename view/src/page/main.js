@@ -1,0 +1,382 @@
+"use strict";
+// Starts the page: with the data that stands in it, or with a server behind it.
+
+// Requests to the server. Of maps one is under way at a time: a newer one takes its place, or waits for it while the source
+// is dragged, so that the picture follows.
+Ahm.Server = class {
+  constructor() {
+    this.client = Array.from(crypto.getRandomValues(new Uint8Array(8)), (b) => b.toString(16).padStart(2, "0")).join("");
+    this.number = 0;
+  }
+
+  async get(name) {
+    const answer = await fetch(name, { cache: "no-store" });
+    if (!answer.ok) throw new Error(await this.reason(answer));
+    return answer;
+  }
+
+  async post(name, request, signal) {
+    const body = JSON.stringify(Object.assign({ client: this.client }, request));
+    const answer = await fetch(name, { method: "POST", headers: { "Content-Type": "application/json" }, body: body, signal: signal });
+    if (!answer.ok) throw Object.assign(new Error(await this.reason(answer)), { status: answer.status });
+    return answer;
+  }
+
+  async reason(answer) {
+    try {
+      return (await answer.json()).error;
+    } catch (error) {
+      return "the server answers " + answer.status;
+    }
+  }
+
+  // The newest map, or null where a newer request took its place.
+  async map(name, request) {
+    const number = ++this.number;
+    if (this.abort) this.abort.abort();
+    this.abort = new AbortController();
+    try {
+      const answer = await this.post(name, request, this.abort.signal), data = await answer.arrayBuffer();
+      return number === this.number ? Ahm.decode(data) : null;
+    } catch (error) {
+      if (error.name === "AbortError" || error.status === 409 || number !== this.number) return null;
+      throw error;
+    }
+  }
+};
+
+Ahm.Viewer = class {
+  constructor(surface, server) {
+    this.element = (id) => document.getElementById(id);
+    this.server = server;
+    this.stage = new Ahm.Stage(this.element("canvas"), surface);
+    this.panel = new Ahm.Panel(this.stage);
+    this.tool = "map";
+    this.picked = [];  // of a path or a stroke
+    document.body.classList.toggle("still", !server);
+    this.listen();
+  }
+
+  listen() {
+    const canvas = this.element("canvas");
+    canvas.addEventListener("pointerdown", (event) => this.press(event));
+    canvas.addEventListener("pointermove", (event) => this.move(event));
+    canvas.addEventListener("pointerup", (event) => this.release(event));
+    canvas.addEventListener("pointercancel", () => this.end_drag());
+    canvas.addEventListener("pointerleave", () => { if (!this.dragging) this.panel.tell(null); });
+    window.addEventListener("keydown", (event) => this.key(event));
+    new ResizeObserver(() => this.stage.resize()).observe(this.element("stage"));
+  }
+
+  at(event) {
+    const box = this.element("canvas").getBoundingClientRect();
+    return [event.clientX - box.left, event.clientY - box.top];
+  }
+
+  press(event) {
+    const [x, y] = this.at(event);
+    this.element("stage").focus({ preventScroll: true });
+    this.pressed = { x, y, button: event.button, id: event.pointerId };
+    if (!this.server || event.button !== 0) return;
+    const source = this.stage.source_position;
+    const [sx, sy] = source ? this.stage.pixel(source.toArray()) : [-1e9, 0];
+    const is_source = (this.tool === "map" || this.tool === "decal") && Math.hypot(x - sx, y - sy) < (event.pointerType === "touch" ? 26 : 13);
+    if (!is_source && this.tool !== "stroke") return;
+    if (this.tool === "stroke" && !this.stage.pick(x, y)) return;
+    this.dragging = true;
+    this.picked = [];
+    this.stage.controls.enabled = false;
+    this.element("canvas").setPointerCapture(event.pointerId);
+  }
+
+  move(event) {
+    this.pointer = this.at(event);
+    if (this.pointing || (event.buttons !== 0 && !this.dragging)) return;
+    this.pointing = true;  // once per picture
+    requestAnimationFrame(() => {
+      this.pointing = false;
+      const hit = this.stage.pick(...this.pointer);
+      this.panel.tell(hit);
+      if (this.dragging && hit) this.drag(hit);
+    });
+  }
+
+  drag(hit) {
+    if (this.tool === "stroke") return this.add_to_stroke(hit);
+    this.stage.set_source(hit.position, []);
+    this.wanted = hit;
+    if (!this.following) this.follow();
+  }
+
+  // Maps of where the source is being dragged, one after the other.
+  async follow() {
+    this.following = true;
+    while (this.wanted) {
+      const hit = this.wanted;
+      this.wanted = null;
+      await this.ask_map(hit.source);
+    }
+    this.following = false;
+  }
+
+  release(event) {
+    const down = this.pressed, [x, y] = this.at(event);
+    this.pressed = null;
+    if (this.dragging) return this.end_drag();
+    if (!this.server || !down || down.button !== 0 || Math.hypot(x - down.x, y - down.y) > 5) return;
+    const hit = this.stage.pick(x, y);
+    if (hit) this.click(hit);
+  }
+
+  end_drag() {
+    if (!this.dragging) return;
+    this.dragging = false;
+    this.stage.controls.enabled = true;
+    if (this.tool === "stroke") this.ask_stroke();
+  }
+
+  click(hit) {
+    if (this.tool === "path") return this.ask_path(hit);
+    if (this.tool === "stroke") return;
+    this.wanted = null;
+    return this.ask_map(hit.source);
+  }
+
+  key(event) {
+    if (event.ctrlKey || event.metaKey || event.altKey || /INPUT|SELECT|TEXTAREA/.test(event.target.tagName)) return;
+    const step = 0.09, keys = {
+      r: () => this.stage.reset(), f: () => this.panel.next_field(), d: () => this.panel.set_dark(!this.stage.is_dark),
+      ArrowLeft: () => this.stage.turn(-step, 0), ArrowRight: () => this.stage.turn(step, 0),
+      ArrowUp: () => this.stage.turn(0, step), ArrowDown: () => this.stage.turn(0, -step),
+      "+": () => this.stage.zoom(0.9), "=": () => this.stage.zoom(0.9), "-": () => this.stage.zoom(1 / 0.9)
+    };
+    const act = keys[event.key.length === 1 ? event.key.toLowerCase() : event.key];
+    if (!act) return;
+    if (event.key.startsWith("Arrow") && event.target !== document.body && event.target !== this.element("stage")) return;
+    event.preventDefault();
+    act();
+  }
+
+  // What follows needs the server.
+
+  settings() {
+    const text = (id) => this.element(id).value.trim(), number = (id) => {
+      if (text(id) === "") return undefined;
+      const x = Number(text(id));
+      if (!(x > 0 && Number.isFinite(x))) throw new Error(id.replace(/_/g, "-") + ": '" + text(id) + "' is no positive number");
+      return x;
+    };
+    const out = { method: text("method"), radius: number("radius") };
+    if (out.method === "heat") Object.assign(out, { variant: text("variant"), order: Number(text("order")), t_coef: number("t_coef") });
+    if (text("u_axis") !== "") out.u_axis = text("u_axis").split(/[\s,]+/).map(Number);
+    return out;
+  }
+
+  async attempt(work) {
+    this.busy = (this.busy || 0) + 1;
+    try {
+      await work();
+    } catch (error) {
+      this.panel.say(error.message, true);
+    } finally {
+      this.busy--;
+    }
+  }
+
+  ask_map(source) {
+    return this.attempt(async () => {
+      const request = Object.assign({ source: source }, this.settings()), begin = performance.now();
+      const slow = setTimeout(() => this.panel.say("computing …"), 250);
+      const map = await this.server.map("map", request).finally(() => clearTimeout(slow));
+      if (!map) return;
+      this.request = request;
+      this.show(map, this.pattern === "polar" ? null : "polar");
+      if (this.tool === "decal") this.place_decal();
+      if (this.tool === "coverage") await this.ask_coverage();
+      this.time_of(begin);
+    });
+  }
+
+  show(map, wanted) {
+    this.pattern = map.pattern;
+    this.element("export").disabled = !this.request;
+    this.panel.show_map(map, wanted);
+  }
+
+  time_of(begin) {
+    this.panel.say(Math.round(performance.now() - begin) + " ms");
+  }
+
+  async ask_path(hit) {
+    this.picked = this.picked.length === 1 ? [this.picked[0], hit] : [hit];
+    this.stage.set_marks({ dots: this.picked.map((h) => h.position) });
+    if (this.picked.length === 1) return this.panel.say("and where to?");
+    await this.attempt(async () => {
+      const [from, to] = this.picked, begin = performance.now();
+      const answer = await (await this.server.post("path", { from: from.source, to: to.source })).json();
+      this.stage.set_marks({ curve: answer.points, dots: [answer.points[0], answer.points[answer.points.length - 1]] });
+      this.element("command").textContent = answer.command;
+      this.time_of(begin);
+      this.panel.say("a path, " + Ahm.number(answer.length) + " long");
+    });
+  }
+
+  add_to_stroke(hit) {
+    const last = this.picked[this.picked.length - 1], gap = 1.5 * this.stage.surface.spacing;
+    if (last && Math.hypot(...hit.position.map((x, c) => x - last.position[c])) < gap) return;
+    this.picked.push(hit);
+    this.stage.set_marks({ curve: this.picked.map((h) => h.position) });
+  }
+
+  ask_stroke() {
+    if (this.picked.length < 2) return;
+    return this.attempt(async () => {
+      const begin = performance.now(), request = Object.assign({ points: this.picked.map((h) => h.source) }, this.settings());
+      this.panel.say("computing …");
+      const map = await this.server.map("stroke", request);
+      if (!map) return;
+      this.request = null;
+      this.show(map, "grid");
+      this.time_of(begin);
+    });
+  }
+
+  async ask_coverage() {
+    const positive = (id) => Number(this.element(id).value);
+    if (!this.request) return;
+    const request = Object.assign({}, this.request, {
+      cover: positive("coverage_radius"), spacing: positive("coverage_spacing"), pattern: this.element("coverage_pattern").value
+    });
+    const answer = await (await this.server.post("coverage", request)).json();
+    this.stage.set_marks({ curve: answer.points, pieces: answer.pieces });
+    this.panel.say("");
+    this.element("command").textContent = answer.command;
+    this.element("tool_hint").textContent = Ahm.number(answer.length, 4) + " long, " + (100 * answer.covered).toFixed(1) + " % on the surface";
+  }
+
+  place_decal() {
+    const width = this.stage.surface.scale ? 0.5 * Math.pow(2, Number(this.element("decal_size").value)) : 1;
+    const turn = Number(this.element("decal_turn").value), stage = this.stage;
+    this.element("decal_size_text").textContent = Ahm.number(this.panel.length_of(width), 3);
+    this.element("decal_turn_text").textContent = turn + "°";
+    stage.set_decal(this.tool === "decal" ? this.decal : null, width, turn * Math.PI / 180);
+    if (this.tool !== "decal" || !this.decal || !stage.map || !stage.map.decal) return;
+    const height = width * this.decal.image.height / this.decal.image.width, size = Ahm.number(this.panel.length_of(Math.max(width, height)), 4);
+    this.element("command").textContent =
+      stage.map.decal.replace("@IMAGE@", this.decal_name).replace("@SIZE@", size).replace("@ANGLE@", turn);
+  }
+
+  load_decal(file) {
+    if (!file) return;
+    const image = new Image();
+    image.onload = () => {
+      this.decal = new THREE.Texture(image);
+      this.decal.generateMipmaps = false;
+      this.decal.minFilter = THREE.LinearFilter;
+      this.decal.needsUpdate = true;
+      this.decal_name = /^[\w.-]+$/.test(file.name) ? file.name : "'" + file.name.replace(/'/g, "'\\''") + "'";
+      this.place_decal();
+    };
+    image.onerror = () => this.panel.say(file.name + " is no image that this browser reads", true);
+    image.src = URL.createObjectURL(file);
+  }
+
+  set_tool(name) {
+    this.tool = name;
+    this.picked = [];
+    for (const button of this.element("tool").children) button.setAttribute("aria-checked", button.dataset.tool === name);
+    const hints = {
+      map: "click a point, or drag the red one", path: "click two points: the shortest path between them",
+      stroke: "draw a curve on the surface", decal: "an image on the map; drag the red point to move it",
+      coverage: "a tool path around the point that you click"
+    };
+    this.element("tool_hint").textContent = hints[name];
+    this.element("decal_options").hidden = name !== "decal";
+    this.element("coverage_options").hidden = name !== "coverage";
+    this.stage.set_marks(this.stage.map || {});
+    if (this.stage.map && this.stage.map.command) this.element("command").textContent = this.stage.map.command;
+    this.place_decal();
+    if (name === "coverage") this.attempt(() => this.ask_coverage());
+  }
+
+  export_map() {
+    return this.attempt(async () => {
+      if (!this.request) throw new Error("export: click a point first");
+      const format = this.element("format").value;
+      const answer = await this.server.post("export", Object.assign({ format: format }, this.request));
+      const link = document.createElement("a");
+      link.href = URL.createObjectURL(await answer.blob());
+      link.download = "map." + format;
+      link.click();
+      URL.revokeObjectURL(link.href);
+      this.panel.say("saved map." + format);
+    });
+  }
+
+  async begin_live() {
+    const info = await (await this.server.get("info")).json(), element = this.element;
+    element("about").textContent = info.about;
+    const options = (id, words, usual) => {
+      for (const word of words) element(id).add(new Option(word, word, word === usual, word === usual));
+    };
+    options("variant", info.variants, info.variant);
+    options("format", info.formats, info.formats[0]);
+    const surface = this.stage.surface;
+    element("coverage_radius").value = Ahm.number(0.4 * surface.scale, 2);
+    element("coverage_spacing").value = Ahm.number(0.04 * surface.scale, 1);
+    element("method").value = info.method;
+    element("t_coef").value = info.t_coef;
+    element("order").value = info.order;
+    if (info.radius) element("radius").value = info.radius;
+    for (const button of element("tool").children) {
+      button.addEventListener("click", () => this.set_tool(button.dataset.tool));
+      if (button.dataset.tool === "path") button.hidden = !info.has_faces;
+    }
+    element("method").querySelector("option:last-child").disabled = !info.has_faces;
+    const method_changed = () => {
+      for (const row of document.querySelectorAll(".heat")) row.hidden = element("method").value !== "heat";
+      if (this.request) this.ask_map(this.request.source);
+    };
+    for (const id of ["method", "variant", "order", "t_coef", "radius", "u_axis"]) element(id).addEventListener("change", method_changed);
+    for (const id of ["coverage_radius", "coverage_spacing", "coverage_pattern"])
+      element(id).addEventListener("change", () => this.attempt(() => this.ask_coverage()));
+    for (const id of ["decal_size", "decal_turn"]) element(id).addEventListener("input", () => this.place_decal());
+    element("decal_file").addEventListener("change", () => this.load_decal(element("decal_file").files[0]));
+    element("export").addEventListener("click", () => this.export_map());
+    this.set_tool("map");
+    await this.ask_map(info.source || this.middle());
+  }
+
+  // What stands in the middle of the picture, or near it.
+  middle() {
+    const stage = this.stage, { width, height } = stage;
+    for (let away = 0; away < 0.5; away += 0.05)
+      for (let k = 0; k < 12; ++k) {
+        const angle = k * Math.PI / 6, hit = stage.pick(width * (0.5 + away * Math.cos(angle)), height * (0.5 + away * Math.sin(angle)));
+        if (hit) return hit.source;
+      }
+    return { row: stage.surface.points[0] };
+  }
+};
+
+(async function () {
+  const message = document.getElementById("message");
+  try {
+    let surface = Ahm.embedded("surface_data"), map = Ahm.embedded("map_data"), server = null;
+    if (!surface) {
+      server = new Ahm.Server();
+      message.textContent = "loading …";
+      surface = Ahm.decode(await (await server.get("surface")).arrayBuffer());
+    }
+    const viewer = window.ahm = new Ahm.Viewer(surface, server);
+    message.textContent = "";
+    viewer.panel.set_field("none");
+    if (server) return await viewer.begin_live();
+    document.getElementById("about").textContent = surface.rows.toLocaleString("en") + (surface.is_mesh ? " vertices" : " points");
+    viewer.show(map, map.pattern);
+  } catch (error) {
+    document.getElementById("panel").hidden = !window.ahm;
+    message.textContent = /WebGL/.test(error.message) ? "This page needs WebGL: " + error.message : error.message;
+    throw error;
+  }
+})();

@@ -1,0 +1,130 @@
+"use strict";
+// The panel beside the picture: what is shown, what is told. It knows the stage and nothing of a server.
+Ahm.Panel = class {
+  constructor(stage) {
+    this.stage = stage;
+    this.element = (id) => document.getElementById(id);
+    this.length_of = (x) => x * stage.surface.scale;
+    const element = this.element;
+    element("field").addEventListener("change", () => this.set_field(element("field").value));
+    element("ring").addEventListener("input", () => this.set_ring());
+    element("hatch").addEventListener("change", () => this.set_hatch());
+    element("reset").addEventListener("click", () => stage.reset());
+    element("copy_spec").addEventListener("click", () => this.copy("spec"));
+    element("copy_command").addEventListener("click", () => this.copy("command"));
+    this.set_dark(window.matchMedia("(prefers-color-scheme: dark)").matches);
+  }
+
+  set_dark(is_dark) {
+    document.documentElement.classList.toggle("dark", is_dark);
+    this.stage.set_dark(is_dark);
+  }
+
+  // The fields that there is something to show by; the first choice is the map's own.
+  offer_fields() {
+    const { map, surface } = this.stage, select = this.element("field");
+    const has = {
+      polar: map && map.uv && map.pattern !== "cells", grid: map && map.uv && map.pattern !== "cells",
+      cells: map && map.pattern === "cells", distance: map && (map.distance || map.uv), spread: map && map.spread,
+      quality: map && map.quality, normals: true, colors: !!surface.colors, none: true
+    };
+    for (const option of select.options) option.hidden = option.disabled = !has[option.value];
+    if (!has[select.value]) select.value = Array.from(select.options).find((o) => !o.disabled).value;
+    return has;
+  }
+
+  // @param wanted  the field to change to; none: as it is
+  show_map(map, wanted) {
+    const stage = this.stage;
+    stage.map = map;
+    if (wanted) this.element("field").value = wanted;
+    this.offer_fields();
+    stage.field = this.element("field").value;
+    if (!this.base_ring || wanted) this.base_ring = map.ring_width, this.element("ring").value = 0;
+    stage.set_map(map);
+    this.element("spec").textContent = map.spec || "";
+    this.element("source_section").hidden = !map.spec;
+    if (map.command) this.element("command").textContent = map.command;
+    this.set_ring();
+  }
+
+  set_field(name) {
+    this.element("field").value = name;
+    this.offer_fields();
+    this.stage.set_field(this.element("field").value);
+    this.set_ring();
+  }
+
+  next_field() {
+    const select = this.element("field"), n = select.options.length;
+    let k = select.selectedIndex;
+    do k = (k + 1) % n; while (select.options[k].disabled);
+    this.set_field(select.options[k].value);
+  }
+
+  set_ring() {
+    const stage = this.stage, width = (this.base_ring || 1) * Math.pow(2, Number(this.element("ring").value));
+    stage.set_ring(width);
+    this.element("ring_name").textContent = stage.field === "grid" ? "squares" : "rings";
+    this.element("ring_text").textContent = Ahm.number(this.length_of(width), 3);
+    for (const id of ["axis_u", "axis_v"]) this.element(id).style.display = stage.has_wheel() ? "" : "none";
+    this.label_bar(width);
+  }
+
+  set_hatch() {
+    this.stage.uniforms.hatch.value = this.element("hatch").checked ? 1 : 0;
+    this.stage.redraw();
+  }
+
+  // About six numbers beside the bar, at its lines.
+  label_bar(width) {
+    const numbers = this.element("bar"), stage = this.stage;
+    numbers.textContent = "";
+    if (!stage.has_bar()) return;
+    const largest = stage.uniforms.largest_value.value, is_share = stage.field === "quality";
+    let step = stage.field === "distance" ? width : largest / 5;
+    step *= Math.max(1, Math.ceil(largest / step / 6));
+    for (let x = 0; x <= largest * (1 + 1e-6); x += step) {
+      const label = document.createElement("div");
+      label.textContent = Ahm.number(is_share ? x : this.length_of(x), 3);
+      label.style.bottom = Ahm.bar.bottom + Ahm.bar.height * x / largest + "px";
+      label.style.left = Ahm.bar.left + Ahm.bar.width + "px";
+      numbers.appendChild(label);
+    }
+  }
+
+  // What is known of a row; null: nothing is under the pointer.
+  tell(hit) {
+    const { map, surface } = this.stage, put = (id, text) => { this.element("at_" + id).textContent = text; };
+    const names = ["row", "status", "position", "u", "v", "distance", "spread"];
+    if (!hit) return names.forEach((name) => put(name, "–"));
+    const k = hit.vertex, row = hit.row, p = surface.positions, length = (x) => Ahm.number(this.length_of(x));
+    const at = [0, 1, 2].map((c) => Ahm.number(surface.centre[c] + surface.scale * p[3 * k + c]));
+    const of = (array, index) => (map && map[array] ? length(map[array][index]) : "–");
+    put("row", row);
+    put("position", at.join(" "));
+    put("status", map && map.status ? Ahm.statuses[map.status[row]] : "–");
+    put("u", map && map.pattern !== "cells" ? of("uv", 2 * row) : "–");
+    put("v", map && map.pattern !== "cells" ? of("uv", 2 * row + 1) : "–");
+    put("distance", of("distance", row));
+    put("spread", of("spread", row));
+  }
+
+  async copy(id) {
+    const text = this.element(id).textContent;
+    try {
+      await navigator.clipboard.writeText(text);
+      this.say("copied");
+    } catch (error) {
+      const selection = window.getSelection();
+      selection.selectAllChildren(this.element(id));
+      this.say(document.execCommand("copy") ? "copied" : "press Ctrl+C to copy");
+    }
+  }
+
+  say(text, is_error) {
+    const status = this.element("status");
+    status.textContent = text || "";
+    status.classList.toggle("error", !!is_error);
+  }
+};

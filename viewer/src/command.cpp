@@ -1,0 +1,63 @@
+#include "command.hpp"
+
+#include <array>
+#include <charconv>
+
+namespace ahm::viewer {
+
+std::string number(double x) {
+  std::array<char, 40> text;
+  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), x).ptr};
+}
+
+std::string quoted(const std::string& word) {
+  constexpr std::string_view plain = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-./,:=+@%";
+  if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) return word;
+  std::string out = "'";
+  for (const char c : word) c == '\'' ? out.append("'\\''") : out.append(1, c);
+  return out + "'";
+}
+
+namespace {
+
+std::vector<std::string> words(const Settings& settings) {
+  const Settings usual;
+  std::vector<std::string> out;
+  const auto add = [&](const char* name, std::string value) { out.insert(out.end(), {name, std::move(value)}); };
+  const bool heat = settings.method == Method::heat;
+  if (!heat) add("--method", "exact");
+  if (heat && settings.variant != usual.variant) add("--variant", std::string(to_string(settings.variant)));
+  if (heat && settings.order != usual.order) add("--order", std::to_string(settings.order));
+  if (heat && settings.t_coef != usual.t_coef) add("--t-coef", number(settings.t_coef));
+  if (settings.radius) add("--radius", number(*settings.radius));
+  if (const auto& u = settings.u_axis)
+    out.push_back("--u-axis=" + number((*u)[0]) + "," + number((*u)[1]) + "," + number((*u)[2]));
+  return out;
+}
+
+}  // namespace
+
+std::string command(const SessionOptions& session, const std::string& name, const std::vector<std::string>& arguments,
+                    const Settings& settings) {
+  std::string out = "ahm " + name + " " + session.input;
+  for (const auto& list : {arguments, words(settings)})
+    for (const std::string& word : list) out.append(" ").append(quoted(word));
+  if (!session.input_options.empty()) out.append(" ").append(session.input_options);
+  return out;
+}
+
+std::string spec(const Surface& surface, const SurfacePoint& point) {
+  if (const auto* row = std::get_if<Row>(&point)) return std::to_string(row->index);
+  std::string out;
+  const auto list = [&](const auto& values) {
+    for (std::size_t k = 0; k < values.size(); ++k) out.append(k == 0 ? "" : ",").append(number(values[k]));
+    return out;
+  };
+  if (const auto* face = std::get_if<FacePoint>(&point)) {
+    out = "face:" + std::to_string(face->face) + ":";
+    return list(face->barycentric);
+  }
+  return list(surface.position(point));
+}
+
+}  // namespace ahm::viewer

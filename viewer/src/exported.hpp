@@ -1,0 +1,13 @@
+// A file that is written and sent, and does not stay.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+
+namespace ahm::viewer {
+
+/// The bytes that `write` puts into a file with this ending. @throws IoError, what `write` throws
+std::string exported(const std::string& format, const std::function<void(const std::filesystem::path&)>& write);
+
+}  // namespace ahm::viewer

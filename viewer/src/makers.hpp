@@ -1,0 +1,58 @@
+// Solvers kept between maps, since factors serve every source.
+#pragma once
+
+#include <algorithm>
+#include <list>
+#include <memory>
+#include <optional>
+
+#include "ahm/maps/log_map_solver.hpp"
+#include "ahm/surface/exact/exact_geodesics.hpp"
+#include "ahm/viewer/session.hpp"
+
+namespace ahm::viewer {
+
+/// Not safe to use from several threads.
+class Makers {
+ public:
+  Makers(const Surface& surface, unsigned threads) : surface_(surface), threads_(threads) {}
+
+  /// Of the two that were used last, or a new one.
+  const LogMapSolver& solver(const Settings& settings, const std::stop_token& stop) {
+    const auto fits = [&](const Kept& kept) { return kept.t_coef == settings.t_coef && kept.order == settings.order; };
+    const auto found = std::find_if(kept_.begin(), kept_.end(), fits);
+    if (found != kept_.end()) {
+      kept_.splice(kept_.begin(), kept_, found);
+    } else {
+      if (kept_.size() >= 2) kept_.pop_back();
+      HeatOptions heat;
+      heat.t_coef = settings.t_coef;
+      heat.order = settings.order;
+      heat.threads = threads_;
+      heat.progress.stop = stop;
+      kept_.push_front({settings.t_coef, settings.order, LogMapSolver(surface_.graph(), heat)});
+    }
+    return kept_.front().solver;
+  }
+
+  /// @throws InvalidArgument: no faces
+  const ExactGeodesics& geodesics() {
+    if (surface_.faces().size() == 0)
+      throw InvalidArgument("paths and exact maps run over faces, which this input does not have");
+    if (!geodesics_) geodesics_.emplace(surface_);
+    return *geodesics_;
+  }
+
+ private:
+  struct Kept {
+    double t_coef;
+    int order;
+    LogMapSolver solver;
+  };
+  const Surface& surface_;
+  unsigned threads_;
+  std::list<Kept> kept_;
+  std::optional<ExactGeodesics> geodesics_;
+};
+
+}  // namespace ahm::viewer

@@ -1,0 +1,19 @@
+// A build without cpp-httplib, or without three.js.
+#include "ahm/viewer/server.hpp"
+
+namespace ahm::viewer {
+
+struct Server::Impl {};
+
+bool can_serve() noexcept { return false; }
+
+Server::Server(const Session&, int) {
+  throw Error("this build of libahm serves no pages; install cpp-httplib and three.js and configure again");
+}
+Server::~Server() = default;
+int Server::port() const { return 0; }
+std::string Server::address() const { return {}; }
+void Server::run() {}
+void Server::stop() {}
+
+}  // namespace ahm::viewer

@@ -1,0 +1,121 @@
+#include "requests.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace ahm::viewer {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::size_t most_points = 10'000;  // of a stroke
+constexpr std::size_t longest_name = 64;
+
+[[noreturn]] void refuse(const std::string& name, const std::string& what) {
+  throw InvalidArgument("request: \"" + name + "\" " + what);
+}
+
+double finite(const json& value, const std::string& name) {
+  if (!value.is_number()) refuse(name, "must be a number");
+  const double x = value.get<double>();
+  if (!std::isfinite(x)) refuse(name, "must be finite");
+  return x;
+}
+
+Index index(const json& value, const std::string& name) {
+  if (!value.is_number_integer()) refuse(name, "must be a whole number");
+  const bool fits =
+      value.is_number_unsigned() ? value.get<std::uint64_t>() <= std::numeric_limits<Index>::max() : false;
+  if (!fits) refuse(name, "must lie between 0 and " + std::to_string(std::numeric_limits<Index>::max()));
+  return value.get<Index>();
+}
+
+SurfacePoint read_point(const json& value, const std::string& name) {
+  if (value.is_object() && value.size() == 1 && value.contains("row")) return Row(index(value["row"], name + ".row"));
+  if (!value.is_object() || value.size() != 2 || !value.contains("face") || !value.contains("weights"))
+    refuse(name, R"(must be {"row": 42} or {"face": 7, "weights": [0.2, 0.3, 0.5]})");
+  FacePoint point{index(value["face"], name + ".face"), {}};
+  const json& weights = value["weights"];
+  if (!weights.is_array() || weights.size() > most_points) refuse(name + ".weights", "must be a list of numbers");
+  for (const json& weight : weights) point.barycentric.push_back(finite(weight, name + ".weights"));
+  return point;
+}
+
+}  // namespace
+
+Request::Request(std::string_view body) : json_(json::parse(body, nullptr, false)) {
+  if (json_.is_discarded()) throw InvalidArgument("request: the body is no JSON");
+  if (!json_.is_object()) throw InvalidArgument("request: the body must be a JSON object");
+}
+
+const json& Request::at(const char* name) const {
+  const auto found = json_.find(name);
+  if (found == json_.end()) refuse(name, "is missing");
+  return *found;
+}
+
+bool Request::has(const char* name) const {
+  const auto found = json_.find(name);
+  return found != json_.end() && !found->is_null();
+}
+
+std::string Request::client() const {
+  const json& value = at("client");
+  if (!value.is_string() || value.get_ref<const std::string&>().size() > longest_name)
+    refuse("client", "must be a text of at most 64 bytes");
+  return value.get<std::string>();
+}
+
+SurfacePoint Request::point(const char* name) const { return read_point(at(name), name); }
+
+std::vector<SurfacePoint> Request::points(const char* name) const {
+  const json& list = at(name);
+  if (!list.is_array() || list.size() > most_points)
+    refuse(name, "must be a list of at most " + std::to_string(most_points) + " points");
+  std::vector<SurfacePoint> points;
+  for (std::size_t k = 0; k < list.size(); ++k)
+    points.push_back(read_point(list[k], std::string(name) + "[" + std::to_string(k) + "]"));
+  return points;
+}
+
+double Request::positive(const char* name) const {
+  const double x = finite(at(name), name);
+  if (!(x > 0)) refuse(name, "must be greater than 0");
+  return x;
+}
+
+std::string Request::word(const char* name, const std::vector<std::string>& allowed) const {
+  const json& value = at(name);
+  if (!value.is_string() || std::find(allowed.begin(), allowed.end(), value.get<std::string>()) == allowed.end()) {
+    std::string list;
+    for (const std::string& word : allowed) list.append(list.empty() ? "" : ", ").append(word);
+    refuse(name, "must be one of " + list);
+  }
+  return value.get<std::string>();
+}
+
+Settings Request::settings(const Settings& usual) const {
+  Settings out = usual;
+  if (has("method")) out.method = word("method", {"heat", "exact"}) == "exact" ? Method::exact : Method::heat;
+  if (has("variant")) {
+    std::vector<std::string> names;
+    for (const Variant variant : all_variants) names.emplace_back(to_string(variant));
+    const std::string name = word("variant", names);
+    for (const Variant variant : all_variants)
+      if (to_string(variant) == name) out.variant = variant;
+  }
+  if (has("order")) {
+    out.order = index(at("order"), "order");
+    if (out.order != 1 && out.order != 2) refuse("order", "must be 1 or 2");
+  }
+  if (has("t_coef")) out.t_coef = positive("t_coef");
+  if (has("radius")) out.radius = positive("radius");
+  if (!has("u_axis")) return out;
+  const json& axis = at("u_axis");
+  if (!axis.is_array() || axis.size() != 3) refuse("u_axis", "must be a list of three numbers");
+  out.u_axis = {finite(axis[0], "u_axis"), finite(axis[1], "u_axis"), finite(axis[2], "u_axis")};
+  return out;
+}
+
+}  // namespace ahm::viewer

@@ -1,0 +1,35 @@
+// What a page asks for, read from JSON.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string_view>
+#include <vector>
+
+#include "ahm/applications/coverage.hpp"
+#include "ahm/viewer/session.hpp"
+
+namespace ahm::viewer {
+
+/// The members of a request's object. All members throw InvalidArgument that names the one that does not fit.
+class Request {
+ public:
+  /// @throws InvalidArgument: no JSON, no object
+  explicit Request(std::string_view body);
+
+  std::string client() const;
+  SurfacePoint point(const char* name) const;
+  std::vector<SurfacePoint> points(const char* name) const;
+  /// @param usual  of what is not given
+  Settings settings(const Settings& usual) const;
+  double positive(const char* name) const;
+  /// @param allowed  words
+  std::string word(const char* name, const std::vector<std::string>& allowed) const;
+
+ private:
+  const nlohmann::json& at(const char* name) const;
+  bool has(const char* name) const;
+
+  nlohmann::json json_;
+};
+
+}  // namespace ahm::viewer

@@ -1,0 +1,344 @@
+#include "ahm/viewer/session.hpp"
+
+#include <array>
+#include <atomic>
+#include <limits>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "ahm/applications/surface_curve.hpp"
+#include "ahm/maps/quality.hpp"
+#include "ahm/view/page.hpp"
+#include "channels.hpp"
+#include "command.hpp"
+#include "exported.hpp"
+#include "makers.hpp"
+#include "requests.hpp"
+
+namespace ahm::viewer {
+namespace {
+
+using nlohmann::json;
+
+constexpr int most_waiting = 64;
+
+Answer refusal(int status, const std::string& text) {
+  const json body = {{"error", text}};
+  return {status, "application/json", body.dump(-1, ' ', true, json::error_handler_t::replace)};
+}
+
+Answer answer_of(const json& body) { return {200, "application/json", body.dump()}; }
+
+/// More requests than can be kept waiting.
+struct Busy {};
+
+view::Scene scene_of(const Surface& surface, const io::Geometry& geometry, const std::vector<Vec3>& normals) {
+  view::Scene scene;
+  scene.points = geometry.points;
+  scene.normals = normals;
+  const FaceList faces = surface.faces();
+  scene.face_begin = faces.begin;
+  scene.face_vertices = faces.vertices;
+  return scene;
+}
+
+/// Without what only single maps have an option for.
+Settings of_graph(Settings settings) {
+  settings.radius.reset();
+  settings.u_axis.reset();
+  settings.order = 1;
+  return settings;
+}
+
+json positions(const view::PageSurface& page, std::span<const Vec3> points) {
+  json out = json::array();
+  for (const Vec3& x : points) out.push_back(page.to_page(x));
+  return out;
+}
+
+}  // namespace
+
+struct Session::Impl {
+  const Surface& surface;
+  const io::Geometry& geometry;
+  SessionOptions options;
+  std::vector<Vec3> normals;
+  view::Scene scene;
+  view::PageSurface page;
+  Channels channels;
+  std::mutex work;  ///< guards the makers; one map at a time
+  std::atomic<int> waiting{0};
+  Makers makers;
+  std::jthread warm_up;
+
+  Impl(const Surface& given, const io::Geometry& read, SessionOptions wanted)
+      : surface(given),
+        geometry(read),
+        options(std::move(wanted)),
+        normals(given.normals()),
+        scene(scene_of(given, read, normals)),
+        page(titled(), picture()),
+        makers(given, options.threads) {
+    warm_up = std::jthread([this](const std::stop_token& stop) { prepare(stop); });
+  }
+
+  ~Impl() {
+    channels.stop_all();
+    warm_up.request_stop();
+  }
+
+  view::Scene titled() const {
+    view::Scene out = scene;
+    out.title = options.title;
+    out.colors = geometry.colors;
+    return out;
+  }
+
+  view::PictureOptions picture(view::Pattern pattern = view::Pattern::none) const {
+    view::PictureOptions out;
+    out.pattern = pattern;
+    out.threads = options.threads;
+    return out;
+  }
+
+  /// What the first click will need. What fails here fails there again, where somebody hears of it.
+  void prepare(const std::stop_token& stop) {
+    const std::lock_guard lock(work);
+    try {
+      options.settings.method == Method::heat ? void(makers.solver(options.settings, stop)) : void(makers.geodesics());
+    } catch (const std::exception&) {  // NOLINT(bugprone-empty-catch)
+    }
+  }
+
+  /// Does `make` when it is its turn.
+  template <class Make>
+  auto in_turn(const std::stop_token& stop, const Make& make) {
+    struct Place {
+      std::atomic<int>& count;
+      explicit Place(std::atomic<int>& waiting) : count(waiting) { ++count; }
+      ~Place() { --count; }
+    } const place(waiting);
+    if (place.count > most_waiting) throw Busy{};
+    const std::lock_guard lock(work);
+    if (stop.stop_requested()) throw Cancelled("superseded by a newer request");
+    return make();
+  }
+
+  LogMap map(const SurfacePoint& source, const Settings& settings, const std::stop_token& stop, bool frames = false) {
+    Progress progress;
+    progress.stop = stop;
+    const double radius = settings.radius.value_or(std::numeric_limits<double>::infinity());
+    if (settings.method == Method::exact) {
+      const PlacedSource placed = surface.source(source, settings.u_axis);
+      const auto u_axis = placed.frame ? std::optional(placed.frame->x) : std::nullopt;
+      return makers.geodesics().log_map(source, u_axis, {.radius = radius, .frames = frames, .progress = progress});
+    }
+    const PlacedSource placed = surface.source(source, settings.u_axis);
+    MapOptions heat;
+    heat.variant = settings.variant;
+    heat.radius = radius;
+    heat.frames = frames;
+    heat.progress = progress;
+    return makers.solver(settings, stop).solve(placed.source, heat);
+  }
+
+  /// A map by row, and how it is told.
+  std::string bundle(const LogMap& map, const Vec3& source, const std::optional<Frame>& frame, view::Scene shown,
+                     view::Pattern pattern, const json& more) const {
+    const RowLogMap rows = surface.on_rows(map);
+    const bool judged = !map.spread().empty();
+    const std::vector<double> quality =
+        judged ? on_rows(rows, map_quality(surface.graph(), map, options.threads)) : std::vector<double>();
+    shown.u = rows.u, shown.v = rows.v;
+    shown.quality = quality;
+    shown.source = source;
+    if (frame) shown.source_axes = {frame->x, frame->y, frame->normal};
+    shown.told.distance = rows.distance;
+    shown.told.spread = rows.spread;
+    shown.told.status = rows.status;
+    return page.map_bundle(shown, picture(pattern), more.dump());
+  }
+
+  Answer answer_map(const Request& request) {
+    const std::stop_token stop = channels.begin(request.client());
+    const SurfacePoint source = request.point("source");
+    const Settings settings = request.settings(options.settings);
+    const PlacedSource placed = surface.source(source, settings.u_axis);
+    const LogMap made = in_turn(stop, [&] { return map(source, settings, stop); });
+    const std::string where = spec(surface, source);
+    const json more = {{"spec", where},
+                       {"command", command(options, "logmap", {"--source", where, "-o", "map.csv"}, settings)},
+                       {"decal", decal_command(where, settings)}};
+    return {200, "application/octet-stream",
+            bundle(made, placed.position, placed.frame, scene, view::Pattern::polar, more)};
+  }
+
+  /// The page knows the image and its size, and puts them in.
+  std::string decal_command(const std::string& where, const Settings& settings) const {
+    Settings kept = settings;
+    kept.radius.reset(), kept.order = 1;
+    return command(options, "decal",
+                   {"--source", where, "--image", "@IMAGE@", "--size", "@SIZE@", "--angle=@ANGLE@", "-o", "decal.glb"},
+                   kept);
+  }
+
+  Answer answer_stroke(const Request& request) {
+    const std::stop_token stop = channels.begin(request.client());
+    const std::vector<SurfacePoint> points = request.points("points");
+    const Settings settings = of_graph(request.settings(options.settings));
+    const std::vector<CurvePoint> given(points.begin(), points.end());
+    const SurfaceCurve curve = draw_curve(surface, given);
+    const LogMap made = in_turn(stop, [&] {
+      if (settings.method == Method::exact) {
+        ExactMapOptions exact;
+        exact.progress.stop = stop;
+        return makers.geodesics().log_map(curve.samples, exact).map;
+      }
+      MapOptions heat;
+      heat.variant = settings.variant;
+      heat.progress.emplace().stop = stop;
+      return makers.solver(settings, stop).solve(curve.source, heat);
+    });
+    std::string list;
+    for (const SurfacePoint& point : points) list.append(list.empty() ? "" : " ").append(spec(surface, point));
+    view::Scene shown = scene;
+    shown.curve = curve.points;
+    return {200, "application/octet-stream",
+            bundle(made, curve.points.front(), curve.first, shown, view::Pattern::grid,
+                   {{"command", command(options, "stroke", {"--curve", list, "-o", "stroke.csv"}, settings)}})};
+  }
+
+  Answer answer_path(const Request& request) {
+    const std::array ends{request.point("from"), request.point("to")};
+    for (const SurfacePoint& end : ends) surface.source(end);  // checks
+    std::vector<Vec3> points;
+    double length = 0;
+    in_turn({}, [&] {
+      const ExactGeodesics& geodesics = makers.geodesics();
+      const exact::GeodesicPath path = geodesics.path(ends);
+      if (path.status != Status::ok)
+        throw InvalidArgument("there is no path: the surface does not connect the two points");
+      for (const auto& point : path.points) points.push_back(geodesics.position(point));
+      length = path.length;
+    });
+    return answer_of(
+        {{"points", positions(page, points)},
+         {"length", length / page.scale()},
+         {"command",
+          command(options, "path", {"--from", spec(surface, ends[0]), "--to", spec(surface, ends[1]), "-o", "path.obj"},
+                  {})}});
+  }
+
+  Answer answer_coverage(const Request& request) {
+    const SurfacePoint source = request.point("source");
+    Settings settings = request.settings(options.settings);
+    settings.radius.reset(), settings.order = 1;
+    CoverageOptions cover;
+    cover.radius = request.positive("cover");
+    cover.spacing = request.positive("spacing");
+    if (cover.radius / cover.spacing > 500)
+      throw InvalidArgument("request: more than 500 lines from the source; give a wider \"spacing\"");
+    const std::string pattern = request.word("pattern", {"raster", "spiral"});
+    cover.pattern = pattern == "raster" ? CoveragePattern::raster : CoveragePattern::spiral;
+    const LogMap made = in_turn({}, [&] { return map(source, settings, {}, true); });
+    const CoveragePath path = coverage_path(inverse_map(surface, made, {.threads = options.threads}), cover);
+    if (path.points.empty()) throw InvalidArgument("no line of the pattern meets a trusted part of the surface");
+    std::vector<Vec3> points;
+    json pieces = {0};
+    double length = 0;
+    for (std::size_t k = 0; k < path.points.size(); ++k) {
+      const CoveragePoint& point = path.points[k];
+      if (k > 0 && point.piece != path.points[k - 1].piece) pieces.push_back(k);
+      if (k + 1 == path.points.size() || path.points[k + 1].piece != point.piece) length += point.arclength;
+      points.push_back(point.position);
+    }
+    return answer_of({{"points", positions(page, points)},
+                      {"pieces", pieces},
+                      {"length", length / page.scale()},
+                      {"covered", static_cast<double>(path.points.size()) / static_cast<double>(path.planned)},
+                      {"command", command(options, "coverage",
+                                          {"--source", spec(surface, source), "--radius", number(cover.radius),
+                                           "--spacing", number(cover.spacing), "--pattern", pattern, "-o", "path.csv"},
+                                          settings)}});
+  }
+
+  Answer answer_export(const Request& request) {
+    if (!options.write) throw InvalidArgument("request: this session exports nothing");
+    const std::string format = request.word("format", options.formats);
+    const SurfacePoint source = request.point("source");
+    const Settings settings = request.settings(options.settings);
+    const LogMap made = in_turn({}, [&] { return map(source, settings, {}); });
+    const RowLogMap rows = surface.on_rows(made);
+    const std::vector<double> quality = on_rows(rows, map_quality(surface.graph(), made, options.threads));
+    return {200, "application/octet-stream",
+            exported(format, [&](const std::filesystem::path& file) { options.write(file, rows, quality); })};
+  }
+
+  json point_as_json(const SurfacePoint& point) const {
+    if (const auto* row = std::get_if<Row>(&point)) return {{"row", row->index}};
+    const auto& face = std::get<FacePoint>(point);
+    return {{"face", face.face}, {"weights", face.barycentric}};
+  }
+
+  Answer answer_info() const {
+    const std::size_t faces = surface.faces().size(), rows = geometry.points.size();
+    const auto counted = [](std::size_t n, const char* what) {
+      std::string digits = std::to_string(n);
+      for (auto k = static_cast<std::ptrdiff_t>(digits.size()) - 3; k > 0; k -= 3)
+        digits.insert(static_cast<std::size_t>(k), ",");
+      return digits + " " + what;
+    };
+    json variants = json::array();
+    for (const Variant variant : all_variants) variants.push_back(to_string(variant));
+    const Settings& usual = options.settings;
+    json info = {{"about", faces > 0 ? counted(rows, "vertices, ") + counted(faces, "faces") : counted(rows, "points")},
+                 {"has_faces", faces > 0},
+                 {"variants", variants},
+                 {"formats", options.formats},
+                 {"method", to_string(usual.method)},
+                 {"variant", to_string(usual.variant)},
+                 {"order", usual.order},
+                 {"t_coef", usual.t_coef}};
+    if (usual.radius) info["radius"] = *usual.radius;
+    if (options.source) info["source"] = point_as_json(*options.source);
+    return answer_of(info);
+  }
+
+  Answer answer(std::string_view name, std::string_view body) {
+    if (name == "surface") return {200, "application/octet-stream", page.bundle()};
+    if (name == "info") return answer_info();
+    const Request request(body);
+    if (name == "map") return answer_map(request);
+    if (name == "stroke") return answer_stroke(request);
+    if (name == "path") return answer_path(request);
+    if (name == "coverage") return answer_coverage(request);
+    if (name == "export") return answer_export(request);
+    return refusal(404, "there is nothing of this name");
+  }
+};
+
+Session::Session(const Surface& surface, const io::Geometry& geometry, SessionOptions options)
+    : impl_(std::make_unique<Impl>(surface, geometry, std::move(options))) {}
+
+Session::~Session() = default;
+
+std::string Session::page(const std::string& nonce) const { return view::live_page(impl_->options.title, nonce); }
+
+Answer Session::answer(std::string_view name, std::string_view body) const try {
+  return impl_->answer(name, body);
+} catch (const Cancelled& e) {
+  return refusal(409, e.what());
+} catch (const ResourceExhausted& e) {
+  return refusal(503, e.what());
+} catch (const Error& e) {
+  return refusal(400, impl_->options.worded ? impl_->options.worded(e) : e.what());
+} catch (const Busy&) {
+  return refusal(503, "too many requests at once; try again");
+} catch (const std::bad_alloc&) {
+  return refusal(503, "out of memory");
+} catch (const std::exception& e) {
+  return refusal(500, e.what());
+}
+
+}  // namespace ahm::viewer
