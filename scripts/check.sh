@@ -1,11 +1,7 @@
 #!/usr/bin/env bash
 # What a compiler and the tests do not see: the format of every source, clang-tidy on what is ours, and the tests of the
 # library, its backends and io under the address and undefined-behaviour sanitizers; with sanitizers-python those of the Python
-<<<<<<< HEAD
 # package, too; with threads what is parallel under the thread sanitizer. Installs what these take.
-=======
-# package, too; threads: the thread sanitizer, on the test of what is parallel. Installs what these take.
->>>>>>> faults
 #   check.sh [format|tidy|tidy-all|sanitizers|sanitizers-python|threads ...]     format, tidy and sanitizers without a word
 # tidy looks at what differs from main and at what includes that; tidy-all at everything.
 set -euo pipefail
@@ -59,22 +55,11 @@ sanitizers() {
   done
 }
 
-<<<<<<< HEAD
-=======
-threads() {
-  echo "Thread sanitizer (build/tsan) ..."
-  cmake --preset tsan >/dev/null
-  cmake --build --preset tsan
-  build/tsan/bin/test_threads --gtest_brief=1
-}
-
->>>>>>> faults
 sanitizers-python() {
   echo "Sanitizers, the Python package (build/asan) ..."
   cmake --preset asan >/dev/null
   cmake --build build/asan --target ahm_python
   ctest --test-dir build/asan -R '^Python$' --no-tests=error --output-on-failure
-<<<<<<< HEAD
 }
 
 threads() {
@@ -82,8 +67,6 @@ threads() {
   cmake --preset tsan >/dev/null
   cmake --build --preset tsan
   build/tsan/bin/test_threads --gtest_brief=1
-=======
->>>>>>> faults
 }
 
 for check in "${@:-format tidy sanitizers}"; do

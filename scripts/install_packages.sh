@@ -26,10 +26,7 @@ tests=(
   pybind11-dev python3-pybind11 python3-dev python3-numpy python3-scipy python3-pytest  # the Python package and its tests
 )
 checks=("${tests[@]}" clang clang-format clang-tidy)
-<<<<<<< HEAD
 debian=("${tests[@]}" dpkg-dev pkg-config file)
-=======
->>>>>>> faults
 docs=("${tests[@]}" doxygen python3-sphinx python3-myst-parser furo python3-sphinx-copybutton linkchecker pngquant)
 case "${1:-tests}" in
   program) packages=("${program[@]}") ;;
