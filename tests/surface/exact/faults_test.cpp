@@ -73,7 +73,8 @@ TEST(PolyhedralSurface, KeepsCapsThatAreNearlyFlat) {
   for (Index a = 0; a < 5; ++a) {
     const exact::ExactMap map = exact::exact_map(solid.surface, solid.surface.vertex_point(Vertex(a)));
     for (Index b = 0; b < 5; ++b)
-      EXPECT_NEAR(map.distance(Vertex(b)), distance(solid.mesh.position(a), solid.mesh.position(b)), 1e-15);
+      EXPECT_NEAR(map.distance(Vertex(b)), distance(solid.mesh.position(Vertex(a)), solid.mesh.position(Vertex(b))),
+                  1e-15);
   }
 }
 

@@ -28,8 +28,8 @@ TEST(GeodesicPath, IsAsLongAsTheExactDistance) {
       const GeodesicPath path = exact::path_to_vertex(solid.surface, map, Vertex(v));
       EXPECT_EQ(path.length, map.distance(Vertex(v)));
       EXPECT_NEAR(solid.length(path.points), map.distance(Vertex(v)), 1e-12);
-      EXPECT_LT(distance(solid.position(path.points.front()), solid.mesh.position(11)), 1e-15);
-      EXPECT_LT(distance(solid.position(path.points.back()), solid.mesh.position(v)), 1e-15);
+      EXPECT_LT(distance(solid.position(path.points.front()), solid.mesh.position(Vertex(11))), 1e-15);
+      EXPECT_LT(distance(solid.position(path.points.back()), solid.mesh.position(Vertex(v))), 1e-15);
     }
   }
 }
@@ -109,7 +109,7 @@ TEST(Trace, FollowsTheShortestPathToItsEnd) {
         ++straight;
         const TracedPath ray = exact::trace(solid.surface, from, map.direction(Vertex(v)), map.distance(Vertex(v)));
         EXPECT_NEAR(ray.length, map.distance(Vertex(v)), 1e-12);
-        EXPECT_LT(distance(solid.position(ray.points.back()), solid.mesh.position(v)), 1e-9);
+        EXPECT_LT(distance(solid.position(ray.points.back()), solid.mesh.position(Vertex(v))), 1e-9);
       }
       EXPECT_GT(straight, 5);
     }
@@ -160,7 +160,7 @@ TEST(Trace, ComesBackAfterAFullTurnOfTheEquator) {
   const TracedPath ray = exact::trace(solid.surface, solid.surface.vertex_point(Vertex(0)), map.direction(Vertex(1)),
                                       4 * std::sqrt(2.0) / solid.mesh.length_unit());
   EXPECT_EQ(ray.end, TraceEnd::complete);
-  EXPECT_LT(distance(solid.position(ray.points.back()), solid.mesh.position(0)), 1e-12);
+  EXPECT_LT(distance(solid.position(ray.points.back()), solid.mesh.position(Vertex(0))), 1e-12);
   EXPECT_NEAR(solid.length(ray.points), ray.length, 1e-12);
 }
 

@@ -19,7 +19,7 @@ Vec3 Polyhedron::position(const exact::MeshPoint& point) const {
   Vec3 sum{0, 0, 0};
   for (int s = 0; s < 3; ++s)
     for (int k = 0; k < 3; ++k)
-      sum[k] += point.barycentric[s] * mesh.position(surface.record(3 * point.face + s).tail)[k];
+      sum[k] += point.barycentric[s] * mesh.position(Vertex(surface.record(3 * point.face + s).tail))[k];
   return sum;
 }
 

@@ -67,9 +67,10 @@ double third_side(const TangentGraph& graph, const Neighbor& right, const Neighb
   const double open = std::numeric_limits<double>::quiet_NaN();
   const Vec2 &u = right.log, &v = left.log;
   if (right.vertex == left.vertex || cross(u, v) <= 0) return open;
-  const Star star = graph.star(right.vertex);
+  const bool by_right = graph.star(right.vertex).degree() <= graph.star(left.vertex).degree();
+  const Star star = graph.star(by_right ? right.vertex : left.vertex);
   for (std::size_t e = 0; e < star.degree(); ++e)
-    if (star.neighbors[e] == left.vertex) return length(star.log(e));
+    if (star.neighbors[e] == (by_right ? left.vertex : right.vertex)) return length(star.log(e));
   // Not joined: a corner of a grid or a square if it is narrow, else a gap.
   if (u[0] * v[0] + u[1] * v[1] < -0.5 * right.length * left.length) return open;
   return std::hypot(u[0] - v[0], u[1] - v[1]);
