@@ -24,7 +24,7 @@ trimesh::TriangleMeshSurface build(const Mesh& mesh, trimesh::MeshOptions option
 Surface::Surface(std::string name, const Mesh& mesh, trimesh::MeshOptions options)
     : name_(std::move(name)), surface_(build(mesh, std::move(options))) {
   const trimesh::TriangleMesh& checked = surface_.mesh();
-  for (Index i = 0; i < checked.vertex_count(); ++i) points_.push_back(checked.original_position(i));
+  for (Index i = 0; i < checked.vertex_count(); ++i) points_.push_back(checked.original_position(Vertex(i)));
   const std::span<const Index> tails = checked.tails();
   for (std::size_t h = 0; h < tails.size(); h += 3) faces_.push_back({tails[h], tails[h + 1], tails[h + 2]});
 }
