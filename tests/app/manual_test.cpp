@@ -15,7 +15,7 @@ std::vector<std::string> matches(const std::string& text, const std::string& pat
   return result;
 }
 
-std::vector<std::string> subcommands() { return matches(run({"--help"}).out, "\n  ([a-z-]+) {2,}[A-Z]"); }
+std::vector<std::string> subcommands() { return matches(run({"--help"}).out, "\n  ([a-z][a-z-]*) {2,}[A-Z]"); }
 
 std::vector<std::string> options(const std::string& subcommand) {
   return matches(run({subcommand, "--help"}).out, "\n  (?:-[a-z],)?(--[a-z-]+)");

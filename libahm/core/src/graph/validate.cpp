@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -59,13 +61,11 @@ void check_vertex(const TangentGraph& graph, Index i) {
   }
 }
 
-/// Matches every edge i -> j with an unused edge j -> i of the same weight and inverse transport.
-void check_pair(const OwnedStar& from, Index i, const Star& to, Index j) {
+/// Matches every edge i -> j, of these places in the star of i, with an unused edge j -> i of the same weight and inverse
+/// transport.
+void check_pair(const OwnedStar& from, std::span<const std::size_t> edges, Index i, const Star& to, Index j) {
   std::vector<bool> used(to.degree(), false);
-  std::size_t forward = 0;
-  for (std::size_t e = 0; e < from.neighbors.size(); ++e) {
-    if (from.neighbors[e] != j) continue;
-    ++forward;
+  for (std::size_t e : edges) {
     bool weight_seen = false, matched = false;
     for (std::size_t r = 0; r < to.degree() && !matched; ++r) {
       if (to.neighbors[r] != i || used[r]) continue;
@@ -82,9 +82,44 @@ void check_pair(const OwnedStar& from, Index i, const Star& to, Index j) {
                                                 : ": the reverse edge is missing or has another weight"));
   }
   const auto backward = static_cast<std::size_t>(std::count(to.neighbors.begin(), to.neighbors.end(), i));
-  if (forward != backward)
-    throw InvalidGraph(edge_name(j, i) + ": " + std::to_string(backward) + " edges, but " + std::to_string(forward) +
-                       " in the other direction");
+  if (edges.size() != backward)
+    throw InvalidGraph(edge_name(j, i) + ": " + std::to_string(backward) + " edges, but " +
+                       std::to_string(edges.size()) + " in the other direction");
+}
+
+/// Checks the pairs (i, j) of which i has more neighbours, or as many and the smaller number, so that the time is not
+/// quadratic in degrees.
+/// @return how many edges lead from and to i there
+std::size_t check_pairs_at(const TangentGraph& graph, Index i) {
+  const OwnedStar from(graph.star(i), graph.transport_layout());
+  const std::size_t degree = from.neighbors.size();
+  std::vector<std::size_t> by_target(degree);
+  std::iota(by_target.begin(), by_target.end(), std::size_t{0});
+  std::stable_sort(by_target.begin(), by_target.end(),
+                   [&](std::size_t a, std::size_t b) { return from.neighbors[a] < from.neighbors[b]; });
+  std::size_t checked = 0;
+  for (std::size_t first = 0, last; first < degree; first = last) {
+    const Index j = from.neighbors[by_target[first]];
+    for (last = first; last < degree && from.neighbors[by_target[last]] == j;) ++last;
+    const Star to = graph.star(j);
+    if (to.degree() > degree || (to.degree() == degree && j < i)) continue;
+    check_pair(from, std::span(by_target).subspan(first, last - first), i, to, j);
+    checked += 2 * (last - first);
+  }
+  return checked;
+}
+
+/// Names an edge without a reverse one; some must be there.
+[[noreturn]] void name_edge_without_reverse(const TangentGraph& graph) {
+  for (Index i = 0; i < graph.size(); ++i) {
+    const OwnedStar from(graph.star(i), graph.transport_layout());
+    for (Index j : from.neighbors) {
+      const Star to = graph.star(j);
+      if (std::find(to.neighbors.begin(), to.neighbors.end(), i) == to.neighbors.end())
+        throw InvalidGraph(edge_name(i, j) + ": the reverse edge is missing or has another weight");
+    }
+  }
+  throw InvalidGraph("the graph's stars change from one call to the next");
 }
 
 }  // namespace
@@ -99,21 +134,13 @@ void validate(const TangentGraph& graph) {
   if (!(h > 0) || !std::isfinite(h))
     throw InvalidGraph("mean edge length " + detail::number(h) + " must be finite and > 0");
 
-  for (Index i = 0; i < graph.size(); ++i) check_vertex(graph, i);
+  std::size_t edges = 0, checked = 0;
   for (Index i = 0; i < graph.size(); ++i) {
-    const OwnedStar from(graph.star(i), graph.transport_layout());
-    std::vector<Index> targets = from.neighbors;
-    std::sort(targets.begin(), targets.end());
-    targets.erase(std::unique(targets.begin(), targets.end()), targets.end());
-    // The pair (i, j) is checked from its smaller end; from the larger end only that the smaller one knows of it.
-    for (Index j : targets) {
-      const Star to = graph.star(j);
-      if (j > i)
-        check_pair(from, i, to, j);
-      else if (std::find(to.neighbors.begin(), to.neighbors.end(), i) == to.neighbors.end())
-        throw InvalidGraph(edge_name(i, j) + ": the reverse edge is missing or has another weight");
-    }
+    check_vertex(graph, i);
+    edges += graph.star(i).degree();
   }
+  for (Index i = 0; i < graph.size(); ++i) checked += check_pairs_at(graph, i);
+  if (checked != edges) name_edge_without_reverse(graph);
 }
 
 }  // namespace ahm

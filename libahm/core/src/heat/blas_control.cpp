@@ -4,11 +4,9 @@
 #include <sys/mman.h>
 
 #include <climits>
-#include <cmath>
 #include <condition_variable>
 #include <cstdlib>
 #include <exception>
-#include <fstream>
 #include <mutex>
 #include <new>
 #include <system_error>
@@ -16,7 +14,7 @@
 #include <vector>
 
 #include "ahm/error.hpp"
-#include "maps/memory_limits.hpp"
+#include "heat/memory_limits.hpp"
 
 namespace ahm {
 namespace {
@@ -58,15 +56,6 @@ constexpr std::size_t room_for_others = std::size_t{32} << 20;  ///< who allocat
 std::condition_variable buffer_is_free;
 int buffers = 0;        // that OpenBLAS keeps for us
 int buffers_taken = 0;  // by callers
-
-/// Whether the system may refuse address space before memory is used up.
-bool address_space_is_limited() {
-  static const bool strict = [] {
-    int policy = 0;
-    return std::ifstream("/proc/sys/vm/overcommit_memory") >> policy && policy == 2;
-  }();
-  return strict || std::isfinite(resource_limit());
-}
 
 bool there_is_room_for(std::size_t bytes) {
   void* const trial = ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "ahm/error.hpp"
-#include "maps/memory_limits.hpp"
+#include "heat/memory_limits.hpp"
 
 namespace ahm {
 namespace {

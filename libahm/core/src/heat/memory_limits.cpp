@@ -1,8 +1,9 @@
-#include "maps/memory_limits.hpp"
+#include "heat/memory_limits.hpp"
 
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <limits>
 #include <string>
@@ -53,6 +54,11 @@ double resource_limit() {
     if (rlimit limit{}; getrlimit(resource, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY)
       least = std::min(least, static_cast<double>(limit.rlim_cur));
   return least;
+}
+
+bool address_space_is_limited() {
+  static const bool strict = number_in("/proc/sys/vm/overcommit_memory") == 2;
+  return strict || std::isfinite(resource_limit());
 }
 
 }  // namespace ahm

@@ -1,5 +1,5 @@
 // What limits a process's memory: the machine, its control groups, its resource limits.
-#include "maps/memory_limits.hpp"
+#include "heat/memory_limits.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>

@@ -15,4 +15,8 @@ double control_group_limit(const std::filesystem::path& groups, const std::files
 /// The lesser of the process's limits of address space and of data (RLIMIT_AS, RLIMIT_DATA); infinity without.
 double resource_limit();
 
+/// Whether the system may refuse address space before memory is used up: by a `resource_limit`, or since it never promises
+/// more memory than it has (vm.overcommit_memory = 2).
+bool address_space_is_limited();
+
 }  // namespace ahm
