@@ -18,7 +18,7 @@ std::vector<std::string> matches(const std::string& text, const std::string& pat
 std::vector<std::string> subcommands() { return matches(run({"--help"}).out, "\n  ([a-z][a-z-]*) {2,}[A-Z]"); }
 
 std::vector<std::string> options(const std::string& subcommand) {
-  return matches(run({subcommand, "--help"}).out, "\n  (?:-[a-z],)?(--[a-z-]+)");
+  return matches(run({subcommand, "--help"}).out, "\n  (?:-[a-z],)?(--[a-z0-9-]+)");
 }
 
 std::string without_escapes(std::string text) {
