@@ -93,7 +93,7 @@ def headers():
 
 contents = (root / "docs/site/contents.md").read_text(encoding="utf-8")
 page(pathlib.Path("README.md"), pathlib.Path("index.md"), "\n" + contents)
-pages = ["CONTRIBUTING.md", "CHANGELOG.md", *(f"docs/{p.name}" for p in (root / "docs").glob("*.md"))]
+pages = ["CONTRIBUTING.md", "CHANGELOG.md", "SECURITY.md", *(f"docs/{p.name}" for p in (root / "docs").glob("*.md"))]
 pages += [str(p.relative_to(root)) for top in ("backends", "benchmarks") for p in (root / top).rglob("README.md")]
 for path in pages:
     orphan = not path.startswith("docs/") and path.endswith("README.md")
