@@ -10,14 +10,11 @@ Arrays go in and out by row of the input; positions in world units; floats are f
 (or TypeError) naming argument, index and value. Long computations let other threads run and end with Ctrl-C.
 """
 
-from . import _core
-
-if not _core.in_main_interpreter():
-    raise ImportError("ahm works in the main interpreter only; use threads or processes instead of subinterpreters")
+from . import _interpreter  # first: in a subinterpreter loading the extension would hang
 
 import atexit as _atexit
 
-from . import shapes
+from . import _core, shapes
 from ._applications import Cells, Center, Stroke, cells, farthest_points, geometric_median, karcher_mean, stroke
 from ._core import (Cancelled, Error, InvalidArgument, InvalidGeometry, InvalidGraph, IoError, NotPositiveDefinite,
                     ResourceExhausted)

@@ -21,8 +21,9 @@ def distance(surface: Any, sources: Any, *, targets: Any = None, method: str = "
     sources : one or more points: rows, positions, `(faces, barycentric)`, `(edges, t)`. By heat several ones count as their
         nearest rows.
     targets : None: all rows, result (n,); or points, result (k,). Other targets than rows take method "exact".
-    method : "unfold": a front over the triangles, no heat, best for distances on meshes; "heat": by one solve each of A and
-        B, smooth, best on noisy clouds; "exact": of the flat triangles of a mesh.
+    method : "unfold": a front over the triangles, no heat, best for distances on meshes; "heat": the distance of a log
+        map, by one solve each of A and B on clouds, grids and graphs, smooth, best on noise; on meshes log maps unfold it, too;
+        "exact": of the flat triangles of a mesh.
     radius : NaN beyond this distance; world units. Not for "heat".
 
     >>> import ahm

@@ -102,6 +102,9 @@ def _mesh(points: Any, faces: Any, options: Dict[str, Any], normals: Any = None)
     return (TriangleMesh if faces.shape[-1] == 3 else PolygonMesh)(points, faces, **options)
 
 
+_VTK_KINDS = {1: "vertex", 3: "line", 5: "triangle", 7: "polygon", 9: "quad"}
+
+
 def _faces_of(thing: Any) -> Any:
     """The faces of an object: an (m, c) array, a list, compressed rows, or None."""
     try:
@@ -110,18 +113,18 @@ def _faces_of(thing: Any) -> Any:
         regular = None
     if regular is not None:
         return np.asarray(regular)
-    if getattr(thing, "triangles", None) is not None:  # Open3D
-        return np.asarray(thing.triangles)
-    cells = getattr(thing, "cells_dict", None)  # meshio
+    cells = getattr(thing, "cells_dict", None)  # meshio; PyVista, by VTK's numbers
     if cells is not None:
-        solid = sorted(set(cells) - {"triangle", "quad", "polygon", "vertex", "line"})
+        cells = {_VTK_KINDS.get(kind, kind): block for kind, block in cells.items()}
+        solid = sorted(map(str, set(cells) - {"triangle", "quad", "polygon", "vertex", "line"}))
         if solid:
             raise ValueError(f"surface: cells of the kind {solid[0]!r} are no faces; take the surface of the volume")
         kinds = [cells[kind] for kind in ("triangle", "quad", "polygon") if kind in cells]
         return [face for block in kinds for face in block] if len(kinds) != 1 else np.asarray(kinds[0])
-    faces = getattr(thing, "faces", None)
+    faces = getattr(thing, "faces", None)  # trimesh, whose triangles are positions
     if faces is None:
-        return None
+        faces = getattr(thing, "triangles", None)  # Open3D
+        return None if faces is None else np.asarray(faces)
     if isinstance(faces, np.ndarray) and faces.ndim == 1:  # PyVista: count, corners, count, corners
         return _padded_faces(faces)
     return faces if isinstance(faces, list) else np.asarray(faces)

@@ -46,7 +46,7 @@ class LocalMaps:
         self.distance, self.weight, self.transport = distance, weight, transport
 
     def csr(self, values: Any = "distance") -> Any:
-        """A scipy.sparse.csr_matrix, sources x rows, over the arrays themselves.
+        """A scipy.sparse.csr_matrix, sources x rows, with arrays of its own, whose order in a row is that of distance.
 
         values : "distance", "weight", "u", "v", "transport" (complex), or (e,) numbers of your own.
 
@@ -70,8 +70,10 @@ class LocalMaps:
         values = np.asarray(values)
         if values.shape != self.indices.shape:
             raise ValueError(f"values: shape ({len(self.indices)},) is needed, not {values.shape}")
+        # scipy needs both kinds of indices to have one type, and changes them in place.
+        index = np.int32 if len(self.indices) <= np.iinfo(np.int32).max else np.int64
         result = csr_matrix((len(self.sources), self.columns), dtype=values.dtype)
-        result.data, result.indices, result.indptr = values, self.indices, self.indptr
+        result.data, result.indices, result.indptr = values.copy(), self.indices.astype(index), self.indptr.astype(index)
         return result
 
     def padded(self, k: Optional[int] = None, dtype: Any = np.float32) -> PaddedMaps:

@@ -87,7 +87,7 @@ class LogMap:
     @property
     def spread(self) -> np.ndarray:
         """(n,) standard deviation of the coordinates over the ways by which heat arrives, world units: about the distance
-        on the cut locus. Empty of a map from a curve, or made with spread=False."""
+        on the cut locus. NaN of a map from a curve, or made with spread=False."""
         return self._map.spread()
 
     @property

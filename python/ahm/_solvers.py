@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 from typing import Any, Dict, List, Optional, Union
 
 import numpy as np
@@ -178,7 +179,8 @@ Maker = Union[LogMapSolver, ExactGeodesics]
 
 
 def _maps(maker: Maker, found: list, name: str, given: Any, options: Dict[str, Any]) -> List[LogMap]:
-    """With what makes them again from a pickle."""
+    """With what makes them again from a pickle, whatever becomes of the caller's arrays."""
+    given, options = copy.deepcopy((given, options))
     if name == "log_map":
         return [LogMap(found[0], maker.surface, (maker, "log_map", (given,), options))]
     return [LogMap(m, maker.surface, (maker, "_one_of", (given, k), options)) for k, m in enumerate(found)]

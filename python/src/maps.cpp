@@ -215,10 +215,12 @@ py::array corners(const MapPtr& m) {
 /// u, v and status at points.
 py::tuple sample(const MapPtr& m, const py::tuple& points) {
   const Places at = places(points);
-  const auto found = compute(py::none(), py::none(), [m, at](const Progress&) {
+  const auto found = compute(py::none(), py::none(), [m, at](const Progress& progress) {
     std::vector<Sample> all;
-    for (std::size_t k = 0; k < at.size(); ++k)
+    for (std::size_t k = 0; k < at.size(); ++k) {
+      if (k % 1024 == 0) progress.step("sample", static_cast<double>(k) / static_cast<double>(at.size()));
       all.push_back(naming(at.where(k), [&] { return m->surface().at(m->map, m->body->point(at.places[k])); }));
+    }
     return all;
   });
   std::vector<Vec2> values;

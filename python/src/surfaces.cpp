@@ -213,9 +213,13 @@ py::list warnings(const Body& body) {
 /// The nearest points: rows of (face or -1, row or -1), weights of the face's corners, positions, distances.
 py::tuple closest_points(const BodyPtr& body, const Doubles& positions, const py::object& progress) {
   const auto given = vectors(positions);
-  const auto found = compute(progress, positions, [body, given](const Progress&) {
+  const auto found = compute(progress, positions, [body, given](const Progress& steps) {
     std::vector<ClosestPoint> all;
-    for (const Vec3& p : given) all.push_back(body->surface_for("a position").closest_point(p));
+    for (const Vec3& p : given) {
+      if (all.size() % 1024 == 0)
+        steps.step("closest points", static_cast<double>(all.size()) / static_cast<double>(given.size()));
+      all.push_back(body->surface_for("a position").closest_point(p));
+    }
     return all;
   });
   std::vector<Index> face, row;

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.sparse import csgraph
 
 import ahm
 
@@ -23,7 +24,14 @@ def test_local_maps_in_csr_and_padded_hold_the_same_numbers(sphere):
     maps = ahm.local_maps(sphere, 0.4, sources=[5, 0, 77])
     for values in ("distance", "weight", "u", "v", "transport"):
         matrix = maps.csr(values)
-        assert matrix.shape == (3, 642) and matrix.has_canonical_format in (True, False)
+        assert matrix.shape == (3, 642) and matrix.indptr.dtype == matrix.indices.dtype
+    indices, log = maps.indices.copy(), maps.log.copy()
+    near = ahm.local_maps(sphere, 0.4).csr()
+    near.sort_indices()
+    assert csgraph.connected_components(near)[0] == 1
+    distances = csgraph.dijkstra(near, indices=0)
+    assert np.abs(distances - np.arccos(np.clip(sphere.points @ sphere.points[0], -1, 1))).max() < 0.1
+    assert near.astype("f4").dtype == np.float32 and near[[1, 2]].shape == (2, 642)
     u = maps.csr("u")
     for k in (None, 4):
         padded = maps.padded(k, np.float64)
@@ -34,6 +42,10 @@ def test_local_maps_in_csr_and_padded_hold_the_same_numbers(sphere):
             np.testing.assert_array_equal(padded.log[s, padded.mask[s], 0], u[s].toarray()[0][rows])
             assert (padded.log[s][~padded.mask[s]] == 0).all()
             assert len(rows) == (np.diff(maps.indptr)[s] if k is None else 4)
+    u.sort_indices()
+    u.data[:] = 0
+    np.testing.assert_array_equal(maps.indices, indices)
+    np.testing.assert_array_equal(maps.log, log)
     most = ahm.local_maps(sphere, 0.4, k=4, sources=[5, 0, 77])
     np.testing.assert_array_equal(most.padded(dtype=float).log, maps.padded(4, float).log)
 

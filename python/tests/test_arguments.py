@@ -170,7 +170,8 @@ def test_objects_of_other_packages_are_taken_by_what_they_have(plane, sphere):
     padded = np.concatenate([np.full((len(F), 1), 3), F], axis=1).ravel()
     quads = {"quad": np.array([[0, 1, 14, 13]])}
     for thing in (Thing(points=V, regular_faces=F), Thing(points=V, faces=padded), Thing(vertices=V, faces=F),
-                  Thing(vertices=V, triangles=F), Thing(points=V, cells_dict={"triangle": F})):
+                  Thing(vertices=V, triangles=F), Thing(points=V, cells_dict={"triangle": F}), Thing(points=V, cells_dict={5: F, 3: F[:, :2]}),
+                  Thing(vertices=V, faces=F, triangles=V[F])):
         assert repr(ahm.surface(thing)) == repr(ahm.TriangleMesh(V, F))
     assert isinstance(ahm.surface(Thing(points=V, cells_dict=quads)), ahm.PolygonMesh)
     assert isinstance(ahm.surface(Thing(points=V, cells_dict={**quads, "triangle": np.delete(F, [0, 120], axis=0)})), ahm.PolygonMesh)

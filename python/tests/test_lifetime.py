@@ -153,9 +153,11 @@ def test_the_interpreter_ends_while_work_goes_on_in_the_background():
     assert result.returncode == 0 and result.stdout == "ended\n", result.stderr
 
 
-def test_subinterpreters_are_refused():
-    result = run_python("""
-        import ahm, _xxsubinterpreters as sub
+@pytest.mark.parametrize("before", ["", "import ahm"])
+def test_subinterpreters_are_refused(before):
+    result = run_python(f"""
+        {before}
+        import _xxsubinterpreters as sub
         made = sub.create()
         try:
             sub.run_string(made, "import ahm")
@@ -177,6 +179,10 @@ def test_pickles_make_the_same_thing_again(flat_surfaces, sphere):
     for thing in (m, solver.log_maps([3, 4])[1], ahm.log_map(sphere, 5, method="exact"), ahm.log_map(sphere, 5),
                   ahm.stroke(sphere, [0, 12, 40]).map):
         np.testing.assert_array_equal(pickle.loads(pickle.dumps(thing)).uv, thing.uv)
+    rows = np.array([5, 6])
+    maps = ahm.LogMapSolver(sphere).log_maps(rows)
+    rows[:] = 0
+    np.testing.assert_array_equal(pickle.loads(pickle.dumps(maps[0])).uv, maps[0].uv)
     inverse = pickle.loads(pickle.dumps(ahm.InverseMap(m, max_stretch=3.0)))
     np.testing.assert_array_equal(inverse([[0.1, 0.1]]).position, ahm.InverseMap(m, max_stretch=3.0)([[0.1, 0.1]]).position)
 

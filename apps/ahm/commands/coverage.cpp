@@ -142,7 +142,7 @@ void run(const CoverageCommandOptions& options) {
   check_results(options.input.path, options.output, {".csv", ".ply"});
   Journal journal(options.output.verbose);
   const Input input = open_input(options.input, journal, options.source.spec);
-  const PlacedSource source = resolve(options.source, input);
+  const PlacedSource source = resolve(options.source, input, options.input.threads);
   const LogMap map = solve(options.solve, input, options.source.spec, source, journal).map;
 
   journal.start("path");

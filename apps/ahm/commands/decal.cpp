@@ -176,7 +176,7 @@ void run(const DecalCommandOptions& given) {
 
   Journal journal(options.output.verbose);
   const Input input = open_input(options.input, journal, options.source.spec);
-  const PlacedSource source = resolve(options.source, input);
+  const PlacedSource source = resolve(options.source, input, options.input.threads);
   SolveOptions near = options.solve;
   near.radius = map_radius(options.decal, input.graph());
   const LogMap map = solve(near, input, options.source.spec, source, journal).map;

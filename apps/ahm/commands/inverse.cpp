@@ -63,7 +63,7 @@ void run(const InverseCommandOptions& options) {
   check_results(options.input.path, options.output, {".csv"});
   Journal journal(options.output.verbose);
   const Input input = open_input(options.input, journal, options.source.spec);
-  const PlacedSource source = resolve(options.source, input);
+  const PlacedSource source = resolve(options.source, input, options.input.threads);
   const LogMap map = solve(options.solve, input, options.source.spec, source, journal).map;
 
   comment_on_quality(quality_of(input, map, input.surface().on_rows(map), options.solve),

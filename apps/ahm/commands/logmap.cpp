@@ -28,7 +28,6 @@ constexpr const char* logmap_footer =
     "  1.5,0,-2         the vertex nearest to this position\n"
     "  face:7:.2,.3,.5  a point in face 7, by barycentric coordinates, one per corner (meshes)\n"
     "\n"
-    "INPUT   .ply .pcd .xyz .txt .csv .off .obj .stl\n"
     "OUTPUT  .csv, .ply or .pcd; one row per vertex of INPUT, in its order:\n"
     "          index,x,y,z,u,v,distance,angle,status,quality,spread, with --order 2 also error_estimate,\n"
     "          with --gradient also gx,gy,gz: unit vector in space, away from the source along the surface\n"
@@ -137,7 +136,7 @@ void run(const LogmapOptions& options) {
   InputOptions opened = options.input;
   if (options.local) opened.local = radius_of_local(options);
   const Input input = open_input(opened, journal, options.source.spec);
-  const PlacedSource source = resolve(options.source, input);
+  const PlacedSource source = resolve(options.source, input, options.input.threads);
   comment_on_source(options.source.spec, input, source, journal);
 
   const SolvedMap solved = solve(options.solve, input, options.source.spec, source, journal);

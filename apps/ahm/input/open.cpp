@@ -57,7 +57,7 @@ PlacedSource place(const Surface& surface, const SourceSpec& spec, const std::op
   throw InvalidArgument(fmt::format("{} {}: {}", option, to_string(spec), worded(e)));
 }
 
-PlacedSource resolve(const SourceOptions& options, const Input& input) {
+PlacedSource resolve(const SourceOptions& options, const Input& input, unsigned threads) {
   const std::optional<UAxis>& axis = options.u_axis;
   PlacedSource source =
       place(input.surface(), options.spec, axis && !axis->curvature ? std::optional(axis->direction) : std::nullopt);
@@ -67,7 +67,7 @@ PlacedSource resolve(const SourceOptions& options, const Input& input) {
   const auto most = std::max_element(weights.begin(), weights.end()) - weights.begin();
   Vec3 direction;
   try {
-    direction = bending_direction(input.graph(), source.source.vertices()[most]);
+    direction = bending_direction(input.graph(), source.source.vertices()[most], threads);
   } catch (const InvalidArgument& e) {
     throw InvalidArgument(fmt::format("--u-axis curvature: {}", worded(e)));
   }

@@ -41,7 +41,7 @@ PlacedSource place(const Surface& surface, const SourceSpec& spec, const std::op
 
 /// The source of --source and --u-axis.
 /// @throws InvalidArgument, also where the surface bends alike in all directions, or its directions are noise
-PlacedSource resolve(const SourceOptions& options, const Input& input);
+PlacedSource resolve(const SourceOptions& options, const Input& input, unsigned threads);
 
 /// The vertex of the graph at a row of the input or nearest to a position.
 /// @throws InvalidArgument, also for a point in a face

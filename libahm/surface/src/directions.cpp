@@ -155,9 +155,9 @@ PrincipalCurvatures curvature_directions(const TangentGraph& graph, unsigned thr
   return result;
 }
 
-Vec3 bending_direction(const TangentGraph& graph, Vertex vertex) {
+Vec3 bending_direction(const TangentGraph& graph, Vertex vertex, unsigned threads) {
   const Frame frame = frame_of(graph, vertex.index, "bending_direction");
-  const PrincipalCurvatures bend = curvature_directions(graph);
+  const PrincipalCurvatures bend = curvature_directions(graph, threads);
   const double first = bend.values[2 * static_cast<std::size_t>(vertex.index)],
                second = bend.values[2 * static_cast<std::size_t>(vertex.index) + 1];
   const auto refuse = [](const std::string& problem) {

@@ -55,9 +55,10 @@ struct PrincipalCurvatures {
 PrincipalCurvatures curvature_directions(const TangentGraph& graph, unsigned threads = 0);
 
 /// Unit vector of space along which the surface bends most at a vertex, up to its sign.
+/// @param threads  as of `curvature_directions`
 /// @throws InvalidArgument (as `curvature_directions`; fault "no_bending_direction" where there are too few neighbours to
 /// tell, where the surface is flat or bends alike in all directions, and where the neighbours' directions contradict each
 /// other)
-Vec3 bending_direction(const TangentGraph& graph, Vertex vertex);
+Vec3 bending_direction(const TangentGraph& graph, Vertex vertex, unsigned threads = 0);
 
 }  // namespace ahm

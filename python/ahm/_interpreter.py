@@ -1,0 +1,12 @@
+"""Refuses subinterpreters, without any extension module."""
+
+try:
+    import _interpreters
+except ImportError:  # before Python 3.13
+    try:
+        import _xxsubinterpreters as _interpreters
+    except ImportError:  # none can be made here
+        _interpreters = None
+
+if _interpreters is not None and _interpreters.get_current() != _interpreters.get_main():
+    raise ImportError("ahm works in the main interpreter only; use threads or processes instead of subinterpreters")
