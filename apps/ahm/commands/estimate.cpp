@@ -31,10 +31,9 @@ Estimate estimate(const GraphSize& size, Strategy strategy, const Backend& graph
           base.seconds + graph.cost.seconds * n + cost.first_map_seconds};
 }
 
-/// Vertices of the graph: those of the input, and of polygons the virtual ones in their faces.
+/// Of the graph.
 Index vertices_of(const io::Geometry& input, const Backend& backend, const InputOptions& options) {
-  const bool refined = backend.name == "polymesh" && options.discretization != "polygons";
-  return static_cast<Index>(input.points.size() + (refined ? input.face_count() : 0));
+  return static_cast<Index>(input.points.size() + (backend.more_vertices ? backend.more_vertices(input, options) : 0));
 }
 
 }  // namespace

@@ -37,6 +37,8 @@ struct Backend {
   /// @throws what the backend throws
   Built (*build)(const io::Geometry& input, const InputOptions& options, const std::optional<SourceSpec>& source,
                  const Progress& progress);
+  /// How many vertices of its own the graph will have beside those of the input; null: none.
+  std::size_t (*more_vertices)(const io::Geometry& input, const InputOptions& options) = nullptr;
 };
 
 /// All of them, in the order in which `auto` asks them.
