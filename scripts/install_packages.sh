@@ -25,7 +25,7 @@ tests=(
   chromium chromium-driver python3-selenium                   # the viewer in a browser
   pybind11-dev python3-pybind11 python3-dev python3-numpy python3-scipy python3-pytest  # the Python package and its tests
 )
-checks=("${tests[@]}" clang clang-format clang-tidy)
+checks=("${tests[@]}" clang libclang-rt-14-dev clang-format clang-tidy)
 debian=("${tests[@]}" dpkg-dev pkg-config file)
 docs=("${tests[@]}" doxygen python3-sphinx python3-myst-parser furo python3-sphinx-copybutton linkchecker pngquant)
 case "${1:-tests}" in
