@@ -6,6 +6,12 @@ set(AHM_WARNINGS $<$<CXX_COMPILER_ID:GNU,Clang>:-Wall -Wextra -Wpedantic>
 set(AHM_STANDARD_HEADERS <algorithm> <array> <cmath> <functional> <limits> <memory> <mutex> <numeric> <optional> <span>
   <stop_token> <string> <thread> <utility> <variant> <vector>)
 
+set(AHM_EXPORTED_SYMBOLS ${CMAKE_CURRENT_LIST_DIR}/exported_symbols.map)
+if(BUILD_SHARED_LIBS)
+  include(CheckLinkerFlag)
+  check_linker_flag(CXX "LINKER:--version-script=${AHM_EXPORTED_SYMBOLS}" AHM_LINKER_KNOWS_VERSION_SCRIPTS)
+endif()
+
 # Where programs and libraries find their modules, for the sources that include ahm/util/module.hpp.
 file(RELATIVE_PATH AHM_LIBDIR_IN_PREFIX "${CMAKE_INSTALL_PREFIX}" "${CMAKE_INSTALL_FULL_LIBDIR}")
 set(AHM_MODULE_DEFINITIONS AHM_MODULE_LIBDIR="${AHM_LIBDIR_IN_PREFIX}" AHM_MODULE_DIR="${CMAKE_INSTALL_FULL_LIBDIR}/ahm")
@@ -22,6 +28,16 @@ function(ahm_module name)
     LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/${AHM_LIBDIR_IN_PREFIX}/ahm)
   if(AHM_INSTALL)
     install(TARGETS ${target} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/ahm COMPONENT pcl)
+  endif()
+endfunction()
+
+# ahm_compile_together(<target> [ALONE <file...>]): six sources at a time, where each would parse and instantiate the same
+# templates of large libraries again. Neighbours share their unnamed namespaces; ALONE: sources that define the same names.
+function(ahm_compile_together target)
+  cmake_parse_arguments(ARG "" "" "ALONE" ${ARGN})
+  if(NOT CMAKE_DISABLE_PRECOMPILE_HEADERS)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 6)
+    set_source_files_properties(${ARG_ALONE} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
   endif()
 endfunction()
 
@@ -42,6 +58,10 @@ function(ahm_library component)
   # Until 1.0 the interface may change with every minor version. DEFINE_SYMBOL: compiled alike, static or shared.
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${component} POSITION_INDEPENDENT_CODE ON DEFINE_SYMBOL ""
     VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+  if(BUILD_SHARED_LIBS AND AHM_LINKER_KNOWS_VERSION_SCRIPTS AND NOT component STREQUAL "testing")  # that is GoogleTest's, too
+    target_link_options(${target} PRIVATE "LINKER:--version-script=${AHM_EXPORTED_SYMBOLS}")
+    set_property(TARGET ${target} APPEND PROPERTY LINK_DEPENDS ${AHM_EXPORTED_SYMBOLS})
+  endif()
   if(AHM_INSTALL)
     set(package library)
     if(component STREQUAL "pcl")

@@ -14,6 +14,8 @@ program=(
   libstb-dev libjs-three                                      # pictures
   libcpp-httplib-dev pkgconf                                  # ahm view
   zlib1g-dev                                                  # files compressed with gzip
+  libpugixml-dev                                              # .vtp files
+  libxxhash-dev                                               # ahm-tiles: clouds that do not fit into memory
 )
 tests=(
   "${program[@]}"
@@ -22,11 +24,12 @@ tests=(
   libminizip-dev                                              # .npz files
   libgtest-dev libbenchmark-dev                               # tests and benchmarks
   libcgal-dev python3-matplotlib                              # exact distances and plots of the experiments
+  libpetsc-real-dev libopenmpi-dev openmpi-bin                # ahm-mpi: maps by many machines
   chromium chromium-driver python3-selenium                   # the viewer in a browser
-  pybind11-dev python3-pybind11 python3-dev python3-numpy python3-scipy python3-pytest  # the Python package and its tests
+  pybind11-dev python3-pybind11 python3-dev python3-numpy python3-scipy python3-pytest mypy  # the Python package and its tests
 )
 checks=("${tests[@]}" clang libclang-rt-14-dev clang-format clang-tidy)
-debian=("${tests[@]}" dpkg-dev pkg-config file)
+debian=("${tests[@]}" dpkg-dev pkg-config file debootstrap)
 docs=("${tests[@]}" doxygen python3-sphinx python3-myst-parser furo python3-sphinx-copybutton linkchecker pngquant)
 case "${1:-tests}" in
   program) packages=("${program[@]}") ;;

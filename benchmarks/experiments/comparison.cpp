@@ -64,6 +64,13 @@ std::vector<double> Surface::path_lengths(Index source) const {
   return length;
 }
 
+exact::PolyhedralSurface Surface::polyhedron() const {
+  const trimesh::TriangleMesh& mesh = surface_.mesh();
+  std::vector<exact::FaceSides> sides;
+  for (Index f = 0; f < mesh.face_count(); ++f) sides.push_back(mesh.layout(f));
+  return {mesh.topology().half_edges(), sides, mesh.corners()};
+}
+
 Index Surface::nearest(const Vec3& point) const {
   auto squared = [&](const Vec3& q) {
     const Vec3 off{q[0] - point[0], q[1] - point[1], q[2] - point[2]};

@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "ahm/surface/exact/polyhedral_surface.hpp"
 #include "ahm/trimesh/triangle_mesh_surface.hpp"
 #include "experiments/surfaces.hpp"
 #include "methods/method.hpp"
@@ -41,6 +42,8 @@ class Surface {
   /// Lengths of the shortest paths of edges: a measure of "how far" that favours no method. Infinite where there is none.
   std::vector<double> path_lengths(Index source) const;
   Index nearest(const Vec3& point) const;
+  /// Of the input's faces; its vertices are those of the graph.
+  exact::PolyhedralSurface polyhedron() const;
 
  private:
   std::string name_;

@@ -7,6 +7,7 @@ namespace ahm::bench {
 Table backends(const Settings&);
 Table boundary(const Settings&);
 Table cloud_scaling(const Settings&);
+Table clouds(const Settings&);
 Table convergence(const Settings&);
 Table cut_locus(const Settings&);
 Table delaunay(const Settings&);
@@ -15,6 +16,7 @@ Table discretizations(const Settings&);
 Table distance(const Settings&);
 Table distortion(const Settings&);
 Table exact_compared(const Settings&);
+Table far(const Settings&);
 Table flat(const Settings&);
 Table local_maps(const Settings&);
 Table march(const Settings&);
@@ -78,6 +80,8 @@ std::span<const Experiment> experiments() {
           "trust", "after Fig. 20", "Distances and quality against exact maps",
           "Distances are accurate near the source and too short at cut loci; exact vectors are not in the paper.",
           trust},
+      Experiment{"clouds", "after Fig. 15", "Distances on clouds against exact ones of meshes",
+                 "Clouds work as meshes do; no distances are given.", clouds},
       Experiment{
           "exact", "none", "Exact maps, and heat's against them",
           "On coarse meshes exact maps cost no more than the first by heat; vectors of heat are off by percents.",
@@ -101,6 +105,7 @@ std::span<const Experiment> experiments() {
       Experiment{"mesh_scaling", "scaling", "Time and memory of meshes", "Not in the paper.", mesh_scaling},
       Experiment{"cloud_scaling", "scaling", "Time and memory of clouds", "Not in the paper.", cloud_scaling},
       Experiment{"march", "scaling", "One map by march", "Not in the paper.", march},
+      Experiment{"far", "scaling", "Flat tubes and cubes by march", "Not in the paper.", far},
       Experiment{"local_maps", "scaling", "Local maps of every vertex", "Not in the paper.", local_maps},
       Experiment{"margins", "scaling", "Margins of local maps", "Not in the paper.", margins},
   };

@@ -20,13 +20,6 @@ constexpr int source_count = 3;
 /// A vector is right when it is off by less than this share of the distance.
 constexpr double right = 0.1;
 
-exact::PolyhedralSurface polyhedron(const Surface& surface) {
-  const trimesh::TriangleMesh& mesh = surface.mesh().mesh();
-  std::vector<exact::FaceSides> sides;
-  for (Index f = 0; f < mesh.face_count(); ++f) sides.push_back(mesh.layout(f));
-  return {mesh.topology().half_edges(), sides, mesh.corners()};
-}
-
 /// Of all vertices and sources together.
 struct Found {
   std::vector<double> length_error, distance_error;  ///< relative: |phi|, and the distance
@@ -86,7 +79,7 @@ double mean(const std::vector<double>& values) {
 }
 
 void measure(const Surface& surface, Table& table) {
-  const exact::PolyhedralSurface polyhedral = polyhedron(surface);
+  const exact::PolyhedralSurface polyhedral = surface.polyhedron();
   for (Variant variant : all_variants) {
     const LogMapSolver solver(surface.graph(), {.variant = variant});
     Found found;

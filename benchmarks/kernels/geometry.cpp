@@ -100,6 +100,7 @@ struct CloudSteps {
   std::unique_ptr<ahm::pointcloud::NeighborSearch> search;
   ahm::pointcloud::Neighborhoods neighborhoods;
   ahm::pointcloud::TangentPlanes planes;
+  std::unique_ptr<const ahm::pointcloud::CloudParts> parts;
   double noise = 0;
   std::vector<ahm::Triangle> triangles;
   ahm::pointcloud::WeightedEdges edges;
@@ -110,6 +111,7 @@ struct CloudSteps {
             points, [](std::size_t i) { return static_cast<Index>(i); }, options, report)) {
     search = options.search(cloud.points);
     find_neighbors();
+    parts = std::make_unique<const ahm::pointcloud::CloudParts>(neighborhoods);
     find_planes();
     triangulate();
     weigh();
@@ -119,7 +121,7 @@ struct CloudSteps {
   void find_neighbors() { neighborhoods = find_neighborhoods(cloud, *search, 30, options); }
   void find_planes() { planes = find_tangent_planes(cloud, {}, *search, neighborhoods, options); }
   void triangulate() { triangles = local_delaunay(cloud, neighborhoods, planes, false, noise, options, report); }
-  void weigh() { edges = tufted_laplacian(cloud, planes, triangles, report); }
+  void weigh() { edges = tufted_laplacian(cloud, planes, triangles, *parts, report); }
   ahm::CsrGraphData join() { return tangent_edges(cloud, planes, edges, vertices, size(), true, noise, 1, report); }
   Index size() const { return static_cast<Index>(cloud.points.size()); }
 };

@@ -88,7 +88,7 @@ void local_maps(benchmark::State& state, Shape shape) {
   std::size_t entries = 0;
   for (auto _ : state)
     entries = ahm::local_maps(graph, vertices, {.radius = radius, .heat = {.check_graph = false, .threads = 1}})
-                  .indices.size();
+                  .neighbors.size();
   state.counters["vertices/map"] = static_cast<double>(entries) / static_cast<double>(vertices.size());
   state.counters["maps/s"] =
       benchmark::Counter(static_cast<double>(vertices.size()), benchmark::Counter::kIsIterationInvariantRate);

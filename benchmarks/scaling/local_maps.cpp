@@ -27,7 +27,7 @@ double difference(const TangentGraph& graph, double radius, double margin, Varia
     const LogMap whole = solver.solve(Source::at_vertex(sources[s]), {.variant = variant});
     for (Offset e = maps.indptr[s]; e < maps.indptr[s + 1]; ++e)
       for (int a = 0; a < 2; ++a)
-        worst = std::max(worst, std::abs(maps.logs[2 * e + a] - whole.coordinates(Vertex(maps.indices[e]))[a]));
+        worst = std::max(worst, std::abs(maps.logs[2 * e + a] - whole.coordinates(maps.neighbors[e])[a]));
   }
   return worst / radius;
 }

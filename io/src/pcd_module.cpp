@@ -1,7 +1,6 @@
 #include "pcd_module.hpp"
 
 #include "read/pcl_read_pcd.hpp"
-#include "write/pcl_write_pcd.hpp"
 
 extern "C" const ahm::io::PcdFunctions ahm_pcd;
-const ahm::io::PcdFunctions ahm_pcd{ahm::io::read_pcd, ahm::io::write_pcd};
+const ahm::io::PcdFunctions ahm_pcd{ahm::io::read_pcd};

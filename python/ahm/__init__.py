@@ -31,7 +31,7 @@ from ._solvers import ExactGeodesics, LogMapSolver, log_map
 from ._surfaces import ClosestPoints, Surface, TangentGraph
 from ._textures import Atlas, Coverage, Decal, atlas, coverage, decal, decal_coordinates
 
-_atexit.register(_core.wait_for_background)
+_atexit.register(_core.end)
 
 __version__ = "0.1.0"
 

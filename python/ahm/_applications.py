@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple, Optional
+from typing import Any, Dict, NamedTuple, Optional, Tuple
 
 import numpy as np
 
@@ -32,8 +32,8 @@ def stroke(solver: Any, points: Any, *, closed: bool = False, shape: str = "line
     """Coordinates along a curve: every row gets those of the nearest point of the curve, moved on by the way from there.
 
     solver : a `LogMapSolver` or `ExactGeodesics`, or a surface (a mesh or cloud).
-    points : two or more, joined by shortest paths over flat faces, elsewhere by straight lines that should stay near the
-        surface: rows, positions, (face, barycentric), ((row, row), t).
+    points : two or more, joined by shortest paths over flat faces and over the tangent planes of clouds, on twisted polygons by
+        straight lines that should stay near the surface: rows, positions, (face, barycentric), ((row, row), t).
     closed : joins the last to the first.
     shape : "line": u is the arclength; "circle": a closed curve becomes a circle about the origin.
     positions : (k, 2) coordinates that the given points get instead of (arclength, 0), world units; straight in between.
@@ -55,22 +55,29 @@ def stroke(solver: Any, points: Any, *, closed: bool = False, shape: str = "line
         uv = arguments.floats(positions, "positions", (len(at[2]), 2), finite=True)
         if shape != "line":
             raise ValueError("positions: have a shape of their own; leave `shape` out")
+    shaped = (arguments.flag(closed, "closed"), shape == "circle", checked(radius=radius, frames=frames))
     with reporting(progress) as report:
-        found, drawn, length, gap, jump = _core.stroke(made._core, at, uv, arguments.flag(closed, "closed"), shape == "circle",
-                                                       checked(radius=radius, frames=frames), report)
-    recipe = (_StrokeMap(made), "map", (points,),
-              dict(closed=closed, shape=shape, positions=positions, radius=radius, frames=frames))
-    return Stroke(LogMap(found, made.surface, recipe), drawn, length, gap, jump)
+        found, drawn, length, gap, jump = _core.stroke(made._core, at, uv, *shaped, report)
+    return Stroke(LogMap(found, _StrokeRecipe(made, at, np.array(uv), shaped)), drawn, length, gap, jump)
 
 
-class _StrokeMap:
-    """Makes the map of a stroke again, for pickles."""
+class _StrokeRecipe(NamedTuple):
+    """How the map of a stroke is made, for its pickle."""
 
-    def __init__(self, solver: Maker) -> None:
-        self.solver = solver
+    maker: Maker
+    at: tuple
+    uv: np.ndarray
+    shaped: Tuple[bool, bool, Dict[str, Any]]
 
-    def map(self, points: Any, **options: Any) -> LogMap:
-        return stroke(self.solver, points, **options).map
+    @property
+    def surface(self) -> Any:
+        return self.maker.surface
+
+    def expect(self, number: int) -> None:
+        pass
+
+    def make(self, number: int) -> Any:
+        return _core.stroke(self.maker._core, self.at, self.uv, *self.shaped, None)[0]
 
 
 class Cells(NamedTuple):
@@ -85,6 +92,7 @@ def cells(surface: Any, sources: Any, *, method: Optional[str] = None, progress:
 
     sources : rows, positions, (face, barycentric), ((row, row), t); rows each once.
     method : "unfold" (default) or "exact", as of `distance`; an `ExactGeodesics` instead of a surface is exact, too.
+    progress : as of `LogMapSolver`.
 
     >>> import ahm
     >>> ahm.cells(ahm.shapes.plane(5, 2), [0, 4]).labels[[0, 1, 3, 4]].tolist()
@@ -108,13 +116,16 @@ def cells(surface: Any, sources: Any, *, method: Optional[str] = None, progress:
 def farthest_points(surface: Any, count: int, first: Any = 0, *, progress: Progress = None) -> np.ndarray:
     """`count` rows spread evenly, each the farthest from those before it, beginning with `first`.
 
-    first : a row; of any other point the nearest one.
+    surface : a `Surface`, or what `ahm.surface` takes.
+    count : 1 to the number of rows.
+    first : a row; since the result is rows, of any other point the nearest one.
+    progress : as of `LogMapSolver`.
 
     >>> import ahm
     >>> ahm.farthest_points(ahm.shapes.plane(5, 2), 2).tolist()
     [0, 9]
 
-    Returns (count,) int32. Raises ValueError.
+    Returns (count,) int32. Raises ValueError naming argument and value.
     """
     on = as_body(surface)
     at = places.point(first, "first", on)
@@ -127,10 +138,15 @@ class Center(NamedTuple):
 
     row: Optional[int]  #: the nearest one; None where that vertex is none of the input
     offset: np.ndarray  #: (d,) log map of the center from there, in its frame, world units
-    position: Optional[np.ndarray]  #: (3,) in the tangent plane of the row, world units; None on grids and graphs
+    position: Optional[np.ndarray]  #: (3,) in space, world units: on the faces of a mesh, in the tangent plane of a row of a
+    #: cloud; (d,) on a grid; of a graph in the tangent plane of a frame, None without
     spread: float  #: mean: root mean squared distance; median: mean distance; world units
-    maps: int  #: log maps used
-    converged: bool
+    maps: int  #: log maps that the search took
+    converged: bool  #: False where `max_maps` ended it
+    residual: float  #: how far from a least value, seen by one more log map from the center itself. Mean: length of the weighted
+    #: mean of the points' coordinates, world units; median: of their unit vectors, less the weight of points at the center.
+    #: On clouds and graphs a map from beside a vertex is that of the vertex, shifted: there it tells of convergence alone
+    point: Any  #: the center as functions take points: (face, barycentric) of a mesh, else the position, or None
 
 
 def karcher_mean(solver: Any, points: Any, weights: Any = None, *, start: Any = None, method: Optional[str] = None,
@@ -138,24 +154,26 @@ def karcher_mean(solver: Any, points: Any, weights: Any = None, *, start: Any = 
     """The Riemannian center of mass: where the weighted sum of squared distances is least, near the start [Kar77].
 
     solver : a `LogMapSolver` or `ExactGeodesics`, or a surface.
-    points : k rows; of any other point the nearest one. weights : (k,) >= 0, or None: all equal.
-    start : a row, or any other point; None: the point of the largest weight.
+    points : k points: rows, positions, `(faces, barycentric)`, `(edges, t)`.
+    weights : (k,) >= 0, or None: all equal.
+    start : where the search begins, the row nearest to this point; None: near the point of the largest weight.
     method : of a surface: "heat" (default), or "exact" over the flat triangles of a mesh.
-    max_maps : each step is one log map. radius : of the maps.
+    max_maps : >= 1; each step is one log map. radius : of the maps, world units; it must reach from the center and the start to
+        every point. progress : as of `LogMapSolver`.
 
     >>> import ahm
     >>> mean = ahm.karcher_mean(ahm.shapes.plane(9, 9), [0, 8, 72, 80])
-    >>> mean.row, mean.converged
-    (40, True)
+    >>> mean.row, mean.converged, mean.residual < 1e-9
+    (40, True, True)
 
-    Raises ValueError naming argument, index and value.
+    Raises ValueError naming argument, index and value; points in different components have no mean.
     """
     return _center(as_maker(solver, method), points, weights, False, start, max_maps, radius, progress)
 
 
 def geometric_median(solver: Any, points: Any, weights: Any = None, *, start: Any = None, method: Optional[str] = None,
                      max_maps: int = 50, radius: Optional[float] = None, progress: Progress = None) -> Center:
-    """Where the weighted sum of distances is least, near the start [FVJ09]. Otherwise as `karcher_mean`.
+    """Where the weighted sum of distances is least, near the start [FVJ09]. Result, arguments and errors as of `karcher_mean`.
 
     >>> import ahm
     >>> ahm.geometric_median(ahm.shapes.plane(9, 9), [0, 8, 72], [3.0, 1.0, 1.0]).row
@@ -166,8 +184,33 @@ def geometric_median(solver: Any, points: Any, weights: Any = None, *, start: An
 
 def _center(made: Maker, points: Any, weights: Any, median: bool, start: Any, max_maps: int, radius: Optional[float],
             progress: Progress) -> Center:
-    at = places.points(points, "points", made.surface)
-    given = np.empty(0) if weights is None else arguments.floats(weights, "weights", (len(at[2]),), finite=True)
-    begin = None if start is None else places.point(start, "start", made.surface)
+    on = made.surface
+    at = places.points(points, "points", on)
+    given = np.empty(0) if weights is None else _weights(weights, len(at[2]))
+    begin = None if start is None else places.point(start, "start", on)
     with reporting(progress) as report:
-        return Center(*_core.center(made._core, at, given, median, begin, checked(max_maps=max_maps, radius=radius), report))
+        row, offset, position, spread, maps, converged, face, inside, seen = _core.center(
+            made._core, at, given, median, begin, checked(max_maps=max_maps, radius=radius), report)
+    point = (face, inside) if face is not None else position if on._body.has_positions else None
+    residual = _residual(seen, given if len(given) else np.ones(len(seen)), median, 1e-9 * on.mean_edge_length)
+    return Center(row, offset, position, spread, maps, converged, residual, point)
+
+
+def _weights(weights: Any, count: int) -> np.ndarray:
+    given = arguments.floats(weights, "weights", (count,), finite=True)
+    if (given < 0).any():
+        k = int(np.argmax(given < 0))
+        raise ValueError(f"weights[{k}]: {given[k]} is less than 0")
+    if not given.any():
+        raise ValueError("weights: all are 0")
+    return given
+
+
+def _residual(seen: np.ndarray, weights: np.ndarray, median: bool, at_center: float) -> float:
+    weights, seen = weights[weights > 0] / weights.max(), seen[weights > 0]
+    if not median:
+        return float(np.linalg.norm(weights @ seen) / weights.sum())
+    away = np.linalg.norm(seen, axis=1)
+    near = away <= at_center
+    pull = np.linalg.norm((weights[~near] / away[~near]) @ seen[~near]) - weights[near].sum()
+    return float(max(0.0, pull) / weights.sum())

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import operator
+import os
 from typing import Any, Optional, Tuple
 
 import numpy as np
@@ -20,11 +21,24 @@ def array(value: Any, name: str) -> np.ndarray:
         value = value.numpy()
     try:
         result = np.asarray(value)
-    except (ValueError, TypeError, OverflowError) as error:
+    except (ValueError, TypeError, OverflowError, RuntimeError, BufferError) as error:  # as of tensors elsewhere than in memory
         raise ValueError(f"{name}: not an array of numbers ({error})") from None
+    if result.dtype.kind == "O" and result.ndim > 0:
+        result = _of_objects(result, name)
     if result.dtype.kind not in "iuf" and not (result.size == 0 and result.dtype.kind == "f"):
         raise TypeError(f"{name}: real numbers are needed, not {describe(value, result)}")
     return result
+
+
+def _of_objects(given: np.ndarray, name: str) -> np.ndarray:
+    """Python's numbers in an array of objects, as data frames hold them; what is none of them is named."""
+    for at, item in np.ndenumerate(given):
+        if isinstance(item, (bool, np.bool_)) or not isinstance(item, (int, float, np.integer, np.floating)):
+            raise TypeError(f"{name}{list(at)}: a real number is needed, not {describe(item)}")
+        if isinstance(item, int) and not -(2**63) <= item < 2**63:
+            raise ValueError(f"{name}{list(at)}: {item} is out of range; it takes more than 64 bits")
+    whole = all(isinstance(item, (int, np.integer)) for item in given.flat)
+    return given.astype(np.int64 if whole and given.size else np.float64)
 
 
 def describe(value: Any, made: Optional[np.ndarray] = None) -> str:
@@ -65,8 +79,9 @@ def integers(value: Any, name: str, ndim: int, low: int = INT32.min, high: int =
 
 
 def rows(value: Any, name: str, count: int) -> np.ndarray:
-    """Row numbers of a surface of `count` rows."""
-    if np.ndim(value) == 0 and not isinstance(value, (str, bytes)):
+    """Row numbers of a surface of `count` rows: one, or a list."""
+    single = np.ndim(value) == 0 and not isinstance(value, (str, bytes))
+    if single:
         value = [value]
     given = array(value, name) if len(value) else np.empty(0, np.int32)
     if given.dtype.kind == "f":
@@ -76,8 +91,15 @@ def rows(value: Any, name: str, count: int) -> np.ndarray:
     bad = (given < 0) | (given >= count)
     if bad.any():
         k = int(np.argmax(bad))
-        raise ValueError(f"{name}[{k}]: row {given[k]} is out of range; there are {count} rows, counted from 0")
+        where = name if single else f"{name}[{k}]"
+        raise ValueError(f"{where}: row {given[k]} is out of range; there are {count} rows, counted from 0")
     return np.ascontiguousarray(given, dtype=np.int32)
+
+
+def row(value: Any, name: str, count: int) -> int:
+    if np.ndim(value) != 0:
+        raise ValueError(f"{name}: one row is needed, not shape {np.shape(value)}")
+    return int(rows(value, name, count)[0])
 
 
 def real(value: Any, name: str, positive: bool = False, finite: bool = True) -> float:
@@ -118,5 +140,22 @@ def choice(value: Any, name: str, choices: Tuple[str, ...]) -> str:
     return value
 
 
+def file_name(value: Any, name: str) -> bytes:
+    """A name in the file system: str, bytes or what has `__fspath__`."""
+    try:
+        result = os.fsencode(value)
+    except TypeError:
+        raise TypeError(f"{name}: a name is needed, not {describe(value)}") from None
+    if b"\0" in result:
+        raise ValueError(f"{name}: {value!r:.60} holds a null character")
+    return result
+
+
 def vector(value: Any, name: str) -> Optional[np.ndarray]:
-    return None if value is None else floats(value, name, (3,), finite=True)
+    """A direction of space: three finite numbers, not all zero; or None."""
+    if value is None:
+        return None
+    result = floats(value, name, (3,), finite=True)
+    if not result.any():
+        raise ValueError(f"{name}: is zero; it has no direction")
+    return result

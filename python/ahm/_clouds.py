@@ -43,7 +43,10 @@ class PointCloud(Surface):
         self._options = checked(k=k, normal_signs=normal_signs, max_edge_ratio=max_edge_ratio,
                                 drop_non_finite=drop_non_finite, threads=threads)
         if rows is not None:
-            self._options["rows"] = arguments.rows(rows, "rows", len(given))
+            self._options["rows"] = chosen = np.array(arguments.rows(rows, "rows", len(given)))
+            if (np.diff(chosen) <= 0).any():
+                k = int(np.argmax(np.diff(chosen) <= 0)) + 1
+                raise ValueError(f"rows[{k}]: {chosen[k]} follows {chosen[k - 1]}; they have to ascend")
         with reporting(progress) as report:
             self._body = _core.point_cloud(given, self._normals, self._options, report)
 

@@ -9,6 +9,7 @@ import numpy as np
 from . import _arguments as arguments
 from . import _core
 from . import _places as places
+from ._options import checked
 from ._progress import Progress, reporting
 from ._solvers import as_body, as_solver
 
@@ -18,13 +19,13 @@ def distance(surface: Any, sources: Any, *, targets: Any = None, method: str = "
     """Geodesic distance from the nearest of the sources, world units.
 
     surface : a `Surface`, a `LogMapSolver` (method "heat" uses its factors), or what `ahm.surface` takes.
-    sources : one or more points: rows, positions, `(faces, barycentric)`, `(edges, t)`. By heat several ones count as their
-        nearest rows.
+    sources : one or more points: rows, positions, `(faces, barycentric)`, `(edges, t)`.
     targets : None: all rows, result (n,); or points, result (k,). Other targets than rows take method "exact".
     method : "unfold": a front over the triangles, no heat, best for distances on meshes; "heat": the distance of a log
         map, by one solve each of A and B on clouds, grids and graphs, smooth, best on noise; on meshes log maps unfold it, too;
         "exact": of the flat triangles of a mesh.
     radius : NaN beyond this distance; world units. Not for "heat".
+    progress : as of `LogMapSolver`.
 
     >>> import ahm
     >>> mesh = ahm.TriangleMesh(*ahm.shapes.plane(4, 3))
@@ -40,7 +41,8 @@ def distance(surface: Any, sources: Any, *, targets: Any = None, method: str = "
 
 def distance_and_nearest(surface: Any, sources: Any, *, targets: Any = None, method: str = "unfold",
                          radius: Optional[float] = None, progress: Progress = None) -> tuple:
-    """As `distance`, and the number of the nearest source, int32, -1 without a way; None by heat.
+    """As `distance`, and the number of the nearest source, int32, -1 without a way; None by heat. Arguments and errors as of
+    `distance`.
 
     >>> import ahm
     >>> ahm.distance_and_nearest(ahm.shapes.plane(5, 2), [0, 4], targets=[1, 3])[1].tolist()
@@ -51,7 +53,9 @@ def distance_and_nearest(surface: Any, sources: Any, *, targets: Any = None, met
     at = places.points(sources, "sources", on)
     reach = float("inf") if radius is None else arguments.real(radius, "radius", positive=True, finite=False)
     if method == "exact":
-        to = None if targets is None else places.points(targets, "targets", on)
+        to = None if targets is None else places.points(targets, "targets", on, empty=True)
+        if to is not None and len(to[2]) == 0:
+            return np.empty(0), np.empty(0, np.int32)
         with reporting(progress) as report:
             return _core.exact_distance(on._body, at, to, reach, report)
     rows = None if targets is None else _target_rows(targets, on, method)
@@ -68,7 +72,11 @@ def distance_and_nearest(surface: Any, sources: Any, *, targets: Any = None, met
 
 
 def _target_rows(targets: Any, on: Any, method: str) -> np.ndarray:
-    if isinstance(targets, tuple) or np.ndim(targets) > 1:
+    try:
+        nested = np.ndim(targets) > 1 and len(targets) > 0
+    except ValueError:  # of parts of different lengths
+        nested = True
+    if nested:
         raise ValueError(f"targets: method {method!r} takes rows only; method 'exact' takes other points")
     return arguments.rows(targets, "targets", len(on))
 
@@ -83,8 +91,7 @@ class DistanceField(NamedTuple):
 def distance_and_gradient(solver: Any, sources: Any, *, progress: Progress = None) -> DistanceField:
     """Length and direction of the radial field (Lemma 1): by heat, without differentiating a distance.
 
-    solver : a `LogMapSolver`, or a surface.
-    sources : as of `distance`.
+    solver : a `LogMapSolver`, or a surface. sources, progress : as of `distance`. Raises as that.
 
     >>> import ahm
     >>> field = ahm.distance_and_gradient(ahm.TriangleMesh(*ahm.shapes.plane(4, 3)), 0)
@@ -101,13 +108,18 @@ def extend(solver: Any, points: Any, values: Any, *, progress: Progress = None) 
     """Extends scalars given at points to all rows: each takes the value of the nearest one, blended at ties ([SSC19] Sec. 4).
 
     solver : a `LogMapSolver`, or a surface.
-    points : k rows; of any other point the nearest one. values : (k,).
+    points : k points: rows, positions, `(faces, barycentric)`, `(edges, t)`. Of a position beside a cloud heat starts at the
+        nearest row, which alone is a vertex there.
+    values : (k,) numbers. progress : as of `LogMapSolver`.
 
     >>> import ahm
     >>> ahm.extend(ahm.shapes.plane(9, 2), [0, 8], [1.0, 3.0])[:9].round(1).tolist()
     [1.0, 1.0, 1.1, 1.3, 2.0, 2.7, 2.9, 3.0, 3.0]
+    >>> between = ahm.extend(ahm.shapes.plane(9, 2), [((0, 1), 0.5), ((7, 8), 0.5)], [1.0, 3.0])
+    >>> between[[0, 4, 8]].round(1).tolist()
+    [1.0, 2.0, 3.0]
 
-    Returns (n,), NaN where no heat comes. Raises ValueError.
+    Returns (n,), NaN where no heat comes. Raises ValueError naming argument, index and value.
     """
     made = as_solver(solver)
     at = places.points(points, "points", made.surface)
@@ -120,15 +132,17 @@ def transport(solver: Any, points: Any, vectors: Any, *, progress: Progress = No
     """Carries vectors given at points along shortest geodesics to all rows ([SSC19] Alg. 1).
 
     solver : a `LogMapSolver`, or a surface.
-    points : k rows; of any other point the nearest one.
-    vectors : (k, 3) vectors of space, projected to the tangent planes; or (k, d) components in the frames of the rows. One
-        vector may be given as (3,) or (d,).
+    points : k points: rows, positions, `(faces, barycentric)`, `(edges, t)`; of positions beside a cloud as of `extend`.
+    vectors : (k, 3) vectors of space, projected to the tangent plane or face; or (k, d) components: at rows in the frame of the
+        row, elsewhere in the axes that a log map from there has. One vector may be given as (3,) or (d,).
+    progress : as of `LogMapSolver`.
 
     >>> import ahm
     >>> ahm.transport(ahm.shapes.plane(4, 3), 0, [1, 2, 0])[11, :2].round(9).tolist()
     [1.0, 2.0]
 
-    Returns (n, 3) or (n, d), as given; NaN where no heat comes. Raises ValueError.
+    Returns (n, 3) or (n, d), as given, the latter in the frames of the rows; NaN where no heat comes. Raises ValueError naming
+    argument, index and value.
     """
     made = as_solver(solver)
     at = places.points(points, "points", made.surface)
@@ -149,16 +163,21 @@ class Curvature(NamedTuple):
     direction: np.ndarray  #: (n, 3) unit vector of space along which the curvature is kappa_1, up to its sign
 
 
-def curvature(surface: Any, *, progress: Progress = None) -> Curvature:
+def curvature(surface: Any, *, threads: int = 0, progress: Progress = None) -> Curvature:
     """Principal curvatures and directions, of a paraboloid fitted around every row [CP05].
+
+    surface : a mesh or cloud. threads : 0: one per core; no result depends on it. progress : as of `LogMapSolver`.
 
     >>> import ahm
     >>> k = ahm.curvature(ahm.shapes.sphere(3)).values
     >>> bool(abs(k - 1).max() < 0.05)
     True
+
+    Raises ValueError for grids in space and graphs without frames.
     """
+    on = as_body(surface)
     with reporting(progress) as report:
-        return Curvature(*_core.curvature(as_body(surface)._body, report))
+        return Curvature(*_core.curvature(on._body, checked(threads=threads)["threads"], report))
 
 
 class Operators(NamedTuple):
@@ -197,12 +216,15 @@ def _plus(mass: Any, tau: np.ndarray, laplacian: Any) -> Any:
 def operators(surface: Any, *, t_coef: float = 1.0) -> Operators:
     """The matrices of a surface, by vertices of its graph (see `vertex_of_row`).
 
-    tau is t_coef h^2 with h the mean edge length of the vertex's component.
+    surface : a `Surface`, or what `ahm.surface` takes.
+    t_coef : tau is t_coef h^2 with h the mean edge length of the vertex's component; > 0.
 
     >>> import ahm
     >>> ops = ahm.operators(ahm.shapes.sphere(2))
     >>> ops.A.shape, bool(abs(ops.laplacian.sum(axis=1)).max() < 1e-12)
     ((162, 162), True)
+
+    Raises ValueError naming the argument; ImportError without scipy.
     """
     from scipy.sparse import bsr_matrix, coo_matrix, csr_matrix, diags
 

@@ -1,4 +1,4 @@
-"""Shortest paths and straight lines over the flat triangles of meshes."""
+"""Shortest paths and straight lines over the flat triangles of meshes, and over the tangent planes of clouds."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from ._solvers import as_body
 
 
 class Path(NamedTuple):
-    """A curve on a mesh: straight inside a triangle between neighbouring points."""
+    """A curve on a mesh: straight inside a triangle between neighbouring points. Of a cloud: from tangent plane to tangent plane."""
 
     points: np.ndarray  #: (k, 3) in space, world units
-    face: np.ndarray  #: (k,) int32 face of the input of every point
+    face: Any  #: (k,) int32 face of the input of every point; of clouds None, as the next
     barycentric: Any  #: (k, 3) weights of its corners; a list of k arrays where faces have other numbers of corners. Of polygons
     #: that are not flat, of the point of the face nearest to the path, which runs over their triangles
     length: float  #: world units
@@ -28,7 +28,8 @@ def geodesic_path(surface: Any, stops: Any, to: Any = None, *, closed: bool = Fa
                   progress: Progress = None) -> Optional[Path]:
     """The shortest path between two points, or through stops in their order, exact up to rounding.
 
-    surface : a mesh, or what `ahm.surface` takes.
+    surface : a mesh or a cloud, or what `ahm.surface` takes. Over clouds paths are straight on planes, and short to second order in
+        the spacing elsewhere; they take neither `fast` nor `taut`.
     stops : where the path starts, with `to`; or two or more points. Points are rows, positions, `(face, barycentric)`,
         `((row, row), t)`.
     to : where the path ends.
@@ -37,6 +38,7 @@ def geodesic_path(surface: Any, stops: Any, to: Any = None, *, closed: bool = Fa
         side of a hill.
     taut : pulled taut, so that it leaves its stops and is locally shortest everywhere: only its ends stay; of a closed one
         see `geodesic_loop`.
+    progress : as of `LogMapSolver`.
 
     >>> import ahm
     >>> path = ahm.geodesic_path(ahm.shapes.plane(4, 3), 0, 11)
@@ -60,7 +62,7 @@ def geodesic_loop(surface: Any, stops: Any, *, fast: bool = False, progress: Pro
     """A closed geodesic: the closed path through the stops, pulled taut until it is locally shortest everywhere [XW07].
 
     stops : three or more points, as of `geodesic_path`, around what shall hold the loop: a handle, a limb, a hole.
-    fast : as of `geodesic_path`.
+    surface, fast, progress : as of `geodesic_path`.
 
     It begins and ends at the same point. Around nothing that would hold it, it shrinks to a point, of length 0.
 
@@ -79,8 +81,9 @@ def geodesic_paths(surface: Any, sources: Any, targets: Any, *, pairwise: bool =
                    progress: Progress = None) -> List[Optional[Path]]:
     """The shortest path to every target from the nearest of the sources, of one propagation.
 
+    surface, progress : as of `geodesic_path`; over clouds `pairwise` alone. sources, targets : one or more points each.
     pairwise : instead to target k from source k, one propagation for every distinct source.
-    fast : with `pairwise`: locally shortest, as of `geodesic_path`.
+    fast : with `pairwise`, on meshes: locally shortest, as of `geodesic_path`.
 
     >>> import ahm
     >>> paths = ahm.geodesic_paths(ahm.shapes.plane(4, 3), 0, [3, 8])
@@ -111,7 +114,7 @@ def trace(surface: Any, start: Any, direction: Any, length: Optional[float] = No
 
     start : a row, a position, `(face, barycentric)`, or `((row, row), t)`.
     direction : (3,) vector of space, projected to the surface.
-    length : world units; None: that of `direction`.
+    length : >= 0, world units; None: that of `direction`. surface, progress : as of `geodesic_path`.
 
     >>> import ahm
     >>> end = ahm.trace(ahm.shapes.plane(4, 3), 0, [1, 0.5, 0], 2).points[-1]

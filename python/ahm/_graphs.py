@@ -82,7 +82,9 @@ class Graph(Surface):
     transports : (e, 2) (cos, sin) or complex (e,), for d = 2; or (e, d, d): components in the frame of j -> in the frame of i.
     masses : (n,) dual areas or volumes > 0.
     frames : (n, 4, 3) origin, x, y and normal of every vertex in space, or None.
-    mean_edge_length : None: the mean of |logs|.
+    mean_edge_length : None: the mean of |logs|; world units.
+    length_unit : what a length of 1 in `logs` and `mean_edge_length` is in world units, which results are in.
+    is_delaunay : the graph is that of a Delaunay triangulation, on which distances are unfolded; d = 2.
 
     Raises InvalidGraph (a ValueError) naming the first law that is broken, with its vertex or edge.
 
@@ -98,24 +100,37 @@ class Graph(Surface):
                  is_delaunay: bool = False) -> None:
         begin = arguments.integers(indptr, "indptr", 1, 0, 2**62, np.int64)
         neighbors = arguments.integers(indices, "indices", 1)
-        e = len(neighbors)
-        edges = arguments.floats(logs, "logs", (e, None))
+        e, n = len(neighbors), len(begin) - 1
+        if n < 1 or begin[0] != 0 or begin[-1] != e or (np.diff(begin) < 0).any():
+            raise ValueError(f"indptr: it must rise from 0 to the {e} entries of `indices`")
+        outside = (neighbors < 0) | (neighbors >= n)
+        if outside.any():
+            k = int(np.argmax(outside))
+            raise ValueError(f"indices[{k}]: {neighbors[k]} is out of range; there are {n} vertices, counted from 0")
+        edges = arguments.floats(logs, "logs", (e, None), finite=True)
         d = edges.shape[1]
+        if d < 1:
+            raise ValueError(f"logs: shape ({e}, d) with d at least 1 is needed, not {edges.shape}")
+        if isinstance(transports, (list, tuple)):
+            transports = _listed(transports)
         if np.iscomplexobj(transports):
             given = np.ascontiguousarray(transports, np.complex128)
             turns = arguments.floats(given.reshape(-1).view(np.float64).reshape(-1, 2), "transports", (e, 2))
         elif np.ndim(transports) == 2:
-            turns = arguments.floats(transports, "transports", (e, 2))
+            turns = arguments.floats(transports, "transports", (e, 2), finite=True)
         else:
-            turns = arguments.floats(transports, "transports", (e, d, d))
+            turns = arguments.floats(transports, "transports", (e, d, d), finite=True)
+        if turns.ndim == 2 and d != 2:
+            raise ValueError(f"transports: (cos, sin) goes with logs of 2 numbers, not of {d}")
         self._options = {"length_unit": arguments.real(length_unit, "length_unit", positive=True),
                          "is_delaunay": arguments.flag(is_delaunay, "is_delaunay")}
         if mean_edge_length is not None:
             self._options["mean_edge_length"] = arguments.real(mean_edge_length, "mean_edge_length", positive=True)
         if frames is not None:
-            self._options["frames"] = arguments.floats(frames, "frames", (None, 4, 3))
-        self._body = _core.graph(begin, neighbors, arguments.floats(weights, "weights", (e,)), edges, turns,
-                                 arguments.floats(masses, "masses", (None,)), self._options)
+            self._options["frames"] = np.array(arguments.floats(frames, "frames", (n, 4, 3), finite=True))
+            self._options["frames"].flags.writeable = False
+        self._body = _core.graph(begin, neighbors, arguments.floats(weights, "weights", (e,), finite=True), edges, turns,
+                                 arguments.floats(masses, "masses", (n,), finite=True), self._options)
 
     def _state(self) -> tuple:
         return tuple(self._body.csr())
@@ -128,3 +143,10 @@ class Graph(Surface):
 
     def _describe(self) -> str:
         return f"{len(self)} vertices, {self._body.edge_count} edges, dimension {self.dimension}"
+
+
+def _listed(transports: Any) -> np.ndarray:
+    try:
+        return np.asarray(transports)
+    except ValueError as error:
+        raise ValueError(f"transports: not an array of numbers ({error})") from None

@@ -15,8 +15,9 @@ from ._surfaces import Surface
 
 
 def read(path: Union[str, "os.PathLike[str]"], kind: Optional[str] = None, **options: Any) -> Surface:
-    """The surface in a file: .ply, .off, .obj, .stl, .pcd, .xyz, .txt or .csv.
+    """The surface in a file: .ply, .off, .obj, .stl, .pcd, .las, .xyz, .pts, .txt, .csv, .glb or .gltf, each also as .gz.
 
+    path : its name: str, bytes or what has `__fspath__`.
     kind : "triangles", "polygons" or "cloud"; None: as the file has it. A mesh read as a cloud keeps its normals.
     options : of `TriangleMesh`, `PolygonMesh` or `PointCloud`.
 
@@ -29,7 +30,7 @@ def read(path: Union[str, "os.PathLike[str]"], kind: Optional[str] = None, **opt
 
     Raises IoError (an OSError) naming the file and what is wrong with it, and as these.
     """
-    got = _core.read_file(os.fspath(path))
+    got = _core.read_file(arguments.file_name(path, "path"))
     begin, corners = got["face_begin"], got["face_vertices"]
     if kind is None:
         kind = "cloud" if begin is None else "triangles" if (np.diff(begin) == 3).all() else "polygons"
@@ -37,11 +38,11 @@ def read(path: Union[str, "os.PathLike[str]"], kind: Optional[str] = None, **opt
     if kind == "cloud":
         return PointCloud(got["points"], got["normals"], **options)
     if begin is None:
-        raise ValueError(f"kind: {os.fspath(path)} holds no faces; read it as a 'cloud'")
+        raise ValueError(f"kind: {os.fsdecode(path)} holds no faces; read it as a 'cloud'")
     if kind == "polygons":
         return PolygonMesh(got["points"], Compressed(begin, corners), **options)
     if not (np.diff(begin) == 3).all():
-        raise ValueError(f"kind: {os.fspath(path)} holds faces with other than 3 corners; read it as 'polygons'")
+        raise ValueError(f"kind: {os.fsdecode(path)} holds faces with other than 3 corners; read it as 'polygons'")
     return TriangleMesh(got["points"], corners.reshape(-1, 3), **options)
 
 
@@ -67,7 +68,7 @@ def surface(thing: Any, **options: Any) -> Surface:
     for name in ("points", "vertices"):
         found = _attribute(thing, name)
         if found is not None and not callable(found):
-            return _mesh(np.asarray(found), _faces_of(thing), options, getattr(thing, "normals", None))
+            return _mesh(arguments.array(found, name), _faces_of(thing), options, getattr(thing, "normals", None))
     for name in ("point", "vertex"):  # Open3D's tensors, of clouds and meshes
         columns = _attribute(thing, name)
         found = _attribute(columns, "positions")
@@ -75,7 +76,9 @@ def surface(thing: Any, **options: Any) -> Surface:
             faces = _attribute(_attribute(thing, "triangle"), "indices")
             return _mesh(arguments.array(found, "positions"), None if faces is None else arguments.array(faces, "indices"), options,
                          _attribute(columns, "normals"))
-    if hasattr(thing, "__len__") or hasattr(thing, "__array__"):
+    if isinstance(thing, (str, bytes, os.PathLike)):
+        raise TypeError(f"surface: {thing!r:.60} is a name; ahm.read reads files")
+    if (hasattr(thing, "__len__") or hasattr(thing, "__array__")) and not isinstance(thing, (dict, set)):
         return PointCloud(thing, **options)
     raise TypeError(f"surface: {type(thing).__name__} has no points, vertices or faces")
 
@@ -89,17 +92,17 @@ def _attribute(thing: Any, name: str) -> Any:
 
 
 def _mesh(points: Any, faces: Any, options: Dict[str, Any], normals: Any = None) -> Surface:
-    if faces is None or (hasattr(faces, "__len__") and len(faces) == 0):
+    if faces is not None and not isinstance(faces, (list, tuple)):
+        faces = arguments.array(faces, "faces")
+    if faces is None or (faces.size if isinstance(faces, np.ndarray) else len(faces)) == 0:
         given = None if normals is None or callable(normals) or len(normals) != len(points) else normals
         return PointCloud(points, given, **options)
     if isinstance(faces, Compressed):
         return PolygonMesh(points, faces, **options)
-    if not isinstance(faces, np.ndarray):
-        lengths = {np.size(face) for face in faces}
-        if lengths != {3}:
-            return PolygonMesh(points, faces, **options)
-        faces = np.asarray(faces)
-    return (TriangleMesh if faces.shape[-1] == 3 else PolygonMesh)(points, faces, **options)
+    if isinstance(faces, np.ndarray):
+        return (TriangleMesh if faces.ndim != 2 or faces.shape[1] == 3 else PolygonMesh)(points, faces, **options)
+    triangles = all(np.ndim(face) == 1 and len(face) == 3 for face in faces)
+    return (TriangleMesh if triangles else PolygonMesh)(points, faces, **options)
 
 
 _VTK_KINDS = {1: "vertex", 3: "line", 5: "triangle", 7: "polygon", 9: "quad"}
@@ -127,12 +130,16 @@ def _faces_of(thing: Any) -> Any:
         return None if faces is None else np.asarray(faces)
     if isinstance(faces, np.ndarray) and faces.ndim == 1:  # PyVista: count, corners, count, corners
         return _padded_faces(faces)
-    return faces if isinstance(faces, list) else np.asarray(faces)
+    return faces
 
 
-def _padded_faces(flat: np.ndarray) -> List[np.ndarray]:
-    result, at = [], 0
+def _padded_faces(padded: np.ndarray) -> List[np.ndarray]:
+    flat, at = arguments.integers(padded, "faces", 1), 0
+    result = []
     while at < len(flat):
-        result.append(flat[at + 1 : at + 1 + int(flat[at])])
-        at += 1 + int(flat[at])
+        count = int(flat[at])
+        if not 0 <= count < len(flat) - at:
+            raise ValueError(f"faces[{at}]: a face of {count} corners, but {len(flat) - at - 1} numbers follow")
+        result.append(flat[at + 1 : at + 1 + count])
+        at += 1 + count
     return result

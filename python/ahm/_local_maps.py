@@ -31,7 +31,7 @@ class LocalMaps:
     indptr : (s + 1,) int64. indices : (e,) int32 rows. log : (e, d) coordinates in the source's frame, world units.
     distance : (e,) geodesic, as `LogMap.distance`. weight : (e,) masses, world units to the power d, as integration weights.
     transport : (e, 2) (cos, sin), or (e, d, d): components in the source's frame -> components in the neighbour's.
-    sources : (s,) int32 rows; -1 of sources that are no rows.
+    sources : (s,) int32 rows; -1 of sources that are no rows. columns : the number of rows. Made by `local_maps`.
 
     >>> import ahm
     >>> maps = ahm.local_maps(ahm.shapes.plane(9, 9), radius=1.0, sources=[40, 0])
@@ -54,6 +54,8 @@ class LocalMaps:
         >>> maps = ahm.local_maps(ahm.shapes.plane(9, 9), radius=1.0)
         >>> maps.csr().shape, round(float(maps.csr("weight")[40].sum()), 9)
         ((81, 81), 5.0)
+
+        Raises ValueError where `values` are none of these; ImportError without scipy.
         """
         from scipy.sparse import csr_matrix
 
@@ -68,6 +70,8 @@ class LocalMaps:
             else:
                 values = getattr(self, values)
         values = np.asarray(values)
+        if values.dtype.kind not in "biufc":
+            raise TypeError(f"values: numbers are needed, not {arguments.describe(values, values)}")
         if values.shape != self.indices.shape:
             raise ValueError(f"values: shape ({len(self.indices)},) is needed, not {values.shape}")
         # scipy needs both kinds of indices to have one type, and changes them in place.
@@ -79,11 +83,21 @@ class LocalMaps:
     def padded(self, k: Optional[int] = None, dtype: Any = np.float32) -> PaddedMaps:
         """The k nearest entries of every source; None: as many as the longest has. For torch: `torch.from_numpy(p.log)`.
 
+        dtype : a floating type, of all but indices and mask.
+
         >>> import ahm
         >>> p = ahm.local_maps(ahm.shapes.plane(9, 9), radius=1.0).padded(4)
         >>> sorted(p.indices[0].tolist()), p.mask[0].tolist(), p.log.dtype
         ([0, 0, 1, 9], [True, True, True, False], dtype('float32'))
+
+        Raises ValueError (k < 1; a dtype that does not hold coordinates).
         """
+        try:
+            dtype = np.dtype(dtype)
+        except TypeError:
+            raise TypeError(f"dtype: {dtype!r:.60} is no type of numbers") from None
+        if dtype.kind != "f":
+            raise ValueError(f"dtype: {dtype} cannot hold coordinates; a floating type is needed")
         counts = np.diff(self.indptr)
         width = int(counts.max(initial=0)) if k is None else arguments.integer(k, "k", 1)
         place = np.arange(len(self.indices)) - np.repeat(self.indptr[:-1], counts)
@@ -144,8 +158,7 @@ def local_maps(surface: Any, radius: Optional[float] = None, k: Optional[int] = 
             raise ValueError("u_axis: goes with `sources`")
         at, rows = None, np.arange(len(on), dtype=np.int32)
     else:
-        empty = hasattr(sources, "__len__") and not isinstance(sources, (str, bytes)) and len(sources) == 0
-        at = places.of_rows(np.empty(0, np.int32), "sources") if empty else places.points(sources, "sources", on)
+        at = places.points(sources, "sources", on, empty=True)
         rows = np.where(at[2] == places.ROW, at[3], -1).astype(np.int32)
     with reporting(progress) as report:
         found = _core.local_maps(on._body, at, axis, options, report)

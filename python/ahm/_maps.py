@@ -27,7 +27,7 @@ class Status(enum.IntEnum):
 class MapSource(NamedTuple):
     """Where a map starts."""
 
-    position: Optional[np.ndarray]  #: (3,) in space, world units; None without positions
+    position: Optional[np.ndarray]  #: (3,) in space, world units; of a graph the origin of a frame, None without
     axes: Optional[np.ndarray]  #: (3, 3) u axis, v axis and normal in space; None without
     row: Optional[int]  #: None where the source is no row
 
@@ -60,9 +60,17 @@ class LogMap:
     ([3.0, 2.0], 13.0)
     """
 
-    def __init__(self, map_: _core.Map, on: Surface, recipe: tuple) -> None:
-        self._map, self._surface, self._recipe = map_, on, recipe
+    def __init__(self, made: Optional[_core.Map], recipe: Any, number: int = 0) -> None:
+        self._made, self._recipe, self._number = made, recipe, number
+        self._surface: Surface = recipe.surface
         self._inverse: Optional[InverseMap] = None
+
+    @property
+    def _map(self) -> _core.Map:
+        """Out of a pickle it is made when it is first asked for."""
+        if self._made is None:
+            self._made = self._recipe.make(self._number)
+        return self._made
 
     @property
     def surface(self) -> Surface:
@@ -141,8 +149,7 @@ class LogMap:
     @property
     def source(self) -> MapSource:
         """Where the map starts, and its axes."""
-        position, axes, row = self._map.source()
-        return MapSource(position if self._surface.points is not None else None, axes, row)
+        return MapSource(*self._map.source())
 
     @property
     def method(self) -> str:
@@ -161,15 +168,17 @@ class LogMap:
 
         Raises ValueError naming the point.
         """
-        return self._map.sample(places.points(points, "points", self._surface))[0]
+        return self._map.sample(places.points(points, "points", self._surface, empty=True))[0]
 
     def inverse(self, uv: Any) -> InversePoints:
-        """What lies at coordinates (k, 2), world units; see `InverseMap`, which has options.
+        """What lies at coordinates `uv` (k, 2), world units; see `InverseMap`, which has options.
 
         >>> import ahm
         >>> m = ahm.log_map(ahm.TriangleMesh(*ahm.shapes.plane(4, 3)), 0, u_axis=[1, 0, 0])
         >>> m.inverse([[1.25, 0.5], [-1, 0]]).position.round(9).tolist()
         [[1.25, 0.5, 0.0], [nan, nan, nan]]
+
+        Raises ValueError (shape; a map without frames; grids and graphs).
         """
         if self._inverse is None:
             self._inverse = InverseMap(self)
@@ -180,7 +189,13 @@ class LogMap:
         return len(self._surface)
 
     def __reduce__(self) -> tuple:
-        return _again, self._recipe
+        return _again, (self._recipe, self._number)
+
+    def __copy__(self) -> LogMap:
+        return self
+
+    def __deepcopy__(self, memo: Any) -> LogMap:
+        return self
 
     def __repr__(self) -> str:
         row = self._map.source()[2]
@@ -188,9 +203,10 @@ class LogMap:
         return f"<ahm.LogMap: {self.method}, {len(self)} rows, {int(self.ok.sum())} ok, from {start}>"
 
 
-def _again(solver: Any, name: str, args: tuple, options: Dict[str, Any]) -> LogMap:
-    """A map made again, for pickles."""
-    return getattr(solver, name)(*args, **options)
+def _again(recipe: Any, number: int) -> LogMap:
+    """A map out of a pickle."""
+    recipe.expect(number)
+    return LogMap(None, recipe, number)
 
 
 class InverseMap:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 from typing import Any, List, Optional, Sequence, Tuple
 
@@ -20,8 +21,10 @@ def read_mesh(filename: Any) -> Tuple[np.ndarray, np.ndarray]:
     ...     V, F = pp3d.read_mesh(file.name)
     >>> V.shape, F.shape
     ((12, 3), (12, 3))
+
+    Raises IoError (an OSError) naming the file; ValueError where it holds no such mesh.
     """
-    got = _core.read_file(os.fspath(filename))
+    got = _core.read_file(arguments.file_name(filename, "filename"))
     begin = got["face_begin"]
     if begin is None or not (np.diff(begin) == 3).all():
         raise ValueError(f"filename: {os.fspath(filename)} holds no triangle mesh")
@@ -36,8 +39,10 @@ def read_polygon_mesh(filename: Any) -> Tuple[np.ndarray, List[List[int]]]:
     ...     pp3d.write_mesh([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [[0, 1, 2, 3]], file.name)
     ...     pp3d.read_polygon_mesh(file.name)[1]
     [[0, 1, 2, 3]]
+
+    Raises IoError (an OSError) naming the file; ValueError where it holds no such mesh.
     """
-    got = _core.read_file(os.fspath(filename))
+    got = _core.read_file(arguments.file_name(filename, "filename"))
     begin, corners = got["face_begin"], got["face_vertices"]
     if begin is None:
         raise ValueError(f"filename: {os.fspath(filename)} holds no faces")
@@ -52,15 +57,27 @@ def read_point_cloud(filename: Any) -> np.ndarray:
     ...     pp3d.write_point_cloud([[0, 0, 0], [1, 2, 3]], file.name)
     ...     pp3d.read_point_cloud(file.name).tolist()
     [[0.0, 0.0, 0.0], [1.0, 2.0, 3.0]]
+
+    Raises IoError (an OSError) naming the file.
     """
-    return _core.read_file(os.fspath(filename))["points"]
+    return _core.read_file(arguments.file_name(filename, "filename"))["points"]
 
 
 def write_mesh(V: Any, F: Any, filename: Any, UV_coords: Any = None, UV_type: Optional[str] = None) -> None:
-    """Writes .obj, .off or .ply (text). UV_type: "per-vertex" (n, 2) or "per-corner" (corners, 2), .obj only."""
+    """Writes .obj, .off or .ply (text). UV_type: "per-vertex" (n, 2) or "per-corner" (corners, 2), .obj only.
+
+    >>> import ahm.potpourri3d as pp3d, tempfile
+    >>> with tempfile.NamedTemporaryFile(suffix=".obj") as file:
+    ...     pp3d.write_mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], file.name, [[0, 0], [1, 0], [0, 1]], "per-vertex")
+    ...     pp3d.read_mesh(file.name)[1].tolist()
+    [[0, 1, 2]]
+
+    Raises ValueError (a shape; a row out of range), NotImplementedError (another format), OSError; a file is written whole or
+    not at all.
+    """
     points = arguments.floats(V, "V", (None, 3))
     faces = [arguments.integers(f, f"F[{k}]", 1, 0, len(points) - 1).tolist() for k, f in enumerate(F)]
-    ending = os.path.splitext(os.fspath(filename))[1].lower()
+    ending = _ending(filename)
     if (UV_coords is None) != (UV_type is None):
         raise ValueError("UV_type: goes with UV_coords, and the other way round")
     if UV_type is not None and (UV_type not in ("per-vertex", "per-corner") or ending != ".obj"):
@@ -79,18 +96,39 @@ def write_mesh(V: Any, F: Any, filename: Any, UV_coords: Any = None, UV_type: Op
 
 
 def write_point_cloud(V: Any, filename: Any) -> None:
-    """Writes .ply (text), .obj or .xyz."""
+    """Writes .ply (text), .obj or .xyz.
+
+    >>> import ahm.potpourri3d as pp3d, tempfile
+    >>> with tempfile.NamedTemporaryFile(suffix=".xyz") as file:
+    ...     pp3d.write_point_cloud([[0, 0, 0], [1, 2, 3]], file.name)
+    ...     pp3d.read_point_cloud(file.name).shape
+    (2, 3)
+
+    Raises as `write_mesh`.
+    """
     rows = [" ".join(repr(float(x)) for x in p) for p in arguments.floats(V, "V", (None, 3))]
-    ending = os.path.splitext(os.fspath(filename))[1].lower()
+    ending = _ending(filename)
     if ending not in (".ply", ".obj", ".xyz"):
         raise NotImplementedError(f"filename: {ending or 'no ending'} cannot be written; .ply, .obj and .xyz can")
     head = ["ply", "format ascii 1.0", *_ply_points(len(rows)), "end_header"] if ending == ".ply" else []
     _write(filename, head + [("v " if ending == ".obj" else "") + row for row in rows])
 
 
+def _ending(filename: Any) -> str:
+    return os.path.splitext(os.fsdecode(arguments.file_name(filename, "filename")))[1].lower()
+
+
 def _write(filename: Any, lines: Sequence[str]) -> None:
-    with open(filename, "w", encoding="ascii") as file:
-        file.write("\n".join(lines) + "\n")
+    name = os.path.realpath(os.fsdecode(arguments.file_name(filename, "filename")))
+    part = f"{name}.{os.getpid()}.part"  # renamed when it is whole
+    try:
+        with open(part, "x", encoding="ascii") as file:
+            file.write("\n".join(lines) + "\n")
+        os.replace(part, name)
+    except BaseException:
+        with contextlib.suppress(FileNotFoundError):
+            os.remove(part)
+        raise
 
 
 def _counted(face: Sequence[int]) -> str:

@@ -129,6 +129,14 @@ class Compressed(NamedTuple):
     corners: np.ndarray
 
 
+def as_faces(begin: np.ndarray, corners: np.ndarray) -> Any:
+    """(m, c) where all faces have as many corners, else a list; views."""
+    counts = np.diff(begin)
+    if len(counts) and (counts == counts[0]).all():
+        return corners.reshape(-1, counts[0])
+    return [corners[b:e] for b, e in zip(begin[:-1], begin[1:])]
+
+
 def polygons(faces: Any) -> Compressed:
     if isinstance(faces, Compressed):
         return faces

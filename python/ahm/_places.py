@@ -34,7 +34,8 @@ class Places:
             self._add(IN_FACE, *self._in_face(*value))
         elif _is_edge_point(value, self.surface):
             self._add(ON_EDGE, *self._on_edge(*value))
-        elif isinstance(value, (str, bytes)) or not hasattr(value, "__len__") or getattr(value, "ndim", 1) == 0:
+        elif (isinstance(value, (str, bytes, dict, set)) or not hasattr(value, "__len__") or getattr(value, "ndim", 1) == 0
+              or (isinstance(value, tuple) and any(hasattr(part, "__len__") for part in value))):
             raise TypeError(f"{self.here()}: a row, a position, (face, barycentric) or ((row, row), t) is needed, "
                             f"not {arguments.describe(value)}")
         else:
@@ -62,9 +63,8 @@ class Places:
         return row
 
     def _in_face(self, face: Any, barycentric: Any) -> Tuple[int, np.ndarray]:
-        face = arguments.integer(face, self.here() + ", face")
-        count = self.surface._face_count
-        if face >= count:
+        face, count = operator.index(face), self.surface._face_count
+        if not 0 <= face < count:
             raise ValueError(f"{self.here()}: face {face} is out of range; there are {count} faces, counted from 0")
         given = arguments.array(barycentric, self.here() + ", barycentric coordinates")
         corners = self.surface._corner_count(face)
@@ -91,16 +91,18 @@ def point(value: Any, name: str, surface: Any) -> tuple:
     return result.packed()
 
 
-def points(value: Any, name: str, surface: Any) -> tuple:
+def points(value: Any, name: str, surface: Any, empty: bool = False) -> tuple:
     """Points: one; or rows (k,), positions (k, 3), `(faces, barycentric)`, `(edges, t)`, or a list of any.
 
-    Three whole numbers are rows, three others a position.
+    Three whole numbers are rows, three others a position. empty : there may be none.
     """
     if is_row(value) or _is_face_point(value) or _is_edge_point(value, surface):
         return point(value, name, surface)
     if isinstance(value, (str, bytes)) or not hasattr(value, "__len__"):
         raise TypeError(f"{name}: rows, positions, (face, barycentric) or ((row, row), t) are needed, "
                         f"not {arguments.describe(value)}")
+    if len(value) == 0 and empty:
+        return of_rows(np.empty(0, np.int32), name)
     if len(value) == 0:
         raise ValueError(f"{name}: is empty; at least one point is needed")
     result = Places(name, False, surface)

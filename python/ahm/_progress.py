@@ -16,6 +16,8 @@ class _Line:
         self.width = 0
 
     def __call__(self, stage: str, fraction: float) -> None:
+        if sys.stderr is None:  # of programs without a console
+            return
         text = f"\r{stage}: {100 * fraction:3.0f} %"
         sys.stderr.write(text.ljust(self.width))
         sys.stderr.flush()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import copy
+import threading
 from typing import Any, Dict, List, Optional, Union
 
 import numpy as np
@@ -17,7 +17,61 @@ from ._progress import Progress, reporting
 from ._surfaces import Surface
 
 
-class LogMapSolver:
+class _Maker:
+    """What solvers and exact geodesics share: maps from packed sources, which pickles make again."""
+
+    surface: Surface
+
+    def _found(self, at: tuple, axis: Any, options: Dict[str, Any], report: Any) -> list:
+        raise NotImplementedError
+
+    def _solve(self, at: tuple, u_axis: Any, progress: Progress, **options: Any) -> List[LogMap]:
+        axis = arguments.vector(u_axis, "u_axis")
+        recipe = _Recipe(self, tuple(np.array(x) if isinstance(x, np.ndarray) else x for x in at),
+                         None if axis is None else np.array(axis), checked(**options))
+        with reporting(progress) as report:
+            return [LogMap(made, recipe, k) for k, made in enumerate(recipe.found(at, report))]
+
+    def __copy__(self) -> Any:
+        return self
+
+    def __deepcopy__(self, memo: Any) -> Any:
+        return self
+
+
+class _Recipe:
+    """How the maps of one call are made: what goes into their pickles. Those that came out of one pickle are made together
+    when the first of them is asked for, and by threads once."""
+
+    def __init__(self, maker: _Maker, at: tuple, axis: Any, options: Dict[str, Any]) -> None:
+        self.maker, self.at, self.axis, self.options = maker, at, axis, options
+        self.expected: List[int] = []
+        self.made: Dict[int, _core.Map] = {}
+        self.lock = threading.Lock()
+
+    @property
+    def surface(self) -> Surface:
+        return self.maker.surface
+
+    def found(self, at: tuple, report: Any = None) -> list:
+        return self.maker._found(at, self.axis, self.options, report)
+
+    def expect(self, number: int) -> None:
+        self.expected.append(number)
+
+    def make(self, number: int) -> _core.Map:
+        with self.lock:
+            if number not in self.made:
+                numbers = sorted({number, *self.expected})
+                self.made.update(zip(numbers, self.found((*self.at[:2], *(x[numbers] for x in self.at[2:])))))
+                self.expected.clear()
+            return self.made.pop(number)
+
+    def __reduce__(self) -> tuple:
+        return _Recipe, (self.maker, self.at, self.axis, self.options)
+
+
+class LogMapSolver(_Maker):
     """Solves for log maps on one surface: factors once, then serves any number of sources. Immutable, shared by threads.
 
     surface : a `Surface`, or what `ahm.surface` takes.
@@ -29,6 +83,7 @@ class LogMapSolver:
     memory : for "automatic": bytes that factors may take; 0: half of the machine's memory.
     accuracy : of marches, against a global solve, relative.
     ordering : "amd", or "nested_dissection": for many maps.
+    supernodal : factor in dense blocks, which is faster; False: never call SuiteSparse's module under the GPL.
     threads : 0: one per core. No result depends on it.
     progress : None, True (a bar), or a callable (stage, fraction).
 
@@ -74,32 +129,26 @@ class LogMapSolver:
         Raises ValueError naming argument, index and value; NotPositiveDefinite, ResourceExhausted.
         """
         at = places.point(source, "source", self.surface)
-        options = dict(u_axis=u_axis, radius=radius, frames=frames, variant=variant, threads=threads)
-        return self._solve(at, "log_map", source, options, progress)[0]
+        return self._solve(at, u_axis, progress, radius=radius, frames=frames, variant=variant, threads=threads)[0]
 
     def log_maps(self, sources: Any, *, u_axis: Any = None, radius: Optional[float] = None, frames: bool = False,
                  spread: bool = True, variant: Optional[str] = None, threads: Optional[int] = None, progress: Progress = None) -> List[LogMap]:
         """One map for each source, in blocks, which is faster than one by one, and the same numbers.
 
         sources : (k,) rows, (k, 3) positions, `(faces, barycentric)`, `(edges, t)`, or a list of any.
-        spread : keep `LogMap.spread`, which `quality` needs and which is a fifth of the work. Otherwise as `log_map`.
+        spread : keep `LogMap.spread`, which `quality` needs and which is a fifth of the work.
+
+        Other arguments and errors as of `log_map`; frames are left out unless asked for.
 
         >>> import ahm
         >>> [m.source.row for m in ahm.LogMapSolver(ahm.shapes.plane(4, 3)).log_maps([0, 7, 11])]
         [0, 7, 11]
         """
         at = places.points(sources, "sources", self.surface)
-        options = dict(u_axis=u_axis, radius=radius, frames=frames, spread=spread, variant=variant, threads=threads)
-        return self._solve(at, "log_maps", sources, options, progress)
+        return self._solve(at, u_axis, progress, radius=radius, frames=frames, spread=spread, variant=variant, threads=threads)
 
-    def _solve(self, at: tuple, name: str, given: Any, options: Dict[str, Any], progress: Progress) -> List[LogMap]:
-        axis = arguments.vector(options["u_axis"], "u_axis")
-        core = checked(**{key: value for key, value in options.items() if key != "u_axis"})
-        with reporting(progress) as report:
-            return _maps(self, self._core.maps(at, axis, core, report), name, given, options)
-
-    def _one_of(self, sources: Any, k: int, **options: Any) -> LogMap:
-        return self.log_maps(sources, **options)[k]
+    def _found(self, at: tuple, axis: Any, options: Dict[str, Any], report: Any) -> list:
+        return self._core.maps(at, axis, options, report)
 
     def __reduce__(self) -> tuple:
         return _solver_again, (self.surface, self.options)
@@ -112,12 +161,13 @@ def _solver_again(on: Surface, options: Dict[str, Any]) -> LogMapSolver:
     return LogMapSolver(on, **options)
 
 
-class ExactGeodesics:
+class ExactGeodesics(_Maker):
     """Log maps by straight lines over the flat triangles of a mesh, exact up to rounding; laid out once for many maps.
 
     Stands wherever a `LogMapSolver` does: `stroke`, `cells`, `karcher_mean`, `geometric_median`, `atlas`. Shared by threads.
 
     surface : a mesh whose faces are flat, or what `ahm.surface` takes.
+    progress : None, True (a bar), or a callable (stage, fraction).
 
     Raises ValueError where the surface has no flat faces (clouds, grids, twisted polygons) or a face has no area.
 
@@ -135,9 +185,13 @@ class ExactGeodesics:
         with reporting(progress) as report:
             self._core.lay_out(report)
 
-    def log_map(self, source: Any, *, u_axis: Any = None, radius: Optional[float] = None, frames: bool = True,
-                progress: Progress = None) -> LogMap:
-        """The exact log map of one source. Arguments as of `LogMapSolver.log_map`; within a radius it is as much cheaper.
+    def log_map(self, source: Any, *, u_axis: Any = None, radius: Optional[float] = None, tolerance: float = 0.0,
+                frames: bool = True, progress: Progress = None) -> LogMap:
+        """The exact log map of one source. Arguments and errors as of `LogMapSolver.log_map`; within a radius it is as much
+        cheaper.
+
+        tolerance : how far distances may be off, relative, at most 0.1. 0: exact; above, nearly linear in the number of rows,
+            and directions may be off by about sqrt(2 tolerance), or be those of another way as long within it.
 
         >>> import ahm
         >>> m = ahm.ExactGeodesics(ahm.shapes.plane(4, 3)).log_map(((0, 1), 0.5), u_axis=[1, 0, 0])
@@ -145,28 +199,22 @@ class ExactGeodesics:
         [[-0.5, 0.0], [2.5, 2.0]]
         """
         at = places.point(source, "source", self.surface)
-        return self._solve(at, "log_map", source, dict(u_axis=u_axis, radius=radius, frames=frames), progress)[0]
+        return self._solve(at, u_axis, progress, radius=radius, tolerance=tolerance, frames=frames)[0]
 
-    def log_maps(self, sources: Any, *, u_axis: Any = None, radius: Optional[float] = None, frames: bool = False,
-                 threads: int = 0, progress: Progress = None) -> List[LogMap]:
-        """One map for each source, several at a time, and the same numbers. Arguments as of `LogMapSolver.log_maps`.
+    def log_maps(self, sources: Any, *, u_axis: Any = None, radius: Optional[float] = None, tolerance: float = 0.0,
+                 frames: bool = False, threads: int = 0, progress: Progress = None) -> List[LogMap]:
+        """One map for each source, several at a time, and the same numbers. Arguments and errors as of `log_map` and
+        `LogMapSolver.log_maps`.
 
         >>> import ahm
         >>> [m.method for m in ahm.ExactGeodesics(ahm.shapes.plane(4, 3)).log_maps([0, 7])]
         ['exact', 'exact']
         """
         at = places.points(sources, "sources", self.surface)
-        options = dict(u_axis=u_axis, radius=radius, frames=frames, threads=threads)
-        return self._solve(at, "log_maps", sources, options, progress)
+        return self._solve(at, u_axis, progress, radius=radius, tolerance=tolerance, frames=frames, threads=threads)
 
-    def _solve(self, at: tuple, name: str, given: Any, options: Dict[str, Any], progress: Progress) -> List[LogMap]:
-        axis = arguments.vector(options["u_axis"], "u_axis")
-        core = checked(**{key: value for key, value in options.items() if key != "u_axis"})
-        with reporting(progress) as report:
-            return _maps(self, _core.exact_maps(self._core, at, axis, core, report), name, given, options)
-
-    def _one_of(self, sources: Any, k: int, **options: Any) -> LogMap:
-        return self.log_maps(sources, **options)[k]
+    def _found(self, at: tuple, axis: Any, options: Dict[str, Any], report: Any) -> list:
+        return _core.exact_maps(self._core, at, axis, options, report)
 
     def __reduce__(self) -> tuple:
         return ExactGeodesics, (self.surface,)
@@ -178,21 +226,14 @@ class ExactGeodesics:
 Maker = Union[LogMapSolver, ExactGeodesics]
 
 
-def _maps(maker: Maker, found: list, name: str, given: Any, options: Dict[str, Any]) -> List[LogMap]:
-    """With what makes them again from a pickle, whatever becomes of the caller's arrays."""
-    given, options = copy.deepcopy((given, options))
-    if name == "log_map":
-        return [LogMap(found[0], maker.surface, (maker, "log_map", (given,), options))]
-    return [LogMap(m, maker.surface, (maker, "_one_of", (given, k), options)) for k, m in enumerate(found)]
-
-
 def log_map(surface: Any, source: Any, *, method: Optional[str] = None, u_axis: Any = None, radius: Optional[float] = None,
-            frames: bool = True, progress: Progress = None, **options: Any) -> LogMap:
+            tolerance: float = 0.0, frames: bool = True, progress: Progress = None, **options: Any) -> LogMap:
     """The log map of one source. For many sources on one surface make a `LogMapSolver` or `ExactGeodesics`.
 
     surface : a `Surface`, or what `ahm.surface` takes.
     source : a row, a position, `(face, barycentric)`, or `((row, row), t)` on an edge.
     method : "heat" (default): by diffusion, on any surface; "exact": by straight lines over the flat triangles of a mesh.
+    tolerance : of exact distances, as of `ExactGeodesics.log_map`.
     u_axis, radius, frames, progress : as of `LogMapSolver.log_map`.
     options : of `LogMapSolver`, for method "heat": order, t_coef, variant, threads, ...
 
@@ -204,6 +245,10 @@ def log_map(surface: Any, source: Any, *, method: Optional[str] = None, u_axis: 
     Raises ValueError naming argument, index and value; NotPositiveDefinite, ResourceExhausted.
     """
     maker = as_maker(surface, method, dict(expected_maps=1, progress=progress, **options))
+    if isinstance(maker, ExactGeodesics):
+        return maker.log_map(source, u_axis=u_axis, radius=radius, tolerance=tolerance, frames=frames, progress=progress)
+    if tolerance:
+        raise TypeError("tolerance: goes with method 'exact'")
     return maker.log_map(source, u_axis=u_axis, radius=radius, frames=frames, progress=progress)
 
 

@@ -103,6 +103,8 @@ class Surface:
     def closest_points(self, positions: Any) -> ClosestPoints:
         """The nearest points of the faces; of a cloud, of the tangent plane of the nearest row.
 
+        positions : (k, 3), world units.
+
         >>> import ahm
         >>> mesh = ahm.TriangleMesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
         >>> near = mesh.closest_points([[0.25, 0.25, 2.0]])
@@ -129,6 +131,12 @@ class Surface:
 
     def __reduce__(self) -> tuple:
         return rebuild, (type(self), self._state(), self._options)
+
+    def __copy__(self) -> Surface:
+        return self
+
+    def __deepcopy__(self, memo: Any) -> Surface:
+        return self
 
     def __repr__(self) -> str:
         return f"<ahm.{type(self).__name__}: {self._describe()}>"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Dict, List, NamedTuple, Optional, Union
+from typing import Any, Dict, NamedTuple, Optional, Union
 
 import numpy as np
 
@@ -10,6 +10,7 @@ from . import _arguments as arguments
 from . import _core
 from . import _places as places
 from ._maps import InverseMap, LogMap
+from ._meshes import as_faces
 from ._options import checked
 from ._progress import Progress, reporting
 from ._solvers import as_maker
@@ -24,7 +25,8 @@ class Decal(NamedTuple):
 
     points: np.ndarray  #: (p, 3) world units
     normals: np.ndarray  #: (p, 3)
-    faces: List[np.ndarray]  #: corners, counter-clockwise: triangles of the surface, cut along the borders of the image
+    faces: Any  #: list of corners, counter-clockwise: triangles of the surface, cut along the borders of the image; (m, 3)
+    #: where none is cut
     uv: np.ndarray  #: (p, 2) in [0, 1]: (0, 0) the lower left corner of the image
     hidden: int  #: triangles left out, since another sheet of the map lies over the same place
 
@@ -47,17 +49,22 @@ def decal(map: Union[LogMap, InverseMap], width: float, height: float, *, angle:
     """
     options = checked(width=width, height=height, angle=angle, mirrored=mirrored, radius=radius, lift=lift)
     points, normals, begin, corners, uv, hidden = _inverse(map)._core.decal(options)
-    return Decal(points, normals, [corners[b:e] for b, e in zip(begin[:-1], begin[1:])], uv, hidden)
+    return Decal(points, normals, as_faces(begin, corners), uv, hidden)
 
 
 def decal_coordinates(map: Union[LogMap, InverseMap], width: float, height: float, *, angle: float = 0.0,
                       mirrored: bool = False, radius: Optional[float] = None) -> np.ndarray:
-    """Where every row lies in the image, (n, 2) in [0, 1]; NaN where it does not: to paint clouds. Arguments as of `decal`.
+    """Where every row lies in the image, (n, 2) in [0, 1]; NaN where it does not: to paint clouds.
+
+    Arguments and errors as of `decal`.
+
 
     >>> import ahm
     >>> m = ahm.log_map(ahm.shapes.plane(9, 9), 40, u_axis=[1, 0, 0])
     >>> ahm.decal_coordinates(m, 4.0, 2.0)[41].round(6).tolist()
     [0.75, 0.5]
+
+    Raises ValueError naming the argument.
     """
     options = checked(width=width, height=height, angle=angle, mirrored=mirrored, radius=radius)
     return _inverse(map)._core.image_coordinates(options)
@@ -102,12 +109,13 @@ class Atlas(NamedTuple):
     """The surface cut into charts, each flattened by its own log map, and packed into one square texture."""
 
     points: np.ndarray  #: (p, 3): the rows of a mesh, or the vertices of a cloud's graph
-    faces: List[np.ndarray]  #: places in `points` of the corners, all oriented alike where that is possible
+    faces: Any  #: (m, c) places in `points` of the corners, a list where faces differ; all oriented alike where that is possible
     chart: np.ndarray  #: (faces,) int32; -1: no chart
     chart_uv: np.ndarray  #: (corners, 2) world units, in the frame of the chart's source; NaN without a chart
     uv: np.ndarray  #: (corners, 2) in [0, 1] of the texture, (0, 0) the lower left corner; NaN without a chart
     sources: np.ndarray  #: (charts,) int32 row of every chart's source; -1: a vertex that the input does not have
-    distortion: Dict[str, float]  #: of D = max(1 / sigma1, sigma2): mean, median, percentile_95, largest; flipped, flipped_area
+    distortion: Dict[str, float]  #: of D = max(1 / sigma1, sigma2): mean, median, percentile_95, largest; shares collapsed_area
+    #: (D > 1e6, not in the mean), flipped, flipped_area
 
 
 def atlas(solver: Any, sources: Any = None, *, charts: int = 20, max_distortion: Optional[float] = None,
@@ -115,10 +123,12 @@ def atlas(solver: Any, sources: Any = None, *, charts: int = 20, max_distortion:
     """A texture atlas: geodesic cells around sources, each flattened by the log map from its source.
 
     solver : a `LogMapSolver` or `ExactGeodesics`, or a mesh or cloud.
-    sources : rows; of any other point the nearest one; None: `charts` points spread evenly.
+    sources : k points; charts start at rows, so that of any other point the nearest row counts; None: `charts` rows spread
+        evenly.
     method : of a surface: "heat" (default), or "exact" over the flat triangles of a mesh: cells and charts.
     max_distortion : > 1: adds sources until the charts are as good as that; None: keeps to the sources.
     size, margin : texels of a side of the square, and free around each chart.
+    progress : as of `LogMapSolver`.
 
     >>> import ahm
     >>> a = ahm.atlas(ahm.shapes.torus(24, 12), charts=6)
@@ -133,4 +143,4 @@ def atlas(solver: Any, sources: Any = None, *, charts: int = 20, max_distortion:
     options["margin"] = arguments.integer(margin, "margin")
     with reporting(progress) as report:
         points, begin, corners, *rest = _core.atlas(made._core, at, arguments.integer(charts, "charts", 1), options, report)
-    return Atlas(points, [corners[b:e] for b, e in zip(begin[:-1], begin[1:])], *rest)
+    return Atlas(points, as_faces(begin, corners), *rest)

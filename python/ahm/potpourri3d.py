@@ -44,6 +44,8 @@ def face_areas(V: Any, F: Any) -> np.ndarray:
     >>> import ahm, ahm.potpourri3d as pp3d
     >>> pp3d.face_areas(*ahm.shapes.plane(2, 2)).tolist()
     [0.5, 0.5]
+
+    Raises ValueError (a shape; a row out of range).
     """
     points, faces = _mesh(V, F)
     a, b, c = (points[faces[:, k]] for k in range(3))
@@ -56,6 +58,8 @@ def vertex_areas(V: Any, F: Any) -> np.ndarray:
     >>> import ahm, ahm.potpourri3d as pp3d
     >>> round(float(pp3d.vertex_areas(*ahm.shapes.plane(4, 3)).sum()), 9)
     6.0
+
+    Raises ValueError (a shape; a row out of range).
     """
     points, faces = _mesh(V, F)
     return np.bincount(faces.ravel(), np.repeat(face_areas(points, faces) / 3, 3), len(points))
@@ -68,6 +72,8 @@ def cotan_laplacian(V: Any, F: Any, denom_eps: float = 0.0) -> Any:
     >>> V, F = ahm.shapes.plane(4, 3)
     >>> bool(abs((pp3d.cotan_laplacian(V, F) @ V)[5]).max() < 1e-12)           # linear functions are harmonic inside
     True
+
+    Raises ValueError (a shape; a row out of range); ImportError without scipy.
     """
     from scipy.sparse import coo_matrix, diags
 
@@ -91,29 +97,49 @@ def edges(V: Any, F: Any) -> np.ndarray:
     >>> import ahm, ahm.potpourri3d as pp3d
     >>> pp3d.edges(*ahm.shapes.plane(2, 2)).tolist()
     [[0, 1], [0, 2], [0, 3], [1, 3], [2, 3]]
+
+    Raises ValueError (a shape; a row out of range).
     """
     faces = _mesh(V, F)[1]
     return np.unique(np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1), axis=0)
 
 
-class _Heat:
+class _On:
+    surface: Surface
+
+    def _row(self, value: Any, name: str) -> int:
+        return arguments.row(value, name, len(self.surface))
+
+    def _rows(self, values: Any, name: str) -> np.ndarray:
+        return arguments.rows(values, name, len(self.surface))
+
+    def __repr__(self) -> str:
+        return f"<{__name__}.{type(self).__name__}: on {self.surface!r}>"
+
+
+class _Heat(_On):
     """What all solvers by heat offer."""
+
+    _one, _many = "v_ind", "v_inds"  # as the parameters are called
 
     def __init__(self, surface: Surface, t_coef: float) -> None:
         self.surface = surface
         self.solver = LogMapSolver(surface, t_coef=t_coef)
 
     def _distance(self, sources: Any) -> np.ndarray:
-        field: DistanceField = distance_and_gradient(self.solver, arguments.rows(sources, "v_inds", len(self.surface)))
+        field: DistanceField = distance_and_gradient(self.solver, self._rows(sources, self._many))
         return field.distance
+
+    def _distance_from_one(self, source: Any) -> np.ndarray:
+        return self._distance([self._row(source, self._one)])
 
     def compute_distances(self, v_inds: Any) -> np.ndarray:
         """(k, n) distances from each of k vertices alone."""
-        return np.array([self._distance([v]) for v in arguments.rows(v_inds, "v_inds", len(self.surface))])
+        return np.array([self._distance([v]) for v in self._rows(v_inds, self._many)])
 
     def extend_scalar(self, v_inds: Any, values: Any) -> np.ndarray:
         """(n,) each vertex takes the value of the nearest one of v_inds, blended at ties."""
-        return extend(self.solver, arguments.rows(v_inds, "v_inds", len(self.surface)), values)
+        return extend(self.solver, self._rows(v_inds, self._many), values)
 
     def get_tangent_frames(self) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Three (n, 3) arrays: the tangent axes x and y, and the normals."""
@@ -123,22 +149,22 @@ class _Heat:
 
     def transport_tangent_vector(self, v_ind: int, vector: Any) -> np.ndarray:
         """(n, 2) the vector at v_ind carried to every vertex, in the frames of `get_tangent_frames`."""
-        return self.transport_tangent_vectors([v_ind], [vector])
+        return self.transport_tangent_vectors([self._row(v_ind, self._one)], [vector])
 
     def transport_tangent_vectors(self, v_inds: Any, vectors: Any) -> np.ndarray:
         """(n, 2) the same, of several vectors: the nearest one counts, blended at ties."""
         given = arguments.floats(vectors, "vectors", (None, 2), finite=True)
-        return transport(self.solver, arguments.rows(v_inds, "v_inds", len(self.surface)), given)
+        return transport(self.solver, self._rows(v_inds, self._many), given)
 
     def compute_log_map(self, v_ind: int, strategy: str = "AffineLocal") -> np.ndarray:
         """(n, 2) in the frame of v_ind. strategy: "AffineLocal" or "AffineAdaptive"."""
-        return self.compute_log_maps([v_ind], strategy)[0]
+        return self.compute_log_maps([self._row(v_ind, self._one)], strategy)[0]
 
     def compute_log_maps(self, v_inds: Any, strategy: str = "AffineLocal") -> List[np.ndarray]:
         """One map for each source, in blocks."""
         if strategy not in _STRATEGIES:
             raise NotImplementedError(f"strategy: {strategy!r} is not there; 'AffineLocal' and 'AffineAdaptive' are")
-        rows = arguments.rows(v_inds, "v_inds", len(self.surface))
+        rows = self._rows(v_inds, self._many)
         return [m.uv for m in self.solver.log_maps(rows, variant=_STRATEGIES[strategy])]
 
     def compute_signed_distance(self, *given: Any, **options: Any) -> np.ndarray:
@@ -152,6 +178,8 @@ class MeshHeatMethodDistanceSolver(_Heat):
     >>> solver = pp3d.MeshHeatMethodDistanceSolver(*ahm.shapes.plane(4, 3))
     >>> solver.compute_distance(0)[:4].round(9).tolist()
     [0.0, 1.0, 2.0, 3.0]
+
+    Raises ValueError (a mesh as of `ahm.TriangleMesh`; a row out of range, by its parameter's name; t_coef).
     """
 
     def __init__(self, V: Any, F: Any, t_coef: float = 1.0, use_robust: bool = True) -> None:
@@ -159,7 +187,7 @@ class MeshHeatMethodDistanceSolver(_Heat):
 
     def compute_distance(self, v_ind: int) -> np.ndarray:
         """(n,) from a vertex."""
-        return self._distance([v_ind])
+        return self._distance_from_one(v_ind)
 
     def compute_distance_multisource(self, v_inds: Any) -> np.ndarray:
         """(n,) from the nearest of several vertices."""
@@ -172,6 +200,8 @@ def compute_distance(V: Any, F: Any, v_ind: int) -> np.ndarray:
     >>> import ahm, ahm.potpourri3d as pp3d
     >>> pp3d.compute_distance(*ahm.shapes.plane(4, 3), 0)[:4].round(9).tolist()
     [0.0, 1.0, 2.0, 3.0]
+
+    Raises as `MeshHeatMethodDistanceSolver`.
     """
     return MeshHeatMethodDistanceSolver(V, F).compute_distance(v_ind)
 
@@ -182,6 +212,8 @@ def compute_distance_multisource(V: Any, F: Any, v_inds: Any) -> np.ndarray:
     >>> import ahm, ahm.potpourri3d as pp3d
     >>> len(pp3d.compute_distance_multisource(*ahm.shapes.plane(4, 3), [0, 3]))
     12
+
+    Raises as `MeshHeatMethodDistanceSolver`.
     """
     return MeshHeatMethodDistanceSolver(V, F).compute_distance_multisource(v_inds)
 
@@ -195,6 +227,9 @@ class MeshVectorHeatSolver(_Heat):
     >>> uv = solver.compute_log_map(0)
     >>> (uv[11, 0] * x[0] + uv[11, 1] * y[0]).round(9).tolist()          # in space: from row 0 to row 11
     [3.0, 2.0, 0.0]
+
+    Raises ValueError (a mesh as of `ahm.TriangleMesh`; a row out of range, by its parameter's name; t_coef),
+    NotImplementedError (another strategy than those of `compute_log_map`).
     """
 
     def __init__(self, V: Any, F: Any, t_coef: float = 1.0, use_intrinsic_delaunay: bool = True, *,
@@ -220,6 +255,8 @@ class PolygonMeshHeatSolver(_Heat):
     >>> quads = [[i + 4 * j, i + 1 + 4 * j, i + 5 + 4 * j, i + 4 + 4 * j] for j in range(2) for i in range(3)]
     >>> pp3d.PolygonMeshHeatSolver(V, quads).compute_distance([0])[:4].round(9).tolist()
     [0.0, 1.0, 2.0, 3.0]
+
+    Raises ValueError (a mesh as of `ahm.PolygonMesh`; a row out of range), NotImplementedError (`compute_signed_distance`).
     """
 
     def __init__(self, V: Any, F: Any, t_coef: float = 1.0) -> None:
@@ -237,14 +274,18 @@ class PointCloudHeatSolver(_Heat):
     >>> solver = pp3d.PointCloudHeatSolver(ahm.shapes.plane(9, 9)[0])
     >>> solver.compute_distance(0)[:4].round(9).tolist()
     [0.0, 1.0, 2.0, 3.0]
+
+    Raises ValueError (a cloud as of `ahm.PointCloud`; a row out of range), NotImplementedError (`compute_signed_distance`).
     """
+
+    _one, _many = "p_ind", "p_inds"
 
     def __init__(self, P: Any, t_coef: float = 1.0) -> None:
         super().__init__(PointCloud(P), t_coef)
 
     def compute_distance(self, p_ind: int) -> np.ndarray:
         """(n,) from a point."""
-        return self._distance([p_ind])
+        return self._distance_from_one(p_ind)
 
     def compute_distance_multisource(self, p_inds: Any) -> np.ndarray:
         """(n,) from the nearest of several points."""
@@ -269,13 +310,15 @@ class PointCloudHeatSolver(_Heat):
         return super().compute_log_map(p_ind, strategy)
 
 
-class EdgeFlipGeodesicSolver:
+class EdgeFlipGeodesicSolver(_On):
     """Paths on a triangle mesh: between two vertices the shortest of all; through several, locally shortest.
 
     >>> import ahm, ahm.potpourri3d as pp3d
     >>> paths = pp3d.EdgeFlipGeodesicSolver(*ahm.shapes.plane(4, 3))
     >>> paths.find_geodesic_path(0, 11)[[0, -1]].tolist()
     [[0.0, 0.0, 0.0], [3.0, 2.0, 0.0]]
+
+    Raises ValueError (a row out of range; no way between the vertices), NotImplementedError (limits on iterations).
     """
 
     def __init__(self, V: Any, F: Any, t_coef: float = 1.0) -> None:
@@ -284,11 +327,12 @@ class EdgeFlipGeodesicSolver:
     def find_geodesic_path(self, v_start: int, v_end: int, max_iterations: Optional[int] = None,
                            max_relative_length_decrease: Optional[float] = None) -> np.ndarray:
         """(k, 3) points of the shortest path. Raises ValueError where there is none."""
-        return self._path(geodesic_path, [v_start, v_end], max_iterations, max_relative_length_decrease)
+        ends = [self._row(v_start, "v_start"), self._row(v_end, "v_end")]
+        return self._path(geodesic_path, ends, max_iterations, max_relative_length_decrease)
 
     def find_geodesic_paths(self, v_starts: Any, v_ends: Any) -> List[np.ndarray]:
         """One shortest path from each vertex to the one beside it, as of `find_geodesic_path`."""
-        starts, ends = (arguments.rows(v, name, len(self.surface)) for v, name in ((v_starts, "v_starts"), (v_ends, "v_ends")))
+        starts, ends = self._rows(v_starts, "v_starts"), self._rows(v_ends, "v_ends")
         found = geodesic_paths(self.surface, starts, ends, pairwise=True)
         return [self._points(path, [a, b]) for path, a, b in zip(found, starts, ends)]
 
@@ -306,13 +350,13 @@ class EdgeFlipGeodesicSolver:
     def _path(self, find: Any, vertices: Any, *limits: Any) -> np.ndarray:
         if any(limit is not None for limit in limits):
             raise NotImplementedError("max_iterations, max_relative_length_decrease: paths are not found by iterations")
-        rows = arguments.rows(vertices, "v_list", len(self.surface))
+        rows = self._rows(vertices, "v_list")
         return self._points(find(self.surface, rows), rows)
 
     @staticmethod
     def _points(path: Any, rows: Any) -> np.ndarray:
         if path is None:
-            raise ValueError(f"v_list: no path leads through the vertices {[int(r) for r in rows]}")
+            raise ValueError(f"no path leads through the vertices {[int(r) for r in rows]}")
         return path.points
 
 
@@ -320,13 +364,16 @@ def _pulled_taut(surface: Surface, rows: np.ndarray) -> Any:
     return geodesic_path(surface, rows, taut=True)
 
 
-class GeodesicTracer:
+class GeodesicTracer(_On):
     """Straightest geodesics on a triangle mesh (`ahm.trace`), as long as `direction_xyz` is.
 
     >>> import ahm, ahm.potpourri3d as pp3d
     >>> tracer = pp3d.GeodesicTracer(*ahm.shapes.plane(4, 3))
     >>> tracer.trace_geodesic_from_vertex(0, [1.5, 1.0, 0.0])[-1].round(9).tolist()
     [1.5, 1.0, 0.0]
+
+    Raises ValueError (a row or face out of range; barycentric coordinates; a direction of length 0), NotImplementedError (a limit
+    on iterations).
     """
 
     def __init__(self, V: Any, F: Any, t_coef: float = 1.0) -> None:
@@ -334,16 +381,17 @@ class GeodesicTracer:
 
     def trace_geodesic_from_vertex(self, start_vert: int, direction_xyz: Any, max_iterations: Optional[int] = None) -> np.ndarray:
         """(k, 3) points; it ends at the boundary."""
-        return self._trace(arguments.integer(start_vert, "start_vert"), direction_xyz, max_iterations)
+        return self._trace(self._row(start_vert, "start_vert"), direction_xyz, max_iterations)
 
     def trace_geodesic_from_face(self, start_face: int, bary_coords: Any, direction_xyz: Any,
                                  max_iterations: Optional[int] = None) -> np.ndarray:
         """(k, 3) points; it ends at the boundary."""
-        return self._trace((arguments.integer(start_face, "start_face"), bary_coords), direction_xyz, max_iterations)
+        face = arguments.integer(start_face, "start_face", 0, self.surface._face_count - 1)
+        return self._trace((face, bary_coords), direction_xyz, max_iterations)
 
     def trace_geodesics_from_vertices(self, start_verts: Any, directions_xyz: Any) -> List[np.ndarray]:
         """One curve for each vertex and the direction (k, 3) beside it."""
-        starts = arguments.rows(start_verts, "start_verts", len(self.surface))
+        starts = self._rows(start_verts, "start_verts")
         directions = arguments.floats(directions_xyz, "directions_xyz", (len(starts), 3), finite=True)
         return [self._trace(int(v), d, None) for v, d in zip(starts, directions)]
 

@@ -5,6 +5,7 @@
 #include "ahm/applications/mean.hpp"
 #include "ahm/applications/surface_curve.hpp"
 #include "ahm/error.hpp"
+#include "ahm/util/vec.hpp"
 #include "compute.hpp"
 #include "errors.hpp"
 #include "map.hpp"
@@ -26,7 +27,7 @@ SurfaceCurve draw_stroke(const Body& body, const Places& points, std::span<const
 
 namespace {
 
-LogMap solve(const Maker& maker, const SurfaceCurve& curve, MapOptions options) {
+LogMap solve(const Maker& maker, const SurfaceCurve& curve, const MapOptions& options) {
   if (const Solver* solver = maker.solver()) return solver->solver.solve(curve.source, options);
   const ExactMapOptions exact{
       .radius = options.radius, .frames = options.frames, .progress = options.progress.value_or(Progress{})};
@@ -49,7 +50,8 @@ py::tuple stroke(const py::object& maker, const py::tuple& points, const Doubles
     SurfaceCurve drawn = draw_stroke(*by.body(), at, uv, shape);
     PlacedSource source{drawn.source, drawn.points.front(), drawn.first, std::nullopt};
     LogMap solved = solve(by, drawn, o);
-    return std::pair(std::make_shared<Map>(by.body(), std::move(source), std::move(solved)), std::move(drawn));
+    const unsigned threads = by.solver() != nullptr ? by.solver()->solver.options().threads : 0;
+    return std::pair(std::make_shared<Map>(by.body(), std::move(source), std::move(solved), threads), std::move(drawn));
   });
   return py::make_tuple(map, owned(std::move(curve.points)), curve.length, curve.gap, curve.jump);
 }
@@ -65,7 +67,48 @@ py::array farthest(const BodyPtr& body, const py::tuple& first, Index count, con
   }));
 }
 
-/// row or None, offset, position or None, spread, maps, converged.
+/// A center and what lies there.
+struct FoundCenter {
+  Center center;
+  std::optional<Vec3> position;
+  std::optional<FacePoint> face;
+  std::vector<double> seen;  ///< coordinates of all points in a map from the center
+};
+
+/// Where a center lies in space: in the tangent plane of its vertex.
+std::optional<Vec3> beside_vertex(const Body& body, const Center& center) {
+  if (body.grid() != nullptr) {
+    Vec3 p = body.grid()->position(center.vertex);
+    for (std::size_t a = 0; a < center.offset.size(); ++a) p[a] += center.offset[a];
+    return p;
+  }
+  const auto frame = body.graph().frame(center.vertex.index);
+  if (!frame || center.offset.size() != 2) return std::nullopt;
+  return frame->origin + center.offset[0] * frame->x + center.offset[1] * frame->y;
+}
+
+/// Puts a center on the surface, and looks at the points from there.
+void place(const Maker& by, std::span<const Source> points, double radius, FoundCenter& found) {
+  const Body& body = *by.body();
+  Source source = source_at(found.center);
+  std::optional<SurfacePoint> point;
+  found.position = beside_vertex(body, found.center);
+  if (body.surface() != nullptr && found.position) {
+    const ClosestPoint closest = body.surface()->closest_point(*found.position);
+    found.position = closest.position;
+    point = closest.point;
+    source = body.surface()->source(*point).source;
+    if (const auto* inside = std::get_if<FacePoint>(&*point)) found.face = *inside;
+  }
+  const LogMap map =
+      by.solver() != nullptr
+          ? by.solver()->solver.solve(source, {.radius = radius, .frames = true, .spread = false})
+          : body.geodesics().log_map(point.value(), {}, {.radius = radius, .frames = true, .progress = {}});
+  for (const Source& p : points)
+    for (double z : map.coordinates(p)) found.seen.push_back(z);
+}
+
+/// row or None, offset, position or None, spread, maps, converged, face or None, its weights, points seen from the center.
 py::tuple center(const py::object& maker, const py::tuple& points, const Doubles& weights, bool median,
                  const py::object& start, const py::dict& options, const py::object& report) {
   CenterOptions o;
@@ -76,22 +119,27 @@ py::tuple center(const py::object& maker, const py::tuple& points, const Doubles
   if (!start.is_none()) begin = places(start.cast<py::tuple>());
   const auto given = numbers(weights);
   const Maker by(maker);
-  const Center found = compute(report, weights, [=](const Progress&) mutable {
+  FoundCenter found = compute(report, weights, [=](const Progress& progress) mutable {
+    progress.step("center", 0);
     const Body& body = *by.body();
     if (begin) o.start = body.vertices_near(*begin)[0];
-    const auto find = median ? geometric_median : karcher_mean;
-    return find(by.maps(), body.vertices_near(at), given, o);
+    const std::vector<Source> sources = body.plain_sources(at);
+    const auto find = median ? geometric_median_of_points : karcher_mean_of_points;
+    FoundCenter made{find(by.maps(), sources, given, o), {}, {}, {}};
+    place(by, sources, o.radius, made);
+    progress.step("center", 1);
+    return made;
   });
   const Body& body = *by.body();
-  py::object position = py::none(), row = py::none();
-  if (const auto frame = body.graph().frame(found.vertex.index); frame && found.offset.size() == 2) {
-    std::vector<double> p(frame->origin.begin(), frame->origin.end());
-    for (std::size_t c = 0; c < 3; ++c) p[c] += found.offset[0] * frame->x[c] + found.offset[1] * frame->y[c];
-    position = owned(std::move(p));
-  }
-  if (const auto r = body.row(found.vertex)) row = py::int_(r->index);
-  return py::make_tuple(row, owned(std::vector<double>(found.offset)), position, found.spread, found.maps,
-                        found.converged);
+  py::object position = py::none(), row = py::none(), face = py::none(), inside = py::none();
+  if (const auto& p = found.position)
+    position = owned(std::vector<double>(p->begin(), p->begin() + (body.grid() ? body.graph().dimension() : 3)));
+  if (const auto r = body.row(found.center.vertex)) row = py::int_(r->index);
+  if (found.face) face = py::int_(found.face->face), inside = owned(std::move(found.face->barycentric));
+  const py::ssize_t d = body.graph().dimension();
+  const py::ssize_t k = length(found.seen) / d;
+  return py::make_tuple(row, owned(std::move(found.center.offset)), position, found.center.spread, found.center.maps,
+                        found.center.converged, face, inside, owned<double>(std::move(found.seen), {k, d}));
 }
 
 }  // namespace

@@ -8,6 +8,13 @@
 
 namespace ahm::python {
 
+bool Places::all_rows() const {
+  return std::ranges::all_of(places, [](const Place& place) {
+    const auto* point = std::get_if<SurfacePoint>(&place);
+    return point != nullptr && std::holds_alternative<Row>(*point);
+  });
+}
+
 const Surface& Body::surface_for(const char* what) const {
   if (!surface_) throw InvalidArgument(std::string(what) + " needs a mesh or a cloud; this is a grid or a graph");
   return *surface_;
@@ -34,6 +41,7 @@ PlacedSource Body::source(const Place& place, const std::optional<Vec3>& u_axis)
   if (row == nullptr) throw InvalidArgument("grids and graphs have no faces and edges to stand on; name a row");
   PlacedSource result{Source::at_vertex(vertex(*row)), {}, graph_->frame(row->index), *row};
   if (grid_ != nullptr) result.position = grid_->position(Vertex(row->index));
+  if (grid_ == nullptr && result.frame) result.position = result.frame->origin;
   return result;
 }
 
@@ -41,6 +49,12 @@ std::vector<PlacedSource> Body::sources(const Places& places, const std::optiona
   std::vector<PlacedSource> result;
   for (std::size_t k = 0; k < places.size(); ++k)
     result.push_back(naming(places.where(k), [&] { return source(places.places[k], u_axis); }));
+  return result;
+}
+
+std::vector<Source> Body::plain_sources(const Places& places, const std::optional<Vec3>& u_axis) const {
+  std::vector<Source> result;
+  for (PlacedSource& placed : sources(places, u_axis)) result.push_back(std::move(placed.source));
   return result;
 }
 
@@ -75,7 +89,7 @@ std::vector<Vertex> Body::vertices_near(const Places& places) const {
 }
 
 const ExactGeodesics& Body::geodesics() const {
-  const Surface& all = surface_for("method 'exact'");
+  const Surface& all = surface_for("a geodesic");
   std::call_once(once_, [&] { geodesics_ = std::make_unique<const ExactGeodesics>(all); });
   return *geodesics_;
 }

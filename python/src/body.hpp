@@ -28,6 +28,8 @@ struct Places {
 
   std::string where(std::size_t k) const { return single ? name : name + "[" + std::to_string(k) + "]"; }
   std::size_t size() const { return places.size(); }
+  /// Whether nothing but rows was named: many of them need no sources.
+  bool all_rows() const;
 };
 
 /// Shared by everything that is made from it. Immutable.
@@ -52,6 +54,8 @@ class Body {
   /// A source at a point, its u axis along a vector of space.
   PlacedSource source(const Place& place, const std::optional<Vec3>& u_axis = {}) const;
   std::vector<PlacedSource> sources(const Places& places, const std::optional<Vec3>& u_axis = {}) const;
+  /// The same without where they lie.
+  std::vector<Source> plain_sources(const Places& places, const std::optional<Vec3>& u_axis = {}) const;
   /// The point of the input, and that one only where a position was named. @throws InvalidArgument (no surface)
   SurfacePoint point(const Place& place) const;
   /// The vertex at a row, at the row nearest to a position, or at the nearest corner of the face or edge of a point.

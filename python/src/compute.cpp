@@ -1,10 +1,16 @@
 #include "compute.hpp"
 
+#include <pthread.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
+#include <cstdio>
+#include <cstdlib>
 #include <exception>
+#include <iterator>
 #include <mutex>
 #include <string>
 #include <system_error>
@@ -18,6 +24,13 @@ using namespace std::chrono_literals;
 
 constexpr auto between_signals = 20ms;  ///< how long a signal waits for its handler
 constexpr auto grace = 60ms;            ///< how long a stopped computation may take to notice
+
+/// The thread that ends the interpreter, once it does.
+std::atomic<std::thread::id> ender;
+
+/// How many threads take the interpreter lock again and were not told that it ends. None of them in a forked child.
+std::atomic<int> returning = 0;
+[[maybe_unused]] const int at_fork = pthread_atfork(nullptr, nullptr, [] { returning = 0; });
 
 /// One computation. Made, looked at and destroyed with the interpreter lock; only `thread` works without.
 class Job {
@@ -50,7 +63,7 @@ class Job {
   }
   /// Without the interpreter lock. @return whether it is done
   bool wait(std::chrono::milliseconds time) {
-    const py::gil_scoped_release release;
+    const Unlocked unlocked;
     std::unique_lock lock(mutex_);
     return ended_.wait_for(lock, time, [this] { return done_; });
   }
@@ -90,44 +103,94 @@ class Job {
   std::thread thread_;
 };
 
-/// Computations that were given up and have not ended yet. A forked child has none of their threads: it forgets them.
-std::vector<std::unique_ptr<Job>>& background() {
-  static auto* jobs = new std::vector<std::unique_ptr<Job>>;
-  static pid_t process = getpid();
-  if (process != getpid()) {
-    process = getpid();
-    jobs = new std::vector<std::unique_ptr<Job>>;
-  }
-  return *jobs;
+/// Those of this process. A forked child has none of its parent's threads: it forgets them.
+struct Jobs {
+  std::vector<std::shared_ptr<Job>> background;  ///< given up, and not at their end yet
+  std::vector<std::shared_ptr<Job>> waited_for;
+  pid_t process = getpid();
+};
+Jobs& jobs() {
+  static auto* all = new Jobs;
+  if (all->process != getpid()) all = new Jobs;
+  return *all;
 }
 
-void give_up(std::unique_ptr<Job> job) {
+void give_up(const std::shared_ptr<Job>& job) {
   job->request_stop();
-  if (!job->wait(grace)) background().push_back(std::move(job));
+  if (!job->wait(grace)) jobs().background.push_back(job);
 }
+
+/// While a thread waits for a job.
+class Waiting {
+ public:
+  explicit Waiting(const std::shared_ptr<Job>& job) : job_(job) { jobs().waited_for.push_back(job); }
+  ~Waiting() { std::erase(jobs().waited_for, job_); }
+  Waiting(const Waiting&) = delete;
+  Waiting& operator=(const Waiting&) = delete;
+
+ private:
+  const std::shared_ptr<Job>& job_;
+};
 
 }  // namespace
 
 void run(const py::object& report, py::object keep, std::function<void(const Progress&)> work) {
-  std::erase_if(background(), [](const auto& job) { return job->done(); });
-  auto job = std::make_unique<Job>(std::move(keep), std::move(work), !report.is_none());
+  std::erase_if(jobs().background, [](const auto& job) { return job->done(); });
+  const auto job = std::make_shared<Job>(std::move(keep), std::move(work), !report.is_none());
   try {
+    const Waiting waiting(job);
     for (bool done = false; !done;) {
       done = job->wait(between_signals);
       if (PyErr_CheckSignals() != 0) throw py::error_already_set();
       if (!report.is_none()) job->report_to(report);
     }
   } catch (...) {
-    give_up(std::move(job));
+    give_up(job);
     throw;
   }
   job->rethrow();
 }
 
-void wait_for_background() {
-  for (auto& job : background())
+Unlocked::Unlocked() : state_(PyEval_SaveThread()) {}
+
+Unlocked::~Unlocked() {
+  // Whoever takes the lock of an interpreter that has ended is ended himself, in the middle of C++.
+  ++returning;
+  if (const std::thread::id ending = ender; ending != std::thread::id() && ending != std::this_thread::get_id()) {
+    --returning;
+    while (true) std::this_thread::sleep_for(1h);
+  }
+  PyEval_RestoreThread(state_);
+  --returning;
+}
+
+void end() {
+  ender = std::this_thread::get_id();
+  while (returning > 0) {
+    const py::gil_scoped_release unlocked;
+    std::this_thread::sleep_for(1ms);
+  }
+  std::vector<std::shared_ptr<Job>> all = jobs().waited_for;
+  std::ranges::copy(jobs().background, std::back_inserter(all));
+  for (const auto& job : all) job->request_stop();
+  const auto until = std::chrono::steady_clock::now() + grace;
+  for (const auto& job : all) {
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - std::chrono::steady_clock::now());
+    job->wait(std::max(left, 0ms));
+  }
+  if (std::ranges::all_of(all, [](const auto& job) { return job->done(); })) return;
+#ifdef __GLIBC__
+  // What still works must not find the library's and its libraries' static objects destroyed.
+  on_exit(
+      [](int status, void*) {
+        std::fflush(nullptr);
+        _exit(status);
+      },
+      nullptr);
+#else
+  for (const auto& job : all)
     while (!job->wait(1s)) continue;
-  background().clear();
+#endif
 }
 
 }  // namespace ahm::python

@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 #include "ahm/progress.hpp"
@@ -33,14 +34,35 @@ auto compute(const py::object& report, py::object keep, Work work) {
   return std::move(**result);
 }
 
-/// What `work()` returns, without the interpreter lock, on this thread: for what takes no longer than a copy.
+/// What `work()` returns, reported as a stage of one step: for work that reports nothing itself.
 template <class Work>
-auto released(const Work& work) {
-  const py::gil_scoped_release release;
-  return work();
+auto in_one_step(const Progress& progress, std::string_view stage, const Work& work) {
+  progress.step(stage, 0);
+  auto result = work();
+  progress.step(stage, 1);
+  return result;
 }
 
-/// Waits for work in the background: before the interpreter ends.
-void wait_for_background();
+/// As `compute`, of what cannot be told to stop.
+template <class Work>
+auto compute(Work work) {
+  return compute(py::none(), py::none(), [work = std::move(work)](const Progress&) mutable { return work(); });
+}
+
+/// Without the interpreter lock while it lives. Threads that would take it from an interpreter that ends sleep for ever.
+class Unlocked {
+ public:
+  Unlocked();
+  ~Unlocked();
+  Unlocked(const Unlocked&) = delete;
+  Unlocked& operator=(const Unlocked&) = delete;
+
+ private:
+  PyThreadState* state_;
+};
+
+/// Before the interpreter ends: stops whatever still works, in the background and for threads that nobody waits for. What
+/// does not heed that is cut off when the process exits (with the GNU library; else it is waited for).
+void end();
 
 }  // namespace ahm::python

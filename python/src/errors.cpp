@@ -1,5 +1,9 @@
 #include "errors.hpp"
 
+#include <new>
+#include <stdexcept>
+#include <string_view>
+
 #include "ahm/error.hpp"
 
 namespace ahm::python {
@@ -21,8 +25,39 @@ PyObject* add(py::module_& module, const char* name, PyObject* parent, PyObject*
   return made;
 }
 
+struct Advice {
+  std::string_view fault, remedy;
+};
+
+/// What to do, in Python's terms.
+constexpr Advice advices[] = {
+    {"collinear_faces", "remove them, or use method 'heat'"},
+    {"diffusion_time_range", "give a t_coef near 1"},
+    {"map_without_frames", "make it with frames=True"},
+    {"map_without_spread", "make it with spread=True"},
+    {"no_flat_triangles", "use method 'heat'"},
+    {"non_finite", "drop such points with drop_non_finite=True"},
+    {"non_manifold_edges", "repair them, or cut the mesh there with non_manifold='split'"},
+    {"non_manifold_vertices", "repair them, or split them with non_manifold='split'"},
+    {"polygons_not_refined", "make the mesh with discretization='refined', or use method 'heat'"},
+    {"polygons_too_large", "make the mesh with discretization='refined'"},
+    {"twisted_faces", "make the mesh with discretization='polygons'"},
+    {"windows_without_end", "repair the mesh, or use method 'heat'"},
+    {"windows_lost", "repair the needles there, use tolerance=1e-9, or method 'heat'"},
+};
+
+std::string worded(const Error& error) {
+  for (const auto& [fault, remedy] : advices)
+    if (error.fault() == fault) return std::string(error.problem()) + "; " + std::string(remedy);
+  return error.what();
+}
+
 void raise(PyObject* type, const Error& error) {
-  const py::object made = py::reinterpret_steal<py::object>(PyObject_CallFunction(type, "s", error.what()));
+  const std::string words = worded(error);  // may name a file, whose name may be any bytes
+  const py::object text = py::reinterpret_steal<py::object>(
+      PyUnicode_DecodeUTF8(words.data(), static_cast<py::ssize_t>(words.size()), "surrogateescape"));
+  if (!text) return;
+  const py::object made = py::reinterpret_steal<py::object>(PyObject_CallFunctionObjArgs(type, text.ptr(), nullptr));
   if (!made) return;
   made.attr("fault") = std::string(error.fault());
   PyErr_SetObject(type, made.ptr());
@@ -48,6 +83,10 @@ void translate(std::exception_ptr thrown) {
     raise(classes.cancelled, e);
   } catch (const Error& e) {
     raise(classes.error, e);
+  } catch (const std::bad_alloc&) {
+    raise(classes.exhausted, ResourceExhausted("out of memory"));
+  } catch (const std::length_error&) {
+    raise(classes.exhausted, ResourceExhausted("out of memory: more than an array can hold"));
   }
 }
 

@@ -46,10 +46,12 @@ std::vector<double> in_space(const TangentGraph& graph, const VertexField& field
   return result;
 }
 
-std::vector<double> in_frames(const TangentGraph& graph, std::span<const Vertex> at, std::span<const double> vectors) {
+/// @param frame  of point k, or none
+template <class FrameOf>
+std::vector<double> in_frames(std::span<const double> vectors, const FrameOf& frame_of) {
   std::vector<double> result;
-  for (std::size_t k = 0; k < at.size(); ++k) {
-    const auto frame = graph.frame(at[k].index);
+  for (std::size_t k = 0; 3 * k < vectors.size(); ++k) {
+    const std::optional<Frame> frame = frame_of(k);
     if (!frame) throw InvalidArgument("vectors: the surface has no frames in space; give components in its frames");
     for (const Vec3* axis : {&frame->x, &frame->y}) {
       double sum = 0;
@@ -70,10 +72,29 @@ py::tuple arrays(VertexField&& field) {
 py::tuple extend(const SolverPtr& solver, const py::tuple& points, const Doubles& values, const py::object& report) {
   const Places at = places(points);
   const auto given = numbers(values);
-  return arrays(compute(report, values, [=](const Progress&) {
+  return arrays(compute(report, values, [=](const Progress& progress) {
     const Body& body = *solver->body;
-    return by_rows(body, extend_scalar(solver->solver, body.vertices_near(at), given));
+    return by_rows(body, in_one_step(progress, "extend", [&] {
+                     return at.all_rows() ? extend_scalar(solver->solver, body.vertices_near(at), given)
+                                          : extend_scalar(solver->solver, body.plain_sources(at), given);
+                   }));
   }));
+}
+
+/// Vectors at rows, or at points anywhere: those of space in the axes of each.
+VertexField carried(const Solver& by, const Places& at, std::span<const double> given, bool space) {
+  const Body& body = *by.body;
+  if (at.all_rows()) {
+    const std::vector<Vertex> vertices = body.vertices_near(at);
+    if (!space) return transport_vectors(by.solver, vertices, given);
+    const auto frame = [&](std::size_t k) { return body.graph().frame(vertices[k].index); };
+    return transport_vectors(by.solver, vertices, in_frames(given, frame));
+  }
+  const std::vector<PlacedSource> placed = body.sources(at);
+  std::vector<Source> sources;
+  for (const PlacedSource& one : placed) sources.push_back(one.source);
+  if (!space) return transport_vectors(by.solver, sources, given);
+  return transport_vectors(by.solver, sources, in_frames(given, [&](std::size_t k) { return placed[k].frame; }));
 }
 
 py::tuple transport(const SolverPtr& solver, const py::tuple& points, const Doubles& vectors,
@@ -81,28 +102,25 @@ py::tuple transport(const SolverPtr& solver, const py::tuple& points, const Doub
   const Places at = places(points);
   const auto given = numbers(vectors);
   const bool space = vectors.shape(1) == 3 && solver->body->graph().dimension() == 2;
-  return arrays(compute(report, vectors, [=](const Progress&) {
-    const Body& body = *solver->body;
-    const std::vector<Vertex> vertices = body.vertices_near(at);
-    const std::vector<double> local =
-        space ? in_frames(body.graph(), vertices, given) : std::vector<double>(given.begin(), given.end());
-    VertexField field = transport_vectors(solver->solver, vertices, local);
-    if (space) field = {3, in_space(body.graph(), field), field.status};
-    return by_rows(body, std::move(field));
+  return arrays(compute(report, vectors, [=](const Progress& progress) {
+    VertexField field = in_one_step(progress, "transport", [&] { return carried(*solver, at, given, space); });
+    if (space) field = {3, in_space(solver->body->graph(), field), field.status};
+    return by_rows(*solver->body, std::move(field));
   }));
 }
 
-/// All sources in one; several are their nearest vertices.
+/// All sources in one.
 Source together(const Body& body, const Places& at) {
   if (at.size() == 1) return body.sources(at)[0].source;
-  return Source::at_vertices(body.vertices_near(at));
+  return at.all_rows() ? Source::at_vertices(body.vertices_near(at)) : Source::joined(body.plain_sources(at));
 }
 
 py::tuple heat_distance(const SolverPtr& solver, const py::tuple& sources, const py::object& report) {
   const Places at = places(sources);
-  auto found = compute(report, py::none(), [=](const Progress&) {
+  auto found = compute(report, py::none(), [=](const Progress& progress) {
     const Body& body = *solver->body;
-    DistanceField field = distance_and_gradient(solver->solver, together(body, at));
+    DistanceField field =
+        in_one_step(progress, "distance", [&] { return distance_and_gradient(solver->solver, together(body, at)); });
     if (body.surface() != nullptr && body.graph().frame(0))
       field.gradient = {3, in_space(body.graph(), field.gradient), field.gradient.status};
     return std::pair(by_rows(body, std::move(field.distance)), by_rows(body, std::move(field.gradient)));
@@ -114,10 +132,12 @@ py::tuple heat_distance(const SolverPtr& solver, const py::tuple& sources, const
 /// Distance, and the number of the nearest source or -1.
 py::tuple front_distance(const BodyPtr& body, const py::tuple& sources, double radius, const py::object& report) {
   const Places at = places(sources);
-  auto found = compute(report, py::none(), [=](const Progress&) {
+  auto found = compute(report, py::none(), [=](const Progress& progress) {
+    progress.step("front", 0);
     UnfoldingFront front(body->graph());
     for (const PlacedSource& source : body->sources(at)) front.add(source.source);
     front.run(radius);
+    progress.step("front", 1);
     const auto n = static_cast<std::size_t>(body->rows());
     std::pair result(std::vector<double>(n, nan), std::vector<Index>(n, -1));
     const auto nearest = [&](Row row) -> std::optional<Vertex> {
@@ -136,12 +156,15 @@ py::tuple front_distance(const BodyPtr& body, const py::tuple& sources, double r
 
 /// tau per vertex, in squared graph units.
 py::array taus(const BodyPtr& body, double t_coef) {
-  return owned(released([&] { return diffusion_times(ComponentScales(body->graph()), t_coef); }));
+  return owned(compute([=] { return diffusion_times(ComponentScales(body->graph()), t_coef); }));
 }
 
-py::tuple curvature(const BodyPtr& body, const py::object& report) {
-  PrincipalCurvatures k =
-      compute(report, py::none(), [body](const Progress&) { return curvature_directions(body->graph()); });
+py::tuple curvature(const BodyPtr& body, unsigned threads, const py::object& report) {
+  if (body->graph().dimension() != 2 || !body->graph().frame(0))
+    throw InvalidArgument("surface: it has no tangent planes in space; a mesh or a cloud has");
+  PrincipalCurvatures k = compute(report, py::none(), [body, threads](const Progress& progress) {
+    return in_one_step(progress, "curvature", [&] { return curvature_directions(body->graph(), threads); });
+  });
   VertexField values =
       by_rows(*body, {2, std::move(k.values), std::vector<Status>(static_cast<std::size_t>(body->graph().size()))});
   VertexField field{2, std::move(k.directions), std::vector<Status>(static_cast<std::size_t>(body->graph().size()))};

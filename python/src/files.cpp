@@ -7,7 +7,9 @@
 namespace ahm::python {
 namespace {
 
-py::dict read_file(const std::string& path) {
+/// @param name  bytes, as the file system has them
+py::dict read_file(const py::bytes& name) {
+  const std::string path = name;
   using namespace py::literals;
   io::Geometry g = compute(py::none(), py::none(), [=](const Progress&) { return io::read(path); });
   py::list warnings;

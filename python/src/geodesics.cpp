@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "ahm/error.hpp"
+#include "ahm/surface/surface_lines.hpp"
 #include "body.hpp"
 #include "compute.hpp"
 #include "errors.hpp"
@@ -128,6 +129,60 @@ py::object arrays(const Body& body, Curve&& curve) {
                         curve.complete);
 }
 
+/// Of a surface without faces.
+bool has_planes_alone(const Body& body) { return body.surface() != nullptr && body.surface()->faces().size() == 0; }
+
+py::object arrays(SurfaceLine&& line) {
+  if (line.status != Status::ok) return py::none();
+  return py::make_tuple(owned(std::move(line.points)), py::none(), py::none(), line.length, line.complete);
+}
+
+std::vector<SurfacePoint> plane_points(const Body& body, const Places& at) {
+  std::vector<SurfacePoint> result;
+  for (std::size_t k = 0; k < at.size(); ++k) naming(at.where(k), [&] { result.push_back(body.point(at.places[k])); });
+  return result;
+}
+
+/// What takes faces is refused.
+void refuse(bool given, const std::string& name) {
+  if (given) throw InvalidArgument(name + ": takes faces, which a cloud does not have");
+}
+
+/// From stop to stop over tangent planes.
+py::object plane_path(const BodyPtr& body, const Places& at, bool closed, const py::object& report) {
+  return arrays(compute(report, py::none(), [=](const Progress& progress) {
+    std::vector<SurfacePoint> stops = plane_points(*body, at);
+    if (stops.size() < 2)
+      throw InvalidArgument(at.name + ": " + std::to_string(stops.size()) + " point; a path needs at least 2");
+    if (closed) stops.push_back(stops.front());
+    SurfaceLine whole;
+    for (std::size_t k = 1; k < stops.size(); ++k) {
+      progress.step("paths", static_cast<double>(k - 1) / static_cast<double>(stops.size() - 1));
+      SurfaceLine leg = shortest_line(*body->surface(), stops[k - 1], stops[k]);
+      if (leg.status != Status::ok) return leg;
+      whole.points.insert(whole.points.end(), leg.points.begin() + (k > 1 ? 1 : 0), leg.points.end());
+      whole.length += leg.length;
+    }
+    return whole;
+  }));
+}
+
+/// From each source to the target beside it, over tangent planes.
+py::list plane_paths(const BodyPtr& body, const Places& from, const Places& to, const py::object& report) {
+  std::vector<SurfaceLine> found = compute(report, py::none(), [=](const Progress& progress) {
+    const std::vector<SurfacePoint> starts = plane_points(*body, from), ends = plane_points(*body, to);
+    std::vector<SurfaceLine> all;
+    for (std::size_t k = 0; k < starts.size(); ++k) {
+      progress.step("paths", static_cast<double>(k) / static_cast<double>(starts.size()));
+      all.push_back(shortest_line(*body->surface(), starts[k], ends[k]));
+    }
+    return all;
+  });
+  py::list result;
+  for (SurfaceLine& line : found) result.append(arrays(std::move(line)));
+  return result;
+}
+
 /// From stop to stop; `fast`: locally shortest. Status and no points of the first leg that is not there.
 exact::GeodesicPath through(const ExactGeodesics& geodesics, const std::vector<SurfacePoint>& stops, bool fast,
                             const Progress& progress) {
@@ -135,7 +190,7 @@ exact::GeodesicPath through(const ExactGeodesics& geodesics, const std::vector<S
   for (std::size_t k = 1; k < stops.size(); ++k) {
     progress.step("paths", static_cast<double>(k - 1) / static_cast<double>(stops.size() - 1));
     const std::array ends{stops[k - 1], stops[k]};
-    const exact::GeodesicPath leg = fast ? geodesics.locally_shortest_path(ends[0], ends[1]) : geodesics.path(ends);
+    exact::GeodesicPath leg = fast ? geodesics.locally_shortest_path(ends[0], ends[1]) : geodesics.path(ends);
     if (leg.status != Status::ok) return leg;
     whole.points.insert(whole.points.end(), leg.points.begin() + (k > 1 ? 1 : 0), leg.points.end());
     whole.length += leg.length;
@@ -147,6 +202,11 @@ exact::GeodesicPath through(const ExactGeodesics& geodesics, const std::vector<S
 py::object path(const BodyPtr& body, const py::tuple& stops, bool closed, bool fast, bool taut,
                 const py::object& report) {
   const Places at = places(stops);
+  if (has_planes_alone(*body)) {
+    refuse(fast, "fast");
+    refuse(taut, "taut");
+    return plane_path(body, at, closed, report);
+  }
   return arrays(*body, compute(report, py::none(), [=](const Progress& progress) {
     const ExactGeodesics& geodesics = body->geodesics();
     std::vector<SurfacePoint> points = points_of(*body, at);
@@ -168,6 +228,8 @@ py::list listed(const Body& body, std::vector<Curve>&& curves) {
 /// One path to each target from the nearest source, of one propagation.
 py::list paths(const BodyPtr& body, const py::tuple& sources, const py::tuple& targets, const py::object& report) {
   const Places from = places(sources), to = places(targets);
+  if (has_planes_alone(*body))
+    throw InvalidArgument("pairwise: over a cloud every path has a source of its own; give pairwise=True");
   return listed(*body, compute(report, py::none(), [=](const Progress& progress) {
     const auto& [flat, positions, unit] = body->geodesics().triangles();
     const exact::ExactMap map =
@@ -187,6 +249,10 @@ py::list paths(const BodyPtr& body, const py::tuple& sources, const py::tuple& t
 py::list paired_paths(const BodyPtr& body, const py::tuple& sources, const py::tuple& targets, bool fast,
                       const py::object& report) {
   const Places from = places(sources), to = places(targets);
+  if (has_planes_alone(*body)) {
+    refuse(fast, "fast");
+    return plane_paths(body, from, to, report);
+  }
   return listed(*body, compute(report, py::none(), [=](const Progress& progress) {
     const ExactGeodesics& geodesics = body->geodesics();
     const std::vector<SurfacePoint> starts = points_of(*body, from), ends = points_of(*body, to);
@@ -209,8 +275,14 @@ py::object trace(const BodyPtr& body, const py::tuple& start, const Doubles& dir
                  const py::object& report) {
   const Places at = places(start);
   const Vec3 along{direction.at(0), direction.at(1), direction.at(2)};
-  return arrays(*body, compute(report, py::none(), [=](const Progress&) {
-    const exact::TracedPath found = body->geodesics().trace(points_of(*body, at)[0], along, long_);
+  if (has_planes_alone(*body))
+    return arrays(compute(report, py::none(), [=](const Progress& progress) {
+      return in_one_step(progress, "trace",
+                         [&] { return trace_line(*body->surface(), plane_points(*body, at)[0], along, long_); });
+    }));
+  return arrays(*body, compute(report, py::none(), [=](const Progress& progress) {
+    const exact::TracedPath found =
+        in_one_step(progress, "trace", [&] { return body->geodesics().trace(points_of(*body, at)[0], along, long_); });
     Curve curve(*body, found.points, found.length);
     curve.complete = found.end == exact::TraceEnd::complete;
     return curve;

@@ -13,8 +13,19 @@
 namespace ahm::python {
 namespace {
 
+/// By rows; those of graphs and grids are their vertices.
+template <class From>
+RowLocalMaps on_rows(const Body& body, std::span<const From> sources, const LocalMapOptions& options) {
+  if (body.surface()) return local_maps_on_rows(*body.surface(), sources, options);
+  LocalMaps maps = local_maps(body.graph(), sources, options);
+  std::vector<Row> rows;
+  rows.reserve(maps.neighbors.size());
+  for (const Vertex j : maps.neighbors) rows.emplace_back(j.index);
+  return std::move(maps).renamed(std::move(rows));
+}
+
 /// Of all rows; those without a vertex have no neighbours.
-LocalMaps solve(const Body& body, const LocalMapOptions& options) {
+RowLocalMaps of_all_rows(const Body& body, const LocalMapOptions& options) {
   std::vector<Vertex> vertices;
   std::vector<std::size_t> place;
   const auto rows = static_cast<std::size_t>(body.rows());
@@ -24,18 +35,12 @@ LocalMaps solve(const Body& body, const LocalMapOptions& options) {
     vertices.push_back(body.vertex(row));
     place.push_back(r);
   }
-  LocalMaps maps = body.surface() ? local_maps_on_rows(*body.surface(), vertices, options)
-                                  : local_maps(body.graph(), vertices, options);
+  RowLocalMaps maps = on_rows<Vertex>(body, vertices, options);
   std::vector<Offset> indptr(rows + 1, 0);
   for (std::size_t k = 0; k < place.size(); ++k) indptr[place[k] + 1] = maps.indptr[k + 1] - maps.indptr[k];
   std::partial_sum(indptr.begin(), indptr.end(), indptr.begin());
   maps.indptr = std::move(indptr);
   return maps;
-}
-
-LocalMaps solve(const Body& body, std::span<const Source> sources, const LocalMapOptions& options) {
-  return body.surface() ? local_maps_on_rows(*body.surface(), sources, options)
-                        : local_maps(body.graph(), sources, options);
 }
 
 LocalMapOptions local_options(const py::dict& options) {
@@ -47,13 +52,13 @@ LocalMapOptions local_options(const py::dict& options) {
   return o;
 }
 
-py::dict arrays(LocalMaps&& maps) {
+py::dict arrays(RowLocalMaps&& maps) {
   using namespace py::literals;
-  const auto entries = static_cast<py::ssize_t>(maps.indices.size());
+  const auto entries = static_cast<py::ssize_t>(maps.neighbors.size());
   const py::ssize_t d = maps.dimension;
   const bool complex = maps.kind == TransportKind::rotation2;
   return py::dict(
-      "indptr"_a = owned(std::move(maps.indptr)), "indices"_a = owned(std::move(maps.indices)),
+      "indptr"_a = owned(std::move(maps.indptr)), "indices"_a = owned<Row, Index>(std::move(maps.neighbors), {entries}),
       "log"_a = owned<double>(std::move(maps.logs), {entries, d}), "distance"_a = owned(std::move(maps.distances)),
       "weight"_a = owned(std::move(maps.weights)),
       "transport"_a = owned<double>(std::move(maps.transports), complex ? Shape{entries, 2} : Shape{entries, d, d}));
@@ -68,10 +73,8 @@ py::dict local_maps_of(const BodyPtr& body, const py::object& sources, const py:
   const auto axis = optional_vector(u_axis);
   return arrays(compute(report, py::none(), [=](const Progress& progress) mutable {
     o.heat.progress = progress;
-    if (!at) return solve(*body, o);
-    std::vector<Source> plain;
-    for (PlacedSource& placed : body->sources(*at, axis)) plain.push_back(std::move(placed.source));
-    return solve(*body, plain, o);
+    if (!at) return of_all_rows(*body, o);
+    return on_rows<Source>(*body, body->plain_sources(*at, axis), o);
   }));
 }
 
@@ -84,7 +87,7 @@ py::tuple local_stroke(const BodyPtr& body, const py::tuple& points, bool closed
   auto [maps, curve] = compute(report, py::none(), [=](const Progress& progress) mutable {
     o.heat.progress = progress;
     SurfaceCurve drawn = draw_stroke(*body, at, {}, shape);
-    LocalMaps found = solve(*body, {&drawn.source, 1}, o);
+    RowLocalMaps found = on_rows<Source>(*body, {&drawn.source, 1}, o);
     return std::pair(std::move(found), std::move(drawn));
   });
   return py::make_tuple(arrays(std::move(maps)), owned(std::move(curve.points)), curve.length);

@@ -40,11 +40,12 @@ class Maker {
 
 /// A map, and what it is on the rows.
 struct Map {
-  Map(BodyPtr on, PlacedSource from, LogMap made);
+  Map(BodyPtr on, PlacedSource from, LogMap made, unsigned threads);
 
   BodyPtr body;
   PlacedSource source;
   LogMap map;
+  unsigned threads;        ///< of whatever is computed from it; 0: one per core
   RowLogMap rows;          ///< empty of grids and graphs, whose rows are their vertices
   std::vector<double> uv;  ///< rows x 2; empty of grids and graphs
 

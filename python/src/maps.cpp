@@ -1,12 +1,15 @@
 // Solvers, and log maps by rows.
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <limits>
 #include <utility>
 
 #include "ahm/error.hpp"
+#include "ahm/maps/cost.hpp"
 #include "ahm/maps/quality.hpp"
 #include "ahm/util/parallel.hpp"
+#include "ahm/util/text.hpp"
 #include "compute.hpp"
 #include "errors.hpp"
 #include "map.hpp"
@@ -15,8 +18,8 @@
 
 namespace ahm::python {
 
-Map::Map(BodyPtr on, PlacedSource from, LogMap made)
-    : body(std::move(on)), source(std::move(from)), map(std::move(made)) {
+Map::Map(BodyPtr on, PlacedSource from, LogMap made, unsigned threads)
+    : body(std::move(on)), source(std::move(from)), map(std::move(made)), threads(threads) {
   if (body->surface() == nullptr) return;
   rows = body->surface()->on_rows(map);
   uv.resize(2 * rows.u.size());
@@ -35,11 +38,25 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
+/// @throws ResourceExhausted where maps would take far more memory than there is, before any of it is taken
+void check_memory(const TangentGraph& graph, int order) {
+  const GraphSize size{graph.size(), graph.dimension(), graph.transport_kind()};
+  const double machine = machine_memory();
+  const double least =
+      std::min(estimate_cost(size, Strategy::global, order).bytes, estimate_cost(size, Strategy::march, order).bytes);
+  constexpr double trust = 2;  // of the estimate
+  if (machine > 0 && least > trust * machine)
+    throw ResourceExhausted("maps on " + std::to_string(size.vertices) + " vertices take about " +
+                            detail::number(least / 1e9) + " GB of memory, but there are " +
+                            detail::number(machine / 1e9) + "; make the surface coarser");
+}
+
 SolverPtr make_solver(const BodyPtr& body, const py::dict& options, const py::object& report) {
   HeatOptions o = heat_options(options);
+  check_memory(body->graph(), o.order);
   return compute(report, py::none(), [body, o](const Progress& progress) mutable {
     o.progress = progress;
-    return std::make_shared<Solver>(body, LogMapSolver(body->graph(), o));
+    return std::make_shared<Solver>(Solver{body, LogMapSolver(body->graph(), o)});
   });
 }
 
@@ -73,15 +90,11 @@ py::list heat_maps(const SolverPtr& solver, const py::tuple& sources, const py::
     std::vector<PlacedSource> placed = solver->body->sources(from, axis);
     std::vector<Source> plain;
     for (const PlacedSource& p : placed) plain.push_back(p.source);
-    // One source takes another way than a block of one.
-    std::vector<LogMap> maps;
-    if (plain.size() == 1)
-      maps.push_back(solver->solver.solve(plain[0], o));
-    else
-      maps = solver->solver.solve(plain, o);
+    std::vector<LogMap> maps = solver->solver.solve(plain, o);
     std::vector<MapPtr> result;
     for (std::size_t k = 0; k < maps.size(); ++k)
-      result.push_back(std::make_shared<Map>(solver->body, std::move(placed[k]), std::move(maps[k])));
+      result.push_back(std::make_shared<Map>(solver->body, std::move(placed[k]), std::move(maps[k]),
+                                             o.threads.value_or(solver->solver.options().threads)));
     return result;
   }));
 }
@@ -97,8 +110,8 @@ std::vector<MapPtr> solve_exactly(const BodyPtr& body, const Places& from, const
   detail::parallel_chunks(static_cast<Offset>(from.size()), 1, threads, [&](Offset k, Offset) {
     naming(from.where(static_cast<std::size_t>(k)), [&] {
       const SurfacePoint point = body->point(from.places[k]);
-      result[k] =
-          std::make_shared<Map>(body, body->surface()->source(point, axis), geodesics.log_map(point, axis, options));
+      result[k] = std::make_shared<Map>(body, body->surface()->source(point, axis),
+                                        geodesics.log_map(point, axis, options), threads);
     });
     const auto share = static_cast<double>(++done) / static_cast<double>(from.size());
     if (from.size() > 1) progress.step("exact maps", share);
@@ -110,6 +123,7 @@ py::list exact_maps(const BodyPtr& body, const py::tuple& sources, const py::obj
                     const py::object& report) {
   ExactMapOptions o;
   read(options, "radius", o.radius);
+  read(options, "tolerance", o.tolerance);
   read(options, "frames", o.frames);
   unsigned threads = 0;
   read(options, "threads", threads);
@@ -170,8 +184,7 @@ std::vector<double> by_rows(const Map& map, std::span<const double> values, std:
 }
 
 py::array quality(const MapPtr& m) {
-  return owned(compute(py::none(), py::none(),
-                       [m](const Progress&) { return by_rows(*m, map_quality(m->body->graph(), m->map), 1); }));
+  return owned(compute([m] { return by_rows(*m, map_quality(m->body->graph(), m->map, m->threads), 1); }));
 }
 
 void require_frames(const Map& map) {
@@ -181,33 +194,37 @@ void require_frames(const Map& map) {
 py::array frames(const MapPtr& m) {
   require_frames(*m);
   const py::ssize_t d = m->map.dimension();
-  return owned<double>(released([&] { return by_rows(*m, m->map.frames(), static_cast<std::size_t>(d * d)); }),
+  return owned<double>(compute([=] { return by_rows(*m, m->map.frames(), static_cast<std::size_t>(d * d)); }),
                        {m->body->rows(), d, d});
+}
+
+/// Rows x 2 vectors of space.
+std::vector<Vec3> axes_in_space(const Map& map) {
+  const auto frames = map.map.frames();
+  std::vector<Vec3> result(2 * static_cast<std::size_t>(map.surface().rows().row_count()), Vec3{nan, nan, nan});
+  for_rows(map, [&](std::size_t row, std::size_t vertex) {
+    const auto at = map.body->graph().frame(static_cast<Index>(vertex));
+    if (!at) return;
+    const double* U = frames.data() + 4 * vertex;
+    for (std::size_t a = 0; a < 2; ++a)
+      for (std::size_t c = 0; c < 3; ++c) result[2 * row + a][c] = U[a] * at->x[c] + U[2 + a] * at->y[c];
+  });
+  return result;
 }
 
 /// The source's axes carried to every row, as vectors of space: rows x 2 x 3.
 py::array axes(const MapPtr& m) {
   require_frames(*m);
-  const auto frames = m->map.frames();
-  std::vector<Vec3> result(2 * static_cast<std::size_t>(m->surface().rows().row_count()), Vec3{nan, nan, nan});
-  const auto put = [&](std::size_t row, std::size_t vertex) {
-    const auto at = m->body->graph().frame(static_cast<Index>(vertex));
-    if (!at) return;
-    const double* U = frames.data() + 4 * vertex;
-    for (std::size_t a = 0; a < 2; ++a)
-      for (std::size_t c = 0; c < 3; ++c) result[2 * row + a][c] = U[a] * at->x[c] + U[2 + a] * at->y[c];
-  };
-  released([&] { for_rows(*m, put); });
-  return owned<Vec3, double>(std::move(result), {m->body->rows(), 2, 3});
+  return owned<Vec3, double>(compute([m] { return axes_in_space(*m); }), {m->body->rows(), 2, 3});
 }
 
 py::array gradient(const MapPtr& m) {
   require_frames(*m);
-  return owned(released([&] { return distance_gradients(m->surface(), m->map, m->rows); }));
+  return owned(compute([m] { return distance_gradients(m->surface(), m->map, m->rows); }));
 }
 
 py::array corners(const MapPtr& m) {
-  std::vector<Vec2> result = released([&] { return m->surface().on_corners(m->map); });
+  std::vector<Vec2> result = compute([m] { return m->surface().on_corners(m->map); });
   const auto n = static_cast<py::ssize_t>(result.size());
   return owned<Vec2, double>(std::move(result), {n, 2});
 }
@@ -236,7 +253,10 @@ py::tuple source(const MapPtr& m) {
   py::object frame = py::none(), row = py::none();
   if (s.frame) frame = owned(std::vector<Vec3>{s.frame->x, s.frame->y, s.frame->normal});
   if (s.row) row = py::int_(s.row->index);
-  return py::make_tuple(owned(std::vector<double>{s.position[0], s.position[1], s.position[2]}), frame, row);
+  const bool in_space = s.frame || m->body->surface() != nullptr || m->body->grid() != nullptr;
+  py::object position = py::none();
+  if (in_space) position = owned(std::vector<double>{s.position[0], s.position[1], s.position[2]});
+  return py::make_tuple(position, frame, row);
 }
 
 }  // namespace

@@ -9,7 +9,7 @@ namespace py = pybind11;
 
 PYBIND11_MODULE(_core, module) {
   module.doc() = "The C++ library under the package ahm. Not for direct use: its functions trust their arguments.";
-  module.def("wait_for_background", &ahm::python::wait_for_background);
+  module.def("end", &ahm::python::end);
   ahm::python::add_errors(module);
   ahm::python::add_surfaces(module);
   ahm::python::add_files(module);

@@ -18,7 +18,7 @@ namespace {
 
 template <class S>
 BodyPtr body_of(S&& surface) {
-  return std::make_shared<Body>(std::unique_ptr<const Surface>(std::make_unique<S>(std::move(surface))));
+  return std::make_shared<Body>(std::unique_ptr<const Surface>(std::make_unique<S>(std::forward<S>(surface))));
 }
 
 BodyPtr triangle_mesh(const Doubles& points, const Indices& faces, const py::dict& options, const py::object& report) {
@@ -81,7 +81,9 @@ BodyPtr point_cloud(const Doubles& points, const py::object& normals, const py::
 BodyPtr grid(const Indices& shape, const Doubles& spacing, const Doubles& origin, const Bytes& blocked) {
   const auto copy = [](const auto& array) { return std::vector(numbers(array).begin(), numbers(array).end()); };
   grid::Grid g{copy(shape), copy(spacing), copy(origin), copy(blocked)};
-  return std::make_shared<Body>(std::make_unique<const grid::GridGraph>(std::move(g)));
+  return compute(py::none(), py::none(), [g = std::move(g)](const Progress&) mutable {
+    return std::make_shared<Body>(std::make_unique<const grid::GridGraph>(std::move(g)));
+  });
 }
 
 /// Axes and origins, (n, 4, 3): origin, x, y, normal.
@@ -106,17 +108,21 @@ BodyPtr graph(const Offsets& begin, const Indices& neighbors, const Doubles& wei
   if (double h = 0; read(options, "mean_edge_length", h)) data.mean_edge_length = h;
   read(options, "length_unit", data.length_unit);
   read(options, "is_delaunay", data.is_delaunay);
-  auto made = std::make_unique<const CsrGraph>(std::move(data));
-  validate(*made);
-  return std::make_shared<Body>(std::unique_ptr<const TangentGraph>(std::move(made)));
+  return compute(py::none(), py::none(), [data = std::move(data)](const Progress&) mutable {
+    auto made = std::make_unique<const CsrGraph>(std::move(data));
+    validate(*made);
+    return std::make_shared<Body>(std::unique_ptr<const TangentGraph>(std::move(made)));
+  });
 }
 
 py::object positions(const BodyPtr& body) {
   if (const Surface* s = body->surface()) return viewed<double>(s->positions(), {length(s->positions()), 3}, body);
   if (body->grid() == nullptr) return py::none();
-  std::vector<Vec3> all;
-  for (Index v = 0; v < body->rows(); ++v) all.push_back(body->grid()->position(Vertex(v)));
-  return owned(std::move(all));
+  return owned(compute([=] {
+    std::vector<Vec3> all(static_cast<std::size_t>(body->rows()));
+    for (Index v = 0; v < body->rows(); ++v) all[v] = body->grid()->position(Vertex(v));
+    return all;
+  }));
 }
 
 py::object faces(const BodyPtr& body) {
@@ -128,7 +134,7 @@ py::object faces(const BodyPtr& body) {
 
 /// Per vertex; None without.
 py::object frames(const BodyPtr& body) {
-  std::vector<Frame> result = released([&] {
+  std::vector<Frame> result = compute([=] {
     std::vector<Frame> all;
     for (Index v = 0; v < body->graph().size(); ++v) {
       const auto frame = body->graph().frame(v);
@@ -158,35 +164,39 @@ py::array row_of_vertex(const BodyPtr& body) {
   return owned(std::move(result));
 }
 
+/// The stars of all vertices, one after the other.
+CsrGraphData rows_of(const TangentGraph& graph) {
+  CsrGraphData all;
+  all.row_begin = {0};
+  for (Index v = 0; v < graph.size(); ++v) {
+    const Star star = graph.star(v);
+    all.neighbors.insert(all.neighbors.end(), star.neighbors.begin(), star.neighbors.end());
+    all.weights.insert(all.weights.end(), star.weights.begin(), star.weights.end());
+    all.logs.insert(all.logs.end(), star.logs.begin(), star.logs.end());
+    all.transports.insert(all.transports.end(), star.transports.begin(), star.transports.end());
+    all.row_begin.push_back(static_cast<Offset>(all.neighbors.size()));
+    all.masses.push_back(graph.mass(v));
+  }
+  return all;
+}
+
 /// indptr, indices, weights, logs, transports, masses; lengths in graph units.
 py::tuple csr(const BodyPtr& body) {
   const TangentGraph& g = body->graph();
-  std::vector<Offset> begin{0};
-  std::vector<Index> neighbors;
-  std::vector<double> weights, logs, transports, masses;
-  const auto add = [&](Index v) {
-    const Star star = g.star(v);
-    neighbors.insert(neighbors.end(), star.neighbors.begin(), star.neighbors.end());
-    weights.insert(weights.end(), star.weights.begin(), star.weights.end());
-    logs.insert(logs.end(), star.logs.begin(), star.logs.end());
-    transports.insert(transports.end(), star.transports.begin(), star.transports.end());
-    begin.push_back(static_cast<Offset>(neighbors.size()));
-    masses.push_back(g.mass(v));
-  };
-  released([&] {
-    for (Index v = 0; v < g.size(); ++v) add(v);
-  });
-  const auto edges = static_cast<py::ssize_t>(neighbors.size());
+  CsrGraphData all = compute([body] { return rows_of(body->graph()); });
+  const auto edges = static_cast<py::ssize_t>(all.neighbors.size());
   const py::ssize_t d = g.dimension();
   const Shape layout = g.transport_kind() == TransportKind::rotation2 ? Shape{edges, 2} : Shape{edges, d, d};
-  return py::make_tuple(owned(std::move(begin)), owned(std::move(neighbors)), owned(std::move(weights)),
-                        owned<double>(std::move(logs), {edges, d}), owned<double>(std::move(transports), layout),
-                        owned(std::move(masses)));
+  return py::make_tuple(owned(std::move(all.row_begin)), owned(std::move(all.neighbors)), owned(std::move(all.weights)),
+                        owned<double>(std::move(all.logs), {edges, d}),
+                        owned<double>(std::move(all.transports), layout), owned(std::move(all.masses)));
 }
 
 /// Makes the triangles of exact geodesics now.
 void lay_out(const BodyPtr& body, const py::object& report) {
-  compute(report, py::none(), [body](const Progress&) { return &body->geodesics(); });
+  compute(report, py::none(), [body](const Progress& progress) {
+    return in_one_step(progress, "triangles", [&] { return &body->geodesics(); });
+  });
 }
 
 py::object figure(const Figure& figure) {
@@ -259,17 +269,20 @@ void add_surfaces(py::module_& module) {
       .def_property_readonly("mean_edge_length",
                              [](const Body& b) { return b.graph().mean_edge_length() * b.graph().length_unit(); })
       .def_property_readonly("has_surface", [](const Body& b) { return b.surface() != nullptr; })
+      .def_property_readonly("has_positions",
+                             [](const Body& b) { return b.surface() != nullptr || b.grid() != nullptr; })
       .def_property_readonly("is_delaunay", [](const Body& b) { return b.graph().is_delaunay(); })
       .def("positions", &positions)
       .def("faces", &faces)
-      .def("normals", [](const Body& b) { return owned(released([&] { return b.surface_for("normals").normals(); })); })
+      .def("normals",
+           [](const BodyPtr& b) { return owned(compute([=] { return b->surface_for("normals").normals(); })); })
       .def("frames", &frames)
       .def("vertex_of_row", &vertex_of_row)
       .def("row_of_vertex", &row_of_vertex)
       .def("csr", &csr)
       .def("lay_out", &lay_out)
       .def("components",
-           [](const Body& b) { return owned(released([&] { return connected_components(b.graph()).of_vertex; })); })
+           [](const BodyPtr& b) { return owned(compute([=] { return connected_components(b->graph()).of_vertex; })); })
       .def("report", &report)
       .def("warnings", &warnings)
       .def("closest_points", &closest_points);

@@ -1,4 +1,5 @@
 // Inverse maps and what stands on them: decals and tool paths; atlases.
+#include <unordered_set>
 #include <utility>
 
 #include "ahm/applications/atlas/texture_atlas.hpp"
@@ -33,23 +34,33 @@ py::array triangles(const InversePtr& map) {
   return viewed<Index>(map->triangles(), {length(map->triangles()), 3}, map);
 }
 
-/// Position, normal, du, dv, rows of the triangle (-1: none) and weights, for each (u, v).
+/// What lies at n coordinates: NaN, and -1, where nothing does.
+struct Found {
+  explicit Found(std::size_t n)
+      : position(n, none), normal(n, none), du(n, none), dv(n, none), weights(n, none), rows(n, Triangle{-1, -1, -1}) {}
+
+  static constexpr Vec3 none{nan, nan, nan};
+  std::vector<Vec3> position, normal, du, dv, weights;
+  std::vector<Triangle> rows;
+};
+
+/// Position, normal, du, dv, rows of the triangle and weights, for each (u, v).
 py::tuple at(const InversePtr& map, const Doubles& uv) {
-  const auto n = static_cast<std::size_t>(uv.shape(0));
-  const Vec3 none{nan, nan, nan};
-  std::vector<Vec3> position(n, none), normal(n, none), du(n, none), dv(n, none), weights(n, none);
-  std::vector<Triangle> rows(n, Triangle{-1, -1, -1});
-  {
-    const py::gil_scoped_release release;
-    for (std::size_t k = 0; k < n; ++k)
-      if (const auto point = map->at(uv.data()[2 * k], uv.data()[2 * k + 1])) {
-        position[k] = point->position, normal[k] = point->normal, du[k] = point->du, dv[k] = point->dv;
-        rows[k] = point->vertices, weights[k] = point->weights;
-      }
-  }
-  return py::make_tuple(owned(std::move(position)), owned(std::move(normal)), owned(std::move(du)),
-                        owned(std::move(dv)), owned<Triangle, Index>(std::move(rows), {uv.shape(0), 3}),
-                        owned(std::move(weights)));
+  const std::span<const double> given = numbers(uv);
+  Found found = compute(py::none(), uv, [map, given](const Progress& progress) {
+    Found all(given.size() / 2);
+    for (std::size_t k = 0; 2 * k < given.size(); ++k) {
+      if (k % 1024 == 0) progress.step("inverse", 0);
+      const auto point = map->at(given[2 * k], given[2 * k + 1]);
+      if (!point) continue;
+      all.position[k] = point->position, all.normal[k] = point->normal, all.du[k] = point->du, all.dv[k] = point->dv;
+      all.rows[k] = point->vertices, all.weights[k] = point->weights;
+    }
+    return all;
+  });
+  return py::make_tuple(owned(std::move(found.position)), owned(std::move(found.normal)), owned(std::move(found.du)),
+                        owned(std::move(found.dv)), owned<Triangle, Index>(std::move(found.rows), {uv.shape(0), 3}),
+                        owned(std::move(found.weights)));
 }
 
 DecalOptions decal_options(const py::dict& options) {
@@ -131,6 +142,16 @@ AtlasAndFaces make(const Maker& by, const std::vector<Vertex>& sources, const Re
   return result;
 }
 
+/// The vertices of charts, each once.
+std::vector<Vertex> charted(const Body& body, const Places& at) {
+  std::vector<Vertex> vertices = body.vertices_near(at);
+  std::unordered_set<Index> seen;
+  for (std::size_t k = 0; k < vertices.size(); ++k)
+    if (!seen.insert(vertices[k].index).second)
+      throw InvalidArgument(at.where(k) + ": a chart starts at this row already");
+  return vertices;
+}
+
 py::tuple atlas(const py::object& maker, const py::object& sources, Index charts, const py::dict& options,
                 const py::object& report) {
   std::optional<Places> at;
@@ -143,10 +164,9 @@ py::tuple atlas(const py::object& maker, const py::object& sources, Index charts
   const Maker by(maker);
   AtlasAndFaces made = compute(report, py::none(), [=](const Progress& progress) {
     const TangentGraph& graph = by.body()->graph();
-    return make(by,
-                at ? by.body()->vertices_near(*at)
-                   : farthest_points(graph, Vertex(0), std::min(charts, graph.size()), progress),
-                refined ? &refine : nullptr, pack_options);
+    const std::vector<Vertex> from =
+        at ? charted(*by.body(), *at) : farthest_points(graph, Vertex(0), std::min(charts, graph.size()), progress);
+    return in_one_step(progress, "charts", [&] { return make(by, from, refined ? &refine : nullptr, pack_options); });
   });
   using namespace py::literals;
   std::vector<Index> rows;
@@ -156,12 +176,13 @@ py::tuple atlas(const py::object& maker, const py::object& sources, Index charts
   }
   const auto corners = static_cast<py::ssize_t>(made.atlas.coordinates.size() / 2);
   const DistortionSummary& d = made.distortion.all;
-  return py::make_tuple(owned(std::move(made.faces.points)), owned(std::move(made.faces.begin)),
-                        owned(std::move(made.faces.corner_points)), owned(std::move(made.atlas.chart_of_face)),
-                        owned<double>(std::move(made.atlas.coordinates), {corners, 2}),
-                        owned<double>(std::move(made.packed.coordinates), {corners, 2}), owned(std::move(rows)),
-                        py::dict("mean"_a = d.mean, "median"_a = d.median, "percentile_95"_a = d.percentile_95,
-                                 "largest"_a = d.largest, "flipped"_a = d.flipped, "flipped_area"_a = d.flipped_area));
+  return py::make_tuple(
+      owned(std::move(made.faces.points)), owned(std::move(made.faces.begin)),
+      owned(std::move(made.faces.corner_points)), owned(std::move(made.atlas.chart_of_face)),
+      owned<double>(std::move(made.atlas.coordinates), {corners, 2}),
+      owned<double>(std::move(made.packed.coordinates), {corners, 2}), owned(std::move(rows)),
+      py::dict("mean"_a = d.mean, "median"_a = d.median, "percentile_95"_a = d.percentile_95, "largest"_a = d.largest,
+               "collapsed_area"_a = d.collapsed_area, "flipped"_a = d.flipped, "flipped_area"_a = d.flipped_area));
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 """Surfaces that several tests use."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -31,6 +33,18 @@ def flat_surfaces(plane):
         "cloud": ahm.PointCloud(V, np.tile([0.0, 0.0, 1.0], (len(V), 1))),
         "grid": ahm.Grid((13, 11), 0.25),
     }
+
+
+# What C++ has names for and Python has not.
+WORDS_OF_CPP = re.compile(
+    r"::|std\b|bad_alloc|nullptr|\bspan\b|\w+Options\b|\boptions\.|operator ?\(|\{(true|false)\}|incompatible function|_core\b"
+    r"|\b(Source|CsrGraph|Discretization|NonManifold|Vertex|Row|at_vertex|at_vertices|map_quality|row_begin|face_begin|of_points"
+    r"|curvature_directions|direction_in_frame|distance_gradient|exact_map|geodesic_path|on_rows|solve_scalar|solve_vector)\b")
+
+
+def words_of_cpp(error):
+    """Those in the text of an exception: none should be."""
+    return [found.group() for found in WORDS_OF_CPP.finditer(str(error))]
 
 
 def in_plane(surface, rows):

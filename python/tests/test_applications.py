@@ -72,6 +72,7 @@ def test_distances_by_three_methods_on_the_plane(flat_surfaces):
         clear = np.abs(np.linalg.norm(P - P[0], axis=1) - np.linalg.norm(P - P[142], axis=1)) > 1e-9
         np.testing.assert_array_equal(nearest[clear], (np.linalg.norm(P - P[0], axis=1) > np.linalg.norm(P - P[142], axis=1))[clear])
     assert np.nanmax(ahm.distance(s, 0, radius=1.0)) <= 1.0
+    np.testing.assert_array_equal(ahm.distance(s, 0, targets=(1, 2)), ahm.distance(s, 0, targets=[1, 2]))
     np.testing.assert_allclose(ahm.distance(s, [[0.1, 0.2, 0]], targets=[[1.1, 0.2, 0], [0.1, 1.2, 0]], method="exact"), 1.0)
 
 
@@ -227,7 +228,9 @@ def test_atlases_cover_every_face_and_stay_within_the_texture():
     fine = ahm.atlas(mesh, charts=4, max_distortion=1.5, size=512)
     assert fine.distortion["percentile_95"] < 1.5 and len(fine.sources) > len(rough.sources)
     assert (fine.chart >= 0).all() and fine.uv.min() >= 0 and fine.uv.max() <= 1
-    assert len(fine.uv) == sum(len(f) for f in fine.faces)
+    assert fine.faces.shape == (1600, 3) and fine.uv.shape == (4800, 2)
+    mixed = ahm.PolygonMesh(ahm.shapes.plane(3, 2)[0], [[0, 1, 4, 3], [1, 2, 5], [1, 5, 4]])
+    assert [len(f) for f in ahm.atlas(mixed, charts=1, size=64).faces] == [4, 3, 3]
 
 
 def test_clouds_have_atlases_too(sphere):

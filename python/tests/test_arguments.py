@@ -1,11 +1,14 @@
 """Wrong arguments raise errors that name argument, index and value; none crashes, hangs or passes."""
 
+import os
 import pickle
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 import ahm
+from conftest import words_of_cpp
 
 NAN = float("nan")
 
@@ -31,6 +34,31 @@ NAN = float("nan")
     (lambda s: ahm.log_map(s, 0, u_axis=[0, 1]), r"u_axis: shape \(3,\) is needed, not \(2,\)"),
     (lambda s: ahm.log_map(s, 0, u_axis=s.normals[0]), r"source: "),
     (lambda s: ahm.log_map(s, 0, method="magic"), r"method: 'magic' is none of"),
+    (lambda s: ahm.log_map(s, (-1, [1, 0, 0])), r"source: face -1 is out of range; there are 1280 faces"),
+    (lambda s: ahm.log_map(s, (0.5, [1, 0, 0])), r"source: a row, a position, \(face, barycentric\)"),
+    (lambda s: ahm.log_map(s, {"row": 3}), r"source: a row, a position"),
+    (lambda s: ahm.log_map(s, 0, u_axis=[0, 0, 0]), r"u_axis: is zero"),
+    (lambda s: ahm.trace(s, 0, [0, 0, 0]), r"direction: is zero"),
+    (lambda s: ahm.LogMapSolver("scan.ply"), r"surface: 'scan.ply' is a name; ahm.read reads files"),
+    (lambda s: ahm.LogMapSolver({"points": 1}), r"surface: dict has no points"),
+    (lambda s: ahm.atlas(s, [3, 7, 3]), r"sources\[2\]: a chart starts at this row already"),
+    (lambda s: ahm.local_maps(s, 0.3).padded(dtype=int), r"dtype: int64 cannot hold coordinates"),
+    (lambda s: ahm.local_maps(s, 0.3).padded(dtype="f99"), r"dtype: 'f99' is no type"),
+    (lambda s: ahm.Graph([0, 1, 2], [1, 0], [1, 1], [[NAN], [-1]], np.ones((2, 1, 1)), [1, 1]), r"logs\[0, 0\]: nan"),
+    (lambda s: ahm.read(None), r"path: a name is needed"),
+    (lambda s: ahm.TriangleMesh(s.points, [[0, 1, 10**30]]), r"faces\[0, 2\]: 1000000000000000000000000000000 is out of range"),
+    (lambda s: ahm.TriangleMesh([[0, 0, None]], s.faces), r"vertices\[0, 2\]: a real number is needed, not NoneType"),
+    (lambda s: ahm.Graph([0, 1, 2], [1, 0], [1, 1], np.empty((2, 0)), np.ones((2, 2)), [1, 1]), r"logs: shape \(2, d\)"),
+    (lambda s: ahm.Graph([0, 1, 2], [1, 0], [1, 1], [[1], [-1]], [[1], [2, 3]], [1, 1]), r"transports: not an array"),
+    (lambda s: ahm.Graph(*s.graph[:6], frames=np.full((642, 4, 3), NAN)), r"frames\[0, 0, 0\]: nan"),
+    (lambda s: ahm.coverage(ahm.log_map(s, 0), 1.0, 0.1, step=0), r"step: 0.0 is not greater than 0"),
+    (lambda s: ahm.coverage(ahm.log_map(s, 0), 1.0, 1e-7), r"about 6.28319e\+14 points"),
+    (lambda s: ahm.local_maps(s, 0.3).csr(["a"]), r"values: numbers are needed"),
+    (lambda s: ahm.surface((s.points, np.array(3))), r"faces: 2 dimensions"),
+    (lambda s: ahm.surface((s.points, iter(s.faces))), r"faces: real numbers are needed"),
+    (lambda s: ahm.surface((s.points, "abc")), r"faces: real numbers are needed"),
+    (lambda s: ahm.surface((3, 4)), r"vertices: shape \(n, 3\)"),
+    (lambda s: ahm.read("a\0b.ply"), r"path: .*null"),
     (lambda s: ahm.local_maps(s, radius=0), r"radius"),
     (lambda s: ahm.local_maps(s), r"radius: is missing"),
     (lambda s: ahm.local_maps(s, 0.2, sources=[1, 2, -7]), r"sources\[2\]: row -7"),
@@ -82,8 +110,71 @@ NAN = float("nan")
     (lambda s: ahm.log_map(ahm.PointCloud(s.points), 0, method="exact"), r"faces"),
 ])
 def test_errors_name_argument_index_and_value(sphere, call, text):
-    with pytest.raises((ValueError, TypeError), match=text):
+    with pytest.raises((ValueError, TypeError), match=text) as caught:
         call(sphere)
+    assert not words_of_cpp(caught.value), caught.value
+
+
+V6 = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0], [0, 0, 1], [2, 0, 0]]
+TWISTED = [[0, 0, 0], [3, 2, 0], [4, 1, 0], [3, 0, 0], [0, 1, 0], [-1, 0.5, 0]]  # a bow
+
+
+@pytest.mark.parametrize("call, text", [
+    (lambda f: ahm.TriangleMesh(V6, [[0, 1, 2], [1, 0, 3], [0, 1, 4]]), r"edges have more.*non_manifold='split'"),
+    (lambda f: ahm.TriangleMesh(V6, [[0, 1, 2], [0, 3, 4]]), r"bow ties.*non_manifold='split'"),
+    (lambda f: ahm.PolygonMesh(TWISTED, [[0, 1, 2, 3, 4, 5]], discretization="refined"), r"twisted.*discretization='polygons'"),
+    (lambda f: ahm.ExactGeodesics(f["polygons"]), r"discretization='refined', or use method 'heat'"),
+    (lambda f: ahm.ExactGeodesics(ahm.PolygonMesh(TWISTED, [[0, 1, 2, 3, 4, 5]])), r"method 'heat'"),
+    (lambda f: ahm.ExactGeodesics(f["cloud"]), r"method 'heat'"),
+    (lambda f: ahm.PointCloud([[0, 0, 0], [1, 0, 0], [0, NAN, 0], [1, 1, 0]]), r"drop_non_finite=True"),
+    (lambda f: ahm.LogMapSolver(f["triangles"], t_coef=1e300), r"t_coef"),
+    (lambda f: ahm.LogMapSolver(f["cloud"]).log_map(0, frames=False).sample([[0.1, 0.1, 0.0]]), r"frames=True"),
+    (lambda f: ahm.LogMapSolver(f["cloud"]).log_map(0, frames=False).gradient, r"frames=True"),
+    (lambda f: ahm.coverage(ahm.log_map(f["cloud"], 0, frames=False), 1, 0.1), r"frames=True"),
+    (lambda f: ahm.LogMapSolver(f["cloud"]).log_maps([0], spread=False)[0].quality, r"spread=True"),
+    (lambda f: ahm.stroke(f["cloud"], [0, 12]).map.quality, r"no quality"),
+    (lambda f: ahm.curvature(ahm.Grid((3, 3, 3))), r"mesh or a cloud"),
+    (lambda f: ahm.ExactGeodesics(f["grid"]), r"mesh or a cloud"),
+    (lambda f: ahm.decal(ahm.log_map(f["grid"], 0), 1, 1), r"mesh or a cloud"),
+    (lambda f: ahm.log_map(f["grid"], 0).corner_uv, r"mesh or a cloud"),
+    (lambda f: ahm.log_map(f["grid"], 0, u_axis=[1, 0, 0]), r"source: a u axis needs a mesh or a cloud"),
+    (lambda f: ahm.log_map(f["grid"], [99.0, 0.0]), r"source: .*99.*outside the grid"),
+    (lambda f: ahm.atlas(f["grid"]), r"mesh or a cloud"),
+    (lambda f: ahm.atlas(f["triangles"], charts=90, size=16), r"do not fit"),
+    (lambda f: ahm.atlas(f["triangles"], size=3), r"size is 3"),
+    (lambda f: ahm.atlas(f["triangles"], max_distortion=0.5), r"max_distortion is 0.5"),
+    (lambda f: ahm.InverseMap(ahm.log_map(f["triangles"], 0), max_stretch=0.5), r"max_stretch"),
+    (lambda f: ahm.stroke(f["triangles"], [0, 12], shape="circle"), r"closed"),
+    (lambda f: ahm.stroke(f["triangles"], [0, 12, 0]), r"turns back"),
+    (lambda f: ahm.stroke(f["triangles"], [[0, 0, 0], [1e9, 0, 0]]), r"points"),
+    (lambda f: ahm.karcher_mean(f["triangles"], [0, 1], [0, 0]), r"weights: all are 0"),
+    (lambda f: ahm.karcher_mean(f["triangles"], [0, 1], [1, -1]), r"weights\[1\]: -1.0 is less than 0"),
+    (lambda f: ahm.karcher_mean(f["triangles"], [0, 142], radius=0.1), r"point 1, .*raise the radius"),
+    (lambda f: ahm.farthest_points(f["triangles"], 144), r"count.*144"),
+    (lambda f: ahm.local_maps(f["triangles"], float("inf")), r"radius: inf"),
+    (lambda f: ahm.PointCloud(f["cloud"].points, rows=[3, 2, 5]), r"rows\[1\]: 2 follows 3"),
+    (lambda f: ahm.PointCloud(f["cloud"].points, k=2), r"k is 2"),
+    (lambda f: ahm.PointCloud(f["cloud"].points, max_edge_ratio=0.5), r"max_edge_ratio is 0.5"),
+    (lambda f: ahm.PointCloud([[0, 0, 0], [1, 0, 0], [2, 0, 0], [3, 0, 0]]), r"on a line"),
+    (lambda f: ahm.LogMapSolver(f["triangles"], accuracy=0.5), r"accuracy is 0.5"),
+    (lambda f: ahm.Grid((70000, 70000)), r"more vertices than can be numbered"),
+    (lambda f: ahm.Grid((3, 3), blocked=np.ones((2, 2), bool)), r"all 4 cells"),
+    (lambda f: ahm.Grid((3, 3), spacing=0), r"spacing 0"),
+    (lambda f: ahm.Graph([0, 2, 1], [1], [1], [[1]], np.ones((1, 1, 1)), [1, 1]), r"indptr: it must rise from 0 to the 1 "),
+    (lambda f: ahm.Graph([0, 1, 2], [1, 5], [1, 1], [[1], [-1]], np.ones((2, 1, 1)), [1, 1]), r"indices\[1\]: 5"),
+    (lambda f: ahm.Graph([0, 1, 2], [1, 0], [1, 2], [[1], [-1]], np.ones((2, 1, 1)), [1, 1]), r"another weight"),
+    (lambda f: ahm.Graph([0, 1, 2], [1, 0], [1, 1], [[1], [-1]], np.ones((2, 2)), [1, 1]), r"transports: \(cos, sin\)"),
+    (lambda f: ahm.Graph([0, 1, 2], [1, 0], [1, 1], [[1], [-1]], 2 * np.ones((2, 1, 1)), [1, 1]), r"not orthogonal"),
+    (lambda f: ahm.Graph([0, 1, 2], [1, 0], [1, 1], [[1], [-1]], np.ones((2, 1, 1)), [1, 0]), r"mass of vertex 1 is 0"),
+    (lambda f: ahm.Graph([0, 1, 2], [1, 0], [1, 1], [[1], [-1]], np.ones((2, 1, 1)), [1]), r"masses: shape \(2,\)"),
+    (lambda f: ahm.transport(f["grid"], 0, [1, 2, 3]), r"vectors: "),
+    (lambda f: ahm.read(__file__), r"unknown file type"),
+    (lambda f: ahm.trace(f["grid"], 0, [1, 0, 0]), r"start: .*geodesic needs a mesh or a cloud|a geodesic needs a mesh or a cloud"),
+])
+def test_errors_of_the_library_speak_python(flat_surfaces, call, text):
+    with pytest.raises(Exception, match=text) as caught:
+        call(flat_surfaces)
+    assert isinstance(caught.value, (ahm.Error, ValueError, TypeError)) and not words_of_cpp(caught.value), caught.value
 
 
 def test_types_that_are_no_numbers_raise_type_errors(sphere):
@@ -113,6 +204,26 @@ def test_exceptions_are_pythons_and_the_librarys(sphere, tmp_path):
         ahm.log_map(unused, 642)
     assert caught.value.fault == "row_unused" and issubclass(ahm.ResourceExhausted, MemoryError)
     assert issubclass(ahm.NotPositiveDefinite, RuntimeError) and pickle.loads(pickle.dumps(caught.value)).args
+
+
+def test_files_may_have_any_name(tmp_path):
+    path = os.fsencode(tmp_path) + b"/\xff\xfe.obj"
+    with pytest.raises(ahm.IoError) as caught:
+        ahm.read(path)
+    assert os.fsencode(str(caught.value)).count(path) == 1
+    with open(path, "w") as file:
+        file.write("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    for name in (path, os.fsdecode(path), Path(os.fsdecode(path))):
+        assert len(ahm.read(name)) == 3
+
+
+def test_no_points_give_no_results(sphere):
+    m = ahm.log_map(sphere, 0)
+    for none in ([], np.empty((0, 3)), np.empty(0, int)):
+        assert m.sample(none).shape == (0, 2) and m.inverse(np.empty((0, 2))).position.shape == (0, 3)
+        for method in ("unfold", "heat", "exact"):
+            assert ahm.distance(sphere, 0, targets=none, method=method).shape == (0,)
+        assert len(ahm.local_maps(sphere, 0.3, sources=none)) == 0
 
 
 def random_thing(rng):
@@ -155,7 +266,8 @@ def test_random_arguments_give_results_or_errors(sphere, plane):
         for call in calls:
             try:
                 call(random_thing(rng), random_thing(rng))
-            except (ValueError, TypeError):
+            except (ValueError, TypeError) as error:
+                assert not words_of_cpp(error), error
                 refused += 1
     assert refused > 500
 
@@ -180,6 +292,12 @@ def test_objects_of_other_packages_are_taken_by_what_they_have(plane, sphere):
     for kind in ("tetra", "hexahedron"):
         with pytest.raises(ValueError, match=f"'{kind}' are no faces"):
             ahm.surface(Thing(points=V, cells_dict={"triangle": F, kind: np.array([[0, 1, 2, 3]])}))
+    mixed = np.array([3, 0, 1, 14, 4, 1, 2, 15, 14])
+    assert [len(face) for face in ahm.surface(Thing(points=V, faces=mixed)).faces] == [3, 4]
+    for padded, text in (([-1, 0, 1, 2], r"faces\[0\]: a face of -1"), ([3, 0, 1, 13, 4, 1, 2], r"faces\[4\]: a face of 4 corners, but 2"),
+                         ([3, 0, 1.5, 13], r"faces\[2\]: 1.5")):
+        with pytest.raises(ValueError, match=text):
+            ahm.surface(Thing(points=V, faces=np.array(padded)))
     assert ahm.surface(sphere) is sphere
     with pytest.raises(TypeError, match="no points"):
         ahm.surface(3)
@@ -215,6 +333,16 @@ def test_tensors_are_arrays(sphere):
     mesh = Columns(vertex=Columns(positions=points), triangle=Columns(indices=Tensor(sphere.faces.astype(np.int64))))
     assert repr(ahm.surface(mesh)) == repr(sphere)
     assert repr(ahm.TriangleMesh(points, Tensor(sphere.faces))) == repr(sphere)
+    assert repr(ahm.surface((points, Tensor(sphere.faces)))) == repr(sphere)
+    objects = ahm.TriangleMesh(sphere.points.astype(object), sphere.faces.astype(object))
+    np.testing.assert_array_equal(objects.points, sphere.points)
+
+    class Elsewhere(Tensor):
+        def __array__(self, dtype=None):
+            raise RuntimeError("call detach() first")
+
+    with pytest.raises(ValueError, match="vertices: .*detach"):
+        ahm.TriangleMesh(Elsewhere(sphere.points), sphere.faces)
 
 
 def test_files_are_read_as_what_they_hold(tmp_path):

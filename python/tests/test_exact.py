@@ -26,6 +26,21 @@ def test_many_exact_maps_are_the_single_ones(sphere):
     assert near.distance[near.ok].max() <= 0.5 and not near.ok.all()
 
 
+def test_a_tolerance_bounds_the_error_of_distances(sphere):
+    geodesics = ahm.ExactGeodesics(sphere)
+    exact, near = geodesics.log_map(5), geodesics.log_map(5, tolerance=1e-2)
+    assert not np.array_equal(near.distance, exact.distance)
+    np.testing.assert_allclose(near.distance, exact.distance, rtol=1e-2)
+    for again in (geodesics.log_maps([5], tolerance=1e-2)[0], ahm.log_map(sphere, 5, method="exact", tolerance=1e-2),
+                  pickle.loads(pickle.dumps(near))):
+        np.testing.assert_array_equal(again.distance, near.distance)
+    for bad in (0.2, -1e-3, float("nan")):
+        with pytest.raises(ValueError, match="tolerance"):
+            geodesics.log_map(5, tolerance=bad)
+    with pytest.raises(TypeError, match="method 'exact'"):
+        ahm.log_map(sphere, 5, tolerance=1e-2)
+
+
 def test_exact_geodesics_and_their_maps_pickle(sphere):
     geodesics = ahm.ExactGeodesics(sphere)
     assert repr(pickle.loads(pickle.dumps(geodesics))) == repr(geodesics)
@@ -139,6 +154,36 @@ def test_loops_around_nothing_shrink_and_taut_paths_keep_their_ends(flat_surface
     taut = ahm.geodesic_path(s, [0, 12, 142], taut=True)
     assert bent.length == pytest.approx(5.5) and taut.length == pytest.approx(np.hypot(3, 2.5))
     np.testing.assert_allclose(taut.points[[0, -1]], s.points[[0, 142]], atol=1e-12)
+
+
+def test_paths_and_traces_of_flat_clouds_are_straight(flat_surfaces):
+    cloud = flat_surfaces["cloud"]
+    start, end = np.array([0.5, 1.25, 0.0]), np.array([2.5, 0.75, 0.0])
+    path = ahm.geodesic_path(cloud, start, end)
+    assert path.face is None and path.barycentric is None and path.complete
+    assert path.length == pytest.approx(np.linalg.norm(end - start), abs=1e-12)
+    assert np.allclose(path.points[[0, -1]], [start, end], atol=1e-12)
+    assert np.abs(np.cross(path.points - start, end - start)).max() < 1e-12
+    line = ahm.trace(cloud, start, end - start)
+    assert np.allclose(line.points[-1], end, atol=1e-12) and line.complete
+    assert not ahm.trace(cloud, start, [1, 0, 0], 50).complete
+    for option in ("fast", "taut"):
+        with pytest.raises(ValueError, match=option + ".*faces"):
+            ahm.geodesic_path(cloud, 0, 5, **{option: True})
+
+
+def test_paths_over_clouds_go_in_pairs(sphere):
+    cloud = ahm.PointCloud(sphere.points)
+    starts, ends = [0, 5, [0.0, 0.6, 0.8]], [600, 7, 30]
+    for path, a, b in zip(ahm.geodesic_paths(cloud, starts, ends, pairwise=True), starts, ends):
+        np.testing.assert_array_equal(path.points, ahm.geodesic_path(cloud, a, b).points)
+    apart = ahm.PointCloud(np.concatenate([sphere.points, sphere.points + 9]))
+    found = ahm.geodesic_paths(apart, [0, 0], [5, 700], pairwise=True)
+    assert found[0].length > 0 and found[1] is None
+    with pytest.raises(ValueError, match="pairwise: .*pairwise=True"):
+        ahm.geodesic_paths(cloud, [0], [5, 6])
+    with pytest.raises(ValueError, match="fast: takes faces"):
+        ahm.geodesic_paths(cloud, [0], [5], pairwise=True, fast=True)
 
 
 def test_paths_in_pairs_are_the_single_ones(torus):

@@ -1,5 +1,6 @@
 """Threads, signals, forks, pickles, and the order in which things go away."""
 
+import copy
 import gc
 import os
 import pickle
@@ -14,6 +15,7 @@ import numpy as np
 import pytest
 
 import ahm
+import ahm.potpourri3d
 
 
 def run_python(code):
@@ -84,6 +86,7 @@ INTERRUPTED = {
     "paths": lambda mesh, arrays: ahm.geodesic_paths(mesh, [0, 1, 2], [39999] * 3, pairwise=True),
     "cloud": lambda mesh, arrays: ahm.PointCloud(arrays[0]),
     "spread points": lambda mesh, arrays: ahm.farthest_points(mesh, 8000),
+    "grid": lambda mesh, arrays: ahm.Grid((2000, 2000)),
     "building": lambda mesh, arrays: ahm.TriangleMesh(*arrays),
 }
 
@@ -125,6 +128,29 @@ def test_progress_is_reported_and_its_exceptions_end_the_computation(big, capsys
         ahm.LogMapSolver(big, progress=3)
 
 
+REPORTING = {
+    "front": lambda s, solver, p: ahm.distance(s, 0, progress=p),
+    "heat": lambda s, solver, p: ahm.distance(solver, 0, method="heat", progress=p),
+    "extend": lambda s, solver, p: ahm.extend(solver, 0, 1.0, progress=p),
+    "transport": lambda s, solver, p: ahm.transport(solver, 0, [1.0, 0.0], progress=p),
+    "curvature": lambda s, solver, p: ahm.curvature(s, progress=p),
+    "trace": lambda s, solver, p: ahm.trace(s, 0, [1.0, 0.0, 1.0], progress=p),
+    "path": lambda s, solver, p: ahm.geodesic_path(s, 0, 9, progress=p),
+    "cells": lambda s, solver, p: ahm.cells(s, [0, 9], progress=p),
+    "mean": lambda s, solver, p: ahm.karcher_mean(solver, [0, 9], progress=p),
+    "atlas": lambda s, solver, p: ahm.atlas(s, [0, 9, 77], progress=p),
+    "geodesics": lambda s, solver, p: ahm.ExactGeodesics(s, progress=p),
+    "stroke": lambda s, solver, p: ahm.stroke(solver, [0, 9], progress=p),
+}
+
+
+@pytest.mark.parametrize("name", REPORTING)
+def test_whatever_takes_progress_reports(sphere, name):
+    seen = []
+    REPORTING[name](sphere, ahm.LogMapSolver(sphere), lambda stage, fraction: seen.append((stage, fraction)))
+    assert seen and all(stage and 0 <= fraction <= 1 for stage, fraction in seen)
+
+
 def test_a_forked_child_computes(sphere):
     solver = ahm.LogMapSolver(sphere)
     expected = solver.log_map(3).uv.copy()
@@ -138,6 +164,26 @@ def test_a_forked_child_computes(sphere):
     assert os.waitpid(child, 0)[1] == 0
 
 
+def test_the_interpreter_ends_under_daemon_threads_that_compute():
+    """They are cut off: none of them ends by itself, and an ended interpreter is left alone."""
+    result = run_python("""
+        import ahm, threading, time
+        mesh = ahm.TriangleMesh(*ahm.shapes.plane(200, 200))
+        solver = ahm.LogMapSolver(ahm.shapes.plane(40, 40))
+        m = solver.log_map(0)
+        def forever(work):
+            while True:
+                work()
+        for work in (lambda: ahm.LogMapSolver(mesh), lambda: ahm.local_maps(mesh, 30.0), lambda: solver.log_map(3),
+                     lambda: m.frames, lambda: m.inverse([[1, 1]]), lambda: ahm.distance(mesh, 0, method="exact")):
+            threading.Thread(target=forever, args=(work,), daemon=True).start()
+        time.sleep(0.3)
+        print("ended")
+        raise SystemExit(3)
+    """)
+    assert (result.returncode, result.stdout, result.stderr) == (3, "ended\n", "")
+
+
 def test_the_interpreter_ends_while_work_goes_on_in_the_background():
     result = run_python("""
         import ahm, os, signal, threading
@@ -146,11 +192,12 @@ def test_the_interpreter_ends_while_work_goes_on_in_the_background():
         threading.Timer(0.1, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
         try:
             while True:
-                ahm.distance(mesh, 0)
+                ahm.LogMapSolver(mesh)
         except KeyboardInterrupt:
             print("ended")
+        raise SystemExit(3)
     """)
-    assert result.returncode == 0 and result.stdout == "ended\n", result.stderr
+    assert (result.returncode, result.stdout, result.stderr) == (3, "ended\n", "")
 
 
 @pytest.mark.parametrize("before", ["", "import ahm"])
@@ -176,15 +223,40 @@ def test_pickles_make_the_same_thing_again(flat_surfaces, sphere):
     again = pickle.loads(pickle.dumps(solver))
     assert again.options == solver.options
     m = solver.log_map((7, [0.2, 0.3, 0.5]), u_axis=[1, 0, 0])
-    for thing in (m, solver.log_maps([3, 4])[1], ahm.log_map(sphere, 5, method="exact"), ahm.log_map(sphere, 5),
+    for thing in (m, ahm.log_map(sphere, 5, method="exact"), ahm.log_map(sphere, 5),
                   ahm.stroke(sphere, [0, 12, 40]).map):
         np.testing.assert_array_equal(pickle.loads(pickle.dumps(thing)).uv, thing.uv)
     rows = np.array([5, 6])
     maps = ahm.LogMapSolver(sphere).log_maps(rows)
     rows[:] = 0
-    np.testing.assert_array_equal(pickle.loads(pickle.dumps(maps[0])).uv, maps[0].uv)
+    np.testing.assert_allclose(pickle.loads(pickle.dumps(maps[0])).uv, maps[0].uv, rtol=0, atol=1e-13)
     inverse = pickle.loads(pickle.dumps(ahm.InverseMap(m, max_stretch=3.0)))
     np.testing.assert_array_equal(inverse([[0.1, 0.1]]).position, ahm.InverseMap(m, max_stretch=3.0)([[0.1, 0.1]]).position)
+
+
+def test_maps_of_one_call_are_made_at_once_out_of_one_pickle(sphere, monkeypatch):
+    for maker in (ahm.LogMapSolver(sphere), ahm.ExactGeodesics(sphere)):
+        solved = []
+        found = type(maker)._found
+        monkeypatch.setattr(type(maker), "_found",
+                            lambda self, at, *rest: solved.append(at[3].tolist()) or found(self, at, *rest))
+        maps = maker.log_maps([3, 9, 40, 77], radius=1.0, frames=True)
+        for kept, expected in (([0, 1, 2, 3], [3, 9, 40, 77]), ([2], [40]), ([3, 1], [9, 77])):
+            again = pickle.loads(pickle.dumps([maps[k] for k in kept]))
+            solved.clear()
+            for k, m in zip(kept, again):
+                np.testing.assert_allclose(m.uv, maps[k].uv, rtol=0, atol=1e-13)
+                np.testing.assert_array_equal(m.status, maps[k].status)
+                assert m.source.row == maps[k].source.row and m.frames.shape == (642, 2, 2)
+            assert solved == [expected]
+        twice = pickle.loads(pickle.dumps(pickle.loads(pickle.dumps(maps[1]))))
+        np.testing.assert_allclose(twice.uv, maps[1].uv, rtol=0, atol=1e-13)
+
+
+def test_what_does_not_change_is_its_own_copy(sphere):
+    solver = ahm.LogMapSolver(sphere)
+    for thing in (sphere, solver, ahm.ExactGeodesics(sphere), solver.log_map(0)):
+        assert copy.copy(thing) is thing and copy.deepcopy([thing])[0] is thing
 
 
 def test_graphs_with_frames_and_reflections_pickle(flat_surfaces):
@@ -203,8 +275,54 @@ def test_processes_share_work_by_pickles(sphere):
     np.testing.assert_array_equal(found, ahm.distance(sphere, 7))
 
 
+@pytest.mark.skipif("asan" in os.environ.get("LD_PRELOAD", ""), reason="the sanitizer needs the address space")
+def test_running_out_of_memory_is_a_memory_error():
+    """With 1 GB of address space left: an array that does not fit, then something that does."""
+    result = run_python("""
+        import resource, ahm
+        grid = ahm.Grid((9000, 9000))
+        most = resource.getpagesize() * int(open("/proc/self/statm").read().split()[0]) + (1 << 30)
+        resource.setrlimit(resource.RLIMIT_AS, (most, most))
+        try:
+            grid.points
+        except MemoryError as error:
+            print(isinstance(error, ahm.ResourceExhausted) and "::" not in str(error))
+        print(ahm.log_map(ahm.shapes.sphere(2), 0).ok.all())
+    """)
+    assert result.stdout == "True\n" * 2, (result.stdout, result.stderr)
+
+
+@pytest.mark.skipif("asan" in os.environ.get("LD_PRELOAD", ""), reason="the sanitizer needs the address space")
+def test_maps_that_cannot_fit_are_refused_at_once():
+    """Far larger than 4 GB, and by the hundred million vertices that nobody should wait for."""
+    result = run_python("""
+        import resource, ahm
+        resource.setrlimit(resource.RLIMIT_AS, (4 << 30, 4 << 30))
+        grid = ahm.Grid((40000, 40000))
+        print(grid)
+        try:
+            ahm.log_map(grid, 0)
+        except ahm.ResourceExhausted as error:
+            print(error)
+    """)
+    assert "40000 x 40000" in result.stdout, (result.stdout, result.stderr)
+    assert "maps on 1600000000 vertices take about" in result.stdout and "GB" in result.stdout, (result.stdout, result.stderr)
+
+
+def test_graphs_keep_their_frames_to_themselves(flat_surfaces):
+    graph = flat_surfaces["triangles"].graph
+    frames = graph.frames.copy()
+    mine = ahm.Graph(*graph[:6], frames=frames)
+    before = mine.points.copy()
+    frames[:] = 7
+    np.testing.assert_array_equal(mine.points, before)
+    with pytest.raises(ValueError):
+        mine.points[0] = 1
+
+
 def test_reprs_tell_what_things_are(sphere):
     assert repr(ahm.LogMapSolver(sphere)) == "<ahm.LogMapSolver: global, on <ahm.TriangleMesh: 642 vertices, 1280 faces>>"
     assert repr(ahm.log_map(sphere, 4)) == "<ahm.LogMap: heat, 642 rows, 642 ok, from row 4>"
     assert repr(ahm.Grid((3, 4, 5))) == "<ahm.Grid: 3 x 4 x 5 vertices>"
+    assert repr(ahm.potpourri3d.GeodesicTracer(sphere.points, sphere.faces)) == f"<ahm.potpourri3d.GeodesicTracer: on {sphere!r}>"
     assert "LocalMaps: 642 sources" in repr(ahm.local_maps(sphere, 0.2))

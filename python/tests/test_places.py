@@ -71,18 +71,104 @@ def test_distances_from_points_between_rows_are_straight_lines(flat_surfaces, me
         np.testing.assert_allclose(ahm.distance(s, source, method=method), np.linalg.norm(s.points - at, axis=1), atol=1e-9)
 
 
-def test_rows_stand_for_points_where_rows_are_needed(flat_surfaces):
-    """Means, transport and extension know rows alone: of a point in a face or on an edge the nearest corner counts."""
-    for kind in ("triangles", "refined"):
+def test_vectors_and_values_start_where_they_are_given(flat_surfaces):
+    """Vectors stay what they are on the plane; values are the quotient of the solutions from the points' corners."""
+    from scipy.sparse.linalg import splu
+
+    for kind in MESHES + ["cloud", "grid"]:
         s = flat_surfaces[kind]
-        a, b = edge_of(s)
-        corners = len(s.faces[40])
-        near_a = (40, [0.8, 0.2] + [0.0] * (corners - 2))
-        for point in (((a, b), 0.2), ((b, a), 0.8), near_a, s.points[a] + [0.02, 0.01, 0.0]):
-            np.testing.assert_array_equal(ahm.transport(s, point, [1.0, 2.0, 0.0]), ahm.transport(s, a, [1.0, 2.0, 0.0]))
-            np.testing.assert_array_equal(ahm.extend(s, [point, 0], [1.0, 2.0]), ahm.extend(s, [a, 0], [1.0, 2.0]))
-            assert ahm.karcher_mean(s, [point]).row == a
-            assert ahm.farthest_points(s, 1, first=point).tolist() == [a]
+        points = [[0.61, 0.83, 0.0], [2.2, 1.9, 0.0]] if kind != "grid" else [[0.61, 0.83], [2.2, 1.9]]
+        if kind in MESHES:
+            points += [(edge_of(s), 0.2), (70, np.full(len(s.faces[70]), 1 / len(s.faces[70]))), 7]
+        plane = [1.0, 2.0, 0.0] if kind != "grid" else [1.0, 2.0]
+        np.testing.assert_allclose(ahm.transport(s, points, [plane] * len(points)), np.tile(plane, (143, 1)), atol=1e-9)
+        np.testing.assert_allclose(ahm.extend(s, points, [2.5] * len(points)), 2.5, rtol=1e-9)
+        values = ahm.extend(s, points[:2], [0.0, 1.0])
+        assert values[0] < 1e-3 and values[142] > 1 - 1e-3
+    s = flat_surfaces["triangles"]
+    ops = ahm.operators(s)
+    weights = np.zeros((143, 2))
+    weights[s.faces[40], 0], weights[s.faces[70], 1] = [0.2, 0.3, 0.5], [0.6, 0.4, 0.0]
+    heat = splu(ops.A.tocsc()).solve(weights)
+    found = ahm.extend(s, ([40, 70], [[0.2, 0.3, 0.5], [0.6, 0.4, 0.0]]), [-1.0, 3.0])
+    np.testing.assert_allclose(found, (heat @ [-1.0, 3.0]) / heat.sum(axis=1), rtol=1e-6)
+    # Components are those of the axes that a log map from there has.
+    axes = ahm.log_map(s, (40, [0.2, 0.3, 0.5])).source.axes
+    np.testing.assert_allclose(ahm.transport(s, (40, [0.2, 0.3, 0.5]), [0.6, 0.8]) @ np.array([1, 0]),
+                               s.frames[:, 0] @ (0.6 * axes[0] + 0.8 * axes[1]), atol=1e-9)
+
+
+def test_heat_knows_the_distance_from_several_points(flat_surfaces):
+    for kind in ("triangles", "refined", "cloud", "grid"):
+        s = flat_surfaces[kind]
+        width = 2 if kind == "grid" else 3
+        places = np.array([[0.61, 0.83, 0.0], [2.2, 1.9, 0.0], [2.6, 0.1, 0.0]])[:, :width]
+        P = np.asarray(s.points)[:, :width]
+        away = np.linalg.norm(P[:, None] - places[None], axis=2)
+        found = ahm.distance(s, places, method="heat")
+        clear = np.diff(np.sort(away, axis=1)[:, :2], axis=1)[:, 0] > 0.75  # heat from two sides mixes at the border
+        known = clear | (kind in MESHES)
+        np.testing.assert_allclose(found[known], away.min(axis=1)[known], atol=1e-9 if kind in MESHES else 0.125)
+        if kind not in MESHES:  # half an edge; rows near the points would be farther off
+            rows = away.argmin(axis=0)
+            snapped = ahm.distance(s, rows, method="heat")
+            assert np.abs(found - away.min(axis=1))[clear].mean() < 0.5 * np.abs(snapped - away.min(axis=1))[clear].mean()
+        assert clear.sum() > 60
+        gradient = ahm.distance_and_gradient(s, places).gradient
+        outward = (P - places[away.argmin(axis=1)]) / away.min(axis=1)[:, None]
+        assert np.einsum("ij,ij->i", gradient, outward)[clear & (away.min(axis=1) > 0.3)].min() > 0.95
+
+
+def test_means_of_points_between_rows_are_means_of_their_positions(flat_surfaces):
+    for kind in MESHES + ["cloud", "grid"]:
+        s = flat_surfaces[kind]
+        width = 2 if kind == "grid" else 3
+        points = [list(p[:width]) for p in ([0.61, 0.83, 0.0], [2.2, 1.9, 0.0], [1.9, 0.4, 0.0])] + [4]
+        places = np.array([*points[:3], np.asarray(s.points)[4, :width]])
+        weights = [1.0, 2.0, 3.0, 0.5]
+        for method in ["heat"] + ["exact"] * (kind in MESHES[:2]):
+            mean = ahm.karcher_mean(s, points, weights, method=method)
+            np.testing.assert_allclose(mean.position, np.average(places, axis=0, weights=weights), atol=1e-8)
+            assert mean.converged and mean.residual < 1e-8
+            median = ahm.geometric_median(s, points, [1, 9, 1, 1], method=method)
+            np.testing.assert_allclose(median.position, places[1], atol=1e-8)
+            assert median.residual < 1e-6
+            away = np.linalg.norm(np.asarray(s.points)[:, :width] - mean.position, axis=1)
+            np.testing.assert_allclose(ahm.log_map(s, mean.point, method=method).distance, away, atol=1e-8)
+
+
+def test_means_of_the_sphere_are_on_it_and_tell_how_good_they_are(sphere):
+    rng = np.random.default_rng(5)
+    faces, weights = rng.integers(0, 1280, 9), rng.dirichlet(np.ones(3), 9)
+    near = (sphere.points[sphere.faces[faces]].mean(axis=1) @ [0, 0, 1]) > -0.2
+    points = (faces[near], weights[near])
+    for method, most in (("heat", 0.02), ("exact", 0.01)):
+        mean = ahm.karcher_mean(sphere, points, method=method)
+        assert mean.converged and 0 < mean.residual < most
+        face, inside = mean.point
+        np.testing.assert_allclose(inside @ sphere.points[sphere.faces[face]], mean.position, atol=1e-12)
+        # One map does not suffice from afar: it says so.
+        far = ahm.karcher_mean(sphere, points, method=method, max_maps=1, start=[0.9, 0.9, 0.1])
+        assert not far.converged and far.residual > mean.residual
+
+
+def test_graphs_know_where_their_sources_lie(flat_surfaces):
+    g = flat_surfaces["triangles"].graph
+    placed = ahm.Graph(*g[:6], frames=g.frames, length_unit=g.length_unit)
+    m = ahm.log_map(placed, 40)
+    np.testing.assert_array_equal(m.source.position, flat_surfaces["triangles"].points[40])
+    np.testing.assert_allclose(m.source.axes, g.frames[40, 1:], atol=1e-12)
+    bare = ahm.Graph(*g[:6], length_unit=g.length_unit)
+    assert ahm.log_map(bare, 40).source[:2] == (None, None) and ahm.log_map(bare, 40).source.row == 40
+    assert ahm.karcher_mean(bare, [0, 12]).residual < 1e-9 and ahm.karcher_mean(bare, [0, 12]).position is None
+
+
+def test_rows_stand_for_points_where_the_result_is_rows(flat_surfaces):
+    s = flat_surfaces["triangles"]
+    a, b = edge_of(s)
+    for point in (((a, b), 0.2), ((b, a), 0.8), (40, [0.8, 0.2, 0.0]), s.points[a] + [0.02, 0.01, 0.0]):
+        assert ahm.farthest_points(s, 1, first=point).tolist() == [a]
+        assert ahm.atlas(s, [point, 0]).sources.tolist() == [a, 0]
 
 
 def test_cells_of_any_points_are_those_of_the_nearest(flat_surfaces):

@@ -1,6 +1,7 @@
 """The names of potpourri3d, each against a closed form, vectors through the frames that come with them."""
 
 import inspect
+import os
 
 import numpy as np
 import pytest
@@ -219,6 +220,20 @@ def test_files_come_back_as_they_were_written(flat, tmp_path):
         np.testing.assert_array_equal(pp3d.read_point_cloud(tmp_path / f"cloud.{ending}"), V / 7)
 
 
+def test_files_are_written_whole_or_not_at_all(flat, tmp_path, monkeypatch):
+    path = tmp_path / "mesh.obj"
+    pp3d.write_mesh(*flat, os.fsencode(path))
+    before = path.read_bytes()
+
+    def fail(*names):
+        raise OSError("the disk is full")
+
+    monkeypatch.setattr(os, "replace", fail)
+    with pytest.raises(OSError, match="full"):
+        pp3d.write_mesh(flat[0][:3], [[0, 1, 2]], path)
+    assert path.read_bytes() == before and os.listdir(tmp_path) == ["mesh.obj"]
+
+
 def test_what_is_not_there_says_so_and_indices_are_checked(solvers, flat):
     V, F = flat
     paths = pp3d.EdgeFlipGeodesicSolver(V, F)
@@ -233,5 +248,13 @@ def test_what_is_not_there_says_so_and_indices_are_checked(solvers, flat):
                  lambda: solvers["mesh"].extend_scalar([0, 999], [1.0, 2.0]), lambda: paths.find_geodesic_path(0, 999),
                  lambda: pp3d.cotan_laplacian(V, F + 1)):
         with pytest.raises(ValueError):
+            call()
+    tracer = pp3d.GeodesicTracer(V, F)
+    for call, name in ((lambda: solvers["mesh"].compute_log_map(-1), "v_ind"), (lambda: solvers["distance"].compute_distance(180), "v_ind"),
+                       (lambda: solvers["cloud"].compute_distance(-7), "p_ind"), (lambda: paths.find_geodesic_path(0, -7), "v_end"),
+                       (lambda: solvers["cloud"].extend_scalar([0, 999], [1, 2]), r"p_inds\[1\]"), (lambda: paths.find_geodesic_path(180, 0), "v_start"),
+                       (lambda: tracer.trace_geodesic_from_vertex(999, [1, 0, 0]), "start_vert"), (lambda: solvers["mesh"].compute_log_map([0]), "v_ind"),
+                       (lambda: tracer.trace_geodesic_from_face(999, [1, 0, 0], [1, 0, 0]), "start_face")):
+        with pytest.raises(ValueError, match=f"^{name}: "):
             call()
     assert pp3d.MeshVectorHeatSolver(V.tolist(), F.tolist(), useIntrinsicDelaunay=False).compute_log_map(0).shape == (180, 2)

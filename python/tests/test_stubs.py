@@ -2,10 +2,16 @@
 
 import ast
 import inspect
+import os
 import re
+import subprocess
+import sys
 from pathlib import Path
 
+import pytest
+
 import ahm
+import ahm.potpourri3d as pp3d
 from ahm import _core
 
 
@@ -35,6 +41,21 @@ def test_the_stubs_list_what_the_module_has():
         assert count(getattr(_core, name)) == len(parameters(stub)), name
 
 
+@pytest.mark.parametrize("check", ["types", "stubs"])
+def test_mypy_finds_nothing(check, tmp_path):
+    """The package agrees with itself and its stubs; what pybind11 adds to every class is let pass."""
+    pytest.importorskip("mypy")
+    settings, passed = tmp_path / "mypy.ini", tmp_path / "allowed"
+    settings.write_text("[mypy]\nignore_missing_imports = true\ncache_dir = /dev/null\n")
+    passed.write_text(r"ahm\._core\.(Body|Inverse|Map|Solver)(\.__init__)?" + "\n")
+    command = {"types": ["mypy", "--config-file", settings, "-p", "ahm"],
+               "stubs": ["mypy.stubtest", "ahm._core", "--mypy-config-file", settings, "--allowlist", passed, "--ignore-unused-allowlist"]}
+    home = str(Path(ahm.__file__).parents[1])
+    result = subprocess.run([sys.executable, "-m", *map(str, command[check])], capture_output=True, text=True, timeout=900,
+                            cwd=home, env={**os.environ, "MYPYPATH": home})
+    assert result.returncode == 0, result.stdout + result.stderr
+
+
 def count(function):
     """Number of parameters, of the signature that pybind11 puts first in the docstring."""
     inside = function.__doc__.split("\n")[0].split("(", 1)[1].rsplit(")", 1)[0]
@@ -55,6 +76,35 @@ def test_everything_public_has_types_and_text():
                 if not member.startswith("_") and (inspect.isfunction(value) or isinstance(value, property)):
                     assert value.__doc__, f"{name}.{member}"
                     assert ">>>" in value.__doc__ or isinstance(value, property), f"{name}.{member} has no example"
+
+
+def documented():
+    """Functions, classes that are called, and methods, with their names and texts."""
+    for name in ahm.__all__:
+        thing = getattr(ahm, name)
+        if inspect.isfunction(thing):
+            yield name, thing, thing.__doc__
+        elif inspect.isclass(thing) and thing.__module__.startswith("ahm.") and not issubclass(thing, (Exception, tuple, ahm.LogMap)):
+            if "__init__" in vars(thing):
+                yield name, thing.__init__, thing.__doc__
+        for member, value in vars(thing).items() if inspect.isclass(thing) else ():
+            if not member.startswith("_") and inspect.isfunction(value):
+                yield f"{name}.{member}", value, value.__doc__
+
+
+@pytest.mark.parametrize("name, thing, text", documented(), ids=lambda x: x if isinstance(x, str) and len(x) < 40 else "")
+def test_texts_tell_every_argument_and_the_errors(name, thing, text):
+    """Or say whose they share."""
+    if not re.search(r"[Aa]rguments and errors as of\s+`", text):
+        unknown = [p for p in inspect.signature(thing).parameters if p != "self" and not re.search(rf"\b{p}\b", text)]
+        assert not unknown, f"{name} does not tell {unknown}"
+        assert "Raises" in text or name == "LocalMaps", f"{name} does not tell its errors"
+
+
+@pytest.mark.parametrize("name", pp3d.__all__)
+def test_texts_of_old_names_have_an_example_and_the_errors(name):
+    text = inspect.getdoc(getattr(pp3d, name))
+    assert ">>>" in text and "Raises" in text
 
 
 def test_all_lists_everything_that_is_public():

@@ -1,4 +1,4 @@
-#include "ahm/testing/graph_contract.hpp"
+#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <atomic>
@@ -12,6 +12,7 @@
 #include "ahm/graph/validate.hpp"
 #include "ahm/maps/log_map_solver.hpp"
 #include "ahm/testing/graph_changes.hpp"
+#include "ahm/testing/graph_laws.hpp"
 #include "ahm/testing/reference_operator.hpp"
 
 namespace ahm::test {

@@ -1,5 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+#include <filesystem>
+
 #include "program.hpp"
 
 namespace ahm::test {
@@ -86,7 +89,7 @@ TEST_F(Arguments, OutputsAreCheckedBeforeTheWork) {
   refused({"-o", folder / "map.stl"}, ".stl");
   refused({"-o", folder / "map"}, "map");
   refused({"-o", folder / "nowhere/map.csv"}, "nowhere");
-  refused({"-o", folder / ""}, folder / "");
+  refused({"-o", folder / "nowhere/maps/"}, "nowhere");
   refused({"-o", input}, "cloud.xyz");
   refused({"-o", folder / "map.csv", "--json", input}, "--json");
   refused({"-o", folder / "map.csv", "--json", folder / "./map.csv"}, "same file");
@@ -116,6 +119,19 @@ TEST(Help, IsThereForStrangers) {
     EXPECT_NE(logmap_help.out.find(word), std::string::npos) << word;
   EXPECT_EQ(run({"info", "--help"}).status, 0);
 }
+
+#ifdef AHM_WITH_PCL
+TEST(Program, FindsItsModulesWhenItIsFoundThroughPath) {
+  Folder folder;
+  std::string cloud =
+      "VERSION 0.7\nFIELDS x y z\nSIZE 8 8 8\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 64\nHEIGHT 1\nPOINTS 64\nDATA ascii\n";
+  folder.write("cloud.pcd", cloud + xyz(plane(8)));
+  const std::string programs = std::filesystem::path(AHM_PROGRAM).parent_path().string();
+  const std::string command =
+      "cd '" + (folder / "") + "' && PATH='" + programs + "':\"$PATH\" ahm info cloud.pcd > out.txt 2>&1";
+  EXPECT_EQ(std::system(command.c_str()), 0) << read_text(folder / "out.txt");
+}
+#endif
 
 TEST(Version, NamesTheLibraries) {
   const auto outcome = run({"--version"});

@@ -96,5 +96,20 @@ TEST(CenterCommand, RefusesNonsense) {
   EXPECT_EQ(folder.files(), Words{"plane.xyz"});
 }
 
+TEST(CenterCommand, QuietIsTheResultAlone) {
+  const Folder folder;
+  const Words words{"center", folder.write("plane.xyz", xyz(plane(9))), "--points", "0 8", "--json"};
+  Words quiet = words;
+  quiet.insert(quiet.end(), {folder / "c.json", "--quiet"});
+  const Outcome outcome = run(quiet);
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_EQ(outcome.err, "");
+  EXPECT_EQ(outcome.out.substr(0, 16), "mean of 2 points");
+  EXPECT_EQ(outcome.out.find("peak memory"), std::string::npos);
+  quiet = words;
+  quiet.insert(quiet.end(), {"-", "--quiet"});
+  EXPECT_EQ(nlohmann::json::parse(run(quiet).out).at("center").at("kind"), "mean");
+}
+
 }  // namespace
 }  // namespace ahm::test

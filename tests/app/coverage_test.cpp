@@ -9,6 +9,8 @@
 namespace ahm::test {
 namespace {
 
+using Words = std::vector<std::string>;
+
 TEST(CoverageCommand, LaysARasterOverAPlaneOfPoints) {
   Folder folder;
   const auto points = plane(30);  // point 0 is its middle
@@ -33,6 +35,33 @@ TEST(CoverageCommand, LaysARasterOverAPlaneOfPoints) {
   EXPECT_EQ(json.at("points"), rows.size());
   EXPECT_EQ(json.at("pieces"), 17 - 2);  // the outermost lines are points
   EXPECT_GT(json.at("covered").get<double>(), 0.98);
+}
+
+/// Where two tables of numbers differ most.
+double worst_difference(const std::vector<NumberRow>& a, const std::vector<NumberRow>& b) {
+  EXPECT_EQ(a.size(), b.size());
+  double worst = 0;
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
+    for (const auto& [name, value] : a[i])
+      if (!std::isnan(value) || !std::isnan(b[i].at(name))) worst = std::max(worst, std::abs(value - b[i].at(name)));
+  return worst;
+}
+
+TEST(CoverageCommand, OfTheSurroundingsAloneIsThatOfTheWholeCloud) {
+  Folder folder;
+  const auto input = folder.write("plane.xyz", xyz(plane(40), std::vector<Vec3>(1600, Vec3{0, 0, 1})));
+  Words words{"coverage", input, "--source", "0", "--radius", "0.2", "--spacing", "0.04", "--u-axis", "1,0,0", "-o"};
+  const auto with = [&](const std::string& name, const Words& more) {
+    Words all = words;
+    all.push_back(folder / name);
+    all.insert(all.end(), more.begin(), more.end());
+    const Outcome outcome = run(all);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return read_numbers(folder / name);
+  };
+  const auto whole = with("whole.csv", {}), local = with("local.csv", {"--local"});
+  ASSERT_GT(whole.size(), 50U);
+  EXPECT_LT(worst_difference(whole, local), 1e-9);  // a plane is exact at any diffusion time
 }
 
 TEST(CoverageCommand, WindsASpiralOnASphereOfPoints) {

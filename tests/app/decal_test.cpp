@@ -93,6 +93,22 @@ TEST(DecalCommand, PaintsPointsUnderTheOpaquePart) {
   }
 }
 
+TEST(DecalCommand, KeepsTheColumnsThatCameIn) {
+  if (!io::has_images()) GTEST_SKIP() << "this build has no stb";
+  Folder folder;
+  std::string text = "//X Y Z Amplitude\n";
+  for (int i = 0; i < 100; ++i)
+    text += std::to_string(i % 10) + " " + std::to_string(i / 10) + " 0 " + std::to_string(0.5 * i) + "\n";
+  const std::string input = folder.write("scan.xyz", text);
+  ASSERT_EQ(run({"decal", input, "--image", half_and_half(folder), "-s", "55", "--size", "3", "-o", folder / "out.ply"})
+                .status,
+            0);
+  const io::Geometry given = io::read(input), out = io::read(folder / "out.ply");
+  ASSERT_EQ(out.properties.size(), 1U);
+  EXPECT_EQ(out.properties[0].name, given.properties.at(0).name);
+  EXPECT_EQ(out.properties[0].values, given.properties.at(0).values);
+}
+
 TEST(DecalCommand, LeavesOutWhatLiesBeyondTheSurface) {
   if (!io::has_images()) GTEST_SKIP() << "this build has no stb";
   Folder folder;

@@ -1,6 +1,7 @@
 // Exact maps, paths and lines, through the program.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <numbers>
@@ -124,6 +125,27 @@ TEST(ExactMethod, UnfoldsACube) {
   const auto json = read_json(folder / "map.json");
   EXPECT_EQ(json.at("method"), "exact");
   EXPECT_FALSE(json.contains("variant") || json.contains("strategy") || json.contains("t_coef"));
+}
+
+TEST(ExactMethod, TakesATolerance) {
+  Folder folder;
+  const std::string input = folder.write("sphere.off", off(icosphere(12)));
+  const Words words{"logmap", input, "--source", "0", "-o", folder / "map.csv", "--json", folder / "map.json"};
+  const auto distances = [&](const Words& more) {
+    const Outcome outcome = run(with(words, more));
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return read_csv(folder / "map.csv");
+  };
+  const auto exact = distances({"--method", "exact"}), near = distances({"--method", "exact", "--tolerance", "0.01"});
+  EXPECT_EQ(read_json(folder / "map.json").at("tolerance"), 0.01);
+  ASSERT_EQ(exact.size(), near.size());
+  double apart = 0;
+  for (std::size_t k = 1; k < exact.size(); ++k)
+    apart = std::max(apart, std::abs(near[k].distance / exact[k].distance - 1));
+  EXPECT_GT(apart, 0);
+  EXPECT_LE(apart, 0.01);
+  EXPECT_EQ(run(with(words, {"--tolerance", "0.01"})).status, 2);
+  EXPECT_EQ(run(with(words, {"--method", "exact", "--tolerance", "0.5"})).status, 1);
 }
 
 TEST(ExactMethod, IsRefusedWhereThereAreNoFlatFaces) {

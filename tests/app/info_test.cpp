@@ -128,16 +128,28 @@ TEST(Info, SuggestsACommandThatWorksOnMeshes) {
   EXPECT_NE(words.find("--non-manifold split"), std::string::npos) << words;
 }
 
-TEST(Info, SuggestsTheVerticesAsACloudWhereTheFacesHaveNoMap) {
+TEST(Info, SuggestsToRepairWhereTheFacesAsTheyAreHaveNoMap) {
   Folder folder;
   const std::string wrong_face = folder.write("wrong.obj", obj(torus(400)) + "f 1 1 2\n");
-  EXPECT_NE(run_suggestion(wrong_face, folder).find("--backend pointcloud"), std::string::npos);
+  EXPECT_NE(run_suggestion(wrong_face, folder).find("--repair"), std::string::npos);
   const auto json = info(wrong_face);
   EXPECT_NE(json.at("problem").get<std::string>().find("twice"), std::string::npos);
   EXPECT_EQ(json.at("mesh").at("wrong_faces").at("repeating"), 1);
   Mesh hole = torus(400);
   hole.positions[7][1] = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_NE(run_suggestion(folder.write("nan.obj", obj(hole)), folder).find("--drop-nan"), std::string::npos);
+  EXPECT_NE(run_suggestion(folder.write("nan.obj", obj(hole)), folder).find("--repair"), std::string::npos);
+}
+
+TEST(Info, SuggestsTheVerticesAsACloudWhereNoFaceCanBeRepaired) {
+  Folder folder;
+  Mesh points = torus(400);
+  points.faces.clear();
+  const std::string words = run_suggestion(folder.write("points.obj", obj(points) + "f 1 1 2\n"), folder);
+  EXPECT_NE(words.find("--backend pointcloud"), std::string::npos) << words;
+  EXPECT_EQ(words.find("--repair"), std::string::npos) << words;
+  points.positions[7][1] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_NE(run_suggestion(folder.write("nan.obj", obj(points) + "f 1 1 2\n"), folder).find("--drop-nan"),
+            std::string::npos);
 }
 
 TEST(Info, TellsTheTopologyOfMeshes) {
@@ -197,6 +209,50 @@ TEST(Info, CountsWhatIsWrongWithAMesh) {
   Polygons turned = cube_sphere(4);
   turned.reverse(5);
   EXPECT_EQ(info(folder.write("turned.obj", obj(turned))).at("mesh").at("reoriented"), 1);
+}
+
+TEST(Info, CountsFacesByTheirCorners) {
+  Folder folder;
+  const auto mesh = info(folder.write("house.off",
+                                      "OFF\n7 3 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0.5 1.5 0\n2 0 0\n2 1 0\n"
+                                      "5 0 1 2 4 3\n4 1 5 6 2\n3 2 6 4\n"))
+                        .at("mesh");
+  EXPECT_EQ(mesh.at("faces_by_corners"), (nlohmann::json{{"3", 1}, {"4", 1}, {"5", 1}}));
+  EXPECT_EQ(mesh.at("triangles"), 1);
+  EXPECT_EQ(mesh.at("other_faces"), 1);
+}
+
+TEST(Info, CountsNormalsThatContradictTheFaces) {
+  Folder folder;
+  const Mesh sphere = icosphere(3);
+  for (const int turned : {0, 5}) {
+    std::string text = "ply\nformat ascii 1.0\nelement vertex " + std::to_string(sphere.positions.size()) + "\n";
+    for (const char* name : {"x", "y", "z", "nx", "ny", "nz"}) text += std::string("property double ") + name + "\n";
+    text += "element face " + std::to_string(sphere.faces.size()) +
+            "\nproperty list uchar int vertex_indices\nend_header\n";
+    for (std::size_t i = 0; i < sphere.positions.size(); ++i) {
+      const double side = static_cast<int>(i) < turned ? -1 : 1;
+      for (const double scale : {1.0, side})
+        for (const double x : sphere.positions[i]) text += std::to_string(scale * x) + " ";
+      text += "\n";
+    }
+    for (const Triangle& t : sphere.faces)
+      text += "3 " + std::to_string(t[0]) + " " + std::to_string(t[1]) + " " + std::to_string(t[2]) + "\n";
+    EXPECT_EQ(info(folder.write("sphere.ply", text)).at("mesh").at("normals_against_faces"), turned);
+  }
+}
+
+TEST(Info, GuessesUnitsWhereTheFormatOrTheCoordinatesTell) {
+  Folder folder;
+  std::vector<Vec3> far = plane(10);
+  for (Vec3& p : far) p = {432000 + 50 * p[0], 5412000 + 50 * p[1], p[2]};
+  EXPECT_EQ(info(folder.write("far.xyz", xyz(far))).at("unit_guess"), "metres");
+  EXPECT_EQ(info(folder.write("near.xyz", xyz(plane(10)))).at("unit_guess"), nullptr);
+  EXPECT_EQ(info(folder.write("part.stl",
+                              "solid p\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 10 0 0\n"
+                              "vertex 0 10 0\nendloop\nendfacet\nendsolid p\n"))
+                .at("unit_guess"),
+            "millimetres");
 }
 
 TEST(Info, SpeaksOfMeshesToPeopleToo) {

@@ -30,6 +30,26 @@ TEST(InverseCommand, FindsThePointsOfAPlane) {
   EXPECT_EQ(read_json(json).at("found"), 3);
 }
 
+TEST(InverseCommand, OfTheSurroundingsAloneIsThatOfTheWholeCloud) {
+  Folder folder;
+  const auto points = plane(40);
+  const auto input = folder.write("plane.xyz", xyz(points, std::vector<Vec3>(points.size(), Vec3{0, 0, 1})));
+  const auto at = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words{
+        "inverse", input, "-s", "0", "--u-axis", "1,0,0", "--at", "0.1,0.2 -0.05,0.1", "-o", folder / "at.csv"};
+    words.insert(words.end(), more.begin(), more.end());
+    const Outcome outcome = run(words);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return read_numbers(folder / "at.csv");
+  };
+  const auto whole = at({}), local = at({"--local"});
+  ASSERT_EQ(whole.size(), 2U);
+  for (std::size_t i = 0; i < 2; ++i)
+    for (const char* name : {"x", "y", "z", "nx", "hx"})
+      EXPECT_NEAR(whole[i].at(name), local[i].at(name), 1e-9) << name;
+  EXPECT_EQ(run({"inverse", input, "-s", "0", "--at", "0,0", "--local", "-o", folder / "o.csv"}).status, 1);
+}
+
 TEST(InverseCommand, GoesBackWhereALogmapCameFrom) {
   Folder folder;
   const auto points = sphere(2000);
@@ -61,7 +81,7 @@ TEST(InverseCommand, RefusesNonsense) {
   EXPECT_EQ(run({"inverse", input, "-s", "0", "--at", "1,2,3", "-o", folder / "o.csv"}).status, 2);
   EXPECT_EQ(run({"inverse", input, "-s", "0", "--at", "", "-o", folder / "o.csv"}).status, 2);
   EXPECT_EQ(run({"inverse", input, "-s", "0", "--at", "1,nan", "-o", folder / "o.csv"}).status, 2);
-  EXPECT_EQ(run({"inverse", input, "-s", "0", "--at", "0,0", "-o", folder / "o.ply"}).status, 1);
+  EXPECT_EQ(run({"inverse", input, "-s", "0", "--at", "0,0", "-o", folder / "o.obj"}).status, 1);
 }
 
 }  // namespace

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 
+#include "ahm/io/read.hpp"
 #include "program.hpp"
 
 namespace ahm::test {
@@ -99,6 +101,44 @@ TEST(Logmap, KeepsTheOrderOfTheInputWithAVoxelGrid) {
 #endif
 }
 
+TEST(Logmap, KeepsTheColorsThatCameIn) {
+  Folder folder;
+  const auto input = folder.write(
+      "c.ply",
+      "ply\nformat ascii 1.0\nelement vertex 4\nproperty double x\nproperty double y\nproperty double z\nproperty "
+      "uchar red\n"
+      "property uchar green\nproperty uchar blue\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+      "0 0 0 255 0 7\n1 0 0 1 2 3\n1 1 0 4 5 6\n0 1 0 8 9 10\n4 0 1 2 3\n");
+  ASSERT_EQ(run({"logmap", input, "-s", "0", "-o", folder / "map.ply"}).status, 0);
+  EXPECT_EQ(io::read(folder / "map.ply").colors, io::read(input).colors);
+}
+
+#ifdef AHM_WITH_PCL
+/// As a depth camera makes them: pixels without a point are not finite.
+TEST(Logmap, KeepsThePictureOfACamera) {
+  Folder folder;
+  std::string text =
+      "VERSION 0.7\nFIELDS x y z intensity\nSIZE 4 4 4 4\nTYPE F F F F\nCOUNT 1 1 1 1\nWIDTH 12\nHEIGHT 9\n"
+      "VIEWPOINT 0.5 0.25 -3 0 1 0 0\nPOINTS 108\nDATA ascii\n";
+  for (int i = 0; i < 108; ++i)
+    text +=
+        i % 12 == 5 && i < 60 ? "nan nan nan 0\n" : std::to_string(i % 12) + " " + std::to_string(i / 12) + " 0 0.25\n";
+  const auto input = folder.write("camera.pcd", text);
+  const Outcome outcome = run({"logmap", input, "-s", "0", "-o", folder / "map.pcd", "--drop-nan"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const io::Geometry map = io::read(folder / "map.pcd"), given = io::read(input);
+  ASSERT_TRUE(map.acquisition.has_value());
+  EXPECT_EQ(map.acquisition->width, 12U);
+  EXPECT_EQ(map.acquisition->height, 9U);
+  EXPECT_EQ(map.acquisition->position, (Vec3{0.5, 0.25, -3}));
+  EXPECT_EQ(map.acquisition->orientation, (std::array<double, 4>{0, 1, 0, 0}));
+  EXPECT_EQ(map.properties.front().name, "intensity");
+  EXPECT_EQ(map.properties.front().values, given.properties.front().values);
+  EXPECT_TRUE(std::isnan(map.points[5][0]));
+  EXPECT_EQ(map.points[107], given.points[107]);
+}
+#endif
+
 TEST(Logmap, MarksWhatLiesBeyondTheRadius) {
   Folder folder;
   const auto points = plane(30);
@@ -191,22 +231,29 @@ TEST(Json, GoesAloneToStandardOutput) {
 
 TEST(Output, IsSilentOnStandardErrorWhenAllIsWell) {
   Folder folder;
-  const auto input = folder.write("sphere.xyz", xyz(sphere(500)));
+  const auto input = folder.write("sphere.xyz", xyz(sphere(2000)));
   const auto result = run({"logmap", input, "--source", "0", "-o", folder / "map.csv"});
   ASSERT_EQ(result.status, 0);
   EXPECT_EQ(result.err, "");
-  EXPECT_NE(result.out.find("500 ok"), std::string::npos) << result.out;
+  EXPECT_NE(result.out.find("2000 ok"), std::string::npos) << result.out;
   EXPECT_NE(result.out.find("map.csv"), std::string::npos) << result.out;
+}
+
+TEST(Output, SaysWhereMeshesWithTextureCoordinatesAreAskedFor) {
+  Folder folder;
+  const auto input = folder.write("sphere.xyz", xyz(sphere(100)));
+  for (const std::string name : {"map.obj", "map.glb"}) {
+    const Outcome outcome = run({"logmap", input, "-s", "0", "-o", folder / name});
+    EXPECT_EQ(outcome.status, 1);
+    EXPECT_NE(outcome.err.find("--corners " + (folder / name)), std::string::npos) << outcome.err;
+  }
 }
 
 TEST(Output, ChoosesTheFormatByExtension) {
   Folder folder;
   const auto input = folder.write("sphere.xyz", xyz(sphere(500)));
-  std::vector<std::pair<std::string, std::string>> formats = {{"map.ply", "ply"}, {"map.CSV", "index"}};
-#ifdef AHM_WITH_PCL
-  formats.emplace_back("map.pcd", "#");
-#endif
-  for (const auto& [name, start] : formats) {
+  for (const auto& [name, start] :
+       std::map<std::string, std::string>{{"map.ply", "ply"}, {"map.CSV", "index"}, {"map.pcd", "#"}}) {
     const auto result = run({"logmap", input, "--source", "0", "-o", folder / name});
     ASSERT_EQ(result.status, 0) << result.err;
     EXPECT_EQ(read_text(folder / name).substr(0, start.size()), start) << name;

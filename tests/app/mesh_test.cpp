@@ -4,6 +4,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "ahm/io/read.hpp"
 #include "program.hpp"
 
 namespace ahm::test {
@@ -192,9 +193,17 @@ TEST(MeshCommand, CornersHoldTheMapOfTheirVertices) {
     }
   }
   EXPECT_EQ(
-      run({"logmap", folder / "quads.off", "--source", "4", "-o", folder / "map.csv", "--corners", folder / "m.ply"})
+      run({"logmap", folder / "quads.off", "--source", "4", "-o", folder / "map.csv", "--corners", folder / "m.stl"})
           .status,
       1);
+  for (const char* name : {"m.ply", "m.glb"}) {
+    const auto other =
+        run({"logmap", folder / "quads.off", "--source", "4", "-o", folder / "map.csv", "--corners", folder / name});
+    ASSERT_EQ(other.status, 0) << other.err;
+    const io::Geometry back = io::read(folder / name);
+    EXPECT_EQ(back.points.size(), 9U);
+    EXPECT_EQ(back.face_count(), std::string(name) == "m.ply" ? 4U : 8U);
+  }
 }
 
 }  // namespace

@@ -162,7 +162,45 @@ TEST(PathCommand, SaysWhyThereIsNone) {
   };
   refused(input, "9", "does not connect");
   refused(input, "12", "--to 12");
-  refused(folder.write("plane.xyz", xyz(plane(10))), "5", "faces");
+}
+
+TEST(PathCommand, IsStraightOverAFlatCloud) {
+  Folder folder;
+  const std::string input = folder.write("plane.xyz", xyz(plane(20)));
+  const Outcome outcome = run(
+      {"path", input, "--from", "0", "--to", "0.9,0.8,0", "-o", folder / "path.csv", "--json", folder / "path.json"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const auto rows = read_numbers(folder / "path.csv");
+  ASSERT_GT(rows.size(), 5U);
+  const double across = rows.back().at("x") - rows.front().at("x"), up = rows.back().at("y") - rows.front().at("y");
+  EXPECT_NEAR(rows.back().at("x"), 0.9, 1e-12);
+  for (const NumberRow& row : rows)
+    EXPECT_NEAR((row.at("x") - rows.front().at("x")) * up, (row.at("y") - rows.front().at("y")) * across, 1e-12);
+  EXPECT_NEAR(read_json(folder / "path.json").at("length").get<double>(), std::hypot(across, up), 1e-11);
+  for (const char* option : {"--fast", "--tighten"}) {
+    const Outcome refused =
+        run({"path", input, "--from", "0", "--to", "5 90", "--closed", option, "-o", folder / "no.csv"});
+    EXPECT_EQ(refused.status, 1);
+    EXPECT_NE(refused.err.find("takes faces"), std::string::npos) << refused.err;
+  }
+}
+
+TEST(TraceCommand, GoesStraightOverAFlatCloudToItsRim) {
+  Folder folder;
+  const std::string input = folder.write("plane.xyz", xyz(plane(20)));
+  const Outcome outcome = run({"trace", input, "--source", "0", "--direction", "1,0.5,3", "--length", "0.3", "-o",
+                               folder / "line.csv", "--json", folder / "line.json"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const auto rows = read_numbers(folder / "line.csv");
+  EXPECT_NEAR(rows.back().at("x") - rows.front().at("x"), 0.3 * 2 / std::sqrt(5.0), 1e-12);
+  EXPECT_NEAR(rows.back().at("y") - rows.front().at("y"), 0.3 / std::sqrt(5.0), 1e-12);
+  ASSERT_EQ(run({"trace", input, "--source", "0", "--direction", "1,0,0", "--length", "9", "-o", folder / "line.csv",
+                 "--json", folder / "line.json"})
+                .status,
+            0);
+  const auto json = read_json(folder / "line.json");
+  EXPECT_EQ(json.at("end").at("at"), "boundary");
+  EXPECT_NEAR(json.at("length").get<double>(), 0.5, 0.1);
 }
 
 TEST(TraceCommand, GoesRoundACube) {

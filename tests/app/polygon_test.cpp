@@ -99,7 +99,8 @@ TEST(PolygonFiles, ThatAreBadAreRefused) {
     EXPECT_NE(outcome.err.find(text), std::string::npos) << outcome.err;
     EXPECT_EQ(folder.files(), std::vector<std::string>{"mesh.obj"});
   };
-  refuse(quads(8, "v 0 0 9\nv 1 0 9\nv 0 0 8\nv 1 0 8\nf 1 2 66 65\nf 1 2 68 67\n"), "0", "edges");
+  refuse(quads(8, "v 0 0 9\nv 1 0 9\nv 0 0 8\nv 1 0 8\nf 1 2 66 65\nf 1 2 68 67\n"), "0",
+         "1 edge has more than two faces");
   refuse(quads(8, "f 1 2 3 2\n"), "0", "vertex twice");
   refuse(quads(8), "64", "64 vertices");
   refuse(quads(8), "face:3:0.5,0.25,0.25", "4 corners");

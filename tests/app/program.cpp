@@ -66,13 +66,13 @@ bool has_terminals() {
   }
 }
 
-Running start(const std::vector<std::string>& arguments, bool on_terminal) {
+Running start(const std::vector<std::string>& arguments, bool on_terminal, const std::string& input) {
   std::array<int, 2> out{}, err = on_terminal ? open_terminal() : std::array<int, 2>{};
   if (pipe2(out.data(), O_CLOEXEC) != 0 || (!on_terminal && pipe2(err.data(), O_CLOEXEC) != 0))
     throw std::runtime_error("pipe2");
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
+  posix_spawn_file_actions_addopen(&actions, 0, input.c_str(), O_RDONLY, 0);
   posix_spawn_file_actions_adddup2(&actions, out[1], 1);
   posix_spawn_file_actions_adddup2(&actions, err[1], 2);
   posix_spawnattr_t attributes;  // SIGHUP as it is, also where the tests run under nohup
@@ -143,25 +143,14 @@ std::string read_until(const Running& running, const std::string& word) {
 
 Outcome run(const std::vector<std::string>& arguments) { return finish(start(arguments)); }
 
-Folder::Folder() {
-  std::string name = (std::filesystem::path(testing::TempDir()) / "ahm_app_XXXXXX").string();
-  if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("mkdtemp");
-  path_ = name;
-}
-
-Folder::~Folder() {
-  std::error_code ignored;
-  std::filesystem::remove_all(path_, ignored);
-}
-
 std::string Folder::write(const std::string& name, const std::string& bytes) const {
-  std::ofstream(path_ / name, std::ios::binary) << bytes;
+  std::ofstream(directory() / name, std::ios::binary) << bytes;
   return *this / name;
 }
 
 std::vector<std::string> Folder::files() const {
   std::vector<std::string> names;
-  for (const auto& entry : std::filesystem::directory_iterator(path_))
+  for (const auto& entry : std::filesystem::directory_iterator(directory()))
     names.push_back(entry.path().filename().string());
   std::sort(names.begin(), names.end());
   return names;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "ahm/types.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace ahm::test {
 
@@ -30,7 +31,9 @@ struct Running {
 bool has_terminals();
 
 /// Starts the program with pipes at its outputs, or with a terminal at its standard error.
-Running start(const std::vector<std::string>& arguments, bool on_terminal = false);
+/// @param input  file at its standard input
+Running start(const std::vector<std::string>& arguments, bool on_terminal = false,
+              const std::string& input = "/dev/null");
 Outcome finish(Running running);
 /// The same with the program stopped ten times as long as it runs, as on a slow machine, for its first second of work.
 Outcome finish_slowly(Running running);
@@ -42,21 +45,13 @@ std::string read_until(const Running& running, const std::string& word);
 Outcome run(const std::vector<std::string>& arguments);
 
 /// A directory of its own for one test, removed with everything in it.
-class Folder {
+class Folder : public TemporaryFolder {
  public:
-  Folder();
-  ~Folder();
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-
-  std::string operator/(const std::string& name) const { return (path_ / name).string(); }
+  std::string operator/(const std::string& name) const { return (directory() / name).string(); }
   /// Writes a file and returns its path.
   std::string write(const std::string& name, const std::string& bytes) const;
   /// Names of all files, sorted, hidden ones included.
   std::vector<std::string> files() const;
-
- private:
-  std::filesystem::path path_;
 };
 
 /// One row of the program's CSV.

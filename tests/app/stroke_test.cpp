@@ -90,6 +90,25 @@ TEST(StrokeCommand, PointsInFacesGiveThePlaneOnMeshes) {
   }
 }
 
+TEST(StrokeCommand, ARadiusLeavesOutWhatLiesBeyondAndMovesNothing) {
+  const Folder folder;
+  const std::string input = folder.write("plane.xyz", xyz(plane(30))), curve = "0.21,0.4,0 0.77,0.4,0";
+  auto whole = stroke(folder, input, curve), near = stroke(folder, input, curve, {"--radius", "0.2"});
+  ASSERT_EQ(near.size(), whole.size());
+  std::size_t beyond = 0;
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    if (std::isnan(near[i]["u"])) {
+      ++beyond;
+      EXPECT_TRUE(std::isnan(near[i]["distance"]));
+    } else {
+      EXPECT_EQ(near[i]["u"], whole[i]["u"]);
+      EXPECT_EQ(near[i]["v"], whole[i]["v"]);
+    }
+    EXPECT_EQ(std::isnan(near[i]["u"]), whole[i]["distance"] > 0.2) << i;
+  }
+  EXPECT_GT(beyond, 0U);
+}
+
 TEST(StrokeCommand, VerticesMakeACurveToo) {
   const Folder folder;
   const std::string input = folder.write("sheet.off", sheet(12, true));
@@ -179,12 +198,23 @@ TEST(StrokeCommand, AClosedCurveAlongAOneSidedBandIsRefused) {
     }
 }
 
-TEST(StrokeCommand, WarnsOfACurveThatLeavesTheSurface) {
+TEST(StrokeCommand, TwoPointsOnACloudAreJoinedAlongIt) {
   const Folder folder;
   const Outcome outcome = run(
       {"stroke", folder.write("sphere.xyz", xyz(sphere(2000))), "--curve", "1,0,0 0,1,0", "-o", folder / "stroke.csv"});
   EXPECT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_NE(outcome.err.find("give more points"), std::string::npos) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+}
+
+TEST(StrokeCommand, WarnsOfACurveThatLeavesTheSurface) {
+  const Folder folder;
+  std::vector<Vec3> points = sphere(2000);
+  for (const Vec3& p : sphere(2000)) points.push_back({p[0] + 3, p[1], p[2]});
+  const Outcome outcome =
+      run({"stroke", folder.write("two.xyz", xyz(points)), "--curve", "1,0,0 2,0,0", "-o", folder / "stroke.csv"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  for (const std::string words : {"no shortest path", "does not connect their ends", "give more points"})
+    EXPECT_NE(outcome.err.find(words), std::string::npos) << outcome.err;
 }
 
 TEST(StrokeCommand, ExplainsItself) {

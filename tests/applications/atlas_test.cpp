@@ -13,12 +13,11 @@
 #include "ahm/error.hpp"
 #include "ahm/polymesh/polygon_mesh_surface.hpp"
 #include "ahm/testing/flat_graphs.hpp"
+#include "ahm/util/small_math.hpp"
 #include "support/solved_mesh.hpp"
 
 namespace ahm::test {
 namespace {
-
-std::size_t to_size(Offset i) { return static_cast<std::size_t>(i); }
 
 /// A mesh, its solver, and its faces as the atlas wants them.
 struct Surface {

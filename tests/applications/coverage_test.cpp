@@ -185,6 +185,12 @@ TEST(Coverage, RefusesBadArguments) {
   EXPECT_THROW(coverage_path(inverse, {.radius = 1, .spacing = 0.1, .step = nan}), InvalidArgument);
   EXPECT_THROW(coverage_path(inverse, {.radius = 1, .spacing = 0.1, .angle = nan}), InvalidArgument);
   EXPECT_THROW(coverage_path(inverse, {.radius = 1, .spacing = 1e-9}), InvalidArgument);
+  try {
+    coverage_path(inverse, {.radius = 1, .spacing = 1e-7});
+    FAIL() << "a pattern without bounds";
+  } catch (const InvalidArgument& e) {
+    EXPECT_NE(std::string(e.what()).find("about 6.28319e+14 points"), std::string::npos) << e.what();
+  }
 }
 
 }  // namespace

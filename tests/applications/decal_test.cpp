@@ -7,12 +7,11 @@
 #include <numbers>
 
 #include "ahm/error.hpp"
+#include "ahm/util/small_math.hpp"
 #include "mapped_surfaces.hpp"
 
 namespace ahm::test {
 namespace {
-
-std::size_t to_size(Offset i) { return static_cast<std::size_t>(i); }
 
 /// A tilted plane through (1, 2, 3).
 std::array<Vec3, 2> tilted(double u, double v) { return {Vec3{1 + 0.6 * u, 2 + v, 3 + 0.8 * u}, Vec3{-0.8, 0, 0.6}}; }

@@ -129,8 +129,18 @@ TEST(Distortion, IsSummarizedByArea) {
   EXPECT_EQ(s.largest, 10);
   EXPECT_DOUBLE_EQ(s.flipped, 1.0 / 3);
   EXPECT_DOUBLE_EQ(s.flipped_area, 0.06);
+  EXPECT_EQ(s.collapsed_area, 0);
   EXPECT_EQ(s.measured, 3);
   EXPECT_EQ(s.unmeasured, 1);
+  // What collapses is told apart from the mean, and no less a part of the rest.
+  std::vector<TriangleDistortion> with_collapse = some;
+  with_collapse.push_back(triangle(1e14, 25, false));
+  const DistortionSummary c = summary(with_collapse);
+  EXPECT_DOUBLE_EQ(c.mean, s.mean);
+  EXPECT_DOUBLE_EQ(c.collapsed_area, 0.2);
+  EXPECT_EQ(c.largest, 1e14);
+  EXPECT_EQ(c.measured, 4);
+  EXPECT_TRUE(std::isnan(summary(std::vector{triangle(1e14, 25, false)}).mean));
 }
 
 TEST(Distortion, RefusesWhatDoesNotFit) {

@@ -314,6 +314,29 @@ TEST(Center, IsFoundInFewMapsFromEveryStart) {
   }
 }
 
+TEST(Center, OfPointsBesideVerticesIsExactOnThePlane) {
+  const FlatGraph flat = planar_triangulation(10);
+  const CsrGraph graph(flat.data);
+  const LogMapSolver solver(graph);
+  const std::array vertices{Vertex{3}, Vertex{40}, Vertex{77}};
+  const std::array<std::array<double, 2>, 3> beside{{{0.01, 0.02}, {-0.03, 0.0}, {0.0, 0.015}}};
+  const std::array weights{1.0, 2.0, 5.0};
+  std::vector<Source> points;
+  for (std::size_t k = 0; k < 3; ++k)
+    points.push_back(Source(2).add(vertices[k], 1.0, std::array{-beside[k][0], -beside[k][1]}));
+  const Center mean = karcher_mean_of_points(solver, points, weights);
+  std::array<double, 2> sum{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto z = flat.exact(mean.vertex.index, vertices[k].index);
+    const auto b = flat.carried(vertices[k].index, mean.vertex.index, {beside[k][0], beside[k][1]});
+    for (std::size_t a = 0; a < 2; ++a) sum[a] += weights[k] * (z[a] + b[a]) / 8;
+  }
+  for (std::size_t a = 0; a < 2; ++a) EXPECT_NEAR(mean.offset[a], sum[a], 1e-10);
+  const Center median = geometric_median_of_points(solver, points, std::array{1.0, 9.0, 1.0});
+  EXPECT_EQ(median.vertex, Vertex{40});
+  for (std::size_t a = 0; a < 2; ++a) EXPECT_NEAR(median.offset[a], beside[1][a], 1e-10);
+}
+
 TEST(Center, IgnoresPointsOfWeightZero) {
   const FlatGraph flat = planar_triangulation(8);
   const CsrGraph two(doubled(flat.data));

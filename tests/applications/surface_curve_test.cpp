@@ -12,7 +12,9 @@
 #include "ahm/maps/log_map_solver.hpp"
 #include "ahm/pointcloud/point_cloud_surface.hpp"
 #include "ahm/polymesh/polygon_mesh_surface.hpp"
+#include "ahm/testing/clouds.hpp"
 #include "ahm/testing/triangle_meshes.hpp"
+#include "ahm/testing/vectors.hpp"
 #include "ahm/trimesh/triangle_mesh_surface.hpp"
 
 namespace ahm::test {
@@ -102,6 +104,19 @@ TEST(SurfaceCurve, FollowsTheFacesBetweenFewPoints) {
   EXPECT_NEAR(map.coordinates(mesh.vertex(Row(3)))[0], 0, 1e-9);
   EXPECT_NEAR(map.coordinates(mesh.vertex(Row(200)))[0], curve.length, 1e-9);
   for (Index r : {3, 200}) EXPECT_NEAR(map.coordinates(mesh.vertex(Row(r)))[1], 0, 1e-9);
+}
+
+TEST(SurfaceCurve, FollowsACloudBetweenFewPoints) {
+  const Cloud ball = even_sphere(4000);
+  const auto cloud = pointcloud::PointCloudSurface::build(ball.points);
+  const Index far = 2900;
+  const CurvePoint given[] = {ball.points[3], ball.points[far]};
+  const SurfaceCurve curve = draw_curve(cloud, given);
+  const double edge = cloud.graph().mean_edge_length() * cloud.graph().length_unit();
+  EXPECT_EQ(curve.straight, 0);
+  EXPECT_NEAR(curve.length, std::acos(dot(ball.points[3], ball.points[far])), 0.2 * edge);
+  EXPECT_LT(curve.gap, 0.2 * edge);  // in space it would be the radius
+  EXPECT_LT(curve.jump, edge);
 }
 
 TEST(SurfaceCurve, TellsWhichLinesAreNoPaths) {

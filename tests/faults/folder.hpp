@@ -1,32 +1,19 @@
 /// \file
-/// A directory of its own for one test, removed with everything in it.
+/// A directory of its own for one test, with files as bytes.
 #pragma once
-
-#include <stdlib.h>
 
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <stdexcept>
 #include <string>
+
+#include "support/temporary_folder.hpp"
 
 namespace ahm::test {
 
-class Folder {
+class Folder : public TemporaryFolder {
  public:
-  Folder() {
-    std::string name = (std::filesystem::temp_directory_path() / "ahm_faults_XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("mkdtemp");
-    path_ = name;
-  }
-  ~Folder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-
-  std::filesystem::path path(const std::string& name = {}) const { return path_ / name; }
+  std::filesystem::path path(const std::string& name = {}) const { return directory() / name; }
   std::filesystem::path write(const std::string& name, const std::string& bytes) const {
     std::ofstream(path(name), std::ios::binary) << bytes;
     return path(name);
@@ -36,11 +23,8 @@ class Folder {
     return {std::istreambuf_iterator<char>(file), {}};
   }
   std::size_t files() const {
-    return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(path_), {}));
+    return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(directory()), {}));
   }
-
- private:
-  std::filesystem::path path_;
 };
 
 }  // namespace ahm::test

@@ -16,10 +16,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
                                       pointcloud::NormalSigns::unoriented}[(way >> 3) % 3];
     options.drop_non_finite = (way & 32) == 0;
     const auto surface = pointcloud::PointCloudSurface::build(points, normals, options);
-    validate(surface.graph());
-    (void)surface.report();
-    (void)surface.warnings();
-    fuzz::solve(surface.graph(), bytes);
+    fuzz::check_surface(surface, bytes);
     const LogMapSolver solver(surface.graph(), {.threads = 1});
     const Row row(bytes.number(static_cast<Index>(points.size()) - 1));
     (void)surface.on_rows(solver.solve(surface.source(row).source));

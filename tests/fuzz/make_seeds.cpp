@@ -159,6 +159,9 @@ void add_files(const Seeds& seeds) {
     table.text = text;
     io::write(seeds.file("ply", text ? "text.ply" : "binary.ply"), table);
   }
+  io::Table table = table_of(mesh.positions, mesh.positions);
+  table.faces = {begin, corners};
+  io::write(seeds.file("vtp", "appended.vtp"), table);
   io::write(seeds.file("csv", "cloud.csv"), table_of(cloud.points, cloud.normals));
   const std::vector<io::MeshPart> parts{{"ball", mesh.positions, {}, {begin, corners}}};
   io::write_textured(seeds.file("glb", "ball.glb"), parts);
@@ -190,6 +193,32 @@ void add_files(const Seeds& seeds) {
     put(binary, static_cast<std::uint16_t>(0));
   }
   seeds.add("stl", "binary.stl", binary);
+}
+
+/// A square, as text and big-endian, and as XML.
+void add_vtk(const Seeds& seeds) {
+  const std::string head = "# vtk DataFile Version 3.0\nt\n";
+  seeds.add("vtk", "text.vtk",
+            head +
+                "ASCII\nDATASET POLYDATA\nPOINTS 4 float\n0 0 0 1 0 0 1 1 0 0 1 0\nPOLYGONS 1 4\n3 0 1 2\n"
+                "TRIANGLE_STRIPS 1 4\n3 0 2 3\nPOINT_DATA 4\nSCALARS s int 1\nLOOKUP_TABLE default\n1 2 3 4\n"
+                "COLOR_SCALARS c 3\n1 0 0 1 0 0 1 0 0 1 0 0\nFIELD f 1\ng 2 4 short\n1 2 3 4 5 6 7 8\n");
+  seeds.add("vtk", "offsets.vtk",
+            "# vtk DataFile Version 5.1\nt\nASCII\nDATASET POLYDATA\nPOINTS 3 double\n0 0 0 1 0 0 0 1 0\nMETADATA\n"
+            "INFORMATION 0\n\nPOLYGONS 2 3\nOFFSETS vtktypeint64\n0 3\nCONNECTIVITY vtktypeint64\n0 1 2\n");
+  std::string binary = head + "BINARY\nDATASET POLYDATA\nPOINTS 3 float\n";
+  for (const int one : {3, 7})
+    for (int k = 0; k < 36; ++k) binary += k == 4 * one ? '\x3f' : k == 4 * one + 1 ? '\x80' : '\0';
+  binary.resize(binary.size() - 36);
+  binary += "\nPOLYGONS 1 4\n" + bytes_of(0, 0, 0, 3, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 2) + "\n";
+  seeds.add("vtk", "binary.vtk", binary);
+  const std::string array = "<DataArray type=\"", points = "Float32\" NumberOfComponents=\"3\" format=\"";
+  seeds.add("vtp", "text.vtp",
+            "<VTKFile type=\"PolyData\"><PolyData><Piece NumberOfPoints=\"3\" NumberOfPolys=\"1\"><Points>" + array +
+                points + "ascii\">0 0 0 1 0 0 0 1 0</DataArray></Points><PointData>" + array +
+                "UInt8\" Name=\"a\" format=\"binary\">AwAAAAECAw==</DataArray></PointData><Polys>" + array +
+                "Int32\" Name=\"connectivity\">0 1 2</DataArray>" + array +
+                "Int32\" Name=\"offsets\">3</DataArray></Polys></Piece></PolyData></VTKFile>");
 }
 
 /// Two points of format 0 after a header of version 1.2.
@@ -256,6 +285,7 @@ int main(int argc, char** argv) try {
   add_graphs(seeds);
   add_files(seeds);
   add_las(seeds);
+  add_vtk(seeds);
   add_gltf(seeds);
   add_command_lines(seeds);
   return 0;

@@ -7,6 +7,7 @@
 
 #include "ahm/graph/validate.hpp"
 #include "ahm/maps/log_map_solver.hpp"
+#include "ahm/surface/surface.hpp"
 #include "bytes.hpp"
 
 namespace ahm::fuzz {
@@ -50,6 +51,14 @@ inline void solve(const TangentGraph& graph, Bytes& bytes) {
   const std::vector<LogMap> maps = solver.solve(sources, map_options);
   for (const LogMap& map : maps) check_map(map);
   require(same(maps.front(), solver.solve(std::span(sources), map_options).front()), "a map again is the same bits");
+}
+
+/// What every surface that could be built has to stand.
+inline void check_surface(const Surface& surface, Bytes& bytes) {
+  validate(surface.graph());
+  (void)surface.report();
+  (void)surface.warnings();
+  solve(surface.graph(), bytes);
 }
 
 }  // namespace ahm::fuzz

@@ -23,10 +23,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     options.discretization = std::array{polymesh::Discretization::automatic, polymesh::Discretization::polygons,
                                         polymesh::Discretization::refined}[(way >> 5) % 3];
     const auto surface = polymesh::PolygonMeshSurface::build(positions, begin, corners, options);
-    validate(surface.graph());
-    (void)surface.report();
-    (void)surface.warnings();
-    fuzz::solve(surface.graph(), bytes);
+    fuzz::check_surface(surface, bytes);
     const LogMapSolver solver(surface.graph(), {.threads = 1});
     const Row row(bytes.number(static_cast<Index>(positions.size()) - 1));
     const LogMap map = solver.solve(surface.source(row).source);

@@ -17,10 +17,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     options.intrinsic_delaunay = (way & 8) == 0;
     options.clamp_weights = (way & 16) == 0;
     const auto surface = trimesh::TriangleMeshSurface::build(positions, faces, options);
-    validate(surface.graph());
-    (void)surface.report();
-    (void)surface.warnings();
-    fuzz::solve(surface.graph(), bytes);
+    fuzz::check_surface(surface, bytes);
     const LogMapSolver solver(surface.graph(), {.threads = 1});
     const FacePoint point{bytes.number(static_cast<Index>(faces.size()) - 1), {0.25, 0.25, 0.5}};
     const LogMap map = solver.solve(surface.source(point).source);

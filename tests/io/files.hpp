@@ -16,22 +16,13 @@
 #include <vector>
 
 #include "ahm/io/read.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace ahm::io::test {
 
 /// A directory that lives as long as the test.
 class Files : public ::testing::Test {
  protected:
-  Files() {
-    std::string name = (std::filesystem::temp_directory_path() / "ahm_io_XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary directory");
-    directory_ = name;
-  }
-  ~Files() override {
-    std::error_code ignored;
-    std::filesystem::remove_all(directory_, ignored);
-  }
-
   std::filesystem::path path(const std::string& name) const { return directory_ / name; }
 
   std::filesystem::path make(const std::string& name, std::string_view bytes) const {
@@ -67,7 +58,8 @@ class Files : public ::testing::Test {
     return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(directory_), {}));
   }
 
-  std::filesystem::path directory_;
+  const ahm::test::TemporaryFolder folder_;
+  const std::filesystem::path& directory_ = folder_.directory();
 };
 
 /// The bytes of a value in the given order.

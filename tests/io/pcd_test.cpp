@@ -93,6 +93,53 @@ TEST_F(ReadPcd, ReadsWholeNumberFieldsAndOrganisedClouds) {
   EXPECT_EQ(g.points.size(), 4u);
 }
 
+TEST_F(ReadPcd, KeepsThePictureAndTheViewpoint) {
+  const Geometry g = read_bytes("v.pcd",
+                                "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 3\nHEIGHT 2\n"
+                                "VIEWPOINT 431234.567891 -2 0.1 0.5 0.5 -0.5 0.5\nPOINTS 6\nDATA ascii\n"
+                                "1 1 1\n2 2 2\n3 3 3\n4 4 4\nnan nan nan\n6 6 6\n");
+  ASSERT_TRUE(g.acquisition.has_value());
+  EXPECT_EQ(g.acquisition->width, 3u);
+  EXPECT_EQ(g.acquisition->height, 2u);
+  EXPECT_EQ(g.acquisition->position, (Vec3{431234.567891, -2, 0.1}));
+  EXPECT_EQ(g.acquisition->orientation, (std::array<double, 4>{0.5, 0.5, -0.5, 0.5}));
+  EXPECT_EQ(read_bytes("u.pcd", doubles(1, "ascii") + "1 2 3\n").acquisition->height, 1u);
+}
+
+TEST_F(ReadPcd, RefusesViewpointsItCannotKeep) {
+  const std::string head = "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 1\n", body = "POINTS 1\nDATA ascii\n1 2 3\n";
+  expect_refused("v.pcd", head + "VIEWPOINT 0 0 0 1 0 0\n" + body, {"line 5", "seven"});
+  expect_refused("v.pcd", head + "VIEWPOINT 0 0 0 1 0 0 a\n" + body, {"line 5", "'a'"});
+  expect_refused("v.pcd", head + "VIEWPOINT 0 0 0 1 0 0 0\nVIEWPOINT 1 0 0 1 0 0 0\n" + body, {"line 6", "twice"});
+}
+
+TEST_F(ReadPcd, KeepsFurtherFieldsAsProperties) {
+  std::string body;
+  for (int i = 0; i < 2; ++i) {
+    for (const float x : {1.f, 2.f, 3.f, 0.25f + static_cast<float>(i)}) body += bytes_of(x);
+    for (const std::uint16_t x : {7, 8, 9}) body += bytes_of(static_cast<std::uint16_t>(x + i));
+  }
+  const Geometry g =
+      read_bytes("p.pcd", header("x y z intensity hist", "4 4 4 4 2", "F F F F U", "1 1 1 1 3", 2, "binary") + body);
+  std::vector<std::string> names;
+  for (const Property& property : g.properties) names.push_back(property.name);
+  ASSERT_EQ(names, (std::vector<std::string>{"intensity", "hist_0", "hist_1", "hist_2"}));
+  EXPECT_EQ(g.properties[0].values, (std::vector<double>{0.25, 1.25}));
+  EXPECT_EQ(g.properties[2].values, (std::vector<double>{8, 9}));
+}
+
+TEST_F(ReadPcd, LeavesOutWholeNumbersThatNoDoubleHolds) {
+  const auto stamped = [&](const std::string& stamp) {
+    return read_bytes("s.pcd",
+                      header("x y z t", "4 4 4 8", "F F F U", "1 1 1 1", 1, "ascii") + "1 2 3 " + stamp + "\n");
+  };
+  EXPECT_EQ(stamped("9007199254740991").properties[0].values, (std::vector<double>{9007199254740991}));
+  const Geometry g = stamped("9007199254740993");
+  EXPECT_TRUE(g.properties.empty());
+  ASSERT_EQ(g.warnings.size(), 1u);
+  EXPECT_EQ(g.warnings[0].name, "t");
+}
+
 TEST_F(ReadPcd, ReadsFilesWithoutPointsOrWithoutWidth) {
   const std::string fields = "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\n";
   std::string binary;
@@ -232,6 +279,35 @@ TEST_F(WritePcd, HoldsTheResult) {
     if (result.status[i] != Status::ok) continue;
     EXPECT_EQ(values[1], result.v[i]);
   }
+}
+
+TEST_F(WritePcd, GivesThePictureAndTheViewpointBack) {
+  const Result result;
+  Table table = result.table();
+  table.acquisition = {2, 2, {431234.567891, -2, 0.1}, {0.5, 0.5, -0.5, 0.5}};
+  write(path("a.pcd"), table);
+  const Geometry g = read(path("a.pcd"));
+  ASSERT_TRUE(g.acquisition.has_value());
+  EXPECT_EQ(g.acquisition->width, 2u);
+  EXPECT_EQ(g.acquisition->height, 2u);
+  EXPECT_EQ(g.acquisition->position, table.acquisition->position);
+  EXPECT_EQ(g.acquisition->orientation, table.acquisition->orientation);
+}
+
+TEST_F(WritePcd, PacksColorsAsPclDoesAndStoresIntensityAsFloats) {
+  const Result result;
+  const std::vector<std::array<std::uint8_t, 3>> colors = {{255, 0, 1}, {1, 2, 3}, {0, 0, 0}, {9, 8, 255}};
+  const std::vector<double> intensity = {0.5, 1, 2, 3};
+  Table table = result.rows();
+  table.add({"red", "green", "blue"}, colors);
+  table.add("intensity", intensity);
+  write(path("a.pcd"), table);
+  const std::string text = contents(path("a.pcd"));
+  EXPECT_NE(text.find("normal_z rgb intensity\nSIZE 8 8 8 4 4 4 4 4\n"), std::string::npos) << text.substr(0, 300);
+  const Geometry g = read(path("a.pcd"));
+  EXPECT_EQ(g.colors, colors);
+  ASSERT_EQ(g.properties.size(), 1u);
+  EXPECT_EQ(g.properties[0].values, intensity);
 }
 
 TEST_F(WritePcd, ReportsAFullDisk) {

@@ -41,6 +41,9 @@ TEST_F(ReadFile, TellsHowToUnpackAndConvertWhatItDoesNotRead) {
   expect_refused("a.ply.bz2", "BZh", {"bunzip2"});
   expect_refused("a.ply.zst", "x", {"unzstd"});
   expect_refused("a.laz", "LASF", {"laszip"});
+  expect_refused("a.vtu", "<VTKFile>", {"ParaView"});
+  expect_refused("a.pvtp", "<VTKFile>", {"ParaView"});
+  expect_refused("a.jsonl", "{}", {".csv"});
   expect_refused("a.e57", "ASTM-E57", {"CloudCompare"});
 }
 

@@ -26,7 +26,18 @@ class ReadNoise : public Files {
 
 TEST_F(ReadNoise, ReadsOrRefusesRandomBytesOfEveryType) {
   const std::string beginnings[] = {
-      "", "ply\nformat binary_little_endian 1.0\n", "solid", "OFF\n", "LASF", "//X Y Z\n", "v ", "\x1f\x8b\x08"};
+      "",
+      "ply\nformat binary_little_endian 1.0\n",
+      "solid",
+      "OFF\n",
+      "LASF",
+      "//X Y Z\n",
+      "v ",
+      "\x1f\x8b\x08",
+      "# vtk DataFile Version 3.0\nt\nBINARY\nDATASET POLYDATA\nPOINTS 4 float\n",
+      "<VTKFile type=\"PolyData\"><PolyData><Piece NumberOfPoints=\"4\"><Points><DataArray type=\"Float32\" "
+      "NumberOfComponents=\"3\" format=\"appended\" offset=\"0\"/></Points></Piece></PolyData>"
+      "<AppendedData encoding=\"raw\">_"};
   for (const std::string& extension : extensions(Use::read))
     for (const std::string& beginning : beginnings)
       for (int round = 0; round < 20; ++round) {
@@ -60,6 +71,9 @@ TEST_F(ReadNoise, ReadsOrRefusesGoodFilesWithBytesChanged) {
        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
        "property float red\nproperty float green\nproperty float blue\nelement face 1\n"
        "property list uchar int vertex_indices\nend_header\n0 0 0 1 0 0\n1 0 0 1 0 0\n0 1 0 1 0 0\n3 0 1 2\n"},
+      {"a.vtk",
+       "# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\nPOINTS 3 float\n0 0 0 1 0 0 0 1 0\nPOLYGONS 1 4\n"
+       "3 0 1 2\nPOINT_DATA 3\nSCALARS s float\nLOOKUP_TABLE default\n1 2 3\n"},
       {"a.pts", "2\n1 2 3 4 5 6 7\n1 2 3 4 5 6 7\n"},
       {"a.csv", "x;y;z;nx;ny;nz;r;g;b\n1;2;3;0;0;1;255;0;0\n"}};
   for (const auto& [name, bytes] : good) {

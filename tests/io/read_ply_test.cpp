@@ -58,6 +58,20 @@ TEST_F(ReadPly, ReadsEitherByteOrderWithExtraElementsAndPropertiesInAnyOrder) {
   }
 }
 
+TEST_F(ReadPly, KeepsFurtherPropertiesOfTheVerticesUnderNamesOfTheirOwn) {
+  const Geometry g = read_bytes("p.ply",
+                                "ply\nformat ascii 1.0\nelement vertex 2\nproperty float intensity\nproperty float x\n"
+                                "property float y\nproperty float z\nproperty uchar scalar-field\n"
+                                "property uchar scalar_field\nend_header\n0.25 1 2 3 7 8\n0.5 4 5 6 9 10\n");
+  EXPECT_EQ(g.points, (std::vector<Vec3>{{1, 2, 3}, {4, 5, 6}}));
+  ASSERT_EQ(g.properties.size(), 3u);
+  EXPECT_EQ(g.properties[0].name, "intensity");
+  EXPECT_EQ(g.properties[0].values, (std::vector<double>{0.25, 0.5}));
+  EXPECT_EQ(g.properties[1].name, "scalar_field");
+  EXPECT_EQ(g.properties[2].name, "scalar_field_2");
+  EXPECT_EQ(g.properties[2].values, (std::vector<double>{8, 10}));
+}
+
 TEST_F(ReadPly, KeepsPolygonsAndTheirOrder) {
   const std::string list = "element face 2\nproperty list uchar int vertex_indices\n";
   const Geometry g =

@@ -154,5 +154,20 @@ TEST_F(ReadCsv, RefusesMissingDuplicateAndBrokenColumns) {
   expect_refused("m.csv", "1,,3\n", {"line 1"});
 }
 
+TEST_F(ReadXyz, KeepsNamedColumnsOfNumbers) {
+  const Geometry g = read_bytes("n.csv", "id,x,y,z,status,height (m),empty\n7,1,2,3,ok,0.5,\n8,4,5,6,1,0.25,2\n");
+  EXPECT_EQ(g.points, (std::vector<Vec3>{{1, 2, 3}, {4, 5, 6}}));
+  ASSERT_EQ(g.properties.size(), 3u);
+  EXPECT_EQ(g.properties[0].name, "id");
+  EXPECT_EQ(g.properties[0].values, (std::vector<double>{7, 8}));
+  EXPECT_EQ(g.properties[1].name, "height__m_");
+  EXPECT_EQ(g.properties[1].values, (std::vector<double>{0.5, 0.25}));
+  EXPECT_TRUE(std::isnan(g.properties[2].values[0]));
+  EXPECT_EQ(g.properties[2].values[1], 2);
+  ASSERT_EQ(g.warnings.size(), 1u);
+  EXPECT_EQ(g.warnings[0].id, "column_ignored");
+  EXPECT_EQ(g.warnings[0].name, "status");
+}
+
 }  // namespace
 }  // namespace ahm::io::test

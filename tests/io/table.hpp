@@ -2,9 +2,13 @@
 /// A small result to write: awkward numbers, a removed point, two polygons.
 #pragma once
 
+#include <gtest/gtest.h>
+
+#include <cmath>
 #include <limits>
 #include <vector>
 
+#include "ahm/io/read.hpp"
 #include "ahm/io/write.hpp"
 
 namespace ahm::io::test {
@@ -36,5 +40,16 @@ struct Result {
     return result;
   }
 };
+
+/// Expects the points, normals and faces of the result, bit for bit.
+inline void expect_geometry_of(const Result& result, const Geometry& g) {
+  EXPECT_EQ(g.points, result.points);
+  ASSERT_EQ(g.normals.size(), 4u);
+  EXPECT_EQ(g.normals[1], result.normals[1]);
+  EXPECT_EQ(g.normals[3], result.normals[3]);
+  EXPECT_TRUE(std::isnan(g.normals[2][0]));
+  EXPECT_EQ(g.face_begin, result.face_begin);
+  EXPECT_EQ(g.face_vertices, result.face_vertices);
+}
 
 }  // namespace ahm::io::test

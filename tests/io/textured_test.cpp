@@ -182,6 +182,37 @@ TEST_F(Textured, GlbReadsBackFarFromTheOriginToo) {
   }
 }
 
+TEST_F(Textured, PlyHasAVertexForEveryPairOfCoordinatesOfAPoint) {
+  const Shape shape;
+  MeshPart plain = shape.part(nullptr);
+  plain.name = "rest", plain.texture_coordinates = {};
+  write_textured(path("a.ply"), std::array{shape.part(nullptr), plain});
+  const Geometry back = read(path("a.ply"));
+  // Points 1 and 3 lie on the seam: 5 + 2 vertices with coordinates, 5 without.
+  ASSERT_EQ(back.points.size(), 12u);
+  ASSERT_EQ(back.face_count(), 4u);
+  for (std::size_t c = 0; c < 14; ++c)
+    EXPECT_EQ(back.points[back.face_vertices[c]], shape.points[shape.vertices[c % 7]]) << c;
+  const std::string bytes = contents(path("a.ply"));
+  for (const char* line : {"property double s\nproperty double t\nproperty int point\n", "element vertex 12\n"})
+    EXPECT_NE(bytes.find(line), std::string::npos) << line;
+  // x y z nx ny nz s t point: what stands at each corner is what was given.
+  const std::size_t stride = 8 * sizeof(double) + sizeof(std::int32_t), body = bytes.find("end_header\n") + 11;
+  for (std::size_t c = 0; c < 7; ++c) {
+    std::array<double, 2> st{};
+    std::int32_t point = -1;
+    const std::size_t at = body + stride * static_cast<std::size_t>(back.face_vertices[c]) + 6 * sizeof(double);
+    std::memcpy(st.data(), bytes.data() + at, sizeof st);
+    std::memcpy(&point, bytes.data() + at + sizeof st, sizeof point);
+    EXPECT_EQ(st[0], shape.uv[2 * c]);
+    EXPECT_EQ(st[1], shape.uv[2 * c + 1]);
+    EXPECT_EQ(point, shape.vertices[c]);
+  }
+  const Image image = gradient(4, 4);
+  EXPECT_THROW(write_textured(path("b.ply"), std::array{shape.part(&image)}), InvalidArgument);
+  EXPECT_FALSE(std::filesystem::exists(path("b.ply")));
+}
+
 TEST_F(Textured, RefusesWhatDoesNotFitAndLeavesNothingBehind) {
   const Shape shape;
   const Image image = gradient(2, 2);

@@ -210,24 +210,49 @@ TEST(Surface, ATangentPointOfACloudCarriesItsOffset) {
   EXPECT_NEAR(back.v, left * (0.44 - 1.02), 1e-9);
 }
 
+/// However often it is asked, and where several rows are equally near.
+TEST(Surface, TheNearestRowIsTheFirstOfLeastDistance) {
+  for (const double scale : {1.0, 0x1p-800, 0x1p900}) {
+    std::vector<Vec3> points;
+    for (int x = 0; x < 24; ++x)
+      for (int y = 0; y < 24; ++y) points.push_back({scale * x, scale * y, x % 5 == 0 ? scale * 0.25 : 0});
+    points.push_back(points[7]);
+    points.push_back({NAN, 0, 0});
+    const pointcloud::CloudOptions options{.drop_non_finite = true};
+    const auto often = PointCloudSurface::build(points, {}, options);
+    std::mt19937 random(3);
+    std::uniform_int_distribution<int> half(-4, 52);
+    for (int group = 0; group < 40; ++group) {
+      const auto seldom = PointCloudSurface::build(points, {}, options);  // looks at all
+      for (int k = 0; k < 2; ++k) {
+        const Vec3 query{scale * 0.5 * half(random), scale * 0.5 * half(random), scale * 0.125 * (k % 3)};
+        const Row row = often.nearest_row(query);
+        ASSERT_EQ(row.index, seldom.nearest_row(query).index) << "group " << group << " at scale " << scale;
+        for (const Vec3& p : points)
+          ASSERT_FALSE(distance(p, query) < distance(points[row.index], query) * (1 - 1e-15));
+      }
+    }
+  }
+}
+
 TEST(Surface, RowsThatACallerDidNotKeepAreRemovedAndSaidSo) {
   std::vector<Vec3> points;
   for (int x = 0; x < 15; ++x)
     for (int y = 0; y < 15; ++y) points.push_back({0.1 * x, 0.1 * y + 0.02 * (x % 2), 0});
   points[3] = {NAN, 0, 0};
-  std::vector<Index> kept;
+  std::vector<Row> kept;
   for (Index i = 0; i < static_cast<Index>(points.size()); ++i)
-    if (i % 7 != 3) kept.push_back(i);
+    if (i % 7 != 3) kept.emplace_back(i);
   const auto cloud = PointCloudSurface::build(points, {}, {.rows = kept});
   std::vector<Vec3> remaining;
-  for (Index i : kept) remaining.push_back(points[i]);
+  for (const Row row : kept) remaining.push_back(points[row.index]);
   const auto alone = PointCloudSurface::build(remaining);
-  const RowLogMap a = cloud.on_rows(LogMapSolver(cloud.graph()).solve(cloud.source(Row(kept[9])).source));
+  const RowLogMap a = cloud.on_rows(LogMapSolver(cloud.graph()).solve(cloud.source(kept[9]).source));
   const RowLogMap b = alone.on_rows(LogMapSolver(alone.graph()).solve(alone.source(Row(9)).source));
   ASSERT_EQ(a.u.size(), points.size());
   for (std::size_t k = 0; k < kept.size(); ++k) {
-    EXPECT_EQ(a.u[kept[k]], b.u[k]);
-    EXPECT_EQ(a.v[kept[k]], b.v[k]);
+    EXPECT_EQ(a.u[kept[k].index], b.u[k]);
+    EXPECT_EQ(a.v[kept[k].index], b.v[k]);
   }
   EXPECT_EQ(a.status[3], Status::removed);
   try {
@@ -236,7 +261,8 @@ TEST(Surface, RowsThatACallerDidNotKeepAreRemovedAndSaidSo) {
   } catch (const InvalidArgument& e) {
     EXPECT_EQ(e.fault(), "row_left_out");
   }
-  EXPECT_THROW(PointCloudSurface::build(points, {}, {.rows = std::vector<Index>{5, 4, 6}}), InvalidArgument);
+  EXPECT_THROW(PointCloudSurface::build(points, {}, {.rows = std::vector<Row>{Row(5), Row(4), Row(6)}}),
+               InvalidArgument);
 }
 
 TEST(Surface, StaysValidWhenItIsMoved) {

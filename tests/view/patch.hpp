@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "ahm/view/picture.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace ahm::view::test {
 
@@ -62,22 +63,12 @@ struct Patch {
 };
 
 /// A new folder, removed with all it holds.
-class Folder {
+class Folder : public ahm::test::TemporaryFolder {
  public:
-  Folder() {
-    std::string name = (std::filesystem::temp_directory_path() / "ahm_view_XXXXXX").string();
-    path_ = mkdtemp(name.data());
-  }
-  ~Folder() { std::filesystem::remove_all(path_); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+  std::filesystem::path operator/(const std::string& name) const { return directory() / name; }
   std::size_t files() const {
-    return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(path_), {}));
+    return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(directory()), {}));
   }
-
- private:
-  std::filesystem::path path_;
 };
 
 inline std::string read(const std::filesystem::path& path) {

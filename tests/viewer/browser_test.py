@@ -310,6 +310,64 @@ class Page(unittest.TestCase):
         self.assertFalse(self.driver.find_element(By.ID, "take").is_displayed())
         self.shot("static")
 
+    def test_a_large_mesh_is_coarser_while_it_moves_and_looks_alike(self):
+        self.open(self.mesh)
+        corners, count = self.js("""const t = Ahm.coarse_triangles(ahm.stage.surface, 12), out = new Set();
+            for (let k = 0; k < t.length; k += 3) out.add([t[k], t[k + 1], t[k + 2]].sort((a, b) => a - b).join());
+            return [t.length, out.size]""")
+        self.assertEqual(corners, 3 * count)  # none twice
+        self.assertLess(count, len(self.faces) / 4)
+        covered = """const s = ahm.stage, gl = s.renderer.getContext(), bytes = new Uint8Array(4 * gl.drawingBufferWidth * gl.drawingBufferHeight);
+            s.is_moving = arguments[0]; s.quality = 1; s.draw();
+            gl.readPixels(0, 0, gl.drawingBufferWidth, gl.drawingBufferHeight, gl.RGBA, gl.UNSIGNED_BYTE, bytes);
+            let n = 0; for (let k = 0; k < bytes.length; k += 4) if (bytes[k] + bytes[k + 1] + bytes[k + 2] < 740) ++n;
+            s.is_moving = false;
+            return n;"""
+        whole = self.js(covered, False)
+        self.js("ahm.stage.make_coarse()")
+        moving = self.js(covered, True)
+        self.shot("after_moving")
+        self.assertLess(abs(moving - whole), 0.02 * whole)
+        self.assertEqual(self.js(covered, False), whole)
+
+    def touch(self, kind, *points):
+        self.driver.execute_cdp_cmd("Input.dispatchTouchEvent", {"type": kind, "touchPoints": [{"x": x, "y": y, "id": k} for k, (x, y) in enumerate(points)]})
+
+    def test_touch_taps_turns_and_zooms(self):
+        self.driver.execute_cdp_cmd("Emulation.setTouchEmulationEnabled", {"enabled": True, "maxTouchPoints": 2})
+        self.addCleanup(self.driver.execute_cdp_cmd, "Emulation.setTouchEmulationEnabled", {"enabled": False})
+        self.open(self.mesh)
+        look = lambda: self.js("return [...ahm.stage.camera.position.toArray(), ahm.stage.camera.position.distanceTo(ahm.stage.controls.target)]")
+        row, x, y = self.visible_rows(8)[-1]
+        before, number = look(), self.js("return ahm.server.number")
+        self.touch("touchStart", (x, y))
+        self.touch("touchEnd")
+        self.wait(f"ahm.server.number > {number}")
+        self.settled()
+        self.assertEqual(look(), before)
+        self.assertEqual(self.js("return ahm.stage.pick(arguments[0], arguments[1]).row", x, y), row)
+        self.expect_map(self.library_rows(self.text("spec")))
+        source, number = self.text("spec"), self.js("return ahm.server.number")
+        self.touch("touchStart", (300, 600))
+        for k in range(1, 9):
+            self.touch("touchMove", (300 + 10 * k, 600))
+        self.touch("touchEnd")
+        self.settled()
+        turned = look()
+        self.assertGreater(math.dist(turned[:3], before[:3]), 0.1)
+        self.assertAlmostEqual(turned[3], before[3], delta=1e-6 * before[3])
+        self.touch("touchStart", (400, 400), (500, 400))
+        for k in range(1, 9):
+            self.touch("touchMove", (400 - 10 * k, 400), (500 + 10 * k, 400))
+        self.touch("touchEnd")
+        self.settled()
+        self.assertLess(look()[3], 0.9 * before[3])
+        self.assertEqual((self.text("spec"), self.js("return ahm.server.number")), (source, number))
+        self.shot("touch")
+
+    def all_is_seen(self):
+        return self.js("const p = document.getElementById('panel'); return p.scrollHeight <= p.clientHeight")
+
     def test_keyboard_theme_and_a_small_screen(self):
         self.open(self.mesh)
         body = self.driver.find_element(By.ID, "stage")
@@ -322,8 +380,19 @@ class Page(unittest.TestCase):
         self.assertTrue(self.js("return ahm.stage.is_dark"))
         self.settled()
         self.shot("dark")
-        panel = self.js("const p = document.getElementById('panel'); return [p.scrollHeight, p.clientHeight]")
-        self.assertLessEqual(panel[0], panel[1])  # everything is seen at 1366 x 768
+        self.assertTrue(self.all_is_seen())
+        self.js("document.getElementById('method_section').open = true")
+        for tool in ("path", "stroke", "decal", "coverage", "map"):
+            self.js("ahm.set_tool(arguments[0])", tool)
+            self.settled()
+            self.assertTrue(self.all_is_seen(), tool)
+            self.shot("panel_" + tool)
+        self.js("document.getElementById('method_section').open = false")
+        # What a browser leaves of such a screen.
+        self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {"width": 1366, "height": 620, "deviceScaleFactor": 1, "mobile": False})
+        self.wait("ahm.stage.height === 620 && !ahm.stage.pending")
+        self.assertTrue(self.all_is_seen())
+        self.shot("low")
         self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {"width": 390, "height": 780, "deviceScaleFactor": 2, "mobile": True})
         self.wait("ahm.stage.width === 390 && !ahm.stage.pending")
         self.shot("phone")

@@ -5,9 +5,14 @@
 #include <set>
 #include <thread>
 
+#include "ahm/applications/coverage.hpp"
+#include "ahm/applications/surface_curve.hpp"
 #include "ahm/maps/log_map_solver.hpp"
 #include "ahm/pointcloud/point_cloud_surface.hpp"
 #include "ahm/surface/exact/exact_geodesics.hpp"
+#include "ahm/surface/repaired_surface.hpp"
+#include "ahm/trimesh/triangle_mesh_surface.hpp"
+#include "ahm/util/shell.hpp"
 #include "sphere.hpp"
 
 namespace ahm::viewer::test {
@@ -90,6 +95,71 @@ TEST_F(ViewerSession, HonoursEverySetting) {
   EXPECT_EQ(Unpacked(answer.body).meta.at("command"),
             "ahm logmap sphere.ply --source 7 -o map.csv --variant localized --order 2 --t-coef 2 --radius 1 "
             "--u-axis=0,0.3,1");
+}
+
+TEST_F(ViewerSession, NullIsNoRadiusWhateverTheUsualOne) {
+  SessionOptions near = sphere_options();
+  near.settings.radius = 0.5;
+  const Session other(sphere.surface, sphere.geometry, near);
+  const auto reached = [&](const json& more) {
+    json wanted = {{"source", {{"row", 7}}}};
+    wanted.update(more);
+    const auto status = Unpacked(other.answer("map", request(wanted)).body).array<std::uint8_t>("status");
+    return std::ranges::count(status, static_cast<std::uint8_t>(Status::ok));
+  };
+  const auto all = static_cast<std::ptrdiff_t>(sphere.geometry.points.size());
+  EXPECT_LT(reached(json::object()), all);
+  EXPECT_EQ(reached({{"radius", nullptr}}), all);
+}
+
+/// What ends at a radius needs no factors of the whole: it is the march's, bit for bit.
+class LargeViewerSession : public testing::Test {
+ protected:
+  LargeViewerSession() {
+    near.settings.radius = 0.05;
+    session.emplace(large.surface, large.geometry, near);
+    HeatOptions heat;
+    heat.strategy = Strategy::march;
+    march.emplace(large.surface.graph(), heat);
+  }
+
+  Sphere large{142};
+  SessionOptions near = sphere_options();
+  std::optional<Session> session;
+  std::optional<LogMapSolver> march;
+};
+
+TEST_F(LargeViewerSession, MarchesMaps) {
+  ASSERT_GT(large.surface.graph().size(), 200'000);
+  const auto expected = large.surface.on_rows(march->solve(large.surface.source(Row{7}).source, {.radius = 0.05}));
+  const Answer answer = session->answer("map", request({{"source", {{"row", 7}}}}));
+  ASSERT_EQ(answer.status, 200) << answer.body;
+  expect_same(expected, Unpacked(answer.body), scale_of(*session));
+}
+
+TEST_F(LargeViewerSession, MarchesStrokes) {
+  const std::vector<CurvePoint> ends{SurfacePoint(Row{7}), SurfacePoint(Row{9})};
+  const SurfaceCurve curve = draw_curve(large.surface, ends);
+  const auto expected = large.surface.on_rows(march->solve(curve.source, {.radius = 0.05}));
+  const Answer answer = session->answer("stroke", request({{"points", {{{"row", 7}}, {{"row", 9}}}}}));
+  ASSERT_EQ(answer.status, 200) << answer.body;
+  const Unpacked bundle(answer.body);
+  expect_same(expected, bundle, scale_of(*session));
+  EXPECT_EQ(bundle.meta.at("command"), "ahm stroke sphere.ply --curve '7 9' -o stroke.csv --radius 0.05");
+}
+
+TEST_F(LargeViewerSession, MarchesToolPathsToTheirOwnRadius) {
+  const PlacedSource source = large.surface.source(Row{7});
+  const LogMap map = march->solve(source.source, {.frames = true});
+  const CoveragePath expected = coverage_path(inverse_map(large.surface, map), {.radius = 0.1, .spacing = 0.02});
+  const Answer answer = session->answer(
+      "coverage", request({{"source", {{"row", 7}}}, {"cover", 0.1}, {"spacing", 0.02}, {"pattern", "raster"}}));
+  ASSERT_EQ(answer.status, 200) << answer.body;
+  const json path = json::parse(answer.body);
+  EXPECT_EQ(path.at("points").size(), expected.points.size());
+  EXPECT_EQ(path.at("pieces").size(), static_cast<std::size_t>(expected.pieces));
+  EXPECT_EQ(path.at("command"),
+            "ahm coverage sphere.ply --source 7 --radius 0.1 --spacing 0.02 --pattern raster -o path.csv");
 }
 
 TEST_F(ViewerSession, KnowsTheFaceAndTheRowsOfEveryTriangle) {
@@ -175,7 +245,10 @@ TEST(ViewerSessionOfACloud, TellsGradientsOfEveryDiscAndHasNoPaths) {
     EXPECT_NEAR(du, 1, steepest * 2 / 255) << points[k];
     EXPECT_NEAR(std::abs(dv), 1, steepest * 2 / 255) << points[k];
   }
-  EXPECT_EQ(session.answer("path", request({{"from", {{"row", 0}}}, {"to", {{"row", 3}}}})).status, 400);
+  const json path = json::parse(session.answer("path", request({{"from", {{"row", 0}}}, {"to", {{"row", 3}}}})).body);
+  const Vec3 &a = geometry.points[0], &b = geometry.points[3];
+  EXPECT_NEAR(path.at("length").get<double>() * scale_of(session), std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]),
+              1e-9);
 }
 
 TEST(ViewerSessionExport, SendsWhatItsWriterWrites) {
@@ -195,11 +268,22 @@ TEST(ViewerSessionExport, SendsWhatItsWriterWrites) {
   EXPECT_EQ(session.answer("export", request({{"source", {{"row", 0}}}, {"format", "../csv"}})).status, 400);
 }
 
+TEST(ViewerCommand, CountsTheFacesOfTheFileAfterARepair) {
+  const std::vector<Vec3> points{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+  const std::vector<Offset> begin{0, 3, 6, 9};
+  const std::vector<Index> corners{0, 1, 1, 0, 1, 2, 0, 2, 3};
+  const RepairedMesh mesh = repair_mesh(points, {begin, corners}, RepairOptions::all());
+  const std::vector<Triangle> faces{{0, 1, 2}, {0, 2, 3}};
+  const RepairedSurface surface(
+      std::make_unique<trimesh::TriangleMeshSurface>(trimesh::TriangleMeshSurface::build(points, faces)), points, mesh);
+  EXPECT_EQ(spec(surface, FacePoint{1, {0.25, 0.25, 0.5}}), "face:2:0.25,0.25,0.5");
+}
+
 TEST(ViewerCommand, QuotesWhatAShellWouldTakeApart) {
-  EXPECT_EQ(quoted("scan.ply"), "scan.ply");
-  EXPECT_EQ(quoted("my scan.ply"), "'my scan.ply'");
-  EXPECT_EQ(quoted("it's; rm -rf $HOME"), "'it'\\''s; rm -rf $HOME'");
-  EXPECT_EQ(quoted(""), "''");
+  EXPECT_EQ(detail::shell_word("scan.ply"), "scan.ply");
+  EXPECT_EQ(detail::shell_word("my scan.ply"), "'my scan.ply'");
+  EXPECT_EQ(detail::shell_word("it's; rm -rf $HOME"), "'it'\\''s; rm -rf $HOME'");
+  EXPECT_EQ(detail::shell_word(""), "''");
 }
 
 }  // namespace

@@ -12,9 +12,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::size_t sample_size = 200'000;
+constexpr std::size_t framing_sample = 200'000;
 
-/// At most about `sample_size` of the points that decide the framing: the mapped ones if there are any.
+/// At most about `framing_sample` of the points that decide the framing: the mapped ones if there are any.
 /// All vertices of a mesh that is mapped for the most part: its rest belongs into the picture.
 std::vector<Index> framed_points(const Scene& scene, const std::vector<Index>& shown, bool& is_local) {
   std::vector<Index> mapped;
@@ -23,7 +23,7 @@ std::vector<Index> framed_points(const Scene& scene, const std::vector<Index>& s
   is_local = !mapped.empty() && 2 * mapped.size() < shown.size();
   const bool all = mapped.empty() || (!is_local && !scene.face_vertices.empty());
   const std::vector<Index>& from = all ? shown : mapped;
-  const std::size_t stride = from.size() / sample_size + 1;
+  const std::size_t stride = from.size() / framing_sample + 1;
   std::vector<Index> sample;
   for (std::size_t k = 0; k < from.size(); k += stride) sample.push_back(from[k]);
   return sample;
@@ -60,11 +60,12 @@ Eigen::AlignedBox3d robust_box(const Scene& scene, const std::vector<Index>& poi
   return {low, high};
 }
 
-/// z for what is flat in z (terrain, rooms), y else. A figure with spread arms is flat in z too, hence more care with
-/// meshes.
+/// z for what is flat in z (terrain, rooms) and for scans that stand in it (trees, masts), y else. A figure with spread arms is
+/// flat in z too, hence more care with meshes.
 Vector3d default_up(const Vector3d& extent, bool is_mesh) {
-  const double flat = is_mesh ? 0.3 : 0.6;
-  return extent.z() < flat * extent.x() && extent.z() < flat * extent.y() ? Vector3d(0, 0, 1) : Vector3d(0, 1, 0);
+  const double flat = is_mesh ? 0.3 : 0.6, wide = std::max(extent.x(), extent.y());
+  const bool lies = extent.z() < flat * std::min(extent.x(), extent.y()), stands = !is_mesh && extent.z() > 3 * wide;
+  return lies || stands ? Vector3d(0, 0, 1) : Vector3d(0, 1, 0);
 }
 
 void orient(Camera& camera, const Vector3d& direction, const Vector3d& up) {

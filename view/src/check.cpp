@@ -4,11 +4,10 @@
 #include <string>
 
 #include "ahm/error.hpp"
+#include "ahm/util/vec.hpp"
 
 namespace ahm::view {
 namespace {
-
-bool is_finite(const Vec3& x) { return std::isfinite(x[0]) && std::isfinite(x[1]) && std::isfinite(x[2]); }
 
 void require(bool condition, const std::string& message) {
   if (!condition) throw InvalidArgument(message);

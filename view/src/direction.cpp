@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -72,10 +73,94 @@ std::size_t blockers(const Scene& scene, const std::vector<Index>& shown, const 
   return count;
 }
 
+/// Of a cloud: a tube as thin as other points lie around the source, to tell the front of a stem or a sheet from its back.
+Tube thin_tube(const Scene& scene, const std::vector<Index>& shown, const Camera& camera) {
+  constexpr std::size_t around = 6;
+  const Vector3d source = camera.to_scene(scene.source);
+  std::vector<double> squares;
+  for (const Index i : shown) {
+    const double squared = (camera.to_scene(scene.points[static_cast<std::size_t>(i)]) - source).squaredNorm();
+    if (squared > 0) squares.push_back(squared);
+  }
+  if (squares.empty()) return {};
+  const std::size_t k = std::min(around, squares.size()) - 1;
+  std::nth_element(squares.begin(), squares.begin() + static_cast<std::ptrdiff_t>(k), squares.end());
+  const double radius = std::sqrt(squares[k]);
+  return {2 * radius, radius};
+}
+
+/// How many of fifty equal parts of what is mapped stand behind what has no map, seen in perspective.
+class Cover {
+ public:
+  Cover(const Scene& scene, const std::vector<Index>& shown, const Camera& camera) {
+    if (!scene.face_vertices.empty()) {
+      add_faces(scene, camera);
+      return;
+    }
+    const std::size_t stride = shown.size() / sample_size + 1;
+    for (std::size_t k = 0; k < shown.size(); k += stride)
+      (has_coordinate(scene, shown[k]) ? mapped_ : others_).push_back(camera.to_scene(scene.points[shown[k]]));
+  }
+
+  std::size_t operator()(const Vector3d& direction) {
+    if (mapped_.empty() || others_.empty()) return 0;
+    nearest_.fill(-std::numeric_limits<double>::infinity());
+    const Vector3d x = direction.unitOrthogonal(), y = direction.cross(x);
+    for (const Vector3d& p : others_)
+      if (double* there = cell(p, direction, x, y)) *there = std::max(*there, p.dot(direction));
+    std::size_t behind = 0;
+    for (const Vector3d& p : mapped_)
+      if (const double* there = cell(p, direction, x, y)) behind += *there > p.dot(direction) + width ? 1 : 0;
+    return 50 * behind / mapped_.size();
+  }
+
+ private:
+  static constexpr std::size_t side = 64;
+  static constexpr double width = 0.05;
+
+  /// Points on the faces that have a map, and on those that have none at any corner: at least one in each cell.
+  void add_faces(const Scene& scene, const Camera& camera) {
+    const std::size_t faces = scene.face_begin.size() - 1, stride = faces / sample_size + 1;
+    std::vector<Vector3d> corners;
+    for (std::size_t f = 0; f < faces; f += stride) {
+      std::size_t known = 0;
+      corners.clear();
+      for (Offset k = scene.face_begin[f]; k < scene.face_begin[f + 1]; ++k) {
+        const Index vertex = scene.face_vertices[static_cast<std::size_t>(k)];
+        known += has_coordinate(scene, vertex) ? 1 : 0;
+        corners.push_back(camera.to_scene(scene.points[static_cast<std::size_t>(vertex)]));
+      }
+      if (known > 0 && known < corners.size()) continue;
+      std::vector<Vector3d>& points = known > 0 ? mapped_ : others_;
+      for (std::size_t k = 2; k < corners.size(); ++k) add_triangle(corners[0], corners[k - 1], corners[k], points);
+    }
+  }
+  static void add_triangle(const Vector3d& a, const Vector3d& b, const Vector3d& c, std::vector<Vector3d>& points) {
+    const double longest = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
+    if (!std::isfinite(longest)) return;
+    const double parts = std::max(1.0, std::ceil(longest / width));
+    for (double i = 0; i < parts; ++i)
+      for (double j = 0; i + j < parts; ++j)
+        points.emplace_back(a + (i + 1.0 / 3) / parts * (b - a) + (j + 1.0 / 3) / parts * (c - a));
+  }
+
+  /// Of the picture, in units of the scene's size at its middle; null outside.
+  double* cell(const Vector3d& p, const Vector3d& direction, const Vector3d& x, const Vector3d& y) {
+    const double away = 1 / std::tan(Camera::field_of_view / 2), depth = 1 - p.dot(direction) / away;
+    if (depth < 0.1) return nullptr;
+    const double column = p.dot(x) / depth / width + side / 2.0, row = p.dot(y) / depth / width + side / 2.0;
+    if (!(column >= 0 && column < side && row >= 0 && row < side)) return nullptr;
+    return &nearest_[static_cast<std::size_t>(row) * side + static_cast<std::size_t>(column)];
+  }
+
+  std::vector<Vector3d> mapped_, others_;
+  std::array<double, side * side> nearest_{};
+};
+
 /// Of directions all around, those in which nothing stands before the places: the one most like a candidate. None where
 /// there is none.
 std::optional<Vector3d> through_a_gap(const Scene& scene, const std::vector<Index>& shown, const Camera& camera,
-                                      const std::vector<Vector3d>& candidates) {
+                                      const std::vector<Vector3d>& candidates, const auto& is_behind) {
   const double spacing = 1.2 / std::sqrt(static_cast<double>(std::min(shown.size(), sample_size)));
   const Tube narrow{2 * std::max(spacing, 0.02), std::max(spacing, 0.02)};
   std::optional<Vector3d> best;
@@ -86,7 +171,7 @@ std::optional<Vector3d> through_a_gap(const Scene& scene, const std::vector<Inde
     const Vector3d direction(ring * std::cos(angle), ring * std::sin(angle), z);
     double alike = -1;
     for (const Vector3d& candidate : candidates) alike = std::max(alike, direction.dot(candidate));
-    if (alike <= most_alike || blockers(scene, shown, camera, direction, narrow) > 0) continue;
+    if (alike <= most_alike || is_behind(direction) || blockers(scene, shown, camera, direction, narrow) > 0) continue;
     most_alike = alike;
     best = direction;
   }
@@ -119,14 +204,22 @@ Vector3d choose_direction(const Scene& scene, const std::vector<Index>& shown, c
   }
   Vector3d best = normal;
   constexpr Tube wide{0.08, 0.05};
-  std::size_t fewest = std::numeric_limits<std::size_t>::max();
+  Cover cover(scene, shown, camera);
+  const bool is_cloud = scene.face_vertices.empty();
+  const Tube thin = is_cloud ? thin_tube(scene, shown, camera) : Tube{};
+  const auto is_behind = [&](const Vector3d& direction) {
+    return is_cloud && blockers(scene, shown, camera, direction, thin) > 2;
+  };
+  // Before the source, more than noise close before it, before the map.
+  std::array<std::size_t, 3> fewest{std::numeric_limits<std::size_t>::max(), 0, 0};
   for (const Vector3d& direction : candidates) {
-    const std::size_t count = blockers(scene, shown, camera, direction, wide);
+    const std::array count{blockers(scene, shown, camera, direction, wide), std::size_t{is_behind(direction)},
+                           cover(direction)};
     if (count >= fewest) continue;
     fewest = count;
     best = direction;
   }
-  return fewest == 0 ? best : through_a_gap(scene, shown, camera, candidates).value_or(best);
+  return fewest[0] == 0 ? best : through_a_gap(scene, shown, camera, candidates, is_behind).value_or(best);
 }
 
 }  // namespace ahm::view

@@ -1,4 +1,5 @@
-// The default view direction: towards the source, from a side where nothing stands before it.
+// The default view direction: towards the source, from a side where nothing stands before it and, of these, as little
+// without a map as possible before the map.
 #pragma once
 
 #include "camera.hpp"

@@ -10,7 +10,14 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double curve_tolerance = 0.02;  // of the scene's size: a polyline dips into what bulges
+// Of the scene's size: a polyline dips into what bulges. The discs around a point of a coarse or noisy cloud may stand twice
+// as far before it as they are apart; surfaces nearer to each other than that are one to clouds.
+constexpr double curve_tolerance = 0.02, cloud_tolerance = 0.06;
+
+double dot_tolerance(const Scene& scene, double spacing) {
+  if (scene.face_vertices.empty()) return std::clamp(2 * spacing, 0.004, cloud_tolerance);
+  return std::clamp(spacing, 0.004, curve_tolerance);
+}
 
 void draw_arrow(Pen& pen, const Arrow& arrow, double grow, Color color) {
   const Vector2d d = arrow.to - arrow.from;
@@ -43,7 +50,7 @@ class Marks {
         camera_(camera),
         pen_(image),
         unit_(std::max(std::min(image.width, image.height) / 1200.0, 0.35)),
-        dot_tolerance_(std::clamp(spacing, 0.004, curve_tolerance)) {}
+        dot_tolerance_(dot_tolerance(scene, spacing)) {}
 
   void draw() {
     draw_curve();

@@ -57,11 +57,11 @@ void Pen::fill(Vector2d low, Vector2d high, const PaintAt& color_at, const Dista
     }
 }
 
-void Pen::disc(Vector2d center, double radius, Color color) {
+void Pen::disc(const Vector2d& center, double radius, Color color) {
   disc(center, radius, [=](const Vector2d&) { return color; });
 }
 
-void Pen::disc(Vector2d center, double radius, const ColorAt& color) {
+void Pen::disc(const Vector2d& center, double radius, const ColorAt& color) {
   const Vector2d r(radius, radius);
   fill(center - r, center + r, color, [&](const Vector2d& p) { return (p - center).norm() - radius; });
 }

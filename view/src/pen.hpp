@@ -20,8 +20,8 @@ class Pen {
 
   using ColorAt = std::function<Color(const Eigen::Vector2d&)>;  ///< of a place on the image
 
-  void disc(Eigen::Vector2d center, double radius, Color color);
-  void disc(Eigen::Vector2d center, double radius, const ColorAt& color);
+  void disc(const Eigen::Vector2d& center, double radius, Color color);
+  void disc(const Eigen::Vector2d& center, double radius, const ColorAt& color);
   void box(Eigen::Vector2d low, Eigen::Vector2d high, const ColorAt& color);
   /// A line with round ends.
   void line(Eigen::Vector2d from, Eigen::Vector2d to, double width, Color color);

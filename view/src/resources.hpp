@@ -7,7 +7,7 @@ namespace ahm::view::resources {
 
 extern const std::string_view palette, page, style;
 /// The scripts of the page, in the order in which they run.
-extern const std::string_view data, pick, tear, paint, splats, marks, stage, panel, main;
+extern const std::string_view data, pick, tear, coarse, paint, splats, marks, stage, panel, main;
 /// Empty if the library was built without three.js.
 extern const std::string_view three, orbit_controls;
 

@@ -50,7 +50,8 @@ void TileRenderer::draw(int tile, Film& film) {
 }
 
 void TileRenderer::collect(int tile) {
-  left_ = static_cast<float>(tile % tiles_.columns * side), top_ = static_cast<float>(tile / tiles_.columns * side);
+  const int column = tile % tiles_.columns, row = tile / tiles_.columns;
+  left_ = static_cast<float>(column * side), top_ = static_cast<float>(row * side);
   triangles_.clear(), transparent_.clear(), discs_.clear();
   for (const Layer& layer : layers_)
     for (const std::uint32_t primitive : layer.in_tile(tile)) {
@@ -127,7 +128,8 @@ void TileRenderer::start_sums() {
   for (int s = 0; s < samples; ++s) {
     if (front_[s] == nothing || !(front_[s] & disc_bit)) continue;
     const TileDisc& d = discs_[front_[s] & ~disc_bit];
-    const float i = static_cast<float>(s % side) + 0.5F - d.x, j = static_cast<float>(s / side) + 0.5F - d.y;
+    const vec2 middle = middle_of(s);
+    const float i = middle.x - d.x, j = middle.y - d.y;
     // What is not known agrees with nothing.
     sums_.front_first[s] = d.known ? d.value.x + d.value_i.x * i + d.value_j.x * j : std::numeric_limits<float>::max();
     sums_.front_second[s] = d.value.y + d.value_i.y * i + d.value_j.y * j;
@@ -185,7 +187,7 @@ Fragment TileRenderer::fragment(int s) const {
 /// Of one sample by itself.
 vec3 TileRenderer::light(int s, vec2 pixel) const {
   const std::uint32_t id = front_[s];
-  const float x = static_cast<float>(s % side) + 0.5F, y = static_cast<float>(s / side) + 0.5F;
+  const auto [x, y] = middle_of(s);
   Fragment f = id & disc_bit ? fragment(s) : triangles_[id].at(x, y, lens_);
   f.dx = f.dx * factor, f.dy = f.dy * factor;
   f.pixel = pixel;

@@ -27,6 +27,12 @@ class TileRenderer {
     std::array<float, samples> front_first, front_second;             ///< the nearest disc's values
   };
 
+  /// Of a sample, in samples from the tile's corner.
+  static glsl::vec2 middle_of(int sample) {
+    const int column = sample % side, row = sample / side;
+    return {static_cast<float>(column) + 0.5F, static_cast<float>(row) + 0.5F};
+  }
+
   void collect(int tile);
   void find_nearest(const TileTriangle& triangle, std::uint32_t id);
   void find_nearest(const TileDisc& disc, std::uint32_t id);

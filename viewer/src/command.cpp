@@ -3,19 +3,14 @@
 #include <array>
 #include <charconv>
 
+#include "ahm/surface/repaired_surface.hpp"
+#include "ahm/util/shell.hpp"
+
 namespace ahm::viewer {
 
 std::string number(double x) {
   std::array<char, 40> text;
   return {text.data(), std::to_chars(text.data(), text.data() + text.size(), x).ptr};
-}
-
-std::string quoted(const std::string& word) {
-  constexpr std::string_view plain = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-./,:=+@%";
-  if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) return word;
-  std::string out = "'";
-  for (const char c : word) c == '\'' ? out.append("'\\''") : out.append(1, c);
-  return out + "'";
 }
 
 namespace {
@@ -41,7 +36,7 @@ std::string command(const SessionOptions& session, const std::string& name, cons
                     const Settings& settings) {
   std::string out = "ahm " + name + " " + session.input;
   for (const auto& list : {arguments, words(settings)})
-    for (const std::string& word : list) out.append(" ").append(quoted(word));
+    for (const std::string& word : list) out.append(" ").append(detail::shell_word(word));
   if (!session.input_options.empty()) out.append(" ").append(session.input_options);
   return out;
 }
@@ -54,7 +49,8 @@ std::string spec(const Surface& surface, const SurfacePoint& point) {
     return out;
   };
   if (const auto* face = std::get_if<FacePoint>(&point)) {
-    out = "face:" + std::to_string(face->face) + ":";
+    const auto* repaired = dynamic_cast<const RepairedSurface*>(&surface);  // commands count the faces of the file
+    out = "face:" + std::to_string(repaired ? repaired->mesh().given_face[face->face] : face->face) + ":";
     return list(face->barycentric);
   }
   return list(surface.position(point));

@@ -17,9 +17,16 @@ class Makers {
  public:
   Makers(const Surface& surface, unsigned threads) : surface_(surface), threads_(threads) {}
 
-  /// Of the two that were used last, or a new one.
+  /// Whether factors of the whole take long.
+  bool is_large() const { return surface_.graph().size() > 200'000; }
+
+  /// Of the two that were used last, or a new one. Maps of large surfaces that end at a radius are marched: without
+  /// factors, in time proportional to what they reach.
   const LogMapSolver& solver(const Settings& settings, const std::stop_token& stop) {
-    const auto fits = [&](const Kept& kept) { return kept.t_coef == settings.t_coef && kept.order == settings.order; };
+    const bool marched = settings.radius && is_large();
+    const auto fits = [&](const Kept& kept) {
+      return kept.t_coef == settings.t_coef && kept.order == settings.order && kept.marched == marched;
+    };
     const auto found = std::find_if(kept_.begin(), kept_.end(), fits);
     if (found != kept_.end()) {
       kept_.splice(kept_.begin(), kept_, found);
@@ -28,9 +35,10 @@ class Makers {
       HeatOptions heat;
       heat.t_coef = settings.t_coef;
       heat.order = settings.order;
+      heat.strategy = marched ? Strategy::march : Strategy::automatic;
       heat.threads = threads_;
       heat.progress.stop = stop;
-      kept_.push_front({settings.t_coef, settings.order, LogMapSolver(surface_.graph(), heat)});
+      kept_.push_front({settings.t_coef, settings.order, marched, LogMapSolver(surface_.graph(), heat)});
     }
     return kept_.front().solver;
   }
@@ -47,6 +55,7 @@ class Makers {
   struct Kept {
     double t_coef;
     int order;
+    bool marched;
     LogMapSolver solver;
   };
   const Surface& surface_;

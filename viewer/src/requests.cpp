@@ -111,6 +111,7 @@ Settings Request::settings(const Settings& usual) const {
   }
   if (has("t_coef")) out.t_coef = positive("t_coef");
   if (has("radius")) out.radius = positive("radius");
+  if (const auto none = json_.find("radius"); none != json_.end() && none->is_null()) out.radius.reset();
   if (!has("u_axis")) return out;
   const json& axis = at("u_axis");
   if (!axis.is_array() || axis.size() != 3) refuse("u_axis", "must be a list of three numbers");

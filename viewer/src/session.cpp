@@ -9,6 +9,7 @@
 
 #include "ahm/applications/surface_curve.hpp"
 #include "ahm/maps/quality.hpp"
+#include "ahm/surface/surface_lines.hpp"
 #include "ahm/view/page.hpp"
 #include "channels.hpp"
 #include "command.hpp"
@@ -43,13 +44,21 @@ view::Scene scene_of(const Surface& surface, const io::Geometry& geometry, const
   return scene;
 }
 
-/// Without what only single maps have an option for.
-Settings of_graph(Settings settings) {
+/// Without what decals and tool paths have no option for, or one of another meaning.
+Settings of_patch(Settings settings) {
   settings.radius.reset();
-  settings.u_axis.reset();
   settings.order = 1;
   return settings;
 }
+
+/// Without what curves have no option for.
+Settings of_curve(Settings settings) {
+  settings.order = 1;
+  settings.u_axis.reset();
+  return settings;
+}
+
+double radius_of(const Settings& settings) { return settings.radius.value_or(std::numeric_limits<double>::infinity()); }
 
 json positions(const view::PageSurface& page, std::span<const Vec3> points) {
   json out = json::array();
@@ -125,16 +134,16 @@ struct Session::Impl {
     return make();
   }
 
-  LogMap map(const SurfacePoint& source, const Settings& settings, const std::stop_token& stop, bool frames = false) {
+  /// @param placed  the source on the surface, with the u axis of the settings
+  LogMap map(const SurfacePoint& source, const PlacedSource& placed, const Settings& settings,
+             const std::stop_token& stop, bool frames = false) {
     Progress progress;
     progress.stop = stop;
-    const double radius = settings.radius.value_or(std::numeric_limits<double>::infinity());
+    const double radius = radius_of(settings);
     if (settings.method == Method::exact) {
-      const PlacedSource placed = surface.source(source, settings.u_axis);
       const auto u_axis = placed.frame ? std::optional(placed.frame->x) : std::nullopt;
       return makers.geodesics().log_map(source, u_axis, {.radius = radius, .frames = frames, .progress = progress});
     }
-    const PlacedSource placed = surface.source(source, settings.u_axis);
     MapOptions heat;
     heat.variant = settings.variant;
     heat.radius = radius;
@@ -143,13 +152,15 @@ struct Session::Impl {
     return makers.solver(settings, stop).solve(placed.source, heat);
   }
 
+  std::vector<double> quality_of(const LogMap& map, const RowLogMap& rows) const {
+    return on_rows(rows, map_quality(surface.graph(), map, options.threads));
+  }
+
   /// A map by row, and how it is told.
   std::string bundle(const LogMap& map, const Vec3& source, const std::optional<Frame>& frame, view::Scene shown,
                      view::Pattern pattern, const json& more) const {
     const RowLogMap rows = surface.on_rows(map);
-    const bool judged = !map.spread().empty();
-    const std::vector<double> quality =
-        judged ? on_rows(rows, map_quality(surface.graph(), map, options.threads)) : std::vector<double>();
+    const std::vector<double> quality = map.spread().empty() ? std::vector<double>() : quality_of(map, rows);
     shown.u = rows.u, shown.v = rows.v;
     shown.quality = quality;
     shown.source = source;
@@ -165,7 +176,7 @@ struct Session::Impl {
     const SurfacePoint source = request.point("source");
     const Settings settings = request.settings(options.settings);
     const PlacedSource placed = surface.source(source, settings.u_axis);
-    const LogMap made = in_turn(stop, [&] { return map(source, settings, stop); });
+    const LogMap made = in_turn(stop, [&] { return map(source, placed, settings, stop); });
     const std::string where = spec(surface, source);
     const json more = {{"spec", where},
                        {"command", command(options, "logmap", {"--source", where, "-o", "map.csv"}, settings)},
@@ -176,27 +187,27 @@ struct Session::Impl {
 
   /// The page knows the image and its size, and puts them in.
   std::string decal_command(const std::string& where, const Settings& settings) const {
-    Settings kept = settings;
-    kept.radius.reset(), kept.order = 1;
     return command(options, "decal",
                    {"--source", where, "--image", "@IMAGE@", "--size", "@SIZE@", "--angle=@ANGLE@", "-o", "decal.glb"},
-                   kept);
+                   of_patch(settings));
   }
 
   Answer answer_stroke(const Request& request) {
     const std::stop_token stop = channels.begin(request.client());
     const std::vector<SurfacePoint> points = request.points("points");
-    const Settings settings = of_graph(request.settings(options.settings));
+    const Settings settings = of_curve(request.settings(options.settings));
     const std::vector<CurvePoint> given(points.begin(), points.end());
     const SurfaceCurve curve = draw_curve(surface, given);
     const LogMap made = in_turn(stop, [&] {
       if (settings.method == Method::exact) {
         ExactMapOptions exact;
+        exact.radius = radius_of(settings);
         exact.progress.stop = stop;
         return makers.geodesics().log_map(curve.samples, exact).map;
       }
       MapOptions heat;
       heat.variant = settings.variant;
+      heat.radius = radius_of(settings);
       heat.progress.emplace().stop = stop;
       return makers.solver(settings, stop).solve(curve.source, heat);
     });
@@ -209,22 +220,25 @@ struct Session::Impl {
                    {{"command", command(options, "stroke", {"--curve", list, "-o", "stroke.csv"}, settings)}})};
   }
 
+  SurfaceLine path_between(const std::array<SurfacePoint, 2>& ends) {
+    if (surface.faces().size() == 0) return shortest_line(surface, ends[0], ends[1]);
+    const ExactGeodesics& geodesics = makers.geodesics();
+    const exact::GeodesicPath path = geodesics.path(ends);
+    SurfaceLine line{path.status, {}, path.length};
+    for (const exact::MeshPoint& point : path.points) line.points.push_back(geodesics.position(point));
+    return line;
+  }
+
   Answer answer_path(const Request& request) {
     const std::array ends{request.point("from"), request.point("to")};
     for (const SurfacePoint& end : ends) surface.source(end);  // checks
-    std::vector<Vec3> points;
-    double length = 0;
-    in_turn({}, [&] {
-      const ExactGeodesics& geodesics = makers.geodesics();
-      const exact::GeodesicPath path = geodesics.path(ends);
-      if (path.status != Status::ok)
-        throw InvalidArgument("there is no path: the surface does not connect the two points");
-      for (const auto& point : path.points) points.push_back(geodesics.position(point));
-      length = path.length;
-    });
+    SurfaceLine path;
+    in_turn({}, [&] { path = path_between(ends); });
+    if (path.status != Status::ok)
+      throw InvalidArgument("there is no path: the surface does not connect the two points");
     return answer_of(
-        {{"points", positions(page, points)},
-         {"length", length / page.scale()},
+        {{"points", positions(page, path.points)},
+         {"length", path.length / page.scale()},
          {"command",
           command(options, "path", {"--from", spec(surface, ends[0]), "--to", spec(surface, ends[1]), "-o", "path.obj"},
                   {})}});
@@ -232,8 +246,7 @@ struct Session::Impl {
 
   Answer answer_coverage(const Request& request) {
     const SurfacePoint source = request.point("source");
-    Settings settings = request.settings(options.settings);
-    settings.radius.reset(), settings.order = 1;
+    const Settings settings = of_patch(request.settings(options.settings));
     CoverageOptions cover;
     cover.radius = request.positive("cover");
     cover.spacing = request.positive("spacing");
@@ -241,7 +254,10 @@ struct Session::Impl {
       throw InvalidArgument("request: more than 500 lines from the source; give a wider \"spacing\"");
     const std::string pattern = request.word("pattern", {"raster", "spiral"});
     cover.pattern = pattern == "raster" ? CoveragePattern::raster : CoveragePattern::spiral;
-    const LogMap made = in_turn({}, [&] { return map(source, settings, {}, true); });
+    const PlacedSource placed = surface.source(source, settings.u_axis);
+    Settings reach = settings;  // the tool path needs no map of the rest, whose factors would take long
+    if (makers.is_large()) reach.radius = 1.5 * cover.radius;
+    const LogMap made = in_turn({}, [&] { return map(source, placed, reach, {}, true); });
     const CoveragePath path = coverage_path(inverse_map(surface, made, {.threads = options.threads}), cover);
     if (path.points.empty()) throw InvalidArgument("no line of the pattern meets a trusted part of the surface");
     std::vector<Vec3> points;
@@ -268,9 +284,10 @@ struct Session::Impl {
     const std::string format = request.word("format", options.formats);
     const SurfacePoint source = request.point("source");
     const Settings settings = request.settings(options.settings);
-    const LogMap made = in_turn({}, [&] { return map(source, settings, {}); });
+    const PlacedSource placed = surface.source(source, settings.u_axis);
+    const LogMap made = in_turn({}, [&] { return map(source, placed, settings, {}); });
     const RowLogMap rows = surface.on_rows(made);
-    const std::vector<double> quality = on_rows(rows, map_quality(surface.graph(), made, options.threads));
+    const std::vector<double> quality = quality_of(made, rows);
     return {200, "application/octet-stream",
             exported(format, [&](const std::filesystem::path& file) { options.write(file, rows, quality); })};
   }

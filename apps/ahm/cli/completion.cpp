@@ -5,30 +5,15 @@
 
 #include <vector>
 
+#include "ahm/util/shell.hpp"
+#include "cli/option_tables.hpp"
+
 namespace ahm::app {
 namespace {
-
-std::vector<CLI::App*> subcommands_of(CLI::App& program) {
-  return program.get_subcommands([](CLI::App*) { return true; });
-}
 
 /// The options with names; positionals are files.
 std::vector<CLI::Option*> options_of(CLI::App& app) {
   return app.get_options([](CLI::Option* option) { return !option->get_lnames().empty(); });
-}
-
-/// In single quotes, as every shell reads it.
-std::string quoted(const std::string& text) {
-  std::string result = "'";
-  for (char c : text) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return result + "'";
-}
-
-std::vector<std::string> words(const CLI::Option& option) {
-  std::vector<std::string> result;
-  for (const std::string& name : option.get_snames()) result.push_back("-" + name);
-  for (const std::string& name : option.get_lnames()) result.push_back("--" + name);
-  return result;
 }
 
 std::string bash(CLI::App& program) {
@@ -38,8 +23,9 @@ std::string bash(CLI::App& program) {
     names.push_back(app->get_name());
     std::vector<std::string> all;
     for (const CLI::Option* option : options_of(*app))
-      for (std::string& word : words(*option)) all.push_back(std::move(word));
-    cases += fmt::format("    {}) options={} ;;\n", app->get_name(), quoted(fmt::format("{}", fmt::join(all, " "))));
+      for (std::string& word : names_of(*option)) all.push_back(std::move(word));
+    cases += fmt::format("    {}) options={} ;;\n", app->get_name(),
+                         detail::in_quotes(fmt::format("{}", fmt::join(all, " "))));
   }
   return fmt::format(
       "# Completion of ahm for bash.\n"
@@ -69,12 +55,12 @@ std::string for_zsh(const std::string& text) {
 std::string zsh(CLI::App& program) {
   std::string names, cases;
   for (CLI::App* app : subcommands_of(program)) {
-    names += "    " + quoted(app->get_name() + ":" + first_line(app->get_description())) + "\n";
+    names += "    " + detail::in_quotes(app->get_name() + ":" + first_line(app->get_description())) + "\n";
     cases += fmt::format("    {}) _arguments", app->get_name());
     for (const CLI::Option* option : options_of(*app))
-      for (const std::string& word : words(*option))
-        cases +=
-            " \\\n      " + quoted(word + "[" + for_zsh(first_line(option->get_description())) + "]" +
+      for (const std::string& word : names_of(*option))
+        cases += " \\\n      " +
+                 detail::in_quotes(word + "[" + for_zsh(first_line(option->get_description())) + "]" +
                                    (takes_value(*option) ? ":" + for_zsh(option->get_type_name()) + ":_files" : ""));
     cases += " \\\n      '*:file:_files' ;;\n";
   }
@@ -90,23 +76,19 @@ std::string fish(CLI::App& program) {
       "complete -c ahm -n __fish_use_subcommand -f -l version -d 'Print versions'\n";
   for (CLI::App* app : subcommands_of(program)) {
     result += fmt::format("complete -c ahm -n __fish_use_subcommand -f -a {} -d {}\n", app->get_name(),
-                          quoted(first_line(app->get_description())));
+                          detail::in_quotes(first_line(app->get_description())));
     for (const CLI::Option* option : options_of(*app)) {
       result += fmt::format("complete -c ahm -n '__fish_seen_subcommand_from {}'", app->get_name());
       for (const std::string& name : option->get_snames()) result += " -s " + name;
       for (const std::string& name : option->get_lnames()) result += " -l " + name;
-      result +=
-          fmt::format("{} -d {}\n", takes_value(*option) ? " -r" : "", quoted(first_line(option->get_description())));
+      result += fmt::format("{} -d {}\n", takes_value(*option) ? " -r" : "",
+                            detail::in_quotes(first_line(option->get_description())));
     }
   }
   return result;
 }
 
 }  // namespace
-
-std::string first_line(const std::string& description) { return description.substr(0, description.find('\n')); }
-
-bool takes_value(const CLI::Option& option) { return option.get_items_expected_max() > 0; }
 
 std::optional<std::string> completion(CLI::App& program, std::string_view shell) {
   if (shell == "bash") return bash(program);

@@ -12,10 +12,4 @@ namespace ahm::app {
 /// @param shell  bash, zsh or fish; null for any other
 std::optional<std::string> completion(CLI::App& program, std::string_view shell);
 
-/// The first line of an option's or subcommand's description.
-std::string first_line(const std::string& description);
-
-/// Whether a value follows the option.
-bool takes_value(const CLI::Option& option);
-
 }  // namespace ahm::app

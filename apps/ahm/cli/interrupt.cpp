@@ -24,8 +24,8 @@ void install_interrupt_handling() {
   signal(SIGPIPE, SIG_IGN);  // writing reports EPIPE
   signal(SIGXFSZ, SIG_IGN);  // writing reports EFBIG
   constexpr int ending[] = {SIGINT, SIGTERM, SIGHUP};
-  struct sigaction action {
-  }, before{};
+  struct sigaction action {};
+  struct sigaction before {};
   action.sa_handler = on_signal;
   sigemptyset(&action.sa_mask);
   for (const int number : ending) sigaddset(&action.sa_mask, number);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cli/console.hpp"
+#include "cli/options.hpp"
 #include "cli/progress_display.hpp"
 #include "cli/stage_times.hpp"
 #include "cli/system_info.hpp"
@@ -18,7 +19,7 @@ namespace ahm::app {
 /// Stage times, progress and warnings of one run.
 class Journal {
  public:
-  explicit Journal(bool verbose) : verbose_(verbose) {}
+  explicit Journal(Verbosity verbosity) : verbosity_(verbosity), display_(verbosity != Verbosity::quiet) {}
 
   void start(const std::string& stage) {
     finish();
@@ -28,7 +29,7 @@ class Journal {
 
   void finish() {
     times_.finish();
-    if (!verbose_ || times_.seconds().size() == reported_) return;
+    if (!is_verbose() || times_.seconds().size() == reported_) return;
     display_.clear();
     const auto& [stage, seconds] = times_.seconds()[reported_++];
     say(fmt::format("ahm: {:<8}{:8.3f} s   peak memory {}\n", stage, seconds, bytes_as_text(peak_rss_bytes())));
@@ -37,12 +38,12 @@ class Journal {
   /// A line of --verbose.
   void tell(const std::string& text) {
     finish();
-    if (verbose_) say(fmt::format("ahm: {}\n", text));
+    if (is_verbose()) say(fmt::format("ahm: {}\n", text));
   }
 
   void add_warning(const std::string& text) {
     display_.clear();
-    warn(text);
+    if (verbosity_ != Verbosity::quiet) warn(text);
     warnings_.push_back(text);
   }
 
@@ -56,7 +57,9 @@ class Journal {
   const std::vector<std::string>& warnings() const { return warnings_; }
 
  private:
-  bool verbose_;
+  bool is_verbose() const { return verbosity_ == Verbosity::verbose; }
+
+  Verbosity verbosity_;
   StageTimes times_;
   std::size_t reported_ = 0;
   std::vector<std::string> warnings_;

@@ -40,6 +40,7 @@ int run(int argc, char** argv) try {
 } catch (const std::length_error&) {  // an array longer than any memory
   return report(out_of_memory, failed);
 } catch (const ahm::Error& e) {
+  if (e.fault() == "pipe_closed") return failed;  // as for BrokenPipe
   return report(worded(e), failed);
 } catch (const std::exception& e) {
   return report(e.what(), failed);

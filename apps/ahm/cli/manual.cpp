@@ -1,8 +1,9 @@
 #include "cli/manual.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
-#include "cli/completion.hpp"
+#include "cli/option_tables.hpp"
 
 namespace ahm::app {
 namespace {
@@ -28,9 +29,7 @@ std::string plain(const std::string& text) {
 std::string verbatim(const std::string& text) { return ".nf\n" + plain(text) + "\n.fi\n"; }
 
 std::string entry(const CLI::Option& option) {
-  std::string names;
-  for (const std::string& name : option.get_snames()) names += (names.empty() ? "" : ", ") + ("-" + name);
-  for (const std::string& name : option.get_lnames()) names += (names.empty() ? "" : ", ") + ("--" + name);
+  std::string names = fmt::format("{}", fmt::join(names_of(option), ", "));
   if (names.empty()) names = option.get_name(true);
   std::string result = ".TP\n\\fB" + plain(names) + "\\fR";
   if (takes_value(option) && !option.get_type_name().empty())
@@ -64,7 +63,7 @@ std::string overview(CLI::App& program, const std::string& version) {
   std::string result =
       head("ahm", program.get_description(), version) +
       ".SH SYNOPSIS\n\\fBahm\\fR \\fISUBCOMMAND\\fR [\\fIOPTIONS\\fR] \\fIINPUT\\fR\n.SH SUBCOMMANDS\n";
-  for (const CLI::App* app : program.get_subcommands([](CLI::App*) { return true; }))
+  for (const CLI::App* app : subcommands_of(program))
     result +=
         ".TP\n\\fBahm\\-" + plain(app->get_name()) + "\\fR(1)\n" + plain(first_line(app->get_description())) + "\n";
   return result + ".SH OPTIONS\n" + options(program) + ".SH DETAILS\n" + verbatim(program.get_footer());

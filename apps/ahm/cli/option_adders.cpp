@@ -7,6 +7,7 @@
 
 #include "ahm/io/formats.hpp"
 #include "cli/numbers.hpp"
+#include "cli/source_list.hpp"
 #include "input/backend.hpp"
 #include "output/picture_options.hpp"
 
@@ -17,6 +18,22 @@ namespace {
 std::string one_of(const std::vector<std::string>& names) {
   const std::string rest = fmt::format("{}", fmt::join(names.begin(), names.end() - 1, ", "));
   return rest.empty() ? names.back() : rest + " or " + names.back();
+}
+
+std::string input_help() {
+  return fmt::format("File to read, or - for standard input: {}", fmt::join(io::extensions(io::Use::read), " "));
+}
+
+/// Names of formats, and the extension that is found.
+std::function<std::string(const std::string&)> format_parser(io::Use use) {
+  std::vector<std::pair<std::string, std::string>> names;
+  for (const std::string& extension : io::extensions(use)) names.emplace_back(extension.substr(1), extension);
+  return choice_of(std::move(names));
+}
+
+void add_input_format(CLI::App& app, InputOptions& o) {
+  add_parsed(app, "--input-format", o.format, format_parser(io::Use::read), "NAME",
+             "Of INPUT, whatever its name: ply, xyz, ... (default: by the name, of - by the first bytes)");
 }
 
 }  // namespace
@@ -42,6 +59,26 @@ CLI::Option* add_source(CLI::App& app, SourceOptions& o, const std::string& help
   return add_parsed(app, "-s,--source", o.spec, parse_source, "SPEC", help);
 }
 
+void add_sources(CLI::App& app, std::vector<SourceSpec>& sources) {
+  const auto one = [](const std::string& text) { return std::vector{parse_source(text)}; };
+  const auto add = [&](const std::string& names, const char* type, const auto& parse, const std::string& help) {
+    const std::string label = names.substr(names.find("--"));
+    const auto append = [&sources, label, parse](const std::vector<std::string>& texts) {
+      try {
+        for (const std::string& text : texts) {
+          const std::vector<SourceSpec> more = parse(text);
+          sources.insert(sources.end(), more.begin(), more.end());
+        }
+      } catch (const std::invalid_argument& e) {
+        throw CLI::ValidationError(label, e.what());
+      }
+    };
+    app.add_option_function<std::vector<std::string>>(names, append, help)->type_name(type)->allow_extra_args(false);
+  };
+  add("-s,--source", "SPEC", one, "Where the map starts, see below; may be given several times");
+  add("--sources", "SOURCES", parse_sources, "More of them: a list, or a file");
+}
+
 CLI::Option* add_u_axis(CLI::App& app, SourceOptions& o) {
   return add_parsed(
       app, "--u-axis", o.u_axis,
@@ -65,9 +102,13 @@ CLI::Option* add_min_quality(CLI::App& app, double& min_quality) {
 }
 
 void add_input(CLI::App& app, InputOptions& o) {
-  app.add_option("INPUT", o.path, fmt::format("File to read: {}", fmt::join(io::extensions(io::Use::read), " ")))
-      ->required()
-      ->type_name("");
+  app.add_option("INPUT", o.path, input_help())->required()->type_name("");
+  add_input_format(app, o);
+}
+
+void add_inputs(CLI::App& app, InputOptions& o, std::vector<std::string>& paths) {
+  app.add_option("INPUT", paths, input_help())->required()->type_name("");
+  add_input_format(app, o);
 }
 
 CLI::Option* add_backend(CLI::App& app, InputOptions& o) {
@@ -106,6 +147,14 @@ void add_cloud_options(CLI::App& app, InputOptions& o) {
       ->group(group);
 }
 
+void add_local(CLI::App& app, InputOptions& o, const std::string& radius) {
+  app.add_flag("--local", o.around_source,
+               radius +
+                   ": build the graph of the surroundings of the source only, fast on huge\n"
+                   "scans; the diffusion time is then that of the surroundings")
+      ->group("Point clouds");
+}
+
 void add_mesh_options(CLI::App& app, InputOptions& o) {
   const char* group = "Triangle meshes";
   app.add_flag_callback(
@@ -117,10 +166,38 @@ void add_mesh_options(CLI::App& app, InputOptions& o) {
              "polygons: every face one cell, refined: a virtual vertex in every face and intrinsic\n"
              "triangles. auto (default): refined, or polygons where a face is twisted")
       ->group("Polygon meshes");
+  add_repair_options(app, o);
+}
+
+void add_repair_options(CLI::App& app, InputOptions& o) {
+  const char* group = "Repair of meshes";
+  app.add_flag_callback(
+         "--repair",
+         [&o] {
+           const std::optional<double> reach = o.repair.weld;
+           o.repair = RepairOptions::all();
+           if (reach) o.repair.weld = reach;
+           o.non_manifold = "split";
+         },
+         "All of these, with --weld 0 where no other is given, and --non-manifold split; rows and results stay\n"
+         "those of INPUT")
+      ->group(group);
+  const auto parse_reach = [](const std::string& text) { return text == "0" ? 0.0 : parse_positive(text); };
+  add_parsed(app, "--weld", o.repair.weld, parse_reach, "EPS",
+             "Join vertices at most EPS apart, 0: at equal positions; drop the faces that collapse")
+      ->group(group);
+  app.add_flag("--drop-degenerate", o.repair.drop_degenerate,
+               "Drop faces that use a vertex twice, have fewer than three, or one that is not finite")
+      ->group(group);
+  app.add_flag("--drop-duplicates", o.repair.drop_duplicates, "Of faces with the same vertices keep the first")
+      ->group(group);
+  app.add_flag("--orient", o.repair.orient, "Turn faces over so that closed parts look outwards")->group(group);
 }
 
 CLI::Option* add_method(CLI::App& app, SolveOptions& o) {
   app.parse_complete_callback([&app, &o] {
+    if (o.method == Method::heat && o.tolerance > 0)
+      throw CLI::ValidationError("--tolerance", "belongs to --method exact");
     if (o.method == Method::heat) return;
     for (const char* name :
          {"--variant", "--order", "--strategy", "--t-coef", "--ordering", "--accuracy", "--estimate"})
@@ -131,6 +208,12 @@ CLI::Option* add_method(CLI::App& app, SolveOptions& o) {
                     "NAME",
                     "heat (default), or exact: straight lines over the faces of a mesh, best on coarse and\n"
                     "sharp-edged ones");
+}
+
+CLI::Option* add_tolerance(CLI::App& app, SolveOptions& o) {
+  return add_parsed(app, "--tolerance", o.tolerance, parse_positive, "R",
+                    "With --method exact: distances may be off by R times their length, at most 0.1; nearly linear\n"
+                    "time, many times less on large smooth meshes. Default: exact");
 }
 
 CLI::Option* add_variant(CLI::App& app, SolveOptions& o) {
@@ -167,7 +250,18 @@ void add_graph_options(CLI::App& app, InputOptions& input, SolveOptions& solve) 
 }
 
 CLI::Option* add_output(CLI::App& app, OutputOptions& o) {
-  return add_parsed(app, "-o,--output", o.output, non_empty, "OUTPUT", "File to write, see below");
+  app.add_flag("--no-overwrite", o.keep_existing,
+               "Refuse to replace files that exist (default: replaced when complete)");
+  return add_parsed(
+      app, "-o,--output", o.output,
+      [](const std::string& text) { return text == "-" ? standard_output : non_empty(text); }, "OUTPUT",
+      "File to write, see below");
+}
+
+CLI::Option* add_table_output(CLI::App& app, OutputOptions& o) {
+  add_parsed(app, "--format", o.format, format_parser(io::Use::write), "NAME",
+             "Of OUTPUT, whatever its name: csv, jsonl, ply, ... (default: by the name, of - csv)");
+  return add_output(app, o)->description("File to write, see below; - for standard output");
 }
 
 CLI::Option* add_json(CLI::App& app, OutputOptions& o) {
@@ -178,15 +272,20 @@ CLI::Option* add_view(CLI::App& app, OutputOptions& o) {
   return add_parsed(app, "--view", o.view, non_empty, "FILE", "Draw the result: .png or .html");
 }
 
-CLI::Option* add_verbose(CLI::App& app, OutputOptions& o) {
-  return app.add_flag("--verbose", o.verbose, "Print the time of each stage and the peak memory");
+void add_verbosity(CLI::App& app, Verbosity& verbosity, const std::string& group) {
+  app.add_flag_callback(
+         "--verbose", [&] { verbosity = Verbosity::verbose; }, "Print the time of each stage and the peak memory")
+      ->group(group);
+  app.add_flag_callback(
+         "--quiet", [&] { verbosity = Verbosity::quiet; }, "Print errors only, no summary and no warnings")
+      ->group(group);
 }
 
 void add_map_results(CLI::App& app, OutputOptions& o) {
   add_json(app, o);
   add_view(app, o);
   add_map_picture(app, o.picture);
-  add_verbose(app, o);
+  add_verbosity(app, o.verbosity);
 }
 
 }  // namespace ahm::app

@@ -54,20 +54,30 @@ std::function<Value(const std::string&)> choice_of(std::vector<std::pair<std::st
 }
 
 CLI::Option* add_source(CLI::App& app, SourceOptions& o, const std::string& help);
+/// --source, which may be repeated, and --sources, which fill one list.
+void add_sources(CLI::App& app, std::vector<SourceSpec>& sources);
 CLI::Option* add_u_axis(CLI::App& app, SourceOptions& o);
 CLI::Option* add_min_quality(CLI::App& app, double& min_quality);
 
+/// INPUT, --input-format
 void add_input(CLI::App& app, InputOptions& o);
+/// The same for several files.
+void add_inputs(CLI::App& app, InputOptions& o, std::vector<std::string>& paths);
 CLI::Option* add_backend(CLI::App& app, InputOptions& o);
 CLI::Option* add_drop_nan(CLI::App& app, InputOptions& o);
 CLI::Option* add_non_manifold(CLI::App& app, InputOptions& o);
 /// How points become a graph: --voxel, --outliers, --drop-nan, --k, --knn, --normals.
 void add_cloud_options(CLI::App& app, InputOptions& o);
-/// --no-flips, --non-manifold, --discretization
+/// --local. @param radius  how far they reach, at the beginning of the help: "With --radius"
+void add_local(CLI::App& app, InputOptions& o, const std::string& radius);
+/// --repair, --weld, --drop-degenerate, --drop-duplicates, --orient
+void add_repair_options(CLI::App& app, InputOptions& o);
+/// --no-flips, --non-manifold, --discretization, and those of repairs
 void add_mesh_options(CLI::App& app, InputOptions& o);
 
 /// --method; with exact, what the subcommand offers of heat's options is refused.
 CLI::Option* add_method(CLI::App& app, SolveOptions& o);
+CLI::Option* add_tolerance(CLI::App& app, SolveOptions& o);
 CLI::Option* add_variant(CLI::App& app, SolveOptions& o);
 CLI::Option* add_t_coef(CLI::App& app, SolveOptions& o);
 /// For the graph, and for maps on it where there are any.
@@ -75,11 +85,15 @@ CLI::Option* add_threads(CLI::App& app, InputOptions& graph, SolveOptions* maps 
 /// --variant, --backend, --t-coef, --threads, those of clouds and those of meshes.
 void add_graph_options(CLI::App& app, InputOptions& input, SolveOptions& solve);
 
+/// --output, --no-overwrite
 CLI::Option* add_output(CLI::App& app, OutputOptions& o);
+/// The same for what `io::write` writes, with --format.
+CLI::Option* add_table_output(CLI::App& app, OutputOptions& o);
 CLI::Option* add_json(CLI::App& app, OutputOptions& o);
 CLI::Option* add_view(CLI::App& app, OutputOptions& o);
-CLI::Option* add_verbose(CLI::App& app, OutputOptions& o);
-/// --json, --view with what goes with a map's picture, --verbose
+/// --verbose, --quiet
+void add_verbosity(CLI::App& app, Verbosity& verbosity, const std::string& group = "Options");
+/// --json, --view with what goes with a map's picture, --verbose, --quiet
 void add_map_results(CLI::App& app, OutputOptions& o);
 
 }  // namespace ahm::app

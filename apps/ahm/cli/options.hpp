@@ -7,6 +7,7 @@
 
 #include "ahm/heat/heat_operators.hpp"
 #include "ahm/maps/log_map_solver.hpp"
+#include "ahm/surface/mesh_repair.hpp"
 #include "cli/source_spec.hpp"
 #include "output/picture_options.hpp"
 
@@ -14,7 +15,8 @@ namespace ahm::app {
 
 /// What is read, and how it becomes a surface.
 struct InputOptions {
-  std::string path;
+  std::string path;              ///< "-": standard input
+  std::string format;            ///< extension; empty: as the path says
   std::string backend = "auto";  ///< or a name of the table in input/backends.cpp
   unsigned threads = 0;          ///< 0: one per core
 
@@ -22,7 +24,8 @@ struct InputOptions {
   std::optional<double> voxel;
   bool outliers = false;
   bool drop_nan = false;
-  std::optional<double> local;  ///< build the graph only around the source, as a map of this radius needs it
+  bool around_source = false;   ///< build the graph only around the source,
+  std::optional<double> local;  ///< as a map of this radius needs it
   std::optional<Index> k;
   std::string knn = "nanoflann";  ///< nanoflann, flann, pcl
   std::string normals = "auto";   ///< auto, oriented, unoriented, estimate
@@ -31,12 +34,14 @@ struct InputOptions {
   bool flips = true;                    ///< intrinsic Delaunay triangulation
   std::string non_manifold = "error";   ///< error, split
   std::string discretization = "auto";  ///< of polygons: auto, polygons, refined
+  RepairOptions repair;
 };
 
 /// How maps are computed.
 struct SolveOptions : HeatOptions {
   Method method = Method::heat;
   std::optional<double> radius;
+  double tolerance = 0;  ///< of exact maps
 };
 
 /// Where the u axis points.
@@ -51,13 +56,22 @@ struct SourceOptions {
   std::optional<UAxis> u_axis;
 };
 
+/// What is told on standard error and, in words, on standard output.
+enum class Verbosity { quiet, normal, verbose };
+
 /// What is told, and where. Empty: not at all.
 struct OutputOptions {
-  std::string output;
-  std::string json;  ///< "-": standard output
+  std::string output;       ///< a file, or `standard_output`
+  std::string format;       ///< extension; empty: as the name says
+  std::string json;         ///< "-": standard output
+  bool json_lines = false;  ///< one line per summary, for several
   std::string view;
   PictureChoice picture;
-  bool verbose = false;
+  bool keep_existing = false;  ///< refuse to replace files
+  Verbosity verbosity = Verbosity::normal;
 };
+
+/// The name that "-" stands for where something is written.
+inline constexpr const char* standard_output = "/dev/stdout";
 
 }  // namespace ahm::app

@@ -27,8 +27,8 @@ std::string bar(double fraction, double seconds) {
 
 }  // namespace
 
-ProgressDisplay::ProgressDisplay() {
-  if (is_terminal()) painter_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
+ProgressDisplay::ProgressDisplay(bool shown) {
+  if (shown && is_terminal()) painter_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
 }
 
 ProgressDisplay::~ProgressDisplay() {

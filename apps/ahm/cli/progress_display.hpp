@@ -17,7 +17,8 @@ namespace ahm::app {
 /// and nothing in the first second.
 class ProgressDisplay {
  public:
-  ProgressDisplay();
+  /// @param shown  false: draws nothing, ever
+  explicit ProgressDisplay(bool shown = true);
   ~ProgressDisplay();
   ProgressDisplay(const ProgressDisplay&) = delete;
   ProgressDisplay& operator=(const ProgressDisplay&) = delete;

@@ -32,6 +32,11 @@ void for_each_entry(const std::string& text, const std::function<void(const std:
   for (const std::string& word : words) parse(word);
 }
 
+std::vector<std::string>& lists() {
+  static std::vector<std::string> paths;
+  return paths;
+}
+
 SourceSpec parse_entry(const std::string& text) {
   const std::vector<std::string> words = words_of(text);
   return parse_source(words.size() == 3 ? words[0] + "," + words[1] + "," + words[2] : text);
@@ -39,10 +44,13 @@ SourceSpec parse_entry(const std::string& text) {
 
 }  // namespace
 
+const std::vector<std::string>& lists_read() { return lists(); }
+
 void for_each_line(const std::string& path, const std::string& name, const std::string& what,
                    const std::function<void(const std::string&)>& parse) {
   std::ifstream file(path);
   if (!file) throw IoError(name + ": cannot be read");
+  lists().push_back(path);
   std::size_t number = 0, entries = 0;
   for (std::string line; std::getline(file, line);) {
     ++number;

@@ -19,6 +19,9 @@ namespace ahm::app {
 void for_each_line(const std::string& path, const std::string& name, const std::string& what,
                    const std::function<void(const std::string&)>& parse);
 
+/// The files that `for_each_line` has read: no output may take their place.
+const std::vector<std::string>& lists_read();
+
 /// Sources as in `parse_source`: separated by blanks, or in the file of this name, one per line, where a position may
 /// also stand as three numbers between blanks. In files empty lines and those that begin with # do not count.
 /// @throws std::invalid_argument (a list), InvalidArgument naming file and line, IoError

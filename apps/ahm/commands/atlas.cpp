@@ -51,9 +51,7 @@ struct AtlasCommandOptions {
 std::vector<Vertex> choose_sources(const AtlasCommandOptions& options, const Input& input) {
   if (options.sources.empty())
     return farthest_points(input.graph(), Vertex{0}, std::min(options.charts, input.graph().size()));
-  std::vector<Vertex> result;
-  for (const SourceSpec& spec : options.sources) result.push_back(vertex_at(input, spec, "--sources"));
-  return result;
+  return vertices_at(input, options.sources, "--sources");
 }
 
 /// Everything that is reported.
@@ -75,7 +73,7 @@ struct Made {
   }
 };
 
-std::vector<Vec3> positions_of(const SurfaceFaces& faces, Index vertices) {
+std::vector<Vec3> vertex_positions(const SurfaceFaces& faces, Index vertices) {
   std::vector<Vec3> positions(static_cast<std::size_t>(vertices));
   for (std::size_t c = 0; c < faces.corner_vertices.size(); ++c)
     positions[faces.corner_vertices[c]] = faces.points[faces.corner_points[c]];
@@ -118,8 +116,13 @@ void write_files(const AtlasCommandOptions& options, const SurfaceFaces& faces, 
 }
 
 nlohmann::ordered_json as_json(const DistortionSummary& s) {
-  return {{"mean", s.mean},       {"median", s.median},   {"percentile_95", s.percentile_95},
-          {"largest", s.largest}, {"flipped", s.flipped}, {"flipped_area", s.flipped_area}};
+  return {{"mean", s.mean},
+          {"median", s.median},
+          {"percentile_95", s.percentile_95},
+          {"largest", s.largest},
+          {"collapsed_area", s.collapsed_area},
+          {"flipped", s.flipped},
+          {"flipped_area", s.flipped_area}};
 }
 
 void report(const AtlasCommandOptions& options, const Input& input, const Made& made, Journal& journal) {
@@ -140,27 +143,30 @@ void report(const AtlasCommandOptions& options, const Input& input, const Made& 
   const DistortionSummary& d = made.distortion.all;
   const std::string text = fmt::format(
       "{} charts around {} sources, {} faces\n"
-      "distortion: mean {:.4g}, median {:.4g}, 95 % of the area below {:.4g}; flipped: {:.3g} % of the triangles, "
+      "distortion: mean {:.4g}, median {:.4g}, 95 % of the area below {:.4g}{}; flipped: {:.3g} % of the triangles, "
       "{:.3g} % of the area\n"
       "texture: {} x {}, {:.1f} % filled, {:.4g} texels per unit of length\n",
       made.atlas.charts.size(), made.atlas.sources.size(), made.faces, d.mean, d.median, d.percentile_95,
-      100 * d.flipped, 100 * d.flipped_area, packed.size, packed.size, 100 * packed.filled, packed.scale);
+      d.collapsed_area > 0 ? fmt::format(", {:.2g} % collapses", 100 * d.collapsed_area) : "", 100 * d.flipped,
+      100 * d.flipped_area, packed.size, packed.size, 100 * packed.filled, packed.scale);
   deliver(std::move(j), text, options.output, journal);
 }
 
 void run(const AtlasCommandOptions& options) {
   check_texture_output(options.input.path, options.output, {".obj", ".glb"}, {"atlas"}, options.texture);
   if (!options.texture.empty()) io::read_image(options.texture);  // better refused now than after the work
-  Journal journal(options.output.verbose);
+  Journal journal(options.output.verbosity);
   const Input input = open_input(options.input, journal);
   const TangentGraph& graph = input.graph();
-  const Maps maps(options.solve, input, journal, 0);
+  SolveOptions solve = options.solve;
+  if (input.surface().faces().size() > 0) solve.strategy = Strategy::march;  // charts need no factors of the whole
+  const Maps maps(solve, input, journal, 0);
 
   journal.start("sources");
   const std::vector<Vertex> sources = choose_sources(options, input);
   const SurfaceFaces faces =
       maps.solver ? surface_faces(input.surface(), *maps.solver, sources) : surface_faces(input.surface());
-  const std::vector<Vec3> positions = positions_of(faces, graph.size());
+  const std::vector<Vec3> positions = vertex_positions(faces, graph.size());
   journal.start("charts");
   RefineOptions refine;
   if (options.max_distortion) refine.max_distortion = *options.max_distortion;
@@ -197,7 +203,7 @@ void offer(CLI::App& app, AtlasCommandOptions& o) {
   add_json(app, o.output);
   add_view(app, o.output)->description("Draw the result: .png");
   add_texture_picture(app, o.output.picture);
-  add_verbose(app, o.output);
+  add_verbosity(app, o.output.verbosity);
 }
 
 }  // namespace

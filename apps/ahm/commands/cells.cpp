@@ -25,7 +25,8 @@ constexpr const char* cells_footer =
     "or\n"
     "positions (1.5,0,-2: the nearest vertex; in files also 1.5 0 -2).\n"
     "\n"
-    "OUTPUT  .csv, .ply or .pcd; one row per vertex of INPUT, in its order: index,x,y,z,distance,status,label\n"
+    "OUTPUT  .csv, .jsonl, .ply, .pcd or .vtp; one row per vertex of INPUT, in its order: "
+    "index,x,y,z,distance,status,label\n"
     "          label     place of the nearest source in the list, from 0\n"
     "          distance  from it\n"
     "\n"
@@ -171,7 +172,7 @@ void report(const CellsOptions& options, const Input& input, const std::vector<I
 
 void run(const CellsOptions& options) {
   check_results(options.input.path, options.output);
-  Journal journal(options.output.verbose);
+  Journal journal(options.output.verbosity);
   const Input input = open_input(options.input, journal);
   const TangentGraph& graph = input.graph();
   std::vector<Vertex> sources = vertices_of(input, options.sources);
@@ -208,7 +209,7 @@ void offer(CLI::App& app, CellsOptions& o) {
     if ((sources->count() > 0) == (count->count() > 0))
       throw CLI::ValidationError("--sources", "give either --sources or --count");
   });
-  add_output(app, o.output)->required();
+  add_table_output(app, o.output)->required();
   add_method(app, o.solve)
       ->description("heat (default): by unfolding the graph, or exact: by straight lines over the faces of a mesh");
   add_backend(app, o.input);

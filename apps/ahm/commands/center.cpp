@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "ahm/applications/mean.hpp"
+#include "cli/console.hpp"
 #include "cli/numbers.hpp"
 #include "cli/option_adders.hpp"
 #include "cli/source_list.hpp"
@@ -39,8 +40,7 @@ struct CenterCommandOptions {
 };
 
 Center find_center(const CenterCommandOptions& options, const Input& input, const Maps& maps, Journal& journal) {
-  std::vector<Vertex> vertices;
-  for (const SourceSpec& spec : options.points) vertices.push_back(vertex_at(input, spec, "--points"));
+  const std::vector<Vertex> vertices = vertices_at(input, options.points, "--points");
   if (!options.weights.empty() && options.weights.size() != vertices.size())
     throw InvalidArgument(fmt::format("--weights: {} numbers for {} points", options.weights.size(), vertices.size()));
   CenterOptions center;
@@ -74,6 +74,8 @@ void report(const CenterCommandOptions& options, const Input& input, const Cente
       v[1], v[2], options.median ? "mean distance" : "root mean squared distance", center.spread, center.maps,
       center.converged ? "converged" : "not converged");
   deliver(std::move(j), text, options.output, journal);
+  if (options.output.verbosity == Verbosity::quiet && options.output.json != "-")
+    print(text);  // the result, no comment
 }
 
 void comment_on(const Center& center, const TangentGraph& graph, Journal& journal) {
@@ -89,8 +91,8 @@ void comment_on(const Center& center, const TangentGraph& graph, Journal& journa
 }
 
 void run(const CenterCommandOptions& options) {
-  check_outputs(options.input.path, {{"--json", options.output.json}});
-  Journal journal(options.output.verbose);
+  check_outputs({options.input.path}, {{"--json", options.output.json}}, options.output.keep_existing);
+  Journal journal(options.output.verbosity);
   const Input input = open_input(options.input, journal);
   const Maps maps(options.solve, input, journal, 6);
   const Center center = find_center(options, input, maps, journal);
@@ -107,7 +109,7 @@ void offer(CLI::App& app, CenterCommandOptions& o) {
   add_method(app, o.solve);
   add_graph_options(app, o.input, o.solve);
   add_json(app, o.output);
-  add_verbose(app, o.output);
+  add_verbosity(app, o.output.verbosity);
 }
 
 }  // namespace

@@ -20,7 +20,8 @@ namespace {
 
 constexpr const char* coverage_footer =
     "SPEC is 123, x,y,z or face:7:.2,.3,.5 as in 'ahm logmap'.\n"
-    "OUTPUT is .csv, or .ply with edges between consecutive points; one row per point, in order of travel:\n"
+    "OUTPUT is .csv, .jsonl, or .ply and .vtp with edges between consecutive points; one row per point, in order of "
+    "travel:\n"
     "  piece         a tool lifts between pieces     line          of the raster\n"
     "  x,y,z         on the surface                  nx,ny,nz      its normal\n"
     "  hx,hy,hz      heading, unit, in the surface   u,v           coordinates\n"
@@ -40,7 +41,7 @@ struct CoverageCommandOptions {
 };
 
 /// Text, with an edge between consecutive points of a piece.
-void write_path(const std::string& name, const CoveragePath& path) {
+void write_path(const OutputOptions& output, const CoveragePath& path) {
   std::vector<Index> piece, line;
   std::vector<Vec3> position, normal, heading;
   std::vector<double> u, v, arclength, spacing;
@@ -59,7 +60,7 @@ void write_path(const std::string& name, const CoveragePath& path) {
   table.add({"hx", "hy", "hz"}, heading);
   table.add("u", u), table.add("v", v);
   table.add("arclength", arclength), table.add("spacing", spacing);
-  io::write(name, table);
+  io::write(output.output, table, output.format);
 }
 
 /// The path on the map, as a picture.
@@ -139,11 +140,11 @@ void report(const CoverageCommandOptions& options, const Input& input, const Pla
 }
 
 void run(const CoverageCommandOptions& options) {
-  check_results(options.input.path, options.output, {".csv", ".ply"});
-  Journal journal(options.output.verbose);
-  const Input input = open_input(options.input, journal, options.source.spec);
+  check_results(options.input.path, options.output, {".csv", ".jsonl", ".ply", ".vtp"});
+  Journal journal(options.output.verbosity);
+  const Input input = open_around(options.input, options.path.radius, journal, options.source.spec);
   const PlacedSource source = resolve(options.source, input, options.input.threads);
-  const LogMap map = solve(options.solve, input, options.source.spec, source, journal).map;
+  const LogMap map = solve(options.solve, input, options.source.spec, source, journal);
 
   journal.start("path");
   const InverseMap inverse =
@@ -169,7 +170,7 @@ void run(const CoverageCommandOptions& options) {
   Results results(options.output, input, options.input);
   write_view(results.scene(rows, row_quality, source), path, results, journal);
   journal.start("write");
-  write_path(options.output.output, path);
+  write_path(options.output, path);
   report(options, input, source, path, trusted_share(input.graph(), map, quality, options), amount, journal);
   results.keep();
 }
@@ -179,7 +180,7 @@ void offer(CLI::App& app, CoverageCommandOptions& o) {
   add_source(app, o.source, "Middle of what is covered")->required();
   add_parsed(app, "--radius", o.path.radius, parse_positive, "R", "How far to go, along the surface")->required();
   add_parsed(app, "--spacing", o.path.spacing, parse_positive, "S", "Between lines or turns")->required();
-  add_output(app, o.output)->required();
+  add_table_output(app, o.output)->required();
   add_parsed(
       app, "--pattern", o.path.pattern,
       [](const std::string& text) {
@@ -192,6 +193,7 @@ void offer(CLI::App& app, CoverageCommandOptions& o) {
   add_u_axis(app, o.source);
   add_method(app, o.solve);
   add_graph_options(app, o.input, o.solve);
+  add_local(app, o.input, "To --radius");
   add_map_results(app, o.output);
 }
 

@@ -8,6 +8,7 @@
 
 #include "ahm/applications/distortion.hpp"
 #include "ahm/applications/inverse_map.hpp"
+#include "ahm/io/formats.hpp"
 #include "ahm/io/write.hpp"
 #include "ahm/view/textured_picture.hpp"
 #include "cli/numbers.hpp"
@@ -48,10 +49,12 @@ struct DecalCommandOptions {
   bool alone = false;
 };
 
+/// From the source to the farthest point of the image.
+double reach(const DecalOptions& decal) { return std::min(decal.radius, std::hypot(decal.width, decal.height) / 2); }
+
 /// As far as the image reaches, and a few edges more, so that triangles at its border are whole.
 double map_radius(const DecalOptions& decal, const TangentGraph& graph) {
-  return std::min(decal.radius, std::hypot(decal.width, decal.height) / 2) +
-         5 * graph.mean_edge_length() * graph.length_unit();
+  return reach(decal) + 5 * graph.mean_edge_length() * graph.length_unit();
 }
 
 /// What the decal amounts to.
@@ -132,11 +135,8 @@ void write_points(const DecalCommandOptions& options, const Input& input, const 
   const auto colors = painted(input, image_coordinates_of_vertices(inverse, options.decal), image);
   const std::vector<Vec3> normals = input.surface().normals();
   const io::Geometry& given = input.geometry;
-  io::Table table{.title = "colored by libahm"};
-  table.add({"x", "y", "z"}, given.points);
-  if (!given.normals.empty()) table.add({"nx", "ny", "nz"}, given.normals);
-  table.add({"red", "green", "blue"}, colors);
-  table.faces = given.faces();
+  io::Table table = table_of(given, given.normals, colors);
+  table.title = "colored by libahm";
   io::write(options.output.output, table);
   if (options.output.view.empty()) return;
   view::TexturedScene scene;
@@ -174,12 +174,12 @@ void run(const DecalCommandOptions& given) {
   options.decal.height = options.size * image.height / longer;
   options.decal.lift = options.lift.value_or(0.002 * options.size);
 
-  Journal journal(options.output.verbose);
-  const Input input = open_input(options.input, journal, options.source.spec);
+  Journal journal(options.output.verbosity);
+  const Input input = open_around(options.input, reach(options.decal), journal, options.source.spec);
   const PlacedSource source = resolve(options.source, input, options.input.threads);
   SolveOptions near = options.solve;
   near.radius = map_radius(options.decal, input.graph());
-  const LogMap map = solve(near, input, options.source.spec, source, journal).map;
+  const LogMap map = solve(near, input, options.source.spec, source, journal);
 
   comment_on_quality(quality_of(input, map, input.surface().on_rows(map), options.solve),
                      "lower --size, or choose another source", journal);
@@ -200,8 +200,8 @@ void run(const DecalCommandOptions& given) {
                     100 - 100 * amount.covered));
 
   journal.start("write");
-  extension_of(options.output.output) == ".ply" ? write_points(options, input, inverse, image, source.position)
-                                                : write_mesh(options, input, decal, image, source.position);
+  io::lower_extension(options.output.output) == ".ply" ? write_points(options, input, inverse, image, source.position)
+                                                       : write_mesh(options, input, decal, image, source.position);
   report(options, input, decal, amount, source.position, journal);
 }
 
@@ -220,10 +220,11 @@ void offer(CLI::App& app, DecalCommandOptions& o) {
   add_u_axis(app, o.source);
   add_method(app, o.solve);
   add_graph_options(app, o.input, o.solve);
+  add_local(app, o.input, "To the corners of the image, or --radius");
   add_json(app, o.output);
   add_view(app, o.output)->description("Draw the result: .png");
   add_texture_picture(app, o.output.picture);
-  add_verbose(app, o.output);
+  add_verbosity(app, o.output.verbosity);
 }
 
 }  // namespace

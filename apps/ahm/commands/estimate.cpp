@@ -5,11 +5,10 @@
 #include <array>
 #include <nlohmann/json.hpp>
 
-#include "ahm/io/read.hpp"
 #include "ahm/maps/cost.hpp"
 #include "cli/console.hpp"
 #include "cli/system_info.hpp"
-#include "input/backend.hpp"
+#include "input/open.hpp"
 #include "output/output_paths.hpp"
 #include "output/summary.hpp"
 
@@ -39,8 +38,8 @@ Index vertices_of(const io::Geometry& input, const Backend& backend, const Input
 }  // namespace
 
 void run_estimate(const InputOptions& options, const SolveOptions& solve, const std::string& json) {
-  check_outputs(options.path, {{"--json", json}});
-  const io::Geometry input = io::read(options.path);
+  check_outputs({options.path}, {{"--json", json}}, false);
+  const io::Geometry input = read_input(options);
   const Backend& backend = choose_backend(input, options.backend);
   const GraphSize size{vertices_of(input, backend, options)};
   const HeatOptions solver{.order = solve.order, .strategy = solve.strategy, .expected_maps = 1};

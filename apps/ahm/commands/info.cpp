@@ -1,10 +1,10 @@
 #include <nlohmann/json.hpp>
 
-#include "ahm/io/read.hpp"
 #include "cli/console.hpp"
 #include "cli/option_adders.hpp"
 #include "cli/progress_display.hpp"
 #include "commands/subcommand.hpp"
+#include "input/open.hpp"
 #include "output/output_paths.hpp"
 #include "output/summary.hpp"
 #include "output/survey_report.hpp"
@@ -19,12 +19,12 @@ struct InfoOptions {
 
 void run(const InfoOptions& options) {
   const std::string &path = options.input.path, &json = options.output.json;
-  check_outputs(path, {{"--json", json}});
+  check_outputs({path}, {{"--json", json}}, false);
   Survey result;
   {
     ProgressDisplay display;
     display.update("read", 0);
-    const io::Geometry input = io::read(path);
+    const io::Geometry input = read_input(options.input);
     result = survey(input, options.input, display.progress());
   }
   write_json(json, as_json(result, path));

@@ -10,6 +10,7 @@ std::vector<std::string> words(const InputOptions& o) {
   const auto add = [&](const char* name, const auto& value) {
     out.insert(out.end(), {name, fmt::format("{}", value)});
   };
+  if (!o.format.empty()) add("--input-format", o.format.substr(1));
   if (o.backend != usual.backend) add("--backend", o.backend);
   if (o.threads != usual.threads) add("--threads", o.threads);
   if (o.voxel) add("--voxel", *o.voxel);
@@ -21,6 +22,10 @@ std::vector<std::string> words(const InputOptions& o) {
   if (!o.flips) out.emplace_back("--no-flips");
   if (o.non_manifold != usual.non_manifold) add("--non-manifold", o.non_manifold);
   if (o.discretization != usual.discretization) add("--discretization", o.discretization);
+  if (o.repair.weld) add("--weld", *o.repair.weld);
+  if (o.repair.drop_degenerate) out.emplace_back("--drop-degenerate");
+  if (o.repair.drop_duplicates) out.emplace_back("--drop-duplicates");
+  if (o.repair.orient) out.emplace_back("--orient");
   return out;
 }
 

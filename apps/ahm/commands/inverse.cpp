@@ -19,7 +19,8 @@ namespace {
 constexpr const char* inverse_footer =
     "SPEC is 123, x,y,z or face:7:.2,.3,.5 as in 'ahm logmap'.\n"
     "POINTS is a list 'u,v u,v ...' or a file with one pair per line, in the unit of INPUT.\n"
-    "OUTPUT is .csv; one row per pair, nan where the map is not to be trusted or has no such point:\n"
+    "OUTPUT is .csv, .jsonl, .ply or .vtp; one row per pair, nan where the map is not to be trusted or has no such "
+    "point:\n"
     "  u,v           as given                        x,y,z         on the surface\n"
     "  nx,ny,nz      its normal, on the source's side\n"
     "  hx,hy,hz      heading of u there: unit, in the surface\n"
@@ -55,16 +56,23 @@ std::size_t write(const InverseCommandOptions& options, const InverseMap& invers
   table.add({"x", "y", "z"}, positions);
   table.add({"nx", "ny", "nz"}, normals);
   table.add({"hx", "hy", "hz"}, headings);
-  io::write(options.output.output, table);
+  io::write(options.output.output, table, options.output.format);
   return found;
 }
 
+/// From the source to the farthest of the points.
+double reach(const std::vector<std::array<double, 2>>& points) {
+  double longest = 0;
+  for (const auto& [u, v] : points) longest = std::max(longest, std::hypot(u, v));
+  return longest;
+}
+
 void run(const InverseCommandOptions& options) {
-  check_results(options.input.path, options.output, {".csv"});
-  Journal journal(options.output.verbose);
-  const Input input = open_input(options.input, journal, options.source.spec);
+  check_results(options.input.path, options.output, {".csv", ".jsonl", ".ply", ".vtp"});
+  Journal journal(options.output.verbosity);
+  const Input input = open_around(options.input, reach(options.points), journal, options.source.spec);
   const PlacedSource source = resolve(options.source, input, options.input.threads);
-  const LogMap map = solve(options.solve, input, options.source.spec, source, journal).map;
+  const LogMap map = solve(options.solve, input, options.source.spec, source, journal);
 
   comment_on_quality(quality_of(input, map, input.surface().on_rows(map), options.solve),
                      "start nearer to the points that are looked up", journal);
@@ -85,13 +93,14 @@ void offer(CLI::App& app, InverseCommandOptions& o) {
   add_input(app, o.input);
   add_source(app, o.source, "Where the map starts, see below")->required();
   add_parsed(app, "--at", o.points, parse_plane_points, "POINTS", "Coordinates to look up, see below")->required();
-  add_output(app, o.output)->required();
+  add_table_output(app, o.output)->required();
   add_min_quality(app, o.min_quality);
   add_u_axis(app, o.source);
   add_method(app, o.solve);
   add_graph_options(app, o.input, o.solve);
+  add_local(app, o.input, "To the farthest of POINTS");
   add_json(app, o.output);
-  add_verbose(app, o.output);
+  add_verbosity(app, o.output.verbosity);
 }
 
 }  // namespace

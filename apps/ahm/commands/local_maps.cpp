@@ -74,9 +74,16 @@ std::vector<Row> wanted_rows(const LocalMapsOptions& options, const RowMap& rows
   return result;
 }
 
+std::vector<Index> numbers_of(const std::vector<Row>& rows) {
+  std::vector<Index> numbers;
+  numbers.reserve(rows.size());
+  for (const Row row : rows) numbers.push_back(row.index);
+  return numbers;
+}
+
 /// Rows of `count` entries: `values` has `width` numbers per entry, what is missing is 0.
 template <class T>
-std::vector<T> padded(const LocalMaps& maps, const std::vector<T>& values, std::size_t width, std::size_t count) {
+std::vector<T> padded(const RowLocalMaps& maps, const std::vector<T>& values, std::size_t width, std::size_t count) {
   std::vector<T> result(static_cast<std::size_t>(maps.sources()) * count * width, T{});
   for (std::size_t s = 0; s < static_cast<std::size_t>(maps.sources()); ++s)
     std::copy(values.begin() + maps.indptr[s] * static_cast<Offset>(width),
@@ -85,17 +92,15 @@ std::vector<T> padded(const LocalMaps& maps, const std::vector<T>& values, std::
   return result;
 }
 
-void write(const LocalMapsOptions& options, const LocalMaps& maps, const std::vector<Row>& rows,
+void write(const LocalMapsOptions& options, const RowLocalMaps& maps, const std::vector<Row>& rows,
            const TangentGraph& graph, const std::vector<Vertex>& vertices) {
-  const std::size_t sources = rows.size(), entries = maps.indices.size();
+  const std::size_t sources = rows.size(), entries = maps.neighbors.size();
   const auto k = static_cast<std::size_t>(options.nearest);
   const auto real = options.float32 ? io::NpyType::float32 : io::NpyType::float64;
   const auto complex = options.float32 ? io::NpyType::complex64 : io::NpyType::complex128;
   const bool rotations = maps.kind == TransportKind::rotation2;
   io::NpzFile file(options.output.output);
-  std::vector<Index> numbers;
-  for (Row row : rows) numbers.push_back(row.index);
-  file.add("sources", {sources}, std::span<const Index>(numbers));
+  file.add("sources", {sources}, std::span<const Index>(numbers_of(rows)));
   std::vector<double> frames;
   for (const auto [vertex] : vertices) {
     const Frame frame = *graph.frame(vertex);
@@ -110,12 +115,12 @@ void write(const LocalMapsOptions& options, const LocalMaps& maps, const std::ve
     file.add(name, shape, options.pad ? padded(maps, values, width, k) : values, type);
   };
   if (options.pad) {
-    file.add("indices", {sources, k}, std::span<const Index>(padded(maps, maps.indices, 1, k)));
+    file.add("indices", {sources, k}, std::span<const Index>(padded(maps, numbers_of(maps.neighbors), 1, k)));
     file.add("mask", {sources, k},
              std::span<const std::uint8_t>(padded(maps, std::vector<std::uint8_t>(entries, 1), 1, k)));
   } else {
     file.add("indptr", {sources + 1}, std::span<const Offset>(maps.indptr));
-    file.add("indices", {entries}, std::span<const Index>(maps.indices));
+    file.add("indices", {entries}, std::span<const Index>(numbers_of(maps.neighbors)));
   }
   add("log", maps.logs, {2}, real);
   add("distance", maps.distances, {}, real);
@@ -127,7 +132,7 @@ void write(const LocalMapsOptions& options, const LocalMaps& maps, const std::ve
 
 void run(const LocalMapsOptions& options) {
   check_options(options);
-  Journal journal(options.output.verbose);
+  Journal journal(options.output.verbosity);
   const Input input = open_input(options.input, journal);
   const RowMap& rows = input.surface().rows();
   const std::vector<Row> wanted = wanted_rows(options, rows);
@@ -140,7 +145,7 @@ void run(const LocalMapsOptions& options) {
   map_options.nearest = options.nearest;
   map_options.heat = options.solve;
   map_options.heat.progress = journal.progress();
-  const LocalMaps maps = local_maps_on_rows(input.surface(), vertices, map_options);
+  const RowLocalMaps maps = local_maps_on_rows(input.surface(), vertices, map_options);
 
   if (std::any_of(maps.weights.begin(), maps.weights.end(), [](double w) { return std::isnan(w); }))
     journal.add_warning("weight: no double holds squares of such lengths; they are given as nan");
@@ -148,11 +153,11 @@ void run(const LocalMapsOptions& options) {
   journal.start("write");
   write(options, maps, wanted, input.graph(), vertices);
 
-  const double mean = static_cast<double>(maps.indices.size()) / static_cast<double>(wanted.size());
+  const double mean = static_cast<double>(maps.neighbors.size()) / static_cast<double>(wanted.size());
   nlohmann::ordered_json j = summary("ahm local-maps", options.input.path, options.output, input);
   if (options.radius > 0) j["radius"] = options.radius;
   j["sources"] = wanted.size();
-  j["entries"] = maps.indices.size();
+  j["entries"] = maps.neighbors.size();
   j["mean_neighbours"] = mean;
   deliver(j, fmt::format("{} neighbourhoods of {:.1f} vertices on average\n", wanted.size(), mean), options.output,
           journal);
@@ -161,7 +166,7 @@ void run(const LocalMapsOptions& options) {
 void offer(CLI::App& app, LocalMapsOptions& o) {
   add_input(app, o.input);
   add_parsed(app, "--radius", o.radius, parse_positive, "R", "Of the neighbourhoods, along the surface");
-  add_parsed(app, "-o,--output", o.output.output, non_empty, "OUTPUT", "File to write, .npz")->required();
+  add_output(app, o.output)->required()->description("File to write, .npz");
   add_parsed(app, "--k", o.nearest, integer_parser(1), "K",
              "Keep only so many nearest, the source included; without --radius: however far they are");
   add_parsed(app, "--sources", o.sources, non_empty, "all|FILE",
@@ -173,9 +178,10 @@ void offer(CLI::App& app, LocalMapsOptions& o) {
   add_t_coef(app, o.solve);
   add_drop_nan(app, o.input);
   add_non_manifold(app, o.input);
+  add_repair_options(app, o.input);
   add_threads(app, o.input, &o.solve);
   add_json(app, o.output);
-  add_verbose(app, o.output);
+  add_verbosity(app, o.output.verbosity);
   app.callback([&o] {
     if (o.radius == 0 && o.nearest == 0) throw CLI::RequiredError("--radius, or --k");
     if (o.pad && o.nearest == 0) throw CLI::ValidationError("--pad", "needs --k");

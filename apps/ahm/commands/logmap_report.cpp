@@ -67,6 +67,7 @@ nlohmann::ordered_json as_json(const LogmapRun& run, const OutputOptions& output
   j["input"]["normals"] = !run.input.geometry.normals.empty();
   j["n"] = run.rows.status.size();
   j["method"] = to_string(run.map.method());
+  if (run.options.tolerance > 0) j["tolerance"] = run.options.tolerance;
   if (run.map.method() == Method::heat) {
     j["variant"] = to_string(run.map.variant());
     j["strategy"] = to_string(run.map.strategy());
@@ -88,7 +89,8 @@ nlohmann::ordered_json as_json(const LogmapRun& run, const OutputOptions& output
 }
 
 std::string as_text(const LogmapRun& run) {
-  std::string text = fmt::format("{} vertices", run.rows.status.size());
+  std::string text = run.is_named ? fmt::format("{}, source {}: ", run.path, to_string(run.spec)) : "";
+  text += fmt::format("{} {}", run.rows.status.size(), run.rows.status.size() == 1 ? "vertex" : "vertices");
   for (Status s : all_statuses)
     if (const std::size_t c = count(run.rows, s); c > 0 || s == Status::ok)
       text += fmt::format(", {} {}", c, to_string(s));

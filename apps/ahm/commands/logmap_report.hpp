@@ -21,6 +21,7 @@ struct LogmapRun {
   const LogMap& map;
   const RowLogMap& rows;
   const std::vector<double>& quality;  ///< by row
+  bool is_named = false;               ///< whether the text begins with the input and the source
 };
 
 /// Delivers the summaries, for programs and for people.

@@ -19,11 +19,14 @@ constexpr const char* path_footer =
     "  1.5,0,-2         the nearest point of the surface; in files also 1.5 0 -2\n"
     "  face:7:.2,.3,.5  a point in face 7, by barycentric coordinates, one per corner\n"
     "PAIRS is a file with two SPECs per line: a path for each, all paths from one start at the cost of one map.\n"
-    "The path is the shortest over the flat faces, exact up to rounding; of several of one length, one of them.\n"
+    "The path is the shortest over the flat faces, exact up to rounding; of several of one length, one of them. Over "
+    "a\n"
+    "cloud it is short to second order in the spacing, from the tangent plane of a point to that of the next.\n"
     "With --fast it is locally shortest: no curve beside it is shorter, but one on another side of a hill may be.\n"
     "With --tighten the loop leaves its points and becomes locally shortest, a closed geodesic.\n"
     "\n"
-    "OUTPUT  .csv, .ply with edges, or .obj with lines: x,y,z and arclength (not in .obj) where the path starts,\n"
+    "OUTPUT  .csv, .jsonl, .ply and .vtp with edges, or .obj with lines: x,y,z and arclength (not in .obj) where the "
+    "path starts,\n"
     "        crosses an edge, bends, and ends. Of PAIRS also curve, the place of the pair in the file, from 0\n"
     "\n"
     "Examples:\n"
@@ -60,35 +63,30 @@ std::vector<std::array<SourceSpec, 2>> read_pairs(const std::string& file) {
   return pairs;
 }
 
-exact::GeodesicPath leg_between(const PathCommandOptions& options, const ExactGeodesics& geodesics,
-                                const SurfacePoint& from, const SurfacePoint& to) {
-  if (options.fast) return geodesics.locally_shortest_path(from, to);
-  return geodesics.path(std::array{from, to});
-}
-
 /// Adds the ways from stop to stop, as one curve.
 void go_through(const PathCommandOptions& options, const std::vector<SurfacePoint>& stops,
-                const std::vector<SourceSpec>& specs, const ExactGeodesics& geodesics, Polylines& path) {
+                const std::vector<SourceSpec>& specs, const LineFinder& finder, Polylines& path) {
   std::vector<double> lengths;
-  std::vector<exact::MeshPoint> curve;
+  FoundLine curve;
   for (std::size_t k = 1; k < stops.size(); ++k) {
-    const exact::GeodesicPath leg = leg_between(options, geodesics, stops[k - 1], stops[k]);
+    const FoundLine leg = finder.path(stops[k - 1], stops[k], options.fast);
     if (leg.status != Status::ok)
       throw InvalidArgument(fmt::format("there is no path from {} to {}: the surface does not connect them",
                                         to_string(specs[k - 1]), to_string(specs[k])));
-    curve.insert(curve.end(), leg.points.begin() + (k > 1 ? 1 : 0), leg.points.end());
+    const std::size_t first = k > 1 ? 1 : 0;
+    curve.points.insert(curve.points.end(), leg.points.begin() + first, leg.points.end());
+    if (finder.has_faces()) curve.flat.insert(curve.flat.end(), leg.flat.begin() + first, leg.flat.end());
     lengths.push_back(leg.length);
   }
   double length = std::accumulate(lengths.begin(), lengths.end(), 0.0);
   if (options.tighten) {
-    const exact::GeodesicPath loop = geodesics.shortened(curve, true);
-    if (!(loop.length > 0))
+    curve = finder.tightened(curve.flat);
+    if (!(curve.length > 0))
       throw InvalidArgument("--tighten: the loop goes around nothing that would hold it, and shrinks to a point");
-    curve = loop.points;
     path.json["length_through_stops"] = length;
-    length = loop.length;
+    length = curve.length;
   }
-  path.add(positions_of(geodesics, curve));
+  path.add(curve.points);
   path.text = fmt::format("a {} of {} points, {:.6g} long\n", options.tighten ? "closed geodesic" : "path",
                           path.points.size(), length);
   path.json["points"] = path.points.size();
@@ -96,45 +94,40 @@ void go_through(const PathCommandOptions& options, const std::vector<SurfacePoin
   if (!options.tighten) path.json["lengths"] = lengths;
 }
 
-Polylines find_path(const PathCommandOptions& options, const ExactGeodesics& geodesics, const Input& input) {
+Polylines find_path(const PathCommandOptions& options, const LineFinder& finder, const Input& input) {
   std::vector<SourceSpec> specs{*options.from};
   for (const auto& more : {options.through, options.to}) specs.insert(specs.end(), more.begin(), more.end());
   std::vector<SurfacePoint> stops;
   for (std::size_t k = 0; k < specs.size(); ++k)
-    stops.push_back(point_on_faces(input, specs[k],
-                                   k == 0                        ? "--from"
-                                   : k <= options.through.size() ? "--through"
-                                                                 : "--to"));
+    stops.push_back(point_on_surface(input, specs[k],
+                                     k == 0                        ? "--from"
+                                     : k <= options.through.size() ? "--through"
+                                                                   : "--to"));
   if (options.closed) stops.push_back(stops.front()), specs.push_back(specs.front());
   Polylines path;
   if (!options.fast) path.from = stops.front();
   for (const SourceSpec& spec : specs) path.json["stops"].push_back(to_string(spec));
   path.json["closed"] = options.closed;
   path.json["fast"] = options.fast;
-  go_through(options, stops, specs, geodesics, path);
+  go_through(options, stops, specs, finder, path);
   return path;
 }
 
-Polylines find_pairs(const PathCommandOptions& options, const ExactGeodesics& geodesics, const Input& input,
+Polylines find_pairs(const PathCommandOptions& options, const LineFinder& finder, const Input& input,
                      Journal& journal) {
   std::vector<std::array<SurfacePoint, 2>> ends;
   for (const auto& [from, to] : options.pairs)
-    ends.push_back({point_on_faces(input, from, "--pairs"), point_on_faces(input, to, "--pairs")});
-  std::vector<exact::GeodesicPath> paths;
-  if (options.fast) {
-    for (const auto& [from, to] : ends) paths.push_back(geodesics.locally_shortest_path(from, to));
-  } else {
-    paths = geodesics.paths(ends, journal.progress(), options.input.threads);
-  }
+    ends.push_back({point_on_surface(input, from, "--pairs"), point_on_surface(input, to, "--pairs")});
+  const std::vector<FoundLine> paths = finder.paths(ends, options.fast, journal.progress(), options.input.threads);
   Polylines result;
   result.numbered = true;
   result.json["fast"] = options.fast;
   double length = 0;
   std::size_t found = 0;
   for (std::size_t k = 0; k < paths.size(); ++k) {
-    const exact::GeodesicPath& path = paths[k];
+    const FoundLine& path = paths[k];
     const bool ok = path.status == Status::ok;
-    result.add(positions_of(geodesics, path.points));
+    result.add(path.points);
     result.json["paths"].push_back({{"from", to_string(options.pairs[k][0])},
                                     {"to", to_string(options.pairs[k][1])},
                                     {"status", to_string(path.status)},
@@ -150,11 +143,14 @@ Polylines find_pairs(const PathCommandOptions& options, const ExactGeodesics& ge
 }
 
 void run(const PathCommandOptions& options) {
-  run_polyline("path", options.input, options.output, {},
-               [&](const ExactGeodesics& geodesics, const Input& input, Journal& journal) {
-                 return options.pairs.empty() ? find_path(options, geodesics, input)
-                                              : find_pairs(options, geodesics, input, journal);
-               });
+  run_polyline(
+      "path", options.input, options.output, {}, [&](const LineFinder& finder, const Input& input, Journal& journal) {
+        if (!finder.has_faces() && (options.fast || options.tighten))
+          throw InvalidArgument(
+              fmt::format("{}: takes faces, which this input does not have, or which --backend ignores",
+                          options.fast ? "--fast" : "--tighten"));
+        return options.pairs.empty() ? find_path(options, finder, input) : find_pairs(options, finder, input, journal);
+      });
 }
 
 void offer(CLI::App& app, PathCommandOptions& o) {
@@ -167,7 +163,7 @@ void offer(CLI::App& app, PathCommandOptions& o) {
   auto* through =
       add_parsed(app, "--through", o.through, parse_sources, "POINTS", "What it leads through before")->needs(to);
   auto* pairs = add_parsed(app, "--pairs", o.pairs, read_pairs, "PAIRS", "A path for every line of a file instead");
-  add_output(app, o.output)->required();
+  add_table_output(app, o.output)->required();
   auto* closed = app.add_flag("--closed", o.closed, "And back to where it starts")->excludes(pairs);
   app.add_flag("--tighten", o.tighten, "The loop as short as it gets in its place, away from its points")
       ->needs(closed);
@@ -178,6 +174,7 @@ void offer(CLI::App& app, PathCommandOptions& o) {
       throw CLI::ValidationError("--from", "give --from and --to, or --pairs");
   });
   add_threads(app, o.input);
+  add_cloud_options(app, o.input);
   add_mesh_options(app, o.input);
   add_map_results(app, o.output);
 }
@@ -185,8 +182,7 @@ void offer(CLI::App& app, PathCommandOptions& o) {
 }  // namespace
 
 Subcommand add_path(CLI::App& program) {
-  return subcommand<PathCommandOptions>(program, "path", "Shortest paths over the faces of a mesh", path_footer, offer,
-                                        run);
+  return subcommand<PathCommandOptions>(program, "path", "Shortest paths over a surface", path_footer, offer, run);
 }
 
 }  // namespace ahm::app

@@ -8,13 +8,13 @@
 #include <string>
 #include <vector>
 
-#include "ahm/surface/exact/exact_geodesics.hpp"
+#include "commands/line_finder.hpp"
 #include "input/open.hpp"
 
 namespace ahm::app {
 
 /// What a subcommand found, and what it tells.
-struct Polylines {
+struct Polylines {  // NOLINT(bugprone-exception-escape): assertions in the destructor of nlohmann's values
   std::optional<SurfacePoint> from = {};  ///< of the map in the picture; none: the surface alone
   std::vector<Vec3> points = {};          ///< of all curves, one behind the other
   std::vector<Index> begin = {};     ///< where each begins; several may begin at the same place, those without points
@@ -29,21 +29,19 @@ struct Polylines {
   /// The end of curve k.
   Index end(std::size_t k) const { return k + 1 < begin.size() ? begin[k + 1] : static_cast<Index>(points.size()); }
 };
-using FindPolylines = std::function<Polylines(const ExactGeodesics& geodesics, const Input& input, Journal& journal)>;
+using FindPolylines = std::function<Polylines(const LineFinder& finder, const Input& input, Journal& journal)>;
 
 /// Opens the input, finds the curves, and writes them: --output (.csv, .ply with edges, or .obj with lines), --view (the
 /// curves on an exact map) and --json.
 /// @param name    of the subcommand
 /// @param source  --source, where the surface is opened for one
-/// @throws InvalidArgument where the input has no faces; what opening, `find` and writing throw
+/// @throws what opening, `find` and writing throw
 void run_polyline(const std::string& name, const InputOptions& options, const OutputOptions& output,
                   const std::optional<SourceSpec>& source, const FindPolylines& find);
 
-/// The point that the user means; of a position the nearest point of the faces.
+/// The point that the user means; of a position the nearest point of the surface.
 /// @param option  that asked for it, for messages
 /// @throws InvalidArgument
-SurfacePoint point_on_faces(const Input& input, const SourceSpec& spec, const std::string& option);
-
-std::vector<Vec3> positions_of(const ExactGeodesics& geodesics, const std::vector<exact::MeshPoint>& points);
+SurfacePoint point_on_surface(const Input& input, const SourceSpec& spec, const std::string& option);
 
 }  // namespace ahm::app

@@ -28,18 +28,6 @@ std::string strategy_as_text(const LogMap& map) {
   return fmt::format("march: {} bands, the largest of {} vertices", m.bands, m.largest_band);
 }
 
-/// From the point and along the axis of a resolved source.
-LogMap exact_map(const SolveOptions& options, const Input& input, const SourceSpec& spec, const PlacedSource& source,
-                 Journal& journal) {
-  journal.start("layout");
-  const ExactGeodesics geodesics(input.surface());
-  journal.start("solve");
-  const MapOptions map = map_options(options);
-  const auto u_axis = source.frame ? std::optional(source.frame->x) : std::nullopt;
-  return geodesics.log_map(point_of(input.surface(), spec), u_axis,
-                           {.radius = map.radius, .frames = map.frames, .progress = journal.progress()});
-}
-
 }  // namespace
 
 LogMapSolver make_solver(const SolveOptions& options, const TangentGraph& graph, Journal& journal, int maps) {
@@ -65,16 +53,6 @@ LogMap solve(const SolveOptions& options, const LogMapSolver& solver, const Sour
   return map;
 }
 
-SolvedMap solve(const SolveOptions& options, const Input& input, const SourceSpec& spec, const PlacedSource& source,
-                Journal& journal) {
-  if (options.method == Method::heat) {
-    LogMapSolver solver = make_solver(options, input.graph(), journal);
-    LogMap map = solve(options, solver, source.source, journal);
-    return {std::move(solver), std::move(map)};
-  }
-  return {std::nullopt, exact_map(options, input, spec, source, journal)};
-}
-
 Maps::Maps(const SolveOptions& options, const Input& input, Journal& journal, int count) : threads(options.threads) {
   if (options.method == Method::heat) {
     solver.emplace(make_solver(options, input.graph(), journal, count));
@@ -82,6 +60,23 @@ Maps::Maps(const SolveOptions& options, const Input& input, Journal& journal, in
     journal.start("layout");
     geodesics.emplace(input.surface());
   }
+}
+
+LogMap Maps::map(const SolveOptions& options, const Input& input, const SourceSpec& spec, const PlacedSource& source,
+                 Journal& journal) const {
+  if (solver) return solve(options, *solver, source.source, journal);
+  journal.start("solve");
+  const MapOptions map = map_options(options);
+  // From the point and along the axis of the source that was found for the user.
+  const auto u_axis = source.frame ? std::optional(source.frame->x) : std::nullopt;
+  return geodesics->log_map(
+      point_of(input, spec), u_axis,
+      {.radius = map.radius, .tolerance = options.tolerance, .frames = map.frames, .progress = journal.progress()});
+}
+
+LogMap solve(const SolveOptions& options, const Input& input, const SourceSpec& spec, const PlacedSource& source,
+             Journal& journal) {
+  return Maps(options, input, journal, 1).map(options, input, spec, source, journal);
 }
 
 std::vector<double> quality_of(const Input& input, const LogMap& map, const RowLogMap& rows,

@@ -22,28 +22,25 @@ MapOptions map_options(const SolveOptions& options);
 /// One map; the journal tells the strategy.
 LogMap solve(const SolveOptions& options, const LogMapSolver& solver, const Source& source, Journal& journal);
 
-/// A map, and the solver that made it, where it was heat's.
-struct SolvedMap {
-  std::optional<LogMapSolver> solver;
-  LogMap map;
-};
-
-/// The one map of a subcommand, by the method of the options.
-/// @param source  of `spec`
-/// @throws InvalidArgument where the method needs faces that the input does not have, and as `make_solver`
-SolvedMap solve(const SolveOptions& options, const Input& input, const SourceSpec& spec, const PlacedSource& source,
-                Journal& journal);
-
 /// What makes the maps of a subcommand that needs several, by the method of the options.
 struct Maps {
   /// @param count  maps that are expected; 0: many. @throws as `make_solver`, `ExactGeodesics`
   Maps(const SolveOptions& options, const Input& input, Journal& journal, int count);
+  /// One of them. @param source  of `spec`. @throws as `solve`
+  LogMap map(const SolveOptions& options, const Input& input, const SourceSpec& spec, const PlacedSource& source,
+             Journal& journal) const;
   MapMaker maker() const { return solver ? MapMaker(*solver) : MapMaker(*geodesics, threads); }
 
   std::optional<LogMapSolver> solver;
   std::optional<ExactGeodesics> geodesics;
   unsigned threads;
 };
+
+/// The one map of a subcommand, by the method of the options.
+/// @param source  of `spec`
+/// @throws InvalidArgument where the method needs faces that the input does not have, and as `make_solver`
+LogMap solve(const SolveOptions& options, const Input& input, const SourceSpec& spec, const PlacedSource& source,
+             Journal& journal);
 
 /// `map_quality` by row. @param rows  of the map
 std::vector<double> quality_of(const Input& input, const LogMap& map, const RowLogMap& rows,

@@ -24,11 +24,11 @@ constexpr const char* stroke_footer =
     "  123              a vertex of INPUT, counted from 0\n"
     "  1.5,0,-2         the nearest point of the surface; in files also 1.5 0 -2\n"
     "  face:7:.2,.3,.5  a point in face 7, by barycentric coordinates, one per corner (meshes)\n"
-    "On meshes they are joined by shortest paths over the faces, on clouds by straight lines, whose samples, one "
-    "every\n"
-    "half edge, are moved to the surface: there, give points so close that the lines stay near it.\n"
+    "They are joined by shortest paths, over the faces of meshes and the tangent planes of clouds, with samples every\n"
+    "half edge.\n"
     "\n"
-    "OUTPUT  .csv, .ply or .pcd; one row per vertex of INPUT, in its order: index,x,y,z,u,v,distance,status\n"
+    "OUTPUT  .csv, .jsonl, .ply, .pcd or .vtp; one row per vertex of INPUT, in its order: "
+    "index,x,y,z,u,v,distance,status\n"
     "          u  arclength along the curve, before and after its ends straight on\n"
     "          v  distance from it, positive on its left as seen from outside (the side of the normals)\n"
     "        With --circle the curve becomes a circle of its length about the origin; with --positions its points get\n"
@@ -54,17 +54,16 @@ double distance_from_curve(double u, double v, double length, const StrokeOption
   return shape.closed ? std::abs(v) : std::hypot(std::max({0.0, -u, u - length}), v);
 }
 
-CurvePoint curve_point(const SourceSpec& spec) {
+CurvePoint curve_point(const Input& input, const SourceSpec& spec) {
   if (const auto* position = std::get_if<SourcePosition>(&spec)) return position->position;
-  if (const auto* face = std::get_if<SourceFace>(&spec)) return SurfacePoint(FacePoint{face->face, face->weights});
-  return SurfacePoint(Row(std::get<SourceVertex>(spec).index));
+  return point_of(input, spec);
 }
 
 SurfaceCurve draw_curve(const Input& input, const StrokeCommandOptions& options) {
   std::vector<CurvePoint> points;
   for (const SourceSpec& spec : options.curve) {
-    position_in(input.geometry, spec, "--curve");
-    points.push_back(curve_point(spec));
+    position_of(input, spec, "--curve");
+    points.push_back(curve_point(input, spec));
   }
   try {
     if (!options.positions.empty())
@@ -80,6 +79,7 @@ LogMap solve(const SolveOptions& options, const Input& input, const SurfaceCurve
   if (maps.solver) return ahm::app::solve(options, *maps.solver, curve.source, journal);
   journal.start("solve");
   ExactMapOptions exact;
+  if (options.radius) exact.radius = *options.radius;
   exact.progress = journal.progress();
   return maps.geodesics->log_map(curve.samples, exact).map;
 }
@@ -88,7 +88,7 @@ void comment_on_curve(const SurfaceCurve& curve, double edge, Journal& journal) 
   if (curve.straight > 0)
     journal.add_warning(fmt::format(
         "--curve: {} of the lines between its points {} straight in space and moved to the surface, no shortest path "
-        "over the faces: {}",
+        "along it: {}",
         curve.straight, curve.straight == 1 ? "is" : "are", curve.straight_reason));
   if (curve.gap > 2 * edge)
     journal.add_warning(fmt::format(
@@ -150,20 +150,36 @@ void report(const StrokeCommandOptions& options, const Input& input, const Surfa
   deliver(std::move(j), text, options.output, journal);
 }
 
+/// As far as the map has to reach: its own distance from a curve is that from samples of it.
+SolveOptions beyond_radius(SolveOptions options, double edge) {
+  if (options.radius) *options.radius += 2 * edge;
+  return options;
+}
+
+/// Leaves out what lies farther from the curve, by the distance that is told.
+void leave_out_beyond(double radius, RowLogMap& rows, std::vector<double>& distance) {
+  for (std::size_t i = 0; i < distance.size(); ++i) {
+    if (!(distance[i] > radius)) continue;
+    rows.u[i] = rows.v[i] = distance[i] = NAN;
+    rows.status[i] = Status::beyond_radius;
+  }
+}
+
 void run(const StrokeCommandOptions& options) {
   check_results(options.input.path, options.output);
-  Journal journal(options.output.verbose);
+  Journal journal(options.output.verbosity);
   const Input input = open_input(options.input, journal);
   const SurfaceCurve curve = draw_curve(input, options);
   comment_on_curve(curve, input.mean_edge_length(), journal);
 
-  const LogMap map = solve(options.solve, input, curve, journal);
-  const RowLogMap rows = input.surface().on_rows(map);
+  const LogMap map = solve(beyond_radius(options.solve, input.mean_edge_length()), input, curve, journal);
+  RowLogMap rows = input.surface().on_rows(map);
   std::vector<double> distance;
   for (std::size_t i = 0; i < rows.u.size(); ++i)
     distance.push_back(options.positions.empty()
                            ? distance_from_curve(rows.u[i], rows.v[i], curve.length, options.shape)
                            : rows.distance[i]);
+  if (options.solve.radius) leave_out_beyond(*options.solve.radius, rows, distance);
   comment_on_statuses(rows.status, options.input.path, journal);
   Results results(options.output, input, options.input);
   write_results(curve, options.shape, rows, distance, results, journal);
@@ -174,7 +190,7 @@ void run(const StrokeCommandOptions& options) {
 void offer(CLI::App& app, StrokeCommandOptions& o) {
   add_input(app, o.input);
   add_parsed(app, "--curve", o.curve, parse_sources, "CURVE", "List or file of points, see below")->required();
-  add_output(app, o.output)->required();
+  add_table_output(app, o.output)->required();
   app.add_flag("--closed", o.shape.closed, "Join the last point to the first");
   auto* circle = app.add_flag_callback(
       "--circle", [&o] { o.shape.closed = true, o.shape.shape = StrokeShape::circle; },
@@ -187,6 +203,8 @@ void offer(CLI::App& app, StrokeCommandOptions& o) {
       throw CLI::ValidationError("--positions",
                                  fmt::format("{} for the {} points of --curve", o.positions.size(), o.curve.size()));
   });
+  add_parsed(app, "--radius", o.solve.radius, parse_positive, "R",
+             "Leave out everything farther than this from the curve; what lies beyond costs nothing");
   add_method(app, o.solve);
   add_graph_options(app, o.input, o.solve);
   add_map_results(app, o.output);

@@ -14,10 +14,12 @@ namespace {
 
 constexpr const char* trace_footer =
     "SPEC is 123, x,y,z (the nearest point of the surface) or face:7:.2,.3,.5 as in 'ahm path'.\n"
-    "The line goes straight through faces, and through vertices with equal angles on both sides; it ends early at\n"
-    "the boundary.\n"
+    "The line goes straight through faces, and through vertices with equal angles on both sides; over a cloud from "
+    "the\n"
+    "tangent plane of a point to that of the next. It ends early at the boundary.\n"
     "LINES is a file: SPEC X,Y,Z and, where it is not --length, L in every line.\n"
-    "OUTPUT is .csv, .ply or .obj as in 'ahm path'; of LINES with curve, the number of the line in the file, from 0.\n"
+    "OUTPUT is .csv, .ply, .obj ... as in 'ahm path'; of LINES with curve, the number of the line in the file, from "
+    "0.\n"
     "\n"
     "Example:\n"
     "  ahm trace mesh.ply --source 17 --direction 1,0,0 --length 0.5 -o line.csv --view line.png";
@@ -51,10 +53,9 @@ std::vector<WantedLine> read_lines(const std::string& file) {
   return lines;
 }
 
-exact::TracedPath trace(const ExactGeodesics& geodesics, const SurfacePoint& from, const WantedLine& line,
-                        const char* option) {
+FoundLine trace(const LineFinder& finder, const SurfacePoint& from, const WantedLine& line, const char* option) {
   try {
-    return geodesics.trace(from, line.direction, line.length);
+    return finder.trace(from, line.direction, line.length);
   } catch (const InvalidArgument& e) {
     if (e.fault() != "axis_along_normal") throw;
     throw InvalidArgument(fmt::format("{} {},{},{}: is perpendicular to the surface at the source {}", option,
@@ -63,52 +64,48 @@ exact::TracedPath trace(const ExactGeodesics& geodesics, const SurfacePoint& fro
   }
 }
 
-Polylines find_lines(const TraceCommandOptions& options, const ExactGeodesics& geodesics, const Input& input) {
+Polylines find_lines(const TraceCommandOptions& options, const LineFinder& finder, const Input& input) {
   Polylines result;
   result.numbered = true;
   double length = 0;
   std::size_t at_boundary = 0;
   for (WantedLine wanted : options.lines) {
     if (wanted.length == 0) wanted.length = options.line.length;
-    const SurfacePoint from = point_on_faces(input, *wanted.source, "--lines");
-    const exact::TracedPath line = trace(geodesics, from, wanted, "--lines");
-    const std::vector<Vec3> points = positions_of(geodesics, line.points);
-    const bool complete = line.end == exact::TraceEnd::complete;
-    result.add(points);
+    const SurfacePoint from = point_on_surface(input, *wanted.source, "--lines");
+    const FoundLine line = trace(finder, from, wanted, "--lines");
+    result.add(line.points);
     result.json["lines"].push_back({{"source", to_string(*wanted.source)},
-                                    {"end", complete ? "length" : "boundary"},
-                                    {"position", points.back()},
-                                    {"points", points.size()},
+                                    {"end", line.complete ? "length" : "boundary"},
+                                    {"position", line.points.back()},
+                                    {"points", line.points.size()},
                                     {"length", line.length}});
     length += line.length;
-    at_boundary += complete ? 0 : 1;
+    at_boundary += line.complete ? 0 : 1;
   }
   result.text = fmt::format("{} lines of {} points, {:.6g} long together; {} end at the boundary\n",
                             options.lines.size(), result.points.size(), length, at_boundary);
   return result;
 }
 
-Polylines find_line(const TraceCommandOptions& options, const ExactGeodesics& geodesics, const Input& input) {
+Polylines find_line(const TraceCommandOptions& options, const LineFinder& finder, const Input& input) {
   Polylines result;
-  result.from = point_on_faces(input, *options.line.source, "--source");
-  const exact::TracedPath line = trace(geodesics, *result.from, options.line, "--direction");
-  result.add(positions_of(geodesics, line.points));
+  result.from = point_on_surface(input, *options.line.source, "--source");
+  const FoundLine line = trace(finder, *result.from, options.line, "--direction");
+  result.add(line.points);
   const std::vector<Vec3>& points = result.points;
-  const bool complete = line.end == exact::TraceEnd::complete;
   result.json["source"] = {{"spec", to_string(*options.line.source)}, {"position", points.front()}};
-  result.json["end"] = {{"at", complete ? "length" : "boundary"}, {"position", points.back()}};
+  result.json["end"] = {{"at", line.complete ? "length" : "boundary"}, {"position", points.back()}};
   result.json["points"] = points.size();
   result.json["length"] = line.length;
   result.text = fmt::format("a line of {} points, {:.6g} long{}\n", points.size(), line.length,
-                            complete ? "" : ", where it meets the boundary");
+                            line.complete ? "" : ", where it meets the boundary");
   return result;
 }
 
 void run(const TraceCommandOptions& options) {
   run_polyline("trace", options.input, options.output, options.line.source,
-               [&](const ExactGeodesics& geodesics, const Input& input, Journal&) {
-                 return options.lines.empty() ? find_line(options, geodesics, input)
-                                              : find_lines(options, geodesics, input);
+               [&](const LineFinder& finder, const Input& input, Journal&) {
+                 return options.lines.empty() ? find_line(options, finder, input) : find_lines(options, finder, input);
                });
 }
 
@@ -130,8 +127,9 @@ void offer(CLI::App& app, TraceCommandOptions& o) {
       if (line.length == 0 && length->count() == 0)
         throw CLI::ValidationError("--lines", "some lines have no length; give --length");
   });
-  add_output(app, o.output)->required();
+  add_table_output(app, o.output)->required();
   add_threads(app, o.input);
+  add_cloud_options(app, o.input);
   add_mesh_options(app, o.input);
   add_map_results(app, o.output);
 }
@@ -139,8 +137,7 @@ void offer(CLI::App& app, TraceCommandOptions& o) {
 }  // namespace
 
 Subcommand add_trace(CLI::App& program) {
-  return subcommand<TraceCommandOptions>(program, "trace", "Straight lines over the faces of a mesh", trace_footer,
-                                         offer, run);
+  return subcommand<TraceCommandOptions>(program, "trace", "Straight lines over a surface", trace_footer, offer, run);
 }
 
 }  // namespace ahm::app

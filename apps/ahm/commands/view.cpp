@@ -1,8 +1,10 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <filesystem>
 
 #include "ahm/error.hpp"
+#include "ahm/util/shell.hpp"
 #include "ahm/viewer/server.hpp"
 #include "cli/browser.hpp"
 #include "cli/numbers.hpp"
@@ -30,33 +32,39 @@ struct ViewOptions {
   std::optional<SourceSpec> source;
   SolveOptions solve;
   int port = 0;
-  bool no_browser = false, verbose = false;
+  bool no_browser = false;
+  bool local = false;
+  Verbosity verbosity = Verbosity::normal;
 };
 
-std::string joined(const std::vector<std::string>& list) {
-  std::string out;
-  for (const std::string& word : list) out.append(out.empty() ? "" : " ").append(word);
-  return out;
+/// Where a map of the whole surface would take long: what the first maps reach.
+std::optional<double> first_radius(const ViewOptions& options, const TangentGraph& graph) {
+  constexpr Index large = 500'000;
+  constexpr double edges = 64;  // about 20,000 vertices
+  if (options.solve.radius || options.solve.method == Method::exact) return options.solve.radius;
+  if (!options.local && graph.size() <= large) return std::nullopt;
+  return std::stod(fmt::format("{:.2g}", edges * graph.mean_edge_length() * graph.length_unit()));
 }
 
 viewer::SessionOptions session_options(const ViewOptions& options, const Input& input,
                                        const std::vector<Vec3>& normals) {
   viewer::SessionOptions session;
   session.title = std::filesystem::path(options.input.path).filename().string();
-  session.input = viewer::quoted(options.input.path);
-  session.input_options = joined(words(options.input));
-  session.settings = {options.solve.method, options.solve.variant, options.solve.order,
-                      options.solve.t_coef, options.solve.radius,  {}};
-  if (options.source) session.source = point_of(input.surface(), *options.source);
+  session.input = detail::shell_word(options.input.path);
+  session.input_options = fmt::format("{}", fmt::join(words(options.input), " "));
+  session.settings = {options.solve.method,
+                      options.solve.variant,
+                      options.solve.order,
+                      options.solve.t_coef,
+                      first_radius(options, input.graph()),
+                      {}};
+  if (options.source) session.source = point_of(input, *options.source);
   session.threads = options.input.threads;
-  session.formats = {"csv", "ply"};
-#ifdef AHM_WITH_PCL
-  session.formats.emplace_back("pcd");
-#endif
+  session.formats = {"csv", "ply", "vtp", "jsonl", "pcd"};
   session.worded = [](const Error& error) { return worded(error); };
   session.write = [&input, &normals](const std::filesystem::path& file, const RowLogMap& rows,
                                      const std::vector<double>& quality) {
-    io::Table table = table_of(input.geometry, normals);
+    io::Table table = table_of(input.geometry, normals, input.geometry.colors);
     add_map(table, rows, quality);
     io::write(file, table);
   };
@@ -68,9 +76,9 @@ void run(const ViewOptions& options) {
     throw Error(
         "this build of ahm has no viewer; install cpp-httplib and three.js (Debian: libcpp-httplib-dev libjs-three "
         "pkgconf) and build again. 'ahm logmap --view map.html' or .png needs less");
-  Journal journal(options.verbose);
+  Journal journal(options.verbosity);
   const Input input = open_input(options.input, journal, options.source);
-  if (options.source) place(input.surface(), *options.source);  // checks
+  if (options.source) place(input, *options.source);  // checks
   journal.start("page");
   const std::vector<Vec3> normals = input.surface().normals();
   const viewer::Session session(input.surface(), input.geometry, session_options(options, input, normals));
@@ -81,6 +89,9 @@ void run(const ViewOptions& options) {
   print(fmt::format("{}\n", server.address()));
   say(opened ? "ahm: opened in the browser; Ctrl-C ends it\n"
              : "ahm: open this address in a browser; Ctrl-C ends it\n");
+  if (const auto radius = first_radius(options, input.graph()); radius && !options.solve.radius)
+    say(fmt::format(
+        "ahm: maps reach {:g} around the source, as 'radius' on the page says; clear it to map everything\n", *radius));
   server.run();
 }
 
@@ -94,9 +105,12 @@ void offer(CLI::App& app, ViewOptions& o) {
   add_method(app, o.solve);
   add_parsed(app, "--radius", o.solve.radius, parse_positive, "R",
              "Leave out everything farther than this from the source");
+  app.add_flag("--local", o.local,
+               "Begin with maps of the surroundings of the source, 64 edges around it, where no --radius is\n"
+               "given; always with more than 500,000 vertices, where the first map of all would take long");
   add_parsed(app, "--order", o.solve.order, integer_parser(1, 2), "N", "1 (default) or 2, as in 'ahm logmap'");
   add_graph_options(app, o.input, o.solve);
-  app.add_flag("--verbose", o.verbose, "Print the time of each stage and the peak memory");
+  add_verbosity(app, o.verbosity);
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include <chrono>
 
 #include "ahm/error.hpp"
-#include "ahm/pointcloud/surroundings.hpp"
+#include "ahm/pointcloud/radius_search.hpp"
 #include "ahm/util/vec.hpp"
 #include "cli/source_list.hpp"
 #ifdef AHM_WITH_PCL
@@ -48,9 +48,10 @@ void keep_surroundings(PreparedCloud& cloud, const io::Geometry& input, double r
     center = input.points[*std::min_element(cloud.rows.begin(), cloud.rows.end(), [&](Index a, Index b) {
       return distance(input.points[a], center) < distance(input.points[b], center);
     })];
-  std::vector<Index> near = pointcloud::surroundings(input.points, center, 1.5 * radius);
+  const std::vector<Row> near = pointcloud::radius_search(input.points, center, 1.5 * radius);
   cloud.beyond = static_cast<Index>(cloud.rows.size() - near.size());
-  cloud.rows = std::move(near);
+  cloud.rows.clear();
+  for (const Row row : near) cloud.rows.push_back(row.index);
 }
 
 #ifdef AHM_WITH_PCL
@@ -81,7 +82,7 @@ void apply_voxel_grid(PreparedCloud& cloud, const io::Geometry& input, const Inp
 }
 
 void apply_outlier_removal(PreparedCloud& cloud, const io::Geometry& input, std::optional<Index> source) {
-  std::vector<Index> kept = pcl_functions().outlier_removal(taken(input.points, cloud.rows), 16, 2.0);
+  std::vector<Index> kept = pcl_functions().outlier_removal(taken(input.points, cloud.rows));
   cloud.outliers = static_cast<Index>(cloud.rows.size() - kept.size());
   for (Index& point : kept) point = cloud.rows[point];
   cloud.rows = std::move(kept);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include "ahm/util/vec.hpp"
@@ -27,6 +28,33 @@ std::vector<double> edge_lengths(const io::Geometry& input) {
   return lengths;
 }
 
+/// Perpendicular to a face, on the side from which it runs counter-clockwise, as long as twice its area by `unit`^2.
+Vec3 face_normal(const io::Geometry& input, std::span<const Index> face, double unit) {
+  Vec3 sum{};
+  for (std::size_t c = 2; c < face.size(); ++c) {
+    const Vec3& first = input.points[face[0]];
+    sum = sum + cross(1 / unit * (input.points[face[c - 1]] - first), 1 / unit * (input.points[face[c]] - first));
+  }
+  return sum;
+}
+
+std::size_t normals_against_faces(const io::Geometry& input) {
+  if (input.normals.empty()) return 0;
+  double unit = 0;
+  for (const Vec3& p : input.points)
+    if (is_finite(p)) unit = std::max(unit, largest(p));
+  if (unit == 0) return 0;
+  std::vector<Vec3> around(input.points.size(), Vec3{});
+  for (std::size_t f = 0; f < input.face_count(); ++f) {
+    const Vec3 normal = face_normal(input, input.face(f), unit);
+    if (!is_finite(normal)) continue;
+    for (const Index corner : input.face(f)) around[corner] = around[corner] + normal;
+  }
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < around.size(); ++i) count += dot(around[i], input.normals[i]) < 0 ? 1 : 0;
+  return count;
+}
+
 }  // namespace
 
 std::optional<LengthRange> range_of(std::vector<double> lengths) {
@@ -37,10 +65,8 @@ std::optional<LengthRange> range_of(std::vector<double> lengths) {
 
 MeshSurvey survey_mesh(const io::Geometry& input) {
   MeshSurvey result;
-  for (std::size_t f = 0; f < input.face_count(); ++f) {
-    const std::size_t corners = input.face(f).size();
-    ++(corners == 3 ? result.triangles : corners == 4 ? result.quadrilaterals : result.others);
-  }
+  for (std::size_t f = 0; f < input.face_count(); ++f) ++result.faces_by_corners[input.face(f).size()];
+  result.normals_against = normals_against_faces(input);
   result.inspection = inspect_mesh(static_cast<Index>(input.points.size()), input.faces());
   result.edges = range_of(edge_lengths(input));
   return result;

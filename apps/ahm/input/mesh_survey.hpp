@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -21,7 +22,8 @@ struct LengthRange {
 std::optional<LengthRange> range_of(std::vector<double> lengths);
 
 struct MeshSurvey {
-  std::size_t triangles = 0, quadrilaterals = 0, others = 0;  ///< faces by their corners
+  std::map<std::size_t, std::size_t> faces_by_corners;
+  std::size_t normals_against = 0;  ///< vertices whose given normal points to the back of the faces around
   MeshInspection inspection;
   std::optional<LengthRange> edges;  ///< each once; those between finite points
 

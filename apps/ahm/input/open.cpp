@@ -3,12 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <iostream>
 
 #include "ahm/error.hpp"
 #include "ahm/heat/heat_operators.hpp"
 #include "ahm/io/read.hpp"
 #include "ahm/surface/directions.hpp"
 #include "cli/source_list.hpp"
+#include "input/repair.hpp"
 #include "output/wording.hpp"
 
 namespace ahm::app {
@@ -21,35 +24,69 @@ void comment_on_blas(Journal& journal) {
                         "): several times slower; on Debian install libopenblas0-pthread");
 }
 
-io::Geometry read_input(const std::string& path, Journal& journal) {
-  journal.start("read");
-  io::Geometry input = io::read(path);
-  journal.add_warnings(input.warnings);
-  if (input.points.empty()) throw InvalidGeometry(path + ": holds no points");
-  return input;
+/// With the option that asked for it in the message.
+SourceSpec in_remaining_faces(const SourceSpec& spec, const RepairedMesh& mesh, const std::string& option) try {
+  return in_remaining_faces(spec, mesh);
+} catch (const InvalidArgument& e) {
+  throw InvalidArgument(fmt::format("{} {}: {}", option, to_string(spec), e.what()));
 }
 
 }  // namespace
 
-Input open_input(const InputOptions& options, Journal& journal, const std::optional<SourceSpec>& source) {
-  comment_on_blas(journal);
-  io::Geometry geometry = read_input(options.path, journal);
-  journal.start("graph");
-  const Backend& backend = choose_backend(geometry, options.backend);
-  Built built = backend.build(geometry, options, source, journal.progress());
-  journal.add_warnings(built.warnings);
-  return {std::move(geometry), &backend, std::move(built)};
+io::Geometry read_input(const InputOptions& options) {
+  return options.path == "-" ? io::read(std::cin, options.format) : io::read(options.path, options.format);
 }
 
-SurfacePoint point_of(const Surface& surface, const SourceSpec& spec) {
+io::Geometry read_input(const InputOptions& options, Journal& journal) {
+  comment_on_blas(journal);
+  journal.start("read");
+  io::Geometry input = read_input(options);
+  journal.add_warnings(input.warnings);
+  if (input.points.empty()) throw InvalidGeometry(options.path + ": holds no points");
+  return input;
+}
+
+Input open_input(io::Geometry geometry, const InputOptions& options, Journal& journal,
+                 const std::optional<SourceSpec>& source) {
+  journal.start("graph");
+  std::optional<RepairedMesh> mesh = repair(geometry, options);
+  const std::optional<SourceSpec> place =
+      mesh && source ? std::optional(in_remaining_faces(*source, *mesh, "--source")) : source;
+  const Backend& backend = choose_backend(geometry, options.backend);
+  Built built = mesh ? build_repaired(backend, geometry, *mesh, options, place, journal.progress())
+                     : backend.build(geometry, options, place, journal.progress());
+  journal.add_warnings(built.warnings);
+  return {std::move(geometry), &backend, std::move(built), std::move(mesh)};
+}
+
+Input open_input(const InputOptions& options, Journal& journal, const std::optional<SourceSpec>& source) {
+  return open_input(read_input(options, journal), options, journal, source);
+}
+
+InputOptions around_source(const InputOptions& options, std::optional<double> radius) {
+  InputOptions result = options;
+  if (!options.around_source) return result;
+  if (!radius || !std::isfinite(*radius)) throw InvalidArgument("--local needs --radius");
+  if (!(*radius > 0)) throw InvalidArgument("--local: there is nothing around the source to map; leave it out");
+  result.local = radius;
+  return result;
+}
+
+Input open_around(const InputOptions& options, std::optional<double> radius, Journal& journal,
+                  const SourceSpec& source) {
+  return open_input(around_source(options, radius), journal, source);
+}
+
+SurfacePoint point_of(const Input& input, const SourceSpec& given) {
+  const SourceSpec spec = input.repaired ? in_remaining_faces(given, *input.repaired) : given;
   if (const auto* face = std::get_if<SourceFace>(&spec)) return FacePoint{face->face, face->weights};
-  if (const auto* position = std::get_if<SourcePosition>(&spec)) return surface.nearest_row(position->position);
+  if (const auto* position = std::get_if<SourcePosition>(&spec)) return input.surface().nearest_row(position->position);
   return Row(std::get<SourceVertex>(spec).index);
 }
 
-PlacedSource place(const Surface& surface, const SourceSpec& spec, const std::optional<Vec3>& u_axis,
+PlacedSource place(const Input& input, const SourceSpec& spec, const std::optional<Vec3>& u_axis,
                    const std::string& option) try {
-  return surface.source(point_of(surface, spec), u_axis);
+  return input.surface().source(point_of(input, spec), u_axis);
 } catch (const InvalidArgument& e) {
   if (u_axis && e.fault() == "axis_along_normal")
     throw InvalidArgument(fmt::format("--u-axis {},{},{}: is perpendicular to the surface at the source {}",
@@ -60,7 +97,7 @@ PlacedSource place(const Surface& surface, const SourceSpec& spec, const std::op
 PlacedSource resolve(const SourceOptions& options, const Input& input, unsigned threads) {
   const std::optional<UAxis>& axis = options.u_axis;
   PlacedSource source =
-      place(input.surface(), options.spec, axis && !axis->curvature ? std::optional(axis->direction) : std::nullopt);
+      place(input, options.spec, axis && !axis->curvature ? std::optional(axis->direction) : std::nullopt);
   if (!axis || !axis->curvature) return source;
   // In a face: at the corner that has most of the source.
   const auto weights = source.source.weights();
@@ -71,14 +108,18 @@ PlacedSource resolve(const SourceOptions& options, const Input& input, unsigned 
   } catch (const InvalidArgument& e) {
     throw InvalidArgument(fmt::format("--u-axis curvature: {}", worded(e)));
   }
-  return place(input.surface(), options.spec, direction);
+  return place(input, options.spec, direction);
+}
+
+Vec3 position_of(const Input& input, const SourceSpec& spec, const std::string& option) {
+  return position_in(input.geometry, input.repaired ? in_remaining_faces(spec, *input.repaired, option) : spec, option);
 }
 
 Vertex vertex_at(const Input& input, const SourceSpec& spec, const std::string& option) {
-  position_in(input.geometry, spec, option);
+  position_of(input, spec, option);
   if (std::holds_alternative<SourceFace>(spec))
     throw InvalidArgument(fmt::format("{} {}: must be a vertex; write its number or x,y,z", option, to_string(spec)));
-  return place(input.surface(), spec, std::nullopt, option).source.vertices().front();
+  return place(input, spec, std::nullopt, option).source.vertices().front();
 }
 
 std::vector<Vertex> vertices_at(const Input& input, const std::vector<SourceSpec>& specs, const std::string& option) {

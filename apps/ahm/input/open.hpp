@@ -16,6 +16,7 @@ struct Input {
   io::Geometry geometry;
   const Backend* backend;
   Built built;
+  std::optional<RepairedMesh> repaired = {};  ///< the faces of `geometry` are those that remained
 
   const Surface& surface() const { return *built.surface; }
   const TangentGraph& graph() const { return surface().graph(); }
@@ -24,20 +25,42 @@ struct Input {
   double mean_edge_length() const { return graph().mean_edge_length() * graph().length_unit(); }
 };
 
+/// What is in the file, or comes on standard input. @throws what the reader throws
+io::Geometry read_input(const InputOptions& options);
+/// Likewise; warnings go to the journal. @throws InvalidGeometry where there are no points
+io::Geometry read_input(const InputOptions& options, Journal& journal);
+
+/// Chooses the backend and builds the graph; warnings go to the journal.
+/// @param source  as below
+/// @throws what the backend throws
+Input open_input(io::Geometry geometry, const InputOptions& options, Journal& journal,
+                 const std::optional<SourceSpec>& source = {});
+
 /// Reads the input, chooses the backend and builds the graph; warnings go to the journal.
 /// @param source  --source, where the surface is opened for one: it is checked before the graph is built
 /// @throws InvalidGeometry where there are no points; what the reader and the backend throw
 Input open_input(const InputOptions& options, Journal& journal, const std::optional<SourceSpec>& source = {});
 
+/// The same around the source, as a map of this radius needs it, where that is asked for.
+/// @throws InvalidArgument where there is no radius; as above
+Input open_around(const InputOptions& options, std::optional<double> radius, Journal& journal,
+                  const SourceSpec& source);
+/// The options that do so. @throws InvalidArgument
+InputOptions around_source(const InputOptions& options, std::optional<double> radius);
+
 /// The point of a surface that the user means: a row, the row nearest to a position, a point in a face.
 /// @throws InvalidArgument (a surface without positions)
-SurfacePoint point_of(const Surface& surface, const SourceSpec& spec);
+SurfacePoint point_of(const Input& input, const SourceSpec& spec);
 
 /// A source where the user wants it: at a row, at the row nearest to a position, in a face.
 /// @param option  that asked for it, for messages
 /// @throws InvalidArgument
-PlacedSource place(const Surface& surface, const SourceSpec& spec, const std::optional<Vec3>& u_axis = {},
+PlacedSource place(const Input& input, const SourceSpec& spec, const std::optional<Vec3>& u_axis = {},
                    const std::string& option = "--source");
+
+/// Checks that the input has such a vertex or face, and the position, as it was written; faces are those of the file.
+/// @throws InvalidArgument
+Vec3 position_of(const Input& input, const SourceSpec& spec, const std::string& option);
 
 /// The source of --source and --u-axis.
 /// @throws InvalidArgument, also where the surface bends alike in all directions, or its directions are noise

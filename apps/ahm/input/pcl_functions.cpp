@@ -1,14 +1,8 @@
-#include "ahm/error.hpp"
 #include "ahm/util/module.hpp"
 #include "input/pcl_module.hpp"
 
 namespace ahm::app {
 
-const PclFunctions& pcl_functions() {
-  static std::string error;
-  static const auto* found = static_cast<const PclFunctions*>(module_symbol("pcl", "ahm_pcl", error));
-  if (found == nullptr) throw IoError("this needs ahm's module for PCL, which cannot be loaded: " + error);
-  return *found;
-}
+const PclFunctions& pcl_functions() { return module_functions<PclFunctions>("pcl", "this needs ahm's"); }
 
 }  // namespace ahm::app

@@ -10,11 +10,11 @@ namespace ahm::app {
 /// What the module pcl offers, under the name ahm_pcl.
 struct PclFunctions {
   decltype(&pcl_bridge::voxel_grid) voxel_grid;
-  decltype(&pcl_bridge::outlier_removal) outlier_removal;
+  std::vector<Index> (*outlier_removal)(std::span<const Vec3> points);  ///< with its usual numbers
   decltype(&pcl_bridge::kdtree_search) kdtree_search;
 };
 
-/// @throws Error where the module cannot be loaded
+/// @throws IoError where the module cannot be loaded
 const PclFunctions& pcl_functions();
 
 }  // namespace ahm::app

@@ -77,9 +77,14 @@ bool suits(const io::Geometry& input) { return input.face_count() == 0; }
 
 Built build(const io::Geometry& input, const InputOptions& options, const std::optional<SourceSpec>& source,
             const Progress& progress) {
+  if (options.repair.any())
+    throw InvalidArgument(
+        "--repair, --weld, --drop-degenerate, --drop-duplicates and --orient are for meshes; a cloud joins equal "
+        "points "
+        "by itself");
   const PreparedCloud prepared = prepare_cloud(input, options, checked_source(source, input));
   CloudOptions cloud = cloud_options(options, progress);
-  cloud.rows = prepared.rows;
+  cloud.rows.emplace(prepared.rows.begin(), prepared.rows.end());
   const std::span<const Vec3> normals = options.normals == "estimate" ? std::span<const Vec3>() : input.normals;
   Built result(std::make_unique<PointCloudSurface>(PointCloudSurface::build(input.points, normals, cloud)));
   result.report = report_of(prepared, result.report);

@@ -13,6 +13,7 @@
 #include "ahm/util/small_math.hpp"
 #include "ahm/util/vec.hpp"
 #include "input/backend.hpp"
+#include "input/repair.hpp"
 #include "output/wording.hpp"
 
 namespace ahm::app {
@@ -67,16 +68,20 @@ std::vector<Index> rows_of(const Surface& surface, const std::vector<Index>& com
   return rows;
 }
 
-/// Of these rows those that stand in front where one looks along the thinnest side of their box, one in each cell of a
-/// raster so coarse that what is behind does not show through: on a solid the middle lies inside, and the point nearest to it
-/// where nobody sees it.
-std::vector<Index> front_rows(std::span<const Vec3> positions, const std::vector<Index>& rows) {
-  Vec3 low = positions[rows[0]], high = low;
-  for (Index row : rows)
+/// Of these rows one in the middle of what is seen along the thinnest side of their box: of those that stand in front, one in each
+/// cell of a raster so coarse that what is behind does not show through, the nearest to the mean in the picture's plane. (On a
+/// solid the point nearest to the mean lies where nobody sees it, among noisy points within the others.)
+Index central_row(std::span<const Vec3> positions, const std::vector<Index>& rows) {
+  Vec3 low = positions[rows[0]], high = low, mean{};
+  double count = 0;
+  for (Index row : rows) {
+    count += 1;
     for (std::size_t a = 0; a < 3; ++a) {
       low[a] = std::min(low[a], positions[row][a]);
       high[a] = std::max(high[a], positions[row][a]);
+      mean[a] += (positions[row][a] - mean[a]) / count;
     }
+  }
   const Vec3 sides = high - low;
   const auto thin = static_cast<std::size_t>(std::min_element(sides.begin(), sides.end()) - sides.begin());
   const std::size_t x = (thin + 1) % 3, y = (thin + 2) % 3;
@@ -91,21 +96,8 @@ std::vector<Index> front_rows(std::span<const Vec3> positions, const std::vector
     if (first < 0 || p[thin] > positions[first][thin]) first = row;
   }
   std::erase(front, -1);
-  return front;
-}
-
-/// The row nearest to the mean of the positions, of a mesh one that can be seen.
-Index central_row(const Surface& surface, const std::vector<Index>& rows) {
-  Vec3 mean{};
-  double count = 0;
-  for (Index row : rows) {
-    count += 1;
-    for (std::size_t a = 0; a < 3; ++a) mean[a] += (surface.positions()[row][a] - mean[a]) / count;
-  }
-  const std::vector<Index> candidates = surface.faces().size() > 0 ? front_rows(surface.positions(), rows) : rows;
-  return *std::min_element(candidates.begin(), candidates.end(), [&](Index a, Index b) {
-    return distance(surface.positions()[a], mean) < distance(surface.positions()[b], mean);
-  });
+  const auto away = [&](Index row) { return std::hypot(positions[row][x] - mean[x], positions[row][y] - mean[y]); };
+  return *std::ranges::min_element(front, {}, away);
 }
 
 SurfaceSurvey survey_surface(const Built& built) {
@@ -117,18 +109,17 @@ SurfaceSurvey survey_surface(const Built& built) {
   for (std::size_t v = 0; v < component.size(); ++v)
     if (built.surface->rows().row(Vertex(static_cast<Index>(v)))) ++sizes[component[v]];
   const auto largest = static_cast<Index>(std::max_element(sizes.begin(), sizes.end()) - sizes.begin());
-  result.central_row = central_row(*built.surface, rows_of(*built.surface, component, largest));
+  result.central_row = central_row(built.surface->positions(), rows_of(*built.surface, component, largest));
   std::sort(sizes.begin(), sizes.end(), std::greater<>());
   return result;
 }
 
 /// Whether the source can be mapped from without the outliers.
-bool can_remove_outliers(const io::Geometry& input, InputOptions options, Index source, const Progress& progress) {
+bool can_remove_outliers(const Backend& backend, const io::Geometry& input, InputOptions options, Index source,
+                         const Progress& progress) {
   options.outliers = true;
   try {
-    choose_backend(input, "pointcloud")
-        .build(input, options, SourceVertex{source}, progress)
-        .surface->vertex(Row(source));
+    backend.build(input, options, SourceVertex{source}, progress).surface->vertex(Row(source));
     return true;
   } catch (const Cancelled&) {
     throw;
@@ -137,24 +128,60 @@ bool can_remove_outliers(const io::Geometry& input, InputOptions options, Index 
   }
 }
 
-/// Builds the surface as the command that is suggested will.
-void try_surface(const io::Geometry& input, InputOptions options, const Progress& progress, Survey& s) {
-  std::string flags;
-  if (s.as_cloud) {
-    if (s.mesh) flags += " --backend pointcloud";
-    if (options.k) flags += fmt::format(" --k {}", *options.k);
-    options.drop_nan = s.non_finite > 0;
-    if (options.drop_nan) flags += " --drop-nan";
+std::optional<RepairSurvey> survey_repair(const io::Geometry& input) {
+  const RepairedMesh mesh = repair_mesh(input.points, input.faces(), RepairOptions::all());
+  return RepairSurvey{mesh.counts,
+                      inspect_mesh(static_cast<Index>(input.points.size()), mesh.faces()).topology.components};
+}
+
+/// One way to make a surface of the input.
+struct Attempt {
+  InputOptions options;
+  std::string flags;  ///< that say so, each after a blank
+  bool as_cloud = false;
+};
+
+Attempt as_mesh(const Survey& s, const InputOptions& options, bool repaired) {
+  Attempt attempt{options, "", false};
+  if (repaired) {
+    attempt.options.repair = RepairOptions::all();
+    attempt.options.non_manifold = "split";
+    attempt.flags = " --repair";
   } else if (!s.mesh->is_manifold()) {
-    options.non_manifold = "split";
-    flags += " --non-manifold split";
+    attempt.options.non_manifold = "split";
+    attempt.flags = " --non-manifold split";
   }
-  const Backend& backend = choose_backend(input, s.as_cloud ? "pointcloud" : "auto");
-  const Built built = backend.build(input, options, {}, progress);
+  return attempt;
+}
+
+Attempt as_cloud(const Survey& s, const InputOptions& options) {
+  Attempt attempt{options, "", true};
+  if (options.k) attempt.flags += fmt::format(" --k {}", *options.k);
+  attempt.options.drop_nan = s.non_finite > 0;
+  if (attempt.options.drop_nan) attempt.flags += " --drop-nan";
+  return attempt;
+}
+
+/// Repairs where parts of the mesh only touch; as it is; repaired; the points alone.
+std::vector<Attempt> attempts(const Survey& s, const InputOptions& options) {
+  if (!s.mesh) return {as_cloud(s, options)};
+  const bool joins = s.repair->parts > 0 && s.repair->parts < s.mesh->inspection.topology.components;
+  return {as_mesh(s, options, joins), as_mesh(s, options, !joins), as_cloud(s, options)};
+}
+
+/// Builds the surface as the command that is suggested will.
+void try_surface(io::Geometry input, const Attempt& attempt, const Progress& progress, Survey& s) {
+  if (attempt.as_cloud) input.face_begin.clear(), input.face_vertices.clear();
+  std::optional<RepairedMesh> mesh = repair(input, attempt.options);
+  const Backend& backend = choose_backend(input, "auto");
+  std::string flags = attempt.flags;
+  if (attempt.as_cloud && s.mesh) flags.insert(0, fmt::format(" --backend {}", backend.name));
+  const Built built = mesh ? build_repaired(backend, input, *mesh, attempt.options, {}, progress)
+                           : backend.build(input, attempt.options, {}, progress);
   s.surface = survey_surface(built);
   // Many small components are stray points as a rule.
-  if (s.as_cloud && s.surface->part_sizes.size() > 20 &&
-      can_remove_outliers(input, options, s.surface->central_row, progress))
+  if (attempt.as_cloud && s.surface->part_sizes.size() > 20 &&
+      can_remove_outliers(backend, input, attempt.options, s.surface->central_row, progress))
     flags += " --outliers";
   s.surface->method = method_advice(*built.surface);
   if (s.surface->method.exact_first) flags += " --method exact";
@@ -162,13 +189,11 @@ void try_surface(const io::Geometry& input, InputOptions options, const Progress
   add_warnings(built.surface->warnings(), s);
 }
 
-/// As a mesh where there are faces; where that fails, and without faces, as a cloud.
 void find_surface(const io::Geometry& input, const InputOptions& options, const Progress& progress, Survey& s) {
-  for (const bool as_cloud : {false, true}) {
-    if (!as_cloud && !s.mesh) continue;
-    s.as_cloud = as_cloud;
+  for (const Attempt& attempt : attempts(s, options)) {
+    s.as_cloud = attempt.as_cloud;
     try {
-      return try_surface(input, options, progress, s);
+      return try_surface(input, attempt, progress, s);
     } catch (const Cancelled&) {
       throw;
     } catch (const Error& e) {
@@ -186,6 +211,8 @@ Survey survey(const io::Geometry& input, const InputOptions& options, const Prog
   s.normals = !input.normals.empty();
   s.colors = !input.colors.empty();
   s.format = input.format;
+  for (const io::Property& property : input.properties) s.columns.push_back(property.name);
+  s.acquisition = input.acquisition;
   add_warnings(input.warnings, s);
   for (const Vec3& n : input.normals)
     if (!is_finite(n) || n == Vec3{0, 0, 0}) ++s.bad_normals;
@@ -194,7 +221,7 @@ Survey survey(const io::Geometry& input, const InputOptions& options, const Prog
     if (is_finite(p)) points.push_back(p);
   s.non_finite = s.points - points.size();
   find_bounds(points, s);
-  if (s.faces > 0) s.mesh = survey_mesh(input);
+  if (s.faces > 0) s.mesh = survey_mesh(input), s.repair = survey_repair(input);
   {
     std::vector<Vec3> places = distinct_places(points);
     s.duplicates = points.size() - places.size();

@@ -24,14 +24,23 @@ struct SurfaceSurvey {
   MethodAdvice method;
 };
 
+/// What --repair would do.
+struct RepairSurvey {
+  RepairCounts counts;
+  Index parts = 0;  ///< of the mesh when it has been done; 0: no face remains
+};
+
 struct Survey {
   std::size_t points = 0, faces = 0, non_finite = 0, duplicates = 0;
   std::size_t bad_normals = 0;  ///< normals that are zero or not finite
   bool normals = false, colors = false;
   std::string format;
+  std::vector<std::string> columns;  ///< further numbers by point
+  std::optional<io::Acquisition> acquisition;
   std::vector<std::string> warnings;
   Vec3 low{}, high{};                    ///< bounds of the finite points
   std::optional<MeshSurvey> mesh;        ///< where there are faces
+  std::optional<RepairSurvey> repair;    ///< likewise
   std::optional<LengthRange> spacing;    ///< where there are none: to the nearest other place, of a sample
   std::optional<SurfaceSurvey> surface;  ///< of the faces, or else of the points alone
   bool as_cloud = false;                 ///< the surface has the points alone

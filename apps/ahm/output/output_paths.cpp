@@ -5,12 +5,14 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cerrno>
 #include <filesystem>
 #include <system_error>
 
 #include "ahm/error.hpp"
+#include "ahm/io/atomic_file.hpp"
+#include "ahm/io/formats.hpp"
+#include "cli/source_list.hpp"
 
 namespace ahm::app {
 namespace {
@@ -29,7 +31,7 @@ bool same_file(const fs::path& a, const fs::path& b) {
 void check_directory(const OutputPath& output) {
   const fs::path path(output.path);
   std::error_code error;
-  if (is_stream(output.path)) return;
+  if (io::is_stream(output.path)) return;
   if (fs::is_directory(path, error)) throw IoError(fmt::format("{} {}: is a directory", output.option, output.path));
   const fs::path parent = path.has_parent_path() ? path.parent_path() : fs::path(".");
   if (!fs::is_directory(parent, error))
@@ -41,13 +43,21 @@ void check_directory(const OutputPath& output) {
 
 }  // namespace
 
-void check_outputs(const std::string& input, const std::vector<OutputPath>& outputs) {
+void check_outputs(const std::vector<std::string>& inputs, const std::vector<OutputPath>& outputs, bool keep_existing) {
   for (std::size_t i = 0; i < outputs.size(); ++i) {
     if (!is_file(outputs[i])) continue;
     check_directory(outputs[i]);
-    if (same_file(outputs[i].path, input))
+    for (const std::string& input : inputs)
+      if (same_file(outputs[i].path, input))
+        throw InvalidArgument(
+            fmt::format("{} {}: is the input file; it would be overwritten", outputs[i].option, outputs[i].path));
+    for (const std::string& list : lists_read())
+      if (same_file(outputs[i].path, list))
+        throw InvalidArgument(fmt::format("{} {}: is a list that is read by this command; it would be overwritten",
+                                          outputs[i].option, outputs[i].path));
+    if (keep_existing && fs::exists(outputs[i].path) && !io::is_stream(outputs[i].path))
       throw InvalidArgument(
-          fmt::format("{} {}: is the input file; it would be overwritten", outputs[i].option, outputs[i].path));
+          fmt::format("{} {}: exists; leave --no-overwrite out to replace it", outputs[i].option, outputs[i].path));
     for (std::size_t j = 0; j < i; ++j)
       if (is_file(outputs[j]) && same_file(outputs[i].path, outputs[j].path))
         throw InvalidArgument(
@@ -55,24 +65,15 @@ void check_outputs(const std::string& input, const std::vector<OutputPath>& outp
   }
 }
 
-void check_ending(const OutputPath& output, const std::vector<std::string>& endings) {
-  if (std::find(endings.begin(), endings.end(), extension_of(output.path)) != endings.end()) return;
+void check_ending(const OutputPath& output, const std::vector<std::string>& endings, const std::string& format) {
+  std::string ending = format.empty() ? io::lower_extension(output.path) : format;
+  if (ending.empty() && io::is_stream(output.path)) ending = ".csv";
+  if (std::find(endings.begin(), endings.end(), ending) != endings.end()) return;
   const std::string& last = endings.back();
   const std::string others = fmt::format("{}", fmt::join(endings.begin(), endings.end() - 1, ", "));
-  throw InvalidArgument(fmt::format("{} {}: the name must end in {}{}{}", output.option, output.path, others,
+  throw InvalidArgument(fmt::format("{} {}: {} {}{}{}", output.option, output.path,
+                                    format.empty() ? "the name must end in" : "--format must be that of", others,
                                     others.empty() ? "" : " or ", last));
-}
-
-bool is_stream(const std::string& path) {
-  std::error_code error;
-  const fs::file_type type = fs::status(path, error).type();
-  return type == fs::file_type::character || type == fs::file_type::fifo || type == fs::file_type::socket;
-}
-
-std::string extension_of(const std::string& path) {
-  std::string extension = fs::path(path).extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return extension;
 }
 
 }  // namespace ahm::app

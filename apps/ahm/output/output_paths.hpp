@@ -13,17 +13,13 @@ struct OutputPath {
   std::string path;  ///< empty or "-": no file
 };
 
-/// Checks that each file lies in a writable directory, is no directory, is not the input, and is named once.
+/// Checks that each file lies in a writable directory, is no directory, is no input, and is named once.
+/// @param keep_existing  nor is there yet
 /// @throws IoError, InvalidArgument
-void check_outputs(const std::string& input, const std::vector<OutputPath>& outputs);
+void check_outputs(const std::vector<std::string>& inputs, const std::vector<OutputPath>& outputs, bool keep_existing);
 
-/// @throws InvalidArgument where the name ends in none of these, such as ".csv"
-void check_ending(const OutputPath& output, const std::vector<std::string>& endings);
-
-/// True for a device or a pipe, such as /dev/stdout.
-bool is_stream(const std::string& path);
-
-/// Extension in lower case, with the dot.
-std::string extension_of(const std::string& path);
+/// @param format  in place of the ending of the name; empty: none. A stream without either is .csv
+/// @throws InvalidArgument where it is none of these, such as ".csv"
+void check_ending(const OutputPath& output, const std::vector<std::string>& endings, const std::string& format = {});
 
 }  // namespace ahm::app

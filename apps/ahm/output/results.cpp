@@ -7,6 +7,8 @@
 #include <filesystem>
 
 #include "ahm/error.hpp"
+#include "ahm/io/atomic_file.hpp"
+#include "ahm/io/formats.hpp"
 #include "ahm/maps/quality.hpp"
 #include "output/output_paths.hpp"
 
@@ -15,7 +17,7 @@ namespace {
 
 void check_view(const std::string& path) {
   if (path.empty()) return;
-  const std::string extension = extension_of(path);
+  const std::string extension = io::lower_extension(path);
   const bool html = extension == ".html" || extension == ".htm";
   if (!html && extension != ".png")
     throw InvalidArgument(fmt::format("--view {}: the name must end in .png or .html", path));
@@ -27,9 +29,11 @@ void check_view(const std::string& path) {
 
 void check_results(const std::string& input, const OutputOptions& output, const std::vector<std::string>& endings) {
   const OutputPath file{"--output", output.output};
-  check_outputs(input, {file, {"--json", output.json}, {"--view", output.view}});
-  if (!endings.empty()) check_ending(file, endings);
-  if (endings.empty() && !output.output.empty()) io::check_writable(output.output);
+  if (output.output == standard_output && output.json == "-")
+    throw InvalidArgument("--output - and --json -: both are for standard output; write one of them to a file");
+  check_outputs({input}, {file, {"--json", output.json}, {"--view", output.view}}, output.keep_existing);
+  if (!endings.empty()) check_ending(file, endings, output.format);
+  if (endings.empty() && !output.output.empty()) io::check_writable(output.output, output.format);
   check_view(output.view);
 }
 
@@ -67,15 +71,31 @@ Results::Results(const OutputOptions& output, const Input& input, const InputOpt
 Results::~Results() {
   std::error_code ignored;
   for (const std::string& path : written_)
-    if (!is_stream(path)) std::filesystem::remove(path, ignored);
+    if (!io::is_stream(path)) std::filesystem::remove(path, ignored);
 }
 
-io::Table table_of(const io::Geometry& input, const std::vector<Vec3>& normals) {
+namespace {
+
+/// Results have their names to themselves: a column of the input that is called like one is `input_` and its name.
+std::string input_column(const std::string& name) {
+  constexpr std::string_view own[] = {
+      "index", "x",  "y",  "z",     "nx",       "ny",    "nz",     "red",     "green",  "blue",
+      "u",     "v",  "s",  "t",     "distance", "angle", "status", "quality", "spread", "error_estimate",
+      "gx",    "gy", "gz", "label", "point"};
+  return std::ranges::find(own, name) == std::end(own) ? name : "input_" + name;
+}
+
+}  // namespace
+
+io::Table table_of(const io::Geometry& input, const std::vector<Vec3>& normals,
+                   const std::vector<std::array<std::uint8_t, 3>>& colors) {
   io::Table table{.title = "logarithmic map by libahm"};
   table.add({"x", "y", "z"}, input.points);
   if (!normals.empty()) table.add({"nx", "ny", "nz"}, normals).in_csv = false;
-  for (const io::Property& property : input.properties) table.add(property.name, property.values);
+  if (!colors.empty()) table.add({"red", "green", "blue"}, colors).in_csv = false;
+  for (const io::Property& property : input.properties) table.add(input_column(property.name), property.values);
   table.faces = input.faces();
+  table.acquisition = input.acquisition;
   return table;
 }
 
@@ -90,7 +110,7 @@ void add_map(io::Table& table, const RowLogMap& rows, const std::vector<double>&
   if (!rows.error_estimate.empty()) table.add("error_estimate", rows.error_estimate);
 }
 
-io::Table Results::table() const { return table_of(input_, normals_); }
+io::Table Results::table() const { return table_of(input_, normals_, input_.colors); }
 
 view::Scene Results::scene() const {
   view::Scene scene;
@@ -126,7 +146,7 @@ void Results::write(const io::Table& table, const view::Scene& scene, Journal& j
                     const view::PictureOptions& picture) {
   write_view(scene, journal, picture);
   journal.start("write");
-  io::write(output_.output, table);
+  io::write(output_.output, table, output_.format);
   written_.push_back(output_.output);
   journal.finish();
   journal.clear_display();

@@ -2,6 +2,8 @@
 /// What a subcommand found at every row of the input, as a table and as a picture.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -25,8 +27,10 @@ void comment_on_statuses(const std::vector<Status>& status, const std::string& i
 /// @param advice   what to do about it in this subcommand
 void comment_on_quality(const std::vector<double>& quality, std::string_view advice, Journal& journal);
 
-/// The points, normals, faces and further columns of the input, which has to outlive the table as the normals have to.
-io::Table table_of(const io::Geometry& input, const std::vector<Vec3>& normals);
+/// The points, faces and further columns of the input, with these normals and colors (empty: none). All has to outlive
+/// the table.
+io::Table table_of(const io::Geometry& input, const std::vector<Vec3>& normals,
+                   const std::vector<std::array<std::uint8_t, 3>>& colors);
 
 /// The columns of a map: u, v, distance, angle, status, quality, spread, error_estimate.
 void add_map(io::Table& table, const RowLogMap& rows, const std::vector<double>& quality);

@@ -1,13 +1,13 @@
 #include "output/summary.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <nlohmann/json.hpp>
 
 #include "ahm/io/atomic_file.hpp"
 #include "cli/console.hpp"
 #include "cli/system_info.hpp"
-#include "output/output_paths.hpp"
 
 namespace ahm::app {
 
@@ -19,7 +19,7 @@ nlohmann::ordered_json summary(const std::string& program, const std::string& pa
                                 {"format", input.geometry.format},
                                 {"points", input.geometry.points.size()},
                                 {"faces", input.geometry.face_count()}}}};
-  if (!output.output.empty()) j["output"] = output.output;
+  if (!output.output.empty()) j["output"] = output.output == standard_output ? "-" : output.output;
   if (!output.view.empty()) j["view"] = output.view;
   j["backend"] = input.backend->name;
   return j;
@@ -34,22 +34,25 @@ void deliver(nlohmann::ordered_json summary, const std::string& text, const Outp
   summary["seconds_total"] = journal.times().total();
   summary["peak_rss_bytes"] = peak_rss_bytes();
   summary.update(further);
-  write_json(output.json, summary);
-  std::string wrote = output.output.empty() ? "" : "wrote " + output.output;
-  if (!output.view.empty()) wrote += (wrote.empty() ? "wrote " : " and ") + output.view;
-  if (!wrote.empty()) wrote += "\n";
-  const std::string all = fmt::format("{}{:.2f} s, peak memory {}\n{}", text, journal.times().total(),
-                                      bytes_as_text(peak_rss_bytes()), wrote);
-  output.json == "-" || is_stream(output.output) ? say(all) : print(all);
+  write_json(output.json, summary, output.json_lines);
+  if (output.verbosity == Verbosity::quiet) return;
+  std::vector<std::string> wrote;
+  if (!output.output.empty() && !io::is_stream(output.output)) wrote.push_back(output.output);
+  if (!output.view.empty()) wrote.push_back(output.view);
+  const std::string all =
+      fmt::format("{}{:.2f} s, peak memory {}\n{}", text, journal.times().total(), bytes_as_text(peak_rss_bytes()),
+                  wrote.empty() ? "" : fmt::format("wrote {}\n", fmt::join(wrote, " and ")));
+  output.json == "-" || io::is_stream(output.output) ? say(all) : print(all);
 }
 
 void deliver(nlohmann::ordered_json summary, const std::string& text, const OutputOptions& output, Journal& journal) {
   deliver(std::move(summary), text, output, journal, nlohmann::ordered_json::object());
 }
 
-void write_json(const std::string& target, const nlohmann::ordered_json& json) {
+void write_json(const std::string& target, const nlohmann::ordered_json& json, bool in_one_line) {
   if (target.empty()) return;
-  const std::string text = json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  const std::string text =
+      json.dump(in_one_line ? -1 : 2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
   if (target == "-") return print(text);
   io::AtomicFile file(target);
   file.write(text);

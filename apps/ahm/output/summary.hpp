@@ -24,6 +24,6 @@ void deliver(nlohmann::ordered_json summary, const std::string& text, const Outp
 
 /// Writes JSON to standard output ("-"), to a file, or not at all (""). Names that are not UTF-8 are made so.
 /// @throws IoError, BrokenPipe
-void write_json(const std::string& target, const nlohmann::ordered_json& json);
+void write_json(const std::string& target, const nlohmann::ordered_json& json, bool in_one_line = false);
 
 }  // namespace ahm::app

@@ -1,31 +1,31 @@
 #include "output/survey_report.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "ahm/util/shell.hpp"
 #include "ahm/view/picture.hpp"
+#include "input/unit_guess.hpp"
+#include "output/output_names.hpp"
 #include "output/wording.hpp"
 
 namespace ahm::app {
 namespace {
+
+/// "1 part", "2 parts"
+std::string counted(std::int64_t count, const std::string& noun) {
+  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
+}
 
 std::string line(std::string_view label, const std::string& value) { return fmt::format("  {:<20}{}\n", label, value); }
 
 std::string triple(const Vec3& v) { return fmt::format("{:.6g} {:.6g} {:.6g}", v[0], v[1], v[2]); }
 
 Vec3 extent(const Survey& s) { return {s.high[0] - s.low[0], s.high[1] - s.low[1], s.high[2] - s.low[2]}; }
-
-/// Quotes a path for a shell when it needs quoting.
-std::string quoted(const std::string& path) {
-  const std::string plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./+=,:@%";
-  if (!path.empty() && path.find_first_not_of(plain) == std::string::npos) return path;
-  std::string result = "'";
-  for (char c : path) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return result + "'";
-}
 
 /// The entry of a report, or its type's zero.
 template <class Value>
@@ -36,8 +36,14 @@ Value figure(const SurfaceSurvey& surface, std::string_view id) {
 }
 
 std::string normals_text(const Survey& s) {
-  if (s.mesh && !s.as_cloud)
-    return s.normals ? "yes (not needed: faces have their own)" : "none (not needed: faces have their own)";
+  if (s.mesh && !s.as_cloud) {
+    constexpr std::string_view unneeded = "(not needed: faces have their own)";
+    if (!s.normals) return fmt::format("none {}", unneeded);
+    const std::size_t against = s.mesh->normals_against;
+    return against == 0
+               ? fmt::format("yes {}", unneeded)
+               : fmt::format("yes, but {} of {} point to the back of their faces {}", against, s.points, unneeded);
+  }
   if (!s.normals) return "none (they will be estimated)";
   if (s.bad_normals > 0)
     return fmt::format("yes, but {} are zero or not finite (they will be estimated)", s.bad_normals);
@@ -51,8 +57,8 @@ std::string parts_text(const Survey& s) {
   double total = 0;
   for (Index size : sizes) total += size;
   const std::string at = s.as_cloud ? fmt::format(" at k = {}", figure<std::int64_t>(*s.surface, "k")) : "";
-  return fmt::format("{}{}; the largest holds {} vertices ({:.1f} %)", sizes.size(), at, sizes[0],
-                     100.0 * sizes[0] / total);
+  return fmt::format("{}{}; the largest holds {} {} ({:.1f} %)", sizes.size(), at, sizes[0],
+                     sizes[0] == 1 ? "vertex" : "vertices", 100.0 * sizes[0] / total);
 }
 
 std::string range_text(const LengthRange& range, const char* what) {
@@ -61,7 +67,7 @@ std::string range_text(const LengthRange& range, const char* what) {
 }
 
 /// "3 of this, 2 of that": the counts that are not zero.
-std::string counts_text(std::initializer_list<std::pair<std::size_t, const char*>> counts) {
+std::string counts_text(std::initializer_list<std::pair<std::int64_t, const char*>> counts) {
   std::string text;
   for (const auto& [count, what] : counts)
     if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, what);
@@ -69,20 +75,31 @@ std::string counts_text(std::initializer_list<std::pair<std::size_t, const char*
 }
 
 std::string faces_text(const MeshSurvey& mesh) {
-  return counts_text({{mesh.triangles, "triangles"}, {mesh.quadrilaterals, "quadrilaterals"}, {mesh.others, "others"}});
+  std::string text;
+  std::size_t shown = 0, others = 0;
+  for (const auto& [corners, count] : mesh.faces_by_corners) {
+    if (shown == 8) {
+      others += count;
+      continue;
+    }
+    const std::string what = corners == 3   ? "triangles"
+                             : corners == 4 ? "quadrilaterals"
+                                            : fmt::format("of {} corners", corners);
+    text += fmt::format("{}{} {}", shown++ == 0 ? "" : ", ", count, what);
+  }
+  return others > 0 ? text + fmt::format(", {} of more", others) : text;
 }
 
 std::string wrong_faces_text(const MeshInspection& found) {
-  return counts_text({{found.outside.size(), "with a vertex that there is not"},
-                      {found.small.size(), "of fewer than three corners"},
-                      {found.repeating.size(), "with a vertex twice"},
-                      {found.duplicates.size(), "given twice"}});
+  return counts_text({{std::ssize(found.outside), "with a vertex that there is not"},
+                      {std::ssize(found.small), "of fewer than three corners"},
+                      {std::ssize(found.repeating), "with a vertex twice"},
+                      {std::ssize(found.duplicates), "given twice"}});
 }
 
 std::string boundary_text(const TopologyReport& t) {
   return t.boundary_loops == 0 ? "none: closed"
-                               : fmt::format("{} edges in {} {}", t.boundary_edges, t.boundary_loops,
-                                             t.boundary_loops == 1 ? "loop" : "loops");
+                               : counted(t.boundary_edges, "edge") + " in " + counted(t.boundary_loops, "loop");
 }
 
 std::string genus_text(const TopologyReport& t) {
@@ -93,15 +110,29 @@ std::string genus_text(const TopologyReport& t) {
 
 std::string orientation_text(const TopologyReport& t) {
   if (!t.orientable) return "not orientable: maps are made with reflections";
-  return t.reoriented > 0 ? fmt::format("{} faces are turned over to agree with the others", t.reoriented)
+  return t.reoriented > 0 ? counted(t.reoriented, "face") + (t.reoriented == 1 ? " is" : " are") +
+                                " turned over to agree with the others"
                           : "consistent";
 }
 
 std::string non_manifold_text(const TopologyReport& t) {
   if (t.non_manifold_edges == 0 && t.non_manifold_vertices == 0) return "nowhere";
   return fmt::format(
-      "{} edges of more than two faces; --non-manifold split cuts there and where fans of faces meet: {} vertices more",
-      t.non_manifold_edges, t.non_manifold_vertices);
+      "{} of more than two faces; --non-manifold split cuts there and where fans of faces meet: {} {} more",
+      counted(t.non_manifold_edges, "edge"), t.non_manifold_vertices,
+      t.non_manifold_vertices == 1 ? "vertex" : "vertices");
+}
+
+std::string repair_text(const RepairSurvey& repair, const TopologyReport& t) {
+  const RepairCounts& c = repair.counts;
+  if (!c.any() && t.non_manifold_edges == 0 && t.non_manifold_vertices == 0) return "nothing to do";
+  const std::string done = counts_text({{c.welded, "vertices joined"},
+                                        {c.shortened, "faces without repeated corners"},
+                                        {c.degenerate, "degenerate faces dropped"},
+                                        {c.not_finite, "faces dropped that are not finite"},
+                                        {c.duplicates, "duplicate faces dropped"},
+                                        {c.turned, "faces turned over"}});
+  return fmt::format("--repair: {}; {} left", c.any() ? done : "cuts only", counted(repair.parts, "part"));
 }
 
 std::string mesh_text(const Survey& s) {
@@ -114,6 +145,7 @@ std::string mesh_text(const Survey& s) {
     text += line("faces without area", fmt::format("{}", figure<std::int64_t>(*s.surface, "degenerate_faces")));
   text += line("unused vertices", fmt::format("{}", t.unreferenced));
   text += line("not a manifold", non_manifold_text(t));
+  text += line("repair", repair_text(*s.repair, t));
   if (t.faces == 0) return text;
   text += line("boundary", boundary_text(t));
   text += line("genus", genus_text(t));
@@ -124,11 +156,11 @@ std::string mesh_text(const Survey& s) {
 
 std::string suggestion(const Survey& s, const std::string& path) {
   if (!s.surface) return {};
-  std::string stem = std::filesystem::path(path).stem().string();
+  std::string stem = stem_of(path);
   if (stem.starts_with('-')) stem.insert(0, "./");
-  std::string command = fmt::format("ahm logmap {} --source {}{} -o {}", quoted(path), s.surface->central_row,
-                                    s.surface->options, quoted(stem + "_map.csv"));
-  if (view::can_write_png()) command += fmt::format(" --view {}", quoted(stem + "_map.png"));
+  std::string command = fmt::format("ahm logmap {} --source {}{} -o {}", detail::shell_word(path),
+                                    s.surface->central_row, s.surface->options, detail::shell_word(stem + "_map.csv"));
+  if (view::can_write_png()) command += fmt::format(" --view {}", detail::shell_word(stem + "_map.png"));
   return command;
 }
 
@@ -138,6 +170,9 @@ std::string as_text(const Survey& s, const std::string& path) {
   text += line("faces", s.mesh ? fmt::format("{}: {}", s.faces, faces_text(*s.mesh)) : "0");
   text += line("normals", normals_text(s));
   text += line("colors", s.colors ? "yes" : "none");
+  if (!s.columns.empty()) text += line("further columns", fmt::format("{}", fmt::join(s.columns, ", ")));
+  if (s.acquisition && s.acquisition->height != 1)
+    text += line("picture", fmt::format("{} x {}", s.acquisition->width, s.acquisition->height));
   text += line("non-finite points",
                s.non_finite == 0 ? "0" : fmt::format("{}{}", s.non_finite, s.as_cloud ? ": use --drop-nan" : ""));
   text += line("exact duplicates",
@@ -148,6 +183,9 @@ std::string as_text(const Survey& s, const std::string& path) {
     text += line("bounds", fmt::format("{}  to  {}", triple(s.low), triple(s.high)));
     const Vec3 e = extent(s);
     text += line("extent", fmt::format("{}  diagonal {:.6g}", triple(e), std::hypot(e[0], e[1], e[2])));
+    const UnitGuess guess = guess_unit(s.format, s.low, s.high);
+    text +=
+        line("unit", guess.unit.empty() ? "the file does not tell" : fmt::format("{}? ({})", guess.unit, guess.reason));
   }
   if (s.spacing)
     text += line("spacing", fmt::format("smallest {:.4g}, median {:.4g}, largest {:.4g} (at {} points)",
@@ -173,9 +211,17 @@ nlohmann::ordered_json as_json(const MeshSurvey& mesh) {
   const MeshInspection& found = mesh.inspection;
   const TopologyReport& t = found.topology;
   nlohmann::ordered_json j;
-  j["triangles"] = mesh.triangles;
-  j["quadrilaterals"] = mesh.quadrilaterals;
-  j["other_faces"] = mesh.others;
+  const auto with = [&](std::size_t corners) {
+    const auto found = mesh.faces_by_corners.find(corners);
+    return found == mesh.faces_by_corners.end() ? 0 : found->second;
+  };
+  std::size_t faces = 0;
+  for (const auto& [corners, count] : mesh.faces_by_corners) faces += count;
+  j["triangles"] = with(3);
+  j["quadrilaterals"] = with(4);
+  j["other_faces"] = faces - with(3) - with(4);
+  for (const auto& [corners, count] : mesh.faces_by_corners) j["faces_by_corners"][std::to_string(corners)] = count;
+  j["normals_against_faces"] = mesh.normals_against;
   if (mesh.edges) j["edge_lengths"] = as_json(*mesh.edges, "edges");
   j["wrong_faces"] = {{"outside", found.outside.size()},
                       {"small", found.small.size()},
@@ -230,14 +276,28 @@ nlohmann::ordered_json as_json(const Survey& s, const std::string& path) {
   j["normals"] = s.normals;
   j["bad_normals"] = s.bad_normals;
   j["colors"] = s.colors;
+  j["columns"] = s.columns;
+  if (s.acquisition) {
+    const io::Acquisition& seen = *s.acquisition;
+    j["acquisition"] = {
+        {"width", seen.width}, {"height", seen.height}, {"position", seen.position}, {"orientation", seen.orientation}};
+  }
   j["non_finite"] = s.non_finite;
   j["duplicates"] = s.duplicates;
   if (s.points > s.non_finite) {
     j["bounds"] = {{"low", s.low}, {"high", s.high}};
     j["extent"] = extent(s);
+    const UnitGuess guess = guess_unit(s.format, s.low, s.high);
+    j["unit_guess"] = guess.unit.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(guess.unit);
   }
   if (s.spacing) j["spacing"] = as_json(*s.spacing, "sample");
   if (s.mesh) j["mesh"] = as_json(*s.mesh);
+  if (s.repair) {
+    const RepairCounts& c = s.repair->counts;
+    j["repair"] = {{"welded", c.welded},         {"shortened", c.shortened},   {"degenerate", c.degenerate},
+                   {"not_finite", c.not_finite}, {"duplicates", c.duplicates}, {"turned", c.turned},
+                   {"parts", s.repair->parts}};
+  }
   if (s.surface) add_surface(s, j);
   j["warnings"] = s.warnings;
   j["problem"] = s.problem;

@@ -6,6 +6,9 @@
 #include <algorithm>
 #include <array>
 #include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+#include <utility>
 #include <vector>
 
 namespace ahm::app {
@@ -29,8 +32,15 @@ constexpr Sentence sentences[] = {
     {"vertex_extras", "numbers behind x, y, z of a vertex are ignored"},
     {"columns_as_colors", "columns {0:.0f} to {1:.0f} are taken as colors: whole numbers from 0 to 255"},
     {"lines_ignored", "{0:.0f} sets of lines are ignored"},
+    {"column_ignored", "column '{4}' is ignored: it holds what is no number"},
     {"columns_ignored", "columns 4 to {0:.0f} are ignored"},
     // meshes
+    {"welded", "{0:.0f} vertices were joined to another one at the same place"},
+    {"faces_shortened", "{0:.0f} faces lost corners at the same vertex"},
+    {"degenerate_dropped", "{0:.0f} faces were dropped that had fewer than three vertices or one twice"},
+    {"not_finite_dropped", "{0:.0f} faces were dropped that had a vertex which is not finite"},
+    {"duplicates_dropped", "{0:.0f} faces were dropped that were given before"},
+    {"faces_turned", "{0:.0f} faces were turned over to agree with their neighbours and look outwards"},
     {"unreferenced", "{0:.0f} vertices are used by no face and were left out"},
     {"reoriented", "{0:.0f} faces were turned over to orient the mesh consistently"},
     {"non_manifold_edges", "{0:.0f} edges with more than two faces were cut"},
@@ -72,18 +82,47 @@ struct Advice {
 };
 
 constexpr Advice advices[] = {
-    {"non_manifold_edges", "repair them, or cut the mesh there with --non-manifold split"},
-    {"non_manifold_vertices", "repair them, or split them with --non-manifold split"},
+    {"unknown_bytes", "name it with --input-format"},
+    {"duplicate_faces", "drop them with --drop-duplicates, or mend all there is with --repair"},
+    {"repeated_vertices", "drop them with --drop-degenerate, or mend all there is with --repair"},
+    {"small_faces", "drop them with --drop-degenerate, or mend all there is with --repair"},
+    {"not_finite", "drop its faces with --drop-degenerate, or mend all there is with --repair"},
+    {"non_manifold_edges", "cut the mesh there with --non-manifold split, or mend all there is with --repair"},
+    {"non_manifold_vertices", "split them with --non-manifold split, or mend all there is with --repair"},
     {"diffusion_time_range", "give a --t-coef near 1"},
     {"heat_lost", "give a smaller --t-coef"},
     {"twisted_faces", "use --discretization polygons"},
     {"collinear_faces", "remove them, or use --method heat"},
     {"no_flat_triangles", "use --method heat"},
     {"windows_without_end", "repair the mesh, or use --method heat"},
+    {"windows_lost", "repair the needles there, or use --tolerance 1e-9 or --method heat"},
     {"polygons_not_refined", "use --discretization refined, or --method heat"},
     {"no_bending_direction", "give the axis as X,Y,Z"},
     {"row_left_out", "--voxel, --outliers, --drop-nan or --local removed it; choose another one, or write x,y,z"},
 };
+
+/// Sentences are written for many; of one, its noun and its verb have another form.
+std::string of_one(std::string text) {
+  if (!text.starts_with("1 ")) return text;
+  using Forms = std::pair<std::string_view, std::string_view>;
+  constexpr Forms nouns[] = {{" vertices ", " vertex "}, {" faces ", " face "}, {" edges ", " edge "},
+                             {" points ", " point "},    {" lines ", " line "}, {" statements ", " statement "},
+                             {" sets ", " set "},        {" pairs ", " pair "}, {" neighbours ", " neighbour "}};
+  constexpr Forms verbs[] = {{" are ", " is "},     {" were ", " was "},    {" have ", " has "},
+                             {" use ", " uses "},   {" join ", " joins "},  {" say ", " says "},
+                             {" form ", " forms "}, {" point ", " points "}};
+  const auto change_first = [&](std::span<const Forms> forms, std::size_t from) {
+    std::size_t first = std::string::npos;
+    const Forms* chosen = nullptr;
+    for (const Forms& form : forms)
+      if (const std::size_t at = text.find(form.first, from); at < first) first = at, chosen = &form;
+    if (chosen == nullptr) return from;
+    text.replace(first, chosen->first.size(), chosen->second);
+    return first + chosen->second.size() - 1;
+  };
+  change_first(verbs, change_first(nouns, 0));
+  return text;
+}
 
 std::string list(const Warning& warning) {
   std::vector<Index> rows;
@@ -100,14 +139,14 @@ std::string worded(const Warning& warning) {
   std::copy_n(warning.numbers.begin(), std::min<std::size_t>(warning.numbers.size(), 3), numbers.begin());
   for (const auto& [id, format] : sentences)
     if (warning.id == id)
-      return fmt::format(fmt::runtime(format), numbers[0], numbers[1], numbers[2], list(warning), warning.name);
+      return of_one(fmt::format(fmt::runtime(format), numbers[0], numbers[1], numbers[2], list(warning), warning.name));
   return fmt::format("{} {}", warning.id, fmt::join(warning.numbers, " "));
 }
 
 std::string worded(const Error& error) {
   for (const auto& [fault, remedy] : advices)
-    if (error.fault() == fault) return fmt::format("{}; {}", error.problem(), remedy);
-  return error.what();
+    if (error.fault() == fault) return of_one(fmt::format("{}; {}", error.problem(), remedy));
+  return of_one(error.what());
 }
 
 nlohmann::ordered_json as_json(const Report& report) {

@@ -52,8 +52,7 @@ GridGraph::GridGraph(Grid grid) : grid_(checked(std::move(grid))), dimension_(st
   const std::size_t subsets = std::size_t{1} << (1 << dimension_);
   for (std::size_t free_cells = 0; free_cells < subsets; ++free_cells) patterns_.push_back(make_pattern(free_cells));
 
-  std::vector<Offset> count(subsets, 0);
-  for (Index i = 0; i < size_; ++i) ++count[pattern_at(i)];
+  const std::vector<Offset> count = count_patterns();
   for (std::size_t p = 0; p < subsets; ++p) {
     edge_count_ += count[p] * static_cast<Offset>(patterns_[p].degree);
     for (std::size_t k = 0; k < patterns_[p].degree * dimension_; ++k)
@@ -85,6 +84,25 @@ GridGraph::Pattern GridGraph::make_pattern(std::size_t free_cells) const {
       for (int b = 0; b < dimension_; ++b) pattern.logs[e * dimension_ + b] = a == b ? (upper ? h : -h) : 0.0;
     }
   return pattern;
+}
+
+std::vector<Offset> GridGraph::count_patterns() const {
+  std::vector<Offset> count(patterns_.size(), 0);
+  if (!grid_.blocked.empty()) {
+    for (Index i = 0; i < size_; ++i) ++count[pattern_at(i)];
+    return count;
+  }
+  // Without obstacles all that counts is where along each axis a vertex lies: first, inside or last.
+  for (int where = 0; where < (dimension_ == 2 ? 9 : 27); ++where) {
+    Steps at{};
+    Offset times = 1;
+    for (int a = 0, rest = where; a < dimension_; ++a, rest /= 3) {
+      at[a] = std::array{0, 1, grid_.shape[a] - 1}[rest % 3];
+      if (rest % 3 == 1) times *= grid_.shape[a] - 2;
+    }
+    if (times > 0) count[pattern_at(vertex(std::span(at).first(grid_.shape.size())).index)] += times;
+  }
+  return count;
 }
 
 GridGraph::Steps GridGraph::steps(Index vertex) const {

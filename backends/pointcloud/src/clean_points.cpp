@@ -19,32 +19,31 @@ double median(std::vector<double>& values) {
   return *middle;
 }
 
-void scale(std::vector<Vec3>& points, int exponent) {
-  for (Vec3& p : points)
-    for (double& x : p) x = std::scalbn(x, exponent);
+Vec3 scaled(const Vec3& p, int exponent) {
+  return {std::scalbn(p[0], exponent), std::scalbn(p[1], exponent), std::scalbn(p[2], exponent)};
 }
 
-/// Brings the points to order one about their middle and returns the exponent of their unit. Medians, since a single stray
-/// point must cost the others no digits.
-int normalize(std::vector<Vec3>& points) {
+/// Brings the points to order one about their middle. Medians, since a single stray point must cost the others no digits.
+Placement normalize(std::vector<Vec3>& points) {
+  Placement result;
   double largest = 0;
   for (const Vec3& p : points)
     for (double x : p) largest = std::max(largest, std::abs(x));
-  const int first = largest > 0 ? std::ilogb(largest) : 0;
-  scale(points, -first);
+  result.first = largest > 0 ? std::ilogb(largest) : 0;
   std::vector<double> values(points.size());
   for (int axis = 0; axis < 3 && !points.empty(); ++axis) {
-    std::transform(points.begin(), points.end(), values.begin(), [axis](const Vec3& p) { return p[axis]; });
-    const double middle = median(values);
-    for (Vec3& p : points) p[axis] -= middle;
+    std::transform(points.begin(), points.end(), values.begin(),
+                   [&](const Vec3& p) { return std::scalbn(p[axis], -result.first); });
+    result.middle[axis] = median(values);
   }
-  std::transform(points.begin(), points.end(), values.begin(), [](const Vec3& p) {
+  std::transform(points.begin(), points.end(), values.begin(), [&](const Vec3& point) {
+    const Vec3 p = result.place(point);
     return std::max({std::abs(p[0]), std::abs(p[1]), std::abs(p[2])});
   });
   const double spread = points.empty() ? 0.0 : median(values);
-  const int second = spread > 0 ? std::ilogb(spread) : 0;
-  scale(points, -second);
-  return first + second;
+  result.second = spread > 0 ? std::ilogb(spread) : 0;
+  for (Vec3& p : points) p = result.place(p);
+  return result;
 }
 
 /// Spreads the low 21 bits so that two zero bits follow each.
@@ -55,16 +54,6 @@ std::uint64_t spread_bits(std::uint64_t x) {
   x = (x | x << 8) & 0x100f00f00f00f00f;
   x = (x | x << 4) & 0x10c30c30c30c30c3;
   return (x | x << 2) & 0x1249249249249249;
-}
-
-/// Position along the Morton curve through [-16, 16]^3; points beyond count as on its faces.
-std::uint64_t morton_code(const Vec3& p) {
-  std::uint64_t code = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double cell = (std::clamp(p[axis], -16.0, 15.999) + 16.0) * 0x1p16;
-    code |= spread_bits(static_cast<std::uint64_t>(cell)) << axis;
-  }
-  return code;
 }
 
 /// Copies the finite points; `kept` are their numbers.
@@ -92,24 +81,37 @@ std::vector<Vec3> finite_points(std::span<const Vec3> input, const std::function
 
 }  // namespace
 
+Vec3 Placement::place(const Vec3& point) const { return scaled(scaled(point, -first) - middle, -second); }
+
+double Placement::unit() const { return std::scalbn(1.0, first + second); }
+
+std::uint64_t morton_code(const Vec3& placed) {
+  std::uint64_t code = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double cell = (std::clamp(placed[axis], -16.0, 15.999) + 16.0) * 0x1p16;
+    code |= spread_bits(static_cast<std::uint64_t>(cell)) << axis;
+  }
+  return code;
+}
+
 CleanPoints clean_points(std::span<const Vec3> input, const std::function<Index(std::size_t)>& row,
                          const CloudOptions& options, CloudDetails& report) {
   if (input.size() > static_cast<std::size_t>(std::numeric_limits<Index>::max() / 2))
     throw InvalidGeometry("the cloud has " + std::to_string(input.size()) + " points; at most 2^30 are supported");
   std::vector<Index> kept;
-  std::vector<Vec3> scaled = finite_points(input, row, options, kept, report);
+  std::vector<Vec3> placed = finite_points(input, row, options, kept, report);
   CleanPoints clean;
-  clean.unit = std::scalbn(1.0, normalize(scaled));
+  clean.unit = normalize(placed).unit();
 
   struct Key {
     std::uint64_t code;
     Index position;
   };
-  std::vector<Key> order(scaled.size());
-  for (std::size_t i = 0; i < order.size(); ++i) order[i] = {morton_code(scaled[i]), static_cast<Index>(i)};
+  std::vector<Key> order(placed.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = {morton_code(placed[i]), static_cast<Index>(i)};
   std::sort(order.begin(), order.end(), [&](const Key& a, const Key& b) {
     if (a.code != b.code) return a.code < b.code;
-    if (scaled[a.position] != scaled[b.position]) return scaled[a.position] < scaled[b.position];
+    if (placed[a.position] != placed[b.position]) return placed[a.position] < placed[b.position];
     return a.position < b.position;
   });
 
@@ -117,7 +119,7 @@ CleanPoints clean_points(std::span<const Vec3> input, const std::function<Index(
   clean.points.reserve(order.size());
   clean.input.reserve(order.size());
   for (const Key& key : order) {
-    const Vec3& p = scaled[key.position];
+    const Vec3& p = placed[key.position];
     if (clean.points.empty() || clean.points.back() != p) {
       clean.points.push_back(p);
       clean.input.push_back(kept[key.position]);

@@ -5,6 +5,7 @@
 #include <array>
 #include <vector>
 
+#include "cloud_parts.hpp"
 #include "tangent_planes.hpp"
 
 namespace ahm::pointcloud {
@@ -15,7 +16,7 @@ namespace ahm::pointcloud {
 /// @param oriented  reject neighbours whose normals point the other way
 /// @param noise  of offsets across the surface; neighbours far beyond it, steeply above the surface, are rejected
 std::vector<Triangle> local_delaunay(const CleanPoints& cloud, const Neighborhoods& neighborhoods,
-                                     const TangentPlanes& planes, bool oriented, double noise,
+                                     const TangentPlanes& planes, bool oriented, const PerPart& noise,
                                      const CloudOptions& options, CloudDetails& report);
 
 }  // namespace ahm::pointcloud

@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <limits>
 #include <nanoflann.hpp>
 
 #include "ahm/pointcloud/neighbor_search.hpp"
@@ -15,6 +17,41 @@ struct Points {
   }
 };
 
+/// The k nearest, by distance and then by number: points at equal distances do not depend on the tree.
+class NearestFew {
+ public:
+  using DistanceType = double;
+
+  NearestFew(std::span<Index> indices, std::span<double> distances) : indices_(indices), distances_(distances) {}
+  std::size_t size() const { return count_; }
+  bool full() const { return count_ == indices_.size(); }
+  /// Whatever is nearer than this is asked for: the last one's equals too, up to the rounding of the tree's own bounds.
+  double worstDist() const {  // NOLINT(readability-identifier-naming): nanoflann's name
+    return full() ? distances_[count_ - 1] * (1 + 1e-14) : std::numeric_limits<double>::infinity();
+  }
+  bool addPoint(double distance, std::uint32_t point) {  // NOLINT(readability-identifier-naming)
+    const auto index = static_cast<Index>(point);
+    std::size_t at = count_;
+    const auto before = [&](std::size_t other) {
+      return distance < distances_[other] || (distance == distances_[other] && index < indices_[other]);
+    };
+    if (full() && (at == 0 || !before(--at))) return true;
+    for (; at > 0 && before(at - 1); --at) {
+      distances_[at] = distances_[at - 1];
+      indices_[at] = indices_[at - 1];
+    }
+    distances_[at] = distance;
+    indices_[at] = index;
+    count_ = std::min(count_ + 1, indices_.size());
+    return true;
+  }
+
+ private:
+  std::span<Index> indices_;
+  std::span<double> distances_;
+  std::size_t count_ = 0;
+};
+
 class NanoflannSearch final : public NeighborSearch {
   using Tree =
       nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Points>, Points, 3, std::uint32_t>;
@@ -24,9 +61,7 @@ class NanoflannSearch final : public NeighborSearch {
       : points_{points}, tree_(3, points_, nanoflann::KDTreeSingleIndexAdaptorParams(16)) {}
 
   Index nearest(const Vec3& query, std::span<Index> indices, std::span<double> squared_distances) const override {
-    static_assert(sizeof(Index) == sizeof(std::uint32_t));
-    nanoflann::KNNResultSet<double, std::uint32_t> result(indices.size());
-    result.init(reinterpret_cast<std::uint32_t*>(indices.data()), squared_distances.data());
+    NearestFew result(indices, squared_distances);
     tree_.findNeighbors(result, query.data(), nanoflann::SearchParams());
     return static_cast<Index>(result.size());
   }

@@ -9,80 +9,71 @@
 namespace ahm::pointcloud {
 namespace {
 
-/// Union-find over vertices that also keeps the relative sign of each vertex to its root.
-class SignedForest {
- public:
-  explicit SignedForest(Index n) : parent_(static_cast<std::size_t>(n)), sign_(static_cast<std::size_t>(n), 1) {
-    std::iota(parent_.begin(), parent_.end(), 0);
-  }
-
-  struct Root {
-    Index vertex;
-    signed char sign;
-  };
-
-  Root find(Index v) {
-    Index root = v;
-    signed char sign = 1;
-    while (parent_[root] != root) {
-      sign = static_cast<signed char>(sign * sign_[root]);
-      root = parent_[root];
-    }
-    const Root result{root, sign};
-    while (parent_[v] != root && v != root) {  // path compression keeps the signs relative to the root
-      const Index up = parent_[v];
-      const auto rest = static_cast<signed char>(sign * sign_[v]);
-      parent_[v] = root;
-      sign_[v] = sign;
-      sign = rest;
-      v = up;
-    }
-    return result;
-  }
-
-  void join(Index a, Index b, signed char relative) {
-    Root p = find(a), q = find(b);
-    if (p.vertex == q.vertex) return;
-    if (p.vertex > q.vertex) std::swap(p, q);
-    parent_[q.vertex] = p.vertex;
-    sign_[q.vertex] = static_cast<signed char>(p.sign * q.sign * relative);
-  }
-
- private:
-  std::vector<Index> parent_;
-  std::vector<signed char> sign_;
-};
-
 /// Edge numbers, flattest first.
 std::vector<std::uint32_t> flattest_first(const WeightedEdges& edges, const TangentPlanes& planes) {
-  std::vector<float> bend(edges.tails.size());
-  for (std::size_t e = 0; e < bend.size(); ++e)
-    bend[e] = static_cast<float>(1.0 - std::abs(dot(planes.normals[edges.tails[e]], planes.normals[edges.heads[e]])));
-  std::vector<std::uint32_t> order(bend.size());
+  std::vector<float> bends(edges.tails.size());
+  for (std::size_t e = 0; e < bends.size(); ++e)
+    bends[e] = bend(planes.normals[edges.tails[e]], planes.normals[edges.heads[e]]);
+  std::vector<std::uint32_t> order(bends.size());
   std::iota(order.begin(), order.end(), 0u);
   std::sort(order.begin(), order.end(),
-            [&](std::uint32_t a, std::uint32_t b) { return bend[a] != bend[b] ? bend[a] < bend[b] : a < b; });
+            [&](std::uint32_t a, std::uint32_t b) { return bends[a] != bends[b] ? bends[a] < bends[b] : a < b; });
   return order;
 }
 
-/// What the points of a component say about its overall sign, in the order of precedence.
-struct Evidence {
-  Vec3 centroid{0, 0, 0};
-  Index points = 0;
-  double given = 0;    ///< points that keep their given sign minus points that lose it
-  double outward = 0;  ///< sum of (p - centroid) . n
-  double spread = 0;   ///< sum of |p - centroid|
-  Vec3 normal_sum{0, 0, 0};
-
-  double sign(bool signs_given) const {
-    if (signs_given && given != 0) return given;
-    if (std::abs(outward) > 1e-3 * spread) return outward;
-    const auto& n = normal_sum;
-    return *std::max_element(n.begin(), n.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
-  }
-};
-
 }  // namespace
+
+SignedForest::SignedForest(Index n) : parent_(static_cast<std::size_t>(n)), sign_(static_cast<std::size_t>(n), 1) {
+  std::iota(parent_.begin(), parent_.end(), 0);
+}
+
+SignedForest::Root SignedForest::find(Index v) {
+  Index root = v;
+  signed char sign = 1;
+  while (parent_[root] != root) {
+    sign = static_cast<signed char>(sign * sign_[root]);
+    root = parent_[root];
+  }
+  const Root result{root, sign};
+  while (parent_[v] != root && v != root) {  // path compression keeps the signs relative to the root
+    const Index up = parent_[v];
+    const auto rest = static_cast<signed char>(sign * sign_[v]);
+    parent_[v] = root;
+    sign_[v] = sign;
+    sign = rest;
+    v = up;
+  }
+  return result;
+}
+
+bool SignedForest::join(Index a, Index b, signed char relative) {
+  Root p = find(a), q = find(b);
+  if (p.vertex == q.vertex) return false;
+  if (p.vertex > q.vertex) std::swap(p, q);
+  parent_[q.vertex] = p.vertex;
+  sign_[q.vertex] = static_cast<signed char>(p.sign * q.sign * relative);
+  return true;
+}
+
+void Evidence::count(const Vec3& point) {
+  ++points;
+  for (int axis = 0; axis < 3; ++axis) centroid[axis] += point[axis];
+}
+
+void Evidence::weigh(const Vec3& point, const Vec3& normal, signed char sign) {
+  const Vec3 offset = point - (1.0 / points) * centroid;
+  given += sign;
+  outward += dot(offset, normal);
+  spread += norm(offset);
+  for (int axis = 0; axis < 3; ++axis) normal_sum[axis] += normal[axis];
+}
+
+double Evidence::sign(bool signs_given) const {
+  if (signs_given && given != 0) return given;
+  if (std::abs(outward) > 1e-3 * spread) return outward;
+  const auto& n = normal_sum;
+  return *std::max_element(n.begin(), n.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
+}
 
 bool have_thin_walls(const CleanPoints& cloud, const TangentPlanes& planes, const Neighborhoods& neighborhoods) {
   Offset opposed = 0, before = 0, behind = 0;
@@ -107,21 +98,11 @@ Index orient_normals(const CleanPoints& cloud, const WeightedEdges& edges, bool 
     forest.join(a, b, dot(planes.normals[a], planes.normals[b]) < 0 ? -1 : 1);
   }
   std::vector<Evidence> evidence(static_cast<std::size_t>(n));
-  for (Index i = 0; i < n; ++i) {
-    Evidence& e = evidence[forest.find(i).vertex];
-    ++e.points;
-    for (int axis = 0; axis < 3; ++axis) e.centroid[axis] += cloud.points[i][axis];
-  }
+  for (Index i = 0; i < n; ++i) evidence[forest.find(i).vertex].count(cloud.points[i]);
   for (Index i = 0; i < n; ++i) {
     const auto [root, sign] = forest.find(i);
-    Evidence& e = evidence[root];
-    Vec3& normal = planes.normals[i];
-    normal = static_cast<double>(sign) * normal;
-    const Vec3 offset = cloud.points[i] - (1.0 / e.points) * e.centroid;
-    e.given += sign;
-    e.outward += dot(offset, normal);
-    e.spread += norm(offset);
-    for (int axis = 0; axis < 3; ++axis) e.normal_sum[axis] += normal[axis];
+    planes.normals[i] = static_cast<double>(sign) * planes.normals[i];
+    evidence[root].weigh(cloud.points[i], planes.normals[i], sign);
   }
   Index against_majority = 0;
   for (Index i = 0; i < n; ++i) {

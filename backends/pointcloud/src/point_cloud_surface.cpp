@@ -12,21 +12,15 @@
 #include "ahm/util/stopwatch.hpp"
 #include "ahm/util/text.hpp"
 #include "clean_points.hpp"
-#include "edge_unfolding.hpp"
 #include "local_delaunay.hpp"
+#include "noisy_planes.hpp"
 #include "orientation.hpp"
 #include "plane_axes.hpp"
 #include "tangent_edges.hpp"
-#include "tangent_planes.hpp"
 #include "tufted_cover.hpp"
 
 namespace ahm::pointcloud {
 namespace {
-
-constexpr Index default_k = 30, most_k = 120;
-
-/// Noise of more than this share of the spacing bends planes more than corners do: more neighbours are taken.
-constexpr double much_noise = 0.5;
 
 /// A cloud with more than this share of its points in neighbourhoods as thick as wide is no surface.
 constexpr double thick_share = 0.15;
@@ -44,7 +38,7 @@ void check_arguments(std::span<const Vec3> points, const CloudOptions& options) 
 /// The points to build from, and their rows in the input.
 class KeptPoints {
  public:
-  KeptPoints(std::span<const Vec3> points, std::span<const Vec3> normals, const std::optional<std::vector<Index>>& rows)
+  KeptPoints(std::span<const Vec3> points, std::span<const Vec3> normals, const std::optional<std::vector<Row>>& rows)
       : points_(points), normals_(normals) {
     if (!normals.empty() && normals.size() != points.size())
       throw InvalidArgument("'normals' has " + std::to_string(normals.size()) + " entries for " +
@@ -52,9 +46,9 @@ class KeptPoints {
     if (!rows) return;
     rows_ = *rows;
     check_rows(static_cast<Index>(points.size()));
-    for (Index row : rows_) {
-      own_points_.push_back(points[row]);
-      if (!normals.empty()) own_normals_.push_back(normals[row]);
+    for (const Row row : rows_) {
+      own_points_.push_back(points[row.index]);
+      if (!normals.empty()) own_normals_.push_back(normals[row.index]);
     }
     points_ = own_points_;
     normals_ = own_normals_;
@@ -63,58 +57,27 @@ class KeptPoints {
 
   std::span<const Vec3> points() const { return points_; }
   std::span<const Vec3> normals() const { return normals_; }
-  Index row(std::size_t point) const { return all_ ? static_cast<Index>(point) : rows_[point]; }
+  Row row(std::size_t point) const { return all_ ? Row(static_cast<Index>(point)) : rows_[point]; }
 
  private:
   void check_rows(Index n) const {
     for (std::size_t i = 0; i < rows_.size(); ++i)
-      if (rows_[i] < 0 || rows_[i] >= n || (i > 0 && rows_[i] <= rows_[i - 1]))
-        throw InvalidArgument("options.rows: entry " + std::to_string(i) + " is " + std::to_string(rows_[i]) +
+      if (rows_[i].index < 0 || rows_[i].index >= n || (i > 0 && rows_[i] <= rows_[i - 1]))
+        throw InvalidArgument("options.rows: entry " + std::to_string(i) + " is " + std::to_string(rows_[i].index) +
                               "; give row numbers in [0, " + std::to_string(n) + "), ascending");
   }
 
   std::span<const Vec3> points_, normals_;
-  std::span<const Index> rows_;
+  std::span<const Row> rows_;
   std::vector<Vec3> own_points_, own_normals_;
   bool all_ = true;
 };
 
 /// "12, 15, 17 and 240 more"
-std::string first_ten(const std::vector<Index>& indices) {
+std::string first_ten(const std::vector<Row>& rows) {
   detail::ItemList list;
-  for (Index i : indices) list.add(std::to_string(i));
+  for (const Row row : rows) list.add(std::to_string(row.index));
   return list.text();
-}
-
-struct NoisyPlanes {
-  Neighborhoods neighborhoods;
-  TangentPlanes planes;
-  double noise;  ///< `offset_noise`
-};
-
-NoisyPlanes find_planes_of(const CleanPoints& cloud, std::span<const Vec3> normals, const NeighborSearch& search,
-                           Index k, const CloudOptions& options) {
-  NoisyPlanes result;
-  result.neighborhoods = find_neighborhoods(cloud, search, k, options);
-  result.planes = find_tangent_planes(cloud, normals, search, result.neighborhoods, options);
-  result.noise = offset_noise(cloud, result.neighborhoods, result.planes, options.threads);
-  return result;
-}
-
-/// Neighbours and planes. Where nobody fixed their number, noisy clouds get more neighbours, since the error of a plane is
-/// that of its points over the number of them; but only as long as that makes neighbourhoods flatter, which sets noise apart
-/// from branches and volumes.
-NoisyPlanes find_planes(const CleanPoints& cloud, std::span<const Vec3> normals, const NeighborSearch& search,
-                        const CloudOptions& options) {
-  NoisyPlanes result = find_planes_of(cloud, normals, search, options.k.value_or(default_k), options);
-  if (options.k) return result;
-  for (Index k = 2 * default_k; k <= most_k; k *= 2) {
-    if (!(result.noise > much_noise * spacing(result.neighborhoods)) || result.neighborhoods.k < k / 2) break;
-    NoisyPlanes wider = find_planes_of(cloud, normals, search, k, options);
-    if (wider.planes.thick > result.planes.thick) break;
-    result = std::move(wider);
-  }
-  return result;
 }
 
 /// Whether neighbours whose normals are opposed are kept apart.
@@ -138,7 +101,8 @@ void orient(const CleanPoints& cloud, const WeightedEdges& edges, std::span<cons
 /// Numbers the points that have a mass; lists the rows of points that have none.
 std::vector<Index> number_vertices(const CleanPoints& cloud, const WeightedEdges& edges, const KeptPoints& kept,
                                    CloudDetails& report) {
-  std::vector<Index> vertex_of_clean(cloud.points.size(), -1), removed;
+  std::vector<Index> vertex_of_clean(cloud.points.size(), -1);
+  std::vector<Row> removed;
   for (std::size_t i = 0; i < cloud.points.size(); ++i) {
     if (edges.masses[i] > 0)
       vertex_of_clean[i] = report.vertices++;
@@ -152,8 +116,8 @@ std::vector<Index> number_vertices(const CleanPoints& cloud, const WeightedEdges
         "no point of the cloud has a tangent plane with a triangle in it: the points lie on a line, or are too "
         "far apart from each other (points " +
         first_ten(removed) + ")");
-  for (std::size_t i = 0; i < std::min<std::size_t>(removed.size(), 10); ++i)
-    report.first_degenerate.emplace_back(removed[i]);
+  removed.resize(std::min<std::size_t>(removed.size(), 10));
+  report.first_degenerate = std::move(removed);
   return vertex_of_clean;
 }
 
@@ -172,7 +136,7 @@ void fill_vertex_data(CsrGraphData& g, std::span<const Vec3> input, const CleanP
 }  // namespace
 
 PointCloudSurface::PointCloudSurface(CsrGraph graph, CloudDetails details, RowMap rows, std::span<const Vec3> points,
-                                     std::optional<std::vector<Index>> kept)
+                                     std::optional<std::vector<Row>> kept)
     : graph_(std::make_unique<const CsrGraph>(std::move(graph))),
       details_(std::move(details)),
       rows_(std::move(rows)),
@@ -190,14 +154,14 @@ PointCloudSurface PointCloudSurface::build(std::span<const Vec3> input, std::spa
   details.normals_given = !normals.empty();
   detail::Stopwatch stopwatch;
   CleanPoints cloud = clean_points(
-      points, [&](std::size_t i) { return kept.row(i); }, options, details);
+      points, [&](std::size_t i) { return kept.row(i).index; }, options, details);
   const auto search = options.search ? options.search(cloud.points) : nullptr;
   if (!search) throw InvalidArgument("options.search made no neighbour search; default: nanoflann_search");
   options.progress.step("neighbours", 0.0);
-  details.k_asked = options.k.value_or(default_k);
-  auto [neighborhoods, planes, noise] = find_planes(cloud, normals, *search, options);
-  details.k = neighborhoods.k;
-  details.noise = noise * cloud.unit;
+  details.k_asked = options.k.value_or(default_neighbors);
+  auto [neighborhoods, planes, parts, noise, k, typical_noise] = find_noisy_planes(cloud, normals, *search, options);
+  details.k = k;
+  details.noise = typical_noise * cloud.unit;
   if (!normals.empty()) details.estimated = planes.estimated;
   details.contradicted = planes.contradicted;
   details.thick = planes.thick;
@@ -211,7 +175,7 @@ PointCloudSurface PointCloudSurface::build(std::span<const Vec3> input, std::spa
 
   const WeightedEdges edges = triangles.empty()
                                   ? WeightedEdges{{}, {}, {}, std::vector<double>(cloud.points.size(), 0.0)}
-                                  : tufted_laplacian(cloud, planes, triangles, details);
+                                  : tufted_laplacian(cloud, planes, triangles, *parts, details);
   triangles = {};
   details.mollification *= cloud.unit;
   options.progress.step("laplacian", 1.0);
@@ -228,7 +192,7 @@ PointCloudSurface PointCloudSurface::build(std::span<const Vec3> input, std::spa
   std::vector<RowVertex> pairs;
   for (std::size_t i = 0; i < points.size(); ++i)
     if (const Index clean = cloud.clean_of_input[i]; clean >= 0 && vertex_of_clean[clean] >= 0)
-      pairs.push_back({Row(kept.row(i)), Vertex(vertex_of_clean[clean])});
+      pairs.push_back({kept.row(i), Vertex(vertex_of_clean[clean])});
   RowMap rows(details.points, details.vertices, pairs);
   options.progress.step("graph", 1.0);
   details.seconds_graph = stopwatch.lap();
@@ -239,7 +203,7 @@ PointCloudSurface PointCloudSurface::build(std::span<const Vec3> input, std::spa
 }
 
 Surface::Reason PointCloudSurface::why_without_vertex(Row row) const {
-  if (kept_ && !std::binary_search(kept_->begin(), kept_->end(), row.index))
+  if (kept_ && !std::binary_search(kept_->begin(), kept_->end(), row))
     return {"row_left_out", "was left out", "it is not among CloudOptions::rows"};
   return {"row_removed", "was removed: it is not finite, or has no tangent plane or no neighbours",
           "choose another one"};

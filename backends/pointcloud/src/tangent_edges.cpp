@@ -52,8 +52,9 @@ std::vector<Offset> row_starts(const WeightedEdges& edges, const std::vector<Ind
 }  // namespace
 
 CsrGraphData tangent_edges(const CleanPoints& cloud, const TangentPlanes& planes, const WeightedEdges& edges,
-                           const std::vector<Index>& vertex_of_clean, Index vertices, bool trusted, double noise,
-                           unsigned threads, CloudDetails& report) {
+                           const std::vector<Index>& vertex_of_clean, Index vertices, bool trusted,
+                           const PerPart& noise, unsigned threads, CloudDetails& report,
+                           std::optional<TransportKind> kind) {
   const auto count = static_cast<Offset>(edges.tails.size());
   auto is_reflection = [&](std::size_t e) {
     return !trusted && dot(planes.normals[edges.tails[e]], planes.normals[edges.heads[e]]) < 0;
@@ -62,7 +63,7 @@ CsrGraphData tangent_edges(const CleanPoints& cloud, const TangentPlanes& planes
   for (std::size_t e = 0; e < edges.tails.size(); ++e) report.reflections += is_reflection(e);
 
   CsrGraphData g;
-  g.kind = report.reflections > 0 ? TransportKind::block : TransportKind::rotation2;
+  g.kind = kind.value_or(report.reflections > 0 ? TransportKind::block : TransportKind::rotation2);
   const std::size_t width = g.kind == TransportKind::block ? 4 : 2;
   g.row_begin = row_starts(edges, vertex_of_clean, vertices);
   g.neighbors.resize(2 * edges.tails.size());
@@ -94,8 +95,9 @@ CsrGraphData tangent_edges(const CleanPoints& cloud, const TangentPlanes& planes
         transport[1] = width == 2 ? R[2] : R[1];
         if (width == 4) transport[2] = R[2], transport[3] = R[3];
       };
-      store(position_in_tail[e], b, plane_a, unfolded_edge(plane_a.normal, plane_b.normal, offset, noise), R_ba);
-      store(position_in_head[e], a, plane_b, unfolded_edge(plane_b.normal, plane_a.normal, -1.0 * offset, noise), R_ab);
+      store(position_in_tail[e], b, plane_a, unfolded_edge(plane_a.normal, plane_b.normal, offset, noise.at(a)), R_ba);
+      store(position_in_head[e], a, plane_b, unfolded_edge(plane_b.normal, plane_a.normal, -1.0 * offset, noise.at(a)),
+            R_ab);
     }
   });
   return g;

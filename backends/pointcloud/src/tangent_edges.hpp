@@ -2,6 +2,7 @@
 /// Edge logarithms and transports between the tangent planes of a cloud.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "ahm/graph/csr_graph.hpp"
@@ -14,9 +15,11 @@ namespace ahm::pointcloud {
 /// Where `trusted` is false, an edge between opposed normals is a reflection; else it is a rotation by more than 90
 /// degrees.
 /// @param noise  of offsets across the surface, units of the clean points
+/// @param kind  how transports are stored; none: as blocks where there is a reflection
 /// @param vertex_of_clean  number of each clean point among the vertices, -1: none
 CsrGraphData tangent_edges(const CleanPoints& cloud, const TangentPlanes& planes, const WeightedEdges& edges,
-                           const std::vector<Index>& vertex_of_clean, Index vertices, bool trusted, double noise,
-                           unsigned threads, CloudDetails& report);
+                           const std::vector<Index>& vertex_of_clean, Index vertices, bool trusted,
+                           const PerPart& noise, unsigned threads, CloudDetails& report,
+                           std::optional<TransportKind> kind = {});
 
 }  // namespace ahm::pointcloud

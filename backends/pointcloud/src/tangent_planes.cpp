@@ -5,6 +5,7 @@
 #include <cmath>
 #include <iterator>
 #include <numbers>
+#include <numeric>
 #include <string>
 #include <utility>
 
@@ -25,9 +26,6 @@ constexpr double narrow_ratio = 1e-3;
 
 /// Neighbours are as thick as wide when their third principal variance is above this share of the second.
 constexpr double thick_ratio = 0.25;
-
-/// Dropping neighbours shrinks a neighbourhood, which may drop others; what is left after these rounds is not joined either.
-constexpr int reach_rounds = 3;
 
 /// Buffers of one thread's queries.
 struct QueryBuffers {
@@ -203,15 +201,24 @@ Neighborhoods find_neighborhoods(const CleanPoints& cloud, const NeighborSearch&
   return result;
 }
 
-double spacing(const Neighborhoods& neighborhoods) {
-  std::vector<double> spacings(neighborhoods.radius.size());
-  for (std::size_t i = 0; i < spacings.size(); ++i) {
-    const auto count = static_cast<double>(neighborhoods.begin[i + 1] - neighborhoods.begin[i]);
-    spacings[i] = neighborhoods.radius[i] * std::sqrt(std::numbers::pi / std::max(1.0, count));
-  }
+double spacing_at(const Neighborhoods& neighborhoods, Index i) {
+  const auto count = static_cast<double>(neighborhoods.begin[i + 1] - neighborhoods.begin[i]);
+  return neighborhoods.radius[i] * std::sqrt(std::numbers::pi / std::max(1.0, count));
+}
+
+double spacing(const Neighborhoods& neighborhoods, std::span<const Index> points) {
+  std::vector<double> spacings;
+  spacings.reserve(points.size());
+  for (const Index i : points) spacings.push_back(spacing_at(neighborhoods, i));
   const auto middle = spacings.begin() + static_cast<std::ptrdiff_t>(spacings.size() / 2);
   std::nth_element(spacings.begin(), middle, spacings.end());
   return *middle;
+}
+
+double spacing(const Neighborhoods& neighborhoods) {
+  std::vector<Index> all(neighborhoods.radius.size());
+  std::iota(all.begin(), all.end(), Index{0});
+  return spacing(neighborhoods, all);
 }
 
 TangentPlanes find_tangent_planes(const CleanPoints& cloud, std::span<const Vec3> given, const NeighborSearch& search,

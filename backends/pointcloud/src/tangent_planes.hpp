@@ -10,6 +10,9 @@
 
 namespace ahm::pointcloud {
 
+/// Dropping neighbours shrinks a neighbourhood, which may drop others; what is left after these rounds is not joined either.
+inline constexpr int reach_rounds = 3;
+
 struct Neighborhoods {
   Index k = 0;                 ///< neighbours per point, but for points that needed more or reach fewer
   std::vector<Offset> begin;   ///< n + 1
@@ -36,8 +39,11 @@ struct TangentPlanes {
 Neighborhoods find_neighborhoods(const CleanPoints& cloud, const NeighborSearch& search, Index k,
                                  const CloudOptions& options);
 
-/// Median distance of neighbours on an even surface of the same density: the root of the area per point.
+/// Distance of neighbours on an even surface of the density at a point: the root of the area per point ...
+double spacing_at(const Neighborhoods& neighborhoods, Index i);
+/// ... and its median, over all or some.
 double spacing(const Neighborhoods& neighborhoods);
+double spacing(const Neighborhoods& neighborhoods, std::span<const Index> points);
 
 /// Normals as given, where the points bear them out (zero and non-finite ones are estimated, and turned to the side of
 /// their neighbours), or by

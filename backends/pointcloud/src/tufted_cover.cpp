@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 #include "ahm/surface/half_edges.hpp"
@@ -50,17 +49,37 @@ class TuftedCover {
     glue(cloud, planes, triangles);
   }
 
-  /// Adds the least length to every edge that keeps each face away from degeneracy ([SC20] Sec. 4.5).
-  double mollify() {
-    const double mean = std::accumulate(length_.begin(), length_.end(), 0.0) / static_cast<double>(length_.size());
-    const double margin = 1e-5 * mean;
-    double epsilon = 0;
-    for (std::size_t f = 0; f < length_.size(); f += 6) {  // both copies have the same lengths
-      const double sum = length_[f] + length_[f + 1] + length_[f + 2];
-      for (int s = 0; s < 3; ++s) epsilon = std::max(epsilon, margin - (sum - 2.0 * length_[f + s]));
+  /// The least length to be added to every edge of a part that keeps each face away from degeneracy ([SC20] Sec. 4.5).
+  std::vector<double> least_mollification(const CloudParts& parts) const {
+    std::vector<double> sum(static_cast<std::size_t>(parts.count), 0.0), epsilon = sum;
+    std::vector<Offset> sides(sum.size(), 0);
+    for (std::size_t h = 0; h < length_.size(); ++h) {
+      const Index part = parts.of_point[tail_[h]];
+      sum[part] += length_[h];
+      ++sides[part];
     }
-    for (double& l : length_) l += epsilon;
+    for (std::size_t f = 0; f < length_.size(); f += 6) {  // both copies have the same lengths
+      const Index part = parts.of_point[tail_[f]];
+      const double mean = sum[part] / static_cast<double>(sides[part]);
+      epsilon[part] = std::max(epsilon[part], mollification_of(length_[f], length_[f + 1], length_[f + 2], mean));
+    }
     return epsilon;
+  }
+  void mollify(const PerPart& epsilon) {
+    for (std::size_t h = 0; h < length_.size(); ++h) length_[h] += epsilon.at(tail_[h]);
+  }
+
+  /// Faces at points that lack triangles are tainted, and so are those that a flip joins with them.
+  void taint(const std::vector<char>& complete) {
+    tainted_.assign(tail_.size() / 3, 0);
+    for (std::size_t h = 0; h < tail_.size(); ++h)
+      if (!complete[tail_[h]]) tainted_[h / 3] = 1;
+  }
+  /// Points without a tainted face.
+  std::vector<char> untainted(std::vector<char> complete) const {
+    for (std::size_t h = 0; h < tail_.size(); ++h)
+      if (tainted_[h / 3]) complete[tail_[h]] = 0;
+    return complete;
   }
 
   /// Flips edges until all are Delaunay [BS07]. Returns the number of flips.
@@ -99,11 +118,13 @@ class TuftedCover {
   std::vector<Index> tail_;
   std::vector<Half> twin_;
   std::vector<double> length_;
+  std::vector<char> tainted_;  ///< of each face; empty: none
 };
 
 /// Replaces the faces (i, j, k) and (j, i, m) on both sides of edge (i, j) by (m, k, i) and (k, m, j).
 void TuftedCover::flip(Half h) {
   const Half t = twin_[h];
+  if (!tainted_.empty() && tainted_[h / 3] != tainted_[t / 3]) tainted_[h / 3] = tainted_[t / 3] = 1;
   const Half jk = next(h), ki = previous(h), im = next(t), mj = previous(t);
   const Index k = tail_[ki], m = tail_[mj];
   const double l = length_[h], l_jk = length_[jk], l_ki = length_[ki], l_im = length_[im], l_mj = length_[mj];
@@ -222,12 +243,30 @@ WeightedEdges TuftedCover::weighted_edges() const {
 
 }  // namespace
 
+double mollification_of(double a, double b, double c, double mean_length) {
+  const double margin = 1e-5 * mean_length, sum = a + b + c;
+  return std::max({margin - (sum - 2.0 * a), margin - (sum - 2.0 * b), margin - (sum - 2.0 * c)});
+}
+
 WeightedEdges tufted_laplacian(const CleanPoints& cloud, const TangentPlanes& planes,
-                               const std::vector<Triangle>& triangles, CloudDetails& report) {
+                               const std::vector<Triangle>& triangles, const CloudParts& parts, CloudDetails& report) {
   TuftedCover cover(cloud, planes, triangles);
-  report.mollification = cover.mollify();
+  std::vector<double> epsilon = cover.least_mollification(parts);
+  report.mollification = *std::max_element(epsilon.begin(), epsilon.end());
+  cover.mollify(PerPart(parts.of_point, std::move(epsilon)));
   report.flips = cover.flip_to_delaunay();
   report.flips_stopped = !cover.is_delaunay();
+  return cover.weighted_edges();
+}
+
+WeightedEdges tufted_laplacian(const CleanPoints& cloud, const TangentPlanes& planes,
+                               const std::vector<Triangle>& triangles, CoverPart& part, CloudDetails& report) {
+  TuftedCover cover(cloud, planes, triangles);
+  cover.mollify(part.mollification);
+  cover.taint(part.complete);
+  report.flips = cover.flip_to_delaunay();
+  report.flips_stopped = !cover.is_delaunay();
+  part.certain = cover.untainted(part.complete);
   return cover.weighted_edges();
 }
 

@@ -66,9 +66,10 @@ class FaceMatrices {
   void check_memory() const {
     const double bytes = 64.0 * static_cast<double>(begin_.back()), memory = machine_memory();
     if (memory > 0 && bytes > memory)
-      throw ResourceExhausted("every pair of corners of a face is an edge, which would take " +
-                              std::to_string(static_cast<long>(bytes / 1e9)) +
-                              " GB for this mesh; refine it (PolygonMesh::refined) and map the triangles");
+      throw ResourceExhausted("polygons_too_large",
+                              "every pair of corners of a face is an edge, which would take " +
+                                  std::to_string(static_cast<long>(bytes / 1e9)) + " GB for this mesh",
+                              "refine it (PolygonMesh::refined) and map the triangles");
   }
 
   enum class Shape : std::uint8_t { plain, nonplanar, degenerate };

@@ -16,10 +16,15 @@ constexpr double least_weight = 1e-13;
 /// needs.
 constexpr double largest_weight = 1e4;
 
+/// Of a sliver on the boundary, so that vertices in nothing else stay joined.
+constexpr double least_conductance = 1e-3;
+
 class Rows {
  public:
   Rows(const IntrinsicTriangulation& triangulation, const VertexFrames& frames, bool clamp)
-      : triangulation_(triangulation), edges_(triangulation.half_edges()), frames_(frames), clamp_(clamp) {}
+      : triangulation_(triangulation), edges_(triangulation.half_edges()), frames_(frames), clamp_(clamp) {
+    if (clamp) find_slivers();
+  }
 
   /// (cot alpha + cot beta) / 2, one of them on the boundary.
   double cotangents(Half side) const {
@@ -28,9 +33,20 @@ class Rows {
            (t >= 0 ? triangulation_.cotangent(side) + triangulation_.cotangent(t) : triangulation_.cotangent(side));
   }
 
+  /// What a face gives to the weight of its side: half the cotangent of the angle across, but in a sliver.
+  double from_face(Half side) const {
+    const Half base = base_.empty() ? -1 : base_[static_cast<std::size_t>(side / 3)];
+    if (base < 0) return 0.5 * triangulation_.cotangent(side);
+    if (side == base) return 0;
+    const Half third = detail::next(side) == base ? detail::previous(side) : detail::next(side);
+    return std::max(0.5 / triangulation_.cotangent(third), least_conductance);
+  }
+
   /// w_ij; no less than what counts, so that squares and rectangles have no diagonal in the operators.
   double weight(Half side) const {
-    const double w = clamp_ ? std::clamp(cotangents(side), 0.0, largest_weight) : cotangents(side);
+    const Half t = edges_.twin[side];
+    double w = from_face(side) + (t >= 0 ? from_face(t) : 0);
+    if (clamp_) w = std::clamp(w, 0.0, largest_weight);
     return std::abs(w) > least_weight ? w : 0;
   }
 
@@ -89,17 +105,38 @@ class Rows {
       lengths.add(edges_.tail[h], edges_.head(h), triangulation_.length(h));
       report.closed_edges += edges_.tail[h] == edges_.head(h);
       report.clamped_weights += clamp_ && cotangents(h) < -least_weight;
-      report.capped_weights += clamp_ && cotangents(h) > largest_weight;
+      report.capped_weights += clamp_ && weight(h) >= largest_weight;
     }
     g.mean_edge_length = sum / static_cast<double>(report.edges);
     g.component_edge_lengths = lengths.means();
   }
 
  private:
+  /// Finds the slivers on the boundary that no flip removes: the weight of their outer side is negative. Setting it to zero alone
+  /// would leave the weights of the other two sides, which it balances: heat would run along the boundary as if it had no
+  /// length. A sliver conducts along its outer side only: of a strip of that length, the height of the sliver over either part.
+  /// What it no longer gives to its other sides may show the next one.
+  void find_slivers() {
+    base_.assign(static_cast<std::size_t>(edges_.size() / 3), -1);
+    std::vector<Half> outer;
+    for (Half h = 0; h < edges_.size(); ++h)
+      if (edges_.twin[h] < 0 && !triangulation_.is_dropped(h / 3)) outer.push_back(h);
+    while (!outer.empty()) {
+      const Half h = outer.back(), beyond = edges_.twin[h];
+      outer.pop_back();
+      if (base_[h / 3] >= 0 || !((beyond >= 0 ? from_face(beyond) : 0) + 0.5 * triangulation_.cotangent(h) < 0))
+        continue;
+      base_[h / 3] = h;
+      for (const Half side : {detail::next(h), detail::previous(h)})
+        if (edges_.twin[side] >= 0) outer.push_back(edges_.twin[side]);
+    }
+  }
+
   const IntrinsicTriangulation& triangulation_;
   HalfEdges edges_;
   const VertexFrames& frames_;
   bool clamp_;
+  std::vector<Half> base_;  ///< of the faces that are slivers: the outer side; -1: of the others
 };
 
 /// Vertices whose faces have no area still need a mass: where it is below 1e-14 of the square of their longest edge, it

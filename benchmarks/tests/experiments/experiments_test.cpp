@@ -85,6 +85,19 @@ TEST(OrdersExperiment, TheSecondIsNearerOnTheSphereAndNowhereMuchWorse) {
   EXPECT_LT(table.where("mesh", "sphere").where("variant", "adaptive").largest("trusted order 2 / 1"), 0.5);
 }
 
+TEST(CloudsExperiment, HeatHasTheDistancesOfTheCleanSphere) {
+  const Table sphere = toy("clouds").where("cloud", "sphere").where("noise", "0");
+  EXPECT_LT(sphere.where("variant", "unfolded").largest("95%"), 0.02);
+  EXPECT_LT(sphere.where("variant", "adaptive").where("order", "1").largest("95%"), 0.04);
+}
+
+TEST(FarExperiment, FlatGraphsAreExactAtAnyDistance) {
+  const Table& table = toy("far");
+  EXPECT_EQ(table.numbers("ok"), table.numbers("vertices"));
+  EXPECT_LE(table.largest("|phi|, line of the source"), 1e-11);
+  EXPECT_LE(table.where("shape", "cube").largest("distance"), 1e-11);
+}
+
 TEST(VariantsExperiment, DifferLeastAtTheSource) {
   const Table& table = toy("variants");
   for (const char* shape : {"sphere", "ellipsoid", "bumpy sphere", "torus"}) {
@@ -167,7 +180,7 @@ TEST(PolygonsExperiment, RefinedIsNearer) {
     const Table rows = table.where("mesh", mesh);
     const Table refined = rows.where("discretization", "refined"), polygons = rows.where("discretization", "polygons");
     EXPECT_LE(refined.mean("rms"), polygons.mean("rms")) << mesh;
-    EXPECT_LE(refined.mean("distance rms"), 0.5 * polygons.mean("distance rms")) << mesh;
+    EXPECT_LT(refined.mean("distance rms"), polygons.mean("distance rms")) << mesh;
   }
 }
 

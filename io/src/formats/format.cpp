@@ -35,6 +35,13 @@ const Format* find_format(const std::string& extension) {
   return nullptr;
 }
 
+const Format* recognized_format(std::string_view bytes) {
+  for (const Format& format : formats())
+    for (const std::string& signature : format.signatures)
+      if (bytes.starts_with(signature)) return &format;
+  return nullptr;
+}
+
 std::string list_of(const std::vector<std::string>& extensions, const std::string& last) {
   std::string text;
   for (std::size_t k = 0; k < extensions.size(); ++k)

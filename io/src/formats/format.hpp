@@ -6,6 +6,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "ahm/io/geometry.hpp"
@@ -17,6 +18,8 @@ namespace ahm::io {
 /// What cannot be done with a format stays null.
 struct Format {
   std::vector<std::string> extensions;  ///< lower case, with their dot
+  std::vector<std::string> signatures =
+      {};  ///< a file without a name is of this format where it begins with one of these
   Geometry (*read)(const Input& in) = nullptr;
   void (*write)(AtomicFile& file, const Table& table) = nullptr;
   void (*write_textured)(const std::filesystem::path& path, std::span<const MeshPart> parts) = nullptr;
@@ -27,6 +30,8 @@ struct Format {
 const std::vector<Format>& formats();
 /// The format of an extension; null when there is none.
 const Format* find_format(const std::string& extension);
+/// The format of bytes that begin like its own; null when there is none.
+const Format* recognized_format(std::string_view bytes);
 /// ".off, .obj and .stl"
 std::string list_of(const std::vector<std::string>& extensions, const std::string& last = "and");
 

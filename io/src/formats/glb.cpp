@@ -177,6 +177,8 @@ void write(const std::filesystem::path& path, std::span<const MeshPart> parts) {
 
 }  // namespace
 
-Format glb_format() { return {.extensions = {".glb"}, .read = read_gltf, .write_textured = write}; }
+Format glb_format() {
+  return {.extensions = {".glb"}, .signatures = {"glTF"}, .read = read_gltf, .write_textured = write};
+}
 
 }  // namespace ahm::io

@@ -8,11 +8,11 @@
 
 #include "ahm/error.hpp"
 #include "ahm/util/text.hpp"
+#include "ahm/util/weld.hpp"
 #include "formats/format.hpp"
 #include "read/colors.hpp"
 #include "read/free_memory.hpp"
 #include "read/gltf_scene.hpp"
-#include "read/weld.hpp"
 
 namespace ahm::io {
 namespace {
@@ -165,7 +165,7 @@ class GltfReader {
 
   /// glTF has a vertex for every texture coordinate and normal of a point: the surface is one where positions are equal.
   void join_seams() {
-    const Welded welded = weld(g_.points);
+    const detail::Welded welded = detail::weld(g_.points);
     for (std::size_t k = 0; k < welded.first.size(); ++k) {
       g_.points[k] = g_.points[welded.first[k]];
       if (!g_.colors.empty()) g_.colors[k] = g_.colors[welded.first[k]];

@@ -137,6 +137,6 @@ Geometry read(const Input& in) {
 
 }  // namespace
 
-Format las_format() { return {.extensions = {".las"}, .read = read}; }
+Format las_format() { return {.extensions = {".las"}, .signatures = {"LASF"}, .read = read}; }
 
 }  // namespace ahm::io

@@ -166,6 +166,6 @@ Geometry read(const Input& in) {
 
 }  // namespace
 
-Format off_format() { return {.extensions = {".off"}, .read = read}; }
+Format off_format() { return {.extensions = {".off"}, .signatures = {"OFF", "COFF", "NOFF"}, .read = read}; }
 
 }  // namespace ahm::io

@@ -5,47 +5,17 @@
 // properties for all three encodings.
 #include <algorithm>
 #include <array>
-#include <bit>
-#include <cstring>
 #include <limits>
 
 #include "formats/format.hpp"
 #include "read/colors.hpp"
 #include "read/ply_header.hpp"
+#include "read/ply_value.hpp"
+#include "read/properties.hpp"
 #include "read/text.hpp"
 
 namespace ahm::io {
 namespace {
-
-template <class T>
-double load_as(const char* bytes, bool swap) noexcept {
-  std::array<char, sizeof(T)> raw;
-  std::memcpy(raw.data(), bytes, sizeof(T));
-  if (swap) std::ranges::reverse(raw);
-  return static_cast<double>(std::bit_cast<T>(raw));
-}
-
-double load_value(PlyType type, const char* bytes, bool swap) noexcept {
-  switch (type) {
-    case PlyType::int8:
-      return load_as<std::int8_t>(bytes, swap);
-    case PlyType::uint8:
-      return load_as<std::uint8_t>(bytes, swap);
-    case PlyType::int16:
-      return load_as<std::int16_t>(bytes, swap);
-    case PlyType::uint16:
-      return load_as<std::uint16_t>(bytes, swap);
-    case PlyType::int32:
-      return load_as<std::int32_t>(bytes, swap);
-    case PlyType::uint32:
-      return load_as<std::uint32_t>(bytes, swap);
-    case PlyType::float32:
-      return load_as<float>(bytes, swap);
-    case PlyType::float64:
-      return load_as<double>(bytes, swap);
-  }
-  return 0.0;
-}
 
 /// Where the next value comes from: words of one line per item, or bytes.
 class Body {
@@ -53,7 +23,7 @@ class Body {
   Body(const Input& in, const PlyHeader& header)
       : in_(in),
         text_(header.format == PlyFormat::ascii),
-        swap_((header.format == PlyFormat::big_endian) != (std::endian::native == std::endian::big)),
+        swap_(is_swapped(header.format)),
         lines_(std::string_view(in.bytes).substr(text_ ? header.body : in.bytes.size()), header.body_line),
         position_(header.body) {}
 
@@ -211,12 +181,15 @@ void read_vertices(const Input& in, const PlyElement& vertex, Body& body, Geomet
   g.points.resize(n);
   if (std::ranges::count(role_of, std::size_t{3}) > 0) g.normals.resize(n);
   Colors colors(role_of, vertex, n);
+  for (std::size_t p = 0; p < role_of.size(); ++p)
+    if (role_of[p] == unused) add_property(g, vertex.properties[p].name, std::vector<double>(n));
   for (std::size_t i = 0; i < n; ++i) {
     body.begin_item(vertex, i);
+    auto property = g.properties.begin();
     for (std::size_t p = 0; p < role_of.size(); ++p) {
       const std::size_t role = role_of[p];
       if (role == unused) {
-        body.skip(vertex.properties[p]);
+        (property++)->values[i] = body.value(vertex.properties[p].type);
       } else if (role < 3) {
         g.points[i][role] = body.value(vertex.properties[p].type);
       } else if (role < 6) {
@@ -326,6 +299,12 @@ Geometry read(const Input& in) {
 
 }  // namespace
 
-Format ply_format() { return {.extensions = {".ply"}, .read = read, .write = write_ply}; }
+Format ply_format() {
+  return {.extensions = {".ply"},
+          .signatures = {"ply"},
+          .read = read,
+          .write = write_ply,
+          .write_textured = write_textured_ply};
+}
 
 }  // namespace ahm::io

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <utility>
 
+#include "ahm/util/weld.hpp"
 #include "formats/format.hpp"
 #include "little_endian.hpp"
 #include "read/text.hpp"
-#include "read/weld.hpp"
 
 namespace ahm::io {
 namespace {
@@ -87,7 +87,7 @@ Geometry read(const Input& in) {
   g.format = binary ? "STL binary" : "STL text";
   check_vertex_count(in, corners.size());
   if (corners.empty()) fail(in, "it holds no triangles");
-  Welded welded = weld(corners);
+  detail::Welded welded = detail::weld(corners);
   for (const Index corner : welded.first) g.points.push_back(corners[corner]);
   g.face_vertices = std::move(welded.number);
   for (std::size_t f = 0; 3 * f <= corners.size(); ++f) g.face_begin.push_back(static_cast<Offset>(3 * f));
@@ -96,6 +96,6 @@ Geometry read(const Input& in) {
 
 }  // namespace
 
-Format stl_format() { return {.extensions = {".stl"}, .read = read}; }
+Format stl_format() { return {.extensions = {".stl"}, .signatures = {"solid "}, .read = read}; }
 
 }  // namespace ahm::io

@@ -4,11 +4,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 
 #include "read/colors.hpp"
 #include "read/column_names.hpp"
+#include "read/properties.hpp"
 #include "read/text.hpp"
 
 namespace ahm::io {
@@ -90,6 +92,14 @@ class ColumnReader {
     std::vector<Vec3> values = {};
   };
 
+  /// A named column that is no part of a vector.
+  struct Other {
+    std::size_t column;
+    std::string name;
+    std::vector<double> values = {};
+    bool is_numbers = true;
+  };
+
   /// The next line that holds anything; // is a comment unless it names the columns.
   bool next_line() {
     while (lines_.next_filled('#')) {
@@ -121,8 +131,27 @@ class ColumnReader {
     columns_ = words_.size();
     position_ = names.position;
     for (const auto& [role, columns] : names.triples) triples_.push_back({role, columns});
+    for (std::size_t column = 0; column < columns_; ++column)
+      if (!is_taken(column)) others_.push_back({column, std::string(words_[column])});
     if (delimiter != ' ') delimiter_ = delimiter;
     return names_found_ = true;
+  }
+
+  bool is_taken(std::size_t column) const {
+    const auto holds = [&](const auto& columns) { return std::ranges::find(columns, column) != columns.end(); };
+    return holds(position_) ||
+           std::ranges::any_of(triples_, [&](const Triple& triple) { return holds(triple.columns); });
+  }
+
+  /// Numbers, or nothing where there is none; a column that holds anything else is left out.
+  void read_others() {
+    for (Other& other : others_) {
+      if (!other.is_numbers) continue;
+      const std::string_view word = words_[other.column];
+      const std::optional<double> value = word.empty() ? std::numeric_limits<double>::quiet_NaN() : to_real(word);
+      other.is_numbers = value.has_value();
+      if (value) other.values.push_back(*value);
+    }
   }
 
   void read_row() {
@@ -137,6 +166,7 @@ class ColumnReader {
                    std::to_string(words_.size()) + " columns, but the lines before have " + std::to_string(columns_));
     g_.points.push_back(vector(position_));
     for (Triple& triple : triples_) triple.values.push_back(vector(triple.columns));
+    read_others();
     if (intensity_) intensity_->push_back(real_or_fail(in_, lines_.number(), words_[3]));
   }
 
@@ -163,6 +193,12 @@ class ColumnReader {
   /// Unnamed columns are normals unless they can only be colors. Of two, one must be each.
   void finish() {
     if (intensity_) g_.properties.push_back({"intensity", std::move(*intensity_)});
+    for (Other& other : others_) {
+      if (other.is_numbers)
+        add_property(g_, other.name, std::move(other.values));
+      else
+        g_.warnings.push_back({"column_ignored", {}, {}, other.name});
+    }
     for (Triple& triple : triples_)
       if (triple.role == ColumnRole::unknown) tell(triple);
     if (triples_.size() == 2 && triples_[0].role == triples_[1].role) {
@@ -198,6 +234,7 @@ class ColumnReader {
   std::array<std::size_t, 3> position_ = {0, 1, 2};
   std::vector<Triple> triples_;
   std::optional<std::vector<double>> intensity_;
+  std::vector<Other> others_;
   bool names_found_ = false;
   std::optional<std::int64_t> left_;  ///< points of this block to come, where their number is announced
 };

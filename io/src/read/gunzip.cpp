@@ -90,4 +90,12 @@ void gunzip(Input& in) {
   if (in.bytes.empty()) fail(in, "the file is empty (0 bytes) when unpacked");
 }
 
+void inflate_block(const Input& in, std::string_view packed, std::span<char> room, const std::string& what) {
+  auto made = static_cast<uLongf>(room.size());
+  const int state = ::uncompress(reinterpret_cast<Bytef*>(room.data()), &made,
+                                 reinterpret_cast<const Bytef*>(packed.data()), static_cast<uLong>(packed.size()));
+  if (state == Z_MEM_ERROR) throw std::bad_alloc();
+  if (state != Z_OK || made != room.size()) fail(in, what + " is damaged: its compressed data (zlib) does not unpack");
+}
+
 }  // namespace ahm::io

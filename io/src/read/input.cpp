@@ -59,6 +59,20 @@ Input load(const std::filesystem::path& path) {
   return in;
 }
 
+Input load(std::istream& stream) {
+  Input in{"-", {}};
+  constexpr std::size_t block = std::size_t{1} << 20;
+  for (std::size_t done = 0; stream; in.bytes.resize(done)) {
+    in.bytes.resize(done + block);
+    stream.read(in.bytes.data() + done, block);
+    done += static_cast<std::size_t>(stream.gcount());
+  }
+  if (stream.bad()) fail(in, "the stream cannot be read");
+  if (in.bytes.empty()) fail(in, "the stream is empty (0 bytes)");
+  if (is_gzip(in)) gunzip(in);
+  return in;
+}
+
 void fail(const Input& in, const std::string& what) {
   throw IoError("cannot read " + quoted_path(in.path) + ": " + what);
 }

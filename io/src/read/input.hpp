@@ -4,8 +4,11 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <istream>
 #include <string>
 #include <string_view>
+
+#include "ahm/io/formats.hpp"
 
 namespace ahm::io {
 
@@ -13,11 +16,15 @@ namespace ahm::io {
 struct Input {
   std::filesystem::path path;
   std::string bytes;
+  std::uint64_t beyond = 0;  ///< where only the beginning was loaded: bytes that follow
 };
 
 /// Reads a regular file, and unpacks what is compressed with gzip, whatever its name. @throws IoError with the system's
 /// reason; empty files are refused here
 Input load(const std::filesystem::path& path);
+
+/// The same of all that a stream holds, under the name "-". @throws IoError; an empty stream is refused here
+Input load(std::istream& stream);
 
 /// Throws IoError "cannot read 'path': what".
 [[noreturn]] void fail(const Input& in, const std::string& what);
@@ -33,7 +40,5 @@ void check_vertex_count(const Input& in, std::uint64_t count);
 std::string in_quotes(std::string_view text);
 /// The path in quotes, fit for a message.
 std::string quoted_path(const std::filesystem::path& path);
-/// The extension in lower case with its dot, e.g. ".ply".
-std::string lower_extension(const std::filesystem::path& path);
 
 }  // namespace ahm::io

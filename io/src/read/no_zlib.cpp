@@ -9,4 +9,8 @@ void gunzip(Input& in) {
                in.path.filename().string() + ")");
 }
 
+void inflate_block(const Input& in, std::string_view, std::span<char>, const std::string& what) {
+  fail(in, what + " is compressed and this build has no zlib; save the file without compression");
+}
+
 }  // namespace ahm::io

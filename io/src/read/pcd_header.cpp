@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "read/text.hpp"
+#include "write/writers.hpp"
 
 namespace ahm::io {
 namespace {
@@ -14,7 +15,7 @@ using Words = std::vector<std::string_view>;
 
 /// The header's lines by keyword, each allowed once.
 struct RawHeader {
-  Words fields, sizes, types, counts;
+  Words fields, sizes, types, counts, viewpoint;
   std::optional<std::uint64_t> width, height, points;
   std::int64_t fields_line = 1;
 };
@@ -42,6 +43,14 @@ void set_once(const Input& in, std::int64_t line, const Words& words, std::optio
   number = to_count(in, line, words[1]);
 }
 
+void set_viewpoint(const Input& in, std::int64_t line, const Words& words, PcdHeader& header) {
+  if (words.size() != header.viewpoint.size())
+    fail_at_line(in, line, "VIEWPOINT must have seven numbers: x y z and a quaternion w x y z");
+  for (std::size_t k = 0; k < words.size(); ++k) {
+    header.viewpoint[k] = real_or_fail(in, line, words[k]);
+  }
+}
+
 /// Reads up to and with the line DATA, which ends with "\n" because binary data may follow.
 RawHeader read_lines(const Input& in, PcdHeader& header) {
   RawHeader raw;
@@ -53,7 +62,7 @@ RawHeader read_lines(const Input& in, PcdHeader& header) {
       fail_at_line(in, line, "the PCD header has no 'DATA' line; the file is cut short or no PCD file");
     split_words(std::string_view(in.bytes).substr(position, end - position), words);
     position = end + 1;
-    if (words.empty() || words[0].starts_with('#') || words[0] == "VERSION" || words[0] == "VIEWPOINT") continue;
+    if (words.empty() || words[0].starts_with('#') || words[0] == "VERSION") continue;
     if (words[0] == "FIELDS" || words[0] == "COLUMNS") {
       set_once(in, raw.fields_line = line, words, raw.fields);
     } else if (words[0] == "SIZE") {
@@ -62,6 +71,9 @@ RawHeader read_lines(const Input& in, PcdHeader& header) {
       set_once(in, line, words, raw.types);
     } else if (words[0] == "COUNT") {
       set_once(in, line, words, raw.counts);
+    } else if (words[0] == "VIEWPOINT") {
+      set_once(in, line, words, raw.viewpoint);
+      set_viewpoint(in, line, raw.viewpoint, header);
     } else if (words[0] == "WIDTH") {
       set_once(in, line, words, raw.width);
     } else if (words[0] == "HEIGHT") {
@@ -216,10 +228,13 @@ std::string full_header(const PcdHeader& header) {
     types += std::string(" ") + field.type;
     counts += " " + std::to_string(field.count);
   }
+  std::string viewpoint = "VIEWPOINT";
+  for (const double number : header.viewpoint) append_decimals(viewpoint += ' ', number);
   constexpr std::array<const char*, 3> data = {"ascii", "binary", "binary_compressed"};
-  return "VERSION 0.7\n" + fields + "\n" + sizes + "\n" + types + "\n" + counts + "\nWIDTH " +
-         std::to_string(header.width) + "\nHEIGHT " + std::to_string(header.height) + "\nPOINTS " +
-         std::to_string(header.points) + "\nDATA " + data[static_cast<std::size_t>(header.data)] + "\n";
+  return "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\n" + fields + "\n" + sizes + "\n" + types + "\n" +
+         counts + "\nWIDTH " + std::to_string(header.width) + "\nHEIGHT " + std::to_string(header.height) + "\n" +
+         viewpoint + "\nPOINTS " + std::to_string(header.points) + "\nDATA " +
+         data[static_cast<std::size_t>(header.data)] + "\n";
 }
 
 }  // namespace ahm::io

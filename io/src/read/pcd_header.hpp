@@ -2,6 +2,7 @@
 /// The header of a PCD file, checked against the file before PCL sees it.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -23,7 +24,9 @@ struct PcdField {
 struct PcdHeader {
   std::vector<PcdField> fields;
   std::uint64_t width = 0, height = 0;
-  std::uint64_t points = 0;      ///< width times height
+  std::uint64_t points = 0;  ///< width times height
+  /// Of the sensor: x, y, z, and a quaternion w, x, y, z.
+  std::array<double, 7> viewpoint{0, 0, 0, 1, 0, 0, 0};
   std::uint64_t point_size = 0;  ///< bytes of one point
   PcdData data = PcdData::ascii;
   std::size_t body = 0;        ///< position of the first byte behind the header

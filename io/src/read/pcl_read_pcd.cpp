@@ -7,11 +7,14 @@
 #include <pcl/io/pcd_io.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
+#include <span>
 #include <sstream>
 
 #include "read/pcd_header.hpp"
 #include "read/pcl_quiet.hpp"
+#include "read/properties.hpp"
 
 namespace ahm::io {
 namespace {
@@ -110,6 +113,38 @@ void read_vectors(const Input& in, const PCLPointCloud2& cloud, std::array<const
   }
 }
 
+bool has_a_role(const PCLPointField& field) {
+  constexpr std::string_view roles[] = {"x", "y", "z", "normal_x", "normal_y", "normal_z", "rgb", "rgba", "_"};
+  return std::ranges::find(roles, field.name) != std::end(roles);
+}
+
+/// Whether doubles hold them all: whole numbers of 64 bits may be larger.
+bool exact(const PCLPointField& field, std::span<const double> values) {
+  constexpr double largest = 9007199254740992;  // 2^53
+  const bool wide = field.datatype == PCLPointField::INT64 || field.datatype == PCLPointField::UINT64;
+  return !wide || std::ranges::all_of(values, [](double x) { return std::abs(x) < largest; });
+}
+
+void read_properties(const Input& in, const PCLPointCloud2& cloud, Geometry& g) {
+  constexpr std::size_t most_columns = 4096;  // bounds the search for equal names
+  std::size_t columns = 0;
+  for (const PCLPointField& field : cloud.fields) {
+    if (has_a_role(field)) continue;
+    PCLPointField value = field;
+    for (std::uint32_t c = 0; c < field.count; ++c, value.offset += pcl::getFieldSize(field.datatype)) {
+      const std::string name = field.count == 1 ? field.name : field.name + "_" + std::to_string(c);
+      std::vector<double> values(columns < most_columns ? g.points.size() : 0);
+      for (std::size_t i = 0; i < values.size(); ++i)
+        values[i] = load_value(in, value, cloud.data.data() + i * cloud.point_step);
+      if (++columns > most_columns || !exact(field, values)) {
+        g.warnings.push_back({"element_ignored", {}, {}, field.name});
+        break;
+      }
+      add_property(g, name, std::move(values));
+    }
+  }
+}
+
 /// PCL packs colors as 0xAARRGGBB into four bytes, which may be declared a float.
 void read_colors(const PCLPointCloud2& cloud, Geometry& g) {
   const PCLPointField* field = find(cloud, "rgb") ? find(cloud, "rgb") : find(cloud, "rgba");
@@ -135,12 +170,15 @@ Geometry read_pcd(const Input& in) {
   g.format = header.data == PcdData::ascii    ? "PCD text"
              : header.data == PcdData::binary ? "PCD binary"
                                               : "PCD compressed";
+  const auto& from = header.viewpoint;
+  g.acquisition = {header.width, header.height, {from[0], from[1], from[2]}, {from[3], from[4], from[5], from[6]}};
   if (header.points == 0) return g;
   const PCLPointCloud2 cloud = read_with_pcl(in, header);
   check_result(in, header, cloud);
   read_vectors(in, cloud, {"x", "y", "z"}, g.points);
   read_vectors(in, cloud, {"normal_x", "normal_y", "normal_z"}, g.normals);
   read_colors(cloud, g);
+  read_properties(in, cloud, g);
   return g;
 }
 

@@ -18,23 +18,49 @@ constexpr Refused refused[] = {
     {".xz", "of compressed files only .gz is read; unpack it first (unxz -k)"},
     {".bz2", "of compressed files only .gz is read; unpack it first (bunzip2 -k)"},
     {".zst", "of compressed files only .gz is read; unpack it first (unzstd)"},
+    {".vtp", "this build has no pugixml, which reads .vtp files; save it as .vtk or .ply in ParaView"},
+    {".vtu", "of VTK's files only .vtp and .vtk are read; save its surface as .vtp in ParaView"},
+    {".pvtp", "files in parts are not read; save it as .vtp in ParaView"},
+    {".vtm", "files in parts are not read; save its surface as .vtp in ParaView"},
+    {".jsonl", "JSON lines are written, not read; write .csv, which is"},
     {".laz", "LAZ, compressed LAS, is not read; convert it to .las with laszip, las2las or pdal translate"},
     {".e57", "E57 is not read; convert it to .ply, .las or .pts with CloudCompare or pdal translate"},
 };
 
-Geometry read_by_extension(const std::filesystem::path& path) {
-  std::string extension = lower_extension(path);
-  if (extension == ".gz") extension = lower_extension(path.stem());
+[[noreturn]] void fail(const std::filesystem::path& path, const std::string& what) {
+  throw IoError("cannot read " + quoted_path(path) + ": " + what);
+}
+
+/// The format of files with this extension, which this build reads. @throws IoError
+const Format& format_to_read(const std::filesystem::path& path, const std::string& extension) {
   if (const Format* format = find_format(extension)) {
-    if (format->read != nullptr) return format->read(load(path));
+    if (format->read != nullptr) return *format;
     if (!format->missing.empty())
-      throw IoError("cannot read " + quoted_path(path) + ": this build has no " + format->missing + ", which reads " +
-                    extension + " files; convert it to .ply or .xyz");
+      fail(path, "this build has no " + format->missing + ", which reads " + extension +
+                     " files; convert it to .ply or .xyz");
   }
   for (const auto& [name, reason] : refused)
-    if (extension == name) throw IoError("cannot read " + quoted_path(path) + ": " + std::string(reason));
-  throw IoError("cannot read " + quoted_path(path) + ": unknown file type " + in_quotes(extension) + "; known are " +
-                list_of(extensions(Use::read)) + ", each also as .gz");
+    if (extension == name) fail(path, std::string(reason));
+  fail(path, "unknown file type " + in_quotes(extension) + "; known are " + list_of(extensions(Use::read)) +
+                 ", each also as .gz");
+}
+
+Geometry read_by_extension(const std::filesystem::path& path, std::string extension) {
+  if (extension.empty()) extension = lower_extension(path);
+  if (extension == ".gz") extension = lower_extension(path.stem());
+  return format_to_read(path, extension).read(load(path));
+}
+
+/// By the extension, or else by the first bytes.
+Geometry read_stream(std::istream& stream, std::string extension) {
+  const Input in = load(stream);
+  if (extension.empty()) {
+    const Format* format = recognized_format(in.bytes);
+    if (format == nullptr)
+      throw IoError("unknown_bytes", "cannot read '-': the first bytes tell no file type", "name its extension");
+    extension = format->extensions.front();
+  }
+  return format_to_read(in.path, extension).read(in);
 }
 
 /// The one law every format shares: a face names vertices that exist.
@@ -49,16 +75,25 @@ void check_faces(const std::filesystem::path& path, const Geometry& g) {
   }
 }
 
-}  // namespace
-
-Geometry read(const std::filesystem::path& path) {
+template <class Read>
+Geometry checked(const std::filesystem::path& path, const Read& read) {
   try {
-    Geometry g = read_by_extension(path);
+    Geometry g = read();
     check_faces(path, g);
     return g;
   } catch (const std::bad_alloc&) {
     throw ResourceExhausted("not enough memory to read " + quoted_path(path));
   }
+}
+
+}  // namespace
+
+Geometry read(const std::filesystem::path& path, const std::string& extension) {
+  return checked(path, [&] { return read_by_extension(path, extension); });
+}
+
+Geometry read(std::istream& stream, const std::string& extension) {
+  return checked("-", [&] { return read_stream(stream, extension); });
 }
 
 }  // namespace ahm::io

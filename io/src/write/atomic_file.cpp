@@ -150,7 +150,9 @@ AtomicFile::AtomicFile(const std::filesystem::path& path) : path_(path), target_
   if (is_stream(path)) {
     // Not through target_: /dev/stdout leads to names that exist only in messages ("pipe:[123]"). Appending, because a
     // redirected output may hold something already.
-    descriptor_ = ::open(path.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
+    // By its number, because what is a socket cannot be opened by a name.
+    descriptor_ = path == "/dev/stdout" ? ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 0)
+                                        : ::open(path.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
     if (descriptor_ < 0) fail(errno);
     return;
   }
@@ -220,7 +222,9 @@ void AtomicFile::discard() noexcept {
 
 void AtomicFile::fail(int error) {
   discard();
-  throw IoError("cannot write " + quoted_path(path_) + ": " + std::generic_category().message(error));
+  const std::string problem = "cannot write " + quoted_path(path_) + ": " + std::generic_category().message(error);
+  if (error == EPIPE) throw IoError("pipe_closed", problem, "nobody reads it any more");
+  throw IoError(problem);
 }
 
 void remove_unfinished_files() noexcept {

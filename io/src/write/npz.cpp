@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "ahm/io/atomic_file.hpp"
+#include "ahm/util/memory.hpp"
 
 namespace ahm::io {
 namespace {
@@ -68,7 +69,7 @@ struct NpzFile::Impl {
       throw InvalidArgument("array " + name + " has " + std::to_string(values.size()) +
                             " values where its shape asks for " + std::to_string(expected));
     // minizip writes to memory it could not have, so it is asked for beforehand.
-    ::operator delete(::operator new (std::size_t{1} << 20));
+    detail::require_memory(std::size_t{1} << 20);
     // Year 1980, month 1, day 1: the first date a zip knows, so that equal arrays make equal files.
     zip_fileinfo info{};
     info.tmz_date.tm_mday = 1;

@@ -78,6 +78,10 @@ void check(const Table& table) {
     if (const auto* words = std::get_if<CodedWords>(&column.values); words != nullptr && rows > 0)
       check_row(column.names.front(), *std::ranges::max_element(words->codes), words->words.size());
   }
+  if (const auto& seen = table.acquisition) {
+    if (seen->height != 0 ? seen->width != rows / seen->height || rows % seen->height != 0 : rows != 0)
+      fail("acquisition.width times acquisition.height is not the number of rows, " + std::to_string(rows));
+  }
   check_faces(table.faces, rows);
   for (const auto& edge : table.edges)
     for (Index row : edge) check_row("an end of an edge", row, rows);

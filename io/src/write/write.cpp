@@ -18,8 +18,8 @@ namespace {
 }
 
 /// The format to write to. @throws IoError
-const Format& format_to_write(const std::filesystem::path& path) {
-  std::string extension = lower_extension(path);
+const Format& format_to_write(const std::filesystem::path& path, std::string extension) {
+  if (extension.empty()) extension = lower_extension(path);
   if (extension.empty() && is_stream(path)) extension = ".csv";
   const Format* format = find_format(extension);
   if (format == nullptr || (format->write == nullptr && format->missing.empty()))
@@ -31,16 +31,16 @@ const Format& format_to_write(const std::filesystem::path& path) {
 
 }  // namespace
 
-void write(const std::filesystem::path& path, const Table& table) {
-  const Format& format = format_to_write(path);
+void write(const std::filesystem::path& path, const Table& table, const std::string& extension) {
+  const Format& format = format_to_write(path, extension);
   check(table);
   AtomicFile file(path);
   format.write(file, table);
   file.commit();
 }
 
-void check_writable(const std::filesystem::path& path) {
-  format_to_write(path);
+void check_writable(const std::filesystem::path& path, const std::string& extension) {
+  format_to_write(path, extension);
   std::error_code error;
   const auto reason = [](int code) { return std::generic_category().message(code); };
   const auto status = std::filesystem::status(path, error);

@@ -15,11 +15,10 @@ namespace ahm::io {
 /// @throws InvalidArgument when the columns, faces and edges do not fit together
 void check(const Table& table);
 
+void write_pcd(AtomicFile& file, const Table& table);
 void write_ply(AtomicFile& file, const Table& table);
+void write_textured_ply(const std::filesystem::path& path, std::span<const MeshPart> parts);
 void write_textured_obj(const std::filesystem::path& path, std::span<const MeshPart> parts);
-
-/// Whether the path leads to what cannot be replaced by a renamed file: a pipe, a device, or the process's own output.
-bool is_stream(const std::filesystem::path& path);
 
 /// Appends the shortest decimals that read back to the same double, in every locale; "nan" for every NaN.
 void append_decimals(std::string& text, double value);

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
 
 #include "ahm/error.hpp"
-#include "ahm/maps/unfolding_front.hpp"
 #include "ahm/util/memory.hpp"
 
 namespace ahm {
@@ -34,10 +34,11 @@ void check_count(Index vertices, Vertex first, Index count) {
 
 }  // namespace
 
-VoronoiCells voronoi_cells(const TangentGraph& graph, std::span<const Vertex> vertices) {
+VoronoiCells voronoi_cells(const TangentGraph& graph, std::span<const Vertex> vertices,
+                           std::shared_ptr<const UnfoldingFront::Stars> stars) {
   return detail::with_memory_check("labelling by the nearest source", [&] {
     check_vertices(graph, vertices);
-    UnfoldingFront front(graph);
+    UnfoldingFront front(graph, std::move(stars));
     for (Vertex vertex : vertices) front.add(Source::at_vertex(vertex));
     front.run();
     VoronoiCells cells;
@@ -71,7 +72,7 @@ std::vector<Vertex> farthest_points(const TangentGraph& graph, Vertex first, Ind
   check_count(n, first, count);
   return detail::with_memory_check("spreading points", [&] {
     std::vector<Vertex> points{first};
-    UnfoldingFront front(graph);
+    UnfoldingFront front(graph, UnfoldingFront::stars(graph));
     while (points.size() < static_cast<std::size_t>(count)) {
       progress.step("farthest points", static_cast<double>(points.size()) / count);
       front.add(Source::at_vertex(points.back()));

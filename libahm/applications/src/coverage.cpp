@@ -8,7 +8,9 @@
 #include <string>
 
 #include "ahm/error.hpp"
+#include "ahm/maps/cost.hpp"
 #include "ahm/util/small_math.hpp"
+#include "ahm/util/text.hpp"
 #include "ahm/util/vec.hpp"
 
 namespace ahm {
@@ -23,7 +25,7 @@ void remove(Vec3& v, const Vec3& axis) {
 void check(const CoverageOptions& o) {
   const auto check_positive = [](const char* name, double value) {
     if (!(value > 0 && std::isfinite(value)))
-      throw InvalidArgument(std::string(name) + " is " + std::to_string(value) + "; give a finite number > 0");
+      throw InvalidArgument(std::string(name) + " is " + detail::number(value) + "; give a finite number > 0");
   };
   check_positive("radius", o.radius);
   check_positive("spacing", o.spacing);
@@ -32,7 +34,7 @@ void check(const CoverageOptions& o) {
   const double step = o.step > 0 ? o.step : o.spacing / 2;
   const double points = (o.radius / o.spacing + 1) * (o.radius / step + 1) * std::numbers::pi;
   if (!(points < 1 << 30))
-    throw InvalidArgument("the pattern has about " + std::to_string(points) +
+    throw InvalidArgument("the pattern has about " + detail::number(points) +
                           " points, more than 2^30; enlarge spacing or step, or lower radius");
 }
 
@@ -93,8 +95,17 @@ class Carrier {
   double distance(const InversePoint& point) const { return length(point.position - path_.points.back().position); }
 
   void append(const InversePoint& point, const Vec2& q, Index line) {
+    if (path_.points.size() == path_.points.capacity()) check_memory();
     const double arclength = size() == 0 ? 0.0 : path_.points.back().arclength + distance(point);
     path_.points.push_back({point.position, point.normal, point.frame().x, q, path_.pieces, line, arclength, 0.0});
+  }
+
+  /// Before the points move to twice their room.
+  void check_memory() const {
+    const double needed = 3.0 * sizeof(CoveragePoint) * static_cast<double>(path_.points.size());
+    if (const double machine = machine_memory(); machine > 0 && needed > machine)
+      throw ResourceExhausted("the path has more than " + std::to_string(path_.points.size()) +
+                              " points, for which memory does not suffice; enlarge spacing or step, or lower radius");
   }
 
   /// Headings and spacings of the current piece; a point alone has none and is dropped.

@@ -15,6 +15,8 @@ namespace {
 
 /// Below this share of the square of its longest side the area of a triangle is rounding.
 constexpr double least_area = 1e-14;
+/// A triangle of a larger distortion collapses.
+constexpr double most_distortion = 1e6;
 
 /// a - b in units of a power of two, so that nothing overflows.
 template <std::size_t d>
@@ -117,7 +119,7 @@ std::vector<double> relative_areas(std::span<const TriangleDistortion> triangles
 DistortionSummary summary(std::span<const TriangleDistortion> triangles) {
   DistortionSummary s;
   std::vector<std::pair<double, double>> sorted;  // D and area
-  double area = 0, sum = 0, flipped_area = 0;
+  double area = 0, sum = 0, flipped_area = 0, collapsed_area = 0;
   Offset flipped = 0;
   const std::vector<double> areas = relative_areas(triangles);
   for (std::size_t t = 0; t < triangles.size(); ++t) {
@@ -125,7 +127,7 @@ DistortionSummary summary(std::span<const TriangleDistortion> triangles) {
     if (std::isnan(value)) continue;
     sorted.emplace_back(value, areas[t]);
     area += areas[t];
-    sum += value * areas[t];
+    value <= most_distortion ? sum += value * areas[t] : collapsed_area += areas[t];
     flipped += triangles[t].flipped;
     flipped_area += triangles[t].flipped ? areas[t] : 0;
   }
@@ -139,7 +141,8 @@ DistortionSummary summary(std::span<const TriangleDistortion> triangles) {
       if ((below += weight) >= share * area) return value;
     return sorted.back().first;
   };
-  s.mean = sum / area;
+  if (collapsed_area < area) s.mean = sum / (area - collapsed_area);
+  s.collapsed_area = collapsed_area / area;
   s.median = percentile(0.5);
   s.percentile_95 = percentile(0.95);
   s.largest = sorted.back().first;

@@ -17,8 +17,6 @@
 namespace ahm {
 namespace {
 
-std::size_t to_size(Index i) { return static_cast<std::size_t>(i); }
-
 /// Zero stays zero.
 Vec3 unit_or_zero(const Vec3& a) {
   const double norm = length(a);

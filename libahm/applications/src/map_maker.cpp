@@ -5,27 +5,60 @@
 #include <optional>
 #include <utility>
 
+#include "ahm/maps/local_coordinates.hpp"
 #include "ahm/util/parallel.hpp"
+#include "ahm/util/small_math.hpp"
 
 namespace ahm {
 
-LogMap MapMaker::map(Vertex source, double radius) const {
-  if (solver_ != nullptr) return solver_->solve(Source::at_vertex(source), {.radius = radius, .spread = false});
-  return geodesics_->log_map(source, {.radius = radius, .frames = false, .progress = {}});
+LogMap MapMaker::map(Vertex source, double radius, bool frames) const {
+  if (solver_ != nullptr)
+    return solver_->solve(Source::at_vertex(source), {.radius = radius, .frames = frames, .spread = false});
+  return geodesics_->log_map(source, {.radius = radius, .frames = frames, .progress = {}});
 }
 
-std::vector<LogMap> MapMaker::maps(std::span<const Vertex> sources, std::span<const double> reach) const {
-  if (solver_ != nullptr) {
-    std::vector<Source> starts;
-    for (Vertex vertex : sources) starts.push_back(Source::at_vertex(vertex));
-    return solver_->solve(starts, {.spread = false});
+std::vector<double> MapMaker::coordinates(std::span<const Vertex> sources,
+                                          std::span<const std::span<const Vertex>> regions,
+                                          std::span<const double> reach) const {
+  if (solver_ == nullptr || solver_->options().order != 1) return coordinates_of_whole(sources, regions, reach);
+  std::vector<Source> starts;
+  for (Vertex vertex : sources) starts.push_back(Source::at_vertex(vertex));
+  std::vector<double> result = local_coordinates(solver_->graph(), starts, regions, solver_->options());
+  // Where heat dies on its way, the solver marches on.
+  auto first = result.begin();
+  for (std::size_t s = 0; s < sources.size(); ++s) {
+    const auto end = first + 2 * std::ssize(regions[s]);
+    if (!all_finite(std::span(first, end)))
+      std::ranges::copy(coordinates_of_whole(sources.subspan(s, 1), regions.subspan(s, 1), reach.subspan(s, 1)), first);
+    first = end;
   }
-  std::vector<std::optional<LogMap>> made(sources.size());
-  detail::parallel_chunks(static_cast<Offset>(sources.size()), 1, threads_, [&](Offset k, Offset) {
-    made[k] = geodesics_->log_map(sources[k], {.radius = reach[k], .frames = false, .progress = {}});
-  });
-  std::vector<LogMap> result;
-  for (auto& map : made) result.push_back(std::move(*map));
+  return result;
+}
+
+std::vector<double> MapMaker::coordinates_of_whole(std::span<const Vertex> sources,
+                                                   std::span<const std::span<const Vertex>> regions,
+                                                   std::span<const double> reach) const {
+  constexpr std::size_t block_size = 16;  // maps kept at the same time
+  std::vector<double> result;
+  for (std::size_t first = 0; first < sources.size(); first += block_size) {
+    const std::size_t count = std::min(block_size, sources.size() - first);
+    std::vector<std::optional<LogMap>> maps(count);
+    if (solver_ != nullptr) {
+      std::vector<Source> starts;
+      for (Vertex vertex : sources.subspan(first, count)) starts.push_back(Source::at_vertex(vertex));
+      std::ranges::move(solver_->solve(starts, {.spread = false}), maps.begin());
+    } else {
+      detail::parallel_chunks(static_cast<Offset>(count), 1, threads_, [&](Offset k, Offset) {
+        const std::size_t s = first + static_cast<std::size_t>(k);
+        maps[k] = geodesics_->log_map(sources[s], {.radius = reach[s], .frames = false, .progress = {}});
+      });
+    }
+    for (std::size_t k = 0; k < count; ++k)
+      for (Vertex vertex : regions[first + k]) {
+        const auto phi = maps[k]->coordinates(vertex);
+        result.insert(result.end(), phi.begin(), phi.end());
+      }
+  }
   return result;
 }
 
@@ -36,11 +69,13 @@ double MapMaker::longest_way(const FaceList& faces) const {
   for (exact::Half h = 0; h < 3 * flat.surface.face_count(); ++h) side = std::max(side, flat.surface.record(h).length);
   std::size_t corners = 3;
   for (std::size_t f = 0; f < faces.size(); ++f) corners = std::max(corners, faces[f].size());
-  return flat.length_unit * side * static_cast<double>(corners / 2);
+  const std::size_t farthest = corners / 2;  // sides from one corner of a polygon to another
+  return flat.length_unit * side * static_cast<double>(farthest);
 }
 
-VoronoiCells MapMaker::cells(std::span<const Vertex> sources) const {
-  return solver_ != nullptr ? voronoi_cells(solver_->graph(), sources) : voronoi_cells(*geodesics_, sources);
+VoronoiCells MapMaker::cells(std::span<const Vertex> sources,
+                             const std::shared_ptr<const UnfoldingFront::Stars>& stars) const {
+  return solver_ != nullptr ? voronoi_cells(solver_->graph(), sources, stars) : voronoi_cells(*geodesics_, sources);
 }
 
 }  // namespace ahm

@@ -13,13 +13,15 @@
 namespace ahm {
 namespace {
 
-/// Weighted vertices, and what is to be least.
+/// Weighted points, and what is to be least.
 struct Problem {
   const MapMaker& maps;
-  const char* name;  ///< of the function called, for messages
+  const char* name;  ///< of what is sought, for messages
   std::vector<double> (*flat_center)(const FlatPoints&);
-  std::vector<Vertex> vertices;
-  std::vector<double> weights;  ///< > 0, the largest 1
+  std::vector<Source> points = {};
+  std::vector<std::size_t> numbers = {};  ///< of the points as given
+  std::vector<double> weights = {};       ///< > 0, the largest 1
+  bool frames = false;                    ///< some point may lie beside its only vertex
 };
 
 void check_vertex(const Problem& problem, Vertex vertex, const std::string& what) {
@@ -29,26 +31,34 @@ void check_vertex(const Problem& problem, Vertex vertex, const std::string& what
 }
 
 /// Keeps the points of positive weight.
-void set_points(Problem& problem, std::span<const Vertex> vertices, std::span<const double> weights) {
+void set_points(Problem& problem, std::span<const Source> points, std::span<const double> weights) {
   const std::string name = problem.name;
-  if (vertices.empty()) throw InvalidArgument(name + ": 'vertices' is empty");
-  if (!weights.empty() && weights.size() != vertices.size())
-    throw InvalidArgument(name + ": 'weights' has " + std::to_string(weights.size()) + " entries, 'vertices' has " +
-                          std::to_string(vertices.size()));
+  if (points.empty()) throw InvalidArgument(name + ": there are no points");
+  if (!weights.empty() && weights.size() != points.size())
+    throw InvalidArgument(name + ": " + std::to_string(weights.size()) + " weights for " +
+                          std::to_string(points.size()) + " points");
   double largest = 0;
-  for (std::size_t k = 0; k < vertices.size(); ++k) {
-    check_vertex(problem, vertices[k], "point " + std::to_string(k));
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    for (Vertex vertex : points[k].vertices()) check_vertex(problem, vertex, "point " + std::to_string(k));
     const double w = weights.empty() ? 1.0 : weights[k];
     if (!(w >= 0) || !std::isfinite(w))
       throw InvalidArgument(name + ": weight " + std::to_string(k) + ", " + detail::number(w) +
                             ", must be finite and >= 0");
     if (w == 0) continue;
-    problem.vertices.push_back(vertices[k]);
+    problem.points.push_back(points[k]);
+    problem.frames = problem.frames || (points[k].vertices().size() == 1 && !points[k].offsets().empty());
+    problem.numbers.push_back(k);
     problem.weights.push_back(w);
     largest = std::max(largest, w);
   }
-  if (problem.vertices.empty()) throw InvalidArgument(name + ": all 'weights' are 0");
+  if (problem.points.empty()) throw InvalidArgument(name + ": all weights are 0");
   for (double& w : problem.weights) w /= largest;
+}
+
+/// Where a search begins that is near a point.
+Vertex main_vertex(const Source& point) {
+  const auto weights = point.weights();
+  return point.vertices()[static_cast<std::size_t>(std::max_element(weights.begin(), weights.end()) - weights.begin())];
 }
 
 /// The points seen from a vertex, and their center there; lengths in graph units.
@@ -58,21 +68,28 @@ struct View {
   std::vector<double> center;
 };
 
+/// @throws InvalidArgument when point k is not in the map
+void check_seen(const Problem& problem, const LogMap& map, Vertex from, std::size_t k) {
+  for (Vertex vertex : problem.points[k].vertices()) {
+    const Status status = map.status(vertex);
+    if (status == Status::ok) continue;
+    const char* what = status == Status::disconnected    ? "' (take one center per component)"
+                       : status == Status::beyond_radius ? "' (raise the radius)"
+                                                         : "' (take a solver that marches)";
+    throw InvalidArgument(std::string(problem.name) + ": seen from vertex " + std::to_string(from.index) + ", point " +
+                          std::to_string(problem.numbers[k]) + ", at vertex " + std::to_string(vertex.index) +
+                          ", has status '" + std::string(to_string(status)) + what);
+  }
+}
+
 View look(const Problem& problem, Vertex from, double radius) {
   const TangentGraph& graph = problem.maps.graph();
-  View view{problem.maps.map(from, radius), {}, {}};
+  View view{problem.maps.map(from, radius, problem.frames), {}, {}};
   view.points.dimension = static_cast<std::size_t>(graph.dimension());
   view.points.weights = problem.weights;
-  for (Vertex vertex : problem.vertices) {
-    if (const Status status = view.map.status(vertex); status != Status::ok) {
-      const char* what = status == Status::disconnected    ? "' (take one center per component)"
-                         : status == Status::beyond_radius ? "' (raise radius)"
-                                                           : "' (let the solver march: Strategy::automatic)";
-      throw InvalidArgument(std::string(problem.name) + ": seen from vertex " + std::to_string(from.index) +
-                            ", the point at vertex " + std::to_string(vertex.index) + " has status '" +
-                            std::string(to_string(status)) + what);
-    }
-    for (double z : view.map.coordinates(vertex)) view.points.coordinates.push_back(z / graph.length_unit());
+  for (std::size_t k = 0; k < problem.points.size(); ++k) {
+    check_seen(problem, view.map, from, k);
+    for (double z : view.map.coordinates(problem.points[k])) view.points.coordinates.push_back(z / graph.length_unit());
   }
   view.center = problem.flat_center(view.points);
   return view;
@@ -117,7 +134,7 @@ Center search(const Problem& problem, double power, const CenterOptions& options
                           " must be at least 1");
   const TangentGraph& graph = problem.maps.graph();
   const auto heaviest = std::max_element(problem.weights.begin(), problem.weights.end()) - problem.weights.begin();
-  Vertex x = options.start.value_or(problem.vertices[heaviest]);
+  Vertex x = options.start.value_or(main_vertex(problem.points[heaviest]));
   check_vertex(problem, x, "'start'");
 
   Center best;
@@ -147,20 +164,36 @@ Center search(const Problem& problem, double power, const CenterOptions& options
   return best;
 }
 
+std::vector<Source> sources_at(std::span<const Vertex> vertices) {
+  std::vector<Source> result;
+  for (Vertex vertex : vertices) result.push_back(Source::at_vertex(vertex));
+  return result;
+}
+
 }  // namespace
+
+Center karcher_mean_of_points(const MapMaker& maps, std::span<const Source> points, std::span<const double> weights,
+                              const CenterOptions& options) {
+  Problem problem{maps, "mean", flat_mean};
+  set_points(problem, points, weights);
+  return search(problem, 2, options);
+}
+
+Center geometric_median_of_points(const MapMaker& maps, std::span<const Source> points, std::span<const double> weights,
+                                  const CenterOptions& options) {
+  Problem problem{maps, "median", flat_median};
+  set_points(problem, points, weights);
+  return search(problem, 1, options);
+}
 
 Center karcher_mean(const MapMaker& maps, std::span<const Vertex> vertices, std::span<const double> weights,
                     const CenterOptions& options) {
-  Problem problem{maps, "karcher_mean", flat_mean, {}, {}};
-  set_points(problem, vertices, weights);
-  return search(problem, 2, options);
+  return karcher_mean_of_points(maps, sources_at(vertices), weights, options);
 }
 
 Center geometric_median(const MapMaker& maps, std::span<const Vertex> vertices, std::span<const double> weights,
                         const CenterOptions& options) {
-  Problem problem{maps, "geometric_median", flat_median, {}, {}};
-  set_points(problem, vertices, weights);
-  return search(problem, 1, options);
+  return geometric_median_of_points(maps, sources_at(vertices), weights, options);
 }
 
 Source source_at(const Center& center) {

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "ahm/error.hpp"
+#include "ahm/surface/surface_lines.hpp"
 #include "ahm/util/text.hpp"
 #include "ahm/util/vec.hpp"
 
@@ -24,28 +25,49 @@ struct CurveSample {
   double along;       ///< the piece: in [0, 1)
 };
 
-/// The faces of a surface for paths; none where it has no flat ones.
-/// @param reason  why it has faces, but none for paths
-std::optional<ExactGeodesics> geodesics_of(const Surface& surface, std::string& reason) {
-  if (surface.faces().size() == 0 || surface.positions().empty()) return std::nullopt;
-  try {
-    return std::optional<ExactGeodesics>(std::in_place, surface);
-  } catch (const Cancelled&) {
-    throw;
-  } catch (const Error& e) {  // twisted polygons, faces of no area
-    reason = e.what();
-    return std::nullopt;
+/// Joins points by shortest paths: over flat faces, and without faces over tangent planes.
+class Joiner {
+ public:
+  explicit Joiner(const Surface& surface) : surface_(surface) {
+    over_planes_ = surface.faces().size() == 0;
+    if (over_planes_ || surface.positions().empty()) return;
+    try {
+      geodesics_.emplace(surface);
+    } catch (const Cancelled&) {
+      throw;
+    } catch (const Error& e) {  // twisted polygons, faces of no area
+      reason_ = e.what();
+    }
   }
-}
 
-/// Places on the shortest path between two points, no farther apart than a step; none where the faces do not join them.
-std::optional<std::vector<Vec3>> along_path(const ExactGeodesics& geodesics, const SurfacePoint& from,
-                                            const SurfacePoint& to, double step) {
-  const exact::GeodesicPath path = geodesics.path(std::array{from, to});
-  if (path.status != Status::ok) return std::nullopt;
+  /// Corners of the shortest path; none where the surface has no paths, or does not join the points: then `reason` tells why.
+  std::vector<Vec3> path(const SurfacePoint& from, const SurfacePoint& to) {
+    std::vector<Vec3> corners;
+    if (over_planes_) {
+      corners = shortest_line(surface_, from, to).points;
+    } else if (geodesics_) {
+      for (const exact::MeshPoint& point : geodesics_->path(std::array{from, to}).points)
+        corners.push_back(geodesics_->position(point));
+    } else {
+      return corners;
+    }
+    if (corners.empty()) reason_ = "the surface does not connect their ends";
+    return corners;
+  }
+  const std::string& reason() const { return reason_; }
+
+ private:
+  const Surface& surface_;
+  bool over_planes_ = false;
+  std::optional<ExactGeodesics> geodesics_;
+  std::string reason_;
+};
+
+/// Places between the ends of a line of corners, no farther apart than a step.
+std::vector<Vec3> along_line(const std::vector<Vec3>& corners, double step) {
   std::vector<Vec3> places;
-  for (std::size_t k = 1; k < path.points.size(); ++k) {
-    const Vec3 a = geodesics.position(path.points[k - 1]), b = geodesics.position(path.points[k]);
+  for (std::size_t k = 1; k < corners.size(); ++k) {
+    const Vec3 &a = corners[k - 1], &b = corners[k];
     const int pieces = std::max(1, static_cast<int>(std::ceil(distance(a, b) / step)));
     for (int p = 1; p <= pieces; ++p) places.push_back(a + static_cast<double>(p) / pieces * (b - a));
   }
@@ -70,8 +92,8 @@ double length_of(const std::vector<Vec3>& corners) {
   return length;
 }
 
-/// The given points as corners, and points between them: on the shortest path over flat faces, else, and between points
-/// closer than four steps, on the straight line. Notes the largest distance of these from the surface, and which lines are
+/// The given points as corners, and points between them: on the shortest path, else, and between points closer than four
+/// steps, on the straight line. Notes the largest distance of these from the surface, and which lines are
 /// straight against the rule.
 std::vector<CurveSample> sample(const Surface& surface, std::span<const CurvePoint> given, bool closed, double step,
                                 SurfaceCurve& curve) {
@@ -89,7 +111,7 @@ std::vector<CurveSample> sample(const Surface& surface, std::span<const CurvePoi
                           "is it in the units of the surface?");
 
   std::vector<CurveSample> samples;
-  const std::optional<ExactGeodesics> geodesics = geodesics_of(surface, curve.straight_reason);
+  Joiner joiner(surface);
   const auto end_point = [&](std::size_t k) {
     const CurvePoint& end = given[k % given.size()];
     const auto* on_surface = std::get_if<SurfacePoint>(&end);
@@ -107,19 +129,14 @@ std::vector<CurveSample> sample(const Surface& surface, std::span<const CurvePoi
     else
       project(corners[k], k, 0);
     if (k + 1 == corners.size()) break;
-    const double straight = distance(corners[k], corners[k + 1]);
-    const bool by_path = straight > 4 * step;
-    std::optional<std::vector<Vec3>> path;
-    if (geodesics && by_path) {
-      path = along_path(*geodesics, end_point(k), end_point(k + 1), step);
-      if (!path) curve.straight_reason = "the surface does not connect their ends";
+    std::vector<Vec3> line{corners[k], corners[k + 1]};
+    if (distance(line[0], line[1]) > 4 * step) {
+      if (std::vector<Vec3> path = joiner.path(end_point(k), end_point(k + 1)); !path.empty())
+        line = std::move(path);
+      else if (curve.straight_reason = joiner.reason(); !curve.straight_reason.empty())
+        ++curve.straight;
     }
-    if (by_path && !path && !curve.straight_reason.empty()) ++curve.straight;
-    std::vector<Vec3> places = path.value_or(std::vector<Vec3>{});
-    const int pieces = static_cast<int>(std::ceil(straight / step));
-    if (places.empty())
-      for (int p = 1; p < pieces; ++p)
-        places.push_back(corners[k] + static_cast<double>(p) / pieces * (corners[k + 1] - corners[k]));
+    const std::vector<Vec3> places = along_line(line, step);
     const std::vector<double> along = shares(corners[k], places, corners[k + 1]);
     for (std::size_t p = 0; p < places.size(); ++p) project(places[p], k, along[p]);
   }

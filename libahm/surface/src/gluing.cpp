@@ -25,12 +25,12 @@ bool repeats_a_vertex(std::span<const Index> face, std::vector<Index>& sorted) {
 }
 
 /// Refuses faces with a fault. @param what  "3 faces" have or do
-void refuse(const std::vector<Index>& wrong, const FaceList& faces, const std::string& what,
+void refuse(std::string_view fault, const std::vector<Index>& wrong, const FaceList& faces, const std::string& what,
             const std::string& advice) {
   if (wrong.empty()) return;
   ItemList list;
   for (Index f : wrong) list.add(name(f, faces[f]));
-  throw InvalidGeometry(std::to_string(wrong.size()) + " faces " + what + ": " + list.text() + advice);
+  throw InvalidGeometry(fault, std::to_string(wrong.size()) + " faces " + what + ": " + list.text(), advice);
 }
 
 /// A side of a face, filed under the smaller of its two vertices.
@@ -73,7 +73,8 @@ class Gluer {
     ItemList list;
     for (const auto& [later, earlier] : duplicates_)
       list.add("face " + std::to_string(later) + " repeats face " + std::to_string(earlier));
-    throw InvalidGeometry(std::to_string(list.count()) + " faces are duplicates: " + list.text() + "; remove them");
+    throw InvalidGeometry("duplicate_faces", std::to_string(list.count()) + " faces are duplicates: " + list.text(),
+                          "remove them");
   }
 
   void refuse_crowded_edges() const {
@@ -240,9 +241,10 @@ std::vector<std::pair<Index, Index>> find_duplicates(Index vertices, const FaceL
 
 Gluing glue(Index vertices, const FaceList& faces, NonManifold non_manifold) {
   const FaceFaults faults = find_faults(vertices, faces);
-  refuse(faults.outside, faces, "have a vertex outside [0, " + std::to_string(vertices) + ")", "");
-  refuse(faults.small, faces, "have fewer than 3 corners", "; remove them");
-  refuse(faults.repeating, faces, "use a vertex twice", "; remove them");
+  refuse("vertices_outside", faults.outside, faces, "have a vertex outside [0, " + std::to_string(vertices) + ")",
+         "number vertices from 0");
+  refuse("small_faces", faults.small, faces, "have fewer than 3 corners", "remove them");
+  refuse("repeated_vertices", faults.repeating, faces, "use a vertex twice", "remove them");
   Gluer gluer(vertices, faces);
   gluer.pair_sides();
   gluer.refuse_duplicates();
@@ -257,8 +259,10 @@ void check_positions(std::span<const Vec3> points) {
   for (std::size_t v = 0; v < points.size(); ++v)
     for (double x : points[v])
       if (!std::isfinite(x))
-        throw InvalidGeometry("vertex " + std::to_string(v) + " is (" + number(points[v][0]) + ", " +
-                              number(points[v][1]) + ", " + number(points[v][2]) + "): coordinates must be finite");
+        throw InvalidGeometry("not_finite",
+                              "vertex " + std::to_string(v) + " is (" + number(points[v][0]) + ", " +
+                                  number(points[v][1]) + ", " + number(points[v][2]) + ")",
+                              "coordinates must be finite");
 }
 
 double normalize_positions(std::vector<Vec3>& points) {

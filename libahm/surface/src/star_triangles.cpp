@@ -6,11 +6,10 @@
 #include <string>
 
 #include "ahm/error.hpp"
+#include "ahm/util/small_math.hpp"
 
 namespace ahm {
 namespace {
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 void check(const char* function, const TangentGraph& graph, const LogMap& map) {
   const std::string name = std::string(function) + ": ";
@@ -19,13 +18,13 @@ void check(const char* function, const TangentGraph& graph, const LogMap& map) {
   if (map.size() != graph.size() || map.dimension() != 2)
     throw InvalidArgument(name + "the map has " + std::to_string(map.size()) + " vertices, the graph " +
                           std::to_string(graph.size()));
-  if (map.frames().size() != 4 * at(graph.size()))
-    throw InvalidArgument(name + "the map has no frames; solve with MapOptions::frames = true");
+  if (map.frames().size() != 4 * to_size(graph.size()))
+    throw InvalidArgument("map_without_frames", name + "the map has no frames", "solve with MapOptions::frames = true");
 }
 
 /// Whether the source's axes arrive at the vertex as a reflection of its frame.
 bool is_mirrored(const LogMap& map, Index vertex) {
-  const auto U = map.frames().subspan(4 * at(vertex), 4);
+  const auto U = map.frames().subspan(4 * to_size(vertex), 4);
   return U[0] * U[3] - U[1] * U[2] < 0;
 }
 
@@ -48,7 +47,7 @@ struct Neighbors {
 
   std::span<const Index> of(Index i) const {
     return std::span(all).subspan(static_cast<std::size_t>(begin[i]),
-                                  static_cast<std::size_t>(begin[at(i) + 1] - begin[i]));
+                                  static_cast<std::size_t>(begin[to_size(i) + 1] - begin[i]));
   }
 
   bool are_neighbors(Index i, Index j) const {
@@ -127,7 +126,7 @@ std::vector<Triangle> star_triangles(const TangentGraph& graph, const LogMap& ma
 std::vector<Vec3> source_side_normals(const TangentGraph& graph, const LogMap& map) {
   check("source_side_normals", graph, map);
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  std::vector<Vec3> normals(at(graph.size()), Vec3{nan, nan, nan});
+  std::vector<Vec3> normals(to_size(graph.size()), Vec3{nan, nan, nan});
   for (Index i = 0; i < graph.size(); ++i) {
     if (map.status(Vertex(i)) != Status::ok) continue;
     const auto frame = graph.frame(i);

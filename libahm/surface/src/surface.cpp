@@ -1,6 +1,7 @@
 #include "ahm/surface/surface.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <limits>
 #include <mutex>
 #include <string>
@@ -12,6 +13,7 @@
 #include "ahm/surface/face_tree.hpp"
 #include "ahm/util/text.hpp"
 #include "ahm/util/vec.hpp"
+#include "row_tree.hpp"
 #include "visit_point.hpp"
 
 namespace ahm {
@@ -24,6 +26,9 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 struct Surface::Lazy {
   std::once_flag once;
   std::optional<FaceTree> tree;
+  std::atomic<int> questions = 0;  ///< after the nearest row
+  std::once_flag rows_once;
+  std::optional<RowTree> rows;
 };
 
 Surface::Surface() : lazy_(std::make_unique<Lazy>()) {}
@@ -49,6 +54,12 @@ Row Surface::nearest_row(const Vec3& position) const {
   check_finite(position);
   const std::span<const Vec3> points = positions();
   if (points.empty()) throw InvalidArgument("the surface has no positions, so no row is nearest to one");
+  constexpr int few = 2;  // scans take less time than a tree
+  if (lazy_->questions >= few) {
+    std::call_once(lazy_->rows_once, [&] { lazy_->rows.emplace(rows(), points, graph().size()); });
+    return lazy_->rows->nearest(position);
+  }
+  ++lazy_->questions;
   Row best;
   double least = std::numeric_limits<double>::infinity();
   for (Index v = 0; v < graph().size(); ++v) {

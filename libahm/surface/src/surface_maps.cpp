@@ -6,6 +6,7 @@
 
 #include "ahm/error.hpp"
 #include "ahm/fields/distance.hpp"
+#include "ahm/maps/place_in_space.hpp"
 #include "ahm/surface/surface.hpp"
 #include "ahm/util/vec.hpp"
 #include "visit_point.hpp"
@@ -29,33 +30,13 @@ struct Best {
   }
 };
 
-/// Where the point of a source lies in space; none for curves, and where the graph knows no frames.
-std::optional<Vec3> place_of(const TangentGraph& graph, const Source& source) {
-  if (source.is_curve() || source.vertices().empty()) return std::nullopt;
-  Vec3 sum{};
-  double weights = 0;
-  for (std::size_t k = 0; k < source.vertices().size(); ++k) {
-    if (source.place(k).point != 0) return std::nullopt;
-    const auto frame = graph.frame(source.vertices()[k].index);
-    if (!frame) return std::nullopt;
-    Vec3 place = frame->origin;
-    for (std::size_t a = 0; a < 2 && !source.offsets().empty(); ++a) {
-      const double z = source.offsets()[2 * k + a];
-      place = place - (z * source.axes()[4 * k + a]) * frame->x - (z * source.axes()[4 * k + 2 + a]) * frame->y;
-    }
-    sum = sum + source.weights()[k] * place;
-    weights += source.weights()[k];
-  }
-  return (1 / weights) * sum;
-}
-
 }  // namespace
 
 RowLogMap Surface::on_rows(const LogMap& map) const {
   check_map(map);
   // Where distances are those of heat they may be below the straight line, which no way on the surface is.
   const bool may_be_short = map.method() == Method::heat && !graph().is_delaunay();
-  const auto source = may_be_short ? place_of(graph(), map.source()) : std::nullopt;
+  const auto source = may_be_short ? place_in_space(graph(), map.source()) : std::nullopt;
   const auto n = static_cast<std::size_t>(rows().row_count());
   const std::vector<double> none(n, nan);
   RowLogMap result{none, none, none, none, none, {}, std::vector<Status>(n, Status::removed), {}};
@@ -113,7 +94,8 @@ Sample Surface::at(const LogMap& map, const SurfacePoint& point) const {
                                 [&](const TangentPoint& near) {
                                   check_finite(near);
                                   if (map.frames().empty())
-                                    throw InvalidArgument("the map has no frames; solve with MapOptions::frames");
+                                    throw InvalidArgument("map_without_frames", "the map has no frames",
+                                                          "solve with MapOptions::frames");
                                   auto [sample, v] = at_row(near.row);
                                   const auto frame = v < 0 ? std::nullopt : graph().frame(v);
                                   if (!frame) return sample;

@@ -72,5 +72,21 @@ TEST(GridLaplacian, MeasuresTheMeanEdge) {
   EXPECT_DOUBLE_EQ(grid.mean_edge_length() * grid.length_unit(), 53.0 / 7);
 }
 
+TEST(GridLaplacian, CountsItsEdgesWithoutLookingAtEachVertex) {
+  for (const std::vector<Index>& shape :
+       std::vector<std::vector<Index>>{{2, 2}, {2, 5}, {3, 4}, {2, 2, 2}, {2, 3, 5}, {4, 3, 3}}) {
+    const std::vector<double> spacing(shape.size(), 1.0);
+    const GridGraph grid({.shape = shape, .spacing = spacing});
+    std::size_t edges = 0;
+    for (Index i = 0; i < grid.size(); ++i) edges += grid.star(i).neighbors.size();
+    EXPECT_EQ(grid.edge_count(), static_cast<Offset>(edges));
+    EXPECT_DOUBLE_EQ(grid.mean_edge_length() * grid.length_unit(), 1.0);
+  }
+  // One by one these would take minutes.
+  EXPECT_EQ(GridGraph({.shape = {40'000, 40'000}, .spacing = {1, 1}}).edge_count(), 4 * Offset{40'000} * 39'999);
+  EXPECT_EQ(GridGraph({.shape = {1200, 1200, 1200}, .spacing = {1, 1, 1}}).edge_count(),
+            6 * Offset{1200} * 1200 * 1199);
+}
+
 }  // namespace
 }  // namespace ahm::test

@@ -19,8 +19,6 @@ using test::flat_square;
 using test::random_box;
 using test::squared_distance;
 
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
-
 TEST(VoxelGrid, EveryVoxelHasOneRepresentativeOfItsOwn) {
   const auto points = random_box(5000, {10, -3, 2}, 1.0);
   const double size = 0.11;
@@ -32,7 +30,7 @@ TEST(VoxelGrid, EveryVoxelHasOneRepresentativeOfItsOwn) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Index row = reduced.row_of_point[i];
     ASSERT_GE(row, 0);
-    ASSERT_LT(at(row), reduced.points.size());
+    ASSERT_LT(static_cast<std::size_t>(row), reduced.points.size());
     used.insert(row);
     // Both lie in the same box, up to single precision.
     for (std::size_t a = 0; a < 3; ++a) EXPECT_LE(std::abs(points[i][a] - reduced.points[row][a]), size * (1 + 1e-5));

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <random>
 
+#include "ahm/maps/quality.hpp"
+#include "ahm/util/small_math.hpp"
 #include "noisy_clouds.hpp"
 #include "solved_cloud.hpp"
 
@@ -90,6 +92,27 @@ TEST(Volumes, AreNamed) {
   EXPECT_GT(volume.details().thick, 4000);
 }
 
+// No way is shorter than the straight line in space: a vector that is, by a tenth, is wrong, however well it agrees with the
+// distance of heat.
+TEST(Volumes, HaveNoTrustedVectorsThatAreTooShort) {
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  Cloud slab;
+  for (int i = 0; i < 4000; ++i) slab.points.push_back({uniform(random), uniform(random), 0.15 * uniform(random)});
+  const Solved solved(slab);
+  const LogMap map = solved.solver.solve(solved.graph.source(Row(5)).source);
+  const std::vector<double> quality = map_quality(solved.graph.graph(), map);
+  Index too_short = 0;
+  for (Index i = 0; i < solved.graph.graph().size(); ++i) {
+    const double line = norm(minus(solved.graph.graph().frame(i)->origin, slab.points[5]));
+    if (map.status(Vertex(i)) != Status::ok || !(line > 0.2)) continue;
+    if (!(length(map.coordinates(Vertex(i))) < 0.9 * line)) continue;
+    ++too_short;
+    ASSERT_LE(quality[i], trusted_quality);
+  }
+  EXPECT_GT(too_short, 1000);
+}
+
 TEST(Volumes, AreNeitherCornersNorNoisySurfaces) {
   EXPECT_FALSE(warns(PointCloudSurface::build(folded_cloud(60, 6, std::numbers::pi / 2).points), "no_surface"));
   EXPECT_FALSE(warns(PointCloudSurface::build(flat_cloud(2000).points), "no_surface"));
@@ -105,6 +128,45 @@ TEST(Noise, IsMeasured) {
   }
   const auto flat = PointCloudSurface::build(flat_cloud(2000).points);
   EXPECT_LT(flat.details().noise, 1e-14);
+}
+
+/// One cloud, and another 100 to the right of it.
+std::vector<Vec3> beside(std::vector<Vec3> points, const std::vector<Vec3>& others) {
+  for (const Vec3& p : others) points.push_back({p[0] + 100, p[1], p[2]});
+  return points;
+}
+
+// What a part is made of does not depend on what else is in the file: neither its planes nor the lengths of its edges.
+TEST(Parts, HaveTheirOwnNoise) {
+  const Cloud clean = random_sphere(3000), noisy = with_noise(clean, std::sqrt(4 * std::numbers::pi / 3000));
+  const auto alone = PointCloudSurface::build(noisy.points),
+             with_clean = PointCloudSurface::build(beside(noisy.points, clean.points));
+  ASSERT_GT(alone.details().k, 30);
+  EXPECT_EQ(with_clean.details().k, alone.details().k);
+  EXPECT_NEAR(with_clean.details().noise, alone.details().noise, 1e-12);
+  EXPECT_EQ(with_clean.details().thick, alone.details().thick);
+  for (Index i = 0; i < 3000; ++i) {
+    const auto normal = [i](const PointCloudSurface& cloud) {
+      return cloud.graph().frame(cloud.rows().vertices(Row(i)).front().index)->normal;
+    };
+    ASSERT_NEAR(std::abs(dot(normal(alone), normal(with_clean))), 1, 1e-9);
+  }
+}
+
+TEST(Parts, HaveTheirOwnDistances) {
+  const Cloud clean = even_sphere(2000);
+  std::vector<Vec3> large = with_noise(random_sphere(1000), 0.1).points;
+  for (Vec3& p : large) p = {30 * p[0], 30 * p[1], 30 * p[2]};
+  Cloud both = clean;
+  both.points = beside(clean.points, large);
+  const Solved alone(clean), together(both);
+  for (const Index source : {0, 700}) {
+    const RowLogMap a = alone.map(source), b = together.map(source);
+    for (Index i = 0; i < 2000; ++i) {
+      ASSERT_NEAR(a.distance[i], b.distance[i], 1e-9);
+      ASSERT_NEAR(std::hypot(a.u[i], a.v[i]), std::hypot(b.u[i], b.v[i]), 1e-9);
+    }
+  }
 }
 
 TEST(Noise, GetsMoreNeighboursUnlessTheirNumberIsFixed) {

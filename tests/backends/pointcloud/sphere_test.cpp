@@ -1,7 +1,9 @@
 // The error against the sphere's closed form falls with the spacing.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "ahm/testing/vectors.hpp"
@@ -51,6 +53,33 @@ TEST(SphereCloud, ConvergesOnRandomPointsInBothVariants) {
     EXPECT_LT(angle[2 + variant], angle[variant]);
     EXPECT_LT(angle[2 + variant], 0.01);
   }
+}
+
+// Beyond five spacings, the antipode included, from some sources.
+TEST(SphereCloud, HasItsDistancesOutToTheAntipode) {
+  std::vector<double> of_fine, of_coarse;
+  for (Index n : {2500, 20000}) {
+    const Cloud cloud = random_sphere(n);
+    const Solved solved(cloud);
+    const double h = std::sqrt(4 * std::numbers::pi / n);
+    for (Variant variant : all_variants) {
+      std::vector<double> errors;
+      for (Index p : {5, n / 2, n - 9}) {
+        const RowLogMap map = solved.map(p, variant);
+        for (Index i = 0; i < n; ++i) {
+          const double exact = sphere_distance(cloud.points[p], cloud.points[i]);
+          if (exact < 5 * h) continue;
+          errors.push_back(std::abs(map.distance[i] - exact) / exact);
+          ASSERT_LT(errors.back() * exact, 4 * h);
+        }
+      }
+      std::sort(errors.begin(), errors.end());
+      const double error = errors[errors.size() * 95 / 100];
+      EXPECT_LT(error, (variant == Variant::adaptive ? 0.15 : 0.5) * h);
+      (n == 2500 ? of_coarse : of_fine).push_back(error);
+    }
+  }
+  for (std::size_t v = 0; v < of_fine.size(); ++v) EXPECT_LT(of_fine[v], 0.6 * of_coarse[v]);
 }
 
 TEST(SphereCloud, IsPositivelyOrientedOutwardsWithoutNormals) {

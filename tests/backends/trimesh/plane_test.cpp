@@ -1,10 +1,13 @@
 // On the plane the map is the identity, whatever the triangles.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <random>
 #include <string>
+#include <vector>
 
+#include "ahm/fields/vector_heat.hpp"
 #include "ahm/testing/vectors.hpp"
 #include "support/solved_mesh.hpp"
 
@@ -44,6 +47,42 @@ double vertex_error(const Mesh& mesh, const RowLogMap& map, Index source) {
   const auto there = direction(mesh.plane[source], mesh.plane[far]);
   const double r = std::hypot(map.u[far], map.v[far]), c = map.u[far] / r, s = map.v[far] / r;
   return plane_error(mesh, map, mesh.plane[source], {there[0] * c + there[1] * s, there[1] * c - there[0] * s});
+}
+
+/// A lattice of n x n vertices whose lowest row dents between every second one, and slivers that fill the dents.
+Mesh dented_square(Index n) {
+  Mesh mesh = flat_square(n, 0);
+  for (std::size_t k = 0; k < mesh.plane.size(); ++k) {
+    const auto i = static_cast<Index>(k) % n, j = static_cast<Index>(k) / n;
+    mesh.plane[k] = {static_cast<double>(i), j == 0 && i % 2 == 1 ? 1e-3 : j};
+    mesh.positions[k] = {mesh.plane[k][0], mesh.plane[k][1], 0};
+  }
+  mesh.faces.clear();
+  for (Index j = 0; j + 1 < n; ++j)
+    for (Index i = 0; i + 1 < n; ++i) {
+      const Index k = j * n + i;
+      mesh.faces.push_back({k, k + 1, k + n});
+      mesh.faces.push_back({k + 1, k + n + 1, k + n});
+    }
+  for (Index i = 0; i + 2 < n; i += 2) mesh.faces.push_back({i, i + 2, i + 1});
+  return mesh;
+}
+
+// What is given at points goes to what is nearest to them. Along slivers on the boundary, which no flip removes, heat must not
+// run as if they had no length.
+TEST(MeshPlane, HeatDoesNotRunAlongSliversOnTheBoundary) {
+  const Index n = 41;
+  const Mesh mesh = dented_square(n);
+  const SolvedMesh solved(mesh);
+  EXPECT_LT(vertex_error(mesh, solved.map(Source::at_vertex(Vertex(3))), 3), tolerance * mesh.diameter());
+  const std::array given{Vertex(0), Vertex(n - 1)};
+  const VertexField field = extend_scalar(solved.solver, given, std::array{0.0, 1.0});
+  for (Index i = 0; i < mesh.vertices(); ++i) {
+    const double x = mesh.plane[i][0] - 0.5 * (n - 1);
+    const double nearer =
+        std::abs(std::hypot(x + 0.5 * (n - 1), mesh.plane[i][1]) - std::hypot(x - 0.5 * (n - 1), mesh.plane[i][1]));
+    if (nearer > 10) ASSERT_NEAR(field.values[i], x < 0 ? 0 : 1, 0.01) << "vertex " << i;
+  }
 }
 
 TEST(MeshPlane, IsTheIdentityFromAnyVertex) {

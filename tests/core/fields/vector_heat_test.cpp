@@ -53,6 +53,42 @@ TEST_P(VectorHeat, CarriesVectorsWithoutChangeOnThePlane) {
   }
 }
 
+/// A point of a flat graph beside a vertex, at z in its frame, as a source on the vertex and its neighbours.
+Source beside(const FlatGraph& flat, const CsrGraph& graph, Index vertex, const std::array<double, 2>& z) {
+  Source source(2);
+  const auto add = [&](Index i, double weight) {
+    const auto at = flat.exact(vertex, i);
+    const auto u = flat.carried(vertex, i, std::vector{1.0, 0.0}), v = flat.carried(vertex, i, std::vector{0.0, 1.0});
+    source.add(Vertex{i}, weight, std::array{at[0] - z[0], at[1] - z[1]}, std::array{u[0], v[0], u[1], v[1]});
+  };
+  add(vertex, 0.4);
+  for (Index i : graph.star(vertex).neighbors) add(i, 0.6 / static_cast<double>(graph.star(vertex).degree()));
+  return source;
+}
+
+TEST_P(VectorHeat, CarriesVectorsFromPointsBetweenVertices) {
+  const std::vector<double> vector{2.0, -1.5};
+  const std::array points{beside(flat, graph, 20, {0.02, 0.01}), beside(flat, graph, 100, {-0.01, 0.03})};
+  std::vector<double> given = vector;
+  for (double x : flat.carried(20, 100, vector)) given.push_back(x);
+  const auto field = transport_vectors(solver, points, given);
+  for (Index i = 0; i < flat.size(); ++i) {
+    const auto expected = flat.carried(20, i, vector);
+    for (int a = 0; a < 2; ++a) ASSERT_NEAR(field.values[i * 2 + a], expected[a], 1e-10);
+  }
+  const auto same = extend_scalar(solver, points, std::array{4.0, 4.0});
+  for (double v : same.values) ASSERT_NEAR(v, 4.0, 1e-11);
+}
+
+TEST_P(VectorHeat, TakesVerticesAsPoints) {
+  const std::array vertices{Vertex{3}, Vertex{50}};
+  const std::array points{Source::at_vertex(Vertex{3}), Source::at_vertex(Vertex{50})};
+  const std::array values{1.0, 3.0};
+  const std::array vectors{1.0, 2.0, -0.5, 0.25};
+  EXPECT_EQ(extend_scalar(solver, points, values).values, extend_scalar(solver, vertices, values).values);
+  EXPECT_EQ(transport_vectors(solver, points, vectors).values, transport_vectors(solver, vertices, vectors).values);
+}
+
 TEST_P(VectorHeat, CarriesTheSourceFrameOnThePlane) {
   const auto field = parallel_transport(solver, Source::at_vertex(Vertex{20}));
   for (Index i = 0; i < flat.size(); ++i)

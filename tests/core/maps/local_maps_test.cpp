@@ -37,14 +37,14 @@ TEST(LocalMaps, AreExactOnFlatGeometryAndComplete) {
       for (std::size_t s = 0; s < sources.size(); ++s) {
         std::set<Index> found;
         for (Offset e = maps.indptr[s]; e < maps.indptr[s + 1]; ++e) {
-          found.insert(maps.indices[e]);
-          const std::vector<double> exact = flat.exact(sources[s].index, maps.indices[e]);
+          found.insert(maps.neighbors[e].index);
+          const std::vector<double> exact = flat.exact(sources[s].index, maps.neighbors[e].index);
           for (int a = 0; a < flat.dimension; ++a)
             ASSERT_NEAR(maps.logs[e * flat.dimension + a], exact[a], 1e-11 * flat.diameter());
           if (e > maps.indptr[s]) ASSERT_GE(maps.distances[e], maps.distances[e - 1]) << "nearest first";
-          ASSERT_EQ(maps.weights[e], graph.mass(maps.indices[e]));
+          ASSERT_EQ(maps.weights[e], graph.mass(maps.neighbors[e].index));
         }
-        EXPECT_EQ(maps.indices[maps.indptr[s]], sources[s].index);
+        EXPECT_EQ(maps.neighbors[maps.indptr[s]].index, sources[s].index);
         for (Index j = 0; j < flat.size(); ++j) {
           double squared = 0;
           for (double x : flat.exact(sources[s].index, j)) squared += x * x;
@@ -70,7 +70,7 @@ TEST(LocalMaps, ApproachTheMapOfTheWholeGraphWithTheMargin) {
         const LogMap whole = solver.solve(Source::at_vertex(sources[s]), {.variant = variant});
         for (Offset e = maps.indptr[s]; e < maps.indptr[s + 1]; ++e)
           for (int a : {0, 1})
-            worst = std::max(worst, std::abs(maps.logs[2 * e + a] - whole.coordinates(Vertex(maps.indices[e]))[a]));
+            worst = std::max(worst, std::abs(maps.logs[2 * e + a] - whole.coordinates(maps.neighbors[e])[a]));
       }
       EXPECT_LT(worst, 0.5 * before) << to_string(variant) << ", margin " << margin;
       before = worst;
@@ -87,8 +87,8 @@ TEST(LocalMaps, CarryTheSourcesFrame) {
     const LocalMaps maps = local_maps(graph, sources, {.radius = radius, .margin = 8});
     const LogMap whole = LogMapSolver(graph).solve(Source::at_vertex(Vertex{5}), {.frames = true});
     const std::size_t width = maps.transport_width();
-    for (std::size_t e = 0; e < maps.indices.size(); ++e) {
-      const double* U = whole.frames().data() + 4 * static_cast<std::size_t>(maps.indices[e]);
+    for (std::size_t e = 0; e < maps.neighbors.size(); ++e) {
+      const double* U = whole.frames().data() + 4 * static_cast<std::size_t>(maps.neighbors[e].index);
       const double expected[] = {U[0], width == 2 ? U[2] : U[1], U[2], U[3]};
       for (std::size_t k = 0; k < width; ++k) ASSERT_NEAR(maps.transports[e * width + k], expected[k], 1e-4);
     }
@@ -101,13 +101,13 @@ TEST(LocalMaps, DoNotDependOnThreadsOrOnCompany) {
   const LocalMaps one = local_maps(graph, {.radius = radius, .heat = {.threads = 1}}),
                   many = local_maps(graph, {.radius = radius, .heat = {.threads = 3}});
   EXPECT_EQ(one.indptr, many.indptr);
-  EXPECT_EQ(one.indices, many.indices);
+  EXPECT_EQ(one.neighbors, many.neighbors);
   EXPECT_EQ(one.logs, many.logs);
   EXPECT_EQ(one.transports, many.transports);
   // A source alone has a patch of its own.
   for (Index s : {0, 1234, 2999}) {
     const LocalMaps alone = local_maps(graph, std::array{Vertex{s}}, {.radius = radius});
-    ASSERT_NEAR(alone.indices.size(), one.indptr[s + 1] - one.indptr[s], 1);
+    ASSERT_NEAR(alone.neighbors.size(), one.indptr[s + 1] - one.indptr[s], 1);
     for (std::size_t e = 0; e < 20; ++e)
       ASSERT_NEAR(alone.distances[e], one.distances[static_cast<std::size_t>(one.indptr[s]) + e], 1e-3 * radius);
   }
@@ -121,7 +121,7 @@ TEST(LocalMaps, KeepTheNearest) {
                   few = local_maps(graph, sources, {.radius = 0.2, .nearest = 9});
   for (std::size_t s = 0; s < sources.size(); ++s) {
     ASSERT_EQ(few.indptr[s + 1] - few.indptr[s], 9);
-    for (Offset k = 0; k < 9; ++k) ASSERT_EQ(few.indices[few.indptr[s] + k], all.indices[all.indptr[s] + k]);
+    for (Offset k = 0; k < 9; ++k) ASSERT_EQ(few.neighbors[few.indptr[s] + k], all.neighbors[all.indptr[s] + k]);
   }
 }
 
@@ -137,9 +137,10 @@ TEST(LocalMaps, TakeSourcesOfAnyKind) {
   source.add(Vertex{400}, 0.5, std::array{-e[0] / 2, -e[1] / 2}, std::array{1.0, 0.0, 0.0, 1.0});
   source.add(Vertex(other), 0.5, std::array{e[0] / 2, e[1] / 2}, std::array{R[0], R[2], R[1], R[3]});
   const LocalMaps maps = local_maps(graph, std::array{source}, {.radius = 0.2});
-  ASSERT_GT(maps.indices.size(), 20u);
-  for (std::size_t k = 0; k < maps.indices.size(); ++k)
-    for (int a : {0, 1}) ASSERT_NEAR(maps.logs[2 * k + a], flat.exact(400, maps.indices[k])[a] - e[a] / 2, 1e-11);
+  ASSERT_GT(maps.neighbors.size(), 20u);
+  for (std::size_t k = 0; k < maps.neighbors.size(); ++k)
+    for (int a : {0, 1})
+      ASSERT_NEAR(maps.logs[2 * k + a], flat.exact(400, maps.neighbors[k].index)[a] - e[a] / 2, 1e-11);
 }
 
 TEST(LocalMaps, StayInTheirComponent) {
@@ -149,7 +150,7 @@ TEST(LocalMaps, StayInTheirComponent) {
   for (Index s = 0; s < graph.size(); ++s) {
     ASSERT_EQ(maps.indptr[s + 1] - maps.indptr[s], flat.size());
     for (Offset e = maps.indptr[s]; e < maps.indptr[s + 1]; ++e)
-      ASSERT_EQ(maps.indices[e] < flat.size(), s < flat.size());
+      ASSERT_EQ(maps.neighbors[e].index < flat.size(), s < flat.size());
   }
 }
 
@@ -160,7 +161,7 @@ TEST(LocalMaps, FindAllNeighboursWhereEdgesGoRoundCorners) {
   Index expected = 0;
   for (int x = -11; x <= 11; ++x)
     for (int y = -11; y <= 11; ++y) expected += std::hypot(x, y) <= 10.5;
-  EXPECT_EQ(static_cast<Index>(maps.indices.size()), expected);
+  EXPECT_EQ(static_cast<Index>(maps.neighbors.size()), expected);
 }
 
 TEST(LocalMaps, RefuseNonsense) {
@@ -175,8 +176,8 @@ TEST(LocalMaps, RefuseNonsense) {
 }
 
 /// Source number s of some local maps.
-std::vector<Index> neighbors_of(const LocalMaps& maps, std::size_t s) {
-  return {maps.indices.begin() + maps.indptr[s], maps.indices.begin() + maps.indptr[s + 1]};
+std::vector<Vertex> neighbors_of(const LocalMaps& maps, std::size_t s) {
+  return {maps.neighbors.begin() + maps.indptr[s], maps.neighbors.begin() + maps.indptr[s + 1]};
 }
 
 TEST(LocalMaps, OfTheNearestAreThoseOfAWideRadius) {

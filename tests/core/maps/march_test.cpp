@@ -218,7 +218,9 @@ TEST(March, TakesMemoryForWhatItReachesOnly) {
   const auto bytes = [](Index side) {
     const grid::GridGraph graph({.shape = {side, side}, .spacing = {1, 1}});
     const ComponentScales scales(graph);
-    March march(graph, {}, scales, {1.0}, Variant::adaptive, 20, 1, {});
+    const std::vector<double> tau{1.0};
+    const ComponentTimes times(scales, tau);
+    March march(graph, {}, times, Variant::adaptive, 20, 1, {});
     march.run(Source::at_vertex(Vertex{side / 2 * side + side / 2}));
     EXPECT_TRUE(march.accepted(side / 2 * side + side / 2 + 15));
     EXPECT_FALSE(march.accepted(0));
@@ -239,6 +241,24 @@ TEST(March, NumbersVerticesAsTheyCome) {
   EXPECT_EQ(numbers.find(999'999), 1);
   EXPECT_EQ(numbers.find(7), -1);
   EXPECT_EQ(numbers.find(500'000), -1);
+}
+
+TEST(March, GivesTheNumbersOfForgottenVerticesAgain) {
+  ReachedNumbers numbers(600);
+  for (Index vertex = 0; vertex < 600; ++vertex) numbers.number(vertex);
+  const std::size_t before = numbers.bytes();
+  for (Index vertex = 256; vertex < 600; ++vertex) numbers.forget(vertex);
+  EXPECT_EQ(numbers.find(255), 255);
+  EXPECT_EQ(numbers.find(256), ReachedNumbers::forgotten);
+  EXPECT_EQ(numbers.find(599), ReachedNumbers::forgotten);
+  EXPECT_LT(numbers.bytes(), before + 344 * 2 * sizeof(Index) - 2 * 1024);
+
+  ReachedNumbers few(600);
+  few.number(3), few.number(4);
+  few.forget(3);
+  EXPECT_EQ(few.number(500), 0);
+  EXPECT_EQ(few.number(501), 2);
+  EXPECT_EQ(few.count(), 3);
 }
 
 }  // namespace

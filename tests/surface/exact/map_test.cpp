@@ -51,6 +51,26 @@ TEST(ExactMap, TakesTheNearestOfSeveralSources) {
   }
 }
 
+/// In needles, rays of one source pass close by the others.
+TEST(ExactMap, TakesTheNearestOfSeveralSourcesInNeedles) {
+  for (unsigned seed = 1; seed <= 8; ++seed) {
+    const Mesh mesh = sliver_square(150, seed);
+    const Polyhedron solid(mesh);
+    std::mt19937_64 random(seed);
+    std::vector<MeshPoint> sources;
+    for (int k = 0; k < 12; ++k) sources.push_back(random_point(solid.surface, random));
+    const ExactMap map = exact::exact_map(solid.surface, sources);
+    for (Index v = 0; v < map.size(); ++v) {
+      double nearest = 2;
+      for (const MeshPoint& s : sources) {
+        const Vec2 p = mesh.plane_point(s.face, s.barycentric);
+        nearest = std::min(nearest, std::hypot(p[0] - mesh.plane[v][0], p[1] - mesh.plane[v][1]));
+      }
+      EXPECT_NEAR(map.distance(Vertex(v)) * solid.mesh.length_unit(), nearest, 1e-12) << seed << ' ' << v;
+    }
+  }
+}
+
 TEST(ExactMap, IsTheSameBitForBitOnAnyNumberOfThreads) {
   const Polyhedron solid(icosphere(7));
   std::vector<MeshPoint> sources;

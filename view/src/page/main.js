@@ -166,7 +166,7 @@ Ahm.Viewer = class {
       if (!(x > 0 && Number.isFinite(x))) throw new Error(id.replace(/_/g, "-") + ": '" + text(id) + "' is no positive number");
       return x;
     };
-    const out = { method: text("method"), radius: number("radius") };
+    const out = { method: text("method"), radius: number("radius") ?? null };
     if (out.method === "heat") Object.assign(out, { variant: text("variant"), order: Number(text("order")), t_coef: number("t_coef") });
     if (text("u_axis") !== "") out.u_axis = text("u_axis").split(/[\s,]+/).map(Number);
     return out;
@@ -212,11 +212,10 @@ Ahm.Viewer = class {
     this.stage.set_marks({ dots: this.picked.map((h) => h.position) });
     if (this.picked.length === 1) return this.panel.say("and where to?");
     await this.attempt(async () => {
-      const [from, to] = this.picked, begin = performance.now();
+      const [from, to] = this.picked;
       const answer = await (await this.server.post("path", { from: from.source, to: to.source })).json();
       this.stage.set_marks({ curve: answer.points, dots: [answer.points[0], answer.points[answer.points.length - 1]] });
       this.element("command").textContent = answer.command;
-      this.time_of(begin);
       this.panel.say("a path, " + Ahm.number(answer.length) + " long");
     });
   }
@@ -322,16 +321,14 @@ Ahm.Viewer = class {
     options("variant", info.variants, info.variant);
     options("format", info.formats, info.formats[0]);
     const surface = this.stage.surface;
-    element("coverage_radius").value = Ahm.number(0.4 * surface.scale, 2);
-    element("coverage_spacing").value = Ahm.number(0.04 * surface.scale, 1);
+    const covered = Math.min(0.4 * surface.scale, info.radius || Infinity);
+    element("coverage_radius").value = Ahm.number(covered, 2);
+    element("coverage_spacing").value = Ahm.number(0.1 * covered, 1);
     element("method").value = info.method;
     element("t_coef").value = info.t_coef;
     element("order").value = info.order;
     if (info.radius) element("radius").value = info.radius;
-    for (const button of element("tool").children) {
-      button.addEventListener("click", () => this.set_tool(button.dataset.tool));
-      if (button.dataset.tool === "path") button.hidden = !info.has_faces;
-    }
+    for (const button of element("tool").children) button.addEventListener("click", () => this.set_tool(button.dataset.tool));
     element("method").querySelector("option:last-child").disabled = !info.has_faces;
     const method_changed = () => {
       for (const row of document.querySelectorAll(".heat")) row.hidden = element("method").value !== "heat";

@@ -15,6 +15,7 @@ Ahm.Stage = class {
     this.scene = new THREE.Scene();
     this.object = this.make_object();
     this.pieces = null;  // of torn triangles
+    this.coarse = null;  // the mesh of fewer triangles that stands for a large one while it moves
     this.ink = new THREE.MeshBasicMaterial({ color: 0x19191e });
     this.ribbons = Ahm.ribbon_material(this.viewport);
     this.marks = new THREE.Group();
@@ -199,7 +200,6 @@ Ahm.Stage = class {
   set_dark(is_dark) {
     this.is_dark = is_dark;
     this.renderer.setClearColor(is_dark ? 0x16181c : 0xffffff);
-    this.ink.color.setHex(0x19191e);
     this.redraw();
   }
 
@@ -220,8 +220,20 @@ Ahm.Stage = class {
   }
 
   adapt(milliseconds) {
+    if (milliseconds > 200 && this.surface.is_mesh && this.surface.triangles.length > 9e5) this.make_coarse();
     if (milliseconds > 70) this.quality = Math.max(this.surface.is_mesh ? 1 / 16 : 1 / 64, this.quality / (milliseconds > 200 ? 4 : 2));
     else if (milliseconds < 24) this.quality = Math.min(1, this.quality * 1.5);
+  }
+
+  // It shares all but the triangles.
+  make_coarse() {
+    if (this.coarse) return;
+    const geometry = new THREE.BufferGeometry(), whole = this.object.geometry;
+    for (const name in whole.attributes) geometry.setAttribute(name, whole.attributes[name]);
+    geometry.setIndex(new THREE.BufferAttribute(Ahm.coarse_triangles(this.surface, 96), 1));
+    this.coarse = new THREE.Mesh(geometry, this.object.material);
+    this.coarse.frustumCulled = false;
+    this.scene.add(this.coarse);
   }
 
   // For what is coarser while it moves: fewer pixels, and of clouds fewer and larger discs.
@@ -230,6 +242,10 @@ Ahm.Stage = class {
     const ratio = window.devicePixelRatio * Math.max(0.25, Math.sqrt(share));
     this.uniforms.thin.value = Math.min(2, Math.sqrt(1 / share));
     this.share = share;
+    if (this.coarse) {
+      this.coarse.visible = this.is_moving;
+      for (const whole of [this.object, this.pieces]) if (whole) whole.visible = !this.is_moving;
+    }
     if (Math.abs(ratio - this.renderer.getPixelRatio()) > 1e-9) this.renderer.setPixelRatio(ratio);
   }
 
@@ -261,7 +277,7 @@ Ahm.Stage = class {
 
   draw_legend() {
     if (!this.has_wheel() && !this.has_bar()) return;
-    const box = this.has_bar() ? Ahm.bar : { left: 16, bottom: 14, width: 128, height: 128 };
+    const box = this.has_bar() ? Ahm.bar : { left: 16, bottom: 14, width: this.wheel, height: this.wheel };
     this.renderer.clearDepth();
     this.renderer.setViewport(box.left, box.bottom, box.width, box.height);
     this.legend.uniforms.pixel.value = 2 / (box.height * this.renderer.getPixelRatio());
@@ -272,6 +288,8 @@ Ahm.Stage = class {
     const box = this.canvas.parentElement;
     this.width = Math.max(1, box.clientWidth);
     this.height = Math.max(1, box.clientHeight);
+    this.wheel = Math.min(128, Math.round(0.22 * Math.min(this.width, this.height)));
+    box.style.setProperty("--wheel", this.wheel + "px");
     this.renderer.setPixelRatio(window.devicePixelRatio);
     this.renderer.setSize(this.width, this.height, false);
     this.camera.aspect = this.width / this.height;

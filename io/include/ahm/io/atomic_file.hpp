@@ -29,7 +29,8 @@ class AtomicFile {
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
 
-  /// Appends bytes. @throws IoError when the disk is full, the pipe is closed, or the system reports another fault
+  /// Appends bytes. @throws IoError when the disk is full, the pipe is closed (fault "pipe_closed"), or the system reports
+  /// another fault
   void write(std::string_view bytes);
   /// The name the file has until `commit`, for libraries that open it themselves (instead of `write`); empty where the
   /// target is written directly.
@@ -53,6 +54,10 @@ class AtomicFile {
   bool finished_ = false;
   int slot_ = -1;  // in the registry of unfinished files
 };
+
+/// Whether a path leads to what cannot be replaced by a renamed file: a pipe, a device, or the process's own output
+/// (/dev/stdout), wherever that has been redirected to.
+bool is_stream(const std::filesystem::path& path);
 
 /// Deletes the temporary files of all uncommitted `AtomicFile`s of the process. Async-signal-safe: for a handler of
 /// SIGINT, SIGTERM or SIGHUP that ends the process afterwards.

@@ -8,7 +8,9 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -24,6 +26,13 @@ struct Property {
   std::vector<double> values;  ///< n
 };
 
+/// Whence the points of a PCD file were seen, and in which picture.
+struct Acquisition {
+  std::size_t width = 0, height = 1;  ///< point i is pixel i % width of line i / width; height 1: there is no picture
+  Vec3 position{};                    ///< of the sensor
+  std::array<double, 4> orientation{1, 0, 0, 0};  ///< of the sensor: a quaternion w, x, y, z
+};
+
 /// Points and polygons as they stand in a file: same order, same precision, nothing merged, dropped or checked for
 /// shape.
 struct Geometry {
@@ -31,14 +40,15 @@ struct Geometry {
   std::vector<Vec3> normals;                        ///< empty or n, not normalised
   std::vector<std::array<std::uint8_t, 3>> colors;  ///< empty or n; red, green, blue
   std::vector<Property> properties;
-  std::vector<Offset> face_begin;    ///< empty (cloud) or faces + 1; face f = [face_begin[f], face_begin[f + 1])
-  std::vector<Index> face_vertices;  ///< vertex numbers, each in [0, n)
-  std::string format;                ///< for messages, e.g. "PLY binary little endian"
+  std::optional<Acquisition> acquisition;  ///< width times height is n
+  std::vector<Offset> face_begin;          ///< empty (cloud) or faces + 1; face f = [face_begin[f], face_begin[f + 1])
+  std::vector<Index> face_vertices;        ///< vertex numbers, each in [0, n)
+  std::string format;                      ///< for messages, e.g. "PLY binary little endian"
   /// What was ignored, or taken for something: goes_on_after_faces, goes_on_after_elements (the rest of the file),
   /// element_ignored (its name), header_lines_ignored (their number), statements_ignored (their number; the first of
   /// their keywords), colors_unknown (neither fractions of 1 nor whole levels), colors_not_packed, normals_not_by_vertex,
   /// vertex_extras (numbers behind x, y, z), columns_as_colors (the numbers of the first and the last), columns_ignored
-  /// (the number of the last; from 4), lines_ignored (the number of sets of lines).
+  /// (the number of the last; from 4), column_ignored (its name: it holds what is no number), lines_ignored (the number of sets of lines).
   std::vector<Warning> warnings;
 
   std::size_t face_count() const noexcept { return faces().size(); }

@@ -13,11 +13,13 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <variant>
 #include <vector>
 
+#include "ahm/io/geometry.hpp"
 #include "ahm/maps/log_map.hpp"
 #include "ahm/types.hpp"
 
@@ -46,6 +48,7 @@ struct Table {
   FaceList faces = {};                           ///< polygons of rows
   std::vector<std::array<Index, 2>> edges = {};  ///< pairs of rows (.ply)
   bool text = false;                             ///< .ply as text
+  std::optional<Acquisition> acquisition = {};   ///< of the rows (.pcd)
 
   /// The length of the columns.
   std::size_t rows() const { return columns.empty() ? 0 : columns.front().rows(); }

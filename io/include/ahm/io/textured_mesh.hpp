@@ -32,13 +32,15 @@ struct MeshPart {
   bool transparent = false;                          ///< the texture's opacity counts
 };
 
-/// Writes .obj (with .mtl and one .png per texture beside it) or .glb (glTF 2.0, all in one file).
+/// Writes .obj (with .mtl and one .png per texture beside it) .glb (glTF 2.0, all in one file), or .ply without textures.
 ///
 /// - OBJ: doubles, polygons, per-corner texture coordinates; a file NAME.obj comes with NAME.mtl and NAME_<part>.png.
 ///   It appears last, when all others are complete.
+/// - PLY: a vertex for every pair of texture coordinates of a point, as doubles s and t (nan in parts without), the number of
+///   the point as `point`; all parts in one, without textures.
 /// - GLB: triangles (polygons as fans), floats about the middle of the bounding box, which is the nodes' translation,
 ///   so that models far from the origin keep their shape.
-/// @throws InvalidArgument (lengths, indices, a point or texture coordinate in use that is not finite), IoError
+/// @throws InvalidArgument (lengths, indices, a point or texture coordinate in use that is not finite; a texture in a .ply), IoError
 void write_textured(const std::filesystem::path& path, std::span<const MeshPart> parts);
 
 }  // namespace ahm::io

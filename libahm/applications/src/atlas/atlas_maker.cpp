@@ -15,8 +15,6 @@ namespace ahm {
 namespace {
 
 constexpr Index nobody = -1;
-/// Maps kept at the same time.
-constexpr std::size_t block_size = 16;
 
 void check(const TangentGraph& graph, const FaceList& faces) {
   if (graph.dimension() != 2)
@@ -183,7 +181,9 @@ Atlas assemble(const FaceNeighbors& neighbors, const FaceList& faces, const Regi
 }  // namespace
 
 AtlasMaker::AtlasMaker(const MapMaker& maps, const FaceList& faces)
-    : maps_(maps), faces_(faces), neighbors_((check(maps.graph(), faces), FaceNeighbors(faces))) {}
+    : maps_(maps), faces_(faces), neighbors_((check(maps.graph(), faces), FaceNeighbors(faces))) {
+  if (maps.method() == Method::heat) stars_ = UnfoldingFront::stars(maps.graph());
+}
 
 /// From every source as far as to all corners of the faces that touch its cell.
 std::vector<double> AtlasMaker::reach(const VoronoiCells& cells, std::size_t sources) const {
@@ -196,19 +196,16 @@ std::vector<double> AtlasMaker::reach(const VoronoiCells& cells, std::size_t sou
 }
 
 Atlas AtlasMaker::make(std::span<const Vertex> sources) {
-  const VoronoiCells cells = maps_.cells(sources);
+  const VoronoiCells cells = maps_.cells(sources, stars_);
   const std::vector<Index>& label = cells.labels;
   const std::vector<double> reach = this->reach(cells, sources.size());
   Regions regions(faces_, label, sources.size());
   const std::vector<Index> missing = regions.adopt(regions_);
-  for (std::size_t first = 0; first < missing.size(); first += block_size) {
-    const auto block = std::span(missing).subspan(first, std::min(block_size, missing.size() - first));
-    std::vector<Vertex> starts;
-    std::vector<double> far;
-    for (Index s : block) starts.push_back(sources[s]), far.push_back(reach[s]);
-    const std::vector<LogMap> maps = maps_.maps(starts, far);
-    for (std::size_t k = 0; k < maps.size(); ++k) regions.keep(block[k], maps[k]);
-  }
+  std::vector<Vertex> starts;
+  std::vector<double> far;
+  std::vector<std::span<const Vertex>> wanted;
+  for (Index s : missing) starts.push_back(sources[s]), far.push_back(reach[s]), wanted.push_back(regions.of(s));
+  regions.keep(missing, maps_.coordinates(starts, wanted, far));
   regions_ = std::move(regions);
   std::vector<Index> source = nearest_of_faces(faces_, label, regions_);
   attach_islands(neighbors_, faces_, regions_, sources.size(), source);

@@ -2,6 +2,7 @@
 /// Atlases of one surface with more and more sources.
 #pragma once
 
+#include <memory>
 #include <span>
 
 #include "ahm/applications/atlas.hpp"
@@ -26,6 +27,7 @@ class AtlasMaker {
   FaceList faces_;
   FaceNeighbors neighbors_;
   Regions regions_;
+  std::shared_ptr<const UnfoldingFront::Stars> stars_;  ///< for cells by heat
 };
 
 }  // namespace ahm

@@ -23,7 +23,7 @@ class Regions {
     std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
     vertices_.resize(at(begin_.back()));
     std::vector<Offset> end(begin_.begin(), begin_.end() - 1);
-    for_entries(faces, label, [&](Index source, Index vertex) { vertices_[end[source]++] = vertex; });
+    for_entries(faces, label, [&](Index source, Index vertex) { vertices_[end[source]++] = Vertex(vertex); });
     Offset kept = 0;
     for (std::size_t s = 0; s < sources; ++s) {
       const auto first = vertices_.begin() + begin_[s], last = vertices_.begin() + begin_[s + 1];
@@ -54,21 +54,30 @@ class Regions {
     return missing;
   }
 
-  void keep(std::size_t source, const LogMap& map) {
-    for (Offset k = begin_[source]; k < begin_[source + 1]; ++k)
-      for (std::size_t c : {0, 1}) coordinates_[2 * at(k) + c] = map.coordinates(Vertex(vertices_[k]))[c];
+  /// The vertices of a source.
+  std::span<const Vertex> of(Index source) const {
+    return std::span(vertices_).subspan(at(begin_[source]), at(begin_[source + 1] - begin_[source]));
+  }
+  /// @param coordinates  of the vertices of these sources, one after the other
+  void keep(std::span<const Index> sources, std::span<const double> coordinates) {
+    auto next = coordinates.begin();
+    for (Index source : sources) {
+      const auto end = next + 2 * std::ssize(of(source));
+      std::copy(next, end, coordinates_.begin() + 2 * begin_[source]);
+      next = end;
+    }
   }
 
   /// NaN where unknown.
   std::array<double, 2> coordinates(Index source, Index vertex) const {
-    const Offset k = find(at(source), vertex);
+    const Offset k = find(at(source), Vertex(vertex));
     if (k < 0) return {std::nan(""), std::nan("")};
     return {coordinates_[2 * at(k)], coordinates_[2 * at(k) + 1]};
   }
 
  private:
   /// -1 where the region does not hold the vertex.
-  Offset find(std::size_t source, Index vertex) const {
+  Offset find(std::size_t source, Vertex vertex) const {
     const auto first = vertices_.begin() + begin_[source], last = vertices_.begin() + begin_[source + 1];
     const auto found = std::lower_bound(first, last, vertex);
     return found == last || *found != vertex ? -1 : found - vertices_.begin();
@@ -91,7 +100,7 @@ class Regions {
   }
 
   std::vector<Offset> begin_{0};
-  std::vector<Index> vertices_;
+  std::vector<Vertex> vertices_;
   std::vector<double> coordinates_;
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "ahm/error.hpp"
 #include "ahm/util/memory.hpp"
@@ -15,12 +16,24 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-/// A source of unit weights at the given vertices, checked.
-Source plain_source(const LogMapSolver& solver, std::span<const Vertex> vertices) {
-  Source source = Source::at_vertices(vertices);
-  check_source(source, solver.graph());
-  return source;
-}
+/// Points where something is given: all in one, checked.
+struct Givers {
+  Source all;
+  double heat;  ///< right-hand side of a weight of 1
+
+  Givers(const LogMapSolver& solver, Source joined) : all(std::move(joined)) {
+    check_source(all, solver.graph());
+    heat = source_heat(solver.graph(), solver.operators(), all.vertices());
+  }
+  /// Calls put(vertex, point, b, axes or nothing) for every sample.
+  template <class Put>
+  void for_samples(const Put& put) const {
+    const std::size_t d = static_cast<std::size_t>(all.dimension().value_or(0)), n = all.vertices().size();
+    for (std::size_t k = 0; k < n; ++k)
+      put(static_cast<std::size_t>(all.vertices()[k].index), static_cast<std::size_t>(all.place(k).point),
+          heat * all.weights()[k], all.axes().subspan(k * d * d, d * d));
+  }
+};
 
 unsigned threads_of(const LogMapSolver& solver, std::optional<unsigned> threads) {
   return detail::thread_count(threads.value_or(solver.options().threads));
@@ -29,7 +42,8 @@ unsigned threads_of(const LogMapSolver& solver, std::optional<unsigned> threads)
 AffineHeat affine_heat(const LogMapSolver& solver, const Source& source, std::optional<unsigned> threads) {
   constexpr Variant variant = Variant::localized;  // Y is the radial field
   return AffineHeat(solver.graph(), solver.operators(), variant,
-                    {inflow_of(source, solver.graph(), solver.operators(), variant)}, threads_of(solver, threads));
+                    {right_hand_side_of(source, solver.graph(), solver.operators(), variant)},
+                    threads_of(solver, threads));
 }
 
 /// Status of every vertex, and NaN where it is not ok. `reached(i)`: whether the value at vertex i can be trusted.
@@ -63,17 +77,16 @@ struct Blend {
   bool reached(std::size_t i) const { return heat[i] >= least; }
 };
 
-Blend blend_scalars(const LogMapSolver& solver, std::span<const Vertex> vertices, std::span<const double> values) {
+Blend blend_scalars(const LogMapSolver& solver, const Givers& givers, std::span<const double> values) {
   const auto n = static_cast<std::size_t>(solver.graph().size());
   double largest = 0;
   for (double v : values) largest = std::max(largest, std::abs(v));
   const double unit = largest > 0 ? std::ldexp(1.0, -std::ilogb(largest)) : 1.0;
-  const double b = source_heat(solver.graph(), solver.operators(), vertices);
   std::vector<double> columns(2 * n, 0.0);
-  for (std::size_t k = 0; k < vertices.size(); ++k) {
-    columns[vertices[k].index] += b * (values[k] * unit);
-    columns[n + static_cast<std::size_t>(vertices[k].index)] += b;
-  }
+  givers.for_samples([&](std::size_t vertex, std::size_t point, double b, auto) {
+    columns[vertex] += b * (values[point] * unit);
+    columns[n + vertex] += b;
+  });
   solver.operators().solve_scalar(columns, 2);
   Blend blend;
   blend.heat.assign(columns.begin() + static_cast<std::ptrdiff_t>(n), columns.end());
@@ -84,40 +97,41 @@ Blend blend_scalars(const LogMapSolver& solver, std::span<const Vertex> vertices
   return blend;
 }
 
-}  // namespace
-
-VertexField extend_scalar(const LogMapSolver& solver, std::span<const Vertex> vertices,
-                          std::span<const double> values) {
+VertexField extend(const LogMapSolver& solver, Source points, std::size_t count, std::span<const double> values) {
   return detail::with_memory_check("extending scalars", [&] {
-    check_values(values, vertices.size(), "values");
-    const Source source = plain_source(solver, vertices);
-    Blend blend = blend_scalars(solver, vertices, values);
+    check_values(values, count, "values");
+    const Givers givers(solver, std::move(points));
+    Blend blend = blend_scalars(solver, givers, values);
     VertexField field{1, std::move(blend.values), {}};
-    finish(field, solver, source, [&](std::size_t i) { return blend.reached(i); });
+    finish(field, solver, givers.all, [&](std::size_t i) { return blend.reached(i); });
     return field;
   });
 }
 
-VertexField transport_vectors(const LogMapSolver& solver, std::span<const Vertex> vertices,
-                              std::span<const double> vectors) {
+VertexField transport(const LogMapSolver& solver, Source points, std::size_t count, std::span<const double> vectors) {
   return detail::with_memory_check("transporting vectors", [&] {
     const auto n = static_cast<std::size_t>(solver.graph().size()),
                d = static_cast<std::size_t>(solver.graph().dimension());
-    check_values(vectors, vertices.size() * d, "vectors");
-    const Source source = plain_source(solver, vertices);
+    check_values(vectors, count * d, "vectors");
+    const Givers givers(solver, std::move(points));
 
     // Lengths by A ([SSC19] Alg. 1, steps II and III) ...
     std::vector<double> lengths;
-    for (std::size_t k = 0; k < vertices.size(); ++k) lengths.push_back(length(vectors.subspan(k * d, d)));
-    const Blend blend = blend_scalars(solver, vertices, lengths);
+    for (std::size_t k = 0; k < count; ++k) lengths.push_back(length(vectors.subspan(k * d, d)));
+    const Blend blend = blend_scalars(solver, givers, lengths);
 
     // ... directions by B (step I).
     const double longest = lengths.empty() ? 0.0 : *std::max_element(lengths.begin(), lengths.end());
-    const double b = source_heat(solver.graph(), solver.operators(), vertices);
     VertexField field{static_cast<int>(d), std::vector<double>(n * d, 0.0), {}};
-    for (std::size_t k = 0; k < vertices.size() && longest > 0; ++k)
-      for (std::size_t a = 0; a < d; ++a)
-        field.values[static_cast<std::size_t>(vertices[k].index) * d + a] += b * (vectors[k * d + a] / longest);
+    givers.for_samples([&](std::size_t vertex, std::size_t point, double b, std::span<const double> U) {
+      if (!(longest > 0)) return;
+      const std::span given = vectors.subspan(point * d, d);
+      for (std::size_t c = 0; c < d; ++c) {
+        double turned = U.empty() ? given[c] / longest : 0;
+        for (std::size_t a = 0; a < d && !U.empty(); ++a) turned += U[c * d + a] * (given[a] / longest);
+        field.values[vertex * d + c] += b * turned;
+      }
+    });
     solver.operators().solve_vector(field.values, 1);
     std::vector<char> reached(n);
     for (std::size_t i = 0; i < n; ++i) {
@@ -126,9 +140,30 @@ VertexField transport_vectors(const LogMapSolver& solver, std::span<const Vertex
       reached[i] = blend.reached(i) && (norm >= blend.least || longest == 0);
       for (double& component : vector) component = norm > 0 ? component / norm * blend.values[i] : 0.0;
     }
-    finish(field, solver, source, [&](std::size_t i) { return reached[i] != 0; });
+    finish(field, solver, givers.all, [&](std::size_t i) { return reached[i] != 0; });
     return field;
   });
+}
+
+}  // namespace
+
+VertexField extend_scalar(const LogMapSolver& solver, std::span<const Vertex> vertices,
+                          std::span<const double> values) {
+  return extend(solver, Source::at_vertices(vertices), vertices.size(), values);
+}
+
+VertexField extend_scalar(const LogMapSolver& solver, std::span<const Source> points, std::span<const double> values) {
+  return extend(solver, Source::joined(points), points.size(), values);
+}
+
+VertexField transport_vectors(const LogMapSolver& solver, std::span<const Vertex> vertices,
+                              std::span<const double> vectors) {
+  return transport(solver, Source::at_vertices(vertices), vertices.size(), vectors);
+}
+
+VertexField transport_vectors(const LogMapSolver& solver, std::span<const Source> points,
+                              std::span<const double> vectors) {
+  return transport(solver, Source::joined(points), points.size(), vectors);
 }
 
 VertexField parallel_transport(const LogMapSolver& solver, const Source& source, std::optional<unsigned> threads) {

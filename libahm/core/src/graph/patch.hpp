@@ -16,9 +16,10 @@ namespace ahm {
 /// @param local_of    global vertex -> its place in `vertices`, or negative
 /// @param on_outside  called as (place in `vertices`, star, edge) for each dropped edge of weight other than 0; returns
 ///                    what it adds to the vertex's mass
+/// @param beyond      so many vertices more, without edges and of mass 1: places from vertices.size() on, where edges lead
 template <class LocalOf, class OnOutside>
 CsrGraph cut_out(const TangentGraph& graph, std::span<const Index> vertices, const LocalOf& local_of,
-                 const OnOutside& on_outside) {
+                 const OnOutside& on_outside, std::size_t beyond = 0) {
   const auto d = static_cast<std::size_t>(graph.dimension());
   const std::size_t r = graph.transport_layout().width();
   CsrGraphData patch;
@@ -55,6 +56,8 @@ CsrGraph cut_out(const TangentGraph& graph, std::span<const Index> vertices, con
     patch.masses.push_back(mass);
     patch.row_begin.push_back(static_cast<Offset>(patch.neighbors.size()));
   }
+  patch.masses.resize(vertices.size() + beyond, 1.0);
+  patch.row_begin.resize(patch.masses.size() + 1, patch.row_begin.back());
   return CsrGraph(std::move(patch));
 }
 

@@ -8,12 +8,12 @@
 #include <cstdlib>
 #include <exception>
 #include <mutex>
-#include <new>
 #include <system_error>
 #include <thread>
 #include <vector>
 
 #include "ahm/error.hpp"
+#include "ahm/util/memory.hpp"
 #include "heat/memory_limits.hpp"
 
 namespace ahm {
@@ -107,7 +107,7 @@ void without_openmp_regions(const std::function<void()>& work) {
     done = true;
     try {
       // The OpenMP runtime ends the process where it cannot have a few bytes, so they are asked for beforehand.
-      ::operator delete(::operator new (std::size_t{1} << 16));
+      detail::require_memory(std::size_t{1} << 16);
       if (set_levels) set_levels(0);
       work();
     } catch (...) {

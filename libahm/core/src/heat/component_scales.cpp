@@ -42,12 +42,12 @@ ComponentScales::ComponentScales(const TangentGraph& graph)
       edge_length(static_cast<std::size_t>(components.count), graph.mean_edge_length()),
       sizes(edge_length.size(), 0) {
   for (Index c : components.of_vertex) ++sizes[c];
-  if (components.count < 2) return;
-  if (graph.component_edge_length(0) > 0) {
+  if (graph.size() > 0 && graph.component_edge_length(0) > 0) {
     for (Index i = 0; i < graph.size(); ++i)
       if (const double h = graph.component_edge_length(i); h > 0) edge_length[components.of_vertex[i]] = h;
     return;
   }
+  if (components.count < 2) return;
   const MeanLengths mean = mean_lengths(graph, components);
   for (std::size_t c = 0; c < edge_length.size(); ++c)
     if (mean.of_component[c] > 0) edge_length[c] *= mean.of_component[c] / mean.of_all;

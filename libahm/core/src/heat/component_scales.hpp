@@ -12,8 +12,8 @@ namespace ahm {
 
 /// Per component: h_c, its mean edge length in graph units, and its number of vertices.
 ///
-/// A graph of one component has h_c = `mean_edge_length`; else the graph tells them (`component_edge_length`), or that is
-/// shared out in the ratio of the components' mean |e_ij|.
+/// The graph tells h_c (`component_edge_length`); else that of a graph of one component is `mean_edge_length`, which is shared out
+/// to several in the ratio of their mean |e_ij|.
 struct ComponentScales {
   explicit ComponentScales(const TangentGraph& graph);
 

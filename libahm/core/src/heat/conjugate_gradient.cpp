@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <string>
 #include <utility>
 
 #include "ahm/error.hpp"
+#include "ahm/util/small_math.hpp"
 
 namespace ahm {
 namespace {
@@ -14,10 +14,6 @@ namespace {
 /// Squared, relative: the residual is driven to where rounding stops it.
 constexpr double tolerance = 1e-34;
 constexpr int most_iterations = 5000;
-
-double dot(std::span<const double> a, std::span<const double> b) {
-  return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
-}
 
 }  // namespace
 

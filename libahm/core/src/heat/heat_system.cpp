@@ -24,32 +24,14 @@ namespace {
 
 constexpr const char *name_A = "A = M + tau L", *name_B = "B = M + tau L^nabla";
 
-/// The power of two that brings the mean mass to order one. A power of two, so that scaled models give the same bits.
-/// @throws InvalidGraph
-double scaling_for(const TangentGraph& graph) {
+double mean_mass(const TangentGraph& graph) {
   double mean = 0;
   for (Index i = 0; i < graph.size(); ++i) mean += graph.mass(i) / graph.size();
-  if (!(mean > 0) || !std::isfinite(mean))
-    throw InvalidGraph("the mean mass is " + detail::number(mean) + "; masses must be finite and > 0");
-  return std::ldexp(1.0, -std::ilogb(mean));
+  return mean;
 }
 
 /// Heat may be lost as if masses were greater by this share, which bends distances by half of it and flat graphs not at all.
 constexpr double most_loss = 1e-6;
-
-/// Constants are in the kernel of L, so A 1 = m: how far A^-1 m is from 1 tells what conditioning leaves of the digits.
-void check_conservation(const HeatSystem& system, const TangentGraph& graph) {
-  std::vector<double> x(static_cast<std::size_t>(graph.size()));
-  for (Index i = 0; i < graph.size(); ++i) x[i] = system.scaling() * graph.mass(i);
-  system.solve_A(x, 1);
-  double worst = 0;
-  for (double value : x) worst = std::isfinite(value) ? std::max(worst, std::abs(value - 1)) : INFINITY;
-  if (!(worst <= most_loss))
-    throw NotPositiveDefinite("heat_lost",
-                              "the diffusion loses heat (" + detail::number(worst) +
-                                  " of it): its time is too long, or the sizes of faces and edges differ too much",
-                              "give a smaller t_coef");
-}
 
 /// A and B as two objects of one kind that solve: CholeskyFactor or ConjugateGradient.
 template <class Solver>
@@ -62,7 +44,7 @@ class SystemOf final : public HeatSystem {
 
   FactorStatistics& statistics_to_fill() { return statistics_; }
   void finish(const TangentGraph& graph) {
-    check_conservation(*this, graph);
+    check_lost_heat(lost_heat(*this, graph, graph.size()));
     statistics_.bytes = A->bytes() + B->bytes();
     statistics_.nonzeros_A = A->nonzeros();
     statistics_.nonzeros_B = B->nonzeros();
@@ -76,7 +58,7 @@ template <class Solver>
 std::pair<std::unique_ptr<SystemOf<Solver>>, AssembledOperators> begin(const TangentGraph& graph,
                                                                        std::vector<double> tau,
                                                                        const HeatOptions& options) {
-  auto system = std::make_unique<SystemOf<Solver>>(std::move(tau), scaling_for(graph));
+  auto system = std::make_unique<SystemOf<Solver>>(std::move(tau), mass_scaling(mean_mass(graph)));
   options.progress.step("assemble", 0.0);
   detail::Stopwatch stopwatch;
   AssembledOperators matrices = assemble(graph, system->tau(), system->scaling());
@@ -85,6 +67,29 @@ std::pair<std::unique_ptr<SystemOf<Solver>>, AssembledOperators> begin(const Tan
 }
 
 }  // namespace
+
+double mass_scaling(double mean_mass) {
+  if (!(mean_mass > 0) || !std::isfinite(mean_mass))
+    throw InvalidGraph("the mean mass is " + detail::number(mean_mass) + "; masses must be finite and > 0");
+  return std::ldexp(1.0, -std::ilogb(mean_mass));
+}
+
+double lost_heat(const HeatSystem& system, const TangentGraph& graph, Index own) {
+  std::vector<double> x(static_cast<std::size_t>(graph.size()));
+  for (Index i = 0; i < graph.size(); ++i) x[i] = system.scaling() * graph.mass(i);
+  system.solve_A(x, 1);
+  double worst = 0;
+  for (Index i = 0; i < own; ++i) worst = std::isfinite(x[i]) ? std::max(worst, std::abs(x[i] - 1)) : INFINITY;
+  return worst;
+}
+
+void check_lost_heat(double lost) {
+  if (!(lost <= most_loss))
+    throw NotPositiveDefinite("heat_lost",
+                              "the diffusion loses heat (" + detail::number(lost) +
+                                  " of it): its time is too long, or the sizes of faces and edges differ too much",
+                              "give a smaller t_coef");
+}
 
 void check_heat_options(const TangentGraph& graph, const HeatOptions& options) {
   if (!(options.accuracy >= 1e-14 && options.accuracy <= 0.1))

@@ -34,6 +34,16 @@ class HeatSystem {
   FactorStatistics statistics_;
 };
 
+/// The power of two that brings the mean mass to order one. A power of two, so that scaled models give the same bits.
+/// @throws InvalidGraph
+double mass_scaling(double mean_mass);
+
+/// How far A^-1 m is from 1 at the first `own` vertices. Constants are in the kernel of L, so A 1 = m: it tells what
+/// conditioning leaves of the digits.
+double lost_heat(const HeatSystem& system, const TangentGraph& graph, Index own);
+/// @throws NotPositiveDefinite where that is too much
+void check_lost_heat(double lost);
+
 /// By Cholesky factors.
 /// @param tau  of each vertex, the same at both ends of an edge
 /// @throws as `HeatOperators`

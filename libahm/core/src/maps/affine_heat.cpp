@@ -6,15 +6,16 @@
 #include "ahm/util/parallel.hpp"
 #include "ahm/util/scratch.hpp"
 #include "ahm/util/small_math.hpp"
+#include "maps/heat_distance.hpp"
 
 namespace ahm {
 
 AffineHeat::AffineHeat(const TangentGraph& graph, const HeatOperators& operators, Variant variant,
-                       std::vector<Inflow> inflows, unsigned threads)
+                       std::vector<RightHandSide> right_hand_sides, unsigned threads)
     : graph_(graph),
       operators_(operators),
       system_(system_of(variant)),
-      inflows_(std::move(inflows)),
+      rhs_(std::move(right_hand_sides)),
       n_(static_cast<std::size_t>(graph.size())),
       d_(static_cast<std::size_t>(graph.dimension())),
       layout_(graph.transport_layout()),
@@ -28,31 +29,31 @@ FrameField AffineHeat::frames(std::size_t source) const {
 
 /// lambda = A^-1 b
 void AffineHeat::diffuse_heat() {
-  lambda_.assign(inflows_.size() * n_, 0.0);
-  for (std::size_t s = 0; s < inflows_.size(); ++s)
-    for (std::size_t k = 0; k < inflows_[s].vertices.size(); ++k)
-      lambda_[s * n_ + static_cast<std::size_t>(inflows_[s].vertices[k])] += inflows_[s].heat[k];
-  operators_.solve_scalar(lambda_, static_cast<Index>(inflows_.size()));
+  lambda_.assign(rhs_.size() * n_, 0.0);
+  for (std::size_t s = 0; s < rhs_.size(); ++s)
+    for (std::size_t k = 0; k < rhs_[s].vertices.size(); ++k)
+      lambda_[s * n_ + static_cast<std::size_t>(rhs_[s].vertices[k])] += rhs_[s].heat[k];
+  operators_.solve_scalar(lambda_, static_cast<Index>(rhs_.size()));
   least_heat_.clear();
-  for (std::size_t s = 0; s < inflows_.size(); ++s) {
+  for (std::size_t s = 0; s < rhs_.size(); ++s) {
     const auto heat = lambda(s);
-    least_heat_.push_back(least_share * *std::max_element(heat.begin(), heat.end()));
+    least_heat_.push_back(heat.empty() ? 0 : least_share * *std::max_element(heat.begin(), heat.end()));
   }
 }
 
 /// U~ = B^-1 (b U_p) (Eq. 11)
 void AffineHeat::diffuse_frames() {
-  frame_solution_.assign(inflows_.size() * frame_size(), 0.0);
+  frame_solution_.assign(rhs_.size() * frame_size(), 0.0);
   const std::size_t width = layout_.width();
   const int columns = layout_.columns();
-  for (std::size_t s = 0; s < inflows_.size(); ++s)
-    for (std::size_t k = 0; k < inflows_[s].vertices.size(); ++k) {
-      const double* frame = inflows_[s].frames.data() + k * width;
-      double* rhs = frame_solution_.data() + s * frame_size() + static_cast<std::size_t>(inflows_[s].vertices[k]) * d_;
+  for (std::size_t s = 0; s < rhs_.size(); ++s)
+    for (std::size_t k = 0; k < rhs_[s].vertices.size(); ++k) {
+      const double* frame = rhs_[s].frames.data() + k * width;
+      double* rhs = frame_solution_.data() + s * frame_size() + static_cast<std::size_t>(rhs_[s].vertices[k]) * d_;
       for (int a = 0; a < columns; ++a)
         for (std::size_t c = 0; c < d_; ++c) rhs[a * n_ * d_ + c] += frame[layout_.place(static_cast<int>(c), a)];
     }
-  operators_.solve_vector(frame_solution_, static_cast<Index>(inflows_.size()) * columns);
+  operators_.solve_vector(frame_solution_, static_cast<Index>(rhs_.size()) * columns);
 }
 
 void AffineHeat::diffuse() {
@@ -63,12 +64,12 @@ void AffineHeat::diffuse() {
 /// rho_i = -tau sum_j w_ij e_ij lambda_j, columns of n vectors of d numbers. The translation from j to i is -e_ij: it
 /// adds the displacement j -> i, so that the plane comes out exact.
 std::vector<double> AffineHeat::translations() const {
-  std::vector<double> rho(inflows_.size() * n_ * d_, 0.0);
+  std::vector<double> rho(rhs_.size() * n_ * d_, 0.0);
   const double to_units = graph_.length_unit() / solution_unit(graph_);
   detail::for_each_index(n_, threads_, [&](std::size_t i) {
     const Star star = graph_.star(static_cast<Index>(i));
     const double factor = -operators_.tau()[i] * operators_.scaling();
-    for (std::size_t s = 0; s < inflows_.size(); ++s) {
+    for (std::size_t s = 0; s < rhs_.size(); ++s) {
       const double* lambda = lambda_.data() + s * n_;
       double* out = rho.data() + (s * n_ + i) * d_;
       for (std::size_t e = 0; e < star.degree(); ++e) {
@@ -77,35 +78,33 @@ std::vector<double> AffineHeat::translations() const {
       }
     }
   });
-  for (std::size_t s = 0; s < inflows_.size(); ++s)
-    for (std::size_t k = 0; k < inflows_[s].vertices.size(); ++k)
+  for (std::size_t s = 0; s < rhs_.size(); ++s)
+    for (std::size_t k = 0; k < rhs_[s].vertices.size(); ++k)
       for (std::size_t a = 0; a < d_; ++a)
-        rho[(s * n_ + static_cast<std::size_t>(inflows_[s].vertices[k])) * d_ + a] +=
-            inflows_[s].translations[k * d_ + a];
+        rho[(s * n_ + static_cast<std::size_t>(rhs_[s].vertices[k])) * d_ + a] += rhs_[s].translations[k * d_ + a];
   return rho;
 }
 
 void AffineHeat::solve() {
   const std::vector<double> rho = translations();
   unknown_.assign(rho.size(), 0.0);
-  for (std::size_t s = 0; s < inflows_.size(); ++s) {
+  for (std::size_t s = 0; s < rhs_.size(); ++s) {
     double* right_side = unknown_.data() + s * n_ * d_;
     const FrameField U = frames(s);
     detail::for_each_index(n_, threads_, [&](std::size_t i) {
       system_.put(U, static_cast<Index>(i), std::span(rho).subspan((s * n_ + i) * d_, d_), right_side, n_);
     });
-    for (std::size_t k = 0; k < inflows_[s].vertices.size(); ++k)
+    for (std::size_t k = 0; k < rhs_[s].vertices.size(); ++k)
       for (std::size_t a = 0; a < d_; ++a)
-        right_side[place_.place(static_cast<std::size_t>(inflows_[s].vertices[k]), a)] +=
-            inflows_[s].values[k * d_ + a];
+        right_side[place_.place(static_cast<std::size_t>(rhs_[s].vertices[k]), a)] += rhs_[s].values[k * d_ + a];
   }
-  system_.solve(operators_, unknown_, inflows_.size());
+  system_.solve(operators_, unknown_, rhs_.size());
 }
 
 /// A^-1 (s + b |z|^2)
 void AffineHeat::solve_squares() {
   const double to_units = graph_.length_unit() / solution_unit(graph_);
-  squares_.resize(inflows_.size() * n_);
+  squares_.resize(rhs_.size() * n_);
   detail::parallel_chunks(static_cast<Offset>(n_), 1 << 14, threads_, [&](Offset begin, Offset end) {
     std::vector<double> amounts, factors, values;
     Scratch pairs(d_ * d_);
@@ -119,7 +118,7 @@ void AffineHeat::solve_squares() {
         factors[k] = 2 * coefficient * star.weights[k];
         amounts[k] = coefficient * star.weights[k] * to_units * dot(star.log(k), star.log(k));
       }
-      for (std::size_t s = 0; s < inflows_.size(); ++s) {
+      for (std::size_t s = 0; s < rhs_.size(); ++s) {
         const double *lambda = lambda_.data() + s * n_, *x = unknown_.data() + s * n_ * d_;
         double squares = 0;
         for (std::size_t k = 0; k < star.degree(); ++k) {
@@ -133,8 +132,8 @@ void AffineHeat::solve_squares() {
       }
     }
   });
-  for (std::size_t s = 0; s < inflows_.size(); ++s) {
-    const Inflow& in = inflows_[s];
+  for (std::size_t s = 0; s < rhs_.size(); ++s) {
+    const RightHandSide& in = rhs_[s];
     for (std::size_t k = 0; k < in.vertices.size(); ++k) {
       double& entry = squares_[s * n_ + static_cast<std::size_t>(in.vertices[k])];
       entry += in.squares[k];
@@ -142,7 +141,39 @@ void AffineHeat::solve_squares() {
         entry += system_.paired(frames(s), in.vertices[k], std::span(in.pairs).subspan(k * d_ * d_, d_ * d_));
     }
   }
-  operators_.solve_scalar(squares_, static_cast<Index>(inflows_.size()));
+  operators_.solve_scalar(squares_, static_cast<Index>(rhs_.size()));
+}
+
+/// A^-1 (s(r) + b |z|^2)
+void AffineHeat::solve_lengths() {
+  const double to_units = graph_.length_unit() / solution_unit(graph_);
+  std::vector<double> radial(unknown_.size());
+  lengths_.resize(rhs_.size() * n_);
+  for (std::size_t s = 0; s < rhs_.size(); ++s)
+    detail::for_each_index(
+        n_, threads_, [&](std::size_t i) { radial_at(s, static_cast<Index>(i), radial.data() + (s * n_ + i) * d_); });
+  detail::for_each_index(n_, threads_, [&](std::size_t i) {
+    const Star star = graph_.star(static_cast<Index>(i));
+    const double coefficient = -operators_.tau()[i] * operators_.scaling() * to_units;
+    Scratch seen(d_);
+    for (std::size_t s = 0; s < rhs_.size(); ++s) {
+      double sum = 0;
+      for (std::size_t k = 0; k < star.degree(); ++k) {
+        const auto j = static_cast<std::size_t>(star.neighbors[k]);
+        star.transport(k).apply(radial.data() + (s * n_ + j) * d_, seen.data());
+        sum += star.weights[k] *
+               (2 * dot(star.log(k), seen.span()) - to_units * dot(star.log(k), star.log(k)) * lambda_[s * n_ + j]);
+      }
+      lengths_[s * n_ + i] = coefficient * sum;
+    }
+  });
+  for (std::size_t s = 0; s < rhs_.size(); ++s) {
+    const RightHandSide& in = rhs_[s];
+    const std::vector<double>& given = in.lengths.empty() ? in.squares : in.lengths;
+    for (std::size_t k = 0; k < in.vertices.size(); ++k)
+      lengths_[s * n_ + static_cast<std::size_t>(in.vertices[k])] += given[k];
+  }
+  operators_.solve_scalar(lengths_, static_cast<Index>(rhs_.size()));
 }
 
 void AffineHeat::unknown_at(std::size_t source, Index vertex, double* out) const {
@@ -153,6 +184,30 @@ void AffineHeat::unknown_at(std::size_t source, Index vertex, double* out) const
 double AffineHeat::root_mean_square_at(std::size_t source, Index vertex) const {
   if (!has_squares()) return 0;
   return std::sqrt(std::max(0.0, square_at(source, vertex) / lambda(source)[vertex])) * solution_unit(graph_);
+}
+
+/// The distance by this second moment, in units of the solution.
+double AffineHeat::distance_by(std::size_t source, Index vertex, double second_moment) const {
+  const auto i = static_cast<std::size_t>(vertex);
+  const double heat = lambda(source)[i];
+  Scratch x(d_);
+  unknown_at(source, vertex, x.data());
+  for (double& component : x.span()) component /= heat;
+  const double root_tau = std::sqrt(operators_.tau()[i]) * graph_.length_unit() / solution_unit(graph_);
+  return heat_distance(length(x.span()), std::sqrt(std::max(0.0, second_moment / heat)), root_tau);
+}
+
+double AffineHeat::distance_at(std::size_t source, Index vertex) const {
+  return !has_lengths() ? 0 : distance_by(source, vertex, length_at(source, vertex)) * solution_unit(graph_);
+}
+
+void AffineHeat::radial_at(std::size_t source, Index vertex, double* out) const {
+  system_.radial(frames(source), vertex, unknown(source), n_, out);
+  const std::span r(out, d_);
+  const double along = length(r);
+  const double wanted = distance_by(source, vertex, square_at(source, vertex)) * lambda(source)[vertex];
+  const double stretch = along > 0 ? 1 + trust_in_direction(along, wanted) * (wanted / along - 1) : 1;
+  for (double& component : r) component *= stretch;
 }
 
 void AffineHeat::coordinates_at(std::size_t source, Index vertex, double* phi) const {

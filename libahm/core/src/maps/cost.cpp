@@ -42,7 +42,7 @@ Cost march(double n, int d, double numbers, const Times& times) {
   const double seconds = times.count * (d > 2 ? 1.5e-6 : 3.3e-6) * numbers * n, depth = std::sqrt(times.longest);
   const double band = d > 2 ? 150 * numbers * std::min(n, depth * 60 * std::pow(n, 2.0 / 3.0))
                             : 4e4 * numbers * std::min(depth * std::sqrt(n), n / 60);
-  return {8 * (numbers + 3 * d + 3) * n + (d > 2 ? 0 : 180 * n) + band, seconds, seconds};
+  return {8 * (numbers + 4 * d + 5) * n + (d > 2 ? 0 : 180 * n) + band, seconds, seconds};
 }
 
 }  // namespace

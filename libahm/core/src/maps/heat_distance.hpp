@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <limits>
 #include <span>
 
 #include "ahm/graph/tangent_graph.hpp"
@@ -24,10 +25,21 @@ inline double heat_distance(double length, double root_mean_square, double root_
   return length + w * (root_mean_square - length);
 }
 
-/// Puts a source's own vertices at the distances it was given with, which are known better than by the root of a difference.
+/// How far the direction of phi is that of one way: not where |phi| is much shorter than the distance, since there several
+/// ways cancel.
+inline double trust_in_direction(double length, double distance) {
+  return std::clamp((length / distance - 0.8) / 0.15, 0.0, 1.0);
+}
+
+/// Puts a source's own vertices at the distances it was given with, which are known better than by the root of a difference:
+/// each at that from the nearest of its points.
 inline void place_source(const Source& source, std::span<double> distances) {
-  for (std::size_t k = 0; k < source.vertices().size(); ++k)
-    if (source.weights()[k] > 0) distances[source.vertices()[k].index] = source.place(k).distance;
+  const auto of_samples = [&](const auto& each) {
+    for (std::size_t k = 0; k < source.vertices().size(); ++k)
+      if (source.weights()[k] > 0) each(distances[source.vertices()[k].index], source.place(k).distance);
+  };
+  of_samples([](double& distance, double) { distance = std::numeric_limits<double>::infinity(); });
+  of_samples([](double& distance, double given) { distance = std::min(distance, given); });
 }
 
 }  // namespace ahm

@@ -15,7 +15,7 @@ KnownValues::KnownValues(const TangentGraph& graph, const VariantSystem& system)
       d_(static_cast<std::size_t>(graph.dimension())),
       width_(layout_.width()),
       to_units_(graph.length_unit() / solution_unit(graph)),
-      rows_(2 + d_ + width_),
+      rows_(3 + 2 * d_ + width_),
       exponents_(1) {}
 
 void KnownValues::take(Index number, Index place, const AffineHeat& heat, std::size_t source, HeatExponents exponents) {
@@ -24,8 +24,15 @@ void KnownValues::take(Index number, Index place, const AffineHeat& heat, std::s
   double* row = rows_[number];
   row[0] = heat.lambda(source)[place];
   row[1] = heat.square_at(source, place);
-  heat.unknown_at(source, place, row + 2);
-  heat.frames(source).raw(place, row + 2 + d_);
+  heat.unknown_at(source, place, row + 3);
+  if (heat.has_lengths()) {
+    row[2] = heat.length_at(source, place);
+    heat.radial_at(source, place, row + 3 + d_);
+  } else {
+    row[2] = 0;
+    std::fill_n(row + 3 + d_, d_, 0.0);
+  }
+  heat.frames(source).raw(place, row + 3 + 2 * d_);
   *exponents_[number] = exponents;
 }
 
@@ -43,7 +50,7 @@ void KnownValues::axes(Index number, double* out) const {
 }
 
 HeatExponents KnownValues::exponents_for(std::span<const Index> numbers) const {
-  constexpr std::int32_t none = std::numeric_limits<std::int32_t>::min();
+  constexpr std::int32_t none = std::numeric_limits<std::int32_t>::min() / 2;
   HeatExponents largest{none, none};
   for (Index j : numbers) {
     if (heat(j) != 0) largest.heat = std::max(largest.heat, exponents_[j]->heat + std::ilogb(heat(j)));
@@ -53,7 +60,7 @@ HeatExponents KnownValues::exponents_for(std::span<const Index> numbers) const {
   return {largest.heat - std::ilogb(heat_scale), largest.frame - std::ilogb(heat_scale)};
 }
 
-void KnownValues::add_to(Inflow& in, const Star& star, std::size_t edge, Index number, double conductance,
+void KnownValues::add_to(RightHandSide& in, const Star& star, std::size_t edge, Index number, double conductance,
                          HeatExponents exponents) const {
   const Transport R = star.transport(edge);
   const double heat = std::ldexp(conductance, exponents_[number]->heat - exponents.heat);
@@ -61,13 +68,16 @@ void KnownValues::add_to(Inflow& in, const Star& star, std::size_t edge, Index n
   const double turn = std::ldexp(conductance, exponents_[number]->frame - exponents.frame);
   const double lambda = this->heat(number);
   in.heat.back() += heat * lambda;
-  Scratch e(d_);
+  Scratch e(d_), seen(d_);
   double* translation = in.translations.data() + in.translations.size() - d_;
   for (std::size_t a = 0; a < d_; ++a) {
     e.data()[a] = to_units_ * star.log(edge)[a];
     translation[a] -= heat * lambda * e.data()[a];
   }
   in.squares.back() += heat * (square(number) + dot(e.span(), e.span()) * lambda);
+  R.apply(radial(number).data(), seen.data());
+  in.lengths.back() +=
+      heat * (squared_length(number) + dot(e.span(), e.span()) * lambda - 2 * dot(e.span(), seen.span()));
   system_.add_pairs(star.only(edge), pair_factor, value(number), in.pairs.data() + in.pairs.size() - d_ * d_);
   system_.add_known(heat, R, value(number), in.values.data() + in.values.size() - d_);
   R.add_product(turn, frame(number).data(), in.frames.data() + in.frames.size() - width_);

@@ -13,11 +13,11 @@ namespace ahm {
 
 /// Powers of two that a solve's numbers are to be multiplied by.
 struct HeatExponents {
-  std::int32_t heat = 0;   ///< of lambda, the variant's unknown and its second moment
+  std::int32_t heat = 0;   ///< of lambda, the variant's unknown and its second moments
   std::int32_t frame = 0;  ///< of U~
 };
 
-/// lambda, U~, the variant's unknown and its second moment of vertices, as mantissas with exponents of their own: nothing
+/// lambda, U~, the variant's unknown and its second moments of vertices, as mantissas with exponents of their own: nothing
 /// underflows at any distance. Vertices go by the numbers of `ReachedNumbers`.
 class KnownValues {
  public:
@@ -33,23 +33,25 @@ class KnownValues {
   /// U_i as d x d numbers, row major.
   void axes(Index number, double* out) const;
 
-  /// The exponents that bring the largest of these values to `heat_scale`.
+  /// The exponents that bring the largest of these values to `heat_scale`; of none, less than any other.
   HeatExponents exponents_for(std::span<const Index> numbers) const;
   /// Adds to the last entry of `in` what vertex j = star.neighbors[edge], of this number, gives to the right-hand sides of
   /// the star's own vertex: A gets tau w_ij lambda_j, B gets tau w_ij R_ji U~_j, and so on for the other systems.
-  void add_to(Inflow& in, const Star& star, std::size_t edge, Index number, double conductance,
+  void add_to(RightHandSide& in, const Star& star, std::size_t edge, Index number, double conductance,
               HeatExponents exponents) const;
 
  private:
   double square(Index number) const { return rows_[number][1]; }
-  std::span<const double> value(Index number) const { return {rows_[number] + 2, d_}; }
-  std::span<const double> frame(Index number) const { return {rows_[number] + 2 + d_, width_}; }
+  double squared_length(Index number) const { return rows_[number][2]; }
+  std::span<const double> value(Index number) const { return {rows_[number] + 3, d_}; }
+  std::span<const double> radial(Index number) const { return {rows_[number] + 3 + d_, d_}; }
+  std::span<const double> frame(Index number) const { return {rows_[number] + 3 + 2 * d_, width_}; }
 
   const VariantSystem& system_;
   TransportLayout layout_;
   std::size_t d_, width_;
   double to_units_;           ///< from the graph's lengths to those of the solution
-  GrowingRows<double> rows_;  ///< lambda, its second moment, the unknown, U~
+  GrowingRows<double> rows_;  ///< lambda, both second moments, the unknown, r, U~
   GrowingRows<HeatExponents> exponents_;
 };
 

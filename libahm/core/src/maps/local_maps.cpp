@@ -4,25 +4,17 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <mutex>
 #include <string>
 
 #include "ahm/error.hpp"
 #include "ahm/graph/validate.hpp"
-#include "ahm/maps/unfolding_front.hpp"
 #include "ahm/util/memory.hpp"
-#include "ahm/util/parallel.hpp"
 #include "ahm/util/small_math.hpp"
 #include "ahm/util/text.hpp"
-#include "graph/patch.hpp"
-#include "heat/blas_control.hpp"
-#include "heat/check_options.hpp"
-#include "heat/component_scales.hpp"
-#include "heat/heat_system.hpp"
-#include "maps/affine_heat.hpp"
 #include "maps/ball.hpp"
+#include "maps/front_stars.hpp"
 #include "maps/heat_distance.hpp"
-#include "maps/source_groups.hpp"
+#include "maps/patch_maps.hpp"
 
 namespace ahm {
 namespace {
@@ -39,12 +31,7 @@ void check(const TangentGraph& graph, std::span<const Source> sources, const Loc
   if (!by_number && (!(options.radius > 0) || !std::isfinite(options.radius)))
     throw InvalidArgument("radius is " + detail::number(options.radius) +
                           "; it must be finite and > 0, or 0 with a number of nearest neighbours");
-  if (!(options.margin >= 0) || !std::isfinite(options.margin))
-    throw InvalidArgument("margin is " + detail::number(options.margin) + "; it must be finite and >= 0");
-  if (options.heat.order != 1)
-    throw InvalidArgument("order is " + std::to_string(options.heat.order) + "; local maps have order 1");
-  check_heat_options(graph, options.heat);
-  for (const Source& source : sources) check_source(source, graph);
+  check_patches(graph, sources, options.heat, options.margin, "local maps");
 }
 
 /// How far from each source its map goes, world units: the radius, or as far as its nearest neighbours are along edges,
@@ -78,32 +65,25 @@ class Worker {
         sources_(sources),
         radii_(radii),
         options_(options),
-        operators_(options.heat),
-        ball_(graph),
-        scales_(scales),
-        place_(static_cast<std::size_t>(graph.size())),
-        d_(static_cast<std::size_t>(graph.dimension())) {
-    operators_.progress = {};
-    operators_.check_graph = false;
-    operators_.threads = 1;
-  }
+        patches_(graph, scales, options.heat),
+        d_(static_cast<std::size_t>(graph.dimension())) {}
 
   /// Solves for the sources of one group on one patch; result[s] for source s.
   void solve(std::span<const Index> members, std::vector<Entries>& result) {
-    double h = 0;
-    for (Index s : members)
-      for (Vertex vertex : sources_[s].vertices()) h = std::max(h, scales_.h(vertex.index));
-    const double unit = graph_.length_unit(), sqrt_tau = std::sqrt(options_.heat.t_coef) * h;
+    std::vector<Source> sources;
+    for (Index s : members) sources.push_back(sources_[s]);
+    const double unit = graph_.length_unit(), margin = options_.margin * patches_.sqrt_tau(sources);
     const auto reach = [&] {  // graph units
       double radius = 0;
       for (Index s : members) radius = std::max(radius, radii_[s]);
-      return radius / unit + options_.margin * sqrt_tau;
+      return radius / unit + margin;
     };
     double detour = usual_detour;
     while (true) {
       const bool last = detour >= largest_detour;
       const double far = reach();
-      switch (solve(members, (last ? largest_detour : detour) * far, last ? 0 : far * unit, result)) {
+      const auto patch = patches_.solve(sources, (last ? largest_detour : detour) * far);
+      switch (collect(*patch, members, last ? 0 : far * unit, result)) {
         case Outcome::complete:
           return;
         case Outcome::patch_too_small:
@@ -122,106 +102,55 @@ class Worker {
     radius_too_small,  ///< fewer vertices than the nearest that are asked for lie within
   };
 
-  /// On the patch of all vertices within `limit` along edges.
-  Outcome solve(std::span<const Index> members, double limit, double wanted, std::vector<Entries>& result) {
-    std::vector<Vertex> starts;
-    std::vector<Index> vertices, edge;
-    for (Index s : members) {
-      const auto samples = sources_[s].vertices();
-      starts.insert(starts.end(), samples.begin(), samples.end());
-    }
-    ball_.grow(starts, limit, [&](Index vertex, double) {
-      vertices.push_back(vertex);
-      return true;
-    });
-    // Sorted, so that the patch does not depend on the way it was found, and its matrix is nearly the graph's own.
-    std::sort(vertices.begin(), vertices.end());
-    for (std::size_t k = 0; k < vertices.size(); ++k) place_[vertices[k]] = static_cast<Index>(k) + 1;
-    const CsrGraph patch = cut_out(
-        graph_, vertices, [&](Index j) { return place_[j] - 1; },
-        [&](std::size_t k, const Star&, std::size_t) {
-          if (edge.empty() || edge.back() != static_cast<Index>(k)) edge.push_back(static_cast<Index>(k));
-          return 0.0;
-        });
-    std::vector<double> tau;
-    for (Index vertex : vertices) tau.push_back(diffusion_time(options_.heat.t_coef, scales_.h(vertex)));
-    const HeatOperators operators(factored_system(patch, std::move(tau), operators_), patch, {});
-    std::vector<Inflow> inflows;
-    for (Index s : members) {
-      inflows.push_back(inflow_of(sources_[s], graph_, operators, options_.heat.variant));
-      for (Index& vertex : inflows.back().vertices) vertex = place_[vertex] - 1;
-    }
-    std::vector<Source> local;
-    for (Index s : members) local.push_back(in_patch(sources_[s]));
-    for (Index vertex : vertices) place_[vertex] = 0;
-    AffineHeat heat(patch, operators, options_.heat.variant, std::move(inflows));
-    heat.diffuse();
-    heat.solve();
+  Outcome collect(PatchMaps& patch, std::span<const Index> members, double wanted, std::vector<Entries>& result) {
     if (graph_.is_delaunay())
-      stars_ = UnfoldingFront::stars(patch);
+      stars_ = std::make_shared<const UnfoldingFront::Stars>(patch.graph, std::vector<std::uint8_t>(), true);
     else
-      heat.solve_squares();
+      patch.heat->solve_squares(), patch.heat->solve_lengths();
     for (std::size_t m = 0; m < members.size(); ++m) {
-      const Outcome outcome = collect(heat, m, patch, local[m], unfolds(graph_, sources_[members[m]]), vertices, edge,
-                                      wanted, radii_[members[m]], result[members[m]]);
+      const Outcome outcome = collect(patch, m, wanted, radii_[members[m]], result[members[m]]);
       if (outcome != Outcome::complete) return outcome;
     }
     return Outcome::complete;
   }
 
-  /// A source by the places of its vertices.
-  Source in_patch(const Source& source) {
-    Source result(static_cast<int>(d_));
-    const std::vector<double> zero(d_, 0.0);
-    for (std::size_t k = 0; k < source.vertices().size(); ++k) {
-      const bool plain = source.offsets().empty();
-      result.add(Vertex(place_[source.vertices()[k].index] - 1), source.weights()[k],
-                 plain ? zero : source.offsets().subspan(k * d_, d_),
-                 plain ? std::span<const double>() : source.axes().subspan(k * d_ * d_, d_ * d_), source.place(k));
-    }
-    return result;
-  }
-
-  /// Distances of the patch from its source number m, as those of a whole map (`LogMap::distance`).
-  /// @param by_front  unfolded (`unfolds`)
-  void measure(const AffineHeat& heat, std::size_t m, const CsrGraph& patch, const Source& source, bool by_front,
-               double root_tau, double radius) {
-    const auto n = static_cast<std::size_t>(patch.size());
+  /// Distances of the patch from its source number m, as those of a whole map (`LogMap::distance`), without the midpoints of coarse
+  /// triangulations: nearby they gain little.
+  void measure(const PatchMaps& patch, std::size_t m, double radius) {
+    const std::size_t n = patch.vertices.size();
+    const Source& source = patch.sources[m];
     distance_.resize(n);
-    if (by_front) {
-      UnfoldingFront front(patch, stars_);
+    if (unfolds(graph_, source)) {
+      UnfoldingFront front(patch.graph, stars_);
       front.add(source);
       front.run(radius);
       for (std::size_t k = 0; k < n; ++k) distance_[k] = front.distance(Vertex(k));
       return;
     }
-    for (std::size_t k = 0; k < n; ++k)
-      distance_[k] = heat_distance(length(std::span<const double>(phi_).subspan(k * d_, d_)),
-                                   heat.root_mean_square_at(m, static_cast<Index>(k)), root_tau);
+    for (std::size_t k = 0; k < n; ++k) distance_[k] = patch.heat->distance_at(m, static_cast<Index>(k));
     place_source(source, distance_);
   }
 
   /// The vertices within the radius, nearest first.
-  Outcome collect(const AffineHeat& heat, std::size_t m, const CsrGraph& patch, const Source& source, bool by_front,
-                  std::span<const Index> vertices, std::span<const Index> edge, double wanted, double radius,
-                  Entries& entries) {
-    const std::size_t n = vertices.size();
+  Outcome collect(const PatchMaps& patch, std::size_t m, double wanted, double radius, Entries& entries) {
+    const std::size_t n = patch.vertices.size();
+    const AffineHeat& heat = *patch.heat;
     phi_.resize(n * d_);
     for (std::size_t k = 0; k < n; ++k) heat.coordinates_at(m, static_cast<Index>(k), phi_.data() + k * d_);
-    const double root_tau = std::sqrt(options_.heat.t_coef) * scales_.h(vertices[source.vertices().front().index]);
-    measure(heat, m, patch, source, by_front, root_tau * graph_.length_unit(), std::max(wanted, radius));
+    measure(patch, m, std::max(wanted, radius));
     order_.clear();
+    // A patch without an edge is all there is.
+    const double farthest = options_.radius == 0 && patch.edge.empty() ? std::numeric_limits<double>::max() : radius;
     for (std::size_t k = 0; k < n; ++k) {
       const auto vertex = static_cast<Index>(k);
       const double* phi = phi_.data() + k * d_;
       if (!heat.reached(m, vertex) || !all_finite(std::span(phi, d_)))
         distance_[k] = std::numeric_limits<double>::infinity();
-      if (distance_[k] <= radius) order_.push_back(vertex);
+      if (distance_[k] <= farthest) order_.push_back(vertex);
     }
-    for (Index k : edge)
+    for (Index k : patch.edge)
       if (distance_[k] < wanted * (1 - 1e-9)) return Outcome::patch_too_small;
-    // A patch without an edge is all there is.
-    if (options_.radius == 0 && order_.size() < static_cast<std::size_t>(options_.nearest) && !edge.empty())
+    if (options_.radius == 0 && order_.size() < static_cast<std::size_t>(options_.nearest) && !patch.edge.empty())
       return Outcome::radius_too_small;
     std::sort(order_.begin(), order_.end(),
               [&](Index a, Index b) { return distance_[a] != distance_[b] ? distance_[a] < distance_[b] : a < b; });
@@ -237,7 +166,7 @@ class Worker {
     const FrameField frames = heat.frames(m);
     std::vector<double> U(graph_.transport_layout().width());
     for (Index k : order_) {
-      entries.vertices.push_back(vertices[k]);
+      entries.vertices.push_back(patch.vertices[k]);
       entries.distances.push_back(distance_[k]);
       entries.logs.insert(entries.logs.end(), phi_.begin() + static_cast<std::ptrdiff_t>(k * d_),
                           phi_.begin() + static_cast<std::ptrdiff_t>((k + 1) * d_));
@@ -251,10 +180,7 @@ class Worker {
   std::span<const Source> sources_;
   std::vector<double>& radii_;  ///< of the sources; those of one group belong to one worker
   const LocalMapOptions& options_;
-  HeatOptions operators_;
-  Ball ball_;
-  const ComponentScales& scales_;
-  SparseArray<Index> place_;  ///< 1 + place in the patch at hand, 0: outside
+  PatchSolver patches_;
   std::size_t d_;
   std::vector<double> phi_, distance_;
   std::shared_ptr<const UnfoldingFront::Stars> stars_;  ///< of the patch at hand
@@ -268,19 +194,19 @@ LocalMaps joined(const TangentGraph& graph, std::vector<Entries>& entries) {
   maps.indptr.push_back(0);
   for (const Entries& e : entries) maps.indptr.push_back(maps.indptr.back() + static_cast<Offset>(e.vertices.size()));
   const auto total = static_cast<std::size_t>(maps.indptr.back());
-  maps.indices.reserve(total);
+  maps.neighbors.reserve(total);
   maps.logs.reserve(total * static_cast<std::size_t>(graph.dimension()));
   maps.distances.reserve(total);
   maps.transports.reserve(total * maps.transport_width());
   maps.weights.reserve(total);
   for (Entries& e : entries) {
-    maps.indices.insert(maps.indices.end(), e.vertices.begin(), e.vertices.end());
+    for (const Index vertex : e.vertices) maps.neighbors.emplace_back(vertex);
     maps.logs.insert(maps.logs.end(), e.logs.begin(), e.logs.end());
     maps.distances.insert(maps.distances.end(), e.distances.begin(), e.distances.end());
     maps.transports.insert(maps.transports.end(), e.transports.begin(), e.transports.end());
     e = {};  // so that the peak is little more than the result
   }
-  for (Index vertex : maps.indices) maps.weights.push_back(world_mass(graph, graph.mass(vertex)));
+  for (const Vertex j : maps.neighbors) maps.weights.push_back(world_mass(graph, graph.mass(j.index)));
   return maps;
 }
 
@@ -290,34 +216,15 @@ LocalMaps local_maps(const TangentGraph& graph, std::span<const Source> sources,
   return detail::with_memory_check("solving for local maps", [&] {
     check(graph, sources, options);
     options.heat.progress.step("group", 0.0);
-    // Sources whose patches overlap anyway.
     const ComponentScales scales(graph);
-    std::vector<double> radii = radii_of(graph, sources, options);
-    const auto reach = [&](Index seed) {
-      return radii[seed] / graph.length_unit() +
-             (options.margin + 4) * std::sqrt(options.heat.t_coef) * scales.h(sources[seed].vertices().front().index);
-    };
-    const auto groups = groups_of(graph, sources, reach);
+    std::vector<double> radii = radii_of(graph, sources, options), extent;
+    for (const double radius : radii) extent.push_back(radius / graph.length_unit());
+    const auto groups = patch_groups(graph, scales, sources, extent, options.heat, options.margin);
     std::vector<Entries> entries(sources.size());
-    const OneBlasThread one_thread;
-    std::mutex mutex;
-    std::vector<std::unique_ptr<Worker>> idle;
-    Offset done = 0;
-    detail::parallel_chunks(static_cast<Offset>(groups.size()), 8, options.heat.threads, [&](Offset begin, Offset end) {
-      std::unique_ptr<Worker> worker;
-      {
-        std::scoped_lock lock(mutex);
-        if (!idle.empty()) worker = std::move(idle.back()), idle.pop_back();
-      }
-      if (!worker) worker = std::make_unique<Worker>(graph, scales, sources, radii, options);
-      without_openmp_regions([&] {
-        for (Offset g = begin; g < end; ++g) worker->solve(groups[g], entries);
-      });
-      std::scoped_lock lock(mutex);
-      idle.push_back(std::move(worker));
-      done += end - begin;
-      options.heat.progress.step("solve", static_cast<double>(done) / static_cast<double>(groups.size()));
-    });
+    share_groups(
+        groups, options.heat.threads, options.heat.progress,
+        [&] { return std::make_unique<Worker>(graph, scales, sources, radii, options); },
+        [&](Worker& worker, const std::vector<Index>& group) { worker.solve(group, entries); });
     return joined(graph, entries);
   });
 }

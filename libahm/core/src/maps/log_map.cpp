@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "ahm/error.hpp"
 #include "ahm/util/small_math.hpp"
 
 namespace ahm {
@@ -60,6 +61,36 @@ LogMap::LogMap(int dimension, Variant variant, Strategy strategy, Source source,
 std::span<const double> LogMap::coordinates(Vertex vertex) const {
   const auto d = static_cast<std::size_t>(dimension_);
   return std::span<const double>(coordinates_).subspan(static_cast<std::size_t>(vertex.index) * d, d);
+}
+
+std::vector<double> LogMap::coordinates(const Source& point) const {
+  double total = 0, farthest = 0;
+  for (double b : point.weights()) total += b;
+  if (point.is_curve() || !(total > 0) || point.dimension().value_or(dimension_) != dimension_)
+    throw InvalidArgument("a point of the graph is needed: no curve, of its dimension, of positive weight");
+  const auto d = static_cast<std::size_t>(dimension_);
+  std::vector<double> phi(d, 0.0), rest(d, 0.0), there(d);  // rest: what the offsets leave, in the point's axes
+  const auto heaviest = static_cast<std::size_t>(std::max_element(point.weights().begin(), point.weights().end()) -
+                                                 point.weights().begin());
+  for (std::size_t k = 0; k < point.vertices().size(); ++k) {
+    const double b = point.weights()[k] / total;
+    if (!(b > 0)) continue;
+    const auto at = coordinates(point.vertices()[k]);
+    for (std::size_t a = 0; a < d; ++a) phi[a] += b * at[a];
+    if (point.offsets().empty()) continue;
+    const auto z = point.offsets().subspan(k * d, d);
+    farthest = std::max(farthest, length(z));
+    for (std::size_t a = 0; a < d; ++a) rest[a] -= b * z[a];
+  }
+  if (!(length(rest) > 1e-9 * farthest)) return phi;
+  if (frames().empty())
+    throw InvalidArgument("map_without_frames", "the map has no frames", "solve with MapOptions::frames");
+  const auto U = point.axes().subspan(heaviest * d * d, d * d);
+  const auto F = frames().subspan(static_cast<std::size_t>(point.vertices()[heaviest].index) * d * d, d * d);
+  for (std::size_t c = 0; c < d; ++c) there[c] = dot(U.subspan(c * d, d), rest);
+  for (std::size_t a = 0; a < d; ++a)
+    for (std::size_t c = 0; c < d; ++c) phi[a] += F[c * d + a] * there[c];
+  return phi;
 }
 
 Index LogMap::count(Status status) const noexcept {

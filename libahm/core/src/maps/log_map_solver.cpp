@@ -19,8 +19,10 @@
 #include "heat/heat_system.hpp"
 #include "maps/affine_heat.hpp"
 #include "maps/extrapolate.hpp"
+#include "maps/front_stars.hpp"
 #include "maps/heat_distance.hpp"
 #include "maps/march.hpp"
+#include "maps/vertex_row.hpp"
 
 namespace ahm {
 namespace {
@@ -46,10 +48,11 @@ MapSettings settings_of(const MapOptions& map, const HeatOptions& options) {
           map.progress.value_or(options.progress)};
 }
 
-/// What a solve knows of a vertex besides its coordinates.
+/// What a solve knows of a vertex besides its coordinates; world units.
 struct Found {
   Status status;
-  double root_mean_square = 0;  ///< sqrt(q / lambda), world units
+  double root_mean_square = 0;  ///< sqrt(q / lambda)
+  double distance = 0;          ///< of heat
 };
 
 /// Distances unfolded from a source; empty: they are measured by heat.
@@ -67,6 +70,7 @@ std::vector<double> unfolded(const TangentGraph& graph, const std::shared_ptr<co
 /// One diffusion time.
 struct Time {
   std::vector<double> tau;  ///< per component
+  std::optional<ComponentTimes> of_vertices;
   std::once_flag factored;
   std::optional<HeatOperators> operators;
 };
@@ -96,20 +100,22 @@ struct LogMapSolver::Impl {
   void check_memory() const;
   /// Kept by solvers that make many maps.
   std::shared_ptr<const UnfoldingFront::Stars> stars() const {
-    if (strategy == Strategy::march || !graph.is_delaunay()) return nullptr;
-    std::call_once(looked_around, [&] { kept_stars = UnfoldingFront::stars(graph); });
+    if (!graph.is_delaunay()) return nullptr;
+    std::call_once(looked_around, [&] {
+      kept_stars = std::make_shared<const UnfoldingFront::Stars>(
+          graph, halved_vertices(scales.components.of_vertex, scales.sizes), strategy == Strategy::global);
+    });
     return kept_stars;
   }
 
   March front(std::size_t time, const MapSettings& map, unsigned threads) const {
-    return March(graph, options, scales, times[time].tau, map.variant, map.radius, threads, map.progress);
+    return March(graph, options, *times[time].of_vertices, map.variant, map.radius, threads, map.progress);
   }
   template <class Values>
   LogMap map_of(const Values& values, Strategy how, const MarchStatistics& march, const Source& source,
-                std::span<const double> taus, std::span<const double> unfolded, const MapSettings& map,
-                unsigned threads) const;
-  LogMap marched(const March& front, std::size_t time, const Source& source, std::span<const double> unfolded,
-                 const MapSettings& map, unsigned threads) const;
+                std::span<const double> unfolded, const MapSettings& map, unsigned threads) const;
+  LogMap marched(const March& front, const Source& source, std::span<const double> unfolded, const MapSettings& map,
+                 unsigned threads) const;
   LogMap finished(AffineHeat& heat, std::size_t time, std::size_t s, const Source& source,
                   std::span<const double> unfolded, const MapSettings& map, unsigned threads) const;
   std::vector<LogMap> solve_block(std::size_t time, std::span<const Source> sources,
@@ -135,9 +141,11 @@ LogMapSolver::Impl::Impl(const TangentGraph& graph, const HeatOptions& options)
       scales(graph),
       diffusion_times(options.order, graph, scales),
       times(diffusion_times.count()) {
-  for (std::size_t k = 0; k < times.size(); ++k)
+  for (std::size_t k = 0; k < times.size(); ++k) {
     for (Index c = 0; c < scales.components.count; ++c)
       times[k].tau.push_back(diffusion_time(options.t_coef * diffusion_times.factor(k, c), scales.edge_length[c]));
+    times[k].of_vertices.emplace(scales, times[k].tau);
+  }
   if (strategy != Strategy::global) return;
   for (std::size_t k = 0; k < times.size(); ++k)
     std::call_once(times[k].factored, [&] { factor(k, options.progress); });
@@ -161,7 +169,7 @@ class MarchedValues {
   Found read(Index vertex, std::span<double> phi) const {
     const auto found = front_.coordinates(vertex);
     std::copy(found.begin(), found.end(), phi.begin());
-    if (front_.accepted(vertex)) return {Status::ok, front_.root_mean_square(vertex)};
+    if (front_.accepted(vertex)) return {Status::ok, front_.root_mean_square(vertex), front_.distance(vertex)};
     return {std::isinf(radius_) ? Status::unreached : Status::beyond_radius};
   }
   void axes(Index vertex, double* out) const { front_.axes(vertex, out); }
@@ -178,7 +186,8 @@ class GlobalValues {
 
   Found read(Index vertex, std::span<double> phi) const {
     heat_.coordinates_at(s_, vertex, phi.data());
-    return {heat_.reached(s_, vertex) ? Status::ok : Status::unreached, heat_.root_mean_square_at(s_, vertex)};
+    return {heat_.reached(s_, vertex) ? Status::ok : Status::unreached, heat_.root_mean_square_at(s_, vertex),
+            heat_.distance_at(s_, vertex)};
   }
   void axes(Index vertex, double* out) const { frames_.axes(vertex, out); }
 
@@ -189,12 +198,11 @@ class GlobalValues {
 };
 
 /// The map that `values` tell of.
-/// @param taus      per component
 /// @param unfolded  distances; empty: those of heat
 template <class Values>
 LogMap LogMapSolver::Impl::map_of(const Values& values, Strategy how, const MarchStatistics& march,
-                                  const Source& source, std::span<const double> taus, std::span<const double> unfolded,
-                                  const MapSettings& map, unsigned threads) const {
+                                  const Source& source, std::span<const double> unfolded, const MapSettings& map,
+                                  unsigned threads) const {
   const auto n = static_cast<std::size_t>(graph.size()), d = static_cast<std::size_t>(graph.dimension());
   const SourceComponents components(source, scales.components.of_vertex);
   std::vector<double> coordinates(n * d);
@@ -206,13 +214,12 @@ LogMap LogMapSolver::Impl::map_of(const Values& values, Strategy how, const Marc
     const auto vertex = static_cast<Index>(i);
     const std::span phi = std::span(coordinates).subspan(i * d, d);
     const Found found = values.read(vertex, phi);
-    status[i] = components.hold(vertex) ? found.status : Status::disconnected;
-    if (status[i] == Status::ok && !(all_finite(phi) && std::isfinite(found.root_mean_square)))
-      status[i] = Status::unreached;
-    const double r = length(phi), rms = found.root_mean_square;
-    const double root_tau = std::sqrt(taus[scales.component(vertex)]) * graph.length_unit();
-    extras.distances[i] = unfolded.empty() ? heat_distance(r, rms, root_tau) : unfolded[i];
-    if (!extras.spread.empty()) extras.spread[i] = rms > r ? std::sqrt(rms - r) * std::sqrt(rms + r) : 0.0;
+    const VertexRow row = vertex_row({phi, found.root_mean_square, found.distance});
+    status[i] = !components.hold(vertex)     ? Status::disconnected
+                : found.status == Status::ok ? row.status
+                                             : found.status;
+    extras.distances[i] = unfolded.empty() ? row.distance : unfolded[i];
+    if (!extras.spread.empty()) extras.spread[i] = row.spread;
     if (map.frames) values.axes(vertex, extras.frames.data() + i * d * d);
   });
   if (unfolded.empty()) place_source(source, extras.distances);
@@ -227,21 +234,21 @@ LogMap LogMapSolver::Impl::map_of(const Values& values, Strategy how, const Marc
                 std::move(extras));
 }
 
-LogMap LogMapSolver::Impl::marched(const March& front, std::size_t time, const Source& source,
-                                   std::span<const double> unfolded, const MapSettings& map, unsigned threads) const {
-  return map_of(MarchedValues(front, map.radius), Strategy::march, front.statistics(), source, times[time].tau,
-                unfolded, map, threads);
+LogMap LogMapSolver::Impl::marched(const March& front, const Source& source, std::span<const double> unfolded,
+                                   const MapSettings& map, unsigned threads) const {
+  return map_of(MarchedValues(front, map.radius), Strategy::march, front.statistics(), source, unfolded, map, threads);
 }
 
 /// Where a global solve leaves vertices beyond its reach, strategy `automatic` marches on.
 LogMap LogMapSolver::Impl::finished(AffineHeat& heat, std::size_t time, std::size_t s, const Source& source,
                                     std::span<const double> unfolded, const MapSettings& map, unsigned threads) const {
-  LogMap result = map_of(GlobalValues(heat, s), Strategy::global, {}, source, times[time].tau, unfolded, map, threads);
+  LogMap result = map_of(GlobalValues(heat, s), Strategy::global, {}, source, unfolded, map, threads);
   if (options.strategy != Strategy::automatic || result.count(Status::unreached) == 0) return result;
   if (!heat.has_squares()) heat.solve_squares();
+  if (!heat.has_lengths() && !graph.is_delaunay()) heat.solve_lengths();
   March on = front(time, map, threads);
   on.run_on(heat, s);
-  return marched(on, time, source, unfolded, map, threads);
+  return marched(on, source, unfolded, map, threads);
 }
 
 /// Solves one block of sources at one diffusion time.
@@ -259,20 +266,21 @@ std::vector<LogMap> LogMapSolver::Impl::solve_block(std::size_t time, std::span<
     for (std::size_t s = 0; s < sources.size(); ++s) {
       March on = front(time, map, threads);
       on.run(sources[s]);
-      maps.push_back(marched(on, time, sources[s], unfolded[s], map, threads));
+      maps.push_back(marched(on, sources[s], unfolded[s], map, threads));
     }
     return maps;
   }
-  AffineHeat heat(graph, operators(time), map.variant, inflow_of(sources, graph, operators(time), map.variant),
+  AffineHeat heat(graph, operators(time), map.variant, right_hand_side_of(sources, graph, operators(time), map.variant),
                   threads);
   heat.diffuse();
   if (map.progress.stop.stop_requested()) throw Cancelled("cancelled during solve");
-  const bool squares = std::any_of(sources.begin(), sources.end(), [&](const Source& source) {
-    return !unfolds(graph, source) || (map.spread && !source.is_curve());
-  });
+  const bool lengths = std::any_of(sources.begin(), sources.end(), [&](auto& one) { return !unfolds(graph, one); });
+  const bool squares =
+      lengths || (map.spread && std::any_of(sources.begin(), sources.end(), [](auto& one) { return !one.is_curve(); }));
   const auto solve = [&] {
     heat.solve();
     if (squares) heat.solve_squares();
+    if (lengths) heat.solve_lengths();
   };
   detail::run_both(threads > 1, solve, unfold);
   for (std::size_t s = 0; s < sources.size(); ++s)

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 
+#include "ahm/error.hpp"
 #include "ahm/util/shortest_paths.hpp"
 #include "ahm/util/small_math.hpp"
 #include "graph/patch.hpp"
@@ -17,17 +19,7 @@ namespace {
 /// fill per vertex, thinner ones solve each vertex more often.
 constexpr double default_step = 24;
 
-/// The same where bands are solved iteratively: the cost of a vertex does not grow with the band's depth, but what has
-/// decayed further loses digits.
-constexpr double iterative_step = 8;
-
 constexpr float far_away = std::numeric_limits<float>::infinity();
-
-/// An edge to a vertex that is not accepted yet.
-struct Ahead {
-  Index vertex;
-  double weight, length;
-};
 
 /// How much of the decay exp(-x) of heat an edge brings: its length over sqrt(tau), or what the one edge lets through at
 /// the least, where it is far longer than sqrt(tau). An upper bound, for ordering vertices.
@@ -41,17 +33,18 @@ double heat_distance(double length, double weight, double tau, const Diagonal& d
 
 }  // namespace
 
-March::March(const TangentGraph& graph, const HeatOptions& options, const ComponentScales& scales,
-             std::vector<double> tau, Variant variant, double radius, unsigned threads, Progress progress)
+March::March(const TangentGraph& graph, const HeatOptions& options, const MarchScales& scales, Variant variant,
+             double radius, unsigned threads, Progress progress, MarchSink* sink, MarchTeam* team)
     : graph_(graph),
       options_(options),
       variant_(variant),
-      iterative_(graph.dimension() > 2),
       scales_(scales),
-      tau_(std::move(tau)),
+      sink_(sink),
+      alone_(team ? nullptr : std::make_unique<Alone>(graph.dimension())),
+      team_(team ? *team : *alone_),
       // What lies ahead by x influences what lies behind by exp(-2 x).
       margin_(1.6 - 0.5 * std::log(options.accuracy)),
-      step_(iterative_ ? iterative_step : default_step),
+      step_(std::min(default_step, team_.reach())),
       radius_(radius),
       progress_(std::move(progress)),
       threads_(threads),
@@ -59,7 +52,7 @@ March::March(const TangentGraph& graph, const HeatOptions& options, const Compon
       numbers_(graph.size()),
       ways_(1),
       known_(graph, system_of(variant)),
-      found_(d_ + 1),
+      found_(d_ + 2),
       nothing_(d_, NAN) {
   options_.progress = {};
   options_.threads = threads;
@@ -80,7 +73,7 @@ void March::march(const Source* source) {
   OneBlasThread one_thread;
   without_openmp_regions([&] {
     double depth = step_ + margin_;
-    while (source || !front_.empty()) {
+    while (source || team_.sum(static_cast<std::int64_t>(front_.size())) > 0) {
       progress_.step("solve", static_cast<double>(accepted_count_) / graph_.size());
       const bool advanced = advance(source, depth);
       if (advanced)
@@ -94,45 +87,52 @@ void March::march(const Source* source) {
 /// Solves one band and accepts its near part. Returns false when the band was too thin for anything to be accepted.
 bool March::advance(const Source* source, double depth) {
   const Band band = find_band(source, depth);
-  if (band.vertices.empty()) {
+  const std::int64_t size = team_.sum(static_cast<std::int64_t>(band.own));
+  if (size == 0) {
     front_.clear();
     return true;
   }
   ++statistics_.bands;
-  statistics_.solved += static_cast<Offset>(band.vertices.size());
-  statistics_.largest_band = std::max(statistics_.largest_band, static_cast<Index>(band.vertices.size()));
+  statistics_.solved += size;
+  statistics_.largest_band = std::max(statistics_.largest_band, static_cast<Index>(size));
 
   // A Dirichlet neighbour behind the front adds tau w to the diagonal and (below) to the right-hand sides.
   std::vector<Link> links;
   const CsrGraph patch = cut_out(
-      graph_, band.vertices, [&](Index j) { return place(j); },
+      graph_, std::span(band.vertices).first(band.own), [&](Index j) { return place(j); },
       [&](std::size_t k, const Star& star, std::size_t e) {
         if (!accepted(star.neighbors[e])) return 0.0;
-        links.push_back({static_cast<Index>(k), e, numbers_.find(star.neighbors[e])});
+        links.push_back({static_cast<Index>(k), e, known_number(star.neighbors[e])});
         return tau(band.vertices[k]) * star.weights[e];
-      });
-  std::vector<double> times;
-  for (Index vertex : band.vertices) times.push_back(tau(vertex));
-  const auto system = iterative_ ? iterative_system : factored_system;
-  const HeatOperators operators(system(patch, std::move(times), options_), patch, {});
+      },
+      band.halo.size());
+  std::vector<double> times(band.vertices.size(), 0.0);
+  for (std::size_t k = 0; k < band.own; ++k) {
+    times[k] = tau(band.vertices[k]);
+    for (const Index j : patch.star(static_cast<Index>(k)).neighbors)
+      if (static_cast<std::size_t>(j) >= band.own) times[j] = times[k];
+  }
+  const HeatOperators operators(team_.system({patch, band.halo, std::move(times)}, options_), patch, {});
 
   HeatExponents exponents;
-  Inflow inflow;
+  RightHandSide right_hand_side;
   if (source) {
-    inflow = inflow_of(*source, graph_, operators, variant_);
-    for (Index& vertex : inflow.vertices) vertex = place(vertex);
+    right_hand_side =
+        right_hand_side_of(*source, graph_, operators, variant_, [&](Index vertex) { return team_.owns(vertex); });
+    for (Index& vertex : right_hand_side.vertices) vertex = place(vertex);
   } else {
     exponents = exponents_behind(links);
-    inflow = inflow_behind(band, links, operators.scaling(), exponents);
+    right_hand_side = right_hand_side_behind(band, links, operators.scaling(), exponents);
   }
   for (Index vertex : band.vertices) way(vertex).place = -1;
 
-  AffineHeat heat(patch, operators, variant_, {std::move(inflow)}, threads_);
+  AffineHeat heat(patch, operators, variant_, {std::move(right_hand_side)}, threads_);
   heat.diffuse();
   heat.solve();
   heat.solve_squares();
+  if (!graph_.is_delaunay()) heat.solve_lengths();
 
-  const auto near = near_part(band, heat.lambda(0));
+  const auto near = near_part(band, size, heat.lambda(0));
   if (!near) return false;
   std::vector<Index> added;
   for (Index k : *near) {
@@ -145,28 +145,58 @@ bool March::advance(const Source* source, double depth) {
 
 /// Places in the band that are farther than the margin from all that was left out, by the heat just found there; none
 /// where they are too few to be worth the band.
-std::optional<std::vector<Index>> March::near_part(const Band& band, std::span<const double> lambda) const {
+std::optional<std::vector<Index>> March::near_part(const Band& band, std::int64_t size,
+                                                   std::span<const double> lambda) const {
   auto level_of = [&](Index k) { return lambda[k] > 0 ? -std::log(lambda[k]) : INFINITY; };
   double limit = std::numeric_limits<double>::infinity();
   for (Index k : band.edge)
     if (lambda[k] > 0) limit = std::min(limit, level_of(k) - margin_);
-  const double resolved = -std::log(*std::max_element(lambda.begin(), lambda.end())) + step_;
+  limit = team_.least(limit);
+  const double hottest = lambda.empty() ? 0 : *std::max_element(lambda.begin(), lambda.end());
+  const double resolved = -std::log(team_.greatest(hottest)) + step_;
   const bool too_thin = limit < resolved;
-  if (iterative_) limit = std::min(limit, resolved);
+  if (std::isfinite(team_.reach())) limit = std::min(limit, resolved);
   std::vector<Index> near;
+  std::int64_t own = 0;
   for (std::size_t k = 0; k < band.vertices.size(); ++k)
-    if (const auto place = static_cast<Index>(k); std::isinf(limit) || level_of(place) <= limit) near.push_back(place);
-  if (too_thin && static_cast<double>(near.size()) * std::pow(4.0, d_) < static_cast<double>(band.vertices.size()))
+    if (const auto place = static_cast<Index>(k); std::isinf(limit) || level_of(place) <= limit) {
+      near.push_back(place);
+      own += k < band.own ? 1 : 0;
+    }
+  if (too_thin && static_cast<double>(team_.sum(own)) * std::pow(4.0, d_) < static_cast<double>(size))
     return std::nullopt;
   return near;
 }
 
-/// The vertices ahead of the front within `depth` of heat distance (Dijkstra's algorithm, the levels on the front being
-/// those of the heat that was found there), in the order of the graph.
+/// The vertices ahead of the front within `depth` of heat distance, own ones in the order of the graph.
 March::Band March::find_band(const Source* source, double depth) {
+  Band band;
+  band.vertices = search(source, depth);
+  // The graph's own order keeps neighbours close in memory; that of the distance scatters them all around the front.
+  std::sort(band.vertices.begin(), band.vertices.end());
+  band.own = band.vertices.size();
+  band.halo = team_.share(band.vertices);
+  for (const HaloVertex& next : band.halo) band.vertices.push_back(next.vertex);
+  for (std::size_t k = 0; k < band.vertices.size(); ++k) {
+    Way& way_to = way(band.vertices[k]);
+    way_to.place = static_cast<Index>(k);
+    way_to.tentative = far_away;
+  }
+  find_edge(band);
+  return band;
+}
+
+/// Dijkstra's algorithm, the levels on the front being those of the heat that was found there: each member among its own
+/// vertices, again as long as something comes from others. What is found does not depend on who owns what.
+std::vector<Index> March::search(const Source* source, double depth) {
   Tentative tentative{*this};
   ShortestPaths<float, Tentative> paths(tentative, far_away);
   std::vector<Ahead> ahead;
+  std::vector<Crossing> leaving;
+  auto offer = [&](const Ahead& edge, double distance) {
+    const double along = heat_distance_along(edge);  // negative weights may ask for less than nothing, and for ever
+    paths.offer(edge.vertex, static_cast<float>(distance + (along < 0 ? 0 : along)));
+  };
   auto spread = [&](Index from, double distance) {
     const Star star = graph_.star(from);
     ahead.clear();  // a copy: the star's life may end when another one is asked for
@@ -174,45 +204,54 @@ March::Band March::find_band(const Source* source, double depth) {
       if (star.weights[e] != 0 && !accepted(star.neighbors[e]))
         ahead.push_back({star.neighbors[e], star.weights[e], length(star.log(e))});
     for (const Ahead& edge : ahead)
-      paths.offer(edge.vertex, static_cast<float>(distance + heat_distance(edge.length, edge.weight, tau(edge.vertex),
-                                                                           [&] { return diagonal(edge.vertex); })));
+      if (team_.owns(edge.vertex))
+        offer(edge, distance);
+      else
+        leaving.push_back({edge.vertex, distance, edge.length, edge.weight});
+  };
+  auto cross = [&] {
+    if (team_.sum(static_cast<std::int64_t>(leaving.size())) == 0) return false;
+    for (const Crossing& edge : team_.cross(leaving)) offer({edge.vertex, edge.weight, edge.length}, edge.distance);
+    leaving.clear();
+    return true;
   };
   if (source) {
     for (std::size_t k = 0; k < source->vertices().size(); ++k)
-      if (source->weights()[k] > 0) paths.offer(source->vertices()[k].index, 0);
+      if (const Index vertex = source->vertices()[k].index; source->weights()[k] > 0 && team_.owns(vertex))
+        paths.offer(vertex, 0);
   } else {
     double base = std::numeric_limits<double>::infinity();
     for (Index vertex : front_) base = std::min(base, known_.level(numbers_.find(vertex)));
+    base = team_.least(base);
     for (Index vertex : front_)
       if (const double beyond = known_.level(numbers_.find(vertex)) - base; beyond <= depth) spread(vertex, beyond);
   }
+  cross();
 
-  Band band;
-  std::vector<Index> touched;
-  const double limit = paths.empty() ? 0 : paths.least() + depth;
-  paths.run([&](Index vertex, float distance) {
-    Way& own = way(vertex);
-    if (own.place >= 0) return;
-    if (distance > limit) return touched.push_back(vertex);
-    own.place = static_cast<Index>(band.vertices.size());
-    band.vertices.push_back(vertex);
-    spread(vertex, distance);
-  });
+  std::vector<Index> found, touched;
+  const double limit = team_.least(paths.empty() ? far_away : paths.least()) + depth;
+  do
+    paths.run([&](Index vertex, float distance) {
+      if (distance > limit) return touched.push_back(vertex);
+      if (Way& own = way(vertex); own.place < 0) {
+        own.place = 0;
+        found.push_back(vertex);
+      }
+      spread(vertex, distance);
+    });
+  while (cross());
   for (Index vertex : touched) way(vertex).tentative = far_away;
-  // The graph's own order keeps neighbours close in memory; that of the distance scatters them all around the front.
-  std::sort(band.vertices.begin(), band.vertices.end());
-  for (std::size_t k = 0; k < band.vertices.size(); ++k) {
-    Way& own = way(band.vertices[k]);
-    own.place = static_cast<Index>(k);
-    own.tentative = far_away;
-  }
-  find_edge(band);
-  return band;
+  return found;
+}
+
+/// How much of the decay of heat an edge brings.
+double March::heat_distance_along(const Ahead& edge) const {
+  return heat_distance(edge.length, edge.weight, tau(edge.vertex), [&] { return diagonal(edge.vertex); });
 }
 
 /// The places in the band next to vertices that are neither behind the front nor in the band.
 void March::find_edge(Band& band) {
-  for (std::size_t k = 0; k < band.vertices.size(); ++k) {
+  for (std::size_t k = 0; k < band.own; ++k) {
     const Star star = graph_.star(band.vertices[k]);
     for (std::size_t e = 0; e < star.degree(); ++e) {
       const Index j = star.neighbors[e];
@@ -226,14 +265,15 @@ void March::find_edge(Band& band) {
 HeatExponents March::exponents_behind(std::span<const Link> links) const {
   std::vector<Index> behind;
   for (const Link& link : links) behind.push_back(link.number);
-  return known_.exponents_for(behind);
+  const HeatExponents own = known_.exponents_for(behind);
+  return {static_cast<std::int32_t>(team_.greatest(own.heat)), static_cast<std::int32_t>(team_.greatest(own.frame))};
 }
 
 /// Dirichlet data: what the accepted neighbours give to the band's right-hand sides.
-Inflow March::inflow_behind(const Band& band, std::span<const Link> links, double scaling,
-                            HeatExponents exponents) const {
+RightHandSide March::right_hand_side_behind(const Band& band, std::span<const Link> links, double scaling,
+                                            HeatExponents exponents) const {
   const std::size_t width = graph_.transport_layout().width();
-  Inflow in;
+  RightHandSide in;
   for (const Link& link : links) {
     if (in.vertices.empty() || in.vertices.back() != link.place) {
       in.vertices.push_back(link.place);
@@ -243,6 +283,7 @@ Inflow March::inflow_behind(const Band& band, std::span<const Link> links, doubl
       in.translations.resize(in.translations.size() + d_);
       in.squares.push_back(0);
       in.pairs.resize(in.pairs.size() + d_ * d_);
+      in.lengths.push_back(0);
     }
     const Star star = graph_.star(band.vertices[link.place]);
     known_.add_to(in, star, link.edge, link.number, scaling * tau(band.vertices[link.place]) * star.weights[link.edge],
@@ -252,23 +293,48 @@ Inflow March::inflow_behind(const Band& band, std::span<const Link> links, doubl
 }
 
 void March::accept(Index vertex, Index place, const AffineHeat& heat, std::size_t s, HeatExponents exponents) {
+  const bool own = team_.owns(vertex);
   way(vertex).accepted = true;
-  ++accepted_count_;
+  accepted_count_ += own ? 1 : 0;
   const Index number = numbers_.find(vertex);
   known_.take(number, place, heat, s, exponents);
   found_.grow_to(number + 1);
   const std::span phi(found_[number], d_);
   heat.coordinates_at(s, place, phi.data());
   found_[number][d_] = heat.root_mean_square_at(s, place);
+  found_[number][d_ + 1] = heat.distance_at(s, place);
   const bool good = known_.heat(number) > 0 && heat.frames(s).heat(place) > 0 && all_finite(phi);
   if (!good) std::fill(phi.begin(), phi.end(), NAN);
+  if (sink_ && own) sink_->accept(vertex, {phi, found_[number][d_], found_[number][d_ + 1]});
 }
 
 /// The accepted vertices from which the march goes on: those with neighbours ahead, sound values, and not beyond the
 /// radius.
 void March::update_front(std::span<const Index> added) {
-  front_.insert(front_.end(), added.begin(), added.end());
-  std::erase_if(front_, [&](Index vertex) { return !sends_heat(vertex); });
+  for (Index vertex : added)
+    if (team_.owns(vertex)) front_.push_back(vertex);
+  std::vector<Index> passed;
+  std::erase_if(front_, [&](Index vertex) {
+    const bool is_passed = !has_neighbors_ahead(vertex), stays = !is_passed && is_within_radius(vertex);
+    if (is_passed && sink_) passed.push_back(vertex);
+    return !stays;
+  });
+  for (const HaloVertex& next : team_.share(passed)) forget(next.vertex);
+  for (Index vertex : passed) forget(vertex);
+}
+
+/// What all neighbours have taken into account is not asked for again.
+void March::forget(Index vertex) {
+  *ways_[numbers_.find(vertex)] = {};
+  numbers_.forget(vertex);
+}
+
+/// Of an accepted vertex next to one that is not.
+Index March::known_number(Index vertex) const {
+  const Index number = numbers_.find(vertex);
+  if (number < 0)
+    throw InvalidGraph("vertex " + std::to_string(vertex) + " is a neighbour of one that is no neighbour of it");
+  return number;
 }
 
 March::Way& March::way(Index vertex) {
@@ -289,10 +355,12 @@ void March::axes(Index vertex, double* out) const {
     for (std::size_t c = 0; c < d_; ++c) out[a * d_ + c] = a == c;
 }
 
-bool March::sends_heat(Index vertex) const {
-  const std::span<const double> phi = coordinates(vertex);
-  // A little beyond the radius, since coordinates are not monotone from vertex to vertex.
-  if (!(length(phi) <= radius_ + 4 * scales_.h(vertex) * graph_.length_unit())) return false;
+/// A little beyond the radius, since coordinates are not monotone from vertex to vertex.
+bool March::is_within_radius(Index vertex) const {
+  return length(coordinates(vertex)) <= radius_ + 4 * scales_.h(vertex) * graph_.length_unit();
+}
+
+bool March::has_neighbors_ahead(Index vertex) const {
   const Star star = graph_.star(vertex);
   for (std::size_t e = 0; e < star.degree(); ++e)
     if (star.weights[e] != 0 && !accepted(star.neighbors[e])) return true;

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <cmath>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -16,16 +17,52 @@
 #include "heat/component_scales.hpp"
 #include "maps/affine_heat.hpp"
 #include "maps/known_values.hpp"
+#include "maps/march_team.hpp"
 #include "maps/reached_rows.hpp"
+#include "maps/vertex_row.hpp"
 
 namespace ahm {
+
+/// The scales of the component that a vertex is in.
+class MarchScales {
+ public:
+  virtual ~MarchScales() = default;
+  /// Diffusion time, squared graph units.
+  virtual double tau(Index vertex) const = 0;
+  /// Mean edge length, graph units.
+  virtual double h(Index vertex) const = 0;
+};
+
+/// The same of all vertices of a component.
+class ComponentTimes final : public MarchScales {
+ public:
+  /// @param tau  per component; both must outlive this object
+  ComponentTimes(const ComponentScales& scales, std::span<const double> tau) : scales_(scales), tau_(tau) {}
+  double tau(Index vertex) const override { return tau_[scales_.component(vertex)]; }
+  double h(Index vertex) const override { return scales_.h(vertex); }
+
+ private:
+  const ComponentScales& scales_;
+  std::span<const double> tau_;
+};
+
+/// Takes what a march finds of a vertex when it is accepted, each vertex once.
+class MarchSink {
+ public:
+  virtual ~MarchSink() = default;
+  /// phi is NaN where too little heat arrived.
+  virtual void accept(Index vertex, const HeatRow& found) = 0;
+};
 
 class March {
  public:
   /// @param options  accuracy, ordering, kind of factorization; the graph must have been checked
-  /// @param tau      per component, in squared graph units
-  March(const TangentGraph& graph, const HeatOptions& options, const ComponentScales& scales, std::vector<double> tau,
-        Variant variant, double radius, unsigned threads, Progress progress);
+  /// @param scales   must outlive this object
+  /// @param sink     null: what is found is kept, and told below. Else it is handed over, and forgotten when the front
+  ///                 has passed the vertex, so that memory grows with the front
+  /// @param team     null: alone. Else one of those who march together, which takes a sink; it is told of own vertices
+  March(const TangentGraph& graph, const HeatOptions& options, const MarchScales& scales, Variant variant,
+        double radius, unsigned threads, Progress progress, MarchSink* sink = nullptr, MarchTeam* team = nullptr);
 
   /// Marches from a checked source.
   void run(const Source& source);
@@ -40,10 +77,12 @@ class March {
   double root_mean_square(Index vertex) const {
     return accepted(vertex) ? found_[numbers_.find(vertex)][d_] : nothing_[0];
   }
+  /// In world units; NaN as `coordinates`.
+  double distance(Index vertex) const { return accepted(vertex) ? found_[numbers_.find(vertex)][d_ + 1] : nothing_[0]; }
   /// Whether the march came to the vertex.
   bool accepted(Index vertex) const {
     const Index number = numbers_.find(vertex);
-    return number >= 0 && ways_[number]->accepted;
+    return number >= 0 ? ways_[number]->accepted : number == ReachedNumbers::forgotten;
   }
   /// U_i as d x d numbers, row major; the identity where `accepted` is false.
   void axes(Index vertex, double* out) const;
@@ -53,13 +92,19 @@ class March {
 
  private:
   struct Band {
-    std::vector<Index> vertices;
-    std::vector<Index> edge;  ///< places in `vertices` at the far end: with neighbours ahead of the band
+    std::vector<Index> vertices;  ///< own ones, then the halo
+    std::vector<HaloVertex> halo;
+    std::vector<Index> edge;  ///< places of own ones at the far end: with neighbours ahead of the band
+    std::size_t own = 0;      ///< vertices
   };
   struct Link {  ///< an edge from a vertex of the band back to an accepted one
     Index place;
     std::size_t edge;
     Index number;  ///< of the accepted one
+  };
+  struct Ahead {  ///< an edge to a vertex that is not accepted yet
+    Index vertex;
+    double weight, length;
   };
   struct Way {  ///< where a vertex is on its way
     bool accepted = false;
@@ -74,24 +119,32 @@ class March {
   void march(const Source* source);
   bool advance(const Source* source, double depth);
   Band find_band(const Source* source, double depth);
+  std::vector<Index> search(const Source* source, double depth);
   void find_edge(Band& band);
-  std::optional<std::vector<Index>> near_part(const Band& band, std::span<const double> lambda) const;
+  double heat_distance_along(const Ahead& edge) const;
+  std::optional<std::vector<Index>> near_part(const Band& band, std::int64_t size,
+                                              std::span<const double> lambda) const;
   HeatExponents exponents_behind(std::span<const Link> links) const;
-  Inflow inflow_behind(const Band& band, std::span<const Link> links, double scaling, HeatExponents exponents) const;
+  RightHandSide right_hand_side_behind(const Band& band, std::span<const Link> links, double scaling,
+                                       HeatExponents exponents) const;
   void accept(Index vertex, Index place, const AffineHeat& heat, std::size_t s, HeatExponents exponents);
   void update_front(std::span<const Index> added);
   Way& way(Index vertex);
   Index place(Index vertex) const;
-  bool sends_heat(Index vertex) const;
+  bool has_neighbors_ahead(Index vertex) const;
+  bool is_within_radius(Index vertex) const;
+  void forget(Index vertex);
+  Index known_number(Index vertex) const;
   double diagonal(Index vertex) const;
-  double tau(Index vertex) const { return tau_[scales_.component(vertex)]; }
+  double tau(Index vertex) const { return scales_.tau(vertex); }
 
   const TangentGraph& graph_;
   HeatOptions options_;
   Variant variant_;
-  bool iterative_;  ///< volumes: the factors of a band would fill the memory
-  const ComponentScales& scales_;
-  std::vector<double> tau_;  ///< per component
+  const MarchScales& scales_;
+  MarchSink* sink_;
+  std::unique_ptr<MarchTeam> alone_;
+  MarchTeam& team_;
   double margin_, step_, radius_;
   Progress progress_;
   unsigned threads_;
@@ -100,11 +153,11 @@ class March {
   ReachedNumbers numbers_;     ///< of the vertices that were looked at
   GrowingRows<Way> ways_;      ///< of these
   KnownValues known_;          ///< of the accepted ones
-  GrowingRows<double> found_;  ///< of the accepted ones: coordinates, root mean square
+  GrowingRows<double> found_;  ///< of the accepted ones: coordinates, root mean square, distance
   std::vector<double> nothing_;
-  std::vector<Index> front_;  ///< accepted vertices with neighbours that are not
+  std::vector<Index> front_;  ///< own accepted vertices with neighbours that are not
   MarchStatistics statistics_;
-  Offset accepted_count_ = 0;
+  Offset accepted_count_ = 0;  ///< own ones
 };
 
 }  // namespace ahm

@@ -2,8 +2,10 @@
 /// Memory for what is known of some of a graph's vertices: it grows with those, not with the graph.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -11,17 +13,24 @@
 
 namespace ahm {
 
-/// Numbers vertices in the order in which they are first asked for. Besides one page of 1 KB for every 256 successive
-/// vertices of which one was asked for it takes 8 bytes per 256 vertices of the graph.
+/// Numbers vertices in the order in which they are first asked for; numbers of forgotten vertices are given again. Besides
+/// one page of 1 KB for every 256 successive vertices of which one was asked for and one was not forgotten it takes 10
+/// bytes per 256 vertices of the graph.
 class ReachedNumbers {
  public:
-  explicit ReachedNumbers(Index vertices) : pages_(static_cast<std::size_t>(vertices) / page_size + 1) {}
+  static constexpr Index forgotten = -2;
 
-  /// -1 for a vertex never asked for by `number`.
+  explicit ReachedNumbers(Index vertices)
+      : vertices_(static_cast<std::size_t>(vertices)), pages_(vertices_ / page_size + 1), gone_(pages_.size()) {}
+
+  /// -1 for a vertex never asked for by `number`, `forgotten` for one that was forgotten.
   Index find(Index vertex) const {
-    const Page* page = pages_[static_cast<std::size_t>(vertex) / page_size].get();
-    return page == nullptr ? -1 : (*page)[static_cast<std::size_t>(vertex) % page_size];
+    const std::size_t place = static_cast<std::size_t>(vertex) / page_size;
+    const Page* page = pages_[place].get();
+    if (page == nullptr) return gone_[place] > 0 ? forgotten : -1;
+    return (*page)[static_cast<std::size_t>(vertex) % page_size];
   }
+  /// Of a vertex that was not forgotten.
   Index number(Index vertex) {
     std::unique_ptr<Page>& page = pages_[static_cast<std::size_t>(vertex) / page_size];
     if (!page) {
@@ -29,21 +38,37 @@ class ReachedNumbers {
       page->fill(-1);
     }
     Index& own = (*page)[static_cast<std::size_t>(vertex) % page_size];
-    if (own < 0) own = count_++;
+    if (own >= 0) return own;
+    if (free_.empty()) return own = count_++;
+    own = free_.back();
+    free_.pop_back();
     return own;
   }
+  /// Gives up the number of a vertex that has one. A page of which all are forgotten goes too.
+  void forget(Index vertex) {
+    const std::size_t place = static_cast<std::size_t>(vertex) / page_size;
+    Index& own = (*pages_[place])[static_cast<std::size_t>(vertex) % page_size];
+    free_.push_back(own);
+    own = forgotten;
+    if (++gone_[place] == std::min(page_size, vertices_ - place * page_size)) pages_[place].reset();
+  }
+  /// Numbers given so far, at most as many as there were at a time.
   Index count() const { return count_; }
   std::size_t bytes() const {
     std::size_t taken = 0;
     for (const auto& page : pages_) taken += page ? 1 : 0;
-    return pages_.size() * sizeof(pages_[0]) + taken * sizeof(Page);
+    return pages_.size() * (sizeof(pages_[0]) + sizeof(gone_[0])) + taken * sizeof(Page) +
+           free_.capacity() * sizeof(free_[0]);
   }
 
  private:
   static constexpr std::size_t page_size = 256;
   using Page = std::array<Index, page_size>;
 
+  std::size_t vertices_;
   std::vector<std::unique_ptr<Page>> pages_;
+  std::vector<std::uint16_t> gone_;  ///< forgotten vertices of each page
+  std::vector<Index> free_;          ///< numbers to be given again
   Index count_ = 0;
 };
 

@@ -1,5 +1,6 @@
 #include "ahm/maps/source.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -36,6 +37,34 @@ Source Source::at_vertices(std::span<const Vertex> vertices) {
   return source;
 }
 
+Source Source::joined(std::span<const Source> points) {
+  std::optional<int> dimension;
+  std::vector<Vertex> plain;
+  for (const Source& point : points) {
+    const bool one =
+        std::all_of(point.places_.begin(), point.places_.end(), [](const Place& p) { return p.point == 0; });
+    if (point.is_curve_ || !one) throw InvalidArgument("sources to be joined: one is not a point");
+    plain.insert(plain.end(), point.vertices_.begin(), point.vertices_.end());
+    if (point.dimension_ && point.dimension_ != dimension.value_or(*point.dimension_))
+      throw InvalidArgument("sources to be joined have the dimensions " + std::to_string(*dimension) + " and " +
+                            std::to_string(*point.dimension_));
+    if (point.dimension_) dimension = point.dimension_;
+  }
+  if (!dimension) return at_vertices(plain);
+  Source result(*dimension);
+  const auto d = static_cast<std::size_t>(*dimension);
+  const std::vector<double> zero(d, 0.0);
+  for (std::size_t p = 0; p < points.size(); ++p)
+    for (std::size_t k = 0; k < points[p].vertices_.size(); ++k) {
+      const Source& point = points[p];
+      const bool placed = point.dimension_.has_value();
+      const auto z = placed ? point.offsets().subspan(k * *point.dimension_, *point.dimension_) : zero;
+      const auto U = placed ? point.axes().subspan(k * d * d, d * d) : std::span<const double>();
+      result.append(point.vertices_[k], point.weights_[k], z, U, {static_cast<Index>(p), length(z)});
+    }
+  return result;
+}
+
 Source Source::at_vertex(Vertex vertex, std::span<const double> direction) {
   const double length = direction.size() == 2 ? std::hypot(direction[0], direction[1]) : 0.0;
   if (!(length > 0) || !std::isfinite(length))
@@ -57,6 +86,12 @@ Source& Source::add(Vertex vertex, double weight, std::span<const double> offset
   append(vertex, weight, offset, axes, place);
   is_curve_ = true;
   return *this;
+}
+
+Source Source::renumbered(const std::function<Vertex(Vertex)>& number) const {
+  Source result = *this;
+  for (Vertex& vertex : result.vertices_) vertex = number(vertex);
+  return result;
 }
 
 void Source::append(Vertex vertex, double weight, std::span<const double> offset, std::span<const double> axes,

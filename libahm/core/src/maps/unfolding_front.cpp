@@ -1,14 +1,14 @@
 #include "ahm/maps/unfolding_front.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <functional>
+#include <tuple>
 
 #include "ahm/util/scratch.hpp"
 #include "ahm/util/small_math.hpp"
 #include "ahm/util/vec.hpp"
-#include "maps/inflow.hpp"
+#include "maps/front_stars.hpp"
+#include "maps/right_hand_side.hpp"
 
 namespace ahm {
 namespace {
@@ -22,12 +22,6 @@ constexpr Index most_gains = 40;
 constexpr Index most_points = 8;
 /// Sides that are shorter than this share of the other two, or of a distance, no longer tell where its point lies.
 constexpr double shortest_side = 1e-6, shortest_side_far_away = 1e-13;
-
-/// A number that grows with the angle of v, from -2 to 2.
-double turn(const Vec2& v) {
-  const double along = v[0] / (std::abs(v[0]) + std::abs(v[1]));
-  return v[1] >= 0 ? 1 - along : along - 1;
-}
 
 /// The square of the distance of c from a point at distances `from_a` and `from_b`, beyond the side ab of a triangle with
 /// a at 0, b at (ab, 0) and c at (cx, cy) above, the point below; `limit` where it is no less, or where the straight line
@@ -43,91 +37,14 @@ double squared_across(double from_a, double from_b, double ab, double cx, double
   return std::min(limit, (cx - x) * (cx - x) + height * height);
 }
 
-struct Neighbor {
-  Index vertex;
-  Vec2 log;
-  double length, turn;
-  std::size_t edge;
-};
-
-/// The neighbours of a vertex, counterclockwise.
-void neighbors_of(const TangentGraph& graph, Index vertex, std::vector<Neighbor>& neighbors) {
-  neighbors.clear();
-  const Star star = graph.star(vertex);
-  for (std::size_t e = 0; e < star.degree(); ++e) {
-    const Vec2 log{star.logs[2 * e], star.logs[2 * e + 1]};
-    neighbors.push_back({star.neighbors[e], log, std::sqrt(log[0] * log[0] + log[1] * log[1]), turn(log), e});
-  }
-  std::sort(neighbors.begin(), neighbors.end(),
-            [](const Neighbor& a, const Neighbor& b) { return a.turn != b.turn ? a.turn < b.turn : a.edge < b.edge; });
-}
-
-/// The third side of the corner between two neighbours; NaN where the star is open between them.
-double third_side(const TangentGraph& graph, const Neighbor& right, const Neighbor& left) {
-  const double open = std::numeric_limits<double>::quiet_NaN();
-  const Vec2 &u = right.log, &v = left.log;
-  if (right.vertex == left.vertex || cross(u, v) <= 0) return open;
-  const bool by_right = graph.star(right.vertex).degree() <= graph.star(left.vertex).degree();
-  const Star star = graph.star(by_right ? right.vertex : left.vertex);
-  for (std::size_t e = 0; e < star.degree(); ++e)
-    if (star.neighbors[e] == (by_right ? left.vertex : right.vertex)) return length(star.log(e));
-  // Not joined: a corner of a grid or a square if it is narrow, else a gap.
-  if (u[0] * v[0] + u[1] * v[1] < -0.5 * right.length * left.length) return open;
-  return std::hypot(u[0] - v[0], u[1] - v[1]);
-}
-
-/// Cosine and sine of the corner between two sides of a triangle, by its lengths [Kah14]; NaN where there is no corner.
-Vec2 corner(double a, double b, double opposite) {
-  std::array<double, 3> sides{a, b, opposite};
-  std::sort(sides.begin(), sides.end(), std::greater<>());
-  const auto [x, y, z] = sides;
-  const double squared = (x + (y + z)) * (z - (x - y)) * (z + (x - y)) * (x + (y - z));  // 16 area^2
-  if (!(squared > 0)) return {NAN, NAN};
-  return {((a - opposite) * (a + opposite) + b * b) / (2 * a * b), std::sqrt(squared) / (2 * a * b)};
-}
-
-template <class Corner>
-void append_corners(const TangentGraph& graph, Index vertex, std::vector<Neighbor>& neighbors,
-                    std::vector<Corner>& corners) {
-  neighbors_of(graph, vertex, neighbors);
-  for (std::size_t k = 0; k < neighbors.size(); ++k) {
-    const Neighbor &right = neighbors[k], &left = neighbors[k + 1 < neighbors.size() ? k + 1 : 0];
-    const Vec2 angle = corner(right.length, left.length, third_side(graph, right, left));
-    corners.push_back({right.vertex, right.length, angle[0], angle[1]});
-  }
-}
-
 }  // namespace
-
-class UnfoldingFront::Stars {
- public:
-  explicit Stars(const TangentGraph& graph) : begin_{0} {
-    corners_.reserve(static_cast<std::size_t>(graph.edge_count()));
-    std::vector<Neighbor> neighbors;
-    for (Index i = 0; i < graph.size(); ++i) {
-      append_corners(graph, i, neighbors, corners_);
-      begin_.push_back(static_cast<Offset>(corners_.size()));
-    }
-  }
-  std::span<const Corner> of(Index vertex) const {
-    return std::span(corners_).subspan(static_cast<std::size_t>(begin_[vertex]),
-                                       static_cast<std::size_t>(begin_[vertex + 1] - begin_[vertex]));
-  }
-
- private:
-  std::vector<Offset> begin_;
-  std::vector<Corner> corners_;
-};
-
-std::shared_ptr<const UnfoldingFront::Stars> UnfoldingFront::stars(const TangentGraph& graph) {
-  return graph.dimension() == 2 ? std::make_shared<const Stars>(graph) : nullptr;
-}
 
 UnfoldingFront::UnfoldingFront(const TangentGraph& graph, std::shared_ptr<const Stars> stars)
     : graph_(graph),
       d_(static_cast<std::size_t>(graph.dimension())),
-      head_(static_cast<std::size_t>(graph.size()), none),
-      stars_(std::move(stars)) {
+      stars_(stars || !graph.is_delaunay() ? std::move(stars)
+                                           : std::make_shared<const Stars>(graph, halved_vertices(graph), false)) {
+  head_.assign(static_cast<std::size_t>(stars_ ? stars_->size() : graph.size()), none);
   entries_.reserve(head_.size());
 }
 
@@ -135,6 +52,11 @@ Index UnfoldingFront::add(const Source& source) {
   check_source(source, graph_);
   const double unit = graph_.length_unit();
   const Index first = points_;
+  std::vector<Waiting> given;
+  const auto give = [&](Index vertex, Index point, double distance, std::span<const double> displacement) {
+    offer(vertex, point, distance, 0, displacement);
+    if (stars_) given.push_back({distance, vertex, point});
+  };
   Scratch back(d_);
   for (std::size_t k = 0; k < source.vertices().size(); ++k) {
     if (!(source.weights()[k] > 0)) continue;
@@ -146,15 +68,31 @@ Index UnfoldingFront::add(const Source& source) {
         back.data()[c] -= source.axes()[(k * d_ + c) * d_ + a] * source.offsets()[k * d_ + a] / unit;
     }
     const Index vertex = source.vertices()[k].index;
-    offer(vertex, first + point, away / unit, 0, back.span());
+    give(vertex, first + point, away / unit, back.span());
     if (d_ != 2 || away == 0 || source.is_curve() || source.vertices().size() > 1) continue;
     // A point beside its only vertex, in whose tangent plane the neighbours lie too.
-    std::vector<Neighbor> neighbors;
-    neighbors_of(graph_, vertex, neighbors);
-    for (const Neighbor& n : neighbors)
-      offer(n.vertex, first + point, std::hypot(n.log[0] - back.data()[0], n.log[1] - back.data()[1]), 0, {});
+    const Star star = graph_.star(vertex);
+    for (std::size_t e = 0; e < star.degree(); ++e)
+      give(star.neighbors[e], first + point,
+           std::hypot(star.log(e)[0] - back.data()[0], star.log(e)[1] - back.data()[1]), {});
   }
+  offer_midpoints(given);
   return first;
+}
+
+/// A point of a triangle is at the distance of its median from the midpoint of a side whose ends' distances are given.
+void UnfoldingFront::offer_midpoints(std::vector<Waiting>& given) {
+  std::sort(given.begin(), given.end(), [](const Waiting& a, const Waiting& b) {
+    return std::tie(a.point, a.vertex) < std::tie(b.point, b.vertex);
+  });
+  for (std::size_t i = 0; i < given.size(); ++i)
+    for (std::size_t j = i + 1; j < given.size() && given[j].point == given[i].point; ++j) {
+      const auto side = stars_->midpoint(given[i].vertex, given[j].vertex);
+      if (!side) continue;
+      const double a = given[i].distance, b = given[j].distance;
+      const double squared = 0.5 * (a * a + b * b) - side->half * side->half;
+      offer(side->midpoint, given[i].point, std::sqrt(std::max(0.0, squared)), 0, {});
+    }
 }
 
 void UnfoldingFront::run(double radius) {
@@ -234,10 +172,9 @@ void UnfoldingFront::offer(Index vertex, Index point, double distance, double sl
 }
 
 std::span<const UnfoldingFront::Corner> UnfoldingFront::around(Index vertex) {
-  if (stars_) return stars_->of(vertex);
-  std::vector<Neighbor> neighbors;
+  if (stars_ && !stars_->of(vertex).empty()) return stars_->of(vertex);
   around_.clear();
-  append_corners(graph_, vertex, neighbors, around_);
+  Stars::append_corners(graph_, vertex, neighbors_, around_);
   return around_;
 }
 

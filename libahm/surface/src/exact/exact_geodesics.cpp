@@ -198,6 +198,7 @@ LabelledLogMap ExactGeodesics::log_map(std::span<const ExactSource> sources, con
 LabelledLogMap ExactGeodesics::log_map(const Placed& from, Source source, const ExactMapOptions& options) const {
   exact::ExactOptions exact_options;
   exact_options.radius = options.radius / flat_.length_unit;
+  exact_options.tolerance = options.tolerance;
   exact_options.progress = options.progress;
   const exact::ExactMap exact = exact::exact_map(flat_.surface, from.points, exact_options);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <numbers>
 #include <string>
 
@@ -11,7 +12,8 @@
 #include "ahm/util/parallel.hpp"
 #include "ahm/util/text.hpp"
 #include "check_point.hpp"
-#include "propagation.hpp"
+#include "exact_propagation.hpp"
+#include "merged_propagation.hpp"
 
 namespace ahm::exact {
 namespace {
@@ -23,8 +25,37 @@ void check(const PolyhedralSurface& surface, std::span<const MeshPoint> sources,
   if (sources.empty()) throw InvalidArgument("'sources' is empty; an exact map needs a source");
   if (!(options.radius > 0))
     throw InvalidArgument("'radius' is " + detail::number(options.radius) + "; it must be > 0");
+  if (!(options.tolerance >= 0 && options.tolerance <= 0.1))
+    throw InvalidArgument("'tolerance' is " + detail::number(options.tolerance) + "; it must be in [0, 0.1]");
   if (options.only_targets && options.targets.empty()) throw InvalidArgument("'only_targets' needs 'targets'");
   for (const MeshPoint& p : sources) checked(surface, p, "source");
+}
+
+std::unique_ptr<Propagation> propagation_by(const PolyhedralSurface& surface, const ExactOptions& options,
+                                            std::span<const MeshPoint> targets) {
+  if (options.tolerance > 0)
+    return std::make_unique<MergedPropagation>(surface, options.radius, targets, options.only_targets,
+                                               options.tolerance);
+  return std::make_unique<ExactPropagation>(surface, options.radius, targets, options.only_targets);
+}
+
+/// No vertex is farther than a neighbour and the side between them. Otherwise windows were lost, which happens in needles
+/// whose angles are those of rounding.
+void check_reached(const PolyhedralSurface& surface, const Propagation& done, double tolerance) {
+  const std::span<const double> distance = done.distances();
+  for (Half h = 0; h < 3 * surface.face_count(); ++h) {
+    const HalfRecord& r = surface.record(h);
+    const auto check = [&](Index from, Index to) {
+      const double way = (distance[from] + r.length) * (1 + 1e-9 + 3 * tolerance);
+      if (!(way < done.horizon()) || distance[to] <= way) return;
+      throw InvalidGeometry("windows_lost",
+                            "windows were lost on the way to vertex " + std::to_string(to) + ", a side of " +
+                                detail::number(r.length) + " from vertex " + std::to_string(from),
+                            "repair the needles there, allow for a tolerance, or use heat");
+    };
+    check(r.tail, r.head);
+    check(r.head, r.tail);
+  }
 }
 
 /// The vertex of a face with the given number, which stands for its component.
@@ -46,7 +77,8 @@ class MapBuilder {
     for (const MeshPoint& p : map_.sources_) lit_[component_of(surface, p)] = 1;
   }
 
-  ExactMap build(const Propagation& done) {
+  ExactMap build(const Propagation& done, double tolerance) {
+    map_.tolerance_ = tolerance;
     map_.origins_.assign(done.origins().begin(), done.origins().end());
     map_.statistics_ = {done.windows(), done.bytes()};
     const std::size_t rows = map_.vertices_ + map_.targets_.size();
@@ -99,10 +131,11 @@ ExactMap exact_map(const PolyhedralSurface& surface, std::span<const MeshPoint> 
     std::vector<MeshPoint> from, to;
     for (const MeshPoint& p : sources) from.push_back(checked(surface, p, "source"));
     for (const MeshPoint& p : options.targets) to.push_back(checked(surface, p, "target"));
-    Propagation propagation(surface, options.radius, to, options.only_targets);
-    for (const MeshPoint& p : from) propagation.add_source(p);
-    propagation.run(options.progress);
-    return MapBuilder(surface, std::move(from), std::move(to)).build(propagation);
+    const std::unique_ptr<Propagation> propagation = propagation_by(surface, options, to);
+    for (const MeshPoint& p : from) propagation->add_source(p);
+    propagation->run(options.progress);
+    check_reached(surface, *propagation, options.tolerance);
+    return MapBuilder(surface, std::move(from), std::move(to)).build(*propagation, options.tolerance);
   });
 }
 

@@ -107,6 +107,11 @@ class Backwards {
   GeodesicPath path_;
 };
 
+void check_exact(const ExactMap& map) {
+  if (map.tolerance() > 0)
+    throw InvalidArgument("'map' has the tolerance " + detail::number(map.tolerance()) + "; paths need an exact one");
+}
+
 GeodesicPath without_points(Status status) {
   GeodesicPath path;
   path.status = status;
@@ -180,6 +185,7 @@ GeodesicPath path_to_vertex(const PolyhedralSurface& surface, const ExactMap& ma
   if (vertex.index < 0 || vertex.index >= map.size() || map.size() != surface.vertex_count())
     throw InvalidArgument("vertex " + std::to_string(vertex.index) + " is outside [0, " + std::to_string(map.size()) +
                           "), or the map is of another surface");
+  check_exact(map);
   if (map.status(vertex) != Status::ok) return without_points(map.status(vertex));
   return Backwards(surface, map).to_vertex(vertex.index);
 }
@@ -188,6 +194,7 @@ GeodesicPath path_to_target(const PolyhedralSurface& surface, const ExactMap& ma
   if (target >= map.targets() || map.size() != surface.vertex_count())
     throw InvalidArgument("target " + std::to_string(target) + " is outside [0, " + std::to_string(map.targets()) +
                           "), or the map is of another surface");
+  check_exact(map);
   if (map.target_status(target) != Status::ok) return without_points(map.target_status(target));
   if (const Index vertex = vertex_of(surface, map.target(target)); vertex >= 0)
     return Backwards(surface, map).to_vertex(vertex);

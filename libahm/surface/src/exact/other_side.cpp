@@ -12,8 +12,6 @@ struct Shortcut {
   double gain;  ///< of length, if nothing else is in the way
 };
 
-double angle_between(const Vec2& a, const Vec2& b) { return std::abs(std::atan2(cross(a, b), dot(a, b))); }
-
 /// What a straight piece from a to b gains on the other side of a vertex of its strip; <= 0: nothing.
 double gain_beyond(double angle_sum, const Place& vertex, const Place& a, const Place& b) {
   const Vec2 back = a - vertex, ahead = b - vertex;

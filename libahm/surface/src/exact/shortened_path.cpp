@@ -12,8 +12,6 @@ namespace {
 
 using std::numbers::pi;
 
-double angle_between(const Vec2& a, const Vec2& b) { return std::abs(std::atan2(cross(a, b), dot(a, b))); }
-
 const Place& other_end(const Portal& portal, const Bend& bend) { return bend.left ? portal.right : portal.left; }
 
 /// The angle at a bend on the side of the strip.

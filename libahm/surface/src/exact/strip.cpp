@@ -128,18 +128,6 @@ std::optional<std::vector<Half>> turn(const PolyhedralSurface& surface, Half fro
   return entered;
 }
 
-std::vector<Half> turn_shorter(const PolyhedralSurface& surface, Half from, Half to) {
-  const auto angle = [&](bool left) {
-    double sum = 0;
-    for (Corner c{from, true}; c.half != to; sum += surface.angle(c.half)) {
-      c = left ? surface.turn_left(c) : surface.turn_right(c);
-      if (c.half < 0) return HUGE_VAL;
-    }
-    return sum;
-  };
-  return *turn(surface, from, to, angle(true) <= angle(false));
-}
-
 Strip strip_along(const PolyhedralSurface& surface, std::span<const MeshPoint> curve) {
   if (curve.size() < 2) throw InvalidArgument("a curve needs two points");
   Strip strip;

@@ -41,8 +41,6 @@ void trim(const PolyhedralSurface& surface, Strip& strip);
 /// The half-edges that enter the faces one meets when turning about a vertex from a corner to another one; none where the
 /// boundary lies between.
 std::optional<std::vector<Half>> turn(const PolyhedralSurface& surface, Half from, Half to, bool left);
-/// The shorter of both ways, by the angles between the two corners.
-std::vector<Half> turn_shorter(const PolyhedralSurface& surface, Half from, Half to);
 
 /// The strip along a curve. Neighbouring points lie in one face; they may be vertices or lie on sides.
 /// @throws InvalidArgument (a point outside its face, neighbours without a common face)

@@ -13,7 +13,8 @@
 /// its "center".
 ///
 /// Of a surface: positions (3), discs (normal as 255ths of [-1, 1], radius as 255ths of "largest_radius"), points (the
-/// row of each vertex), colors (4), triangles, origins (face, corners, sides; where faces have more than three).
+/// row of each vertex), colors (4), triangles, faces (the face of each triangle), corners (of that face, three, and how many
+/// it has; where they have more than three).
 /// Of a map, by row: uv (2), distance, spread, quality, status; by vertex of a cloud: slopes (6 bytes, 127 for zero).
 #pragma once
 

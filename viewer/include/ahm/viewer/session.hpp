@@ -52,9 +52,6 @@ struct Answer {
   std::string body;
 };
 
-/// A word of a command line, in quotes where a shell would take it apart.
-std::string quoted(const std::string& word);
-
 /// A point as SPEC of a command: 42, face:7:0.2,0.3,0.5, or x,y,z.
 std::string spec(const Surface& surface, const SurfacePoint& point);
 
@@ -62,7 +59,7 @@ std::string spec(const Surface& surface, const SurfacePoint& point);
 /// the other, each on all threads.
 ///
 /// Requests are JSON objects. A point is {"row": 42} or {"face": 7, "weights": [0.2, 0.3, 0.5]}. With a map go, each by
-/// choice, "method", "variant", "order", "t_coef", "radius", "u_axis".
+/// choice, "method", "variant", "order", "t_coef", "radius" (null: none), "u_axis".
 ///
 /// | name     | request, besides "client"                              | answer                                        |
 /// |----------|--------------------------------------------------------|-----------------------------------------------|

@@ -88,6 +88,8 @@ class GridGraph final : public TangentGraph {
   bool is_free(const Steps& cell) const;
   std::size_t pattern_at(Index vertex) const;
   Pattern make_pattern(std::size_t free_cells) const;
+  /// How many vertices have each pattern.
+  std::vector<Offset> count_patterns() const;
   Source source_in_cell(const Steps& cell, const Vec3& share, std::span<const double> point) const;
 
   Grid grid_;

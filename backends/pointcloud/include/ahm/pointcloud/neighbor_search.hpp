@@ -32,7 +32,7 @@ class NeighborSearch {
 /// Makes a search over `points`, which must be finite and outlive it.
 using NeighborSearchFactory = std::function<std::unique_ptr<NeighborSearch>(std::span<const Vec3> points)>;
 
-/// k-d tree of nanoflann, double precision. The default.
+/// k-d tree of nanoflann, double precision; of points at equal distances those of lower numbers come first. The default.
 std::unique_ptr<NeighborSearch> nanoflann_search(std::span<const Vec3> points);
 
 /// Single k-d tree of FLANN, double precision, exact.

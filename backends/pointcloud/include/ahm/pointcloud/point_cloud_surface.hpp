@@ -38,9 +38,12 @@ struct CloudOptions {
   /// Two points are joined only if their distance is at most this multiple of the distance to the k-th neighbour of
   /// either.
   double max_edge_ratio = 3.0;
+  /// Whether noise, and with it the number of neighbours, is measured for each part that shares no neighbours with the rest,
+  /// so that a part does not depend on what else is in the file. Else for all as one, as clouds in tiles are built.
+  bool parts_apart = true;
   /// The points to build from, ascending, after whatever filters a caller applied; none: all. Other rows are `removed`, and
   /// may hold anything.
-  std::optional<std::vector<Index>> rows;
+  std::optional<std::vector<Row>> rows;
   bool drop_non_finite = false;  ///< NaN and infinite points: drop (status `removed`) instead of throwing
   unsigned threads = 0;          ///< 0: one per core; the result does not depend on it
   Progress progress;
@@ -58,23 +61,24 @@ struct CloudDetails {
   Index degenerate = 0;               ///< points without a tangent plane or without a triangle, removed
   std::vector<Row> first_degenerate;  ///< the first ten of them
   Index k_asked = 0;                  ///< neighbours asked for, 30 by default
-  Index k = 0;                        ///< neighbours used
+  Index k = 0;                        ///< neighbours used, where it differs by part the largest
   Index components = 0;               ///< connected components of the graph
   Offset triangles = 0;               ///< of the union of the local Delaunay triangulations
   Offset flips = 0;                   ///< edge flips to the intrinsic Delaunay triangulation of the tufted cover
   bool flips_stopped = false;         ///< before all edges were Delaunay
   Offset rejected_long = 0;           ///< neighbour pairs not joined: too long for the local spacing
   Offset rejected_normals = 0;        ///< neighbour pairs not joined: oriented normals disagree (thin wall)
-  Offset rejected_steep = 0;     ///< neighbour pairs not joined: steeply above each other, beyond noise (other sheets)
-  Offset reflections = 0;        ///< edges between oppositely oriented frames
-  bool normals_given = false;    ///< one per point
-  Index estimated = 0;           ///< given normals that are zero or not finite and were estimated
-  Index contradicted = 0;        ///< given normals whose planes the points contradict: only their sides were taken
-  Index thick = 0;               ///< points whose neighbours are as thick as wide: no surface there
-  Index turned = 0;              ///< given normals that pointed to the other side than the majority around them
-  bool oriented = false;         ///< given normals fix which side is up, everywhere
-  double noise = 0;              ///< standard deviation of neighbours' offsets across the surface, world units
-  double mollification = 0;      ///< length added to every edge of the tufted cover, world units
+  Offset rejected_steep = 0;   ///< neighbour pairs not joined: steeply above each other, beyond noise (other sheets)
+  Offset reflections = 0;      ///< edges between oppositely oriented frames
+  bool normals_given = false;  ///< one per point
+  Index estimated = 0;         ///< given normals that are zero or not finite and were estimated
+  Index contradicted = 0;      ///< given normals whose planes the points contradict: only their sides were taken
+  Index thick = 0;             ///< points whose neighbours are as thick as wide: no surface there
+  Index turned = 0;            ///< given normals that pointed to the other side than the majority around them
+  bool oriented = false;       ///< given normals fix which side is up, everywhere
+  double noise = 0;          ///< standard deviation of neighbours' offsets across the surface, world units; of several
+                             ///< parts that of the largest which got k neighbours
+  double mollification = 0;  ///< length added to every edge of the tufted cover, world units; the largest of the parts
   double seconds_normals = 0;    ///< neighbours and tangent planes
   double seconds_delaunay = 0;   ///< local triangulations
   double seconds_laplacian = 0;  ///< tufted cover, flips, weights
@@ -117,13 +121,13 @@ class PointCloudSurface final : public Surface {
 
  private:
   PointCloudSurface(CsrGraph graph, CloudDetails details, RowMap rows, std::span<const Vec3> points,
-                    std::optional<std::vector<Index>> kept);
+                    std::optional<std::vector<Row>> kept);
 
   std::unique_ptr<const CsrGraph> graph_;
   CloudDetails details_;
   RowMap rows_;
   std::vector<Vec3> positions_;
-  std::optional<std::vector<Index>> kept_;
+  std::optional<std::vector<Row>> kept_;
 };
 
 }  // namespace ahm::pointcloud

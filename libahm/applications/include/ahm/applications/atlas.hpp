@@ -41,12 +41,12 @@ struct Atlas {
 /// have other coordinates in each chart.
 ///
 /// Faces cut off from the rest of their cell go to the neighbouring chart with which they share most sides, where its
-/// source knows them, else they are charts of their own. One log map per source, a block of sources at a time: memory
+/// source knows them, else they are charts of their own. Every map is made on the surroundings of its chart alone: memory
 /// O(n + corners), whatever the number of sources.
 /// @param maps     a `LogMapSolver`, or `ExactGeodesics`: cells and charts are then exact over the flat faces
 /// @param sources  vertices; their order is that of the charts
 /// @param faces    of the graph's vertices, in any order
-/// @throws InvalidArgument (dimension, sources, faces), as `MapMaker::maps`
+/// @throws InvalidArgument (dimension, sources, faces), as `MapMaker::coordinates`
 Atlas make_atlas(const MapMaker& maps, std::span<const Vertex> sources, const FaceList& faces);
 
 struct RefineOptions {
@@ -58,9 +58,9 @@ struct RefineOptions {
 /// The same with as many further sources as it takes to make all charts good. They are not where a cell closes around a
 /// handle, a limb or a sharp feature: of every such chart the corner of bad triangles that is farthest from the source
 /// becomes another source, and the surface is cut anew, until nothing is to be added. Components without a source get
-/// one. One log map per source.
+/// one.
 /// @param positions  n, of the graph's vertices, world units
-/// @throws InvalidArgument (also positions, options), as `MapMaker::maps`
+/// @throws InvalidArgument (also positions, options), as `MapMaker::coordinates`
 Atlas make_atlas(const MapMaker& maps, std::span<const Vertex> sources, const FaceList& faces,
                  std::span<const Vec3> positions, const RefineOptions& refine);
 

@@ -7,10 +7,12 @@
 /// \endcode
 #pragma once
 
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "ahm/graph/tangent_graph.hpp"
+#include "ahm/maps/unfolding_front.hpp"
 #include "ahm/progress.hpp"
 #include "ahm/surface/exact/exact_geodesics.hpp"
 
@@ -25,8 +27,10 @@ struct VoronoiCells {
 
 /// Cells by geodesic distance (`UnfoldingFront`), all in one pass whatever the number of sources. Exact to ties on flat
 /// Delaunay triangulations without holes.
+/// @param stars  of the graph, where cells are wanted more than once; none: looked up
 /// @throws InvalidArgument (empty, index, a vertex given twice), ResourceExhausted
-VoronoiCells voronoi_cells(const TangentGraph& graph, std::span<const Vertex> vertices);
+VoronoiCells voronoi_cells(const TangentGraph& graph, std::span<const Vertex> vertices,
+                           std::shared_ptr<const UnfoldingFront::Stars> stars = nullptr);
 /// The same by exact distances over the flat faces. @throws as above, as `ExactGeodesics::log_map`
 VoronoiCells voronoi_cells(const ExactGeodesics& geodesics, std::span<const Vertex> vertices);
 

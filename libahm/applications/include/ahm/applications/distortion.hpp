@@ -52,10 +52,13 @@ std::vector<TriangleDistortion> corner_distortion(std::span<const Vec3> position
 /// Figures over the triangles that have a distortion; weighted by area, so that they do not depend on how a surface is
 /// cut into triangles. NaN where there is no such triangle.
 struct DistortionSummary {
-  double mean = std::numeric_limits<double>::quiet_NaN();  ///< infinite if one triangle collapses
+  /// Of the triangles that do not collapse: one of those would hide all others.
+  double mean = std::numeric_limits<double>::quiet_NaN();
   double median = std::numeric_limits<double>::quiet_NaN();
   double percentile_95 = std::numeric_limits<double>::quiet_NaN();  ///< 95 % of the area have no more
   double largest = std::numeric_limits<double>::quiet_NaN();
+  /// Share of the area that collapses, D > 1e6: exact maps do so behind corners, all that lies in the shade of a vertex.
+  double collapsed_area = std::numeric_limits<double>::quiet_NaN();
   double flipped = std::numeric_limits<double>::quiet_NaN();       ///< share of the number of triangles
   double flipped_area = std::numeric_limits<double>::quiet_NaN();  ///< share of the area
   Offset measured = 0;                                             ///< triangles that have a distortion

@@ -29,7 +29,8 @@ struct MappedSurface {
   std::span<const double> coordinates;  ///< n x 2, row major, world units
   std::span<const std::uint8_t> valid;  ///< n; 0: the vertex is not to be trusted
   std::span<const Triangle> triangles;  ///< counter-clockwise as seen from the side of the normals; may overlap
-  std::span<const Index> sources = {};  ///< where the map starts; empty: the valid vertex of least |phi|
+  std::span<const Index> sources =
+      {};  ///< where the map starts, in the numbers of these arrays; empty: the valid vertex of least |phi|
 };
 
 struct InverseMapOptions {

@@ -7,6 +7,7 @@
 /// \endcode
 #pragma once
 
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -27,16 +28,26 @@ class MapMaker {
   const TangentGraph& graph() const { return solver_ != nullptr ? solver_->graph() : geodesics_->surface().graph(); }
 
   /// The map from a vertex in the axes of its frame. @throws as `LogMapSolver::solve`, `ExactGeodesics::log_map`
-  LogMap map(Vertex source, double radius) const;
-  /// Maps that need not know more than the surroundings of their sources: exact ones end there.
-  /// @param reach  one per source, world units
-  std::vector<LogMap> maps(std::span<const Vertex> sources, std::span<const double> reach) const;
+  LogMap map(Vertex source, double radius, bool frames = false) const;
+  /// The coordinates of the vertices of regions[s] in the map from sources[s], two numbers each, region by region; NaN where it has
+  /// none. By heat of order 1 as `local_coordinates`, for which the solver need not have factored anything.
+  /// @param reach  of every source, no nearer than the farthest of its vertices is; exact maps end there. World units
+  /// @throws as `map`, `local_coordinates`
+  std::vector<double> coordinates(std::span<const Vertex> sources, std::span<const std::span<const Vertex>> regions,
+                                  std::span<const double> reach) const;
   /// No corners of a face are farther apart along its sides; of heat, which needs no bound, infinite. World units.
   double longest_way(const FaceList& faces) const;
+  /// @param stars  of the graph, or none; exact cells need none
   /// @throws as `voronoi_cells`
-  VoronoiCells cells(std::span<const Vertex> sources) const;
+  VoronoiCells cells(std::span<const Vertex> sources,
+                     const std::shared_ptr<const UnfoldingFront::Stars>& stars = nullptr) const;
 
  private:
+  /// Those of whole maps, a block of sources at a time.
+  std::vector<double> coordinates_of_whole(std::span<const Vertex> sources,
+                                           std::span<const std::span<const Vertex>> regions,
+                                           std::span<const double> reach) const;
+
   const LogMapSolver* solver_ = nullptr;
   const ExactGeodesics* geodesics_ = nullptr;
   unsigned threads_ = 0;

@@ -53,6 +53,12 @@ struct Center {
 Center karcher_mean(const MapMaker& maps, std::span<const Vertex> vertices, std::span<const double> weights = {},
                     const CenterOptions& options = {});
 
+/// The same of points anywhere, each given as a source (`Surface::source`); `LogMap::coordinates(point)` says where it is
+/// seen. The search begins at the vertex with the largest share in the point where it would.
+/// @throws InvalidArgument (as above; a curve; a vertex that the graph does not have)
+Center karcher_mean_of_points(const MapMaker& maps, std::span<const Source> points,
+                              std::span<const double> weights = {}, const CenterOptions& options = {});
+
 /// The geometric median: where sum_k w_k d(x, p_k) is least, near the start [FVJ09].
 ///
 ///     x <- exp_x(geometric median of log_x(p_k) in the tangent space)
@@ -60,6 +66,10 @@ Center karcher_mean(const MapMaker& maps, std::span<const Vertex> vertices, std:
 /// One map per step: Weiszfeld's and Newton's steps run in the tangent space, to rounding. Otherwise as `karcher_mean`.
 Center geometric_median(const MapMaker& maps, std::span<const Vertex> vertices, std::span<const double> weights = {},
                         const CenterOptions& options = {});
+
+/// The same of points anywhere. @throws as `karcher_mean_of_points`
+Center geometric_median_of_points(const MapMaker& maps, std::span<const Source> points,
+                                  std::span<const double> weights = {}, const CenterOptions& options = {});
 
 /// The source at a center; its axes are those of the frame of `center.vertex`.
 Source source_at(const Center& center);

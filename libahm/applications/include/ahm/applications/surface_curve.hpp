@@ -34,16 +34,15 @@ struct SurfaceCurve {
   double gap = 0;                    ///< largest distance of the polyline in space from the surface
   double jump = 0;                   ///< largest distance between consecutive points
   /// How many of the lines between given points are straight in space where they should be shortest paths, and why: the
-  /// message of `Surface::flat_triangles`, or that the surface does not connect their ends. On surfaces without faces
-  /// all are straight, and none is counted.
+  /// message of `Surface::flat_triangles`, or that the surface does not connect their ends.
   Index straight = 0;
   std::string straight_reason;
 };
 
 /// Joins the given points, cuts the lines into pieces of half a mean edge length at the most, and takes the nearest points
-/// of the surface (`Surface::closest_point`). On flat faces the lines are shortest paths between these; on clouds and twisted
-/// polygons, and between points closer than two edges, they are straight in space (`SurfaceCurve::straight`): give points so
-/// close that they stay near the surface.
+/// of the surface (`Surface::closest_point`). The lines are shortest paths between these, over flat faces or, on clouds, over
+/// tangent planes (`shortest_line`); on twisted polygons, and between points closer than two edges, they are straight in space
+/// (`SurfaceCurve::straight`): give points so close that they stay near the surface.
 /// @throws InvalidArgument (as `Surface::source`; faults curve_too_long: more than a million pieces, curve_too_short: fewer
 /// than 2 different points, closed: 3, curve_turns_back, curve_one_sided: closed along a one-sided band), as
 /// `stroke_source`

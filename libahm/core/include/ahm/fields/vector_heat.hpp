@@ -27,11 +27,21 @@ struct VertexField {
 /// @throws InvalidArgument (empty, lengths, index, value not finite)
 VertexField extend_scalar(const LogMapSolver& solver, std::span<const Vertex> vertices, std::span<const double> values);
 
+/// The same of values given at points anywhere, each of which takes part with the weights of its source.
+/// @throws InvalidArgument (as above; a source that does not fit the graph)
+VertexField extend_scalar(const LogMapSolver& solver, std::span<const Source> points, std::span<const double> values);
+
 /// Carries one vector per given vertex along shortest geodesics to all others ([SSC19] Alg. 1): direction by B, length by
 /// A.
 /// @param vectors  one per vertex, d numbers in its frame
 /// @return width d, components in the frame of each vertex
 VertexField transport_vectors(const LogMapSolver& solver, std::span<const Vertex> vertices,
+                              std::span<const double> vectors);
+
+/// The same of vectors at points anywhere.
+/// @param vectors  one per point, d numbers in the axes of its source
+/// @throws InvalidArgument (as `extend_scalar`)
+VertexField transport_vectors(const LogMapSolver& solver, std::span<const Source> points,
                               std::span<const double> vectors);
 
 /// The source's orthonormal frame carried to every vertex (Eq. 11 and 12). Width d x d, row major: column a is source

@@ -5,13 +5,14 @@
 /// // The neighbourhood of every vertex, as learning on surfaces needs it:
 /// ahm::LocalMaps maps = ahm::local_maps(graph, {.radius = 0.05});
 /// for (ahm::Offset e = maps.indptr[i]; e < maps.indptr[i + 1]; ++e)
-///   use(maps.indices[e], &maps.logs[2 * e], maps.distances[e]);
+///   use(maps.neighbors[e], &maps.logs[2 * e], maps.distances[e]);
 ///
 /// ahm::LocalMaps one = ahm::local_maps(graph, std::array{ahm::Source::at_vertex(ahm::Vertex{7})}, {.radius = 0.05});
 /// \endcode
 #pragma once
 
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "ahm/graph/tangent_graph.hpp"
@@ -38,19 +39,32 @@ struct LocalMapOptions {
 /// An entry is a vertex j within the radius: its coordinates phi_j in the source's frame, its distance (as `LogMap::distance`), the mass of j as an
 /// integration weight, and the source's axes carried to the frame of j, which turn components in the source's frame into
 /// components in frame j. The vertex a source stands on is its own neighbour, at distance 0.
-struct LocalMaps {
+/// @tparam Neighbor  Vertex, or Row where the neighbours are rows of the input (`local_maps_on_rows`)
+template <class Neighbor>
+struct LocalMapsOf {
   int dimension = 2;
   TransportKind kind = TransportKind::rotation2;
-  std::vector<Offset> indptr;     ///< sources + 1
-  std::vector<Index> indices;     ///< vertices
-  std::vector<double> logs;       ///< d per entry, world units
-  std::vector<double> distances;  ///< world units
-  std::vector<double> weights;    ///< masses, world units to the power d; NaN where no double holds that (`world_mass`)
+  std::vector<Offset> indptr;       ///< sources + 1
+  std::vector<Neighbor> neighbors;  ///< j
+  std::vector<double> logs;         ///< d per entry, world units
+  std::vector<double> distances;    ///< world units
+  std::vector<double> weights;  ///< masses, world units to the power d; NaN where no double holds that (`world_mass`)
   std::vector<double> transports;  ///< 2 numbers (cos, sin) or d x d, row major, per entry
 
   Index sources() const noexcept { return static_cast<Index>(indptr.size()) - 1; }
   std::size_t transport_width() const { return TransportLayout{kind, dimension}.width(); }
+
+  /// The same maps with other names for their neighbours.
+  template <class Other>
+  LocalMapsOf<Other> renamed(std::vector<Other> names) && {
+    return {dimension,          kind,
+            std::move(indptr),  std::move(names),
+            std::move(logs),    std::move(distances),
+            std::move(weights), std::move(transports)};
+  }
 };
+
+using LocalMaps = LocalMapsOf<Vertex>;
 
 /// The local maps of these sources. Sources close to each other share one small factorization; time and memory depend on
 /// the patches only, however large the graph is.

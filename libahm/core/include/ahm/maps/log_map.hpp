@@ -90,6 +90,10 @@ class LogMap {
   std::span<const double> coordinates() const noexcept { return coordinates_; }
   /// phi_i, d numbers.
   std::span<const double> coordinates(Vertex vertex) const;
+  /// Where a point lies that is given as a source: linear between its vertices and, where their weighted offsets leave
+  /// something (a point beside its only vertex), moved on by that along `frames`. NaN where a vertex of it is not ok.
+  /// @throws InvalidArgument (a curve; offsets that leave something, and no frames)
+  std::vector<double> coordinates(const Source& point) const;
   std::span<const Status> status() const noexcept { return status_; }
   Status status(Vertex vertex) const { return status_[vertex.index]; }
   /// The geodesic distance from the source, world units; NaN where not ok. It is not |phi_i|, which is too short wherever

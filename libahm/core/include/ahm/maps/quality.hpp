@@ -23,7 +23,8 @@ inline constexpr double trusted_quality = 0.5;
 ///
 ///     s_i = | (spread_i, 3 (|phi_i| - d_i)) | / max(d_i, h),   q_i = 1 / (1 + (s_i / 0.3)^2)
 ///
-/// with h the mean edge length of the vertex's component. It is 1 on flat geometry without holes, falls with h on smooth
+/// with h the mean edge length of the vertex's component; d is no less than the straight line in space, where the graph has
+/// frames. It is 1 on flat geometry without holes, falls with h on smooth
 /// surfaces, and is low across a cut locus, behind holes, where heat knows the straight line only, and where features are
 /// coarser than edges. Against exact vectors in docs/accuracy.md.
 /// @param threads  0: one per core

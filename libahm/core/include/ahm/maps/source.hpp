@@ -11,6 +11,7 @@
 /// \endcode
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -36,6 +37,11 @@ class Source {
   /// All these vertices at once, weight 1 each: every vertex gets the coordinates that it has from the nearest of them,
   /// with the axes of that vertex's frame; in any dimension.
   static Source at_vertices(std::span<const Vertex> vertices);
+  /// All these points at once, in the same sense: every vertex gets the coordinates that it has from the nearest of them,
+  /// with the axes of that one.
+  /// @param points  each of one point (not a curve); those with a dimension have the same
+  /// @throws InvalidArgument
+  static Source joined(std::span<const Source> points);
 
   /// A sample of a curve or another set of points, whose coordinates are not its place on the surface: the point of the
   /// source that it belongs to, from 0, and how far the vertex is from that point, world units.
@@ -55,7 +61,10 @@ class Source {
   Source& add(Vertex vertex, double weight, std::span<const double> offset, std::span<const double> axes,
               const Place& place);
 
-  /// None for `at_vertex(vertex)` and `at_vertices`, which fit every dimension.
+  /// The same source where vertex i has the number `number(i)`.
+  Source renumbered(const std::function<Vertex(Vertex)>& number) const;
+
+  /// None for `at_vertex(vertex)`, `at_vertices` and what is `joined` of these, which fit every dimension.
   std::optional<int> dimension() const noexcept { return dimension_; }
   std::span<const Vertex> vertices() const noexcept { return vertices_; }
   std::span<const double> weights() const noexcept { return weights_; }
@@ -63,7 +72,7 @@ class Source {
   std::span<const double> offsets() const noexcept { return offsets_; }
   /// U_k; empty without a dimension: identity.
   std::span<const double> axes() const noexcept { return axes_; }
-  /// Of sample k: of a curve as it was given, of `at_vertices` point k, else point 0 at |z_k|.
+  /// Of sample k: of a curve as it was given, of `at_vertices` point k, of `joined` its point at |z_k|, else point 0 at |z_k|.
   Place place(std::size_t k) const { return places_[k]; }
   /// Whether coordinates may be something else than positions relative to a point.
   bool is_curve() const noexcept { return is_curve_; }

@@ -37,6 +37,14 @@ class Adaptive final : public VariantSystem {
     U.axes(i, axes.data());
     return dot(axes.span(), pairs);
   }
+  void radial(const FrameField& U, Index vertex, std::span<const double> solution, std::size_t n,
+              double* out) const override {
+    const std::size_t d = solution.size() / n;
+    Scratch x(d), axes(d * d);
+    read(U, vertex, solution, n, x.data());
+    U.axes(vertex, axes.data());
+    for (std::size_t c = 0; c < d; ++c) out[c] = dot(std::span<const double>(axes.data() + c * d, d), x.span());
+  }
   void read(const FrameField&, Index vertex, std::span<const double> solution, std::size_t n,
             double* out) const override {
     for (std::size_t a = 0; a * n < solution.size(); ++a) out[a] = solution[a * n + vertex];

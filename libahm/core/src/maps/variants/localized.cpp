@@ -42,6 +42,11 @@ class Localized final : public VariantSystem {
     }
   }
   double paired(const FrameField&, Index, std::span<const double> pairs) const override { return pairs[0]; }
+  void radial(const FrameField&, Index vertex, std::span<const double> solution, std::size_t n,
+              double* out) const override {
+    const std::size_t d = solution.size() / n;
+    std::copy_n(solution.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(vertex) * d), d, out);
+  }
   void read(const FrameField& U, Index vertex, std::span<const double> solution, std::size_t n,
             double* out) const override {
     U.to_source(vertex, solution.data() + static_cast<std::size_t>(vertex) * (solution.size() / n), out);

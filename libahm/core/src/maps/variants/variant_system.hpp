@@ -44,6 +44,9 @@ class VariantSystem {
                          double* pairs) const = 0;
   /// ... and reads the sum with it.
   virtual double paired(const FrameField& U, Index i, std::span<const double> pairs) const = 0;
+  /// The unknown of a vertex as a vector in its own frame, d numbers.
+  virtual void radial(const FrameField& U, Index vertex, std::span<const double> solution, std::size_t n,
+                      double* out) const = 0;
   /// lambda phi of a vertex, d numbers in the source's frame.
   virtual void read(const FrameField& U, Index vertex, std::span<const double> solution, std::size_t n,
                     double* out) const = 0;

@@ -3,8 +3,8 @@
 ///
 /// \code
 /// const ahm::Vertex here = surface.vertex(ahm::Row{42});
-/// const ahm::LocalMaps maps = ahm::local_maps_on_rows(surface, {&here, 1}, {.radius = 0.02});
-/// for (ahm::Index row : maps.indices) use(row);
+/// const ahm::RowLocalMaps maps = ahm::local_maps_on_rows(surface, {&here, 1}, {.radius = 0.02});
+/// for (ahm::Row row : maps.neighbors) use(row);
 /// \endcode
 #pragma once
 
@@ -15,11 +15,15 @@
 
 namespace ahm {
 
-/// `local_maps` with `LocalMaps::indices` as rows (the first ones of their vertices). Neighbours that the input does not have,
-/// as inside refined polygons, are left out; `LocalMapOptions::nearest` counts those that are left.
+using RowLocalMaps = LocalMapsOf<Row>;
+
+/// `local_maps` with rows for neighbours (the first ones of their vertices). Vertices that the input does not have, as inside
+/// refined polygons, are left out; `LocalMapOptions::nearest` counts those that are left.
 /// @throws as `local_maps`
-LocalMaps local_maps_on_rows(const Surface& surface, std::span<const Vertex> sources, const LocalMapOptions& options);
+RowLocalMaps local_maps_on_rows(const Surface& surface, std::span<const Vertex> sources,
+                                const LocalMapOptions& options);
 /// Of any sources: points in faces, curves.
-LocalMaps local_maps_on_rows(const Surface& surface, std::span<const Source> sources, const LocalMapOptions& options);
+RowLocalMaps local_maps_on_rows(const Surface& surface, std::span<const Source> sources,
+                                const LocalMapOptions& options);
 
 }  // namespace ahm

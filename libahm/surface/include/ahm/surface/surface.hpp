@@ -71,7 +71,8 @@ class Surface {
   /// @throws InvalidArgument (row out of range, fault "row_out_of_range"; a row without a vertex, by the fault that
   /// `why_without_vertex` names)
   Vertex vertex(Row row) const;
-  /// The row with a vertex that is nearest to a position in space. @throws InvalidArgument (no positions; not finite)
+  /// The row with a vertex that is nearest to a position in space; of several that of the first vertex. Where it is called
+  /// often, a tree over the rows is made. @throws InvalidArgument (no positions; not finite)
   Row nearest_row(const Vec3& position) const;
   /// The nearest point of the faces (polygons as fans from their first corner); without faces, of the tangent plane of the
   /// nearest row. The first call makes a tree over the faces. @throws InvalidArgument (no positions; not finite)
@@ -137,7 +138,7 @@ class Surface {
   PlacedSource source_near_row(const TangentPoint& point, const std::optional<Vec3>& u_axis) const;
   void check(const EdgePoint& point) const;
 
-  struct Lazy;  ///< the tree of `closest_point`
+  struct Lazy;  ///< the trees of `closest_point` and `nearest_row`
   std::unique_ptr<Lazy> lazy_;
 };
 

@@ -2,6 +2,7 @@
 /// Running out of memory, as an error of ours. Not part of the public interface.
 #pragma once
 
+#include <cstddef>
 #include <new>
 #include <stdexcept>
 #include <string>
@@ -19,5 +20,9 @@ auto with_memory_check(const std::string& doing, const Work& work) try {
 } catch (const std::length_error&) {
   throw ResourceExhausted("out of memory while " + doing);
 }
+
+/// Asks for memory and gives it back: before what ends the process, or writes to null, where there is none.
+/// @throws std::bad_alloc
+inline void require_memory(std::size_t bytes) { ::operator delete(::operator new(bytes)); }
 
 }  // namespace ahm::detail

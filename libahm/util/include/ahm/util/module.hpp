@@ -3,8 +3,11 @@
 #pragma once
 
 #include <dlfcn.h>
+#include <unistd.h>
 
 #include <string>
+
+#include "ahm/error.hpp"
 
 namespace ahm {
 
@@ -18,8 +21,13 @@ inline void* module_symbol(const std::string& module, const char* symbol, std::s
   Dl_info image{};
   std::string folder;
   if (dladdr(&here, &image) != 0 && image.dli_fname != nullptr) folder = image.dli_fname;
-  folder.erase(folder.find_last_of('/') == std::string::npos ? 0 : folder.find_last_of('/') + 1);
-  if (folder.empty()) folder = "./";
+  // A program that was found through PATH goes by the word it was called with.
+  if (folder.find('/') == std::string::npos) {
+    char path[4096];
+    const ssize_t length = readlink("/proc/self/exe", path, sizeof path);
+    folder.assign(path, length > 0 ? static_cast<std::size_t>(length) : 0);
+  }
+  folder.erase(folder.find_last_of('/') + 1);
   const std::string file = "ahm_" + module + ".so";
   // From bin/ahm, lib/libahm_io.so and python/ahm/_core.so.
   for (const std::string& place :
@@ -33,6 +41,17 @@ inline void* module_symbol(const std::string& module, const char* symbol, std::s
       error = text;
   }
   return nullptr;
+}
+
+/// The table of functions that the module `module` offers as `ahm_MODULE`.
+/// @param wanted  begins the error's text: who needs it
+/// @throws IoError where the module cannot be loaded
+template <class Functions>
+const Functions& module_functions(const std::string& module, const std::string& wanted) {
+  static std::string error;
+  static const auto* found = static_cast<const Functions*>(module_symbol(module, ("ahm_" + module).c_str(), error));
+  if (found == nullptr) throw IoError(wanted + " module for PCL, which cannot be loaded: " + error);
+  return *found;
 }
 
 }  // namespace ahm

@@ -28,9 +28,6 @@ class ShortestPaths {
     return true;
   }
 
-  /// Goes on from a vertex whose distance is known.
-  void take_up(Index vertex) { queue_.push({known_[vertex], vertex}); }
-
   /// The least distance of those that wait; some must.
   Distance least() const { return queue_.top().first; }
   bool empty() const { return queue_.empty(); }

@@ -4,9 +4,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <span>
 
 namespace ahm {
+
+/// An index among sizes: before a product that an int might not hold.
+template <class Integer>
+constexpr std::size_t to_size(Integer i) {
+  return static_cast<std::size_t>(i);
+}
 
 inline bool all_finite(std::span<const double> values) {
   return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });

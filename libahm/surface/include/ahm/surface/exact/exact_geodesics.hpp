@@ -30,6 +30,10 @@ namespace ahm {
 struct ExactMapOptions {
   /// Vertices farther than this get `Status::beyond_radius`, and the work ends there. World units; > 0.
   double radius = std::numeric_limits<double>::infinity();
+  /// How far distances may be off, relative to the true ones, in [0, 0.1]. 0: exact. Above, nearly linear in the number
+  /// of vertices (`exact::ExactOptions`); directions may be off by about sqrt(2 tolerance), as those of paths that much
+  /// longer are, and are any of those of two ways that differ by less.
+  double tolerance = 0;
   bool frames = false;  ///< fill `LogMap::frames`
   Progress progress;
 };

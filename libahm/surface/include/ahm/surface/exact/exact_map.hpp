@@ -20,6 +20,10 @@ namespace ahm::exact {
 struct ExactOptions {
   /// Vertices and targets farther than this get `Status::beyond_radius`, and the propagation ends there. World units; > 0.
   double radius = std::numeric_limits<double>::infinity();
+  /// How far distances may be off, relative to the true ones. 0: exact up to rounding. Above, windows side by side are
+  /// merged: time is nearly linear in the number of vertices; directions blend where they are. Paths need exact maps. In
+  /// [0, 0.1].
+  double tolerance = 0;
   /// Points whose distance and direction are asked for besides those of the vertices.
   std::vector<MeshPoint> targets;
   /// End when the distances of all targets are final; vertices beyond the farthest of them get `Status::beyond_radius`.
@@ -86,6 +90,7 @@ class ExactMap {
   const MeshPoint& target(std::size_t k) const { return targets_[k]; }
 
   const ExactStatistics& statistics() const noexcept { return statistics_; }
+  double tolerance() const noexcept { return tolerance_; }  ///< of the distances; above 0, `arrival` is approximate
 
  private:
   friend class MapBuilder;
@@ -99,13 +104,15 @@ class ExactMap {
   std::vector<Origin> origins_;
   std::vector<MeshPoint> sources_, targets_;
   ExactStatistics statistics_;
+  double tolerance_ = 0;
 };
 
 /// Shortest paths on the polyhedral surface, exact up to rounding, by the improved algorithm of Chen and Han: windows,
 /// unfolded from face to face [CH90], discarded where a vertex is known to be nearer [XW09], in the order of buckets.
 /// @param sources  one or more points; each keeps its own axes
-/// @throws InvalidArgument (no source, a point outside its face, radius), InvalidGeometry (fault windows_without_end: lengths
-/// below the rounding of distances), ResourceExhausted, Cancelled
+/// @throws InvalidArgument (no source, a point outside its face, radius, tolerance), InvalidGeometry (faults
+/// windows_without_end: lengths below the rounding of distances; windows_lost: needles whose angles are), ResourceExhausted,
+/// Cancelled
 ExactMap exact_map(const PolyhedralSurface& surface, std::span<const MeshPoint> sources,
                    const ExactOptions& options = {});
 ExactMap exact_map(const PolyhedralSurface& surface, const MeshPoint& source, const ExactOptions& options = {});

@@ -29,7 +29,7 @@ struct GeodesicPath {
 
 /// The path that an exact map found, by unfolding the faces between the points where it bends. Linear in its points.
 /// @param surface  the map's own
-/// @throws InvalidArgument (vertex or target out of range)
+/// @throws InvalidArgument (vertex or target out of range, a map with a tolerance)
 GeodesicPath path_to_vertex(const PolyhedralSurface& surface, const ExactMap& map, Vertex vertex);
 GeodesicPath path_to_target(const PolyhedralSurface& surface, const ExactMap& map, std::size_t target);
 

@@ -1,0 +1,55 @@
+#include "input/repair.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "ahm/error.hpp"
+#include "ahm/surface/repaired_surface.hpp"
+#include "ahm/util/vec.hpp"
+
+namespace ahm::app {
+namespace {
+
+/// Backends refuse points that are not finite, also where no face uses them.
+io::Geometry finite(io::Geometry input) {
+  const auto good = std::ranges::find_if(input.points, [](const Vec3& p) { return is_finite(p); });
+  if (good == input.points.end()) return input;
+  for (Vec3& point : input.points)
+    if (!is_finite(point)) point = *good;
+  return input;
+}
+
+}  // namespace
+
+std::optional<RepairedMesh> repair(io::Geometry& input, const InputOptions& options) {
+  if (!options.repair.any()) return std::nullopt;
+  if (input.face_count() == 0)
+    throw InvalidArgument("--repair, --weld, --drop-degenerate, --drop-duplicates and --orient are for meshes: " +
+                          options.path + " has no faces");
+  RepairedMesh mesh = repair_mesh(input.points, input.faces(), options.repair);
+  if (mesh.given_face.empty())
+    throw InvalidGeometry(options.path + ": no face remains when it is repaired; --backend pointcloud maps its points");
+  input.face_begin = mesh.face_begin;
+  input.face_vertices = mesh.face_vertices;
+  return mesh;
+}
+
+SourceSpec in_remaining_faces(const SourceSpec& spec, const RepairedMesh& mesh) {
+  const auto* face = std::get_if<SourceFace>(&spec);
+  if (face == nullptr) return spec;
+  const auto place = mesh.remaining(face->face);
+  if (!place) throw InvalidArgument("there is no such face, or the repair has dropped it; choose another one");
+  SourceFace result = *face;
+  result.face = *place;
+  return result;
+}
+
+Built build_repaired(const Backend& backend, const io::Geometry& input, RepairedMesh mesh, const InputOptions& options,
+                     const std::optional<SourceSpec>& source, const Progress& progress) {
+  const bool is_finite_everywhere = std::ranges::all_of(input.points, [](const Vec3& p) { return is_finite(p); });
+  Built built = is_finite_everywhere ? backend.build(input, options, source, progress)
+                                     : backend.build(finite(input), options, source, progress);
+  return Built(std::make_unique<RepairedSurface>(std::move(built.surface), input.points, std::move(mesh)));
+}
+
+}  // namespace ahm::app

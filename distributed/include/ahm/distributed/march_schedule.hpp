@@ -1,0 +1,59 @@
+/// \file
+/// How much of each band of a march would be whose, without marching.
+///
+/// \code
+/// const auto tiles = graph.manifest().first_vertices();
+/// const auto bands = ahm::distributed::march_schedule(graph, sources, tiles, {});
+/// const auto load = ahm::distributed::share_out(bands, ahm::distributed::deal_tiles(tiles, ahm::distributed::Deal::cards, 64), 64);
+/// \endcode
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "ahm/distributed/tiled_graph.hpp"
+
+namespace ahm::distributed {
+
+/// Which of several ranks owns which tile.
+enum class Deal {
+  ranges,  ///< successive tiles, as many vertices for each as for others
+  cards,   ///< one after the other, as cards are dealt
+};
+
+/// @param first_vertex  of each tile, and the number of vertices
+/// @param ranks         at least 1
+/// @return of each tile its rank
+std::vector<int> deal_tiles(std::span<const Index> first_vertex, Deal deal, int ranks);
+
+/// As if the vertices, whose order is that of the curve along which tiles are cut, were in so many tiles of equal size: where a
+/// small cloud stands for a large one.
+std::vector<Index> equal_tiles(Index vertices, Index tiles);
+
+struct ScheduleOptions {
+  double step = 10;   ///< how far the front moves with each band, mean edge lengths along paths; > 0
+  double width = 24;  ///< how far ahead a band reaches; >= step
+};
+
+/// Of a band's vertices, how many are in which tile.
+using BandTiles = std::vector<std::pair<std::size_t, std::int64_t>>;
+
+/// The bands of a front that moves along shortest paths of the graph. Takes 4 bytes per vertex of the graph, and reads it once.
+/// @param first_vertex  of each tile, as `deal_tiles`
+/// @throws InvalidArgument (options); IoError
+std::vector<BandTiles> march_schedule(const TiledGraph& graph, std::span<const Vertex> sources,
+                                      std::span<const Index> first_vertex, const ScheduleOptions& options);
+
+/// What ranks would have to do where each waits for all with each band.
+struct SharedLoad {
+  std::int64_t solved = 0;        ///< vertices of all bands
+  std::int64_t largest_band = 0;  ///< vertices
+  std::int64_t largest_part = 0;  ///< of a band, of one rank
+  double active = 0;              ///< mean number of ranks that have something of a band
+  double balance = 0;  ///< vertices solved over what the busiest rank of each band would allow; 1: no waiting
+};
+SharedLoad share_out(std::span<const BandTiles> bands, std::span<const int> owner_of_tile, int ranks);
+
+}  // namespace ahm::distributed

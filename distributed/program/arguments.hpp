@@ -1,0 +1,127 @@
+/// \file
+/// What the programs ahm-tiles and ahm-mpi have in common: the options of maps, and how they tell what they do.
+#pragma once
+
+#include <sys/resource.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cmath>
+#include <iostream>
+#include <limits>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ahm/distributed/march_schedule.hpp"
+#include "ahm/distributed/tiled_local_maps.hpp"
+#include "ahm/distributed/tiled_log_map.hpp"
+#include "ahm/error.hpp"
+
+namespace ahm::distributed::program {
+
+struct MapArguments {
+  std::string folder, output, variant = "adaptive";
+  std::vector<std::string> sources{"0"};
+  double radius = std::numeric_limits<double>::infinity(), t_coef = 1;
+  std::size_t memory = std::size_t{2} << 30;
+  unsigned threads = 0;
+};
+
+struct LocalArguments {
+  std::string folder, output;
+  TiledLocalMapOptions options;
+  bool counts = false;
+  std::size_t memory = std::size_t{2} << 30;
+};
+
+/// Stages as they begin, on standard error.
+inline Progress telling(const std::string& name) {
+  Progress progress;
+  progress.report = [name, last = std::string(), begin = std::chrono::steady_clock::now()](std::string_view stage,
+                                                                                           double) mutable {
+    if (last == stage) return;
+    last = stage;
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
+    std::cerr << name << ": " << static_cast<int>(seconds.count()) << " s: " << stage << '\n';
+  };
+  return progress;
+}
+
+inline std::size_t peak_megabytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::size_t>(usage.ru_maxrss) / 1024;
+}
+
+inline void add_map_options(CLI::App& app, MapArguments& a) {
+  app.add_option("folder", a.folder, "of tiles")->required();
+  app.add_option("-o,--output", a.output, "folder for the map")->required();
+  app.add_option("--source", a.sources,
+                 "row of the input, or position x,y,z: the vertex nearest to it; several: from the nearest of them")
+      ->capture_default_str();
+  app.add_option("--radius", a.radius, "no farther than this");
+  app.add_option("--variant", a.variant, "adaptive or localized")->capture_default_str();
+  app.add_option("--t-coef", a.t_coef, "diffusion time over the square of the mean edge length")->capture_default_str();
+  app.add_option("--memory", a.memory, "for tiles of the graph and of the map, as 2GB; bands come on top")
+      ->transform(CLI::AsSizeValue(false));
+}
+
+inline void add_local_options(CLI::App& app, LocalArguments& a) {
+  app.add_option("folder", a.folder, "of tiles")->required();
+  app.add_option("-o,--output", a.output, "folder for the maps")->required();
+  app.add_option("--radius", a.options.maps.radius, "how far each map goes")->required();
+  app.add_option("--nearest", a.options.maps.nearest, "keep only so many of each; 0: all")->capture_default_str();
+  app.add_flag("--counts", a.counts, "keep of each map only how many vertices it has, and their area");
+  app.add_option("--memory", a.memory, "for tiles of the graph, as 2GB; the maps of a tile come on top")
+      ->transform(CLI::AsSizeValue(false));
+  app.add_option("--threads", a.options.maps.heat.threads, "0: one per core")->capture_default_str();
+}
+
+inline void add_deal_option(CLI::App& app, Deal& deal) {
+  app.add_option("--deal", deal, "which tiles a rank owns: cards (every K-th, the default) or ranges (successive ones)")
+      ->transform(
+          CLI::CheckedTransformer(std::map<std::string, Deal>{{"ranges", Deal::ranges}, {"cards", Deal::cards}}));
+}
+
+inline Vertex source_vertex(const TiledGraph& graph, const std::string& text) {
+  if (text.find(',') == std::string::npos) {
+    Index row = 0;
+    if (!CLI::detail::lexical_cast(text, row))
+      throw InvalidArgument("--source '" + text + "' is neither a row nor a position x,y,z");
+    const auto vertex = graph.vertex_of_row(Row(row));
+    if (!vertex) throw InvalidArgument("row " + text + " was removed from the surface; choose another one");
+    return *vertex;
+  }
+  const std::vector<std::string> words = CLI::detail::split(text, ',');
+  Vec3 position{};
+  bool good = words.size() == 3;
+  for (std::size_t c = 0; good && c < 3; ++c)
+    good = CLI::detail::lexical_cast(words[c], position[c]) && std::isfinite(position[c]);
+  if (!good) throw InvalidArgument("--source '" + text + "' is neither a row nor a position x,y,z");
+  return graph.nearest_vertex(position);
+}
+
+inline std::vector<Vertex> source_vertices(const TiledGraph& graph, const std::vector<std::string>& texts) {
+  std::vector<Vertex> result;
+  for (const std::string& text : texts) result.push_back(source_vertex(graph, text));
+  return result;
+}
+
+inline Source source_at(const std::vector<Vertex>& vertices) { return Source::at_vertices(vertices); }
+
+/// Half of the memory is for the graph's tiles, half for the map's.
+inline TiledMapOptions map_options(const MapArguments& a) {
+  TiledMapOptions options;
+  options.radius = a.radius;
+  options.memory = a.memory / 2;
+  options.heat.t_coef = a.t_coef;
+  options.heat.threads = a.threads;
+  if (a.variant != "adaptive" && a.variant != "localized")
+    throw InvalidArgument("--variant '" + a.variant + "' is neither adaptive nor localized");
+  options.heat.variant = a.variant == "adaptive" ? Variant::adaptive : Variant::localized;
+  return options;
+}
+
+}  // namespace ahm::distributed::program

@@ -1,0 +1,177 @@
+/// \file
+/// The program ahm-tiles: clouds that do not fit into memory, from a file of points to a log map, step by step.
+
+#include <CLI/CLI.hpp>
+#include <array>
+#include <csignal>
+#include <iostream>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ahm/distributed/build_tiles.hpp"
+#include "program/arguments.hpp"
+
+namespace {
+
+using namespace ahm;
+using namespace ahm::distributed;
+using namespace ahm::distributed::program;
+
+const std::string name = "ahm-tiles";
+
+struct Arguments {
+  std::string input, folder, map, output, step;
+  TileOptions tile;
+  BuildOptions build;
+  MapArguments logmap;
+  LocalArguments local;
+  std::size_t memory = std::size_t{2} << 30;
+  std::optional<std::size_t> number;
+  ScheduleOptions schedule;
+  Deal deal = Deal::cards;
+  std::vector<int> ranks{1, 2, 4, 8, 16, 32, 64};
+};
+
+void add_tile_options(CLI::App& app, Arguments& a) {
+  app.add_option("input", a.input, "binary PLY file of points")->required();
+  app.add_option("-o,--output", a.folder, "folder for the tiles, a new one")->required();
+  app.add_option("--tile-points", a.tile.tile_points, "points per tile")->capture_default_str();
+  app.add_option("--k", a.tile.k, "neighbours per point; 0: 30")->capture_default_str();
+  app.add_flag("--drop-nan", a.tile.drop_non_finite, "leave out points that are not finite");
+  app.add_flag("--ignore-normals", a.tile.ignore_normals, "estimate normals, though the file has some");
+}
+
+void add_build_options(CLI::App& app, Arguments& a) {
+  app.add_option("folder", a.folder, "of tiles")->required();
+  app.add_option("--memory", a.build.memory, "most that a tile and its surroundings may take, as 2GB")
+      ->transform(CLI::AsSizeValue(false));
+  app.add_option("--threads", a.build.threads, "0: one per core")->capture_default_str();
+  app.add_flag("--keep", a.build.keep, "keep the files of finished steps");
+}
+
+void make_local_maps(Arguments& a) {
+  const TiledGraph graph(a.local.folder, a.local.memory);
+  a.local.options.keep = a.local.counts ? Keep::counts : Keep::maps;
+  std::size_t made = 0;
+  for (std::size_t t = a.number.value_or(0); t < (a.number ? *a.number + 1 : graph.tiles()); ++t)
+    made += write_local_maps(graph, t, a.local.output, a.local.options);
+  std::cout << made << " tiles made; peak memory " << peak_megabytes() << " MB\n";
+}
+
+void print(const Manifest& m) {
+  std::int64_t vertices = 0, edges = 0;
+  for (const TileFacts& t : m.tiles) vertices += t.vertices, edges += t.edges;
+  std::cout << m.tiles.size() << " tiles, " << to_string(m.stage) << ", of " << m.points << " points of " << m.input
+            << '\n';
+  if (m.stage == Stage::built)
+    std::cout << vertices << " vertices, " << edges / 2 << " edges, " << m.components << " components, "
+              << m.reflections << " reflections\n";
+}
+
+void make_map(const MapArguments& a) {
+  const TiledGraph graph(a.folder, a.memory / 2);
+  TiledMapOptions options = map_options(a);
+  options.heat.progress = telling(name);
+  const TiledMapSummary s = write_log_map(graph, source_at(source_vertices(graph, a.sources)), a.output, options);
+  std::cout << s.ok << " of " << graph.size() << " vertices have coordinates, the farthest at " << s.farthest << '\n'
+            << s.march.bands << " bands, the largest of " << s.march.largest_band << " vertices; tiles were put aside "
+            << s.releases << " times, parts of the map put aside " << s.spills << " times; peak memory "
+            << peak_megabytes() << " MB\n";
+}
+
+/// A line per number of ranks.
+void simulate(const Arguments& a) {
+  const TiledGraph graph(a.logmap.folder, a.logmap.memory);
+  const auto tiles =
+      a.number ? equal_tiles(graph.size(), static_cast<Index>(*a.number)) : graph.manifest().first_vertices();
+  const auto bands = march_schedule(graph, source_vertices(graph, a.logmap.sources), tiles, a.schedule);
+  std::cout << bands.size() << " bands\n";
+  for (int ranks : a.ranks) {
+    if (ranks < 1) throw InvalidArgument("--ranks " + std::to_string(ranks) + " must be at least 1");
+    const SharedLoad load = share_out(bands, deal_tiles(tiles, a.deal, ranks), ranks);
+    std::cout << ranks << " ranks: " << load.solved << " vertices solved, the largest band " << load.largest_band
+              << ", the largest part of one " << load.largest_part << ", active " << load.active << ", balance "
+              << load.balance << '\n';
+  }
+}
+
+void add_building(CLI::App& app, Arguments& a) {
+  CLI::App& plan = *app.add_subcommand("plan", "cut a file of points into tiles");
+  add_tile_options(plan, a);
+  plan.callback([&] { print(plan_tiles(a.input, a.folder, a.tile, telling(name))); });
+  CLI::App& build = *app.add_subcommand("build", "build the graph of all tiles; killed, it goes on where it was");
+  add_build_options(build, a);
+  build.callback([&] {
+    a.build.progress = telling(name);
+    build_tiles(a.folder, a.build);
+    print(Manifest::read(a.folder));
+  });
+  std::string names;
+  for (const Step& step : steps()) names += " " + std::string(step.name) + (step.per_tile ? "*" : "");
+  CLI::App& step =
+      *app.add_subcommand("step", "one step of the build, for drivers of your own; * of one tile:" + names);
+  add_build_options(step, a);
+  step.add_option("name", a.step, "of the step")->required();
+  step.add_option("--tile", a.number, "number of the tile");
+  step.callback([&] { run_step(a.folder, a.step, a.number, a.build); });
+  CLI::App& info = *app.add_subcommand("info", "what the tiles are, and how far they are built");
+  info.add_option("folder", a.folder, "of tiles")->required();
+  info.callback([&] { print(Manifest::read(a.folder)); });
+}
+
+void add_maps(CLI::App& app, Arguments& a) {
+  CLI::App& map = *app.add_subcommand("logmap", "the log map of one source");
+  add_map_options(map, a.logmap);
+  map.add_option("--threads", a.logmap.threads, "0: one per core")->capture_default_str();
+  map.callback([&] { make_map(a.logmap); });
+  CLI::App& rows = *app.add_subcommand("rows", "a map as CSV: row, u, v, distance, spread, status");
+  rows.add_option("folder", a.folder, "of tiles")->required();
+  rows.add_option("map", a.map, "folder of the map")->required();
+  rows.add_option("-o,--output", a.output, "CSV file")->required();
+  rows.callback([&] { write_rows(TiledGraph(a.folder, a.memory), a.map, a.output); });
+  CLI::App& schedule = *app.add_subcommand("simulate", "how evenly ranks of ahm-mpi would share the bands of a map");
+  schedule.add_option("folder", a.logmap.folder, "of tiles")->required();
+  schedule.add_option("--source", a.logmap.sources, "as logmap");
+  schedule.add_option("--ranks", a.ranks, "numbers of ranks")->capture_default_str();
+  schedule.add_option("--tiles", a.number, "as if there were so many, of equal size");
+  schedule.add_option("--step", a.schedule.step, "how far the front moves with each band, mean edge lengths")
+      ->capture_default_str();
+  schedule.add_option("--width", a.schedule.width, "how far ahead a band reaches")->capture_default_str();
+  add_deal_option(schedule, a.deal);
+  schedule.callback([&] { simulate(a); });
+  CLI::App& local = *app.add_subcommand("local-maps", "the map around every vertex, tile by tile; killed, it goes on");
+  add_local_options(local, a.local);
+  local.add_option("--tile", a.number, "this tile alone");
+  local.callback([&] { make_local_maps(a); });
+}
+
+int run(int argc, char** argv) {
+  Arguments a;
+  CLI::App app("Clouds that do not fit into memory: tiles of their graph, and log maps over them.", name);
+  app.require_subcommand(1);
+  add_building(app, a);
+  add_maps(app, a);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? 0 : 2;
+  }
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a limit of the file size is an error of the write
+  try {
+    return run(argc, argv);
+  } catch (const std::bad_alloc&) {
+    std::cerr << "ahm-tiles: error: out of memory; plan smaller tiles\n";
+  } catch (const std::exception& e) {
+    std::cerr << "ahm-tiles: error: " << e.what() << '\n';
+  } catch (...) {
+    std::cerr << "ahm-tiles: error: unknown failure\n";
+  }
+  return 1;
+}

@@ -1,0 +1,49 @@
+// JSON lines are written here and not by nlohmann/json: a million rows are a million objects of the same names.
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "formats/format.hpp"
+
+namespace ahm::io {
+namespace {
+
+/// Numbers that JSON has; null for the others.
+template <class T>
+void append_number(std::string& text, T value) {
+  if constexpr (!std::is_same_v<T, double>)
+    text += std::to_string(value);
+  else if (std::isfinite(value))
+    append_decimals(text, value);
+  else
+    text += "null";
+}
+
+void append_row(std::string& text, const Column& column, std::size_t row) {
+  std::size_t name = 0;
+  const auto append_name = [&] { text += ",\"" + column.names[name++] + "\":"; };
+  if (const auto* words = std::get_if<CodedWords>(&column.values)) {
+    append_name();
+    text += nlohmann::json(words->words[words->codes[row]]).dump();
+    return;
+  }
+  visit_row(column, row, [&](auto value) {
+    append_name();
+    append_number(text, value);
+  });
+}
+
+void write(AtomicFile& file, const Table& table) {
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    std::string text = "{\"index\":" + std::to_string(row);
+    for (const Column& column : table.columns)
+      if (column.in_csv) append_row(text, column, row);
+    file.write(text + "}\n");
+  }
+}
+
+}  // namespace
+
+Format jsonl_format() { return {.extensions = {".jsonl"}, .write = write}; }
+
+}  // namespace ahm::io

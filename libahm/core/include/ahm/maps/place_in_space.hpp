@@ -1,0 +1,17 @@
+/// \file
+/// Where a source lies in space: no way on a surface is shorter than the straight line from there.
+#pragma once
+
+#include <optional>
+
+#include "ahm/graph/tangent_graph.hpp"
+#include "ahm/maps/source.hpp"
+#include "ahm/types.hpp"
+
+namespace ahm {
+
+/// The place of a source that is one point, world units; none for curves and several points, and where the graph knows no
+/// frames.
+std::optional<Vec3> place_in_space(const TangentGraph& graph, const Source& source);
+
+}  // namespace ahm

@@ -1,0 +1,64 @@
+/// \file
+/// The triangles that a front unfolds across.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "ahm/maps/unfolding_front.hpp"
+
+namespace ahm {
+
+/// The corners around vertices, counterclockwise.
+///
+/// Where a triangulation is coarse, each of its triangles is cut into four along the midpoints of its sides, which are points
+/// of the front like vertices: what one point cannot tell of the ways around a corner is an error of an edge length.
+class UnfoldingFront::Stars {
+ public:
+  /// @param halved  of every vertex, whether its triangles are cut; one per connected component. Left whole are flat components
+  ///                and those with a triangle in doubt: too thin, one-sided, two equally long edges between the same vertices
+  /// @param all     whether to keep the corners of the other vertices, too. None are kept in other dimensions than 2
+  Stars(const TangentGraph& graph, std::vector<std::uint8_t> halved, bool all);
+
+  /// Vertices and, after them, midpoints.
+  Index size() const noexcept { return size_; }
+  /// Empty where they are not kept.
+  std::span<const Corner> of(Index point) const {
+    if (begin_.empty()) return {};
+    return std::span(corners_).subspan(static_cast<std::size_t>(begin_[point]),
+                                       static_cast<std::size_t>(begin_[point + 1] - begin_[point]));
+  }
+
+  /// The midpoint of the edge that joins two vertices, and half its length; none where several do, or triangles are whole.
+  struct HalfSide {
+    Index midpoint;
+    double half;
+  };
+  std::optional<HalfSide> midpoint(Index a, Index b) const;
+
+  /// Appends the corners of a vertex; `neighbors` is workspace.
+  static void append_corners(const TangentGraph& graph, Index vertex, std::vector<Neighbor>& neighbors,
+                             std::vector<Corner>& corners);
+
+ private:
+  class Halving;
+
+  /// The neighbours of a vertex, counterclockwise.
+  static void find_neighbors(const TangentGraph& graph, Index vertex, std::vector<Neighbor>& neighbors);
+
+  Index vertices_, size_;
+  std::vector<Offset> begin_;
+  std::vector<Corner> corners_;
+};
+
+/// Components of no more vertices are halved: it makes a front four times the work.
+inline constexpr Index most_halved = 10000;
+
+/// Which vertices are of such components.
+std::vector<std::uint8_t> halved_vertices(std::span<const Index> component, std::span<const Index> sizes);
+/// None where distances are not unfolded.
+std::vector<std::uint8_t> halved_vertices(const TangentGraph& graph);
+
+}  // namespace ahm

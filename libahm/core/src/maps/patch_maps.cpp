@@ -1,0 +1,82 @@
+#include "maps/patch_maps.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "ahm/error.hpp"
+#include "ahm/util/text.hpp"
+#include "graph/patch.hpp"
+#include "heat/check_options.hpp"
+#include "maps/source_groups.hpp"
+
+namespace ahm {
+
+void check_patches(const TangentGraph& graph, std::span<const Source> sources, const HeatOptions& options,
+                   double margin, const char* what) {
+  if (!(margin >= 0) || !std::isfinite(margin))
+    throw InvalidArgument("margin is " + detail::number(margin) + "; it must be finite and >= 0");
+  if (options.order != 1)
+    throw InvalidArgument("order is " + std::to_string(options.order) + "; " + what + " have order 1");
+  check_heat_options(graph, options);
+  for (const Source& source : sources) check_source(source, graph);
+}
+
+std::vector<std::vector<Index>> patch_groups(const TangentGraph& graph, const ComponentScales& scales,
+                                             std::span<const Source> sources, std::span<const double> extent,
+                                             const HeatOptions& options, double margin) {
+  return groups_of(graph, sources, [&](Index seed) {
+    return extent[seed] + (margin + 4) * std::sqrt(options.t_coef) * scales.h(sources[seed].vertices().front().index);
+  });
+}
+
+PatchSolver::PatchSolver(const TangentGraph& graph, const ComponentScales& scales, const HeatOptions& options)
+    : graph_(graph), scales_(scales), options_(options), ball_(graph), place_(static_cast<std::size_t>(graph.size())) {
+  options_.progress = {};
+  options_.check_graph = false;
+  options_.threads = 1;
+}
+
+double PatchSolver::sqrt_tau(std::span<const Source> sources) const {
+  double h = 0;
+  for (const Source& source : sources)
+    for (Vertex vertex : source.vertices()) h = std::max(h, scales_.h(vertex.index));
+  return std::sqrt(options_.t_coef) * h;
+}
+
+std::unique_ptr<PatchMaps> PatchSolver::solve(std::span<const Source> sources, double limit) {
+  std::vector<Vertex> starts;
+  for (const Source& source : sources) starts.insert(starts.end(), source.vertices().begin(), source.vertices().end());
+  std::vector<Index> vertices, edge;
+  ball_.grow(starts, limit, [&](Index vertex, double) {
+    vertices.push_back(vertex);
+    return true;
+  });
+  // Sorted, so that the patch does not depend on the way it was found, and its matrix is nearly the graph's own.
+  std::sort(vertices.begin(), vertices.end());
+  for (std::size_t k = 0; k < vertices.size(); ++k) place_[vertices[k]] = static_cast<Index>(k) + 1;
+  CsrGraph cut = cut_out(
+      graph_, vertices, [&](Index j) { return place_[j] - 1; },
+      [&](std::size_t k, const Star&, std::size_t) {
+        if (edge.empty() || edge.back() != static_cast<Index>(k)) edge.push_back(static_cast<Index>(k));
+        return 0.0;
+      });
+  std::vector<double> tau;
+  for (Index vertex : vertices) tau.push_back(diffusion_time(options_.t_coef, scales_.h(vertex)));
+  auto patch =
+      std::make_unique<PatchMaps>(std::move(cut), std::move(vertices), std::move(edge), std::move(tau), options_);
+
+  std::vector<RightHandSide> right_hand_sides;
+  for (const Source& source : sources) {
+    right_hand_sides.push_back(right_hand_side_of(source, graph_, patch->operators, options_.variant));
+    for (Index& vertex : right_hand_sides.back().vertices) vertex = place_[vertex] - 1;
+    patch->sources.push_back(source.renumbered([&](Vertex v) { return Vertex(place_[v.index] - 1); }));
+  }
+  for (Index vertex : patch->vertices) place_[vertex] = 0;
+  patch->heat.emplace(patch->graph, patch->operators, options_.variant, std::move(right_hand_sides));
+  patch->heat->diffuse();
+  patch->heat->solve();
+  return patch;
+}
+
+}  // namespace ahm

@@ -1,0 +1,102 @@
+#include "ahm/maps/streamed_log_map.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "ahm/error.hpp"
+#include "ahm/util/parallel.hpp"
+#include "ahm/util/text.hpp"
+#include "heat/check_options.hpp"
+#include "heat/component_scales.hpp"
+#include "maps/heat_distance.hpp"
+#include "maps/march.hpp"
+#include "maps/right_hand_side.hpp"
+#include "maps/team_log_map.hpp"
+#include "maps/vertex_row.hpp"
+
+namespace ahm {
+namespace {
+
+/// Scales as the graph tells them.
+class GraphScales final : public MarchScales {
+ public:
+  GraphScales(const TangentGraph& graph, double t_coef) : graph_(graph), t_coef_(t_coef) {}
+  double tau(Index vertex) const override { return t_coef_ * h(vertex) * h(vertex); }
+  double h(Index vertex) const override { return graph_.component_edge_length(vertex); }
+
+ private:
+  const TangentGraph& graph_;
+  double t_coef_;
+};
+
+/// Makes rows of what the march finds.
+class Rows final : public MarchSink {
+ public:
+  Rows(const TangentGraph& graph, const Source& source, double radius, MapSink& sink)
+      : radius_(radius), sink_(sink), phi_(static_cast<std::size_t>(graph.dimension())) {
+    for (std::size_t k = 0; k < source.vertices().size(); ++k)
+      if (source.weights()[k] > 0) placed_[source.vertices()[k].index] = source.place(k).distance;
+  }
+
+  void accept(Index vertex, const HeatRow& found) override {
+    std::copy(found.phi.begin(), found.phi.end(), phi_.begin());
+    VertexRow row = vertex_row(found);
+    if (const auto placed = placed_.find(vertex); placed != placed_.end()) row.distance = placed->second;
+    if (row.status == Status::ok && row.distance > radius_) row.status = Status::beyond_radius;
+    if (row.status != Status::ok) {
+      std::fill(phi_.begin(), phi_.end(), NAN);
+      row.distance = row.spread = NAN;
+    }
+    sink_.put(vertex, {row.status, phi_, row.distance, row.spread});
+  }
+
+ private:
+  double radius_;
+  MapSink& sink_;
+  std::vector<double> phi_;
+  std::unordered_map<Index, double> placed_;  ///< the source's own vertices
+};
+
+void check(const TangentGraph& graph, const Source& source, const HeatOptions& options, const MapOptions& map) {
+  if (options.order != 1)
+    throw InvalidArgument("order is " + std::to_string(options.order) + "; streamed maps have order 1");
+  if (map.frames) throw InvalidArgument("streamed maps have no frames");
+  if (!(map.radius > 0))
+    throw InvalidArgument("radius is " + detail::number(map.radius) + "; it must be > 0 (infinity: the whole graph)");
+  HeatOptions quiet = options;
+  quiet.check_graph = false;
+  check_heat_options(graph, quiet);
+  check_source(source, graph);
+  if (unfolds(graph, source))
+    throw InvalidArgument("distances on triangulations and from curves are unfolded, which needs the whole graph");
+  for (Vertex vertex : source.vertices()) {
+    const double h = graph.component_edge_length(vertex.index);
+    if (!(h > 0)) throw InvalidArgument("the graph does not tell the mean edge length of its components");
+    diffusion_time(options.t_coef, h);
+  }
+}
+
+}  // namespace
+
+MarchStatistics stream_log_map(const TangentGraph& graph, const Source& source, const HeatOptions& options,
+                               const MapOptions& map, MapSink& sink) {
+  Alone alone(graph.dimension());
+  return team_log_map(graph, source, options, map, sink, alone);
+}
+
+MarchStatistics team_log_map(const TangentGraph& graph, const Source& source, const HeatOptions& options,
+                             const MapOptions& map, MapSink& sink, MarchTeam& team) {
+  check(graph, source, options, map);
+  const GraphScales scales(graph, options.t_coef);
+  Rows rows(graph, source, map.radius, sink);
+  const unsigned threads = detail::thread_count(map.threads.value_or(options.threads));
+  March march(graph, options, scales, map.variant.value_or(options.variant), map.radius, threads,
+              map.progress.value_or(options.progress), &rows, &team);
+  march.run(source);
+  return march.statistics();
+}
+
+}  // namespace ahm

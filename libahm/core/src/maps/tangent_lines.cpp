@@ -1,0 +1,340 @@
+#include "ahm/maps/tangent_lines.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <unordered_set>
+#include <utility>
+
+#include "ahm/error.hpp"
+#include "ahm/maps/unfolding_front.hpp"
+#include "ahm/util/shortest_paths.hpp"
+#include "ahm/util/small_math.hpp"
+#include "ahm/util/vec.hpp"
+#include "maps/tangent_walk.hpp"
+
+namespace ahm {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+/// Shots that straighten a path.
+constexpr int most_shots = 60;
+
+void check(const TangentGraph& graph, const char* what, const TangentPlace& place) {
+  if (graph.dimension() != 2)
+    throw InvalidArgument("lines run over tangent planes, and the graph has dimension " +
+                          std::to_string(graph.dimension()));
+  if (place.vertex.index < 0 || place.vertex.index >= graph.size())
+    throw InvalidArgument(std::string(what) + ": vertex " + std::to_string(place.vertex.index) + " is outside [0, " +
+                          std::to_string(graph.size()) + ")");
+  if (!all_finite(place.offset)) throw InvalidArgument(std::string(what) + ": the offset is not finite");
+}
+
+Vec2 unit(const Vec2& v) {
+  const double size = std::hypot(v[0], v[1]);
+  return size > 0 ? 1 / size * v : Vec2{0, 0};
+}
+
+TangentLine in_world_units(const Track& track, double length_unit) {
+  TangentLine line;
+  for (const Walker& walker : track.walkers) line.places.push_back({Vertex(walker.vertex), length_unit * walker.at});
+  line.length = track.length * length_unit;
+  line.complete = track.complete;
+  line.arrival = track.arrival;
+  return line;
+}
+
+/// Where `to` lies in the plane of a vertex, if it is there or beside a neighbour.
+std::optional<Vec2> seen_from(const TangentGraph& graph, Index vertex, const TangentPlace& to) {
+  if (vertex == to.vertex.index) return to.offset;
+  const Star star = graph.star(vertex);
+  for (std::size_t e = 0; e < star.degree(); ++e)
+    if (star.neighbors[e] == to.vertex.index) {
+      Vec2 offset{};
+      star.transport(e).apply(to.offset.data(), offset.data());
+      return log_of(star, e) + offset;
+    }
+  return std::nullopt;
+}
+
+/// The way back to where a front came from.
+class Descent {
+ public:
+  Descent(const TangentGraph& graph, const TangentPlace& to) : graph_(graph), to_(to), front_(graph) {
+    Source source(2);
+    const double identity[] = {1, 0, 0, 1};
+    const Vec2 back = -graph.length_unit() * to.offset;
+    source.add(to.vertex, 1.0, back, identity);
+    front_.add(source);
+  }
+
+  /// Lets the front come to a vertex. @return false where it does not
+  bool reaches(Vertex vertex) {
+    for (double radius = 8 * graph_.mean_edge_length() * graph_.length_unit(); !(front_.distance(vertex) < infinity);
+         radius *= 2) {
+      front_.run(radius);
+      if (front_.distance(vertex) < infinity) break;
+      if (!(radius < infinity)) return false;
+    }
+    front_.run(front_.distance(vertex));
+    return true;
+  }
+
+  Track track(Walker walker) {
+    Track track;
+    std::unordered_set<Index> left;
+    track.walkers.push_back(walker);
+    while (true) {
+      if (const std::optional<Vec2> end = seen_from(graph_, walker.vertex, to_)) {
+        walker.at = *end;
+        track.walkers.push_back(walker);
+        return track;
+      }
+      left.insert(walker.vertex);
+      const std::optional<Onward> onward = straight_on(walker, left);
+      if (!onward) find_ways_over_edges();
+      const Star star = graph_.star(walker.vertex);
+      const std::size_t edge = onward ? onward->edge : least(star, over_edges_);
+      walker.at = onward ? walker.at + onward->way * onward->direction : log_of(star, edge);
+      track.walkers.push_back(walker);
+      Vec2 unused{};
+      walker.go_over(star, edge, unused);
+    }
+  }
+
+ private:
+  double distance(Index vertex) const { return front_.distance(Vertex(vertex)) / graph_.length_unit(); }
+
+  struct Onward {
+    std::size_t edge;
+    double way;
+    Vec2 direction;
+  };
+  /// Straight to where the front began, to a cell that was not left before; none around corners, and where one is lost in noise.
+  std::optional<Onward> straight_on(const Walker& walker, const std::unordered_set<Index>& left) const {
+    const Star star = graph_.star(walker.vertex);
+    const Vec2 direction = unit(target(star, walker.vertex) - walker.at);
+    const Exit exit = exit_of(star, walker.at, direction);
+    if (!(exit.way < infinity) || is_beyond(star, walker.at + exit.way * direction) ||
+        left.contains(star.neighbors[exit.edge]))
+      return std::nullopt;
+    return Onward{exit.edge, exit.way, direction};
+  }
+
+  /// The lengths of shortest ways over edges, which lead to `to_` from everywhere.
+  void find_ways_over_edges() {
+    if (!over_edges_.empty()) return;
+    over_edges_.assign(static_cast<std::size_t>(graph_.size()), infinity);
+    ShortestPaths<double, std::vector<double>> paths(over_edges_, infinity);
+    paths.offer(to_.vertex.index, 0);
+    paths.run([&](Index i, double so_far) {
+      const Star star = graph_.star(i);
+      for (std::size_t e = 0; e < star.degree(); ++e) paths.offer(star.neighbors[e], so_far + length(star.log(e)));
+    });
+  }
+
+  /// The edge to the neighbour of the least value.
+  static std::size_t least(const Star& star, const std::vector<double>& values) {
+    std::size_t best = 0;
+    for (std::size_t e = 1; e < star.degree(); ++e)
+      if (values[star.neighbors[e]] < values[star.neighbors[best]]) best = e;
+    return best;
+  }
+
+  /// Where the front began, in the plane of a vertex: by the distances of two neighbours that have it between them, the pair that
+  /// puts it nearest to where the vertex's own distance does. The neighbour with the least distance where no pair has it so.
+  Vec2 target(const Star& star, Index vertex) const {
+    const double own = distance(vertex);
+    std::size_t nearest = 0;
+    for (std::size_t e = 1; e < star.degree(); ++e)
+      if (distance(star.neighbors[e]) < distance(star.neighbors[nearest])) nearest = e;
+    std::vector<std::pair<double, std::size_t>> around;
+    for (std::size_t e = 0; e < star.degree(); ++e)
+      if (distance(star.neighbors[e]) < infinity) around.emplace_back(std::atan2(star.log(e)[1], star.log(e)[0]), e);
+    std::sort(around.begin(), around.end());
+    Vec2 best = log_of(star, nearest);
+    double least = 0.5;
+    for (std::size_t k = 0; k < around.size(); ++k) {
+      const std::size_t right = around[k].second, left = around[(k + 1) % around.size()].second;
+      const Vec2 r = log_of(star, right), l = log_of(star, left);
+      const double area = cross(r, l);
+      if (!(area > 0)) continue;
+      const auto share = [&](const Vec2& log, double there) {
+        return 0.5 * (dot(log, log) + (own - there) * (own + there));
+      };
+      const double a = share(r, distance(star.neighbors[right])), b = share(l, distance(star.neighbors[left]));
+      const Vec2 place{(a * l[1] - b * r[1]) / area, (b * r[0] - a * l[0]) / area};
+      if (cross(r, place) < 0 || cross(place, l) < 0) continue;
+      const double off = std::abs(std::hypot(place[0], place[1]) / own - 1);
+      if (off < least) least = off, best = place;
+    }
+    return best;
+  }
+
+  const TangentGraph& graph_;
+  TangentPlace to_;  ///< in units of the graph
+  UnfoldingFront front_;
+  std::vector<double> over_edges_;  ///< from `to_`, once it is asked for
+};
+
+double length_of(const std::vector<Vec2>& unfolded) {
+  double length = 0;
+  for (std::size_t k = 1; k < unfolded.size(); ++k)
+    length += std::hypot(unfolded[k][0] - unfolded[k - 1][0], unfolded[k][1] - unfolded[k - 1][1]);
+  return length;
+}
+
+std::vector<Vec2> unfolded(const Track& track) {
+  std::vector<Vec2> points;
+  for (const Walker& walker : track.walkers) points.push_back(walker.origin + walker.in_first(walker.at));
+  return points;
+}
+
+/// The straight line from the same start to `to`: shot where the track, unfolded, has its end, and then where the last shot was
+/// off the mark. What remains is shared out over the line. None where shots do not come near.
+std::optional<Track> straightened(const TangentGraph& graph, const Track& track, const TangentPlace& to) {
+  const Walker& start = track.walkers.front();
+  Vec2 mark = unfolded(track).back();
+  std::optional<Track> best;
+  Vec2 best_miss{};
+  double least = graph.mean_edge_length();
+  for (int shot = 0; shot < most_shots; ++shot) {
+    const Vec2 way = mark - start.at;
+    Track line = follow(graph, start, unit(way), std::hypot(way[0], way[1]));
+    const Walker& end = line.walkers.back();
+    const std::optional<Vec2> seen = seen_from(graph, end.vertex, to);
+    if (!line.complete || !seen) break;
+    const Vec2 miss = end.in_first(*seen - end.at);
+    const double size = std::hypot(miss[0], miss[1]);
+    if (!(size < least)) break;
+    least = size, best_miss = miss, best = std::move(line);
+    mark = mark + miss;
+    if (size <= 1e-14 * best->length) break;
+  }
+  if (!best || !(best->length > 0)) return best;
+  const std::vector<Vec2> before = unfolded(*best);
+  double passed = 0;
+  for (std::size_t k = 0; k < before.size(); ++k) {
+    if (k > 0) passed += std::hypot(before[k][0] - before[k - 1][0], before[k][1] - before[k - 1][1]);
+    Walker& walker = best->walkers[k];
+    walker.at = walker.at + walker.from_first(passed / best->length * best_miss);
+  }
+  return best;
+}
+
+/// As found from the start back along distances from the end.
+TangentLine one_way(const TangentGraph& graph, const TangentPlace& from, const TangentPlace& to) {
+  const double world = graph.length_unit();
+  const TangentPlace end{to.vertex, 1 / world * to.offset};
+  Descent descent(graph, end);
+  if (!descent.reaches(from.vertex)) return {.status = Status::disconnected, .places = {}};
+  Track track = descent.track({.vertex = from.vertex.index, .at = 1 / world * from.offset});
+  track.length = length_of(unfolded(track));
+  if (std::optional<Track> line = straightened(graph, track, end)) {
+    line->length = length_of(unfolded(*line));
+    if (line->length <= track.length * (1 + 1e-9)) track = std::move(*line);
+  }
+  const std::vector<Vec2> points = unfolded(track);
+  const auto differs = [](const Vec2& a, const Vec2& b) { return a != b; };
+  Vec2 departure{}, arrival{};
+  for (std::size_t k = 1; k < points.size() && departure == Vec2{}; ++k)
+    if (differs(points[k], points[0])) departure = unit(points[k] - points[0]);
+  for (std::size_t k = points.size() - 1; k > 0 && arrival == Vec2{}; --k)
+    if (differs(points[k - 1], points.back())) arrival = unit(points.back() - points[k - 1]);
+  track.arrival = track.walkers.back().from_first(arrival);
+  TangentLine line = in_world_units(track, world);
+  line.departure = departure;
+  return line;
+}
+
+}  // namespace
+
+TangentLine trace_line(const TangentGraph& graph, const TangentPlace& from, const Vec2& direction, double length) {
+  check(graph, "from", from);
+  if (!all_finite(direction) || (direction[0] == 0 && direction[1] == 0))
+    throw InvalidArgument("direction: give a finite vector that is not zero");
+  if (!(length >= 0) || !std::isfinite(length)) throw InvalidArgument("length: give a finite number >= 0");
+  const double world = graph.length_unit();
+  const Vec2 along = unit(1 / largest(direction) * direction);
+  TangentLine line = in_world_units(
+      follow(graph, {.vertex = from.vertex.index, .at = 1 / world * from.offset}, along, length / world), world);
+  line.departure = along;
+  return line;
+}
+
+TangentLine shortest_line(const TangentGraph& graph, const TangentPlace& from, const TangentPlace& to) {
+  check(graph, "from", from);
+  check(graph, "to", to);
+  TangentLine there = one_way(graph, from, to);
+  if (there.status != Status::ok) return there;
+  TangentLine back = one_way(graph, to, from);
+  const auto preferred = [](const TangentPlace& a, const TangentPlace& b) {
+    return std::pair(a.vertex, a.offset) <= std::pair(b.vertex, b.offset);
+  };
+  if (there.length != back.length ? there.length < back.length : preferred(from, to)) return there;
+  std::reverse(back.places.begin(), back.places.end());
+  std::swap(back.departure, back.arrival);
+  back.departure = -back.departure, back.arrival = -back.arrival;
+  return back;
+}
+
+namespace {
+
+std::size_t main_sample(const Source& source) {
+  if (source.is_curve()) throw InvalidArgument("'source': a curve has no one place");
+  if (source.dimension().value_or(2) != 2)
+    throw InvalidArgument("'source': has dimension " + std::to_string(*source.dimension()) + ", not 2");
+  if (source.vertices().empty()) throw InvalidArgument("'source': has no vertices");
+  return static_cast<std::size_t>(std::max_element(source.weights().begin(), source.weights().end()) -
+                                  source.weights().begin());
+}
+
+}  // namespace
+
+TangentPlace tangent_place(const Source& source) {
+  const std::size_t k = main_sample(source);
+  TangentPlace place{source.vertices()[k]};
+  if (source.offsets().empty()) return place;
+  const std::span<const double> z = source.offsets().subspan(2 * k, 2), U = source.axes().subspan(4 * k, 4);
+  for (std::size_t c = 0; c < 2; ++c) place.offset[c] = -(U[2 * c] * z[0] + U[2 * c + 1] * z[1]);
+  return place;
+}
+
+Vec2 u_axis_at_place(const Source& source) {
+  const std::size_t k = main_sample(source);
+  if (source.axes().empty()) return {1, 0};
+  return {source.axes()[4 * k], source.axes()[4 * k + 2]};
+}
+
+std::optional<Vec3> position(const TangentGraph& graph, const TangentPlace& place) {
+  const std::optional<Frame> frame = graph.frame(place.vertex.index);
+  if (!frame) return std::nullopt;
+  return frame->origin + place.offset[0] * frame->x + place.offset[1] * frame->y;
+}
+
+std::optional<Vec3> smooth_position(const TangentGraph& graph, const TangentPlace& place) {
+  std::optional<Vec3> sum = position(graph, place);
+  if (!sum) return std::nullopt;
+  const double world = graph.length_unit();
+  const Star star = graph.star(place.vertex.index);
+  double nearest = infinity;  // neighbour
+  for (std::size_t e = 0; e < star.degree(); ++e) nearest = std::min(nearest, length(star.log(e)));
+  const auto weight = [&](const Vec2& from_vertex) {
+    return std::exp(-2 * dot(from_vertex, from_vertex) / (nearest * nearest));
+  };
+  const Vec2 at = 1 / world * place.offset;
+  double weights = weight(at);
+  *sum = weights * *sum;
+  std::vector<std::pair<TangentPlace, double>> others;  // a frame may need the star's memory
+  for (std::size_t e = 0; e < star.degree(); ++e) {
+    const Vec2 from_vertex = at - log_of(star, e);
+    Vec2 offset{};
+    star.transport(e).apply_inverse(from_vertex.data(), offset.data());
+    others.push_back({{Vertex(star.neighbors[e]), world * offset}, weight(from_vertex)});
+  }
+  for (const auto& [other, share] : others) *sum = *sum + share * *position(graph, other), weights += share;
+  return 1 / weights * *sum;
+}
+
+}  // namespace ahm

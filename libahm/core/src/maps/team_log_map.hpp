@@ -1,0 +1,15 @@
+/// \file
+/// A streamed log map that several machines make together.
+#pragma once
+
+#include "ahm/maps/streamed_log_map.hpp"
+#include "maps/march_team.hpp"
+
+namespace ahm {
+
+/// As `stream_log_map`, called by all members of the team with the same arguments but for `sink`, which is told of the
+/// member's own vertices alone. The graph is asked for stars of these, and for masses and edge lengths of the source's vertices.
+MarchStatistics team_log_map(const TangentGraph& graph, const Source& source, const HeatOptions& options,
+                             const MapOptions& map, MapSink& sink, MarchTeam& team);
+
+}  // namespace ahm

@@ -1,0 +1,32 @@
+/// \file
+/// From what heat brings to a vertex to its row of a map.
+#pragma once
+
+#include <cmath>
+#include <span>
+
+#include "ahm/maps/log_map.hpp"
+#include "ahm/util/small_math.hpp"
+
+namespace ahm {
+
+/// What heat says of a vertex, world units.
+struct HeatRow {
+  std::span<const double> phi;  ///< coordinates
+  double root_mean_square;      ///< sqrt(q / lambda)
+  double distance;              ///< `heat_distance`
+};
+
+/// What a map says of a vertex besides its coordinates; lengths in world units.
+struct VertexRow {
+  Status status;  ///< `unreached` where a number is not finite
+  double distance, spread;
+};
+
+inline VertexRow vertex_row(const HeatRow& found) {
+  const double r = length(found.phi), rms = found.root_mean_square;
+  const bool ok = all_finite(found.phi) && std::isfinite(rms) && std::isfinite(found.distance);
+  return {ok ? Status::ok : Status::unreached, found.distance, rms > r ? std::sqrt(rms - r) * std::sqrt(rms + r) : 0.0};
+}
+
+}  // namespace ahm

@@ -1,0 +1,172 @@
+#include "ahm/surface/mesh_repair.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "ahm/error.hpp"
+#include "ahm/surface/glued_mesh.hpp"
+#include "ahm/surface/gluing.hpp"
+#include "ahm/util/disjoint_sets.hpp"
+#include "ahm/util/small_math.hpp"
+#include "ahm/util/vec.hpp"
+#include "ahm/util/weld.hpp"
+
+namespace ahm {
+namespace {
+
+std::vector<Index> joined_vertices(std::span<const Vec3> positions, const std::optional<double>& reach) {
+  std::vector<Index> result(positions.size());
+  std::iota(result.begin(), result.end(), 0);
+  if (!reach) return result;
+  const detail::Welded welded = *reach > 0 ? detail::weld(positions, *reach) : detail::weld(positions);
+  for (std::size_t v = 0; v < result.size(); ++v) result[v] = welded.first[welded.number[v]];
+  return result;
+}
+
+/// Without the corners at the vertex of the corner before.
+std::vector<Index> without_repeats(std::span<const Index> face, const std::vector<Index>& joined) {
+  std::vector<Index> corners;
+  for (Index v : face)
+    if (corners.empty() || corners.back() != joined[v]) corners.push_back(joined[v]);
+  while (corners.size() > 1 && corners.back() == corners.front()) corners.pop_back();
+  return corners;
+}
+
+bool is_simple(std::vector<Index> corners) {
+  std::sort(corners.begin(), corners.end());
+  return corners.size() >= 3 && std::adjacent_find(corners.begin(), corners.end()) == corners.end();
+}
+
+void add(std::span<const Index> corners, Index given, RepairedMesh& mesh) {
+  mesh.face_vertices.insert(mesh.face_vertices.end(), corners.begin(), corners.end());
+  mesh.face_begin.push_back(static_cast<Offset>(mesh.face_vertices.size()));
+  mesh.given_face.push_back(given);
+}
+
+/// All faces, or those that are none left out.
+RepairedMesh sound_faces(std::span<const Vec3> positions, const FaceList& faces, const RepairOptions& options) {
+  RepairedMesh mesh;
+  mesh.joined = joined_vertices(positions, options.weld);
+  for (std::size_t v = 0; v < positions.size(); ++v) mesh.counts.welded += mesh.joined[v] != static_cast<Index>(v);
+  mesh.face_begin = {0};
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    const auto given = static_cast<Index>(f);
+    if (!options.drop_degenerate && !options.weld) {
+      add(faces[f], given, mesh);
+      continue;
+    }
+    const std::vector<Index> corners = without_repeats(faces[f], mesh.joined);
+    const bool finite =
+        std::ranges::all_of(faces[f], [&](Index v) { return is_finite(positions[v]); }) || !options.drop_degenerate;
+    if (!finite || !is_simple(corners)) {
+      ++(finite ? mesh.counts.degenerate : mesh.counts.not_finite);
+      continue;
+    }
+    mesh.counts.shortened += corners.size() < faces[f].size();
+    add(corners, given, mesh);
+  }
+  return mesh;
+}
+
+void drop_duplicates(std::span<const Vec3> positions, RepairedMesh& mesh) {
+  if (mesh.given_face.empty()) return;
+  const auto pairs = detail::find_duplicates(static_cast<Index>(positions.size()), mesh.faces());
+  std::vector<bool> drop(mesh.given_face.size(), false);
+  for (const auto& [later, earlier] : pairs) drop[later] = true;
+  RepairedMesh rest;
+  rest.face_begin = {0};
+  for (std::size_t f = 0; f < drop.size(); ++f) {
+    if (drop[f])
+      ++mesh.counts.duplicates;
+    else
+      add(mesh.faces()[f], mesh.given_face[f], rest);
+  }
+  mesh.face_begin = std::move(rest.face_begin);
+  mesh.face_vertices = std::move(rest.face_vertices);
+  mesh.given_face = std::move(rest.given_face);
+}
+
+/// Parts of faces that hang together by edges, by their first face.
+struct Part {
+  double volume = 0;  ///< six times that within it, in units of the mesh's size; outward orientation: positive
+  bool closed = true, orientable = true;
+};
+
+class Orientation {
+ public:
+  Orientation(std::span<const Vec3> positions, const RepairedMesh& mesh)
+      : glued_(static_cast<Index>(positions.size()), mesh.faces(), NonManifold::split),
+        faces_(mesh.given_face.size()),
+        parts_(mesh.given_face.size()) {
+    const detail::HalfEdges edges = glued_.half_edges();
+    for (detail::Half h = 0; h < edges.size(); ++h)
+      if (edges.twin[h] >= 0) faces_.join(glued_.face_of(h), glued_.face_of(edges.twin[h]));
+    for (detail::Half h = 0; h < edges.size(); ++h) {
+      Part& part = parts_[faces_.root(glued_.face_of(h))];
+      if (edges.twin[h] < 0) part.closed = false;
+      if (edges.is_mirrored(h)) part.orientable = false;
+    }
+    add_volumes(positions, mesh);
+  }
+
+  bool turns(Index face) {
+    const Part& part = parts_[faces_.root(face)];
+    return part.orientable && static_cast<bool>(glued_.reversed()[face]) != (part.closed && part.volume < 0);
+  }
+
+ private:
+  /// Every part about its own first corner, so that parts far from each other keep their digits.
+  void add_volumes(std::span<const Vec3> positions, const RepairedMesh& mesh) {
+    double size = 0;
+    for (Index v : mesh.face_vertices) size = std::max(size, largest(positions[v]));
+    const double scale = size > 0 ? 1 / power_of_two_below(size) : 1;
+    for (std::size_t f = 0; f < parts_.size(); ++f) {
+      const Index root = faces_.root(static_cast<Index>(f));
+      const Vec3 origin = scale * positions[mesh.faces()[root][0]];
+      const auto corner = [&](std::size_t c) { return scale * positions[mesh.faces()[f][c]] - origin; };
+      double volume = 0;
+      for (std::size_t c = 2; c < mesh.faces()[f].size(); ++c)
+        volume += dot(corner(0), cross(corner(c - 1), corner(c)));
+      parts_[root].volume += glued_.reversed()[f] ? -volume : volume;
+    }
+  }
+
+  detail::GluedMesh glued_;
+  detail::DisjointSets faces_;
+  std::vector<Part> parts_;  ///< at the root of their faces
+};
+
+/// The first corner of a face stays the first.
+void orient(std::span<const Vec3> positions, RepairedMesh& mesh) {
+  if (mesh.given_face.empty()) return;
+  Orientation orientation(positions, mesh);
+  for (std::size_t f = 0; f < mesh.given_face.size(); ++f) {
+    if (!orientation.turns(static_cast<Index>(f))) continue;
+    std::reverse(mesh.face_vertices.begin() + mesh.face_begin[f] + 1,
+                 mesh.face_vertices.begin() + mesh.face_begin[f + 1]);
+    ++mesh.counts.turned;
+  }
+}
+
+}  // namespace
+
+std::optional<Index> RepairedMesh::remaining(Index given) const {
+  const auto place = std::lower_bound(given_face.begin(), given_face.end(), given);
+  if (place == given_face.end() || *place != given) return std::nullopt;
+  return static_cast<Index>(place - given_face.begin());
+}
+
+RepairedMesh repair_mesh(std::span<const Vec3> positions, const FaceList& faces, const RepairOptions& options) {
+  if (options.weld && !(*options.weld >= 0 && std::isfinite(*options.weld)))
+    throw InvalidArgument("weld is " + std::to_string(*options.weld) + "; it must be a length, or 0");
+  if (const auto faults = detail::find_faults(static_cast<Index>(positions.size()), faces); !faults.outside.empty())
+    throw InvalidGeometry("face " + std::to_string(faults.outside.front()) + " has a vertex outside [0, " +
+                          std::to_string(positions.size()) + ")");
+  RepairedMesh mesh = sound_faces(positions, faces, options);
+  if (options.drop_duplicates) drop_duplicates(positions, mesh);
+  if (options.orient) orient(positions, mesh);
+  return mesh;
+}
+
+}  // namespace ahm

@@ -1,0 +1,42 @@
+#include "ahm/surface/surface_lines.hpp"
+
+#include <algorithm>
+
+#include "ahm/error.hpp"
+#include "ahm/maps/tangent_lines.hpp"
+#include "ahm/util/vec.hpp"
+
+namespace ahm {
+namespace {
+
+Vec3 in_space(const std::optional<Vec3>& position) {
+  if (!position) throw InvalidArgument("lines in space take a graph with frames");
+  return *position;
+}
+
+SurfaceLine in_space(const TangentGraph& graph, const TangentLine& found) {
+  SurfaceLine line{found.status, {}, found.length, found.complete};
+  for (const TangentPlace& place : found.places) line.points.push_back(in_space(smooth_position(graph, place)));
+  if (line.points.empty()) return line;
+  line.points.front() = in_space(position(graph, found.places.front()));
+  line.points.back() = in_space(position(graph, found.places.back()));
+  line.length = std::max(line.length, distance(line.points.front(), line.points.back()));
+  return line;
+}
+
+TangentPlace place_of(const Surface& surface, const SurfacePoint& point) {
+  return tangent_place(surface.source(point).source);
+}
+
+}  // namespace
+
+SurfaceLine shortest_line(const Surface& surface, const SurfacePoint& from, const SurfacePoint& to) {
+  return in_space(surface.graph(), shortest_line(surface.graph(), place_of(surface, from), place_of(surface, to)));
+}
+
+SurfaceLine trace_line(const Surface& surface, const SurfacePoint& from, const Vec3& direction, double length) {
+  const Source source = surface.source(from, direction).source;
+  return in_space(surface.graph(), trace_line(surface.graph(), tangent_place(source), u_axis_at_place(source), length));
+}
+
+}  // namespace ahm

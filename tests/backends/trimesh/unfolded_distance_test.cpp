@@ -1,0 +1,96 @@
+// Distances of coarse and sharp meshes, unfolded, against exact ones.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "ahm/maps/unfolding_front.hpp"
+#include "ahm/surface/exact/exact_geodesics.hpp"
+#include "ahm/testing/triangle_meshes.hpp"
+#include "support/solved_mesh.hpp"
+
+namespace ahm::test {
+namespace {
+
+Mesh stretched(Mesh mesh, double factor) {
+  for (Vec3& p : mesh.positions) p[0] *= factor;
+  return mesh;
+}
+
+Mesh joined(Mesh a, const Mesh& b, double aside) {
+  const Index offset = a.vertices();
+  for (const Vec3& p : b.positions) a.positions.push_back({p[0], p[1] + aside, p[2]});
+  for (const Triangle& f : b.faces) a.faces.push_back({f[0] + offset, f[1] + offset, f[2] + offset});
+  return a;
+}
+
+/// The 95th percentile of the relative errors, from `points` together.
+double error_from(const SolvedMesh& mesh, std::initializer_list<SurfacePoint> points) {
+  std::vector<double> errors;
+  for (const SurfacePoint& point : points) {
+    const LogMap exact = exact_log_map(mesh.surface, point),
+                 heat = mesh.solver.solve(mesh.surface.source(point).source);
+    for (Index i = 0; i < exact.size(); ++i)
+      if (const double d = exact.distance(Vertex(i)); d > 0)
+        errors.push_back(std::abs(heat.distance(Vertex(i)) / d - 1));
+  }
+  std::sort(errors.begin(), errors.end());
+  return errors[errors.size() * 95 / 100];
+}
+
+/// A prism of `sides` sides, its edges longer than it is wide, so that sides of triangles go around it.
+Mesh prism(Index sides, Index rings) {
+  Mesh mesh;
+  for (Index i = 0; i <= rings; ++i)
+    for (Index k = 0; k < sides; ++k) {
+      const double angle = 2 * std::numbers::pi * k / sides;
+      mesh.positions.push_back({0.1 * std::cos(angle), 0.1 * std::sin(angle), 1.0 * i / rings + 0.03 * std::sin(i)});
+    }
+  for (Index i = 0; i < rings; ++i)
+    for (Index k = 0; k < sides; ++k) {
+      const Index a = i * sides + k, b = i * sides + (k + 1) % sides;
+      mesh.faces.push_back({a, b, b + sides});
+      mesh.faces.push_back({a, b + sides, a + sides});
+    }
+  for (Index k = 1; k + 1 < sides; ++k) {
+    mesh.faces.push_back({0, k + 1, k});
+    mesh.faces.push_back({rings * sides, rings * sides + k, rings * sides + k + 1});
+  }
+  return mesh;
+}
+
+TEST(UnfoldedDistance, IsWithinAHundredthOrSoOnCoarseSurfaces) {
+  EXPECT_LT(error_from(SolvedMesh(icosphere(8)), {Row(0), Row(300), FacePoint{77, {0.2, 0.3, 0.5}}}), 0.007);
+  EXPECT_LT(error_from(SolvedMesh(stretched(icosphere(12), 20)), {Row(0), Row(700), FacePoint{500, {0.2, 0.3, 0.5}}}),
+            0.002);
+  EXPECT_LT(error_from(SolvedMesh(prism(5, 3)),
+                       {Row(0), Row(9), FacePoint{12, {0.2, 0.3, 0.5}}, EdgePoint{Row(0), Row(1), 0.3}}),
+            0.012);
+}
+
+TEST(UnfoldedDistance, OfACoarsePartIsThatOfThePartAlone) {
+  const Mesh part = stretched(icosphere(8), 3);
+  const SolvedMesh alone(part), beside(joined(part, icosphere(34), 30));
+  ASSERT_GT(beside.surface.graph().size(), 10000);
+  const LogMapSolver marching(beside.surface.graph(), {.strategy = Strategy::march});
+  const Vec3 axis{0.3, 0.5, 0.7};
+  for (const SurfacePoint& point : {SurfacePoint(Row(17)), SurfacePoint(FacePoint{300, {0.2, 0.3, 0.5}})}) {
+    const Source source = beside.surface.source(point, axis).source;
+    const LogMap expected = alone.solver.solve(alone.surface.source(point, axis).source);
+    const LogMap map = beside.solver.solve(source), marched = marching.solve(source);
+    UnfoldingFront front(beside.surface.graph());
+    front.add(source);
+    front.run();
+    for (Index i = 0; i < part.vertices(); ++i) {
+      const Vertex here = beside.surface.vertex(Row(i));
+      const double distance = expected.distance(alone.surface.vertex(Row(i)));
+      EXPECT_NEAR(map.distance(here), distance, 1e-12);
+      EXPECT_EQ(marched.distance(here), map.distance(here));
+      EXPECT_EQ(front.distance(here), map.distance(here));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace ahm::test

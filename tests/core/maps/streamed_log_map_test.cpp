@@ -1,0 +1,119 @@
+// Maps handed over as the front passes: the bits of a march that keeps everything, in memory that grows with the front.
+#include "ahm/maps/streamed_log_map.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <vector>
+
+#include "ahm/error.hpp"
+#include "ahm/grid/grid_graph.hpp"
+#include "ahm/testing/curved_graphs.hpp"
+#include "ahm/testing/flat_graphs.hpp"
+#include "ahm/testing/graph_changes.hpp"
+#include "maps/march.hpp"
+
+namespace ahm::test {
+namespace {
+
+/// The same graph, which tells the edge length of its one component.
+CsrGraph telling(CsrGraphData data) {
+  data.mean_edge_length = CsrGraph(data).mean_edge_length();
+  data.component_edge_lengths.assign(data.masses.size(), *data.mean_edge_length);
+  return CsrGraph(std::move(data));
+}
+
+struct Rows final : MapSink {
+  explicit Rows(const TangentGraph& graph)
+      : d(static_cast<std::size_t>(graph.dimension())),
+        told(static_cast<std::size_t>(graph.size())),
+        status(told.size()),
+        phi(told.size() * d),
+        distance(told.size()),
+        spread(told.size()) {}
+  void put(Index vertex, const MapRow& row) override {
+    ++told[vertex];
+    status[vertex] = row.status;
+    std::copy(row.coordinates.begin(), row.coordinates.end(), phi.begin() + static_cast<std::ptrdiff_t>(vertex * d));
+    distance[vertex] = row.distance;
+    spread[vertex] = row.spread;
+  }
+  std::size_t d;
+  std::vector<int> told;
+  std::vector<Status> status;
+  std::vector<double> phi, distance, spread;
+};
+
+bool same_bits(std::span<const double> a, std::span<const double> b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size_bytes()) == 0;
+}
+
+TEST(StreamedLogMap, HasTheBitsOfAMarchThatKeepsEverything) {
+  for (const CsrGraphData& data : {sphere_graph(6000), as_blocks(sphere_graph(6000)), bent_lattice(16)}) {
+    const CsrGraph graph = telling(data);
+    const LogMapSolver kept(graph, {.strategy = Strategy::march});
+    for (Variant variant : all_variants) {
+      const LogMap expected = kept.solve(Source::at_vertex(Vertex{5}), {.variant = variant});
+      Rows rows(graph);
+      const MarchStatistics march = stream_log_map(graph, Source::at_vertex(Vertex{5}), {}, {.variant = variant}, rows);
+      EXPECT_EQ(march.bands, expected.march().bands);
+      EXPECT_GT(march.bands, 1);
+      EXPECT_EQ(rows.told, std::vector<int>(rows.told.size(), 1));
+      EXPECT_TRUE(std::equal(rows.status.begin(), rows.status.end(), expected.status().begin()));
+      EXPECT_TRUE(same_bits(rows.phi, expected.coordinates()));
+      EXPECT_TRUE(same_bits(rows.distance, expected.distances()));
+      EXPECT_TRUE(same_bits(rows.spread, expected.spread()));
+    }
+  }
+}
+
+TEST(StreamedLogMap, EndsAtTheRadius) {
+  const CsrGraph graph = telling(sphere_graph(6000));
+  const LogMap expected =
+      LogMapSolver(graph, {.strategy = Strategy::march}).solve(Source::at_vertex(Vertex{5}), {.radius = 0.5});
+  Rows rows(graph);
+  stream_log_map(graph, Source::at_vertex(Vertex{5}), {}, {.radius = 0.5}, rows);
+  Index ok = 0;
+  for (Index i = 0; i < graph.size(); ++i) {
+    EXPECT_EQ(rows.told[i] > 0 && rows.status[i] == Status::ok, expected.status(Vertex(i)) == Status::ok);
+    ok += expected.status(Vertex(i)) == Status::ok;
+  }
+  EXPECT_GT(ok, 0);
+  EXPECT_LT(ok, graph.size());
+}
+
+TEST(StreamedLogMap, RefusesWhatNeedsTheWholeGraph) {
+  const CsrGraph silent(sphere_graph(500)), graph = telling(sphere_graph(500));
+  Rows rows(graph);
+  const Source source = Source::at_vertex(Vertex{5});
+  EXPECT_THROW(stream_log_map(silent, source, {}, {}, rows), InvalidArgument);
+  EXPECT_THROW(stream_log_map(graph, source, {.order = 2}, {}, rows), InvalidArgument);
+  EXPECT_THROW(stream_log_map(graph, source, {}, {.frames = true}, rows), InvalidArgument);
+  EXPECT_THROW(stream_log_map(graph, source, {}, {.radius = 0}, rows), InvalidArgument);
+  CsrGraphData triangulation = graph.data();
+  triangulation.is_delaunay = true;
+  EXPECT_THROW(stream_log_map(CsrGraph(triangulation), source, {}, {}, rows), InvalidArgument);
+}
+
+TEST(StreamedLogMap, ForgetsWhatTheFrontHasPassed) {
+  struct Count final : MarchSink {
+    void accept(Index, const HeatRow&) override { ++vertices; }
+    Offset vertices = 0;
+  };
+  const auto bytes = [](Index length) {
+    const grid::GridGraph graph({.shape = {40, length}, .spacing = {1, 1}});
+    const ComponentScales scales(graph);
+    const std::vector<double> tau{1.0};
+    const ComponentTimes times(scales, tau);
+    Count count;
+    March march(graph, {}, times, Variant::adaptive, INFINITY, 1, {}, &count);
+    march.run(Source::at_vertex(Vertex{0}));
+    EXPECT_EQ(count.vertices, graph.size());
+    return static_cast<double>(march.bytes());
+  };
+  const double per_vertex = (bytes(4000) - bytes(1000)) / (3000 * 40);
+  EXPECT_LT(per_vertex, 0.1);
+}
+
+}  // namespace
+}  // namespace ahm::test

@@ -1,0 +1,111 @@
+// A map over tiles is the marched map of the graph in memory, whatever memory the tiles may take.
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "ahm/distributed/tiled_log_map.hpp"
+#include "ahm/error.hpp"
+#include "map_rows.hpp"
+#include "support/expect_error.hpp"
+#include "tiled_clouds.hpp"
+
+namespace ahm::test {
+namespace {
+
+using distributed::TiledGraph;
+
+bool same_bits(const std::vector<double>& a, std::span<const double> b) {
+  return test::same_bits(std::span<const double>(a), b);
+}
+
+void expect_same_map(const TiledCloud& cloud, Row row, Variant variant, double radius) {
+  const auto surface = pointcloud::PointCloudSurface::build(cloud.points, {}, {.parts_apart = false});
+  const Vertex vertex = surface.rows().vertex(row).value();
+  const LogMap expected = LogMapSolver(surface.graph(), {.variant = variant, .strategy = Strategy::march})
+                              .solve(Source::at_vertex(vertex), {.radius = radius});
+  for (std::size_t memory : {std::size_t{1} << 16, std::size_t{1} << 30}) {
+    const TiledGraph graph(cloud.tiles, memory);
+    ASSERT_EQ(graph.vertex_of_row(row), vertex);
+    distributed::TiledMapOptions options{.radius = radius, .memory = memory};
+    options.heat.variant = variant;
+    const auto folder = cloud.folder.directory() / "map";
+    const auto summary = write_log_map(graph, Source::at_vertex(vertex), folder, options);
+    EXPECT_EQ(summary.march.bands, expected.march().bands);
+    EXPECT_EQ(summary.ok, expected.count(Status::ok));
+    EXPECT_EQ(summary.releases > 0, memory < 1 << 20);
+    EXPECT_EQ(summary.spills > 0, memory < 1 << 20);
+    const MapRows rows(graph, folder);
+    EXPECT_TRUE(same_bits(rows.coordinates, expected.coordinates()));
+    EXPECT_TRUE(same_bits(rows.distance, expected.distances()));
+    EXPECT_TRUE(same_bits(rows.spread, expected.spread()));
+    EXPECT_TRUE(std::equal(rows.status.begin(), rows.status.end(), expected.status().begin(), expected.status().end()));
+  }
+}
+
+TEST(TiledLogMap, HasTheBitsOfTheMapInMemory) {
+  const TiledCloud cloud(two_hills(130, 60), {.tile_points = 1500});
+  cloud.build();
+  const double everything = std::numeric_limits<double>::infinity();
+  expect_same_map(cloud, Row(0), Variant::adaptive, everything);
+  expect_same_map(cloud, Row(130 * 65 + 65), Variant::localized, everything);
+  expect_same_map(cloud, Row(130 * 65 + 65), Variant::adaptive, 40);
+}
+
+TEST(TiledLogMap, HasThemWithReflections) {
+  TiledCloud cloud(moebius_cloud(12'000).points, {.tile_points = 1500});
+  cloud.build();
+  expect_same_map(cloud, Row(7), Variant::adaptive, std::numeric_limits<double>::infinity());
+}
+
+/// The source's own star is cut by the border of two tiles.
+TEST(TiledLogMap, HasThemWhereABorderGoesThroughTheSource) {
+  const TiledCloud cloud(two_hills(130, 60), {.tile_points = 1500});
+  cloud.build();
+  Row row(0);
+  {
+    const TiledGraph graph(cloud.tiles, 1 << 30);
+    Index vertex = graph.first_vertex(2);
+    const auto leaves = [&] {
+      for (Index j : graph.star(vertex).neighbors)
+        if (graph.tile_of(j) != 2) return true;
+      return false;
+    };
+    while (!leaves()) ++vertex;
+    const auto rows = graph.rows(2);
+    row = Row(rows.rows[rows.begin[vertex - graph.first_vertex(2)]]);
+  }
+  expect_same_map(cloud, row, Variant::adaptive, std::numeric_limits<double>::infinity());
+}
+
+TEST(TiledLogMap, IsWrittenAsRowsOfTheInput) {
+  std::vector<Vec3> points = hills(60);
+  points.push_back(points[77]);
+  points.push_back({0, 0, 5000});  // no vertex
+  TiledCloud cloud(points, {.tile_points = 1000});
+  cloud.build();
+  const TiledGraph graph(cloud.tiles, 1 << 30);
+  const auto folder = cloud.folder.directory() / "map", csv = cloud.folder.directory() / "map.csv";
+  expect_error<IoError>([&] { write_rows(graph, folder, csv); }, "not finished");
+  write_log_map(graph, Source::at_vertex(graph.vertex_of_row(Row(77)).value()), folder, {});
+  write_rows(graph, folder, csv);
+  std::ifstream file(csv);
+  std::string line;
+  std::getline(file, line);
+  EXPECT_EQ(line, "row,u,v,distance,spread,status");
+  std::map<int, std::string> rows;
+  while (std::getline(file, line)) {
+    const auto comma = line.find(',');
+    EXPECT_TRUE(rows.emplace(std::stoi(line.substr(0, comma)), line.substr(comma)).second) << line;
+  }
+  EXPECT_EQ(rows.size(), points.size());
+  EXPECT_NE(rows[77].find(",0,"), std::string::npos) << rows[77];  // the distance
+  EXPECT_TRUE(rows[77].ends_with(",ok"));
+  EXPECT_EQ(rows[60 * 60], rows[77]);
+  EXPECT_EQ(rows[60 * 60 + 1], ",,,,,removed");
+  EXPECT_EQ(graph.vertex_of_row(Row(60 * 60 + 1)), std::nullopt);
+  EXPECT_THROW(graph.vertex_of_row(Row(60 * 60 + 2)), InvalidArgument);
+  EXPECT_EQ(graph.nearest_vertex(points[77]), graph.vertex_of_row(Row(77)));
+}
+
+}  // namespace
+}  // namespace ahm::test

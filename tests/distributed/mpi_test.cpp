@@ -1,0 +1,319 @@
+// Maps by several ranks are those of one process, whoever owns what; and no rank waits for one that is dead.
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <iterator>
+#include <set>
+#include <thread>
+
+#include "ahm/distributed/tiled_local_maps.hpp"
+#include "map_rows.hpp"
+#include "tiled_clouds.hpp"
+
+#ifndef AHM_MPI_PROGRAM
+#define AHM_MPI_PROGRAM ""
+#define AHM_MPIRUN ""
+#endif
+
+namespace ahm::test {
+namespace {
+
+using distributed::Manifest;
+using distributed::TiledGraph;
+using std::filesystem::path;
+
+const std::string program = AHM_MPI_PROGRAM, mpirun = AHM_MPIRUN;
+
+std::string text_of(const path& name) {
+  std::ifstream file(name, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// Ranks of which none is left when the object goes.
+class Ranks {
+ public:
+  /// @param words  what follows `mpirun`; all that is said goes to a file
+  Ranks(const std::vector<std::string>& words, path log) : log_(std::move(log)) {
+    process_ = ::fork();
+    if (process_ != 0) return;
+    ::setpgid(0, 0);
+    const int file = ::open(log_.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    ::dup2(file, STDOUT_FILENO), ::dup2(file, STDERR_FILENO);
+    // As root; more ranks than cores, which leave the cores to each other; by shared memory that any container grants.
+    const std::pair<const char*, const char*> settings[] = {{"OMPI_ALLOW_RUN_AS_ROOT", "1"},
+                                                            {"OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1"},
+                                                            {"OMPI_MCA_rmaps_base_oversubscribe", "1"},
+                                                            {"OMPI_MCA_mpi_yield_when_idle", "1"},
+                                                            {"OMPI_MCA_hwloc_base_binding_policy", "none"},
+                                                            {"OMPI_MCA_btl", "self,vader"},
+                                                            {"OMPI_MCA_btl_vader_single_copy_mechanism", "none"}};
+    for (const auto& [name, value] : settings) ::setenv(name, value, 1);
+    ::setenv("ASAN_OPTIONS", "detect_leaks=0", 1);  // MPI's own
+    std::vector<char*> arguments{const_cast<char*>(mpirun.c_str())};
+    for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
+    arguments.push_back(nullptr);
+    ::execv(mpirun.c_str(), arguments.data());
+    ::_exit(127);
+  }
+  ~Ranks() {
+    if (process_ > 0 && !is_over_) ::kill(-process_, SIGKILL), ::waitpid(process_, nullptr, 0);
+  }
+  Ranks(const Ranks&) = delete;
+  Ranks& operator=(const Ranks&) = delete;
+
+  /// @return what mpirun returns; -1 for a run that had to be ended
+  int wait(std::chrono::seconds most = std::chrono::seconds(300)) {
+    const auto end = std::chrono::steady_clock::now() + most;
+    int status = 0;
+    while (::waitpid(process_, &status, WNOHANG) == 0) {
+      if (std::chrono::steady_clock::now() > end) return -1;
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+    is_over_ = true;
+    return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  }
+  std::string log() const { return text_of(log_); }
+  /// Processes whose parent is mpirun.
+  std::vector<pid_t> children() const {
+    std::vector<pid_t> found;
+    const auto tasks = path("/proc") / std::to_string(process_) / "task";
+    for (const auto& task : std::filesystem::directory_iterator(tasks)) {
+      std::ifstream file(task.path() / "children");
+      std::copy(std::istream_iterator<pid_t>(file), {}, std::back_inserter(found));
+    }
+    return found;
+  }
+
+ private:
+  path log_;
+  pid_t process_ = -1;
+  bool is_over_ = false;
+};
+
+class MpiMap : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (program.empty()) GTEST_SKIP() << "built without ahm-mpi: no PETSc, or no MPI";
+  }
+  static Ranks start(const TiledCloud& cloud, int ranks, std::vector<std::string> words) {
+    std::vector<std::string> all{"-n", std::to_string(ranks), program};
+    all.insert(all.end(), words.begin(), words.end());
+    return Ranks(all, cloud.folder.directory() / "log");
+  }
+  static std::string run(const TiledCloud& cloud, int ranks, const std::vector<std::string>& words, int expected = 0) {
+    Ranks all = start(cloud, ranks, words);
+    EXPECT_EQ(all.wait(), expected) << all.log();
+    return all.log();
+  }
+
+  /// Both maps to 1e-9 of the largest distance; the variance of the map, which is a difference of squares, to that of its square.
+  static void expect_same(const MapRows& found, const MapRows& expected) {
+    double farthest = 0;
+    for (double r : expected.distance) farthest = std::max(farthest, std::isfinite(r) ? r : 0);
+    const double near = 1e-9 * farthest;
+    EXPECT_EQ(found.status, expected.status);
+    const auto worst = [](const std::vector<double>& a, const std::vector<double>& b, const auto& number) {
+      double most = a.size() == b.size() ? 0 : INFINITY;
+      for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
+        if (!std::isnan(a[i]) || !std::isnan(b[i])) {
+          const double difference = std::abs(number(a[i]) - number(b[i]));
+          most = std::isnan(difference) ? INFINITY : std::max(most, difference);
+        }
+      return most;
+    };
+    const auto same = [](double x) { return x; };
+    EXPECT_GT(farthest, 0);
+    EXPECT_LE(worst(found.coordinates, expected.coordinates, same), near);
+    EXPECT_LE(worst(found.distance, expected.distance, same), near);
+    EXPECT_LE(worst(found.spread, expected.spread, [](double x) { return x * x; }), near * farthest);
+  }
+
+  /// Makes the map with each number of ranks, and compares it to that of one process.
+  static void expect_map_of_one(const TiledCloud& cloud, const std::vector<Row>& rows, Variant variant, double radius,
+                                const std::vector<int>& numbers, const std::string& deal = "cards") {
+    const TiledGraph graph(cloud.tiles, 1 << 30);
+    std::vector<Vertex> vertices;
+    for (Row row : rows) vertices.push_back(graph.vertex_of_row(row).value());
+    const auto alone = cloud.folder.directory() / "alone", together = cloud.folder.directory() / "together";
+    write_log_map(graph, Source::at_vertices(vertices), alone, {.heat = {.variant = variant}, .radius = radius});
+    for (int ranks : numbers) {
+      SCOPED_TRACE(std::to_string(ranks) + " ranks");
+      std::filesystem::remove_all(together);
+      std::vector<std::string> words{"logmap", cloud.tiles, "-o",
+                                     together, "--variant", std::string(to_string(variant)),
+                                     "--deal", deal,        "--source"};
+      for (Row row : rows) words.push_back(std::to_string(row.index));
+      if (std::isfinite(radius)) words.insert(words.end(), {"--radius", std::to_string(radius)});
+      run(cloud, ranks, words);
+      ASSERT_TRUE(std::filesystem::exists(together / "map.json"));
+      expect_same(MapRows(graph, together), MapRows(graph, alone));
+    }
+  }
+};
+
+constexpr double everything = std::numeric_limits<double>::infinity();
+
+TEST_F(MpiMap, IsThatOfOneProcessAdaptive) {
+  const TiledCloud cloud(two_hills(70, 30), {.tile_points = 400});
+  cloud.build();
+  expect_map_of_one(cloud, {Row(70 * 35 + 35)}, Variant::adaptive, everything, {1, 2, 3, 4});
+}
+
+TEST_F(MpiMap, IsThatOfOneProcessLocalized) {
+  const TiledCloud cloud(two_hills(70, 30), {.tile_points = 400});
+  cloud.build();
+  expect_map_of_one(cloud, {Row(0)}, Variant::localized, everything, {1, 2, 3, 4}, "ranges");
+}
+
+TEST_F(MpiMap, IsThatOfOneProcessWithReflections) {
+  const TiledCloud cloud(moebius_cloud(6000).points, {.tile_points = 500});
+  cloud.build();
+  ASSERT_EQ(TiledGraph(cloud.tiles, 1 << 30).transport_kind(), TransportKind::block);
+  for (Variant variant : all_variants) expect_map_of_one(cloud, {Row(7)}, variant, everything, {3});
+}
+
+TEST_F(MpiMap, HasSeveralSourcesInSeveralComponents) {
+  const TiledCloud cloud(two_hills(70, 30), {.tile_points = 400});
+  cloud.build();
+  expect_map_of_one(cloud, {Row(0), Row(70 * 69), Row(70 * 70 + 450)}, Variant::adaptive, everything, {3});
+}
+
+TEST_F(MpiMap, EndsAtARadius) {
+  const TiledCloud cloud(two_hills(70, 30), {.tile_points = 400});
+  cloud.build();
+  expect_map_of_one(cloud, {Row(70 * 35 + 35)}, Variant::adaptive, 20, {2}, "ranges");
+}
+
+TEST_F(MpiMap, IsMadeByMoreRanksThanThereAreTiles) {
+  const TiledCloud cloud(hills(20), {.tile_points = 2500});
+  cloud.build();
+  expect_map_of_one(cloud, {Row(3)}, Variant::adaptive, everything, {3});
+  const TiledCloud tiny({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});  // fewer vertices than ranks
+  tiny.build();
+  expect_map_of_one(tiny, {Row(0)}, Variant::localized, everything, {4});
+}
+
+/// Points on a line are no surface, hence no vertices: tiles of nothing else are empty.
+TEST_F(MpiMap, GoesPastEmptyTiles) {
+  std::vector<Vec3> points = hills(30);
+  for (int i = 0; i < 900; ++i) points.push_back({4000.0 + i, 0, 0});
+  const TiledCloud cloud(points, {.tile_points = 300});
+  cloud.build();
+  Index empty = 0;
+  for (const auto& tile : Manifest::read(cloud.tiles).tiles) empty += tile.vertices == 0;
+  ASSERT_GT(empty, 0);
+  expect_map_of_one(cloud, {Row(0)}, Variant::adaptive, everything, {2});
+}
+
+TEST_F(MpiMap, TakesOptionsOfPetsc) {
+  const TiledCloud cloud(hills(40), {.tile_points = 400});
+  cloud.build();
+  const auto folder = cloud.folder.directory() / "map";
+  const auto log =
+      run(cloud, 2, {"logmap", cloud.tiles, "-o", folder, "--traffic", "--", "-ksp_view", "-pc_type", "jacobi"});
+  EXPECT_NE(log.find("type: jacobi"), std::string::npos) << log;
+  EXPECT_NE(log.find("peak memory, MB: "), std::string::npos) << log;
+  const auto end = run(cloud, 2, {"logmap", cloud.tiles, "-o", folder, "--", "-ksp_max_it", "2"}, 1);
+  EXPECT_NE(end.find("DIVERGED_ITS"), std::string::npos) << end;
+}
+
+TEST_F(MpiMap, LocalMapsAreThoseOfOneProcess) {
+  const TiledCloud cloud(hills(60), {.tile_points = 500});
+  cloud.build();
+  const TiledGraph graph(cloud.tiles, 1 << 30);
+  const auto alone = cloud.folder.directory() / "alone", together = cloud.folder.directory() / "together";
+  distributed::TiledLocalMapOptions options{.maps = {.radius = 4}, .keep = distributed::Keep::counts};
+  for (std::size_t t = 0; t < graph.tiles(); ++t) write_local_maps(graph, t, alone, options);
+  run(cloud, 3, {"local-maps", cloud.tiles, "-o", together, "--radius", "4", "--counts"});
+  for (std::size_t t = 0; t < graph.tiles(); ++t) {
+    const auto expected = text_of(Manifest::file(alone, "local", t));
+    EXPECT_FALSE(expected.empty());
+    EXPECT_TRUE(text_of(Manifest::file(together, "local", t)) == expected) << "tile " << t;
+  }
+}
+
+/// A row of tile 0, so that nothing but the march comes to other tiles.
+std::string row_of_first_tile(const TiledCloud& cloud) {
+  return std::to_string(TiledGraph(cloud.tiles, 1 << 30).rows(0).rows[0]);
+}
+
+TEST_F(MpiMap, ADamagedTileEndsAllRanks) {
+  const TiledCloud cloud(hills(60), {.tile_points = 300});
+  cloud.build();
+  const auto row = row_of_first_tile(cloud), map = (cloud.folder.directory() / "map").string();
+  const auto tile = Manifest::file(cloud.tiles, "graph", 7);
+  const std::string whole = text_of(tile);
+  std::string damaged = whole;
+  damaged[damaged.size() / 2] ^= 4;
+  std::ofstream(tile, std::ios::binary) << damaged;
+  auto log = run(cloud, 3, {"logmap", cloud.tiles, "-o", map, "--source", row}, 1);
+  EXPECT_NE(log.find(tile.string()), std::string::npos) << log;
+  std::filesystem::remove(tile);
+  log = run(cloud, 3, {"logmap", cloud.tiles, "-o", map, "--source", row}, 1);
+  EXPECT_NE(log.find(tile.string()), std::string::npos) << log;
+  EXPECT_FALSE(std::filesystem::exists(path(map) / "map.json"));
+  std::ofstream(tile, std::ios::binary) << whole;
+  run(cloud, 3, {"logmap", cloud.tiles, "-o", map, "--source", row});
+  EXPECT_TRUE(std::filesystem::exists(path(map) / "map.json"));
+}
+
+TEST_F(MpiMap, AnErrorOfAllRanksIsSaidOnce) {
+  const TiledCloud cloud(hills(20), {.tile_points = 300});  // not built
+  const auto log = run(cloud, 3, {"logmap", cloud.tiles, "-o", cloud.folder.directory() / "map"}, 1);
+  const auto at = log.find("build them first");
+  EXPECT_NE(at, std::string::npos) << log;
+  EXPECT_EQ(log.find("build them first", at + 1), std::string::npos) << log;
+  EXPECT_NE(run(cloud, 2, {"logmap", cloud.tiles, "-o", "map", "--nonsense"}, 2).find("--nonsense"), std::string::npos);
+}
+
+/// A file that cannot be written: a folder stands in its place, with something in it.
+TEST_F(MpiMap, AFileThatCannotBeWrittenEndsAllRanks) {
+  const TiledCloud cloud(hills(60), {.tile_points = 300});
+  cloud.build();
+  const auto row = row_of_first_tile(cloud);
+  const auto map = cloud.folder.directory() / "map", place = Manifest::file(map, "map", 5);
+  std::filesystem::create_directories(place / "something");
+  const auto log = run(cloud, 3, {"logmap", cloud.tiles, "-o", map, "--source", row}, 1);
+  EXPECT_NE(log.find(place.string()), std::string::npos) << log;
+}
+
+/// Those that nobody has asked for yet how they ended are not.
+bool is_alive(pid_t process) {
+  const std::string stat = text_of(path("/proc") / std::to_string(process) / "stat");
+  const auto state = stat.rfind(") ");
+  return state != std::string::npos && stat[state + 2] != 'Z' && stat[state + 2] != 'X';
+}
+
+/// One rank waits for ever for a tile, a pipe that nobody writes to, so that the others wait for it; then one of those is killed.
+TEST_F(MpiMap, AKilledRankEndsAll) {
+  const TiledCloud cloud(hills(60), {.tile_points = 300});
+  cloud.build();
+  const auto row = row_of_first_tile(cloud);
+  const auto tile = Manifest::file(cloud.tiles, "graph", 8);
+  std::filesystem::remove(tile);
+  ASSERT_EQ(::mkfifo(tile.c_str(), 0600), 0);
+  const auto map = cloud.folder.directory() / "map";
+  Ranks ranks = start(cloud, 3, {"logmap", cloud.tiles, "-o", map, "--source", row});
+  while (ranks.log().find("solve") == std::string::npos) {
+    ASSERT_EQ(ranks.wait(std::chrono::seconds(0)), -1) << ranks.log();
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  const std::vector<pid_t> children = ranks.children();
+  ASSERT_EQ(children.size(), 3u);
+  ASSERT_EQ(ranks.wait(std::chrono::seconds(1)), -1) << "tile 8 was not asked for: " << ranks.log();
+  ::kill(children[1], SIGKILL);
+  const int status = ranks.wait(std::chrono::seconds(60));
+  EXPECT_GT(status, 0) << ranks.log();
+  EXPECT_FALSE(std::filesystem::exists(map / "map.json"));
+  for (int tries = 0; tries < 600 && std::any_of(children.begin(), children.end(), is_alive); ++tries)
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  EXPECT_TRUE(std::none_of(children.begin(), children.end(), is_alive));
+}
+
+}  // namespace
+}  // namespace ahm::test
