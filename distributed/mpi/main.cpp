@@ -113,7 +113,6 @@ void make_map(const Arguments& a) {
 /// Tile by tile, whoever is free: no rank waits for another.
 void make_local_maps(Arguments& a) {
   const TiledGraph graph = first_alone([&] { return TiledGraph(a.local.folder, a.local.memory); });
-  a.local.options.keep = a.local.counts ? Keep::counts : Keep::maps;
   std::int64_t next = 0, made = 0;
   std::int64_t* counter = nullptr;
   MPI_Win window = MPI_WIN_NULL;

@@ -32,7 +32,6 @@ struct MapArguments {
 struct LocalArguments {
   std::string folder, output;
   TiledLocalMapOptions options;
-  bool counts = false;
   std::size_t memory = std::size_t{2} << 30;
 };
 
@@ -73,7 +72,9 @@ inline void add_local_options(CLI::App& app, LocalArguments& a) {
   app.add_option("-o,--output", a.output, "folder for the maps")->required();
   app.add_option("--radius", a.options.maps.radius, "how far each map goes")->required();
   app.add_option("--nearest", a.options.maps.nearest, "keep only so many of each; 0: all")->capture_default_str();
-  app.add_flag("--counts", a.counts, "keep of each map only how many vertices it has, and their area");
+  app.add_option(
+      "--feature", a.options.features,
+      "keep of each map only these: count, area, curvature, mean:FILE.npy (of a number per row of the input)");
   app.add_option("--memory", a.memory, "for tiles of the graph, as 2GB; the maps of a tile come on top")
       ->transform(CLI::AsSizeValue(false));
   app.add_option("--threads", a.options.maps.heat.threads, "0: one per core")->capture_default_str();

@@ -52,7 +52,6 @@ void add_build_options(CLI::App& app, Arguments& a) {
 
 void make_local_maps(Arguments& a) {
   const TiledGraph graph(a.local.folder, a.local.memory);
-  a.local.options.keep = a.local.counts ? Keep::counts : Keep::maps;
   std::size_t made = 0;
   for (std::size_t t = a.number.value_or(0); t < (a.number ? *a.number + 1 : graph.tiles()); ++t)
     made += write_local_maps(graph, t, a.local.output, a.local.options);

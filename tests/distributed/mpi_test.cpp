@@ -227,9 +227,11 @@ TEST_F(MpiMap, LocalMapsAreThoseOfOneProcess) {
   cloud.build();
   const TiledGraph graph(cloud.tiles, 1 << 30);
   const auto alone = cloud.folder.directory() / "alone", together = cloud.folder.directory() / "together";
-  distributed::TiledLocalMapOptions options{.maps = {.radius = 4}, .keep = distributed::Keep::counts};
+  distributed::TiledLocalMapOptions options;
+  options.maps.radius = 4;
+  options.features = {"count", "curvature"};
   for (std::size_t t = 0; t < graph.tiles(); ++t) write_local_maps(graph, t, alone, options);
-  run(cloud, 3, {"local-maps", cloud.tiles, "-o", together, "--radius", "4", "--counts"});
+  run(cloud, 3, {"local-maps", cloud.tiles, "-o", together, "--radius", "4", "--feature", "count", "curvature"});
   for (std::size_t t = 0; t < graph.tiles(); ++t) {
     const auto expected = text_of(Manifest::file(alone, "local", t));
     EXPECT_FALSE(expected.empty());
