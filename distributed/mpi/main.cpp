@@ -91,22 +91,22 @@ void print_traffic(const MpiTeam& team) {
   }
 }
 
-void make_map(const Arguments& a) {
-  TiledMapOptions options = first_alone([&] { return map_options(a.logmap); });
+void make_map(const Arguments& a, bool coordinates) {
+  TiledMapOptions options = first_alone([&] { return map_options(a.logmap, coordinates); });
   const TiledGraph graph = first_alone([&] { return TiledGraph(a.logmap.folder, a.logmap.memory / 2); });
   options.heat.threads = 1;
   if (rank_of() == 0) options.heat.progress = telling(name);
   const Source source = source_at(find_sources(graph, a.logmap.sources));
-  int ranks = 1;
-  MPI_Comm_size(MPI_COMM_WORLD, &ranks);
-  MpiTeam team(MPI_COMM_WORLD, graph, deal_tiles(graph.manifest().first_vertices(), a.deal, ranks),
-               options.heat.accuracy);
-  const TiledMapSummary s = team_log_map(graph, source, a.logmap.output, options, team,
-                                         [&](std::size_t tile) { return team.owns_tile(tile); });
-  if (team.rank() == 0)
-    std::cout << s.ok << " of " << graph.size() << " vertices have coordinates, the farthest at " << s.farthest << '\n'
-              << s.march.bands << " bands, the largest of " << s.march.largest_band << " vertices; " << s.march.solved
-              << " vertices solved by " << team.size() << " ranks\n";
+  TileOwners owners;
+  owners.rank = rank_of();
+  MPI_Comm_size(MPI_COMM_WORLD, &owners.ranks);
+  owners.of_tile = deal_tiles(graph.manifest().first_vertices(), a.deal, owners.ranks);
+  MpiTeam team(MPI_COMM_WORLD, graph, owners.of_tile, options.heat.accuracy);
+  const TiledMapSummary s = team_log_map(graph, source, a.logmap.output, options, team, owners);
+  if (team.rank() == 0) {
+    print_map(s, graph.size(), coordinates);
+    std::cout << "; " << s.march.solved << " vertices solved by " << team.size() << " ranks\n";
+  }
   if (a.traffic) print_traffic(team);
 }
 
@@ -138,11 +138,16 @@ void make_local_maps(Arguments& a) {
 }
 
 void add_commands(CLI::App& app, Arguments& a) {
-  CLI::App& map = *app.add_subcommand("logmap", "the log map, with distances, that all ranks march together");
-  add_map_options(map, a.logmap);
-  add_deal_option(map, a.deal);
-  map.add_flag("--traffic", a.traffic, "tell messages, bytes, memory and time of each rank");
-  map.callback([&] { make_map(a); });
+  const auto add_map = [&](const std::string& command, const std::string& text, bool coordinates) {
+    CLI::App& map = *app.add_subcommand(command, text);
+    add_march_options(map, a.logmap);
+    if (coordinates) add_variant_option(map, a.logmap);
+    add_deal_option(map, a.deal);
+    map.add_flag("--traffic", a.traffic, "tell messages, bytes, memory and time of each rank");
+    map.callback([&, coordinates] { make_map(a, coordinates); });
+  };
+  add_map("logmap", "the log map, with distances, that all ranks march together; killed, it goes on", true);
+  add_map("distance", "distances alone, those of logmap --variant localized, for less", false);
   CLI::App& local = *app.add_subcommand("local-maps", "the map around every vertex; each rank takes tile after tile");
   add_local_options(local, a.local);
   local.callback([&] { make_local_maps(a); });

@@ -27,6 +27,7 @@ struct MapArguments {
   double radius = std::numeric_limits<double>::infinity(), t_coef = 1;
   std::size_t memory = std::size_t{2} << 30;
   unsigned threads = 0;
+  Index checkpoint = TiledMapOptions().checkpoint;
 };
 
 struct LocalArguments {
@@ -54,17 +55,23 @@ inline std::size_t peak_megabytes() {
   return static_cast<std::size_t>(usage.ru_maxrss) / 1024;
 }
 
-inline void add_map_options(CLI::App& app, MapArguments& a) {
+/// Of whatever is marched.
+inline void add_march_options(CLI::App& app, MapArguments& a) {
   app.add_option("folder", a.folder, "of tiles")->required();
   app.add_option("-o,--output", a.output, "folder for the map")->required();
   app.add_option("--source", a.sources,
                  "row of the input, or position x,y,z: the vertex nearest to it; several: from the nearest of them")
       ->capture_default_str();
   app.add_option("--radius", a.radius, "no farther than this");
-  app.add_option("--variant", a.variant, "adaptive or localized")->capture_default_str();
   app.add_option("--t-coef", a.t_coef, "diffusion time over the square of the mean edge length")->capture_default_str();
   app.add_option("--memory", a.memory, "for tiles of the graph and of the map, as 2GB; bands come on top")
       ->transform(CLI::AsSizeValue(false));
+  app.add_option("--checkpoint", a.checkpoint, "bands after which a run that is killed may go on; 0: never")
+      ->capture_default_str();
+}
+
+inline void add_variant_option(CLI::App& app, MapArguments& a) {
+  app.add_option("--variant", a.variant, "adaptive or localized")->capture_default_str();
 }
 
 inline void add_local_options(CLI::App& app, LocalArguments& a) {
@@ -113,8 +120,10 @@ inline std::vector<Vertex> source_vertices(const TiledGraph& graph, const std::v
 inline Source source_at(const std::vector<Vertex>& vertices) { return Source::at_vertices(vertices); }
 
 /// Half of the memory is for the graph's tiles, half for the map's.
-inline TiledMapOptions map_options(const MapArguments& a) {
+inline TiledMapOptions map_options(const MapArguments& a, bool coordinates) {
   TiledMapOptions options;
+  options.coordinates = coordinates;
+  options.checkpoint = a.checkpoint;
   options.radius = a.radius;
   options.memory = a.memory / 2;
   options.heat.t_coef = a.t_coef;
@@ -123,6 +132,13 @@ inline TiledMapOptions map_options(const MapArguments& a) {
     throw InvalidArgument("--variant '" + a.variant + "' is neither adaptive nor localized");
   options.heat.variant = a.variant == "adaptive" ? Variant::adaptive : Variant::localized;
   return options;
+}
+
+inline void print_map(const TiledMapSummary& s, Index vertices, bool coordinates) {
+  if (s.begun_at > 0) std::cout << "went on after band " << s.begun_at << " of a run that did not end\n";
+  std::cout << s.ok << " of " << vertices << " vertices have " << (coordinates ? "coordinates" : "distances")
+            << ", the farthest at " << s.farthest << '\n'
+            << s.march.bands << " bands, the largest of " << s.march.largest_band << " vertices";
 }
 
 }  // namespace ahm::distributed::program

@@ -68,15 +68,14 @@ void print(const Manifest& m) {
               << m.reflections << " reflections\n";
 }
 
-void make_map(const MapArguments& a) {
+void make_map(const MapArguments& a, bool coordinates) {
   const TiledGraph graph(a.folder, a.memory / 2);
-  TiledMapOptions options = map_options(a);
+  TiledMapOptions options = map_options(a, coordinates);
   options.heat.progress = telling(name);
   const TiledMapSummary s = write_log_map(graph, source_at(source_vertices(graph, a.sources)), a.output, options);
-  std::cout << s.ok << " of " << graph.size() << " vertices have coordinates, the farthest at " << s.farthest << '\n'
-            << s.march.bands << " bands, the largest of " << s.march.largest_band << " vertices; tiles were put aside "
-            << s.releases << " times, parts of the map put aside " << s.spills << " times; peak memory "
-            << peak_megabytes() << " MB\n";
+  print_map(s, graph.size(), coordinates);
+  std::cout << "; tiles were put aside " << s.releases << " times, parts of the map put aside " << s.spills
+            << " times; peak memory " << peak_megabytes() << " MB\n";
 }
 
 /// A line per number of ranks.
@@ -120,11 +119,17 @@ void add_building(CLI::App& app, Arguments& a) {
 }
 
 void add_maps(CLI::App& app, Arguments& a) {
-  CLI::App& map = *app.add_subcommand("logmap", "the log map of one source");
-  add_map_options(map, a.logmap);
-  map.add_option("--threads", a.logmap.threads, "0: one per core")->capture_default_str();
-  map.callback([&] { make_map(a.logmap); });
-  CLI::App& rows = *app.add_subcommand("rows", "a map as CSV: row, u, v, distance, spread, status");
+  const auto add_map = [&](const std::string& command, const std::string& text, bool coordinates) {
+    CLI::App& map = *app.add_subcommand(command, text);
+    add_march_options(map, a.logmap);
+    if (coordinates) add_variant_option(map, a.logmap);
+    map.add_option("--threads", a.logmap.threads, "0: one per core")->capture_default_str();
+    map.callback([&, coordinates] { make_map(a.logmap, coordinates); });
+  };
+  add_map("logmap", "the log map of one source; killed, it goes on from its last checkpoint", true);
+  add_map("distance", "distances alone, those of logmap --variant localized, for less", false);
+  CLI::App& rows =
+      *app.add_subcommand("rows", "a map as CSV: row, u, v, distance, spread, status; or row, distance, status");
   rows.add_option("folder", a.folder, "of tiles")->required();
   rows.add_option("map", a.map, "folder of the map")->required();
   rows.add_option("-o,--output", a.output, "CSV file")->required();
