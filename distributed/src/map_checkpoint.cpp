@@ -18,13 +18,19 @@ constexpr std::string_view front_kind = "front";
 MapCheckpoint::MapCheckpoint(const std::filesystem::path& folder, std::uint64_t identity, Index every,
                              MapWriter& writer, MarchTeam& team, const TileOwners& owners)
     : folder_(folder), identity_(identity), every_(every), writer_(writer), team_(team), owners_(owners) {
+  if (owners_.rank > 0) team_.sum(0);  // what is wrong is said once
+  read_record();
+  if (owners_.rank == 0) team_.sum(0);
+}
+
+void MapCheckpoint::read_record() {
   if (!std::filesystem::exists(record())) return;
   std::ifstream file(record());
   const auto whole = nlohmann::json::parse(file, nullptr, false);
   if (!whole.is_object() || whole.value("version", 0u) != format_version)
     throw IoError("cannot read '" + record().string() + "': it is damaged; remove the folder to begin the map anew");
-  if (whole.value("identity", std::uint64_t{0}) != identity)
-    throw InvalidArgument("'" + folder.string() +
+  if (whole.value("identity", std::uint64_t{0}) != identity_)
+    throw InvalidArgument("'" + folder_.string() +
                           "' has a map that is not finished, of other tiles, sources or options, or by other ranks; "
                           "go on with those, or remove the folder");
   begun_at_ = last_ = whole.value("bands", Index{0});

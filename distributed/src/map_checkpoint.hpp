@@ -32,6 +32,7 @@ class MapCheckpoint final : public MarchKeeper {
   void remove();
 
  private:
+  void read_record();
   std::filesystem::path record() const { return folder_ / "march.json"; }
   std::filesystem::path state_file(int slot) const;
   std::vector<std::uint64_t> identity_of(Index bands) const;
