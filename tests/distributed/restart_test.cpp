@@ -22,20 +22,6 @@ using distributed::TiledGraph;
 using distributed::TiledMapOptions;
 using std::filesystem::path;
 
-/// A long strip, for many bands, and something else.
-std::vector<Vec3> strip() {
-  std::vector<Vec3> points;
-  std::mt19937_64 random(9);
-  std::uniform_real_distribution<double> shift(-0.3, 0.3);
-  for (Index i = 0; i < 400; ++i)
-    for (Index j = 0; j < 12; ++j) {
-      const double x = i + shift(random), y = j + shift(random);
-      points.push_back({x, y, 4 * std::sin(x / 17)});
-    }
-  for (const Vec3& p : hills(15, 2)) points.push_back({p[0], 100 + p[1], p[2]});
-  return points;
-}
-
 struct Strip : TiledCloud {
   Strip() : TiledCloud(strip(), {.tile_points = 400}) { build(); }
 };
@@ -210,7 +196,8 @@ TEST(MapRestart, OfAKilledProgramEndsWithTheSameBytes) {
   std::filesystem::rename(tile, kept);
   ASSERT_EQ(::mkfifo(tile.c_str(), 0600), 0);
   const pid_t child = start(folder);
-  while (!std::filesystem::exists(folder / "march.json")) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  for (int tries = 0; tries < 12'000 && !std::filesystem::exists(folder / "march.json"); ++tries)
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
   ::kill(child, SIGKILL);
   EXPECT_EQ(end_of(child), -SIGKILL);
   std::filesystem::rename(kept, tile);
