@@ -24,7 +24,7 @@ const std::string name = "ahm-mpi";
 struct Arguments {
   MapArguments logmap;
   LocalArguments local;
-  Deal deal = Deal::cards;
+  Deal deal = Deal::arrival;
   bool traffic = false;
 };
 
@@ -96,11 +96,13 @@ void make_map(const Arguments& a, bool coordinates) {
   const TiledGraph graph = first_alone([&] { return TiledGraph(a.logmap.folder, a.logmap.memory / 2); });
   options.heat.threads = 1;
   if (rank_of() == 0) options.heat.progress = telling(name);
-  const Source source = source_at(find_sources(graph, a.logmap.sources));
+  const std::vector<Vertex> sources = find_sources(graph, a.logmap.sources);
+  const Source source = source_at(sources);
   TileOwners owners;
   owners.rank = rank_of();
   MPI_Comm_size(MPI_COMM_WORLD, &owners.ranks);
-  owners.of_tile = deal_tiles(graph.manifest().first_vertices(), a.deal, owners.ranks);
+  owners.of_tile = deal_tiles(graph.manifest().first_vertices(), a.deal, owners.ranks,
+                              tile_distances(graph.middles(), positions_of(graph, sources)));
   MpiTeam team(MPI_COMM_WORLD, graph, owners.of_tile, options.heat.accuracy);
   const TiledMapSummary s = team_log_map(graph, source, a.logmap.output, options, team, owners);
   if (team.rank() == 0) {

@@ -88,9 +88,12 @@ inline void add_local_options(CLI::App& app, LocalArguments& a) {
 }
 
 inline void add_deal_option(CLI::App& app, Deal& deal) {
-  app.add_option("--deal", deal, "which tiles a rank owns: cards (every K-th, the default) or ranges (successive ones)")
-      ->transform(
-          CLI::CheckedTransformer(std::map<std::string, Deal>{{"ranges", Deal::ranges}, {"cards", Deal::cards}}));
+  app.add_option(
+         "--deal", deal,
+         "which tiles a rank owns: arrival (of those that the front comes to next, one each; the default), cards "
+         "(every K-th) or ranges (successive ones)")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, Deal>{{"ranges", Deal::ranges}, {"cards", Deal::cards}, {"arrival", Deal::arrival}}));
 }
 
 inline Vertex source_vertex(const TiledGraph& graph, const std::string& text) {
@@ -114,6 +117,12 @@ inline Vertex source_vertex(const TiledGraph& graph, const std::string& text) {
 inline std::vector<Vertex> source_vertices(const TiledGraph& graph, const std::vector<std::string>& texts) {
   std::vector<Vertex> result;
   for (const std::string& text : texts) result.push_back(source_vertex(graph, text));
+  return result;
+}
+
+inline std::vector<Vec3> positions_of(const TiledGraph& graph, const std::vector<Vertex>& vertices) {
+  std::vector<Vec3> result;
+  for (Vertex vertex : vertices) result.push_back(graph.frame(vertex.index)->origin);
   return result;
 }
 

@@ -29,7 +29,7 @@ struct Arguments {
   std::size_t memory = std::size_t{2} << 30;
   std::optional<std::size_t> number;
   ScheduleOptions schedule;
-  Deal deal = Deal::cards;
+  Deal deal = Deal::arrival;
   std::vector<int> ranks{1, 2, 4, 8, 16, 32, 64};
 };
 
@@ -78,19 +78,32 @@ void make_map(const MapArguments& a, bool coordinates) {
             << " times; peak memory " << peak_megabytes() << " MB\n";
 }
 
+/// Mean positions of these tiles' vertices.
+std::vector<Vec3> middles_of(const TiledGraph& graph, const std::vector<Index>& first) {
+  std::vector<Vec3> result(first.size() - 1, Vec3{0, 0, 0});
+  for (std::size_t t = 0; t < result.size(); ++t) {
+    for (Index i = first[t]; i < first[t + 1]; ++i)
+      for (std::size_t c = 0; c < 3; ++c) result[t][c] += graph.frame(i)->origin[c];
+    for (double& x : result[t]) x /= std::max(1, first[t + 1] - first[t]);
+  }
+  return result;
+}
+
 /// A line per number of ranks.
 void simulate(const Arguments& a) {
   const TiledGraph graph(a.logmap.folder, a.logmap.memory);
   const auto tiles =
       a.number ? equal_tiles(graph.size(), static_cast<Index>(*a.number)) : graph.manifest().first_vertices();
-  const auto bands = march_schedule(graph, source_vertices(graph, a.logmap.sources), tiles, a.schedule);
+  const std::vector<Vertex> sources = source_vertices(graph, a.logmap.sources);
+  const auto distances = tile_distances(middles_of(graph, tiles), positions_of(graph, sources));
+  const auto bands = march_schedule(graph, sources, tiles, a.schedule);
   std::cout << bands.size() << " bands\n";
   for (int ranks : a.ranks) {
     if (ranks < 1) throw InvalidArgument("--ranks " + std::to_string(ranks) + " must be at least 1");
-    const SharedLoad load = share_out(bands, deal_tiles(tiles, a.deal, ranks), ranks);
+    const SharedLoad load = share_out(bands, deal_tiles(tiles, a.deal, ranks, distances), ranks);
     std::cout << ranks << " ranks: " << load.solved << " vertices solved, the largest band " << load.largest_band
               << ", the largest part of one " << load.largest_part << ", active " << load.active << ", balance "
-              << load.balance << '\n';
+              << load.balance << ", messages " << load.messages << ", halo " << load.halo << '\n';
   }
 }
 
