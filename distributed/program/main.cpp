@@ -93,7 +93,9 @@ std::vector<Vec3> middles_of(const TiledGraph& graph, const std::vector<Index>& 
 void simulate(const Arguments& a) {
   const TiledGraph graph(a.logmap.folder, a.logmap.memory);
   const auto tiles =
-      a.number ? equal_tiles(graph.size(), static_cast<Index>(*a.number)) : graph.manifest().first_vertices();
+      a.number ? equal_tiles(graph.size(),
+                             static_cast<Index>(std::min<std::size_t>(*a.number, std::numeric_limits<Index>::max())))
+               : graph.manifest().first_vertices();
   const std::vector<Vertex> sources = source_vertices(graph, a.logmap.sources);
   const auto distances = tile_distances(middles_of(graph, tiles), positions_of(graph, sources));
   const auto bands = march_schedule(graph, sources, tiles, a.schedule);

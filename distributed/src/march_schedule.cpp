@@ -60,7 +60,9 @@ std::vector<int> deal_tiles(std::span<const Index> first, Deal deal, int ranks, 
 }
 
 std::vector<Index> equal_tiles(Index vertices, Index tiles) {
-  if (tiles < 1) throw InvalidArgument("tiles is " + std::to_string(tiles) + "; it must be at least 1");
+  if (tiles < 1 || tiles > std::max(vertices, 1))
+    throw InvalidArgument("tiles is " + std::to_string(tiles) +
+                          "; it must be at least 1, and at most the number of vertices, " + std::to_string(vertices));
   std::vector<Index> first;
   for (std::int64_t t = 0; t <= tiles; ++t) first.push_back(static_cast<Index>(t * vertices / tiles));
   return first;

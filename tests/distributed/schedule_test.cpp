@@ -128,6 +128,8 @@ TEST(MarchSchedule, TilesAreDealtInRangesOrAsCards) {
   const std::vector<Index> tiles = distributed::equal_tiles(100, 6);
   EXPECT_EQ(tiles.front(), 0);
   EXPECT_EQ(tiles.back(), 100);
+  expect_error<InvalidArgument>([] { distributed::equal_tiles(100, 0); }, "tiles is 0");
+  expect_error<InvalidArgument>([] { distributed::equal_tiles(100, 101); }, "number of vertices, 100");
   EXPECT_EQ(deal_tiles(tiles, Deal::ranges, 3), (std::vector<int>{0, 0, 1, 1, 2, 2}));
   EXPECT_EQ(deal_tiles(tiles, Deal::cards, 3), (std::vector<int>{0, 1, 2, 0, 1, 2}));
   EXPECT_EQ(deal_tiles(std::vector<Index>{0, 0}, Deal::ranges, 2), std::vector<int>{0});  // an empty one

@@ -37,7 +37,7 @@ std::vector<int> deal_tiles(std::span<const Index> first_vertex, Deal deal, int 
                             std::span<const double> distances = {});
 
 /// As if the vertices, whose order is that of the curve along which tiles are cut, were in so many tiles of equal size: where a
-/// small cloud stands for a large one.
+/// small cloud stands for a large one. @throws InvalidArgument (no tiles, or more than vertices)
 std::vector<Index> equal_tiles(Index vertices, Index tiles);
 
 struct ScheduleOptions {
