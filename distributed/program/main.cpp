@@ -143,12 +143,15 @@ void add_maps(CLI::App& app, Arguments& a) {
   };
   add_map("logmap", "the log map of one source; killed, it goes on from its last checkpoint", true);
   add_map("distance", "distances alone, those of logmap --variant localized, for less", false);
-  CLI::App& rows =
-      *app.add_subcommand("rows", "a map as CSV: row, u, v, distance, spread, status; or row, distance, status");
+  CLI::App& rows = *app.add_subcommand(
+      "rows", "a map as CSV: row, u, v, distance, spread, status; row, distance, status; row and features");
   rows.add_option("folder", a.folder, "of tiles")->required();
-  rows.add_option("map", a.map, "folder of the map")->required();
+  rows.add_option("map", a.map, "folder of the map, or of features of local maps")->required();
   rows.add_option("-o,--output", a.output, "CSV file")->required();
-  rows.callback([&] { write_rows(TiledGraph(a.folder, a.memory), a.map, a.output); });
+  rows.callback([&] {
+    const bool is_local = std::filesystem::exists(Manifest::file(a.map, "local", 0));
+    (is_local ? write_feature_rows : write_rows)(TiledGraph(a.folder, a.memory), a.map, a.output);
+  });
   CLI::App& schedule = *app.add_subcommand("simulate", "how evenly ranks of ahm-mpi would share the bands of a map");
   schedule.add_option("folder", a.logmap.folder, "of tiles")->required();
   schedule.add_option("--source", a.logmap.sources, "as logmap");

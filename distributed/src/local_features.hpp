@@ -6,6 +6,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "ahm/distributed/array_file.hpp"
@@ -13,6 +14,9 @@
 #include "ahm/maps/local_maps.hpp"
 
 namespace ahm::distributed {
+
+/// Of the files of local maps.
+inline constexpr std::string_view local_kind = "local";
 
 /// The map around a vertex, nearest first, hence itself.
 struct VertexMap {

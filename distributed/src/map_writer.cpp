@@ -77,7 +77,11 @@ void MapWriter::go_on(const MarchState& state, std::int64_t ok, double farthest)
     };
     auto at = std::lower_bound(state.vertices.begin(), state.vertices.end(), first);
     for (; at != state.vertices.end() && *at < last; ++at) tell(*at, *at + 1);
-    for (std::size_t run = 0; run + 1 < state.passed.size(); run += 2) tell(state.passed[run], state.passed[run + 1]);
+    // Begins and ends ascend: an odd number of them up to here is the inside of a run.
+    const auto up_to = std::upper_bound(state.passed.begin(), state.passed.end(), first) - state.passed.begin();
+    for (auto run = static_cast<std::size_t>(up_to - up_to % 2); run < state.passed.size() && state.passed[run] < last;
+         run += 2)
+      tell(state.passed[run], state.passed[run + 1]);
     const auto count = static_cast<Index>(std::count(told.begin(), told.end(), 1));
     left_[t] -= count;
     begun_[t] = count > 0;

@@ -15,8 +15,6 @@
 namespace ahm::distributed {
 namespace {
 
-constexpr std::string_view local_kind = "local";
-
 /// No patch of local_maps reaches farther than this many times the radius and its margin, along edges.
 constexpr double longest_detour = 2;
 

@@ -1,7 +1,6 @@
 #include "ahm/distributed/tiled_log_map.hpp"
 
 #include <bit>
-#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -10,6 +9,7 @@
 
 #include "ahm/error.hpp"
 #include "ahm/io/atomic_file.hpp"
+#include "csv_rows.hpp"
 #include "map_checkpoint.hpp"
 #include "map_writer.hpp"
 #include "maps/team_log_map.hpp"
@@ -52,13 +52,6 @@ void write_summary(const TiledMapSummary& s, const TiledGraph& graph, const Sour
   io::AtomicFile file(folder / "map.json");
   file.write(whole.dump(1) + "\n");
   file.commit();
-}
-
-/// Shortest text that reads back as the same number; nothing for NaN.
-void append(std::string& line, double value) {
-  char text[32];
-  if (std::isfinite(value)) line.append(text, std::to_chars(text, text + sizeof(text), value).ptr);
-  line += ',';
 }
 
 }  // namespace
@@ -106,20 +99,16 @@ void write_rows(const TiledGraph& graph, const std::filesystem::path& folder, co
     const TiledGraph::TileRows rows = graph.rows(t);
     if (tile.status.size() + 1 != rows.begin.size())
       throw IoError("the map's tile " + std::to_string(t) + " is not one of these tiles; make the map again");
-    std::string line;
-    for (std::size_t i = 0; i < tile.status.size(); ++i) {
-      std::string values = ",";
-      if (goal == MarchGoal::map) append(values, tile.coordinates[2 * i]), append(values, tile.coordinates[2 * i + 1]);
-      append(values, tile.distance[i]);
-      if (goal == MarchGoal::map) append(values, tile.spread[i]);
-      values += to_string(static_cast<Status>(tile.status[i]));
-      for (Index r = rows.begin[i]; r < rows.begin[i + 1]; ++r) line += std::to_string(rows.rows[r]) + values + "\n";
-      if (line.size() > 1 << 20) file.write(line), line.clear();
-    }
-    for (Index row : rows.removed)
-      line += std::to_string(row) + (goal == MarchGoal::map ? ",,,,," : ",,") +
-              std::string(to_string(Status::removed)) + "\n";
-    file.write(line);
+    const auto values = [&](std::size_t i) {
+      std::vector<double> numbers{tile.distance[i]};
+      if (goal == MarchGoal::map)
+        numbers = {tile.coordinates[2 * i], tile.coordinates[2 * i + 1], tile.distance[i], tile.spread[i]};
+      std::string line;
+      for (double number : numbers) append_number(line += ',', number);
+      return line += "," + std::string(to_string(static_cast<Status>(tile.status[i])));
+    };
+    write_tile_rows(file, rows, values,
+                    (goal == MarchGoal::map ? ",,,,," : ",,") + std::string(to_string(Status::removed)));
   }
   file.commit();
 }

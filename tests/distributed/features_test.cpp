@@ -228,6 +228,59 @@ TEST(LocalFeatures, AreTheSameWhateverTheThreadsAndHowManyAreAskedFor) {
   EXPECT_TRUE(same_bits(a.get<Vec3>("directions"), b.get<Vec3>("directions")));
 }
 
+TEST(LocalFeatures, AreWrittenAsRowsOfTheInput) {
+  std::vector<Vec3> points = hills(40);
+  points.push_back(points[77]);
+  points.push_back({0, 0, 5000});  // no vertex
+  const TiledCloud cloud(points, {.tile_points = 500});
+  cloud.build();
+  const TiledGraph graph(cloud.tiles, 1 << 30);
+  const auto directory = cloud.folder.directory(), folder = directory / "features", csv = directory / "features.csv";
+  std::vector<double> half(points.size(), 0.5);
+  half[77] = half[1600] = std::numeric_limits<double>::quiet_NaN();
+  write_column(directory / "half.npy", half);
+  distributed::TiledLocalMapOptions options;
+  options.maps.radius = 3;
+  options.features = {"mean:" + (directory / "half.npy").string(), "curvature", "area", "count"};
+  for (std::size_t t = 0; t < graph.tiles(); ++t) write_local_maps(graph, t, folder, options);
+  write_feature_rows(graph, folder, csv);
+  std::ifstream file(csv);
+  std::string line;
+  std::getline(file, line);
+  EXPECT_EQ(line, "row,count,area,curvature_1,curvature_2,direction_x,direction_y,direction_z,mean_0");
+  std::map<int, std::string> rows;
+  while (std::getline(file, line)) {
+    const auto comma = line.find(',');
+    EXPECT_TRUE(rows.emplace(std::stoi(line.substr(0, comma)), line.substr(comma)).second) << line;
+  }
+  EXPECT_EQ(rows.size(), points.size());
+  EXPECT_EQ(rows[1600], rows[77]);
+  EXPECT_EQ(rows[1601], ",,,,,,,,");
+  EXPECT_TRUE(rows[77].ends_with(",")) << rows[77];  // what is not a number among neighbours is none of the mean
+  EXPECT_TRUE(rows[1500].ends_with(",0.5")) << rows[1500];
+  const Vertex vertex = graph.vertex_of_row(Row(900)).value();
+  const std::size_t tile = graph.tile_of(vertex.index);
+  const ArrayFile kept(Manifest::file(folder, "local", tile), "local");
+  const auto i = static_cast<std::size_t>(vertex.index - graph.first_vertex(tile));
+  EXPECT_TRUE(rows[900].starts_with("," + std::to_string(kept.get<Index>("count")[i]) + ",")) << rows[900];
+  const auto comma = rows[900].find(',', 1);
+  EXPECT_EQ(std::stod(rows[900].substr(comma + 1)), kept.get<double>("area")[i]);
+
+  std::filesystem::remove(Manifest::file(folder, "local", 1));
+  expect_error<IoError>([&] { write_feature_rows(graph, folder, csv); }, "000001.local");
+  options.features = {"count"};
+  write_local_maps(graph, 1, folder, options);
+  expect_error<IoError>([&] { write_feature_rows(graph, folder, csv); }, "tile 1 has other features than tile 0");
+  options.features = {};
+  write_local_maps(graph, 1, directory / "maps", options);
+  std::filesystem::copy(Manifest::file(directory / "maps", "local", 1), Manifest::file(folder, "local", 1),
+                        std::filesystem::copy_options::overwrite_existing);
+  expect_error<IoError>([&] { write_feature_rows(graph, folder, csv); }, "whole maps");
+  std::filesystem::copy(Manifest::file(folder, "local", 0), Manifest::file(folder, "local", 1),
+                        std::filesystem::copy_options::overwrite_existing);
+  expect_error<IoError>([&] { write_feature_rows(graph, folder, csv); }, "not one of these tiles");
+}
+
 TEST(LocalFeatures, OfAnotherColumnAreNotTakenForThese) {
   const TiledCloud cloud(hills(30), {.tile_points = 2500});
   cloud.build();

@@ -217,7 +217,7 @@ void check_pcd_size(const Input& in, const PcdHeader& header) {
 }
 
 PcdHeader check_pcd(const Input& in) {
-  const PcdHeader header = parse_pcd_header(in);
+  PcdHeader header = parse_pcd_header(in);
   if (header.data == PcdData::ascii) {
     if (header.points > in.bytes.size() - header.body) fail_size(in, header, 2 * header.points);
     check_text(in, header);

@@ -42,4 +42,9 @@ struct TiledLocalMapOptions {
 bool write_local_maps(const TiledGraph& graph, std::size_t tile, const std::filesystem::path& folder,
                       const TiledLocalMapOptions& options);
 
+/// Features of all tiles as CSV: row, count, area, curvature_1, curvature_2, direction_x, direction_y, direction_z, mean_0, ..., as far
+/// as they were asked for; rows of the input tile by tile, those without a vertex with nothing.
+/// @throws IoError (a tile is missing, damaged, of another graph, has whole maps, or other features than the first)
+void write_feature_rows(const TiledGraph& graph, const std::filesystem::path& folder, const std::filesystem::path& csv);
+
 }  // namespace ahm::distributed
