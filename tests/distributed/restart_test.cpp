@@ -47,27 +47,30 @@ std::vector<TiledMapOptions> all_options() {
   return all;
 }
 
+/// Makes the map, ended in each `step`-th band, and what is left of it.
+void expect_same_bytes(const TiledCloud& cloud, TiledMapOptions options, Index every, Index step) {
+  const auto whole = cloud.folder.directory() / "whole", folder = cloud.folder.directory() / "map";
+  const Index bands = make(cloud, whole, options).march.bands;
+  ASSERT_GT(bands, 8);
+  const auto expected = contents(whole);
+  for (const auto& [name, bytes] : expected) EXPECT_TRUE(name == "map.json" || name.ends_with(".map")) << name;
+  options.checkpoint = every;
+  for (Index band = 1; band <= bands; band += step) {
+    EXPECT_THROW(make(cloud, folder, options, band), Ended);
+    EXPECT_FALSE(std::filesystem::exists(folder / "map.json"));
+    const auto summary = make(cloud, folder, options);
+    EXPECT_EQ(summary.begun_at, (band - 1) / every * every);
+    EXPECT_EQ(summary.march.bands, bands);
+    ASSERT_TRUE(contents(folder) == expected) << "ended in band " << band << ", checkpoints every " << every;
+    std::filesystem::remove_all(folder);
+  }
+  std::filesystem::remove_all(whole);
+}
+
 TEST(MapRestart, AfterAnyBandEndsWithTheSameBytes) {
   const Strip cloud;
-  for (TiledMapOptions options : all_options()) {
-    const auto whole = cloud.folder.directory() / "whole", folder = cloud.folder.directory() / "map";
-    const Index bands = make(cloud, whole, options).march.bands;
-    ASSERT_GT(bands, 8);
-    const auto expected = contents(whole);
-    for (const auto& [name, bytes] : expected) EXPECT_TRUE(name == "map.json" || name.ends_with(".map")) << name;
-    for (Index every : {1, 3})
-      for (Index band = 1; band <= bands; band += every) {
-        options.checkpoint = every;
-        EXPECT_THROW(make(cloud, folder, options, band), Ended);
-        EXPECT_FALSE(std::filesystem::exists(folder / "map.json"));
-        const auto summary = make(cloud, folder, options);
-        EXPECT_EQ(summary.begun_at, (band - 1) / every * every);
-        EXPECT_EQ(summary.march.bands, bands);
-        ASSERT_TRUE(contents(folder) == expected) << "ended in band " << band << ", checkpoints every " << every;
-        std::filesystem::remove_all(folder);
-      }
-    std::filesystem::remove_all(whole);
-  }
+  expect_same_bytes(cloud, {}, 1, 1);
+  for (const TiledMapOptions& options : all_options()) expect_same_bytes(cloud, options, 3, 5);
 }
 
 TEST(MapRestart, AgainAndAgainEndsWithTheSameBytes) {
@@ -92,7 +95,7 @@ TEST(MapRestart, FromTheMiddleOfACheckpointEndsWithTheSameBytes) {
     TiledMapOptions options = given;
     make(cloud, whole, options);
     options.checkpoint = 3;
-    for (int take : {1, 2, 3}) {
+    for (int take : {1, 2}) {
       EXPECT_THROW(make(cloud, early, options, 5), Ended);
       EXPECT_THROW(make(cloud, late, options, 8), Ended);
       int at = 0;
