@@ -114,7 +114,11 @@ void make_map(const Arguments& a, bool coordinates) {
 
 /// Tile by tile, whoever is free: no rank waits for another.
 void make_local_maps(Arguments& a) {
-  const TiledGraph graph = first_alone([&] { return TiledGraph(a.local.folder, a.local.memory); });
+  const TiledGraph graph = first_alone([&] {
+    TiledGraph tiles(a.local.folder, a.local.memory);
+    check_local_maps(tiles, a.local.options);
+    return tiles;
+  });
   std::int64_t next = 0, made = 0;
   std::int64_t* counter = nullptr;
   MPI_Win window = MPI_WIN_NULL;

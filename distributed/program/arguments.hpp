@@ -67,6 +67,7 @@ inline void add_march_options(CLI::App& app, MapArguments& a) {
   app.add_option("--memory", a.memory, "for tiles of the graph and of the map, as 2GB; bands come on top")
       ->transform(CLI::AsSizeValue(false));
   app.add_option("--checkpoint", a.checkpoint, "bands after which a run that is killed may go on; 0: never")
+      ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
 }
 

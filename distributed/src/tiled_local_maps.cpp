@@ -85,6 +85,12 @@ std::vector<std::uint64_t> identity_of(const TiledGraph& graph, std::size_t tile
   return result;
 }
 
+LocalFeatures checked_features(const TiledGraph& graph, const TiledLocalMapOptions& options) {
+  if (!(options.maps.radius > 0) || !std::isfinite(options.maps.radius))
+    throw InvalidArgument("radius is " + detail::number(options.maps.radius) + "; it must be finite and > 0");
+  return local_features(options.features, graph, options.maps.radius);
+}
+
 /// The maps of all of a tile's vertices, with places in the region as neighbours.
 LocalMaps maps_of(const CsrGraph& part, Index begin, Index end, const LocalMapOptions& options) {
   std::vector<Vertex> own;
@@ -129,13 +135,15 @@ void write_features(const std::filesystem::path& path, const std::vector<std::ui
 
 }  // namespace
 
+void check_local_maps(const TiledGraph& graph, const TiledLocalMapOptions& options) {
+  checked_features(graph, options);
+}
+
 bool write_local_maps(const TiledGraph& graph, std::size_t tile, const std::filesystem::path& folder,
                       const TiledLocalMapOptions& options) {
   if (tile >= graph.tiles())
     throw InvalidArgument("tile " + std::to_string(tile) + " is not there; there are " + std::to_string(graph.tiles()));
-  if (!(options.maps.radius > 0) || !std::isfinite(options.maps.radius))
-    throw InvalidArgument("radius is " + detail::number(options.maps.radius) + "; it must be finite and > 0");
-  const LocalFeatures features = local_features(options.features, graph, options.maps.radius);
+  const LocalFeatures features = checked_features(graph, options);
   std::filesystem::create_directories(folder);
   const auto path = Manifest::file(folder, local_kind, tile);
   const std::vector<std::uint64_t> identity = identity_of(graph, tile, options, features);

@@ -273,6 +273,13 @@ TEST_F(MpiMap, AnErrorOfAllRanksIsSaidOnce) {
   EXPECT_NE(at, std::string::npos) << log;
   EXPECT_EQ(log.find("build them first", at + 1), std::string::npos) << log;
   EXPECT_NE(run(cloud, 2, {"logmap", cloud.tiles, "-o", "map", "--nonsense"}, 2).find("--nonsense"), std::string::npos);
+  cloud.build();
+  const auto no_feature = run(
+      cloud, 3,
+      {"local-maps", cloud.tiles, "-o", cloud.folder.directory() / "map", "--radius", "3", "--feature", "cuont"}, 1);
+  const auto first = no_feature.find("'cuont' is none of");
+  EXPECT_NE(first, std::string::npos) << no_feature;
+  EXPECT_EQ(no_feature.find("'cuont' is none of", first + 1), std::string::npos) << no_feature;
 }
 
 /// A file that cannot be written: a folder stands in its place, with something in it.

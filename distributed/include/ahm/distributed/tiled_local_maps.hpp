@@ -32,6 +32,9 @@ struct TiledLocalMapOptions {
   std::vector<std::string> features = {};
 };
 
+/// @throws InvalidArgument, IoError where `write_local_maps` would of these options, whatever the tile
+void check_local_maps(const TiledGraph& graph, const TiledLocalMapOptions& options);
+
 /// The local maps of a tile's vertices, in the file NUMBER.local of the folder; row i is vertex graph.first_vertex(tile) + i.
 ///
 /// They are those of `local_maps` on the whole graph but for which sources share a patch, hence as far as
