@@ -101,8 +101,10 @@ void make_map(const Arguments& a, bool coordinates) {
   TileOwners owners;
   owners.rank = rank_of();
   MPI_Comm_size(MPI_COMM_WORLD, &owners.ranks);
-  owners.of_tile = deal_tiles(graph.manifest().first_vertices(), a.deal, owners.ranks,
-                              tile_distances(graph.middles(), positions_of(graph, sources)));
+  std::vector<double> distances;
+  if (a.deal == Deal::arrival)
+    distances = first_alone([&] { return tile_distances(graph.middles(), positions_of(graph, sources)); });
+  owners.of_tile = deal_tiles(graph.manifest().first_vertices(), a.deal, owners.ranks, distances);
   MpiTeam team(MPI_COMM_WORLD, graph, owners.of_tile, options.heat.accuracy);
   const TiledMapSummary s = team_log_map(graph, source, a.logmap.output, options, team, owners);
   if (team.rank() == 0) {

@@ -126,6 +126,9 @@ std::optional<Frame> TiledGraph::frame(Index vertex) const {
 
 std::vector<Vec3> TiledGraph::middles() const {
   const ArrayFile file(folder_ / "components", "components");
+  if (!file.has("middles"))
+    throw IoError("the tiles in '" + folder_.string() +
+                  "' were built before their middles were kept; deal them as cards, or build them again");
   const auto middles = file.get<Vec3>("middles");
   return {middles.begin(), middles.end()};
 }

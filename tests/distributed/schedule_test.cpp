@@ -105,6 +105,10 @@ TEST(MarchSchedule, KnowsTheMiddlesOfTiles) {
   ASSERT_EQ(found.size(), expected.size());
   for (std::size_t t = 0; t < found.size(); ++t)
     for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(found[t][c], expected[t][c], 1e-11);
+  // As it was before there were any.
+  const std::vector<double> lengths{graph.mean_edge_length()};
+  distributed::write_arrays(cloud.tiles / "components", "components", {distributed::array("edge_lengths", lengths)});
+  expect_error<IoError>([&] { graph.middles(); }, "deal them as cards");
 }
 
 /// Any run of tiles that the front comes to one after the other is shared out to all.
