@@ -137,7 +137,7 @@ class MpiMap : public testing::Test {
 
   /// Makes the map with each number of ranks, and compares it to that of one process.
   static void expect_map_of_one(const TiledCloud& cloud, const std::vector<Row>& rows, Variant variant, double radius,
-                                const std::vector<int>& numbers, const std::string& deal = "cards") {
+                                const std::vector<int>& numbers, const std::string& deal = "arrival") {
     const TiledGraph graph(cloud.tiles, 1 << 30);
     std::vector<Vertex> vertices;
     for (Row row : rows) vertices.push_back(graph.vertex_of_row(row).value());
@@ -163,7 +163,7 @@ constexpr double everything = std::numeric_limits<double>::infinity();
 TEST_F(MpiMap, IsThatOfOneProcessAdaptive) {
   const TiledCloud cloud(two_hills(70, 30), {.tile_points = 400});
   cloud.build();
-  expect_map_of_one(cloud, {Row(70 * 35 + 35)}, Variant::adaptive, everything, {1, 2, 3, 4});
+  expect_map_of_one(cloud, {Row(70 * 35 + 35)}, Variant::adaptive, everything, {1, 2, 3, 4}, "cards");
 }
 
 TEST_F(MpiMap, IsThatOfOneProcessLocalized) {
