@@ -79,15 +79,17 @@ class Coverage(NamedTuple):
     uv: np.ndarray  #: (k, 2)
     piece: np.ndarray  #: (k,) int32, from 0; a tool must lift between pieces
     line: np.ndarray  #: (k,) int32 of the raster; 0 on a spiral
-    arclength: np.ndarray  #: (k,) from the start of the piece, in space
+    arclength: np.ndarray  #: (k,) from the start of the piece along the path
     spacing: np.ndarray  #: (k,) distance in space to the neighbouring line; NaN where there is none
+    between: np.ndarray  #: (k,) bool; not of the pattern, but where the shortest way over the faces of a mesh bends
     pieces: int
     planned: int  #: points of the pattern in the plane; those missing lie outside of the valid region
 
 
 def coverage(map: Union[LogMap, InverseMap], radius: float, spacing: float, *, pattern: str = "raster",
              step: Optional[float] = None, angle: float = 0.0) -> Coverage:
-    """Lines of equal spacing in log coordinates, carried to space, normals included.
+    """Lines of equal spacing in log coordinates, carried to the surface, normals included. On meshes its points are joined by
+    shortest paths, which have points of their own where they bend over an edge.
 
     map : a `LogMap` with frames, or an `InverseMap`.
     radius : of the disc about the source. spacing : between lines or turns. step : between points; None: half of the
@@ -102,7 +104,8 @@ def coverage(map: Union[LogMap, InverseMap], radius: float, spacing: float, *, p
     Raises ValueError naming the argument.
     """
     options = checked(radius=radius, spacing=spacing, pattern=pattern, step=step, angle=angle)
-    return Coverage(*_inverse(map)._core.coverage(options))
+    inverse = _inverse(map)
+    return Coverage(*inverse._core.coverage(inverse.map._core, options))
 
 
 class Atlas(NamedTuple):

@@ -75,12 +75,16 @@ struct FoundCenter {
   std::vector<double> seen;  ///< coordinates of all points in a map from the center
 };
 
-/// Where a center lies in space: in the tangent plane of its vertex.
-std::optional<Vec3> beside_vertex(const Body& body, const Center& center) {
+/// Where a center lies in space.
+std::optional<Vec3> position_of(const Body& body, const Center& center) {
   if (body.grid() != nullptr) {
     Vec3 p = body.grid()->position(center.vertex);
     for (std::size_t a = 0; a < center.offset.size(); ++a) p[a] += center.offset[a];
     return p;
+  }
+  if (body.surface() != nullptr) {
+    if (body.surface()->positions().empty()) return std::nullopt;
+    return center_position(*body.surface(), center);
   }
   const auto frame = body.graph().frame(center.vertex.index);
   if (!frame || center.offset.size() != 2) return std::nullopt;
@@ -92,7 +96,7 @@ void place(const Maker& by, std::span<const Source> points, double radius, Found
   const Body& body = *by.body();
   Source source = source_at(found.center);
   std::optional<SurfacePoint> point;
-  found.position = beside_vertex(body, found.center);
+  found.position = position_of(body, found.center);
   if (body.surface() != nullptr && found.position) {
     const ClosestPoint closest = body.surface()->closest_point(*found.position);
     found.position = closest.position;
