@@ -29,8 +29,10 @@ namespace {
 
 LogMap solve(const Maker& maker, const SurfaceCurve& curve, const MapOptions& options) {
   if (const Solver* solver = maker.solver()) return solver->solver.solve(curve.source, options);
-  const ExactMapOptions exact{
-      .radius = options.radius, .frames = options.frames, .progress = options.progress.value_or(Progress{})};
+  ExactMapOptions exact = maker.exact();
+  exact.radius = options.radius;
+  exact.frames = options.frames;
+  exact.progress = options.progress.value_or(Progress{});
   return maker.body()->geodesics().log_map(curve.samples, exact).map;
 }
 
@@ -57,11 +59,18 @@ py::tuple stroke(const py::object& maker, const py::tuple& points, const Doubles
 }
 
 /// Rows; vertices that no row has (inside refined polygons) are passed over.
-py::array farthest(const BodyPtr& body, const py::tuple& first, Index count, const py::object& report) {
+/// @param tolerance  of exact distances; None: by a front
+py::array farthest(const BodyPtr& body, const py::tuple& first, Index count, const py::object& tolerance,
+                   const py::object& report) {
   const Places at = places(first);
+  std::optional<double> within;
+  if (!tolerance.is_none()) within = tolerance.cast<double>();
   return owned(compute(report, py::none(), [=](const Progress& progress) {
     std::vector<Index> rows;
-    for (Vertex vertex : farthest_points(body->graph(), body->vertices_near(at).at(0), count, progress))
+    const Vertex begin = body->vertices_near(at).at(0);
+    for (Vertex vertex :
+         within ? farthest_points(body->geodesics(), begin, count, {.tolerance = *within, .progress = progress})
+                : farthest_points(body->graph(), begin, count, progress))
       if (const auto row = body->row(vertex)) rows.push_back(row->index);
     return rows;
   }));
@@ -104,10 +113,12 @@ void place(const Maker& by, std::span<const Source> points, double radius, Found
     source = body.surface()->source(*point).source;
     if (const auto* inside = std::get_if<FacePoint>(&*point)) found.face = *inside;
   }
-  const LogMap map =
-      by.solver() != nullptr
-          ? by.solver()->solver.solve(source, {.radius = radius, .frames = true, .spread = false})
-          : body.geodesics().log_map(point.value(), {}, {.radius = radius, .frames = true, .progress = {}});
+  ExactMapOptions exact = by.exact();
+  exact.radius = radius;
+  exact.frames = true;
+  const LogMap map = by.solver() != nullptr
+                         ? by.solver()->solver.solve(source, {.radius = radius, .frames = true, .spread = false})
+                         : body.geodesics().log_map(point.value(), {}, exact);
   for (const Source& p : points)
     for (double z : map.coordinates(p)) found.seen.push_back(z);
 }

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <tuple>
 #include <utility>
 
 #include "ahm/error.hpp"
@@ -31,7 +32,7 @@ Maker::Maker(const py::object& given) {
   if (py::isinstance<Solver>(given))
     solver_ = given.cast<SolverPtr>();
   else
-    body_ = given.cast<BodyPtr>();
+    std::tie(body_, tolerance_) = given.cast<std::pair<BodyPtr, double>>();
 }
 
 namespace {

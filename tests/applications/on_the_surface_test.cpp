@@ -7,6 +7,7 @@
 #include "ahm/applications/coverage.hpp"
 #include "ahm/applications/mean.hpp"
 #include "ahm/applications/surface_curve.hpp"
+#include "ahm/error.hpp"
 #include "ahm/maps/log_map_solver.hpp"
 #include "ahm/testing/triangle_meshes.hpp"
 #include "ahm/testing/vectors.hpp"
@@ -155,6 +156,25 @@ TEST(OnTheSurface, CentersLieWhereTheirOffsetLeads) {
     const exact::ExactMap map = exact::exact_map(flat.surface, flat.surface.vertex_point(center.vertex), options);
     for (std::size_t a : {0, 1}) EXPECT_NEAR(flat.length_unit * map.target_coordinates(0)[a], center.offset[a], 1e-12);
   }
+}
+
+TEST(OnTheSurface, CentersWhoseOffsetLeadsOutLieOnTheBoundary) {
+  const Mesh mesh = flat_square(5, 0);
+  const auto surface = TriangleMeshSurface::build(mesh.positions, mesh.faces);
+  const auto corner = std::min_element(mesh.positions.begin(), mesh.positions.end());
+  const Vertex vertex = surface.vertex(Row(static_cast<Index>(corner - mesh.positions.begin())));
+  const Frame frame = surface.graph().frame(vertex.index).value();
+  const auto position = [&](const Vec3& offset) {
+    return center_position(surface, {.vertex = vertex, .offset = {dot(offset, frame.x), dot(offset, frame.y)}});
+  };
+  const Vec3 c = *corner;
+  const auto at = [&](double x, double y) { return Vec3{c[0] + x, c[1] + y, c[2]}; };
+  EXPECT_LT(apart(position({0.1, 0.05, 0}), at(0.1, 0.05)), 1e-15);
+  EXPECT_LT(apart(position({0.1, -0.05, 0}), at(0.1, 0)), 1e-15);
+  EXPECT_LT(apart(position({-0.05, 0.1, 0}), at(0, 0.1)), 1e-15);
+  EXPECT_LT(apart(position({-0.1, -0.05, 0}), at(0, 0)), 1e-15);
+  EXPECT_LT(apart(position({-1e-17, 1e-18, 0}), at(0, 0)), 1e-15);
+  EXPECT_THROW(center_position(surface, {.vertex = Vertex(99), .offset = {0, 0}}), InvalidArgument);
 }
 
 }  // namespace

@@ -108,6 +108,7 @@ void offer(CLI::App& app, CenterCommandOptions& o) {
   app.add_flag("--median", o.median, "Least sum of distances instead of squared distances");
   add_parsed(app, "--start", o.start, parse_source, "SPEC", "Where to begin (default: the heaviest point)");
   add_method(app, o.solve);
+  add_tolerance(app, o.solve);
   add_graph_options(app, o.input, o.solve);
   add_json(app, o.output);
   add_verbosity(app, o.output.verbosity);

@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
 
 #include "ahm/applications/mean.hpp"
@@ -11,12 +13,19 @@
 namespace ahm {
 namespace {
 
-/// From a vertex in the axes of its frame.
+/// From a vertex in the axes of its frame. What leads out of the surface at once goes along the boundary as far as it does.
 Vec3 end_of_trace(const ExactGeodesics& geodesics, const Center& center) {
-  const FlatTriangles& flat = geodesics.triangles();
-  const Vec2 offset{center.offset[0], center.offset[1]};
-  const exact::TracedPath way = exact::trace(flat.surface, flat.surface.vertex_point(center.vertex),
-                                             std::atan2(offset[1], offset[0]), length(offset) / flat.length_unit);
+  constexpr double pi = std::numbers::pi;
+  const auto& [surface, positions, unit] = geodesics.triangles();
+  double direction = std::atan2(center.offset[1], center.offset[0]), far = length(center.offset);
+  if (direction < 0) direction += 2 * pi;
+  if (const double sum = surface.angle_sum(center.vertex.index);
+      surface.on_boundary(center.vertex.index) && direction > sum) {
+    const double left = direction - sum, right = 2 * pi - direction;
+    far *= std::max(0.0, std::cos(std::min(left, right)));
+    direction = left < right ? sum : 0;
+  }
+  const exact::TracedPath way = exact::trace(surface, surface.vertex_point(center.vertex), direction, far / unit);
   return geodesics.position(way.points.back());
 }
 

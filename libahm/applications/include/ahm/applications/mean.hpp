@@ -72,7 +72,7 @@ Center geometric_median_of_points(const MapMaker& maps, std::span<const Source> 
                                   std::span<const double> weights = {}, const CenterOptions& options = {});
 
 /// Where a center lies in space, world units: straight on from its vertex along the offset, over flat faces (`exact::trace`,
-/// which ends at the boundary) or, without faces, over tangent planes (`trace_line`); of twisted polygons the nearest point.
+/// which ends at the boundary, or runs along it where the offset leads out) or, without faces, over tangent planes (`trace_line`); of twisted polygons the nearest point.
 /// @throws InvalidArgument (no positions; another surface's center)
 Vec3 center_position(const Surface& surface, const Center& center);
 
