@@ -37,6 +37,7 @@ struct MeshPoint {
 /// (length, 0) and the third corner of its face, the apex, above.
 struct HalfRecord {
   double length, apex_x, apex_y;
+  double back_x;       ///< length - apex_x without cancellation, where the apex is near the head
   double left, right;  ///< lengths of the sides tail - apex and head - apex
   Index tail, head, apex;
   Half beyond_left, beyond_right;  ///< half-edges of the faces beyond these sides, negative on the boundary
@@ -72,6 +73,7 @@ class PolyhedralSurface {
     return {f.length[s],
             f.apex_x[s],
             f.apex_y[s],
+            f.apex_x[n] * f.length[n] / f.length[s],
             f.length[p],
             f.length[n],
             f.tail[s],
