@@ -102,6 +102,15 @@ TEST(ExactMap, NamesMeshesOnWhichWindowsDoNotEnd) {
       ++refused;
     }
   EXPECT_GT(refused, 0);
+  // Lines end, or say that they do not.
+  int lost = 0;
+  for (Index face = 0; face < exact.triangles().surface.face_count(); face += 4) try {
+      (void)exact::trace(exact.triangles().surface, {face, {0.25, 0.25, 0.5}}, 0.3 * face, 1);
+    } catch (const InvalidArgument& e) {
+      EXPECT_EQ(e.fault(), "line_too_long") << e.what();
+      ++lost;
+    }
+  EXPECT_GT(lost, 0);
 }
 
 /// Where angles are those of rounding, surfaces or maps are refused, or every vertex has a distance; within a tolerance it

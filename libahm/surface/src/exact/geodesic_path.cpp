@@ -112,6 +112,9 @@ void check_exact(const ExactMap& map) {
     throw InvalidArgument("'map' has the tolerance " + detail::number(map.tolerance()) + "; paths need an exact one");
 }
 
+/// Lines of more are taken for lost.
+constexpr std::size_t most_crossings = 1000000;
+
 GeodesicPath without_points(Status status) {
   GeodesicPath path;
   path.status = status;
@@ -121,7 +124,7 @@ GeodesicPath without_points(Status status) {
 /// Follows a straightest geodesic.
 class Tracer {
  public:
-  Tracer(const PolyhedralSurface& surface, double length) : surface_(surface), left_(length) {}
+  Tracer(const PolyhedralSurface& surface, double length) : surface_(surface), length_(length), left_(length) {}
 
   TracedPath from(const MeshPoint& start, Line line) {
     path_.points.push_back(start);
@@ -137,6 +140,7 @@ class Tracer {
         if (surface_.on_boundary(vertex))
           return end(TraceEnd::boundary, line, exit.walked, surface_.vertex_point(Vertex{vertex}));
         line = through_vertex(line, corner, exit.walked);
+        check_count(done_);
         exit = leave_corner(line);
         continue;
       }
@@ -144,6 +148,7 @@ class Tracer {
       const MeshPoint crossed = point_on(surface_, exit.side, exit.along);
       if (beyond.half < 0) return end(TraceEnd::boundary, line, exit.walked, crossed);
       path_.points.push_back(crossed);
+      check_count(done_ + exit.walked);
       line = beyond;
       exit = leave_upwards(surface_, line);
     }
@@ -156,6 +161,15 @@ class Tracer {
     path_.direction = positive_angle(angle_in_face(surface_, line));
     path_.points.push_back(point);
     return std::move(path_);
+  }
+
+  void check_count(double walked) const {
+    if (path_.points.size() < most_crossings) return;
+    throw InvalidArgument("line_too_long",
+                          "the line crosses more than " + std::to_string(most_crossings) + " sides within " +
+                              detail::number(walked) + " of its length " + detail::number(length_) + ", near face " +
+                              std::to_string(path_.points.back().face),
+                          "give a smaller length, or repair needles there");
   }
 
   /// Leaves the face opposite to the corner that the line starts in.
@@ -174,6 +188,7 @@ class Tracer {
   }
 
   const PolyhedralSurface& surface_;
+  double length_;
   double left_;      ///< to go from the start of the current line
   double done_ = 0;  ///< up to there
   TracedPath path_;

@@ -73,7 +73,8 @@ struct TracedPath {
 /// exponential map: where a path leaves a point in this direction, with no vertex on its way, the trace follows it.
 /// @param direction  as `ExactMap::direction`: at a vertex scaled by `angle_scale`, elsewhere from side 0 of the face
 /// @param length     world units, >= 0
-/// @throws InvalidArgument (a point outside its face, direction or length)
+/// @throws InvalidArgument (a point outside its face, direction or length; fault line_too_long: more than a million sides are
+/// crossed)
 TracedPath trace(const PolyhedralSurface& surface, const MeshPoint& from, double direction, double length);
 
 }  // namespace ahm::exact
