@@ -177,6 +177,18 @@ TEST(Trace, IsStraightInThePlaneWhateverTheTriangles) {
   }
 }
 
+TEST(Trace, RunsAlongTheBoundaryWithinRounding) {
+  const Polyhedron solid(flat_square(5, 0));
+  const MeshPoint from = solid.surface.vertex_point(Vertex(2));  // on a side
+  const double angle = solid.surface.angle_sum(2);
+  for (double direction : {-1e-12, 0.0, 1e-12, 2 * std::numbers::pi - 1e-12, angle, angle + 1e-12}) {
+    const TracedPath ray = exact::trace(solid.surface, from, direction, 0.4);
+    EXPECT_NEAR(distance(solid.position(from), solid.position(ray.points.back())), 0.4, 1e-11) << direction;
+  }
+  EXPECT_THROW(exact::trace(solid.surface, from, angle + 0.1, 1), InvalidArgument);
+  EXPECT_THROW(exact::trace(solid.surface, from, -0.1, 1), InvalidArgument);
+}
+
 TEST(Trace, PassesAVertexWithEqualAnglesOnBothSides) {
   // Towards the apex of a cone: it leaves on the opposite side of the unrolled cone, where the paths of both sides meet.
   for (double angle : {4.0, 8.0}) {

@@ -69,7 +69,8 @@ struct TracedPath {
   double direction = 0;
 };
 
-/// The straightest geodesic from a point: straight through faces, through vertices with equal angles on both sides. The
+/// The straightest geodesic from a point: straight through faces, through vertices with equal angles on both sides, and on
+/// where it runs along the boundary or, at one of its vertices, pi lies on one side. The
 /// exponential map: where a path leaves a point in this direction, with no vertex on its way, the trace follows it.
 /// @param direction  as `ExactMap::direction`: at a vertex scaled by `angle_scale`, elsewhere from side 0 of the face
 /// @param length     world units, >= 0
