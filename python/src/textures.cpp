@@ -101,7 +101,8 @@ py::tuple coverage(const InversePtr& map, const MapPtr& of, const py::dict& opti
   read(options, "angle", o.angle);
   read_choice(options, "pattern", o.pattern,
               {{"raster", CoveragePattern::raster}, {"spiral", CoveragePattern::spiral}});
-  const CoveragePath path = compute(py::none(), py::none(), [=](const Progress&) { return coverage_path(of->surface(), *map, o); });
+  const CoveragePath path =
+      compute(py::none(), py::none(), [=](const Progress&) { return coverage_path(of->surface(), *map, o); });
   std::vector<Vec3> position, normal, heading;
   std::vector<Vec2> uv;
   std::vector<Index> piece, line;

@@ -70,18 +70,12 @@ class PolyhedralSurface {
     const auto [face, s] = split(h);
     const Face& f = face_[face];
     const std::uint32_t n = s == 2 ? 0 : s + 1, p = s == 0 ? 2 : s - 1;
-    return {f.length[s],
-            f.apex_x[s],
-            f.apex_y[s],
-            f.apex_x[n] * f.length[n] / f.length[s],
-            f.length[p],
-            f.length[n],
-            f.tail[s],
-            f.tail[n],
-            f.tail[p],
-            f.beyond[p],
-            f.beyond[n],
-            static_cast<std::uint8_t>((f.mirrored >> p & 1) | (f.mirrored >> n & 1) << 1)};
+    return {f.length[s], f.apex_x[s],
+            f.apex_y[s], f.apex_x[n] * f.length[n] / f.length[s],
+            f.length[p], f.length[n],
+            f.tail[s],   f.tail[n],
+            f.tail[p],   f.beyond[p],
+            f.beyond[n], static_cast<std::uint8_t>((f.mirrored >> p & 1) | (f.mirrored >> n & 1) << 1)};
   }
   /// Angle of the face at the tail of a half-edge.
   double angle(Half h) const {
