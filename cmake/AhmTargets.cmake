@@ -38,13 +38,15 @@ function(ahm_compile_together target)
   if(NOT CMAKE_DISABLE_PRECOMPILE_HEADERS)
     set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 6)
     set_source_files_properties(${ARG_ALONE} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+    # GCC takes a source that is included for a header, whose unnamed namespaces would be warned of.
+    target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
   endif()
 endfunction()
 
-# ahm_library(<component> SOURCES <file...>): the static or shared library ahm_<component>, alias ahm::<component>, with
-# its public headers in include/ and private ones beside its sources in src/.
+# ahm_library(<component> SOURCES <file...> [ALONE <file...>]): the static or shared library ahm_<component>, alias
+# ahm::<component>, with its public headers in include/ and private ones beside its sources in src/; ALONE as above.
 function(ahm_library component)
-  cmake_parse_arguments(ARG "" "" "SOURCES" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "SOURCES;ALONE" ${ARGN})
   set(target ahm_${component})
   add_library(${target} ${ARG_SOURCES})
   add_library(ahm::${component} ALIAS ${target})
@@ -55,6 +57,7 @@ function(ahm_library component)
   target_include_directories(${target} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}/src)
   target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:ahm_util>)
   target_precompile_headers(${target} REUSE_FROM ahm_base)
+  ahm_compile_together(${target} ALONE ${ARG_ALONE})
   # Until 1.0 the interface may change with every minor version. DEFINE_SYMBOL: compiled alike, static or shared.
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${component} POSITION_INDEPENDENT_CODE ON DEFINE_SYMBOL ""
     VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})

@@ -6,6 +6,7 @@
 #include <pybind11/pybind11.h>
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -25,6 +26,8 @@ using Indices = py::array_t<Index, py::array::c_style>;
 using Offsets = py::array_t<Offset, py::array::c_style>;
 using Bytes = py::array_t<std::uint8_t, py::array::c_style>;
 using Shape = std::vector<py::ssize_t>;
+
+inline constexpr double nan = std::numeric_limits<double>::quiet_NaN();  ///< where there is no value
 
 /// An array over memory that `owner` keeps alive.
 py::array array_over(const py::dtype& type, const Shape& shape, const void* data, std::shared_ptr<const void> owner,

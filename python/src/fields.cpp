@@ -1,5 +1,4 @@
 // Transport, extension and distance, by rows; and the factored operators themselves.
-#include <limits>
 #include <utility>
 
 #include "ahm/error.hpp"
@@ -15,8 +14,6 @@
 
 namespace ahm::python {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// A field by rows: of the first vertex of each.
 VertexField by_rows(const Body& body, VertexField field) {

@@ -1,6 +1,5 @@
 // Exact distances, shortest paths and straightest geodesics over the flat triangles of meshes.
 #include <array>
-#include <limits>
 #include <utility>
 
 #include "ahm/error.hpp"
@@ -12,8 +11,6 @@
 
 namespace ahm::python {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// Checked: each lies on the triangles.
 std::vector<SurfacePoint> points_of(const Body& body, const Places& at) {

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <limits>
 #include <tuple>
 #include <utility>
 
@@ -36,8 +35,6 @@ Maker::Maker(const py::object& given) {
 }
 
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// @throws ResourceExhausted where maps would take far more memory than there is, before any of it is taken
 void check_memory(const TangentGraph& graph, int order) {

@@ -16,8 +16,6 @@
 namespace ahm::python {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
 using InversePtr = std::shared_ptr<InverseMap>;
 
 InversePtr inverse(const MapPtr& map, const py::dict& options) {

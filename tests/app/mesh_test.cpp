@@ -165,6 +165,34 @@ struct Corners {
   }
 };
 
+TEST(MeshCommand, CornersKeepColorsAndColumns) {
+  const Folder folder;
+  std::string sheet = "ply\nformat ascii 1.0\nelement vertex 9\n";
+  for (const char* name : {"float x", "float y", "float z", "uchar red", "uchar green", "uchar blue", "float t"})
+    sheet += std::string("property ") + name + "\n";
+  sheet += "element face 4\nproperty list uchar int vertex_indices\nend_header\n";
+  for (int i = 0; i < 9; ++i)
+    sheet += std::to_string(i / 3) + " " + std::to_string(i % 3) + " 0 " + std::to_string(20 * i) + " 7 9 " +
+             std::to_string(i) + "\n";
+  sheet += "4 0 3 4 1\n4 1 4 5 2\n4 3 6 7 4\n4 4 7 8 5\n";
+  const Outcome outcome = run({"logmap", folder.write("quads.ply", sheet), "--source", "4", "-o", folder / "map.csv",
+                               "--corners", folder / "map.ply"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const io::Geometry back = io::read(folder / "map.ply");
+  ASSERT_EQ(back.colors.size(), back.points.size());
+  const auto of = [&](const std::string& name) {
+    for (const io::Property& property : back.properties)
+      if (property.name == name) return property.values;
+    ADD_FAILURE() << name;
+    return std::vector<double>(back.points.size());
+  };
+  const std::vector<double> number = of("input_t"), point = of("point");  // t is the map's
+  for (std::size_t v = 0; v < back.points.size(); ++v) {
+    EXPECT_EQ(number[v], point[v]);
+    EXPECT_EQ(back.colors[v], (std::array{static_cast<std::uint8_t>(20 * point[v]), std::uint8_t{7}, std::uint8_t{9}}));
+  }
+}
+
 TEST(MeshCommand, CornersHoldTheMapOfTheirVertices) {
   const Folder folder;
   std::string sheet = "OFF\n9 4 0\n";

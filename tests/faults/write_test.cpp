@@ -44,7 +44,7 @@ std::vector<Written> all_writers() {
     io::write(path, rows);
   };
   const Writer textured = [](const std::filesystem::path& path) {
-    const io::MeshPart part{"ball", mesh.positions, {}, {begin, corners}};
+    const io::MeshPart part{.name = "ball", .points = mesh.positions, .faces = {begin, corners}};
     io::write_textured(path, std::span(&part, 1));
   };
   std::vector<Written> all{{"a.csv", table}, {"a.ply", table}, {"a.obj", textured}, {"a.glb", textured}};

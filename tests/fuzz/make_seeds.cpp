@@ -163,7 +163,7 @@ void add_files(const Seeds& seeds) {
   table.faces = {begin, corners};
   io::write(seeds.file("vtp", "appended.vtp"), table);
   io::write(seeds.file("csv", "cloud.csv"), table_of(cloud.points, cloud.normals));
-  const std::vector<io::MeshPart> parts{{"ball", mesh.positions, {}, {begin, corners}}};
+  const std::vector<io::MeshPart> parts{{.name = "ball", .points = mesh.positions, .faces = {begin, corners}}};
   io::write_textured(seeds.file("glb", "ball.glb"), parts);
   std::string xyz, obj = "# a mesh\n", off = "OFF\n12 20 0\n", stl = "solid ball\n";
   for (const Vec3& p : mesh.positions) {

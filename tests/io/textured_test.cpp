@@ -213,6 +213,54 @@ TEST_F(Textured, PlyHasAVertexForEveryPairOfCoordinatesOfAPoint) {
   EXPECT_FALSE(std::filesystem::exists(path("b.ply")));
 }
 
+TEST_F(Textured, ColorsAndPropertiesGoWithThePoints) {
+  const Shape shape;
+  std::vector<std::array<std::uint8_t, 3>> colors;
+  std::vector<Property> properties{{"heat", {}}, {"area", {}}};
+  for (std::size_t v = 0; v < shape.points.size(); ++v) {
+    colors.push_back({static_cast<std::uint8_t>(40 * v), 200, static_cast<std::uint8_t>(255 - v)});
+    properties[0].values.push_back(0.5 * static_cast<double>(v));
+    properties[1].values.push_back(1e-30);
+  }
+  MeshPart mapped = shape.part(nullptr), rest = mapped;
+  rest.name = "rest", rest.texture_coordinates = {};
+  mapped.colors = rest.colors = colors;
+  mapped.properties = properties;
+  rest.properties = std::span(properties).first(1);  // what not all have is left out
+  write_textured(path("a.ply"), std::array{mapped, rest});
+  write_textured(path("a.obj"), std::array{mapped});
+  const Geometry ply = read(path("a.ply")), obj = read(path("a.obj"));
+  const auto named = [&](const char* name) {
+    return std::find_if(ply.properties.begin(), ply.properties.end(),
+                        [&](const Property& p) { return p.name == name; });
+  };
+  ASSERT_NE(named("heat"), ply.properties.end());
+  EXPECT_EQ(named("area"), ply.properties.end());
+  for (std::size_t c = 0; c < ply.face_vertices.size(); ++c) {
+    const Index v = shape.vertices[c % shape.vertices.size()];
+    EXPECT_EQ(ply.colors[ply.face_vertices[c]], colors[v]);
+    EXPECT_EQ(named("heat")->values[ply.face_vertices[c]], 0.5 * v);
+  }
+  ASSERT_EQ(obj.face_vertices.size(), shape.vertices.size());
+  for (std::size_t c = 0; c < obj.face_vertices.size(); ++c)
+    EXPECT_EQ(obj.colors[obj.face_vertices[c]], colors[shape.vertices[c]]);
+
+  write_textured(path("a.glb"), std::array{mapped});
+  const Glb glb(contents(path("a.glb")));
+  const auto& attributes = glb.json["meshes"][0]["primitives"][0]["attributes"];
+  const auto light = glb.accessor<float>(attributes.at("COLOR_0"));
+  EXPECT_EQ(light[0], 0);
+  EXPECT_NEAR(light[1], 0.57758, 1e-5);  // of level 200
+  EXPECT_EQ(light[2], 1);
+  EXPECT_EQ(glb.json["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"], (std::vector<double>{1, 1, 1, 1}));
+
+  properties[0].name = "s";
+  EXPECT_THROW(write_textured(path("b.ply"), std::array{mapped}), InvalidArgument);
+  colors.pop_back();
+  mapped.colors = colors;
+  EXPECT_THROW(write_textured(path("b.obj"), std::array{mapped}), InvalidArgument);
+}
+
 TEST_F(Textured, RefusesWhatDoesNotFitAndLeavesNothingBehind) {
   const Shape shape;
   const Image image = gradient(2, 2);

@@ -368,6 +368,16 @@ class Page(unittest.TestCase):
     def all_is_seen(self):
         return self.js("const p = document.getElementById('panel'); return p.scrollHeight <= p.clientHeight")
 
+    def expect_all_seen_with_larger_letters_and_a_longer_command(self, tool):
+        self.js("""document.body.style.fontSize = '14px';
+            document.body.style.fontFamily = 'DejaVu Sans, Verdana';
+            ahm.kept = document.getElementById('command').textContent;
+            document.getElementById('command').textContent = ahm.kept + ' /a/long/path/to/a/file'.repeat(12)""")
+        self.assertTrue(self.all_is_seen(), tool)
+        self.assertGreater(self.js("return document.getElementById('command').clientHeight"), 28, tool)
+        self.shot("panel_large_" + tool)
+        self.js("document.body.removeAttribute('style'); document.getElementById('command').textContent = ahm.kept")
+
     def test_keyboard_theme_and_a_small_screen(self):
         self.open(self.mesh)
         body = self.driver.find_element(By.ID, "stage")
@@ -387,6 +397,7 @@ class Page(unittest.TestCase):
             self.settled()
             self.assertTrue(self.all_is_seen(), tool)
             self.shot("panel_" + tool)
+            self.expect_all_seen_with_larger_letters_and_a_longer_command(tool)
         self.js("document.getElementById('method_section').open = false")
         # What a browser leaves of such a screen.
         self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {"width": 1366, "height": 620, "deviceScaleFactor": 1, "mobile": False})

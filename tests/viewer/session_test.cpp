@@ -214,14 +214,20 @@ TEST_F(ViewerSession, RefusesWhatItCannotAnswer) {
 }
 
 TEST_F(ViewerSession, OfManyRequestsOfAClientTheNewestIsAnswered) {
-  const std::string body = request({{"source", {{"row", 3}}}});
-  std::vector<Answer> answers(24);
-  {
-    std::vector<std::jthread> threads;
-    for (Answer& answer : answers) threads.emplace_back([&] { answer = session.answer("map", body); });
+  const json source = {{"source", {{"row", 3}}}}, cover = {{"cover", 0.5}, {"spacing", 0.1}, {"pattern", "raster"}};
+  json tool_path = source;
+  tool_path.update(cover);
+  for (const auto& [name, body] : {std::pair("map", request(source)), std::pair("coverage", request(tool_path)),
+                                   std::pair("path", request({{"from", {{"row", 0}}}, {"to", {{"row", 30}}}}))}) {
+    std::vector<Answer> answers(24);
+    {
+      std::vector<std::jthread> threads;
+      for (Answer& answer : answers)
+        threads.emplace_back([&, name = name, body = body] { answer = session.answer(name, body); });
+    }
+    for (const Answer& answer : answers) EXPECT_TRUE(answer.status == 200 || answer.status == 409) << answer.body;
+    EXPECT_EQ(session.answer(name, body).status, 200);
   }
-  for (const Answer& answer : answers) EXPECT_TRUE(answer.status == 200 || answer.status == 409) << answer.body;
-  EXPECT_EQ(session.answer("map", body).status, 200);
 }
 
 TEST(ViewerSessionOfACloud, TellsGradientsOfEveryDiscAndHasNoPaths) {

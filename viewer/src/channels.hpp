@@ -1,4 +1,4 @@
-// The newest request of each client counts; its older ones are told to stop.
+// The newest request of a kind of each client counts; its older ones are told to stop.
 #pragma once
 
 #include <cstdint>
@@ -6,28 +6,36 @@
 #include <mutex>
 #include <stop_token>
 #include <string>
+#include <utility>
 
 namespace ahm::viewer {
 
 class Channels {
  public:
-  /// Stops what this client asked for before.
-  std::stop_token begin(const std::string& client) {
+  enum class Kind { map, path, coverage };
+
+  /// Stops what this client asked for before, of this kind.
+  std::stop_token begin(const std::string& client, Kind kind) {
     const std::lock_guard lock(mutex_);
-    if (newest_.size() >= most && !newest_.contains(client)) forget_oldest();
-    Entry& entry = newest_[client];
+    const std::pair key(client, kind);
+    if (newest_.size() >= most && !newest_.contains(key)) forget_oldest();
+    Entry& entry = newest_[key];
     entry.stop.request_stop();
     entry = {std::stop_source(), ++count_};
     return entry.stop.get_token();
   }
 
+  /// For what only `stop_all` ends.
+  std::stop_token until_the_end() const { return end_.get_token(); }
+
   void stop_all() {
     const std::lock_guard lock(mutex_);
-    for (auto& [client, entry] : newest_) entry.stop.request_stop();
+    end_.request_stop();
+    for (auto& [key, entry] : newest_) entry.stop.request_stop();
   }
 
  private:
-  static constexpr std::size_t most = 64;
+  static constexpr std::size_t most = 192;
   struct Entry {
     std::stop_source stop;
     std::uint64_t number = 0;
@@ -41,7 +49,8 @@ class Channels {
   }
 
   std::mutex mutex_;
-  std::map<std::string, Entry> newest_;
+  std::stop_source end_;
+  std::map<std::pair<std::string, Kind>, Entry> newest_;
   std::uint64_t count_ = 0;
 };
 

@@ -172,7 +172,7 @@ struct Session::Impl {
   }
 
   Answer answer_map(const Request& request) {
-    const std::stop_token stop = channels.begin(request.client());
+    const std::stop_token stop = channels.begin(request.client(), Channels::Kind::map);
     const SurfacePoint source = request.point("source");
     const Settings settings = request.settings(options.settings);
     const PlacedSource placed = surface.source(source, settings.u_axis);
@@ -193,7 +193,7 @@ struct Session::Impl {
   }
 
   Answer answer_stroke(const Request& request) {
-    const std::stop_token stop = channels.begin(request.client());
+    const std::stop_token stop = channels.begin(request.client(), Channels::Kind::map);
     const std::vector<SurfacePoint> points = request.points("points");
     const Settings settings = of_curve(request.settings(options.settings));
     const std::vector<CurvePoint> given(points.begin(), points.end());
@@ -230,10 +230,11 @@ struct Session::Impl {
   }
 
   Answer answer_path(const Request& request) {
+    const std::stop_token stop = channels.begin(request.client(), Channels::Kind::path);
     const std::array ends{request.point("from"), request.point("to")};
     for (const SurfacePoint& end : ends) surface.source(end);  // checks
     SurfaceLine path;
-    in_turn({}, [&] { path = path_between(ends); });
+    in_turn(stop, [&] { path = path_between(ends); });
     if (path.status != Status::ok)
       throw InvalidArgument("there is no path: the surface does not connect the two points");
     return answer_of(
@@ -245,6 +246,7 @@ struct Session::Impl {
   }
 
   Answer answer_coverage(const Request& request) {
+    const std::stop_token stop = channels.begin(request.client(), Channels::Kind::coverage);
     const SurfacePoint source = request.point("source");
     const Settings settings = of_patch(request.settings(options.settings));
     CoverageOptions cover;
@@ -257,7 +259,7 @@ struct Session::Impl {
     const PlacedSource placed = surface.source(source, settings.u_axis);
     Settings reach = settings;  // the tool path needs no map of the rest, whose factors would take long
     if (makers.is_large()) reach.radius = 1.5 * cover.radius;
-    const LogMap made = in_turn({}, [&] { return map(source, placed, reach, {}, true); });
+    const LogMap made = in_turn(stop, [&] { return map(source, placed, reach, stop, true); });
     const CoveragePath path = coverage_path(inverse_map(surface, made, {.threads = options.threads}), cover);
     if (path.points.empty()) throw InvalidArgument("no line of the pattern meets a trusted part of the surface");
     std::vector<Vec3> points;
@@ -285,7 +287,8 @@ struct Session::Impl {
     const SurfacePoint source = request.point("source");
     const Settings settings = request.settings(options.settings);
     const PlacedSource placed = surface.source(source, settings.u_axis);
-    const LogMap made = in_turn({}, [&] { return map(source, placed, settings, {}); });
+    const std::stop_token stop = channels.until_the_end();
+    const LogMap made = in_turn(stop, [&] { return map(source, placed, settings, stop); });
     const RowLogMap rows = surface.on_rows(made);
     const std::vector<double> quality = quality_of(made, rows);
     return {200, "application/octet-stream",

@@ -51,7 +51,8 @@ void write_results(const LogmapOptions& options, const PlacedSource& source, con
 }
 
 /// The faces as they were given, with the map at their corners.
-void write_corners(const std::string& path, const Surface& surface, const LogMap& map) {
+void write_corners(const std::string& path, const Input& input, const LogMap& map) {
+  const Surface& surface = input.surface();
   const FaceList all = surface.faces();
   if (all.size() == 0) throw InvalidArgument("--corners " + path + ": the surface has no faces");
   const std::vector<Vec2> at = surface.on_corners(map);
@@ -70,6 +71,9 @@ void write_corners(const std::string& path, const Surface& surface, const LogMap
   std::vector<io::MeshPart> parts;
   if (!mapped.empty()) parts.push_back(mapped.view("map"));
   if (!rest.empty()) parts.push_back(rest.view("rest"));
+  std::vector<io::Property> properties = input.geometry.properties;
+  for (io::Property& property : properties) property.name = input_column(property.name);
+  for (io::MeshPart& part : parts) part.colors = input.geometry.colors, part.properties = properties;
   io::write_textured(path, parts);
 }
 
@@ -105,7 +109,7 @@ void map_from_source(const LogmapOptions& options, const Input& input, std::opti
   const std::vector<Vec3> away =
       options.gradient ? distance_gradients(input.surface(), map, rows) : std::vector<Vec3>();
   write_results(options, source, rows, quality, away, results, journal);
-  if (!options.corners.empty()) write_corners(options.corners, input.surface(), map);
+  if (!options.corners.empty()) write_corners(options.corners, input, map);
   report({options.input.path, options.source.spec, options.solve, input, maps->solver, source, map, rows, quality,
           is_named},
          options.output, journal);

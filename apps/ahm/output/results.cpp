@@ -77,6 +77,8 @@ Results::~Results() {
 namespace {
 
 /// Results have their names to themselves: a column of the input that is called like one is `input_` and its name.
+}  // namespace
+
 std::string input_column(const std::string& name) {
   constexpr std::string_view own[] = {
       "index", "x",  "y",  "z",     "nx",       "ny",    "nz",     "red",     "green",  "blue",
@@ -84,8 +86,6 @@ std::string input_column(const std::string& name) {
       "gx",    "gy", "gz", "label", "point"};
   return std::ranges::find(own, name) == std::end(own) ? name : "input_" + name;
 }
-
-}  // namespace
 
 io::Table table_of(const io::Geometry& input, const std::vector<Vec3>& normals,
                    const std::vector<std::array<std::uint8_t, 3>>& colors) {

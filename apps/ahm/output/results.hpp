@@ -27,6 +27,9 @@ void comment_on_statuses(const std::vector<Status>& status, const std::string& i
 /// @param advice   what to do about it in this subcommand
 void comment_on_quality(const std::vector<double>& quality, std::string_view advice, Journal& journal);
 
+/// What a column of the input is called in outputs: as it was, or input_NAME beside a column of our own.
+std::string input_column(const std::string& name);
+
 /// The points, faces and further columns of the input, with these normals and colors (empty: none). All has to outlive
 /// the table.
 io::Table table_of(const io::Geometry& input, const std::vector<Vec3>& normals,

@@ -5,11 +5,11 @@
 
 #include "ahm/util/parallel.hpp"
 #include "ahm/util/vec.hpp"
+#include "points_per_task.hpp"
 
 namespace ahm::pointcloud {
 namespace {
 
-constexpr Offset chunk = 4096;
 constexpr Index nearest_few = 6;  ///< neighbours per point that noise is measured on
 
 /// Standard deviation of a normal distribution over the median of its absolute value.
@@ -34,7 +34,7 @@ double squared_excess(double offset, double noise) {
 std::vector<double> offsets_of(const CleanPoints& cloud, const Neighborhoods& neighborhoods,
                                const TangentPlanes& planes, Index begin, Index end, unsigned threads) {
   std::vector<double> offsets(static_cast<std::size_t>(end - begin) * nearest_few, -1.0);
-  detail::parallel_chunks(end - begin, chunk, threads, [&](Offset first, Offset last) {
+  detail::parallel_chunks(end - begin, points_per_task, threads, [&](Offset first, Offset last) {
     for (Offset i = first; i < last; ++i) {
       const auto point = static_cast<Index>(begin + i);
       if (!planes.has_plane(point)) continue;

@@ -7,11 +7,10 @@
 #include "ahm/util/parallel.hpp"
 #include "ahm/util/vec.hpp"
 #include "edge_unfolding.hpp"
+#include "points_per_task.hpp"
 
 namespace ahm::pointcloud {
 namespace {
-
-constexpr Offset chunk = 4096;
 
 /// A given plane is contradicted when its slope is this many times that of the plane fitted to the points, and more than
 /// normals written with three digits have.
@@ -65,7 +64,7 @@ std::vector<char> take_given_planes(const CleanPoints& cloud, const Neighborhood
                                     std::span<const Vec3> given, unsigned threads, TangentPlanes& planes) {
   const auto n = static_cast<Offset>(cloud.points.size());
   std::vector<char> missing(static_cast<std::size_t>(n), 0), contradicted(static_cast<std::size_t>(n), 0);
-  detail::parallel_chunks(n, chunk, threads, [&](Offset begin, Offset end) {
+  detail::parallel_chunks(n, points_per_task, threads, [&](Offset begin, Offset end) {
     for (Offset i = begin; i < end; ++i) {
       const auto point = static_cast<Index>(i);
       missing[i] = given[i] == Vec3{0, 0, 0};

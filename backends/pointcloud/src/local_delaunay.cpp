@@ -7,11 +7,10 @@
 #include "ahm/util/parallel.hpp"
 #include "edge_unfolding.hpp"
 #include "plane_axes.hpp"
+#include "points_per_task.hpp"
 
 namespace ahm::pointcloud {
 namespace {
-
-constexpr Offset chunk = 4096;
 
 /// Oriented normals further apart than 120 degrees belong to different sheets.
 constexpr double sheet_cosine = -0.5;
@@ -114,7 +113,7 @@ std::vector<Triangle> unique_triangles(const std::vector<std::vector<Triangle>>&
   std::vector<Offset> fill(begin.begin(), begin.end() - 1);
   for (const auto& part : parts)
     for (const Triangle& t : part) rest[fill[t[0]]++] = {t[1], t[2]};
-  detail::parallel_chunks(n, chunk, threads, [&](Offset first, Offset last) {
+  detail::parallel_chunks(n, points_per_task, threads, [&](Offset first, Offset last) {
     for (Offset i = first; i < last; ++i) {
       const auto bucket = rest.begin() + begin[i];
       std::sort(bucket, rest.begin() + begin[i + 1]);
@@ -134,11 +133,11 @@ std::vector<Triangle> local_delaunay(const CleanPoints& cloud, const Neighborhoo
                                      const TangentPlanes& planes, bool oriented, const PerPart& noise,
                                      const CloudOptions& options, CloudDetails& report) {
   const auto n = static_cast<Offset>(cloud.points.size());
-  std::vector<std::vector<Triangle>> parts(static_cast<std::size_t>((n + chunk - 1) / chunk));
+  std::vector<std::vector<Triangle>> parts(static_cast<std::size_t>((n + points_per_task - 1) / points_per_task));
   std::atomic<Offset> too_long{0}, other_sheet{0}, too_steep{0};
-  detail::parallel_chunks(n, chunk, options.threads, [&](Offset begin, Offset end) {
+  detail::parallel_chunks(n, points_per_task, options.threads, [&](Offset begin, Offset end) {
     StarTriangulator star(cloud, neighborhoods, planes, oriented, noise, options.max_edge_ratio);
-    auto& part = parts[begin / chunk];
+    auto& part = parts[begin / points_per_task];
     part.reserve(static_cast<std::size_t>(end - begin) * 6);
     for (Offset i = begin; i < end; ++i)
       if (planes.has_plane(static_cast<Index>(i))) star.triangulate(static_cast<Index>(i), part);

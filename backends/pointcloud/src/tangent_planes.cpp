@@ -14,11 +14,10 @@
 #include "ahm/util/parallel.hpp"
 #include "ahm/util/vec.hpp"
 #include "given_planes.hpp"
+#include "points_per_task.hpp"
 
 namespace ahm::pointcloud {
 namespace {
-
-constexpr Offset chunk = 4096;  // points per task
 
 /// Neighbours are narrow, and more of them are wanted, when their second principal variance is below this share of the
 /// first.
@@ -67,7 +66,7 @@ bool drop_unreachable(const CleanPoints& cloud, const CloudOptions& options, std
                       Neighborhoods& result) {
   std::vector<double> radius = result.radius;
   std::atomic<bool> all{true};
-  detail::parallel_chunks(static_cast<Offset>(counts.size()), chunk, options.threads, [&](Offset begin, Offset end) {
+  detail::parallel_chunks(static_cast<Offset>(counts.size()), points_per_task, options.threads, [&](Offset begin, Offset end) {
     for (Offset i = begin; i < end; ++i) {
       const auto first = result.indices.begin() + i * result.k;
       const auto last = std::remove_if(first, first + counts[i], [&](Index j) {
@@ -147,9 +146,9 @@ void fit_planes(const CleanPoints& cloud, const NeighborSearch& search, const Cl
                 Neighborhoods& neighborhoods, TangentPlanes& planes) {
   const auto n = static_cast<Offset>(cloud.points.size());
   planes.normals.assign(static_cast<std::size_t>(n), Vec3{0, 0, 0});
-  std::vector<std::vector<WiderNeighborhood>> wider(static_cast<std::size_t>((n + chunk - 1) / chunk));
+  std::vector<std::vector<WiderNeighborhood>> wider(static_cast<std::size_t>((n + points_per_task - 1) / points_per_task));
   std::atomic<Index> thick{0};
-  detail::parallel_chunks(n, chunk, options.threads, [&](Offset begin, Offset end) {
+  detail::parallel_chunks(n, points_per_task, options.threads, [&](Offset begin, Offset end) {
     Index thick_here = 0;
     for (Offset i = begin; i < end; ++i) {
       const auto point = static_cast<Index>(i);
@@ -157,7 +156,7 @@ void fit_planes(const CleanPoints& cloud, const NeighborSearch& search, const Cl
       if (!(fit.ratio > narrow_ratio) && n > neighborhoods.k + 1) {
         WiderNeighborhood candidate{point, {}};
         fit = fit_wider(cloud.points, search, neighborhoods.k, options.max_edge_ratio, candidate);
-        wider[begin / chunk].push_back(std::move(candidate));
+        wider[begin / points_per_task].push_back(std::move(candidate));
       }
       planes.normals[i] = fit.normal;
       thick_here += fit.thickness > thick_ratio;
@@ -182,7 +181,7 @@ Neighborhoods find_neighborhoods(const CleanPoints& cloud, const NeighborSearch&
   std::vector<Index> counts(static_cast<std::size_t>(n));
   result.indices.resize(static_cast<std::size_t>(n * k));
   result.radius.resize(static_cast<std::size_t>(n));
-  detail::parallel_chunks(n, chunk, options.threads, [&](Offset begin, Offset end) {
+  detail::parallel_chunks(n, points_per_task, options.threads, [&](Offset begin, Offset end) {
     QueryBuffers buffers;
     for (Offset i = begin; i < end; ++i) {
       const auto point = static_cast<Index>(i);

@@ -22,6 +22,12 @@ constexpr int float32 = 5126, uint32 = 5125, array_buffer = 34962, element_array
 /// Models smaller than this lose digits in single precision.
 constexpr double least_size = 1e-30;
 
+/// Linear light of an sRGB level (IEC 61966-2-1).
+double light_of(std::uint8_t level) {
+  const double tone = level / 255.;
+  return tone <= 0.04045 ? tone / 12.92 : std::pow((tone + 0.055) / 1.055, 2.4);
+}
+
 Vec3 middle_of(std::span<const MeshPart> parts) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   Vec3 low{infinity, infinity, infinity}, high{-infinity, -infinity, -infinity};
@@ -66,6 +72,10 @@ class GlbFile {
     if (has_texture)  // glTF counts v from the top
       attributes["TEXCOORD_0"] = add_floats("VEC2", 2, point_of.size(), [&](std::size_t k, std::size_t c) {
         return c == 0 ? vertices.textures[2 * k] : 1 - vertices.textures[2 * k + 1];
+      });
+    if (!part.colors.empty())
+      attributes["COLOR_0"] = add_floats("VEC3", 3, point_of.size(), [&](std::size_t k, std::size_t c) {
+        return light_of(part.colors[own[point_of[k]]][c]);
       });
     const std::size_t begin = bytes_.size();
     for (Index vertex : triangles) append(bytes_, static_cast<std::uint32_t>(vertex));
@@ -155,7 +165,8 @@ class GlbFile {
       if (count("samplers") == 0) push("samplers", {{"wrapS", clamp_to_edge}, {"wrapT", clamp_to_edge}});
       surface["baseColorTexture"] = {{"index", push("textures", {{"source", count("images") - 1}, {"sampler", 0}})}};
     } else {
-      surface["baseColorFactor"] = {part.color[0], part.color[1], part.color[2], 1};
+      const std::array<double, 3> color = part.colors.empty() ? part.color : std::array{1., 1., 1.};  // times COLOR_0
+      surface["baseColorFactor"] = {color[0], color[1], color[2], 1};
     }
     Json material = {{"name", part.name}, {"pbrMetallicRoughness", surface}, {"doubleSided", true}};
     if (part.transparent) material["alphaMode"] = "BLEND";

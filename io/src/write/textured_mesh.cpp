@@ -25,6 +25,10 @@ void check(const MeshPart& part) {
                                         [](unsigned char c) { return c == '_' || (c < 128 && std::isalnum(c)); }))
     fail(part, "its name must be letters, digits and _");
   if (!part.normals.empty()) check_length("normals", part.normals.size(), part.points.size());
+  if (!part.colors.empty()) check_length("colors", part.colors.size(), part.points.size());
+  if (!part.colors.empty() && part.texture) fail(part, "colors do not go beside a texture");
+  for (const Property& property : part.properties)
+    check_length(property.name.c_str(), property.values.size(), part.points.size());
   const auto& [begin, vertices] = part.faces;
   if (begin.empty() || begin.front() != 0 || !std::is_sorted(begin.begin(), begin.end()))
     fail(part, "faces.begin must rise from 0");

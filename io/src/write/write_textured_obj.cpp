@@ -16,10 +16,12 @@ std::string as_words(std::span<const double> values) {
   return words;
 }
 
+Vec3 fractions(const std::array<std::uint8_t, 3>& color) { return {color[0] / 255., color[1] / 255., color[2] / 255.}; }
+
 std::string material_of(const MeshPart& part, const std::string& texture) {
   std::string text = "newmtl " + part.name + "\nillum 1\n";
   const std::array<double, 3> white{1, 1, 1};
-  text += "Kd" + as_words(part.texture ? white : part.color) + "\nKs 0 0 0\n";
+  text += "Kd" + as_words(part.texture || !part.colors.empty() ? white : part.color) + "\nKs 0 0 0\n";
   if (part.texture) text += "map_Kd " + texture + "\n";
   if (part.texture && part.transparent) text += "map_d " + texture + "\n";
   return text + "\n";
@@ -33,7 +35,9 @@ struct Counts {
 void write_part(AtomicFile& file, const MeshPart& part, Counts& counts) {
   const PartVertices vertices = vertices_of(part);
   file.write("o " + part.name + "\n");
-  for (Index v : vertices.points) file.write("v" + as_words(part.points[v]) + "\n");
+  for (Index v : vertices.points)
+    file.write("v" + as_words(part.points[v]) + (part.colors.empty() ? "" : as_words(fractions(part.colors[v]))) +
+               "\n");
   for (std::size_t k = 0; k < vertices.textures.size(); k += 2)
     file.write("vt" + as_words(std::span(vertices.textures).subspan(k, 2)) + "\n");
   for (Index v : vertices.points)

@@ -177,7 +177,7 @@ Ahm.Viewer = class {
     try {
       await work();
     } catch (error) {
-      this.panel.say(error.message, true);
+      if (error.status !== 409) this.panel.say(error.message, true);  // 409: a newer request took its place
     } finally {
       this.busy--;
     }

@@ -71,7 +71,8 @@ std::string spec(const Surface& surface, const SurfacePoint& point);
 /// | coverage | "source", "cover": radius, "spacing", "pattern"        | JSON: "points", "pieces", "length", "covered" |
 /// | export   | "source", "format"                                     | the file                                      |
 ///
-/// A newer request for a map or a stroke by the same client cancels the older one, which is answered with status 409.
+/// A newer request for a map or a stroke by the same client cancels the older one, and so does one for a path or a tool path
+/// those of its kind; what is cancelled is answered with status 409. The end of the session cancels all.
 /// What cannot be answered has the status 400, 404 or 503 and a JSON object with "error".
 class Session {
  public:
