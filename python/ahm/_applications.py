@@ -13,7 +13,7 @@ from ._fields import distance_and_nearest
 from ._maps import LogMap
 from ._options import checked
 from ._progress import Progress, reporting
-from ._solvers import ExactGeodesics, Maker, as_body, as_maker
+from ._solvers import ExactGeodesics, Maker, as_body, as_maker, tolerance_of
 
 
 class Stroke(NamedTuple):
@@ -27,8 +27,8 @@ class Stroke(NamedTuple):
 
 
 def stroke(solver: Any, points: Any, *, closed: bool = False, shape: str = "line", positions: Any = None,
-           method: Optional[str] = None, radius: Optional[float] = None, frames: bool = True,
-           progress: Progress = None) -> Stroke:
+           method: Optional[str] = None, tolerance: Optional[float] = None, radius: Optional[float] = None,
+           frames: bool = True, progress: Progress = None) -> Stroke:
     """Coordinates along a curve: every row gets those of the nearest point of the curve, moved on by the way from there.
 
     solver : a `LogMapSolver` or `ExactGeodesics`, or a surface (a mesh or cloud).
@@ -38,6 +38,7 @@ def stroke(solver: Any, points: Any, *, closed: bool = False, shape: str = "line
     shape : "line": u is the arclength; "circle": a closed curve becomes a circle about the origin.
     positions : (k, 2) coordinates that the given points get instead of (arclength, 0), world units; straight in between.
     method : of a surface: "heat" (default), or "exact" over the flat triangles of a mesh.
+    tolerance : of exact maps, as of `ExactGeodesics`.
     radius, frames, progress : as of `LogMapSolver.log_map`.
 
     >>> import ahm
@@ -47,7 +48,7 @@ def stroke(solver: Any, points: Any, *, closed: bool = False, shape: str = "line
 
     Raises ValueError naming argument, index and value.
     """
-    made = as_maker(solver, method)
+    made = as_maker(solver, method, tolerance=tolerance)
     at = places.points(points, "points", made.surface)
     arguments.choice(shape, "shape", ("line", "circle"))
     uv = np.empty((0, 2))
@@ -57,7 +58,7 @@ def stroke(solver: Any, points: Any, *, closed: bool = False, shape: str = "line
             raise ValueError("positions: have a shape of their own; leave `shape` out")
     shaped = (arguments.flag(closed, "closed"), shape == "circle", checked(radius=radius, frames=frames))
     with reporting(progress) as report:
-        found, drawn, length, gap, jump = _core.stroke(made._core, at, uv, *shaped, report)
+        found, drawn, length, gap, jump = _core.stroke(made._maker, at, uv, *shaped, report)
     return Stroke(LogMap(found, _StrokeRecipe(made, at, np.array(uv), shaped)), drawn, length, gap, jump)
 
 
@@ -77,7 +78,7 @@ class _StrokeRecipe(NamedTuple):
         pass
 
     def make(self, number: int) -> Any:
-        return _core.stroke(self.maker._core, self.at, self.uv, *self.shaped, None)[0]
+        return _core.stroke(self.maker._maker, self.at, self.uv, *self.shaped, None)[0]
 
 
 class Cells(NamedTuple):
@@ -87,11 +88,13 @@ class Cells(NamedTuple):
     distance: np.ndarray  #: (n,) from that source, world units; NaN in components without one
 
 
-def cells(surface: Any, sources: Any, *, method: Optional[str] = None, progress: Progress = None) -> Cells:
+def cells(surface: Any, sources: Any, *, method: Optional[str] = None, tolerance: Optional[float] = None,
+          progress: Progress = None) -> Cells:
     """Which of the sources is nearest to every row, in one pass, whatever their number.
 
     sources : rows, positions, (face, barycentric), ((row, row), t); rows each once.
     method : "unfold" (default) or "exact", as of `distance`; an `ExactGeodesics` instead of a surface is exact, too.
+    tolerance : of exact distances, as of `ExactGeodesics`.
     progress : as of `LogMapSolver`.
 
     >>> import ahm
@@ -101,24 +104,30 @@ def cells(surface: Any, sources: Any, *, method: Optional[str] = None, progress:
     Raises ValueError naming argument, index and value.
     """
     on = as_body(surface)
-    if method is None:
-        method = "exact" if isinstance(surface, ExactGeodesics) else "unfold"
-    arguments.choice(method, "method", ("unfold", "exact"))
+    method = _unfold_or_exact(surface, method)
     _, _, kinds, rows, _, _ = places.points(sources, "sources", on)
     on_rows = np.flatnonzero(kinds == places.ROW)
     _, first = np.unique(rows[on_rows], return_index=True)
     for again in np.setdiff1d(on_rows, on_rows[first]):
         raise ValueError(f"sources[{again}]: row {rows[again]} is given twice")
-    distance, labels = distance_and_nearest(on, sources, method=method, progress=progress)
+    distance, labels = distance_and_nearest(surface, sources, method=method, tolerance=tolerance, progress=progress)
     return Cells(labels, distance)
 
 
-def farthest_points(surface: Any, count: int, first: Any = 0, *, progress: Progress = None) -> np.ndarray:
+def _unfold_or_exact(surface: Any, method: Optional[str]) -> str:
+    if method is None:
+        return "exact" if isinstance(surface, ExactGeodesics) else "unfold"
+    return arguments.choice(method, "method", ("unfold", "exact"))
+
+
+def farthest_points(surface: Any, count: int, first: Any = 0, *, method: Optional[str] = None,
+                    tolerance: Optional[float] = None, progress: Progress = None) -> np.ndarray:
     """`count` rows spread evenly, each the farthest from those before it, beginning with `first`.
 
     surface : a `Surface`, or what `ahm.surface` takes.
     count : 1 to the number of rows.
     first : a row; since the result is rows, of any other point the nearest one.
+    method, tolerance : as of `cells`.
     progress : as of `LogMapSolver`.
 
     >>> import ahm
@@ -128,9 +137,12 @@ def farthest_points(surface: Any, count: int, first: Any = 0, *, progress: Progr
     Returns (count,) int32. Raises ValueError naming argument and value.
     """
     on = as_body(surface)
+    by = _unfold_or_exact(surface, method)
+    within = tolerance_of(surface, by, tolerance)
     at = places.point(first, "first", on)
     with reporting(progress) as report:
-        return _core.farthest(on._body, at, arguments.integer(count, "count", 1), report)
+        return _core.farthest(on._body, at, arguments.integer(count, "count", 1),
+                              within if by == "exact" else None, report)
 
 
 class Center(NamedTuple):
@@ -150,7 +162,8 @@ class Center(NamedTuple):
 
 
 def karcher_mean(solver: Any, points: Any, weights: Any = None, *, start: Any = None, method: Optional[str] = None,
-                 max_maps: int = 50, radius: Optional[float] = None, progress: Progress = None) -> Center:
+                 tolerance: Optional[float] = None, max_maps: int = 50, radius: Optional[float] = None,
+                 progress: Progress = None) -> Center:
     """The Riemannian center of mass: where the weighted sum of squared distances is least, near the start [Kar77].
 
     solver : a `LogMapSolver` or `ExactGeodesics`, or a surface.
@@ -158,6 +171,7 @@ def karcher_mean(solver: Any, points: Any, weights: Any = None, *, start: Any = 
     weights : (k,) >= 0, or None: all equal.
     start : where the search begins, the row nearest to this point; None: near the point of the largest weight.
     method : of a surface: "heat" (default), or "exact" over the flat triangles of a mesh.
+    tolerance : of exact maps, as of `ExactGeodesics`.
     max_maps : >= 1; each step is one log map. radius : of the maps, world units; it must reach from the center and the start to
         every point. progress : as of `LogMapSolver`.
 
@@ -168,18 +182,19 @@ def karcher_mean(solver: Any, points: Any, weights: Any = None, *, start: Any = 
 
     Raises ValueError naming argument, index and value; points in different components have no mean.
     """
-    return _center(as_maker(solver, method), points, weights, False, start, max_maps, radius, progress)
+    return _center(as_maker(solver, method, tolerance=tolerance), points, weights, False, start, max_maps, radius, progress)
 
 
 def geometric_median(solver: Any, points: Any, weights: Any = None, *, start: Any = None, method: Optional[str] = None,
-                     max_maps: int = 50, radius: Optional[float] = None, progress: Progress = None) -> Center:
+                     tolerance: Optional[float] = None, max_maps: int = 50, radius: Optional[float] = None,
+                     progress: Progress = None) -> Center:
     """Where the weighted sum of distances is least, near the start [FVJ09]. Result, arguments and errors as of `karcher_mean`.
 
     >>> import ahm
     >>> ahm.geometric_median(ahm.shapes.plane(9, 9), [0, 8, 72], [3.0, 1.0, 1.0]).row
     0
     """
-    return _center(as_maker(solver, method), points, weights, True, start, max_maps, radius, progress)
+    return _center(as_maker(solver, method, tolerance=tolerance), points, weights, True, start, max_maps, radius, progress)
 
 
 def _center(made: Maker, points: Any, weights: Any, median: bool, start: Any, max_maps: int, radius: Optional[float],
@@ -190,7 +205,7 @@ def _center(made: Maker, points: Any, weights: Any, median: bool, start: Any, ma
     begin = None if start is None else places.point(start, "start", on)
     with reporting(progress) as report:
         row, offset, position, spread, maps, converged, face, inside, seen = _core.center(
-            made._core, at, given, median, begin, checked(max_maps=max_maps, radius=radius), report)
+            made._maker, at, given, median, begin, checked(max_maps=max_maps, radius=radius), report)
     point = (face, inside) if face is not None else position if on._body.has_positions else None
     residual = _residual(seen, given if len(given) else np.ones(len(seen)), median, 1e-9 * on.mean_edge_length)
     return Center(row, offset, position, spread, maps, converged, residual, point)

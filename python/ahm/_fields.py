@@ -11,11 +11,11 @@ from . import _core
 from . import _places as places
 from ._options import checked
 from ._progress import Progress, reporting
-from ._solvers import as_body, as_solver
+from ._solvers import as_body, as_solver, tolerance_of
 
 
 def distance(surface: Any, sources: Any, *, targets: Any = None, method: str = "unfold", radius: Optional[float] = None,
-             progress: Progress = None) -> np.ndarray:
+             tolerance: Optional[float] = None, progress: Progress = None) -> np.ndarray:
     """Geodesic distance from the nearest of the sources, world units.
 
     surface : a `Surface`, a `LogMapSolver` (method "heat" uses its factors), or what `ahm.surface` takes.
@@ -25,6 +25,7 @@ def distance(surface: Any, sources: Any, *, targets: Any = None, method: str = "
         map, by one solve each of A and B on clouds, grids and graphs, smooth, best on noise; on meshes log maps unfold it, too;
         "exact": of the flat triangles of a mesh.
     radius : NaN beyond this distance; world units. Not for "heat".
+    tolerance : of exact distances, as of `ExactGeodesics`.
     progress : as of `LogMapSolver`.
 
     >>> import ahm
@@ -36,11 +37,13 @@ def distance(surface: Any, sources: Any, *, targets: Any = None, method: str = "
 
     NaN where there is no way. Raises ValueError naming argument, index and value.
     """
-    return distance_and_nearest(surface, sources, targets=targets, method=method, radius=radius, progress=progress)[0]
+    return distance_and_nearest(surface, sources, targets=targets, method=method, radius=radius, tolerance=tolerance,
+                                progress=progress)[0]
 
 
 def distance_and_nearest(surface: Any, sources: Any, *, targets: Any = None, method: str = "unfold",
-                         radius: Optional[float] = None, progress: Progress = None) -> tuple:
+                         radius: Optional[float] = None, tolerance: Optional[float] = None,
+                         progress: Progress = None) -> tuple:
     """As `distance`, and the number of the nearest source, int32, -1 without a way; None by heat. Arguments and errors as of
     `distance`.
 
@@ -50,6 +53,7 @@ def distance_and_nearest(surface: Any, sources: Any, *, targets: Any = None, met
     """
     on = as_body(surface)
     arguments.choice(method, "method", ("unfold", "heat", "exact"))
+    within = tolerance_of(surface, method, tolerance)
     at = places.points(sources, "sources", on)
     reach = float("inf") if radius is None else arguments.real(radius, "radius", positive=True, finite=False)
     if method == "exact":
@@ -57,7 +61,7 @@ def distance_and_nearest(surface: Any, sources: Any, *, targets: Any = None, met
         if to is not None and len(to[2]) == 0:
             return np.empty(0), np.empty(0, np.int32)
         with reporting(progress) as report:
-            return _core.exact_distance(on._body, at, to, reach, report)
+            return _core.exact_distance(on._body, at, to, reach, within, report)
     rows = None if targets is None else _target_rows(targets, on, method)
     with reporting(progress) as report:
         if method == "heat":

@@ -23,6 +23,13 @@ def _radius(value: Any, name: str) -> float:
     return arguments.real(value, name, positive=True, finite=False)
 
 
+def _tolerance(value: Any, name: str) -> float:
+    tolerance = arguments.real(value, name)
+    if not 0 <= tolerance <= 0.1:
+        raise ValueError(f"{name}: {tolerance} is outside [0, 0.1]")
+    return tolerance
+
+
 CHECKS: Dict[str, Callable[[Any, str], Any]] = {
     "t_coef": _positive,
     "variant": _one_of("adaptive", "localized"),
@@ -35,7 +42,7 @@ CHECKS: Dict[str, Callable[[Any, str], Any]] = {
     "supernodal": arguments.flag,
     "threads": _whole(0, 4096),
     "radius": _radius,
-    "tolerance": arguments.real,
+    "tolerance": _tolerance,
     "frames": arguments.flag,
     "spread": arguments.flag,
     "k": _whole(1),

@@ -107,6 +107,11 @@ class LogMapSolver(_Maker):
             self._core = _core.Solver(self.surface._body, self.options, report)
 
     @property
+    def _maker(self) -> Any:
+        """As the C++ side takes what makes maps."""
+        return self._core
+
+    @property
     def strategy(self) -> str:
         """What was chosen: "global" or "march"."""
         return self._core.strategy
@@ -167,6 +172,8 @@ class ExactGeodesics(_Maker):
     Stands wherever a `LogMapSolver` does: `stroke`, `cells`, `karcher_mean`, `geometric_median`, `atlas`. Shared by threads.
 
     surface : a mesh whose faces are flat, or what `ahm.surface` takes.
+    tolerance : how far distances may be off, relative, in [0, 0.1]. 0: exact; above, nearly linear in the number of rows,
+        and directions may be off by about sqrt(2 tolerance), or be those of another way as long within it.
     progress : None, True (a bar), or a callable (stage, fraction).
 
     Raises ValueError where the surface has no flat faces (clouds, grids, twisted polygons) or a face has no area.
@@ -179,19 +186,19 @@ class ExactGeodesics(_Maker):
     [True, True, True]
     """
 
-    def __init__(self, surface: Any, *, progress: Progress = None) -> None:
+    def __init__(self, surface: Any, *, tolerance: float = 0.0, progress: Progress = None) -> None:
         self.surface = as_body(surface)
+        self.tolerance = float(checked(tolerance=tolerance)["tolerance"])
         self._core = self.surface._body
         with reporting(progress) as report:
             self._core.lay_out(report)
 
-    def log_map(self, source: Any, *, u_axis: Any = None, radius: Optional[float] = None, tolerance: float = 0.0,
+    def log_map(self, source: Any, *, u_axis: Any = None, radius: Optional[float] = None, tolerance: Optional[float] = None,
                 frames: bool = True, progress: Progress = None) -> LogMap:
         """The exact log map of one source. Arguments and errors as of `LogMapSolver.log_map`; within a radius it is as much
         cheaper.
 
-        tolerance : how far distances may be off, relative, at most 0.1. 0: exact; above, nearly linear in the number of rows,
-            and directions may be off by about sqrt(2 tolerance), or be those of another way as long within it.
+        tolerance : of this map; None: that of the object.
 
         >>> import ahm
         >>> m = ahm.ExactGeodesics(ahm.shapes.plane(4, 3)).log_map(((0, 1), 0.5), u_axis=[1, 0, 0])
@@ -199,10 +206,11 @@ class ExactGeodesics(_Maker):
         [[-0.5, 0.0], [2.5, 2.0]]
         """
         at = places.point(source, "source", self.surface)
-        return self._solve(at, u_axis, progress, radius=radius, tolerance=tolerance, frames=frames)[0]
+        within = self.tolerance if tolerance is None else tolerance
+        return self._solve(at, u_axis, progress, radius=radius, tolerance=within, frames=frames)[0]
 
-    def log_maps(self, sources: Any, *, u_axis: Any = None, radius: Optional[float] = None, tolerance: float = 0.0,
-                 frames: bool = False, threads: int = 0, progress: Progress = None) -> List[LogMap]:
+    def log_maps(self, sources: Any, *, u_axis: Any = None, radius: Optional[float] = None,
+                 tolerance: Optional[float] = None, frames: bool = False, threads: int = 0, progress: Progress = None) -> List[LogMap]:
         """One map for each source, several at a time, and the same numbers. Arguments and errors as of `log_map` and
         `LogMapSolver.log_maps`.
 
@@ -211,29 +219,38 @@ class ExactGeodesics(_Maker):
         ['exact', 'exact']
         """
         at = places.points(sources, "sources", self.surface)
-        return self._solve(at, u_axis, progress, radius=radius, tolerance=tolerance, frames=frames, threads=threads)
+        within = self.tolerance if tolerance is None else tolerance
+        return self._solve(at, u_axis, progress, radius=radius, tolerance=within, frames=frames, threads=threads)
 
     def _found(self, at: tuple, axis: Any, options: Dict[str, Any], report: Any) -> list:
         return _core.exact_maps(self._core, at, axis, options, report)
 
+    @property
+    def _maker(self) -> Any:
+        return self._core, self.tolerance
+
     def __reduce__(self) -> tuple:
-        return ExactGeodesics, (self.surface,)
+        return _geodesics_again, (self.surface, self.tolerance)
 
     def __repr__(self) -> str:
         return f"<ahm.ExactGeodesics: on {self.surface!r}>"
+
+
+def _geodesics_again(on: Surface, tolerance: float) -> ExactGeodesics:
+    return ExactGeodesics(on, tolerance=tolerance)
 
 
 Maker = Union[LogMapSolver, ExactGeodesics]
 
 
 def log_map(surface: Any, source: Any, *, method: Optional[str] = None, u_axis: Any = None, radius: Optional[float] = None,
-            tolerance: float = 0.0, frames: bool = True, progress: Progress = None, **options: Any) -> LogMap:
+            tolerance: Optional[float] = None, frames: bool = True, progress: Progress = None, **options: Any) -> LogMap:
     """The log map of one source. For many sources on one surface make a `LogMapSolver` or `ExactGeodesics`.
 
     surface : a `Surface`, or what `ahm.surface` takes.
     source : a row, a position, `(face, barycentric)`, or `((row, row), t)` on an edge.
     method : "heat" (default): by diffusion, on any surface; "exact": by straight lines over the flat triangles of a mesh.
-    tolerance : of exact distances, as of `ExactGeodesics.log_map`.
+    tolerance : of exact distances, as of `ExactGeodesics`.
     u_axis, radius, frames, progress : as of `LogMapSolver.log_map`.
     options : of `LogMapSolver`, for method "heat": order, t_coef, variant, threads, ...
 
@@ -244,16 +261,14 @@ def log_map(surface: Any, source: Any, *, method: Optional[str] = None, u_axis: 
 
     Raises ValueError naming argument, index and value; NotPositiveDefinite, ResourceExhausted.
     """
-    maker = as_maker(surface, method, dict(expected_maps=1, progress=progress, **options))
-    if isinstance(maker, ExactGeodesics):
-        return maker.log_map(source, u_axis=u_axis, radius=radius, tolerance=tolerance, frames=frames, progress=progress)
-    if tolerance:
-        raise TypeError("tolerance: goes with method 'exact'")
+    maker = as_maker(surface, method, dict(expected_maps=1, progress=progress, **options), tolerance)
     return maker.log_map(source, u_axis=u_axis, radius=radius, frames=frames, progress=progress)
 
 
-def as_maker(thing: Any, method: Optional[str] = None, options: Optional[Dict[str, Any]] = None) -> Maker:
-    """What makes maps by this method, made from a surface where it is not made yet. None: by heat, or by what is given."""
+def as_maker(thing: Any, method: Optional[str] = None, options: Optional[Dict[str, Any]] = None,
+             tolerance: Optional[float] = None) -> Maker:
+    """What makes maps by this method, made from a surface where it is not made yet. None: by heat, or by what is given.
+    With a tolerance of its own, where one is given."""
     if method is not None:
         arguments.choice(method, "method", ("heat", "exact"))
     given = options or {}
@@ -263,9 +278,21 @@ def as_maker(thing: Any, method: Optional[str] = None, options: Optional[Dict[st
     unknown = sorted(set(given) - {"expected_maps", "progress", "threads"}) if ready or exact else []
     if unknown:
         raise TypeError(f"{unknown[0]}: " + ("the solver has its options already" if ready else "method 'exact' has no such option"))
-    if ready:
+    within = tolerance_of(thing, "exact" if exact else "heat", tolerance)
+    if ready and tolerance is None:
         return thing
-    return ExactGeodesics(as_body(thing), progress=given.get("progress")) if exact else LogMapSolver(as_body(thing), **given)
+    if exact:
+        return ExactGeodesics(as_body(thing), tolerance=within, progress=given.get("progress"))
+    return LogMapSolver(as_body(thing), **given)
+
+
+def tolerance_of(thing: Any, method: str, tolerance: Optional[float]) -> float:
+    """Of exact maps of a surface, or of what makes them; other methods have none."""
+    if tolerance is None:
+        return thing.tolerance if isinstance(thing, ExactGeodesics) else 0.0
+    if method != "exact":
+        raise TypeError("tolerance: goes with method 'exact'")
+    return float(checked(tolerance=tolerance)["tolerance"])
 
 
 def as_solver(thing: Any) -> LogMapSolver:

@@ -79,15 +79,17 @@ class Coverage(NamedTuple):
     uv: np.ndarray  #: (k, 2)
     piece: np.ndarray  #: (k,) int32, from 0; a tool must lift between pieces
     line: np.ndarray  #: (k,) int32 of the raster; 0 on a spiral
-    arclength: np.ndarray  #: (k,) from the start of the piece, in space
+    arclength: np.ndarray  #: (k,) from the start of the piece along the path
     spacing: np.ndarray  #: (k,) distance in space to the neighbouring line; NaN where there is none
+    between: np.ndarray  #: (k,) bool; not of the pattern, but where the shortest way over the faces of a mesh bends
     pieces: int
     planned: int  #: points of the pattern in the plane; those missing lie outside of the valid region
 
 
 def coverage(map: Union[LogMap, InverseMap], radius: float, spacing: float, *, pattern: str = "raster",
              step: Optional[float] = None, angle: float = 0.0) -> Coverage:
-    """Lines of equal spacing in log coordinates, carried to space, normals included.
+    """Lines of equal spacing in log coordinates, carried to the surface, normals included. On meshes its points are joined by
+    shortest paths, which have points of their own where they bend over an edge.
 
     map : a `LogMap` with frames, or an `InverseMap`.
     radius : of the disc about the source. spacing : between lines or turns. step : between points; None: half of the
@@ -102,7 +104,8 @@ def coverage(map: Union[LogMap, InverseMap], radius: float, spacing: float, *, p
     Raises ValueError naming the argument.
     """
     options = checked(radius=radius, spacing=spacing, pattern=pattern, step=step, angle=angle)
-    return Coverage(*_inverse(map)._core.coverage(options))
+    inverse = _inverse(map)
+    return Coverage(*inverse._core.coverage(inverse.map._map, options))
 
 
 class Atlas(NamedTuple):
@@ -119,13 +122,15 @@ class Atlas(NamedTuple):
 
 
 def atlas(solver: Any, sources: Any = None, *, charts: int = 20, max_distortion: Optional[float] = None,
-          method: Optional[str] = None, size: int = 2048, margin: int = 4, progress: Progress = None) -> Atlas:
+          method: Optional[str] = None, tolerance: Optional[float] = None, size: int = 2048, margin: int = 4,
+          progress: Progress = None) -> Atlas:
     """A texture atlas: geodesic cells around sources, each flattened by the log map from its source.
 
     solver : a `LogMapSolver` or `ExactGeodesics`, or a mesh or cloud.
     sources : k points; charts start at rows, so that of any other point the nearest row counts; None: `charts` rows spread
         evenly.
     method : of a surface: "heat" (default), or "exact" over the flat triangles of a mesh: cells and charts.
+    tolerance : of exact maps, as of `ExactGeodesics`.
     max_distortion : > 1: adds sources until the charts are as good as that; None: keeps to the sources.
     size, margin : texels of a side of the square, and free around each chart.
     progress : as of `LogMapSolver`.
@@ -137,10 +142,10 @@ def atlas(solver: Any, sources: Any = None, *, charts: int = 20, max_distortion:
 
     Raises ValueError naming the argument.
     """
-    made = as_maker(solver, method)
+    made = as_maker(solver, method, tolerance=tolerance)
     at = None if sources is None else places.points(sources, "sources", made.surface)
     options = checked(max_distortion=max_distortion, size=size)
     options["margin"] = arguments.integer(margin, "margin")
     with reporting(progress) as report:
-        points, begin, corners, *rest = _core.atlas(made._core, at, arguments.integer(charts, "charts", 1), options, report)
+        points, begin, corners, *rest = _core.atlas(made._maker, at, arguments.integer(charts, "charts", 1), options, report)
     return Atlas(points, as_faces(begin, corners), *rest)

@@ -29,8 +29,10 @@ namespace {
 
 LogMap solve(const Maker& maker, const SurfaceCurve& curve, const MapOptions& options) {
   if (const Solver* solver = maker.solver()) return solver->solver.solve(curve.source, options);
-  const ExactMapOptions exact{
-      .radius = options.radius, .frames = options.frames, .progress = options.progress.value_or(Progress{})};
+  ExactMapOptions exact = maker.exact();
+  exact.radius = options.radius;
+  exact.frames = options.frames;
+  exact.progress = options.progress.value_or(Progress{});
   return maker.body()->geodesics().log_map(curve.samples, exact).map;
 }
 
@@ -57,11 +59,18 @@ py::tuple stroke(const py::object& maker, const py::tuple& points, const Doubles
 }
 
 /// Rows; vertices that no row has (inside refined polygons) are passed over.
-py::array farthest(const BodyPtr& body, const py::tuple& first, Index count, const py::object& report) {
+/// @param tolerance  of exact distances; None: by a front
+py::array farthest(const BodyPtr& body, const py::tuple& first, Index count, const py::object& tolerance,
+                   const py::object& report) {
   const Places at = places(first);
+  std::optional<double> within;
+  if (!tolerance.is_none()) within = tolerance.cast<double>();
   return owned(compute(report, py::none(), [=](const Progress& progress) {
     std::vector<Index> rows;
-    for (Vertex vertex : farthest_points(body->graph(), body->vertices_near(at).at(0), count, progress))
+    const Vertex begin = body->vertices_near(at).at(0);
+    for (Vertex vertex :
+         within ? farthest_points(body->geodesics(), begin, count, {.tolerance = *within, .progress = progress})
+                : farthest_points(body->graph(), begin, count, progress))
       if (const auto row = body->row(vertex)) rows.push_back(row->index);
     return rows;
   }));
@@ -75,12 +84,16 @@ struct FoundCenter {
   std::vector<double> seen;  ///< coordinates of all points in a map from the center
 };
 
-/// Where a center lies in space: in the tangent plane of its vertex.
-std::optional<Vec3> beside_vertex(const Body& body, const Center& center) {
+/// Where a center lies in space.
+std::optional<Vec3> position_of(const Body& body, const Center& center) {
   if (body.grid() != nullptr) {
     Vec3 p = body.grid()->position(center.vertex);
     for (std::size_t a = 0; a < center.offset.size(); ++a) p[a] += center.offset[a];
     return p;
+  }
+  if (body.surface() != nullptr) {
+    if (body.surface()->positions().empty()) return std::nullopt;
+    return center_position(*body.surface(), center);
   }
   const auto frame = body.graph().frame(center.vertex.index);
   if (!frame || center.offset.size() != 2) return std::nullopt;
@@ -92,7 +105,7 @@ void place(const Maker& by, std::span<const Source> points, double radius, Found
   const Body& body = *by.body();
   Source source = source_at(found.center);
   std::optional<SurfacePoint> point;
-  found.position = beside_vertex(body, found.center);
+  found.position = position_of(body, found.center);
   if (body.surface() != nullptr && found.position) {
     const ClosestPoint closest = body.surface()->closest_point(*found.position);
     found.position = closest.position;
@@ -100,10 +113,12 @@ void place(const Maker& by, std::span<const Source> points, double radius, Found
     source = body.surface()->source(*point).source;
     if (const auto* inside = std::get_if<FacePoint>(&*point)) found.face = *inside;
   }
-  const LogMap map =
-      by.solver() != nullptr
-          ? by.solver()->solver.solve(source, {.radius = radius, .frames = true, .spread = false})
-          : body.geodesics().log_map(point.value(), {}, {.radius = radius, .frames = true, .progress = {}});
+  ExactMapOptions exact = by.exact();
+  exact.radius = radius;
+  exact.frames = true;
+  const LogMap map = by.solver() != nullptr
+                         ? by.solver()->solver.solve(source, {.radius = radius, .frames = true, .spread = false})
+                         : body.geodesics().log_map(point.value(), {}, exact);
   for (const Source& p : points)
     for (double z : map.coordinates(p)) found.seen.push_back(z);
 }

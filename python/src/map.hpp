@@ -24,18 +24,21 @@ using SolverPtr = std::shared_ptr<Solver>;
 /// Who makes maps for an application: a solver, or the exact geodesics of a body.
 class Maker {
  public:
-  /// @param given  a Solver or a Body
+  /// @param given  a Solver, or a Body and the tolerance of its exact maps
   explicit Maker(const py::object& given);
 
   const BodyPtr& body() const { return solver_ ? solver_->body : body_; }
   /// Null where maps are exact.
   const Solver* solver() const { return solver_.get(); }
   /// @throws as `Body::geodesics`
-  MapMaker maps() const { return solver_ ? MapMaker(solver_->solver) : MapMaker(body_->geodesics()); }
+  MapMaker maps() const { return solver_ ? MapMaker(solver_->solver) : MapMaker(body_->geodesics(), exact()); }
+  /// Of exact maps: the tolerance.
+  ExactMapOptions exact() const { return {.tolerance = tolerance_, .progress = {}}; }
 
  private:
   SolverPtr solver_;
   BodyPtr body_;
+  double tolerance_ = 0;
 };
 
 /// A map, and what it is on the rows.

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 #include "ahm/error.hpp"
@@ -30,7 +31,7 @@ Maker::Maker(const py::object& given) {
   if (py::isinstance<Solver>(given))
     solver_ = given.cast<SolverPtr>();
   else
-    body_ = given.cast<BodyPtr>();
+    std::tie(body_, tolerance_) = given.cast<std::pair<BodyPtr, double>>();
 }
 
 namespace {

@@ -89,8 +89,9 @@ py::array image_coordinates(const InversePtr& map, const py::dict& options) {
       compute(py::none(), py::none(), [=](const Progress&) { return image_coordinates_of_vertices(*map, o); }), {n, 2});
 }
 
-/// position, normal, heading, (u, v), piece, line, arclength, spacing; number of pieces, of planned points.
-py::tuple coverage(const InversePtr& map, const py::dict& options) {
+/// position, normal, heading, (u, v), piece, line, arclength, spacing, between; number of pieces, of planned points.
+/// @param of  what the inverse is of
+py::tuple coverage(const InversePtr& map, const MapPtr& of, const py::dict& options) {
   CoverageOptions o;
   read(options, "radius", o.radius);
   read(options, "spacing", o.spacing);
@@ -98,12 +99,16 @@ py::tuple coverage(const InversePtr& map, const py::dict& options) {
   read(options, "angle", o.angle);
   read_choice(options, "pattern", o.pattern,
               {{"raster", CoveragePattern::raster}, {"spiral", CoveragePattern::spiral}});
-  const CoveragePath path = compute(py::none(), py::none(), [=](const Progress&) { return coverage_path(*map, o); });
+  const CoveragePath path =
+      compute(py::none(), py::none(), [=](const Progress&) { return coverage_path(of->surface(), *map, o); });
   std::vector<Vec3> position, normal, heading;
   std::vector<Vec2> uv;
   std::vector<Index> piece, line;
   std::vector<double> arclength, spacing;
+  py::array_t<bool> between(length(path.points));
+  bool* is_between = between.mutable_data();
   for (const CoveragePoint& p : path.points) {
+    *is_between++ = p.between;
     position.push_back(p.position), normal.push_back(p.normal), heading.push_back(p.heading);
     uv.push_back(p.coordinates), piece.push_back(p.piece), line.push_back(p.line);
     arclength.push_back(p.arclength), spacing.push_back(p.spacing);
@@ -111,7 +116,7 @@ py::tuple coverage(const InversePtr& map, const py::dict& options) {
   const py::ssize_t n = length(uv);
   return py::make_tuple(owned(std::move(position)), owned(std::move(normal)), owned(std::move(heading)),
                         owned<Vec2, double>(std::move(uv), {n, 2}), owned(std::move(piece)), owned(std::move(line)),
-                        owned(std::move(arclength)), owned(std::move(spacing)), path.pieces, path.planned);
+                        owned(std::move(arclength)), owned(std::move(spacing)), between, path.pieces, path.planned);
 }
 
 struct AtlasAndFaces {

@@ -148,6 +148,37 @@ TEST(ExactMethod, TakesATolerance) {
   EXPECT_EQ(run(with(words, {"--method", "exact", "--tolerance", "0.5"})).status, 1);
 }
 
+TEST(ExactMethod, TakesAToleranceInEverySubcommand) {
+  Folder folder;
+  const std::string input = folder.write("sphere.off", off(icosphere(8)));
+  const std::vector<Words> commands{
+      {"stroke", input, "--curve", "0 100 200", "-o", folder / "out.csv"},
+      {"cells", input, "--count", "4", "-o", folder / "out.csv"},
+      {"coverage", input, "--source", "0", "--radius", "1", "--spacing", ".3", "-o", folder / "out.csv"},
+      {"inverse", input, "--source", "0", "--at", ".3,.4 .5,.1", "-o", folder / "out.csv"},
+      {"atlas", input, "--charts", "3", "-o", folder / "out.obj"},
+      {"center", input, "--points", "0 100 200", "--quiet"}};
+  const auto result = [&](const Words& words, const Outcome& outcome) {
+    return words[0] == "center" ? outcome.out : read_text(words[words.size() - 1]);
+  };
+  for (const Words& words : commands) {
+    const Words tolerant = with(words, {"--method", "exact", "--tolerance", "0.01"});
+    const Outcome outcome = run(tolerant);
+    EXPECT_EQ(outcome.status, 0) << words[0] << ": " << outcome.err;
+    const std::string near = result(words, outcome);
+    EXPECT_FALSE(near.empty()) << words[0];
+    EXPECT_EQ(result(words, run(tolerant)), near) << words[0];
+    EXPECT_NE(result(words, run(with(words, {"--method", "exact"}))), near) << words[0];
+    const Outcome by_heat = run(with(words, {"--tolerance", "0.01"}));
+    EXPECT_EQ(by_heat.status, 2) << words[0];
+    EXPECT_NE(by_heat.err.find("--tolerance"), std::string::npos) << by_heat.err;
+    const Outcome too_much = run(with(words, {"--method", "exact", "--tolerance", "0.5"}));
+    EXPECT_EQ(too_much.status, 1) << words[0];
+    EXPECT_NE(too_much.err.find("it must be in [0, 0.1]"), std::string::npos) << too_much.err;
+  }
+  EXPECT_NE(run({"decal", "--help"}).out.find("--tolerance"), std::string::npos);
+}
+
 TEST(ExactMethod, IsRefusedWhereThereAreNoFlatFaces) {
   Folder folder;
   const Words more{"--source", "0", "--method", "exact", "-o", folder / "map.csv"};

@@ -1,6 +1,7 @@
 #include "failing_allocations.hpp"
 
 #include <link.h>
+#include <malloc.h>
 
 #include <algorithm>
 #include <array>
@@ -16,7 +17,7 @@ namespace {
 constexpr long never = std::numeric_limits<long>::max();
 std::atomic<long> until_failure{never};
 std::atomic<bool> goes_on{false};
-std::atomic<long> live{0};
+std::atomic<long> live{0}, made{0}, live_bytes{0}, peak_bytes{0};
 
 /// The OpenMP runtime ends the process where it is refused memory, and minizip writes to what it did not get: whoever calls
 /// them tries beforehand whether there is memory.
@@ -56,11 +57,22 @@ bool fails(const void* caller) {
   return left == 1 || (left < 1 && goes_on.load());
 }
 
+void add_bytes(long bytes) {
+  const long now = live_bytes += bytes;
+  for (long peak = peak_bytes; now > peak && !peak_bytes.compare_exchange_weak(peak, now);) {
+  }
+}
+
+long bytes_of(void* block) { return static_cast<long>(malloc_usable_size(block)); }
+
 void* counted(void* block) {
-  if (block != nullptr)
+  if (block != nullptr) {
     ++live;
-  else
+    ++made;
+    add_bytes(bytes_of(block));
+  } else {
     errno = ENOMEM;
+  }
   return block;
 }
 
@@ -98,10 +110,18 @@ void* realloc(void* block, std::size_t size) {
     errno = ENOMEM;
     return nullptr;
   }
-  return __libc_realloc(block, size);
+  const long before = bytes_of(block);
+  void* const moved = __libc_realloc(block, size);
+  if (moved == nullptr) return nullptr;
+  ++made;
+  add_bytes(bytes_of(moved) - before);
+  return moved;
 }
 void free(void* block) {
-  if (block != nullptr) --live;
+  if (block != nullptr) {
+    --live;
+    add_bytes(-bytes_of(block));
+  }
   __libc_free(block);
 }
 }
@@ -116,5 +136,9 @@ FailingAllocation::~FailingAllocation() { until_failure = never; }
 bool FailingAllocation::happened() const { return until_failure.load() < 1; }
 
 long live_blocks() { return live; }
+long allocations() { return made; }
+
+PeakBytes::PeakBytes() : before_(live_bytes) { peak_bytes = before_; }
+long PeakBytes::operator()() const { return peak_bytes - before_; }
 
 }  // namespace ahm::test

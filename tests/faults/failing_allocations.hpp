@@ -19,5 +19,17 @@ class FailingAllocation {
 
 /// Blocks allocated and not freed.
 long live_blocks();
+/// Blocks allocated so far, freed or not.
+long allocations();
+
+/// The most bytes that live at a time while it does, less those before.
+class PeakBytes {
+ public:
+  PeakBytes();
+  long operator()() const;
+
+ private:
+  long before_;
+};
 
 }  // namespace ahm::test

@@ -83,8 +83,9 @@ std::vector<Vertex> spread(const CellsOptions& options, const Input& input,
   if (const Index size = input.graph().size(); options.count > size)
     throw InvalidArgument(fmt::format("--count {}: the graph has {} vertices only", options.count, size));
   const Vertex first = options.start ? vertex_at(input, *options.start, "--start") : Vertex{0};
-  std::vector<Vertex> result = geodesics ? farthest_points(*geodesics, first, options.count, journal.progress())
-                                         : farthest_points(input.graph(), first, options.count, journal.progress());
+  std::vector<Vertex> result =
+      geodesics ? farthest_points(*geodesics, first, options.count, exact_options(options.solve, journal))
+                : farthest_points(input.graph(), first, options.count, journal.progress());
   move_to_rows(input.surface(), result);
   return result;
 }
@@ -181,7 +182,8 @@ void run(const CellsOptions& options) {
   if (options.count > 0) sources = spread(options, input, geodesics, journal);
 
   journal.start("cells");
-  const VoronoiCells cells = geodesics ? voronoi_cells(*geodesics, sources) : voronoi_cells(graph, sources);
+  const VoronoiCells cells = geodesics ? voronoi_cells(*geodesics, sources, exact_options(options.solve, journal))
+                                       : voronoi_cells(graph, sources);
   const CellRows rows = rows_of(input, cells);
   comment_on_statuses(rows.status, options.input.path, journal);
 
@@ -212,6 +214,7 @@ void offer(CLI::App& app, CellsOptions& o) {
   add_table_output(app, o.output)->required();
   add_method(app, o.solve)
       ->description("heat (default): by unfolding the graph, or exact: by straight lines over the faces of a mesh");
+  add_tolerance(app, o.solve);
   add_backend(app, o.input);
   add_threads(app, o.input);
   add_cloud_options(app, o.input);

@@ -22,7 +22,9 @@ constexpr const char* center_footer =
     "or\n"
     "positions (1.5,0,-2: the nearest vertex; in files also 1.5 0 -2). WEIGHTS likewise, one number per point.\n"
     "\n"
-    "The center lies between vertices: it is printed as a position in the tangent plane of the vertex nearest to it.\n"
+    "The center lies between vertices: it is printed as a position on the surface, straight on from the vertex nearest "
+    "to "
+    "it.\n"
     "Points over more than half of a closed surface may have several centers; --start chooses among them.\n"
     "\n"
     "Examples:\n"
@@ -51,9 +53,8 @@ Center find_center(const CenterCommandOptions& options, const Input& input, cons
 }
 
 void report(const CenterCommandOptions& options, const Input& input, const Center& center, Journal& journal) {
-  const Frame frame = *input.graph().frame(center.vertex.index);
-  Vec3 position = frame.origin;
-  for (std::size_t a = 0; a < 3; ++a) position[a] += center.offset[0] * frame.x[a] + center.offset[1] * frame.y[a];
+  const Vec3 vertex = input.graph().frame(center.vertex.index)->origin;
+  const Vec3 position = center_position(input.surface(), center);
   const std::optional<Row> row = input.surface().rows().row(center.vertex);
   const char* name = options.median ? "median" : "mean";
   nlohmann::ordered_json j = summary("ahm center", options.input.path, options.output, input);
@@ -61,12 +62,12 @@ void report(const CenterCommandOptions& options, const Input& input, const Cente
   j["center"] = {{"kind", name},
                  {"points", options.points.size()},
                  {"row", row ? nlohmann::ordered_json(row->index) : nlohmann::ordered_json()},
-                 {"vertex_position", frame.origin},
+                 {"vertex_position", vertex},
                  {"position", position},
                  {"spread", center.spread},
                  {"maps", center.maps},
                  {"converged", center.converged}};
-  const Vec3 &v = frame.origin, &p = position;
+  const Vec3 &v = vertex, &p = position;
   const std::string text = fmt::format(
       "{} of {} points at {:.9g} {:.9g} {:.9g}\nnearest vertex {} at {:.9g} {:.9g} {:.9g}\n{} {:.6g}; maps used: {}, "
       "{}\n",
@@ -107,6 +108,7 @@ void offer(CLI::App& app, CenterCommandOptions& o) {
   app.add_flag("--median", o.median, "Least sum of distances instead of squared distances");
   add_parsed(app, "--start", o.start, parse_source, "SPEC", "Where to begin (default: the heaviest point)");
   add_method(app, o.solve);
+  add_tolerance(app, o.solve);
   add_graph_options(app, o.input, o.solve);
   add_json(app, o.output);
   add_verbosity(app, o.output.verbosity);

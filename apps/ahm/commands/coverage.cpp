@@ -26,6 +26,7 @@ constexpr const char* coverage_footer =
     "  x,y,z         on the surface                  nx,ny,nz      its normal\n"
     "  hx,hy,hz      heading, unit, in the surface   u,v           coordinates\n"
     "  arclength     from the start of the piece     spacing       to the next line, in space\n"
+    "  between       1: not of the pattern, but where the way over the faces bends\n"
     "\n"
     "Examples:\n"
     "  ahm coverage scan.ply --source 0.1,0.2,1.4 --radius 0.2 --spacing 0.01 -o path.csv\n"
@@ -42,14 +43,14 @@ struct CoverageCommandOptions {
 
 /// Text, with an edge between consecutive points of a piece.
 void write_path(const OutputOptions& output, const CoveragePath& path) {
-  std::vector<Index> piece, line;
+  std::vector<Index> piece, line, between;
   std::vector<Vec3> position, normal, heading;
   std::vector<double> u, v, arclength, spacing;
   io::Table table{.title = "coverage path by libahm", .text = true};
   for (const CoveragePoint& p : path.points) {
     const auto row = static_cast<Index>(piece.size());
     if (row > 0 && p.piece == piece.back()) table.edges.push_back({row - 1, row});
-    piece.push_back(p.piece), line.push_back(p.line);
+    piece.push_back(p.piece), line.push_back(p.line), between.push_back(p.between);
     position.push_back(p.position), normal.push_back(p.normal), heading.push_back(p.heading);
     u.push_back(p.coordinates[0]), v.push_back(p.coordinates[1]);
     arclength.push_back(p.arclength), spacing.push_back(p.spacing);
@@ -60,6 +61,7 @@ void write_path(const OutputOptions& output, const CoveragePath& path) {
   table.add({"hx", "hy", "hz"}, heading);
   table.add("u", u), table.add("v", v);
   table.add("arclength", arclength), table.add("spacing", spacing);
+  table.add("between", between);
   io::write(output.output, table, output.format);
 }
 
@@ -109,7 +111,8 @@ struct Summary {
       if (i + 1 == path.points.size() || path.points[i + 1].piece != path.points[i].piece)
         length += path.points[i].arclength;
     }
-    covered = static_cast<double>(path.points.size()) / static_cast<double>(path.planned);
+    const auto carried = std::ranges::count(path.points, false, &CoveragePoint::between);
+    covered = static_cast<double>(carried) / static_cast<double>(path.planned);
     if (spacings.empty()) return;
     std::sort(spacings.begin(), spacings.end());
     spacing_low = spacings[spacings.size() / 20];
@@ -149,12 +152,15 @@ void run(const CoverageCommandOptions& options) {
   journal.start("path");
   const InverseMap inverse =
       inverse_map(input.surface(), map, {.min_quality = options.min_quality, .threads = options.solve.threads});
-  const CoveragePath path = coverage_path(inverse, options.path);
+  const CoveragePath path = coverage_path(input.surface(), inverse, options.path);
   if (path.points.empty())
     throw InvalidArgument(fmt::format(
         "--source {}: no line of the pattern meets a trusted part of the surface within {}; choose another source, or "
         "lower --spacing or --min-quality",
         to_string(options.source.spec), options.path.radius));
+  if (!path.straight_reason.empty())
+    journal.add_warning(fmt::format(
+        "the points of the path are joined by straight lines in space, no shortest paths ({})", path.straight_reason));
   const Summary amount(path);
   if (amount.spacing_high > 1.25 * options.path.spacing)
     journal.add_warning(fmt::format(
@@ -192,6 +198,7 @@ void offer(CLI::App& app, CoverageCommandOptions& o) {
   add_min_quality(app, o.min_quality);
   add_u_axis(app, o.source);
   add_method(app, o.solve);
+  add_tolerance(app, o.solve);
   add_graph_options(app, o.input, o.solve);
   add_local(app, o.input, "To --radius");
   add_map_results(app, o.output);

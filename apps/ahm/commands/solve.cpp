@@ -46,6 +46,15 @@ MapOptions map_options(const SolveOptions& options) {
   return map;
 }
 
+ExactMapOptions exact_options(const SolveOptions& options, Journal& journal) {
+  const MapOptions map = map_options(options);
+  return {.radius = map.radius,
+          .tolerance = options.tolerance,
+          .frames = map.frames,
+          .progress = journal.progress(),
+          .threads = options.threads};
+}
+
 LogMap solve(const SolveOptions& options, const LogMapSolver& solver, const Source& source, Journal& journal) {
   journal.start("solve");
   LogMap map = solver.solve(source, map_options(options));
@@ -53,7 +62,8 @@ LogMap solve(const SolveOptions& options, const LogMapSolver& solver, const Sour
   return map;
 }
 
-Maps::Maps(const SolveOptions& options, const Input& input, Journal& journal, int count) : threads(options.threads) {
+Maps::Maps(const SolveOptions& options, const Input& input, Journal& journal, int count)
+    : exact(exact_options(options, journal)) {
   if (options.method == Method::heat) {
     solver.emplace(make_solver(options, input.graph(), journal, count));
   } else {
@@ -66,12 +76,9 @@ LogMap Maps::map(const SolveOptions& options, const Input& input, const SourceSp
                  Journal& journal) const {
   if (solver) return solve(options, *solver, source.source, journal);
   journal.start("solve");
-  const MapOptions map = map_options(options);
   // From the point and along the axis of the source that was found for the user.
   const auto u_axis = source.frame ? std::optional(source.frame->x) : std::nullopt;
-  return geodesics->log_map(
-      point_of(input, spec), u_axis,
-      {.radius = map.radius, .tolerance = options.tolerance, .frames = map.frames, .progress = journal.progress()});
+  return geodesics->log_map(point_of(input, spec), u_axis, exact_options(options, journal));
 }
 
 LogMap solve(const SolveOptions& options, const Input& input, const SourceSpec& spec, const PlacedSource& source,

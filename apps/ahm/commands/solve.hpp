@@ -19,6 +19,9 @@ LogMapSolver make_solver(const SolveOptions& options, const TangentGraph& graph,
 /// What the options say of single maps: the radius. With frames, for directions in space.
 MapOptions map_options(const SolveOptions& options);
 
+/// What they say of exact maps: the radius, too.
+ExactMapOptions exact_options(const SolveOptions& options, Journal& journal);
+
 /// One map; the journal tells the strategy.
 LogMap solve(const SolveOptions& options, const LogMapSolver& solver, const Source& source, Journal& journal);
 
@@ -29,11 +32,11 @@ struct Maps {
   /// One of them. @param source  of `spec`. @throws as `solve`
   LogMap map(const SolveOptions& options, const Input& input, const SourceSpec& spec, const PlacedSource& source,
              Journal& journal) const;
-  MapMaker maker() const { return solver ? MapMaker(*solver) : MapMaker(*geodesics, threads); }
+  MapMaker maker() const { return solver ? MapMaker(*solver) : MapMaker(*geodesics, exact); }
 
   std::optional<LogMapSolver> solver;
   std::optional<ExactGeodesics> geodesics;
-  unsigned threads;
+  ExactMapOptions exact;
 };
 
 /// The one map of a subcommand, by the method of the options.

@@ -78,9 +78,8 @@ LogMap solve(const SolveOptions& options, const Input& input, const SurfaceCurve
   const Maps maps(options, input, journal, 1);
   if (maps.solver) return ahm::app::solve(options, *maps.solver, curve.source, journal);
   journal.start("solve");
-  ExactMapOptions exact;
-  if (options.radius) exact.radius = *options.radius;
-  exact.progress = journal.progress();
+  ExactMapOptions exact = exact_options(options, journal);
+  exact.frames = false;
   return maps.geodesics->log_map(curve.samples, exact).map;
 }
 
@@ -206,6 +205,7 @@ void offer(CLI::App& app, StrokeCommandOptions& o) {
   add_parsed(app, "--radius", o.solve.radius, parse_positive, "R",
              "Leave out everything farther than this from the curve; what lies beyond costs nothing");
   add_method(app, o.solve);
+  add_tolerance(app, o.solve);
   add_graph_options(app, o.input, o.solve);
   add_map_results(app, o.output);
 }

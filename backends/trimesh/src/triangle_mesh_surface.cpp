@@ -59,6 +59,33 @@ RowMap rows_of(const TriangleMesh& mesh) {
   return RowMap(mesh.report().vertices, mesh.vertex_count(), mesh.topology().rows());
 }
 
+exact::PolyhedralSurface polyhedron(const TriangleMesh& mesh) {
+  return {mesh.topology().half_edges(), [&](Index face) { return mesh.layout(face); }, mesh.corners()};
+}
+
+/// The same without the faces that were dropped.
+exact::PolyhedralSurface polyhedron_of_kept(const TriangleMesh& mesh) {
+  const HalfEdges edges = mesh.topology().half_edges();
+  std::vector<Half> place(edges.tail.size(), -1), corners;  // numbers among the half-edges kept
+  std::vector<Index> kept;
+  for (Index f = 0; f < edges.size() / 3; ++f) {
+    if (mesh.is_dropped(f)) continue;
+    for (int s = 0; s < 3; ++s) place[3 * f + s] = static_cast<Half>(3 * kept.size()) + s;
+    kept.push_back(f);
+  }
+  std::vector<Index> tail;
+  std::vector<Half> twin;
+  std::vector<std::uint8_t> mirrored;
+  for (Half h = 0; h < edges.size(); ++h) {
+    if (place[h] < 0) continue;
+    tail.push_back(edges.tail[h]);
+    twin.push_back(edges.twin[h] < 0 ? edges.twin[h] : place[edges.twin[h]]);
+    if (!edges.mirrored.empty()) mirrored.push_back(edges.mirrored[h]);
+  }
+  for (Half h : mesh.corners()) corners.push_back(place[h]);
+  return {HalfEdges{tail, twin, mirrored}, [&](Index face) { return mesh.layout(kept[face]); }, corners};
+}
+
 }  // namespace
 
 TriangleMeshSurface::TriangleMeshSurface(std::unique_ptr<const Impl> impl) : impl_(std::move(impl)) {}
@@ -76,29 +103,13 @@ const TriangleMesh& TriangleMeshSurface::mesh() const noexcept { return impl_->m
 
 FlatTriangles TriangleMeshSurface::flat_triangles() const {
   const TriangleMesh& mesh = impl_->mesh;
-  const HalfEdges edges = mesh.topology().half_edges();
-  // Numbers of half-edges without those of dropped faces.
-  std::vector<Half> place(edges.tail.size(), -1), corners;
-  std::vector<exact::FaceSides> sides;
-  for (Half h = 0; h < edges.size(); ++h) {
-    if (mesh.is_dropped(h / 3)) continue;
-    place[h] = static_cast<Half>(3 * sides.size()) + h % 3;
-    if (h % 3 == 2) sides.push_back(mesh.layout(h / 3));
-  }
-  std::vector<Index> tail;
-  std::vector<Half> twin;
-  std::vector<std::uint8_t> mirrored;
-  for (Half h = 0; h < edges.size(); ++h) {
-    if (place[h] < 0) continue;
-    tail.push_back(edges.tail[h]);
-    twin.push_back(edges.twin[h] < 0 ? edges.twin[h] : place[edges.twin[h]]);
-    if (!edges.mirrored.empty()) mirrored.push_back(edges.mirrored[h]);
-  }
-  for (Half h : mesh.corners()) corners.push_back(place[h]);
   std::vector<Vec3> positions;
-  if (mesh.has_positions())
+  if (mesh.has_positions()) {
+    positions.reserve(static_cast<std::size_t>(mesh.vertex_count()));
     for (Index v = 0; v < mesh.vertex_count(); ++v) positions.push_back(mesh.original_position(Vertex(v)));
-  return {{HalfEdges{tail, twin, mirrored}, sides, corners}, std::move(positions), mesh.length_unit()};
+  }
+  return {details().dropped_faces == 0 ? polyhedron(mesh) : polyhedron_of_kept(mesh), std::move(positions),
+          mesh.length_unit()};
 }
 
 exact::MeshPoint TriangleMeshSurface::flat_point_in_face(const FacePoint& point) const {

@@ -51,17 +51,21 @@ VoronoiCells voronoi_cells(const TangentGraph& graph, std::span<const Vertex> ve
   });
 }
 
-VoronoiCells voronoi_cells(const ExactGeodesics& geodesics, std::span<const Vertex> vertices) {
+VoronoiCells voronoi_cells(const ExactGeodesics& geodesics, std::span<const Vertex> vertices,
+                           const ExactMapOptions& options) {
   check_vertices(geodesics.surface().graph(), vertices);
   return detail::with_memory_check("labelling by the nearest source", [&] {
     const exact::PolyhedralSurface& triangles = geodesics.triangles().surface;
     std::vector<exact::MeshPoint> sources;
     for (Vertex vertex : vertices) sources.push_back(triangles.vertex_point(vertex));
-    const exact::ExactMap map = exact::exact_map(triangles, sources);
+    const double unit = geodesics.triangles().length_unit;
+    const exact::ExactMap map = exact::exact_map(
+        triangles, sources,
+        {.radius = options.radius / unit, .tolerance = options.tolerance, .targets = {}, .progress = options.progress});
     VoronoiCells cells;
     for (Index i = 0; i < map.size(); ++i) {
       cells.labels.push_back(map.source(Vertex(i)));
-      cells.distances.push_back(geodesics.triangles().length_unit * map.distance(Vertex(i)));
+      cells.distances.push_back(unit * map.distance(Vertex(i)));
     }
     return cells;
   });
@@ -87,23 +91,23 @@ std::vector<Vertex> farthest_points(const TangentGraph& graph, Vertex first, Ind
 }
 
 std::vector<Vertex> farthest_points(const ExactGeodesics& geodesics, Vertex first, Index count,
-                                    const Progress& progress) {
+                                    const ExactMapOptions& options) {
   const exact::PolyhedralSurface& triangles = geodesics.triangles().surface;
   check_count(triangles.vertex_count(), first, count);
   return detail::with_memory_check("spreading points", [&] {
     std::vector<Vertex> points{first};
     std::vector<double> distance(static_cast<std::size_t>(triangles.vertex_count()),
                                  std::numeric_limits<double>::infinity());
-    exact::ExactOptions options;
-    options.progress.stop = progress.stop;
+    exact::ExactOptions nearer{.tolerance = options.tolerance, .targets = {}, .progress = {}};
+    nearer.progress.stop = options.progress.stop;
     while (points.size() < static_cast<std::size_t>(count)) {
-      progress.step("farthest points", static_cast<double>(points.size()) / count);
-      const exact::ExactMap map = exact::exact_map(triangles, triangles.vertex_point(points.back()), options);
+      options.progress.step("farthest points", static_cast<double>(points.size()) / count);
+      const exact::ExactMap map = exact::exact_map(triangles, triangles.vertex_point(points.back()), nearer);
       for (Index i = 0; i < map.size(); ++i)
         if (const double d = map.distance(Vertex(i)); d < distance[i]) distance[i] = d;  // never so for NaN
       const auto farthest = std::max_element(distance.begin(), distance.end());
       points.emplace_back(static_cast<Index>(farthest - distance.begin()));
-      options.radius = *farthest;  // beyond, no vertex gets nearer
+      nearer.radius = *farthest;  // beyond, no vertex gets nearer
     }
     return points;
   });

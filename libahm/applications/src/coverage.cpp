@@ -12,6 +12,7 @@
 #include "ahm/util/small_math.hpp"
 #include "ahm/util/text.hpp"
 #include "ahm/util/vec.hpp"
+#include "joined_points.hpp"
 
 namespace ahm {
 namespace {
@@ -71,16 +72,20 @@ std::vector<Vec2> spiral(double spacing, double radius, double step) {
 /// Carries planar lines to the surface, one after the other.
 class Carrier {
  public:
-  Carrier(const InverseMap& inverse, const CoverageOptions& options)
-      : inverse_(inverse), spacing_(options.spacing), c_(std::cos(options.angle)), s_(std::sin(options.angle)) {}
+  /// @param geodesics  that join points; null: straight lines
+  Carrier(const InverseMap& inverse, const CoverageOptions& options, const ExactGeodesics* geodesics)
+      : inverse_(inverse),
+        geodesics_(geodesics),
+        spacing_(options.spacing),
+        c_(std::cos(options.angle)),
+        s_(std::sin(options.angle)) {}
 
   void add(const std::vector<Vec2>& line, Index number) {
     Vec2 before{};
     for (std::size_t k = 0; k < line.size(); ++k) {
       const Vec2 q{c_ * line[k][0] - s_ * line[k][1], s_ * line[k][0] + c_ * line[k][1]};
       const auto point = inverse_.at(q[0], q[1]);
-      const double step = std::hypot(q[0] - before[0], q[1] - before[1]);
-      if (!point || (size() > 0 && distance(*point) > inverse_.max_stretch() * step)) end_piece();
+      if (!point || (size() > 0 && !reaches(*point, q, inverse_.max_stretch() * length(q - before)))) end_piece();
       if (point) append(*point, q, number);
       before = q;
     }
@@ -94,10 +99,34 @@ class Carrier {
   std::size_t size() const { return path_.points.size() - begin_; }  // of the current piece
   double distance(const InversePoint& point) const { return length(point.position - path_.points.back().position); }
 
+  /// Whether the way from the last point to this one is no longer than that; the points where it bends become those of
+  /// the piece.
+  bool reaches(const InversePoint& point, const Vec2& q, double most) {
+    if (distance(point) > most) return false;
+    if (geodesics_ == nullptr) return true;
+    const CoveragePoint last = path_.points.back();
+    const exact::GeodesicPath way =
+        geodesics_->locally_shortest_path(on_surface(last.position), on_surface(point.position));
+    if (way.status != Status::ok || way.length > most) return false;
+    const std::vector<Vec3> corners = bends(*geodesics_, way);
+    double walked = 0;
+    for (std::size_t k = 1; k + 1 < corners.size(); ++k) {
+      walked += length(corners[k] - corners[k - 1]);
+      const Vec2 at = last.coordinates + walked / way.length * (q - last.coordinates);
+      InversePoint bend = inverse_.at(at[0], at[1]).value_or(point);
+      bend.position = corners[k];
+      append(bend, at, last.line);
+      path_.points.back().between = true;
+    }
+    return true;
+  }
+  SurfacePoint on_surface(const Vec3& position) const { return geodesics_->surface().closest_point(position).point; }
+
   void append(const InversePoint& point, const Vec2& q, Index line) {
     if (path_.points.size() == path_.points.capacity()) check_memory();
     const double arclength = size() == 0 ? 0.0 : path_.points.back().arclength + distance(point);
-    path_.points.push_back({point.position, point.normal, point.frame().x, q, path_.pieces, line, arclength, 0.0});
+    path_.points.push_back(
+        {point.position, point.normal, point.frame().x, q, path_.pieces, line, arclength, 0.0, false});
   }
 
   /// Before the points move to twice their room.
@@ -143,17 +172,15 @@ class Carrier {
   }
 
   const InverseMap& inverse_;
+  const ExactGeodesics* geodesics_;
   double spacing_, c_, s_;
   CoveragePath path_;
   std::size_t begin_ = 0;
 };
 
-}  // namespace
-
-CoveragePath coverage_path(const InverseMap& inverse, const CoverageOptions& options) {
-  check(options);
+CoveragePath carry(const InverseMap& inverse, const CoverageOptions& options, const ExactGeodesics* geodesics) {
   const double step = options.step > 0 ? options.step : options.spacing / 2;
-  Carrier carrier(inverse, options);
+  Carrier carrier(inverse, options, geodesics);
   if (options.pattern == CoveragePattern::spiral) {
     carrier.add(spiral(options.spacing, options.radius, step), 0);
     return carrier.result();
@@ -165,6 +192,21 @@ CoveragePath coverage_path(const InverseMap& inverse, const CoverageOptions& opt
     carrier.add(line, k + outermost);
   }
   return carrier.result();
+}
+
+}  // namespace
+
+CoveragePath coverage_path(const InverseMap& inverse, const CoverageOptions& options) {
+  check(options);
+  return carry(inverse, options, nullptr);
+}
+
+CoveragePath coverage_path(const Surface& surface, const InverseMap& inverse, const CoverageOptions& options) {
+  check(options);
+  const FlatFaces faces(surface);
+  CoveragePath path = carry(inverse, options, faces.geodesics ? &*faces.geodesics : nullptr);
+  path.straight_reason = faces.reason;
+  return path;
 }
 
 }  // namespace ahm

@@ -14,7 +14,7 @@ namespace ahm {
 LogMap MapMaker::map(Vertex source, double radius, bool frames) const {
   if (solver_ != nullptr)
     return solver_->solve(Source::at_vertex(source), {.radius = radius, .frames = frames, .spread = false});
-  return geodesics_->log_map(source, {.radius = radius, .frames = frames, .progress = {}});
+  return geodesics_->log_map(source, {.radius = radius, .tolerance = tolerance_, .frames = frames, .progress = {}});
 }
 
 std::vector<double> MapMaker::coordinates(std::span<const Vertex> sources,
@@ -50,7 +50,7 @@ std::vector<double> MapMaker::coordinates_of_whole(std::span<const Vertex> sourc
     } else {
       detail::parallel_chunks(static_cast<Offset>(count), 1, threads_, [&](Offset k, Offset) {
         const std::size_t s = first + static_cast<std::size_t>(k);
-        maps[k] = geodesics_->log_map(sources[s], {.radius = reach[s], .frames = false, .progress = {}});
+        maps[k] = map(sources[s], reach[s]);
       });
     }
     for (std::size_t k = 0; k < count; ++k)
@@ -75,7 +75,8 @@ double MapMaker::longest_way(const FaceList& faces) const {
 
 VoronoiCells MapMaker::cells(std::span<const Vertex> sources,
                              const std::shared_ptr<const UnfoldingFront::Stars>& stars) const {
-  return solver_ != nullptr ? voronoi_cells(solver_->graph(), sources, stars) : voronoi_cells(*geodesics_, sources);
+  return solver_ != nullptr ? voronoi_cells(solver_->graph(), sources, stars)
+                            : voronoi_cells(*geodesics_, sources, {.tolerance = tolerance_, .progress = {}});
 }
 
 }  // namespace ahm

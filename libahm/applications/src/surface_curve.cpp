@@ -11,6 +11,7 @@
 #include "ahm/surface/surface_lines.hpp"
 #include "ahm/util/text.hpp"
 #include "ahm/util/vec.hpp"
+#include "joined_points.hpp"
 
 namespace ahm {
 namespace {
@@ -28,38 +29,34 @@ struct CurveSample {
 /// Joins points by shortest paths: over flat faces, and without faces over tangent planes.
 class Joiner {
  public:
-  explicit Joiner(const Surface& surface) : surface_(surface) {
-    over_planes_ = surface.faces().size() == 0;
-    if (over_planes_ || surface.positions().empty()) return;
-    try {
-      geodesics_.emplace(surface);
-    } catch (const Cancelled&) {
-      throw;
-    } catch (const Error& e) {  // twisted polygons, faces of no area
-      reason_ = e.what();
-    }
-  }
+  explicit Joiner(const Surface& surface)
+      : surface_(surface), over_planes_(surface.faces().size() == 0), faces_(surface), reason_(faces_.reason) {}
 
   /// Corners of the shortest path; none where the surface has no paths, or does not join the points: then `reason` tells why.
   std::vector<Vec3> path(const SurfacePoint& from, const SurfacePoint& to) {
     std::vector<Vec3> corners;
     if (over_planes_) {
       corners = shortest_line(surface_, from, to).points;
-    } else if (geodesics_) {
-      for (const exact::MeshPoint& point : geodesics_->path(std::array{from, to}).points)
-        corners.push_back(geodesics_->position(point));
+    } else if (faces_.geodesics) {
+      for (const exact::MeshPoint& point : faces_.geodesics->path(std::array{from, to}).points)
+        corners.push_back(faces_.geodesics->position(point));
     } else {
       return corners;
     }
     if (corners.empty()) reason_ = "the surface does not connect their ends";
     return corners;
   }
+  /// The same of points nearby: where it bends. None where there are no flat faces.
+  std::vector<Vec3> short_path(const SurfacePoint& from, const SurfacePoint& to) const {
+    if (!faces_.geodesics) return {};
+    return bends(*faces_.geodesics, faces_.geodesics->locally_shortest_path(from, to));
+  }
   const std::string& reason() const { return reason_; }
 
  private:
   const Surface& surface_;
-  bool over_planes_ = false;
-  std::optional<ExactGeodesics> geodesics_;
+  bool over_planes_;
+  FlatFaces faces_;
   std::string reason_;
 };
 
@@ -92,8 +89,8 @@ double length_of(const std::vector<Vec3>& corners) {
   return length;
 }
 
-/// The given points as corners, and points between them: on the shortest path, else, and between points closer than four
-/// steps, on the straight line. Notes the largest distance of these from the surface, and which lines are
+/// The given points as corners, and points between them: on the shortest path, locally shortest between points closer than
+/// four steps, else on the straight line. Notes the largest distance of these from the surface, and which lines are
 /// straight against the rule.
 std::vector<CurveSample> sample(const Surface& surface, std::span<const CurvePoint> given, bool closed, double step,
                                 SurfaceCurve& curve) {
@@ -130,12 +127,13 @@ std::vector<CurveSample> sample(const Surface& surface, std::span<const CurvePoi
       project(corners[k], k, 0);
     if (k + 1 == corners.size()) break;
     std::vector<Vec3> line{corners[k], corners[k + 1]};
-    if (distance(line[0], line[1]) > 4 * step) {
-      if (std::vector<Vec3> path = joiner.path(end_point(k), end_point(k + 1)); !path.empty())
-        line = std::move(path);
-      else if (curve.straight_reason = joiner.reason(); !curve.straight_reason.empty())
-        ++curve.straight;
-    }
+    const bool is_far = distance(line[0], line[1]) > 4 * step;
+    if (std::vector<Vec3> path =
+            is_far ? joiner.path(end_point(k), end_point(k + 1)) : joiner.short_path(end_point(k), end_point(k + 1));
+        path.size() > 2 || (is_far && !path.empty()))
+      line = std::move(path);
+    else if (is_far && !(curve.straight_reason = joiner.reason()).empty())
+      ++curve.straight;
     const std::vector<Vec3> places = along_line(line, step);
     const std::vector<double> along = shares(corners[k], places, corners[k + 1]);
     for (std::size_t p = 0; p < places.size(); ++p) project(places[p], k, along[p]);

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "ahm/error.hpp"
+#include "ahm/util/vec.hpp"
 #include "polyhedra.hpp"
 
 namespace ahm::test {
@@ -94,6 +96,11 @@ TEST(GeodesicPath, IsTheSumOfItsLegsThroughStopsAndBack) {
   EXPECT_THROW(exact::geodesic_path(solid.surface, std::span(stops).first(1)), InvalidArgument);
 }
 
+bool passes_vertex(const GeodesicPath& path) {
+  return std::any_of(path.points.begin() + 1, path.points.end() - 1,
+                     [](const MeshPoint& p) { return std::ranges::max(p.barycentric) > 1 - 1e-9; });
+}
+
 TEST(Trace, FollowsTheShortestPathToItsEnd) {
   for (const Mesh& mesh : shapes()) {
     const Polyhedron solid(mesh);
@@ -103,9 +110,7 @@ TEST(Trace, FollowsTheShortestPathToItsEnd) {
       Index straight = 0;
       for (Index v = 0; v < map.size(); ++v) {
         const GeodesicPath path = exact::path_to_vertex(solid.surface, map, Vertex(v));
-        const bool bends = std::any_of(path.points.begin() + 1, path.points.end() - 1,
-                                       [](const MeshPoint& p) { return std::ranges::max(p.barycentric) > 1 - 1e-9; });
-        if (bends || path.points.size() < 2) continue;
+        if (path.points.size() < 2 || passes_vertex(path)) continue;
         ++straight;
         const TracedPath ray = exact::trace(solid.surface, from, map.direction(Vertex(v)), map.distance(Vertex(v)));
         EXPECT_NEAR(ray.length, map.distance(Vertex(v)), 1e-12);
@@ -114,6 +119,50 @@ TEST(Trace, FollowsTheShortestPathToItsEnd) {
       EXPECT_GT(straight, 5);
     }
   }
+}
+
+/// Needles of 1e-6 within needles of 1e-6: a line passes hundreds of them, some longer than they are high by 1e12.
+TEST(Trace, FollowsPathsThroughNeedlesWithinNeedles) {
+  int paths = 0;
+  for (unsigned seed = 1; seed <= 12; ++seed) {
+    std::optional<FlatTriangles> flat;
+    try {
+      flat = flat_triangles(nested_needles(seed));
+    } catch (const InvalidGeometry&) {
+      continue;  // a face without area
+    }
+    const exact::PolyhedralSurface& surface = flat->surface;
+    const auto position = [&](const MeshPoint& p) {
+      Vec3 sum{};
+      for (int s = 0; s < 3; ++s) sum = sum + p.barycentric[s] * flat->positions[surface.record(3 * p.face + s).tail];
+      return sum;
+    };
+    std::mt19937_64 random(seed);
+    std::uniform_real_distribution<double> angle(0, 2 * std::numbers::pi);
+    for (int k = 0; k < 100; ++k) {
+      const TracedPath ray = exact::trace(surface, random_point(surface, random), angle(random), 3 / flat->length_unit);
+      EXPECT_EQ(ray.end, TraceEnd::complete);
+      double length = 0;
+      for (std::size_t p = 1; p < ray.points.size(); ++p)
+        length += distance(position(ray.points[p - 1]), position(ray.points[p]));
+      EXPECT_NEAR(length, 3, 1e-12);
+    }
+    for (Index source = 0; source < surface.vertex_count(); source += 80) try {
+        const MeshPoint from = surface.vertex_point(Vertex(source));
+        const ExactMap map = exact::exact_map(surface, from);
+        for (Index v = 0; v < map.size(); ++v) {
+          const GeodesicPath path = exact::path_to_vertex(surface, map, Vertex(v));
+          if (path.points.size() < 2 || passes_vertex(path)) continue;
+          ++paths;
+          const TracedPath ray = exact::trace(surface, from, map.direction(Vertex(v)), map.distance(Vertex(v)));
+          EXPECT_LT(distance(position(ray.points.back()), flat->positions[v]), 1e-10)
+              << seed << ' ' << source << ' ' << v;
+        }
+      } catch (const InvalidGeometry& e) {
+        EXPECT_EQ(e.fault(), "windows_lost") << e.what();
+      }
+  }
+  EXPECT_GT(paths, 5000);
 }
 
 TEST(Trace, IsStraightInThePlaneWhateverTheTriangles) {
@@ -126,6 +175,18 @@ TEST(Trace, IsStraightInThePlaneWhateverTheTriangles) {
     EXPECT_EQ(ray.end, TraceEnd::boundary);
     EXPECT_NEAR(distance(solid.position(from), solid.position(ray.points.back())), ray.length, 1e-12);
   }
+}
+
+TEST(Trace, RunsAlongTheBoundaryWithinRounding) {
+  const Polyhedron solid(flat_square(5, 0));
+  const MeshPoint from = solid.surface.vertex_point(Vertex(2));  // on a side
+  const double angle = solid.surface.angle_sum(2);
+  for (double direction : {-1e-12, 0.0, 1e-12, 2 * std::numbers::pi - 1e-12, angle, angle + 1e-12}) {
+    const TracedPath ray = exact::trace(solid.surface, from, direction, 0.4);
+    EXPECT_NEAR(distance(solid.position(from), solid.position(ray.points.back())), 0.4, 1e-11) << direction;
+  }
+  EXPECT_THROW(exact::trace(solid.surface, from, angle + 0.1, 1), InvalidArgument);
+  EXPECT_THROW(exact::trace(solid.surface, from, -0.1, 1), InvalidArgument);
 }
 
 TEST(Trace, PassesAVertexWithEqualAnglesOnBothSides) {

@@ -4,7 +4,37 @@
 #include <cmath>
 #include <numbers>
 
+#include "ahm/trimesh/triangle_mesh_surface.hpp"
+#include "ahm/util/vec.hpp"
+
 namespace ahm::test {
+
+Mesh nested_needles(unsigned seed, double farthest) {
+  Mesh mesh = icosphere(1);
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  for (int k = 0; k < 400; ++k) {
+    const std::size_t f = random() % mesh.faces.size();
+    const auto [a, b, c] = mesh.faces[f];
+    const double near = std::pow(10, -6 + (6 + std::log10(farthest)) * uniform(random)),
+                 off = 0.3 * near * (uniform(random) - 0.5);
+    Vec3 weights{near / 2, near / 2, near / 2};
+    weights[random() % 3] = 1 - near;
+    const Vec3 &p = mesh.positions[a], &q = mesh.positions[b], &r = mesh.positions[c];
+    const Vec3 normal = ahm::cross(q - p, r - p);
+    const Vec3 inside = weights[0] * p + weights[1] * q + weights[2] * r + (off / std::sqrt(norm(normal))) * normal;
+    const auto v = static_cast<Index>(mesh.positions.size());
+    mesh.positions.push_back(inside);
+    mesh.faces[f] = {a, b, v};
+    mesh.faces.push_back({b, c, v});
+    mesh.faces.push_back({c, a, v});
+  }
+  return mesh;
+}
+
+FlatTriangles flat_triangles(const Mesh& mesh) {
+  return trimesh::TriangleMeshSurface::build(mesh.positions, mesh.faces).flat_triangles();
+}
 
 exact::PolyhedralSurface surface_of(const trimesh::TriangleMesh& mesh) {
   std::vector<exact::FaceSides> sides;

@@ -5,6 +5,7 @@
 #include <random>
 #include <vector>
 
+#include "ahm/surface/exact/flat_triangles.hpp"
 #include "ahm/surface/exact/geodesic_path.hpp"
 #include "ahm/testing/triangle_meshes.hpp"
 #include "ahm/trimesh/triangle_mesh.hpp"
@@ -23,6 +24,12 @@ struct Polyhedron {
   exact::PolyhedralSurface surface;
 };
 
+/// An icosahedron with points inserted into its faces, one after the other, beside their corners, as near as 1e-6 to
+/// `farthest` of a face, and a little off.
+Mesh nested_needles(unsigned seed, double farthest = 0.3);
+
+/// As the triangle backend lays it out, without faces that it drops.
+FlatTriangles flat_triangles(const Mesh& mesh);
 exact::PolyhedralSurface surface_of(const trimesh::TriangleMesh& mesh);
 
 /// Uniformly distributed barycentric coordinates in a random face.

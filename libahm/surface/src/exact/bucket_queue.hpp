@@ -14,13 +14,13 @@ namespace ahm::exact {
 template <class Item>
 class BucketQueue {
  public:
-  static constexpr std::uint32_t per_chunk = 42, none = ~0u;
+  static constexpr std::uint32_t per_chunk = 42, ring = 4096, none = ~0u;
   struct Chunk {
     std::uint32_t count = 0, next = none;
     Item items[per_chunk];
   };
 
-  BucketQueue(double width, std::uint32_t buckets) : inverse_width_(1 / width), first_(buckets, none) {}
+  explicit BucketQueue(double width) : inverse_width_(1 / width), first_(ring, none) {}
 
   void push(double key, const Item& item) {
     std::uint32_t& head = first_[slot(key)];
@@ -37,14 +37,14 @@ class BucketQueue {
   bool empty() const { return size_ == 0; }
   /// The lower end of the current bucket.
   double key() const { return static_cast<double>(bucket_) / inverse_width_; }
-  bool bucket_empty() const { return first_[bucket_ % first_.size()] == none; }
+  bool bucket_empty() const { return first_[bucket_ % ring] == none; }
   /// Goes on to the next bucket.
   void advance() { ++bucket_; }
 
   /// Takes the chunk on top of the current bucket out and calls visit(item) for its items; pushing meanwhile is fine.
   template <class Visit>
   void drain_chunk(const Visit& visit) {
-    std::uint32_t& head = first_[bucket_ % first_.size()];
+    std::uint32_t& head = first_[bucket_ % ring];
     const std::uint32_t taken = head;
     head = chunks_[taken]->next;
     size_ -= chunks_[taken]->count;
@@ -59,9 +59,9 @@ class BucketQueue {
  private:
   std::size_t slot(double key) const {
     const double position = key * inverse_width_;
-    const auto last = bucket_ + first_.size() - 1;
+    const auto last = bucket_ + ring - 1;
     const auto bucket = position < static_cast<double>(last) ? static_cast<std::uint64_t>(position) : last;
-    return std::max(bucket, bucket_) % first_.size();
+    return std::max(bucket, bucket_) % ring;
   }
   std::uint32_t take() {
     if (free_ == none) {

@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <array>
 #include <limits>
+#include <memory>
 #include <queue>
 #include <vector>
 
@@ -14,28 +16,49 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
+/// How a way comes to a vertex.
+struct Step {
+  double distance = infinity;  ///< so far
+  Index from = -1;             ///< vertex; -1: where the way starts
+  Half across = -1;            ///< the half-edge that it crosses; -1: none
+  double along = 0;            ///< from its tail
+};
+
+/// One step per vertex, in pages that are made where one is asked for: near points take little of a large surface.
+class Steps {
+ public:
+  explicit Steps(Index size) : pages_(static_cast<std::size_t>(size) / per_page + 1) {}
+  Step& operator[](Index vertex) {
+    std::unique_ptr<Page>& page = pages_[static_cast<std::size_t>(vertex) / per_page];
+    if (!page) page = std::make_unique<Page>();
+    return (*page)[static_cast<std::size_t>(vertex) % per_page];
+  }
+
+ private:
+  static constexpr std::size_t per_page = 128;
+  using Page = std::array<Step, per_page>;
+  std::vector<std::unique_ptr<Page>> pages_;
+};
+
 /// The shortest way along the edges and straight across them to the vertex beyond, by Dijkstra's algorithm or, with a
 /// lower bound, A* [HNR68].
 class EdgeSearch {
  public:
   EdgeSearch(const PolyhedralSurface& surface, const std::function<double(Vertex)>& at_least)
-      : surface_(surface),
-        at_least_(at_least),
-        distance_(static_cast<std::size_t>(surface.vertex_count()), infinity),
-        step_(distance_.size()) {}
+      : surface_(surface), at_least_(at_least), step_(surface.vertex_count()) {}
 
   /// The vertices of the way, and where it crosses edges between them; none where there is none.
   std::vector<MeshPoint> run(const MeshPoint& from, const MeshPoint& to) {
     double after[3];
     for (int s = 0; s < 3; ++s) after[s] = to_corner(to, s);
     for (int s = 0; s < 3; ++s)
-      if (const double d = to_corner(from, s); d < infinity) offer(surface_.record(3 * from.face + s).tail, {}, d);
+      if (const double d = to_corner(from, s); d < infinity) offer(surface_.record(3 * from.face + s).tail, {d});
     double best = infinity;
     Index last = -1;
     while (!queue_.empty() && queue_.top().key < best) {
       const Entry entry = queue_.top();
       queue_.pop();
-      if (entry.distance > distance_[entry.vertex]) continue;
+      if (entry.distance > step_[entry.vertex].distance) continue;
       for (int s = 0; s < 3; ++s)
         if (surface_.record(3 * to.face + s).tail == entry.vertex && entry.distance + after[s] < best) {
           best = entry.distance + after[s];
@@ -53,12 +76,6 @@ class EdgeSearch {
   }
 
  private:
-  /// How the way comes to a vertex.
-  struct Step {
-    Index from = -1;   ///< vertex; -1: where the way starts
-    Half across = -1;  ///< the half-edge that it crosses; -1: none
-    double along = 0;  ///< from its tail
-  };
   struct Entry {
     double key, distance;
     Index vertex;
@@ -78,8 +95,8 @@ class EdgeSearch {
     Corner c = first;
     do {
       const HalfRecord& r = surface_.record(c.half);
-      offer(r.head, {entry.vertex}, entry.distance + r.length);
-      offer(r.apex, {entry.vertex}, entry.distance + r.left);
+      offer(r.head, {entry.distance + r.length, entry.vertex});
+      offer(r.apex, {entry.distance + r.left, entry.vertex});
       if (r.beyond_right >= 0) cross_right(entry, r);
       c = surface_.turn_left(c);
     } while (c.half >= 0 && c != first);
@@ -93,20 +110,19 @@ class EdgeSearch {
     const Place to = apex(there);
     const double along = from[0] - (to[0] - from[0]) * from[1] / (to[1] - from[1]);
     if (along > 0 && along < there.length)
-      offer(there.apex, {entry.vertex, r.beyond_right, along}, entry.distance + exact::distance(from, to));
+      offer(there.apex, {entry.distance + exact::distance(from, to), entry.vertex, r.beyond_right, along});
   }
 
-  void offer(Index vertex, const Step& step, double distance) {
-    if (!(distance < distance_[vertex])) return;
-    distance_[vertex] = distance;
-    step_[vertex] = step;
-    queue_.push({distance + (at_least_ ? at_least_(Vertex(vertex)) : 0.0), distance, vertex});
+  void offer(Index vertex, const Step& step) {
+    Step& known = step_[vertex];
+    if (!(step.distance < known.distance)) return;
+    known = step;
+    queue_.push({step.distance + (at_least_ ? at_least_(Vertex(vertex)) : 0.0), step.distance, vertex});
   }
 
   const PolyhedralSurface& surface_;
   const std::function<double(Vertex)>& at_least_;
-  std::vector<double> distance_;
-  std::vector<Step> step_;
+  Steps step_;
   std::priority_queue<Entry> queue_;
 };
 

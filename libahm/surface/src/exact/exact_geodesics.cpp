@@ -206,6 +206,11 @@ LabelledLogMap ExactGeodesics::log_map(const Placed& from, Source source, const 
   std::vector<Index> labels;
   MapExtras extras;
   extras.method = Method::exact;
+  const auto size = static_cast<std::size_t>(exact.size());
+  coordinates.reserve(2 * size);
+  labels.reserve(size);
+  extras.distances.reserve(size);
+  if (options.frames) extras.frames.reserve(4 * size);
   for (Index i = 0; i < exact.size(); ++i) {
     const Vertex v(i);
     const Index label = exact.source(v);

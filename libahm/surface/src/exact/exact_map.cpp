@@ -31,23 +31,29 @@ void check(const PolyhedralSurface& surface, std::span<const MeshPoint> sources,
   for (const MeshPoint& p : sources) checked(surface, p, "source");
 }
 
-std::unique_ptr<Propagation> propagation_by(const PolyhedralSurface& surface, const ExactOptions& options,
-                                            std::span<const MeshPoint> targets) {
+/// Windows from all sources; what they took is given back.
+Found propagate(const PolyhedralSurface& surface, std::span<const MeshPoint> sources,
+                std::span<const MeshPoint> targets, const ExactOptions& options) {
+  std::unique_ptr<Propagation> windows;
   if (options.tolerance > 0)
-    return std::make_unique<MergedPropagation>(surface, options.radius, targets, options.only_targets,
-                                               options.tolerance);
-  return std::make_unique<ExactPropagation>(surface, options.radius, targets, options.only_targets);
+    windows =
+        std::make_unique<MergedPropagation>(surface, options.radius, targets, options.only_targets, options.tolerance);
+  else
+    windows = std::make_unique<ExactPropagation>(surface, options.radius, targets, options.only_targets);
+  for (const MeshPoint& p : sources) windows->add_source(p);
+  windows->run(options.progress);
+  return std::move(*windows).found();
 }
 
 /// No vertex is farther than a neighbour and the side between them. Otherwise windows were lost, which happens in needles
 /// whose angles are those of rounding.
-void check_reached(const PolyhedralSurface& surface, const Propagation& done, double tolerance) {
-  const std::span<const double> distance = done.distances();
+void check_reached(const PolyhedralSurface& surface, const Found& found, double tolerance) {
+  const std::span<const double> distance = found.distance;
   for (Half h = 0; h < 3 * surface.face_count(); ++h) {
     const HalfRecord& r = surface.record(h);
     const auto check = [&](Index from, Index to) {
       const double way = (distance[from] + r.length) * (1 + 1e-9 + 3 * tolerance);
-      if (!(way < done.horizon()) || distance[to] <= way) return;
+      if (!(way < found.horizon) || distance[to] <= way) return;
       throw InvalidGeometry("windows_lost",
                             "windows were lost on the way to vertex " + std::to_string(to) + ", a side of " +
                                 detail::number(r.length) + " from vertex " + std::to_string(from),
@@ -77,20 +83,20 @@ class MapBuilder {
     for (const MeshPoint& p : map_.sources_) lit_[component_of(surface, p)] = 1;
   }
 
-  ExactMap build(const Propagation& done, double tolerance) {
+  ExactMap build(Found found, double tolerance) {
     map_.tolerance_ = tolerance;
-    map_.origins_.assign(done.origins().begin(), done.origins().end());
-    map_.statistics_ = {done.windows(), done.bytes()};
+    map_.origins_ = std::move(found.origins);
+    map_.statistics_ = found.statistics;
     const std::size_t rows = map_.vertices_ + map_.targets_.size();
     map_.distance_.reserve(rows);
     map_.direction_.reserve(rows);
     map_.status_.reserve(rows);
     map_.arrival_.reserve(rows);
     for (std::size_t v = 0; v < map_.vertices_; ++v)
-      add(done.distances()[v], surface_.component(static_cast<Index>(v)), done.horizon(), done.reached()[v]);
+      add(found.distance[v], surface_.component(static_cast<Index>(v)), found.horizon, found.reached[v]);
     for (std::size_t k = 0; k < map_.targets_.size(); ++k)
-      add(done.target_distances()[k], component_of(surface_, map_.targets_[k]), done.horizon(),
-          done.reached()[map_.vertices_ + k]);
+      add(found.target_distance[k], component_of(surface_, map_.targets_[k]), found.horizon,
+          found.reached[map_.vertices_ + k]);
     for (Origin& origin : map_.origins_) origin.direction = scaled(origin.direction, origin.source);
     return std::move(map_);
   }
@@ -131,11 +137,9 @@ ExactMap exact_map(const PolyhedralSurface& surface, std::span<const MeshPoint> 
     std::vector<MeshPoint> from, to;
     for (const MeshPoint& p : sources) from.push_back(checked(surface, p, "source"));
     for (const MeshPoint& p : options.targets) to.push_back(checked(surface, p, "target"));
-    const std::unique_ptr<Propagation> propagation = propagation_by(surface, options, to);
-    for (const MeshPoint& p : from) propagation->add_source(p);
-    propagation->run(options.progress);
-    check_reached(surface, *propagation, options.tolerance);
-    return MapBuilder(surface, std::move(from), std::move(to)).build(*propagation, options.tolerance);
+    Found found = propagate(surface, from, to, options);
+    check_reached(surface, found, options.tolerance);
+    return MapBuilder(surface, std::move(from), std::move(to)).build(std::move(found), options.tolerance);
   });
 }
 

@@ -20,8 +20,8 @@ ExactPropagation::ExactPropagation(const PolyhedralSurface& surface, double radi
                                    bool only_targets)
     : Propagation(surface, radius, targets, only_targets),
       sighting_(3 * static_cast<std::size_t>(surface.face_count()), Sighting{infinity, 0}),
-      windows_(bucket_width * surface.mean_length(), bucket_ring),
-      bends_(bucket_width * surface.mean_length(), bucket_ring) {}
+      windows_(bucket_width * surface.mean_length()),
+      bends_(bucket_width * surface.mean_length()) {}
 
 void ExactPropagation::start(const Window& w) {
   const double sigma = origins_[w.origin()].distance;

@@ -13,9 +13,10 @@ class ExactPropagation final : public Propagation {
                    bool only_targets);
 
   void run(const Progress& progress) override;
-  std::size_t bytes() const override;
 
  private:
+  std::size_t bytes() const override;
+
   /// A vertex whose shortest path may bend there.
   struct Bend {
     Index vertex;
@@ -33,11 +34,11 @@ class ExactPropagation final : public Propagation {
   void bend(const Bend& event);
   void fill(Corner corner, double turned, double high, std::uint32_t origin2);
 
-  bool loses(const Window& w, double at_begin, double at_end) const;
+  inline bool loses(const Window& w, double at_begin, double at_end) const;
   void cross_face(const Window& w);
-  void go_left(const Window& w, const HalfRecord& r, double sigma, double to_apex);
-  void go_right(const Window& w, const HalfRecord& r, double sigma, double to_apex);
-  void push(const Window& w, double sigma, double at_begin, double at_end);
+  inline void go_left(const Window& w, const HalfRecord& r, double sigma, double to_apex);
+  inline void go_right(const Window& w, const HalfRecord& r, double sigma, double to_apex);
+  inline void push(const Window& w, double sigma, double at_begin, double at_end);
   bool hides(const Window& w, bool right) const;
   void see_targets_of(const Window& w, double sigma);
   double farthest_target() override;

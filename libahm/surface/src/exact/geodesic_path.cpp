@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <string>
 
 #include "ahm/error.hpp"
@@ -112,6 +113,11 @@ void check_exact(const ExactMap& map) {
     throw InvalidArgument("'map' has the tolerance " + detail::number(map.tolerance()) + "; paths need an exact one");
 }
 
+/// Directions this far beyond the boundary run along it.
+constexpr double boundary_margin = 1e-9;
+/// Lines of more are taken for lost.
+constexpr std::size_t most_crossings = 1000000;
+
 GeodesicPath without_points(Status status) {
   GeodesicPath path;
   path.status = status;
@@ -121,7 +127,7 @@ GeodesicPath without_points(Status status) {
 /// Follows a straightest geodesic.
 class Tracer {
  public:
-  Tracer(const PolyhedralSurface& surface, double length) : surface_(surface), left_(length) {}
+  Tracer(const PolyhedralSurface& surface, double length) : surface_(surface), length_(length), left_(length) {}
 
   TracedPath from(const MeshPoint& start, Line line) {
     path_.points.push_back(start);
@@ -134,9 +140,13 @@ class Tracer {
       if (at_tail || at_head) {
         const Half corner = at_tail ? exit.side : next(exit.side);
         const Index vertex = surface_.record(corner).tail;
-        if (surface_.on_boundary(vertex))
-          return end(TraceEnd::boundary, line, exit.walked, surface_.vertex_point(Vertex{vertex}));
-        line = through_vertex(line, corner, exit.walked);
+        const std::optional<double> out = straight_on(line, corner);
+        if (!out) return end(TraceEnd::boundary, line, exit.walked, surface_.vertex_point(Vertex{vertex}));
+        done_ += exit.walked;
+        left_ -= exit.walked;
+        path_.points.push_back(surface_.vertex_point(Vertex{vertex}));
+        line = line_from_vertex(surface_, vertex, *out);
+        check_count(done_);
         exit = leave_corner(line);
         continue;
       }
@@ -144,6 +154,7 @@ class Tracer {
       const MeshPoint crossed = point_on(surface_, exit.side, exit.along);
       if (beyond.half < 0) return end(TraceEnd::boundary, line, exit.walked, crossed);
       path_.points.push_back(crossed);
+      check_count(done_ + exit.walked);
       line = beyond;
       exit = leave_upwards(surface_, line);
     }
@@ -158,22 +169,33 @@ class Tracer {
     return std::move(path_);
   }
 
+  void check_count(double walked) const {
+    if (path_.points.size() < most_crossings) return;
+    throw InvalidArgument("line_too_long",
+                          "the line crosses more than " + std::to_string(most_crossings) + " sides within " +
+                              detail::number(walked) + " of its length " + detail::number(length_) + ", near face " +
+                              std::to_string(path_.points.back().face),
+                          "give a smaller length, or repair needles there");
+  }
+
   /// Leaves the face opposite to the corner that the line starts in.
   Exit leave_corner(const Line& line) const { return leave_through(surface_, line, next(line.half)); }
 
-  /// Half of the vertex's angle lies on either side.
-  Line through_vertex(const Line& line, Half corner, double walked) {
+  /// The angle at which a line goes on at the vertex of a corner: half of the vertex's angle lies on either side; on the
+  /// boundary pi on one, or nowhere.
+  std::optional<double> straight_on(const Line& line, Half corner) const {
     const Index vertex = surface_.record(corner).tail;
     const Line seen = in_frame_of(surface_, line, corner);
     const double sum = surface_.angle_sum(vertex);
     const double in = angle_at_vertex(surface_, corner, -seen.direction);
-    done_ += walked;
-    left_ -= walked;
-    path_.points.push_back(surface_.vertex_point(Vertex{vertex}));
-    return line_from_vertex(surface_, vertex, in < sum / 2 ? in + sum / 2 : in - sum / 2);
+    if (!surface_.on_boundary(vertex)) return in < sum / 2 ? in + sum / 2 : in - sum / 2;
+    if (in + pi <= sum + boundary_margin) return std::min(in + pi, sum);
+    if (in - pi >= -boundary_margin) return std::max(in - pi, 0.0);
+    return std::nullopt;
   }
 
   const PolyhedralSurface& surface_;
+  double length_;
   double left_;      ///< to go from the start of the current line
   double done_ = 0;  ///< up to there
   TracedPath path_;
@@ -235,8 +257,11 @@ TracedPath trace(const PolyhedralSurface& surface, const MeshPoint& from, double
   }
   const double sum = surface.angle_sum(vertex);
   double angle = direction / surface.angle_scale(vertex);
-  if (!surface.on_boundary(vertex)) angle -= sum * std::floor(angle / sum);
-  if (angle < -1e-9 || angle > sum + 1e-9)
+  if (!surface.on_boundary(vertex))
+    angle -= sum * std::floor(angle / sum);
+  else if (angle > sum && angle > 2 * pi - boundary_margin)
+    angle = 0;  // along the first side, by rounding
+  if (angle < -boundary_margin || angle > sum + boundary_margin)
     throw InvalidArgument("'direction' " + detail::number(direction) + " at boundary vertex " + std::to_string(vertex) +
                           " must be in [0, " + detail::number(sum) + "]");
   return Tracer(surface, length).from(surface.vertex_point(Vertex{vertex}), line_from_vertex(surface, vertex, angle));

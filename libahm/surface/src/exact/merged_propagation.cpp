@@ -46,10 +46,9 @@ MergedPropagation::MergedPropagation(const PolyhedralSurface& surface, double ra
       upper_(distance_.size() + targets.size(), infinity),
       lists_(3 * static_cast<std::size_t>(surface.face_count()), Lists{none, none, infinity}),
       free_(none),
-      waiting_(bucket_width * surface.mean_length(), bucket_ring),
-      turns_(bucket_width * surface.mean_length(), bucket_ring) {
-  pool_.reserve(static_cast<std::size_t>(surface.face_count()));
-}
+      waiting_(bucket_width * surface.mean_length()),
+      turns_(bucket_width * surface.mean_length()),
+      leaving_(bucket_width * surface.mean_length()) {}
 
 // ---------------------------------------------------------------------------------------------- origins
 
@@ -133,6 +132,8 @@ void MergedPropagation::wait(Half half, const FrontPiece& piece) {
 
 void MergedPropagation::cross_side(const Side& event) {
   if (event.key != lists_[event.half].key) return;
+  forget_passed();
+  if (lists_[event.half].passed == none) leaving_.push(event.key, event.half);
   gather(event);
   profile_.merge({tolerance_, origins_, full_angle_});
   keep(event.half);
@@ -160,6 +161,24 @@ void MergedPropagation::gather(const Side& event) {
   }
   profile_.drop_fresh_if([&](const FrontPiece& piece) { return loses(r, piece); });
   profile_.close_gaps();
+}
+
+/// Forgets pieces that have passed where all that come will lose to one of the ends of their half-edge.
+void MergedPropagation::forget_passed() {
+  for (; leaving_.key() < waiting_.key(); leaving_.advance())
+    while (!leaving_.bucket_empty()) leaving_.drain_chunk([this](Half half) { leave(half); });
+}
+
+void MergedPropagation::leave(Half half) {
+  const HalfRecord& r = surface_.record(half);
+  const double now = leaving_.key(), near = std::min(upper_[r.tail], upper_[r.head]);
+  const double last = (near < infinity ? near + r.length : now + r.length) * slack;
+  if (now < last) return leaving_.push(last + 2 * bucket_width * surface_.mean_length(), half);
+  for (std::uint32_t k = std::exchange(lists_[half].passed, none); k != none;) {
+    const std::uint32_t next = pool_[k].next;
+    give_back(k);
+    k = next;
+  }
 }
 
 void MergedPropagation::keep(Half half) {
@@ -322,8 +341,8 @@ void MergedPropagation::finish() {
 }
 
 std::size_t MergedPropagation::bytes() const {
-  return Propagation::bytes() + waiting_.bytes() + turns_.bytes() + lists_.capacity() * sizeof(Lists) +
-         pool_.capacity() * sizeof(FrontPiece) + upper_.capacity() * sizeof(double);
+  return Propagation::bytes() + waiting_.bytes() + turns_.bytes() + leaving_.bytes() +
+         lists_.capacity() * sizeof(Lists) + pool_.capacity() * sizeof(FrontPiece) + upper_.capacity() * sizeof(double);
 }
 
 }  // namespace ahm::exact

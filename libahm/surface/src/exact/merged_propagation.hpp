@@ -26,9 +26,10 @@ class MergedPropagation final : public Propagation {
                     bool only_targets, double tolerance);
 
   void run(const Progress& progress) override;
-  std::size_t bytes() const override;
 
  private:
+  std::size_t bytes() const override;
+
   /// A vertex that is an origin.
   struct Turn {
     Index vertex;
@@ -59,6 +60,8 @@ class MergedPropagation final : public Propagation {
   void cross_side(const Side& event);
   void gather(const Side& event);
   void keep(Half half);
+  void forget_passed();
+  void leave(Half half);
   void cross_face(Half half, std::size_t entry);
   bool extends(const FrontPiece& piece, double t, const Place& ray, double reach) const;
   void go_on(Half half, const FrontPiece& piece, const Rays& rays);
@@ -82,6 +85,7 @@ class MergedPropagation final : public Propagation {
   std::vector<double> full_angle_;  ///< about each source; infinite at the boundary
   BucketQueue<Side> waiting_;
   BucketQueue<Turn> turns_;
+  BucketQueue<Half> leaving_;  ///< those with pieces that have passed, by when they may be of no use any more
   FrontProfile profile_;
 };
 

@@ -21,6 +21,8 @@ constexpr double least_height = 1e-13;
 /// Angle sums closer to 2 pi than this are flat.
 constexpr double flat_excess = 1e-13;
 
+constexpr const char* needs_faces = "a surface needs faces, and three tails and twins for each of them";
+
 [[noreturn]] void refuse(Index face, const std::string& reason) {
   throw InvalidGeometry("face " + std::to_string(face) + " " + reason);
 }
@@ -68,93 +70,94 @@ void check_twin(const HalfEdges& edges, Half h) {
     throw InvalidGeometry(where + " is glued to a side between other vertices");
 }
 
+/// One layout per face.
+void check_count(const HalfEdges& edges, std::size_t faces) {
+  if (edges.tail.size() != 3 * faces) throw InvalidGeometry(needs_faces);
+}
+
 }  // namespace
+
+PolyhedralSurface::PolyhedralSurface(const HalfEdges& edges, const std::function<FaceSides(Index)>& sides_of,
+                                     std::span<const Half> corners) {
+  if (edges.tail.empty() || edges.tail.size() % 3 != 0 || edges.twin.size() != edges.tail.size() ||
+      (!edges.mirrored.empty() && edges.mirrored.size() != edges.tail.size()))
+    throw InvalidGeometry(needs_faces);
+  if (std::ranges::min(edges.tail) < 0) throw InvalidGeometry("a tail is negative");
+  face_.resize(edges.tail.size() / 3);
+  for (Index f = 0; f < face_count(); ++f) set_face(f, edges, sides_of(f));
+  mean_length_ /= static_cast<double>(edges.size());
+  check_lengths();
+  set_fans(edges, corners);
+}
 
 PolyhedralSurface::PolyhedralSurface(const HalfEdges& edges, std::span<const FaceSides> sides,
                                      std::span<const Half> corners)
-    : tail_(edges.tail.begin(), edges.tail.end()),
-      twin_(edges.twin.begin(), edges.twin.end()),
-      mirrored_(edges.mirrored.begin(), edges.mirrored.end()) {
-  if (sides.empty() || tail_.size() != 3 * sides.size() || twin_.size() != tail_.size() ||
-      (!mirrored_.empty() && mirrored_.size() != tail_.size()))
-    throw InvalidGeometry("a surface needs faces, and three tails and twins for each of them");
-  if (std::ranges::min(tail_) < 0) throw InvalidGeometry("a tail is negative");
-  set_records(sides);
-  set_fans(corners);
-}
+    : PolyhedralSurface((check_count(edges, sides.size()), edges), [&](Index f) { return sides[f]; }, corners) {}
 
 PolyhedralSurface PolyhedralSurface::from_lengths(const HalfEdges& edges,
                                                   std::span<const std::array<double, 3>> lengths,
                                                   std::span<const Half> corners) {
-  std::vector<FaceSides> sides(lengths.size());
-  for (std::size_t f = 0; f < sides.size(); ++f) sides[f] = lay_out(static_cast<Index>(f), lengths[f]);
-  return {edges, sides, corners};
+  check_count(edges, lengths.size());
+  return {edges, [&](Index f) { return lay_out(f, lengths[f]); }, corners};
 }
 
-void PolyhedralSurface::set_records(std::span<const FaceSides> sides) {
-  const HalfEdges edges = this->edges();
-  record_.resize(tail_.size());
-  angle_.resize(tail_.size());
-  double sum = 0;
-  for (std::size_t f = 0; f < sides.size(); ++f) {
-    std::array<double, 3> length;
-    for (int s = 0; s < 3; ++s) length[s] = std::hypot(sides[f][s][0], sides[f][s][1]);
-    const double area = double_area(sides[f], length);
-    check_face(static_cast<Index>(f), sides[f], length, area);
-    for (int s = 0; s < 3; ++s) {
-      const auto h = static_cast<Half>(3 * f + s);
-      const Vec2 &side = sides[f][s], &last = sides[f][(s + 2) % 3];
-      check_twin(edges, h);
-      HalfRecord& r = record_[h];
-      r.length = length[s];
-      r.left = length[(s + 2) % 3];
-      r.right = length[(s + 1) % 3];
-      r.apex_x = -dot(side, last) / length[s];
-      r.apex_y = area / length[s];
-      r.tail = tail_[h];
-      r.head = tail_[next(h)];
-      r.apex = tail_[previous(h)];
-      r.beyond_left = std::max(twin_[previous(h)], -1);
-      r.beyond_right = std::max(twin_[next(h)], -1);
-      r.mirrored = static_cast<std::uint8_t>(edges.is_mirrored(previous(h)) + 2 * edges.is_mirrored(next(h)));
-      angle_[h] = std::atan2(area, -dot(side, last));
-      sum += length[s];
-    }
+void PolyhedralSurface::set_face(Index face, const HalfEdges& edges, const FaceSides& sides) {
+  std::array<double, 3> length;
+  for (int s = 0; s < 3; ++s) length[s] = std::hypot(sides[s][0], sides[s][1]);
+  const double area = double_area(sides, length);
+  check_face(face, sides, length, area);
+  Face& f = face_[face];
+  for (int s = 0; s < 3; ++s) {
+    const Half h = 3 * face + s;
+    check_twin(edges, h);
+    const double along = -dot(sides[s], sides[(s + 2) % 3]);
+    f.length[s] = length[s];
+    f.apex_x[s] = along / length[s];
+    f.apex_y[s] = area / length[s];
+    f.angle[s] = std::atan2(area, along);
+    f.tail[s] = edges.tail[h];
+    f.beyond[s] = std::max(edges.twin[h], -1);
+    f.mirrored |= static_cast<std::uint8_t>(edges.is_mirrored(h) << s);
+    mean_length_ += length[s];
   }
-  mean_length_ = sum / static_cast<double>(record_.size());
-  for (std::size_t h = 0; h < record_.size(); ++h) {
-    const Half t = twin_[h];
-    if (t >= 0 && std::abs(record_[h].length - record_[t].length) > 1e-9 * record_[h].length)
+}
+
+/// Both faces of an edge give it the same length.
+void PolyhedralSurface::check_lengths() const {
+  for (Half h = 0; h < 3 * face_count(); ++h) {
+    const Half t = face_[h / 3].beyond[h % 3];
+    if (t < 0) continue;
+    const double here = face_[h / 3].length[h % 3], there = face_[t / 3].length[t % 3];
+    if (std::abs(here - there) > 1e-9 * here)
       throw InvalidGeometry("faces " + std::to_string(h / 3) + " and " + std::to_string(t / 3) +
-                            " give their common side lengths " + detail::number(record_[h].length) + " and " +
-                            detail::number(record_[t].length));
+                            " give their common side lengths " + detail::number(here) + " and " +
+                            detail::number(there));
   }
 }
 
-void PolyhedralSurface::set_fans(std::span<const Half> corners) {
-  const HalfEdges edges = this->edges();
-  const Index vertices = std::ranges::max(tail_) + 1;
+void PolyhedralSurface::set_fans(const HalfEdges& edges, std::span<const Half> corners) {
+  const Index vertices = std::ranges::max(edges.tail) + 1;
   std::vector<Index> corners_at(vertices, 0);
   corner_.resize(corners_at.size());
   for (Half h = edges.size(); h-- > 0;) {
-    ++corners_at[tail_[h]];
-    corner_[tail_[h]] = {h, true};
+    ++corners_at[edges.tail[h]];
+    corner_[edges.tail[h]] = {h, true};
   }
   detail::DisjointSets parts(corner_.size());
   angle_sum_.resize(corner_.size());
   on_boundary_.resize(corner_.size());
   for (Index v = 0; v < vertices; ++v) {
     if (!corners.empty()) corner_[v].half = corners[v];
-    if (corner_[v].half < 0 || tail_[corner_[v].half] != v)
+    if (corner_[v].half < 0 || edges.tail[corner_[v].half] != v)
       throw InvalidGeometry("vertex " + std::to_string(v) + " has no face, or a corner of another vertex");
     corner_[v] = edges.rightmost(corner_[v]);
     on_boundary_[v] = edges.turn_right(corner_[v]).half < 0;
     Index met = 0;
     Corner at = corner_[v];
     do {
-      angle_sum_[v] += angle_[at.half];
-      parts.join(v, record_[at.half].head);
-      parts.join(v, record_[at.half].apex);
+      angle_sum_[v] += angle(at.half);
+      parts.join(v, edges.head(at.half));
+      parts.join(v, edges.tail[previous(at.half)]);
       at = turn_left(at);
     } while (++met < corners_at[v] && at.half >= 0 && at != corner_[v]);
     if (met != corners_at[v])
@@ -170,8 +173,8 @@ double PolyhedralSurface::angle_scale(Index v) const { return on_boundary(v) ? 1
 
 double PolyhedralSurface::turned(Corner corner) const {
   double sum = 0;
-  for (Corner c = first_corner(record_[corner.half].tail); c.half != corner.half; c = turn_left(c))
-    sum += angle_[c.half];
+  for (Corner c = first_corner(face_[corner.half / 3].tail[corner.half % 3]); c.half != corner.half; c = turn_left(c))
+    sum += angle(c.half);
   return sum;
 }
 
@@ -186,9 +189,9 @@ MeshPoint PolyhedralSurface::vertex_point(Vertex vertex) const {
 }
 
 Vec2 PolyhedralSurface::place(const MeshPoint& point) const {
-  const HalfRecord& r = record_[3 * static_cast<std::size_t>(point.face)];
+  const Face& f = face_[point.face];
   const auto& b = point.barycentric;
-  return {b[1] * r.length + b[2] * r.apex_x, b[2] * r.apex_y};
+  return {b[1] * f.length[0] + b[2] * f.apex_x[0], b[2] * f.apex_y[0]};
 }
 
 }  // namespace ahm::exact

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "ahm/error.hpp"
 #include "check_point.hpp"
@@ -183,6 +184,16 @@ void Propagation::check_count() const {
   if (static_cast<double>(made_) > most_windows(surface_.face_count()))
     throw InvalidGeometry("windows_without_end", "windows without end: lengths of sides differ too much",
                           "repair the mesh, or use heat");
+}
+
+Found Propagation::found() && {
+  const ExactStatistics statistics{made_, bytes()};
+  return {std::move(distance_),
+          std::move(target_distance_),
+          std::move(reached_),
+          std::move(origins_),
+          horizon_,
+          statistics};
 }
 
 std::size_t Propagation::bytes() const {

@@ -32,19 +32,27 @@ struct Reached {
   double direction = 0;  ///< by true angles
 };
 
+/// What a propagation leaves.
+struct Found {
+  std::vector<double> distance, target_distance;  ///< infinite: not reached
+  std::vector<Reached> reached;                   ///< vertices, then targets
+  std::vector<Origin> origins;                    ///< sources first; directions by true angles
+  double horizon;                                 ///< up to here distances are final
+  ExactStatistics statistics;
+};
+
 /// How far beside a window a point still counts as covered, and how wide a window must be; relative to the side.
 inline constexpr double window_margin = 1e-12, least_width = 1e-14;
 /// A window is dropped where it loses to a known distance by more than this, relatively.
 inline constexpr double slack = 1 + 1e-12;
-/// Width of a bucket in mean side lengths, and how many the ring has.
+/// Width of a bucket in mean side lengths.
 inline constexpr double bucket_width = 0.25;
-inline constexpr std::uint32_t bucket_ring = 4096;
 
 /// Whether an origin lies on the line of a side, in its frame. Rays that meet a side at a smaller angle, or from its other
 /// side by rounding, run along it; its ends see them.
 inline bool on_line(const Place& from, double length) { return !(-from[1] > 1e-15 * (std::abs(from[0]) + length)); }
 
-/// One run from a set of sources. Sources first, then `run`, then the results.
+/// One run from a set of sources. Sources first, then `run`, then what it found.
 class Propagation {
  public:
   Propagation(const PolyhedralSurface& surface, double radius, std::span<const MeshPoint> targets, bool only_targets);
@@ -56,15 +64,12 @@ class Propagation {
   /// @throws Cancelled, InvalidGeometry (fault windows_without_end)
   virtual void run(const Progress& progress) = 0;
 
-  std::span<const double> distances() const { return distance_; }  ///< of the vertices; infinite: not reached
-  std::span<const double> target_distances() const { return target_distance_; }
-  std::span<const Reached> reached() const { return reached_; }  ///< vertices, then targets
-  std::span<const Origin> origins() const { return origins_; }   ///< sources first; directions by true angles
-  double horizon() const { return horizon_; }                    ///< up to here distances are final
-  Offset windows() const { return made_; }
-  virtual std::size_t bytes() const;
+  /// Ends it.
+  Found found() &&;
 
  protected:
+  virtual std::size_t bytes() const;  ///< that are held
+
   /// What leaves an origin that lies in the face of a half-edge, in its frame; as in `Window`.
   struct Ray {
     Half half;

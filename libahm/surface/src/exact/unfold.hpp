@@ -25,7 +25,7 @@ inline Place beyond_left(const HalfRecord& r, const Place& p) {
 
 /// In the frame of the half-edge beyond the right side, which runs from the apex to the head (glued without mirroring).
 inline Place beyond_right(const HalfRecord& r, const Place& p) {
-  const double scale = 1 / r.right, c = (r.length - r.apex_x) * scale, s = r.apex_y * scale, x = p[0] - r.length;
+  const double scale = 1 / r.right, c = r.back_x * scale, s = r.apex_y * scale, x = p[0] - r.length;
   return {r.right + x * c - p[1] * s, x * s + p[1] * c};
 }
 
@@ -54,7 +54,7 @@ inline double hit_left(const HalfRecord& r, const Place& from, double t) {
 }
 inline double hit_right(const HalfRecord& r, const Place& from, double t) {
   const double down = -from[1], u = r.length - t;
-  return r.right - u * down / (down * (r.length - r.apex_x) + (r.length - from[0] - u) * r.apex_y) * r.right;
+  return r.right - u * down / (down * r.back_x + (r.length - from[0] - u) * r.apex_y) * r.right;
 }
 
 /// Points of these sides.
@@ -64,7 +64,7 @@ inline Place on_left(const HalfRecord& r, double t) {
 }
 inline Place on_right(const HalfRecord& r, double t) {
   const double part = (r.right - t) / r.right;
-  return {r.length - part * (r.length - r.apex_x), part * r.apex_y};
+  return {r.length - part * r.back_x, part * r.apex_y};
 }
 
 }  // namespace ahm::exact

@@ -76,15 +76,32 @@ Line cross_side(const PolyhedralSurface& surface, const Line& line, const Exit& 
   return beyond;
 }
 
+/// Beside a needle by rounding, weights may be far from those of any point nearby: then it is the nearest of its sides.
 MeshPoint point_of(const PolyhedralSurface& surface, Half half, const Place& place) {
   const HalfRecord& r = surface.record(half);
-  const double up = std::clamp(place[1] / r.apex_y, 0.0, 1.0);
-  const double ahead = std::clamp((place[0] - up * r.apex_x) / r.length, 0.0, 1.0 - up);
-  MeshPoint point{half / 3, {}};
-  point.barycentric[half % 3] = std::max(0.0, 1 - up - ahead);
-  point.barycentric[next(half) % 3] = ahead;
-  point.barycentric[previous(half) % 3] = up;
-  return point;
+  const double up = place[1] / r.apex_y, ahead = (place[0] - up * r.apex_x) / r.length;
+  if (up >= 0 && ahead >= 0 && up + ahead <= 1) {
+    MeshPoint point{half / 3, {}};
+    point.barycentric[half % 3] = std::max(0.0, 1 - up - ahead);
+    point.barycentric[next(half) % 3] = ahead;
+    point.barycentric[previous(half) % 3] = up;
+    return point;
+  }
+  const Place corner[] = {{0, 0}, {r.length, 0}, apex(r)};
+  const Half side[] = {half, next(half), previous(half)};
+  const double length[] = {r.length, r.right, r.left};
+  double nearest = std::numeric_limits<double>::infinity(), along = 0;
+  int on = 0;
+  for (int s = 0; s < 3; ++s) {
+    const Place run = (1 / length[s]) * (corner[(s + 1) % 3] - corner[s]);
+    const double t = std::clamp(dot(place - corner[s], run), 0.0, length[s]);
+    const double away = norm(place - (corner[s] + t * run));
+    if (!(away < nearest)) continue;
+    nearest = away;
+    along = t;
+    on = s;
+  }
+  return point_on(surface, side[on], along);
 }
 
 MeshPoint point_on(const PolyhedralSurface& surface, Half side, double along) {

@@ -31,8 +31,11 @@ struct VoronoiCells {
 /// @throws InvalidArgument (empty, index, a vertex given twice), ResourceExhausted
 VoronoiCells voronoi_cells(const TangentGraph& graph, std::span<const Vertex> vertices,
                            std::shared_ptr<const UnfoldingFront::Stars> stars = nullptr);
-/// The same by exact distances over the flat faces. @throws as above, as `ExactGeodesics::log_map`
-VoronoiCells voronoi_cells(const ExactGeodesics& geodesics, std::span<const Vertex> vertices);
+/// The same by exact distances over the flat faces.
+/// @param options  radius, beyond which there are no cells; tolerance; progress
+/// @throws as above, as `ExactGeodesics::log_map`
+VoronoiCells voronoi_cells(const ExactGeodesics& geodesics, std::span<const Vertex> vertices,
+                           const ExactMapOptions& options = {});
 
 /// `count` vertices, each the farthest from those before it, beginning with `first`; vertices of components without one
 /// count as infinitely far. Each one costs what is nearer to it than to those before.
@@ -41,8 +44,9 @@ VoronoiCells voronoi_cells(const ExactGeodesics& geodesics, std::span<const Vert
 std::vector<Vertex> farthest_points(const TangentGraph& graph, Vertex first, Index count,
                                     const Progress& progress = {});
 /// The same by exact distances over the flat faces; of equally far vertices the first.
+/// @param options  tolerance; progress, as above. Points spread over everything, whatever the radius
 /// @throws as above, as `ExactGeodesics::log_map`
 std::vector<Vertex> farthest_points(const ExactGeodesics& geodesics, Vertex first, Index count,
-                                    const Progress& progress = {});
+                                    const ExactMapOptions& options = {});
 
 }  // namespace ahm

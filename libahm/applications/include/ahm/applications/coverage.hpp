@@ -2,12 +2,13 @@
 /// Paths that cover a surface: lines of equal spacing in log coordinates, carried to space.
 ///
 /// \code
-/// ahm::CoveragePath path = ahm::coverage_path(inverse, {.radius = 0.1, .spacing = 0.01});
+/// ahm::CoveragePath path = ahm::coverage_path(surface, inverse, {.radius = 0.1, .spacing = 0.01});
 /// for (const ahm::CoveragePoint& p : path.points) move_to(p.position, p.normal, p.heading);   // p.piece: lift between
 /// \endcode
 #pragma once
 
 #include <array>
+#include <string>
 #include <vector>
 
 #include "ahm/applications/inverse_map.hpp"
@@ -33,17 +34,22 @@ struct CoveragePoint {
   Vec2 coordinates;       ///< (u, v)
   Index piece;            ///< from 0; a tool must lift between pieces
   Index line;             ///< of the raster, from 0; 0 on a spiral
-  double arclength;       ///< from the start of the piece, in space
+  double arclength;       ///< from the start of the piece along the path
   /// Distance in space, across the path, to what lies `spacing` to the left of it in the plane, or to the right where
   /// that is not valid or on another sheet; NaN where both fail. Equal to `spacing` but for curvature and the map's
   /// error: on hills the lines come closer, on saddles they part, and the path leaves gaps.
   double spacing;
+  /// Not of the pattern: here the shortest way between two of its points bends where it crosses an edge. Coordinates are
+  /// between theirs.
+  bool between = false;
 };
 
 struct CoveragePath {
   std::vector<CoveragePoint> points;  ///< in order of travel
   Index pieces = 0;
   Offset planned = 0;  ///< points of the pattern in the plane; those missing lie outside the valid region
+  /// Why points are joined by straight lines though the surface has faces: the message of `Surface::flat_triangles`.
+  std::string straight_reason;
 };
 
 /// Lays the pattern over the disc and carries it to the surface. A piece ends where its line ends, where the inverse
@@ -54,5 +60,13 @@ struct CoveragePath {
 /// the source and on flat or rolled surfaces (`CoveragePoint::spacing`).
 /// @throws InvalidArgument (values not finite or out of range, more than 2^30 points)
 CoveragePath coverage_path(const InverseMap& inverse, const CoverageOptions& options);
+
+/// The same with the points of a piece joined by shortest paths over flat faces (`exact::locally_shortest_path`), which lie
+/// on the surface as a whole: where they bend they have points of their own (`CoveragePoint::between`), and where the way is
+/// longer than the map's `max_stretch` allows for, as through a thin wall, the piece ends. Flat parts are as above, and so
+/// are surfaces without faces and twisted polygons (`CoveragePath::straight_reason`).
+/// @param surface  that the map is of
+/// @throws InvalidArgument (as above)
+CoveragePath coverage_path(const Surface& surface, const InverseMap& inverse, const CoverageOptions& options);
 
 }  // namespace ahm

@@ -4,6 +4,7 @@
 /// \code
 /// ahm::Atlas by_heat = ahm::make_atlas(solver, sources, faces);             // ahm::LogMapSolver
 /// ahm::Atlas exact = ahm::make_atlas(geodesics, sources, faces);            // ahm::ExactGeodesics
+/// ahm::Atlas within = ahm::make_atlas({geodesics, {.tolerance = 1e-3}}, sources, faces);
 /// \endcode
 #pragma once
 
@@ -21,8 +22,9 @@ namespace ahm {
 class MapMaker {
  public:
   MapMaker(const LogMapSolver& solver) : solver_(&solver) {}
-  /// @param threads  0: one per core
-  MapMaker(const ExactGeodesics& geodesics, unsigned threads = 0) : geodesics_(&geodesics), threads_(threads) {}
+  /// @param options  tolerance and threads; of every map its own radius, and frames
+  MapMaker(const ExactGeodesics& geodesics, const ExactMapOptions& options = {})
+      : geodesics_(&geodesics), tolerance_(options.tolerance), threads_(options.threads) {}
 
   Method method() const noexcept { return solver_ != nullptr ? Method::heat : Method::exact; }
   const TangentGraph& graph() const { return solver_ != nullptr ? solver_->graph() : geodesics_->surface().graph(); }
@@ -50,6 +52,7 @@ class MapMaker {
 
   const LogMapSolver* solver_ = nullptr;
   const ExactGeodesics* geodesics_ = nullptr;
+  double tolerance_ = 0;
   unsigned threads_ = 0;
 };
 

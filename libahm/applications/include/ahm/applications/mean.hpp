@@ -71,6 +71,11 @@ Center geometric_median(const MapMaker& maps, std::span<const Vertex> vertices, 
 Center geometric_median_of_points(const MapMaker& maps, std::span<const Source> points,
                                   std::span<const double> weights = {}, const CenterOptions& options = {});
 
+/// Where a center lies in space, world units: straight on from its vertex along the offset, over flat faces (`exact::trace`,
+/// which ends at the boundary, or runs along it where the offset leads out) or, without faces, over tangent planes (`trace_line`); of twisted polygons the nearest point.
+/// @throws InvalidArgument (no positions; another surface's center)
+Vec3 center_position(const Surface& surface, const Center& center);
+
 /// The source at a center; its axes are those of the frame of `center.vertex`.
 Source source_at(const Center& center);
 

@@ -41,8 +41,8 @@ struct SurfaceCurve {
 
 /// Joins the given points, cuts the lines into pieces of half a mean edge length at the most, and takes the nearest points
 /// of the surface (`Surface::closest_point`). The lines are shortest paths between these, over flat faces or, on clouds, over
-/// tangent planes (`shortest_line`); on twisted polygons, and between points closer than two edges, they are straight in space
-/// (`SurfaceCurve::straight`): give points so close that they stay near the surface.
+/// tangent planes (`shortest_line`), on clouds between points closer than two edges straight lines; on twisted polygons they
+/// are straight in space (`SurfaceCurve::straight`): give points so close that they stay near the surface.
 /// @throws InvalidArgument (as `Surface::source`; faults curve_too_long: more than a million pieces, curve_too_short: fewer
 /// than 2 different points, closed: 3, curve_turns_back, curve_one_sided: closed along a one-sided band), as
 /// `stroke_source`

@@ -36,6 +36,14 @@ struct Corner {
   bool operator==(const Corner&) const = default;
 };
 
+/// The corner at the same vertex beyond a side of a corner's face.
+/// @param twin            of the side, and the half-edge after it; >= 0
+/// @param mirrored        whether the face there is oppositely oriented
+/// @param vertex_is_tail  of the side
+inline Corner corner_beyond(Half twin, Half after_twin, bool mirrored, bool vertex_is_tail, bool forward) {
+  return {vertex_is_tail == mirrored ? twin : after_twin, forward != mirrored};
+}
+
 /// Connectivity of faces glued along their sides: spans of a mesh, or of arrays being flipped.
 struct HalfEdges {
   std::span<const Index> tail;             ///< vertex at the start of each half-edge
@@ -85,9 +93,7 @@ struct HalfEdges {
  private:
   Corner beyond(Half side, bool vertex_is_tail, bool forward) const {
     const Half t = twin[side];
-    if (t < 0) return {};
-    const bool mirror = is_mirrored(side);
-    return {vertex_is_tail == mirror ? t : next(t), forward != mirror};
+    return t < 0 ? Corner{} : corner_beyond(t, next(t), is_mirrored(side), vertex_is_tail, forward);
   }
 };
 

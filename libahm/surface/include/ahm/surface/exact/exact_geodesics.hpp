@@ -27,6 +27,7 @@
 
 namespace ahm {
 
+/// Of all that is made by exact maps.
 struct ExactMapOptions {
   /// Vertices farther than this get `Status::beyond_radius`, and the work ends there. World units; > 0.
   double radius = std::numeric_limits<double>::infinity();
@@ -36,6 +37,7 @@ struct ExactMapOptions {
   double tolerance = 0;
   bool frames = false;  ///< fill `LogMap::frames`
   Progress progress;
+  unsigned threads = 0;  ///< of what makes several maps; 0: one per core
 };
 
 /// One of several sources of an exact map; of a curve, one of its points.

@@ -53,7 +53,7 @@ struct Origin {
 /// What the propagation did.
 struct ExactStatistics {
   Offset windows = 0;     ///< made and queued
-  std::size_t bytes = 0;  ///< held at the end, the surface's own tables apart
+  std::size_t bytes = 0;  ///< held by windows and what they reach, at most; the surface apart
 };
 
 /// Distances and directions from the nearest of several sources, for all vertices and for the targets asked for.

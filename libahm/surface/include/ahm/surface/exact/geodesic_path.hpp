@@ -69,11 +69,13 @@ struct TracedPath {
   double direction = 0;
 };
 
-/// The straightest geodesic from a point: straight through faces, through vertices with equal angles on both sides. The
+/// The straightest geodesic from a point: straight through faces, through vertices with equal angles on both sides, and on
+/// where it runs along the boundary or, at one of its vertices, pi lies on one side. The
 /// exponential map: where a path leaves a point in this direction, with no vertex on its way, the trace follows it.
 /// @param direction  as `ExactMap::direction`: at a vertex scaled by `angle_scale`, elsewhere from side 0 of the face
 /// @param length     world units, >= 0
-/// @throws InvalidArgument (a point outside its face, direction or length)
+/// @throws InvalidArgument (a point outside its face, direction or length; fault line_too_long: more than a million sides are
+/// crossed)
 TracedPath trace(const PolyhedralSurface& surface, const MeshPoint& from, double direction, double length);
 
 }  // namespace ahm::exact

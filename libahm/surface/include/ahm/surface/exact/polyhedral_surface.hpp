@@ -9,6 +9,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -32,10 +33,11 @@ struct MeshPoint {
   std::array<double, 3> barycentric{1, 0, 0};
 };
 
-/// What crossing the face of a half-edge takes, in one cache line. The frame of a half-edge has its tail at the origin,
-/// its head at (length, 0) and the third corner of its face, the apex, above.
-struct alignas(64) HalfRecord {
+/// What crossing the face of a half-edge takes. The frame of a half-edge has its tail at the origin, its head at
+/// (length, 0) and the third corner of its face, the apex, above.
+struct HalfRecord {
   double length, apex_x, apex_y;
+  double back_x;       ///< length - apex_x without cancellation, where the apex is near the head
   double left, right;  ///< lengths of the sides tail - apex and head - apex
   Index tail, head, apex;
   Half beyond_left, beyond_right;  ///< half-edges of the faces beyond these sides, negative on the boundary
@@ -46,24 +48,40 @@ struct alignas(64) HalfRecord {
 /// the same face may be glued to each other.
 class PolyhedralSurface {
  public:
-  /// @param edges    of triangles; copied
+  /// @param edges    of triangles
   /// @param sides    one per face; both faces of an edge give it the same length to 1e-9
   /// @param corners  one half-edge that starts at each vertex, which is oriented like its face; empty: the lowest
   /// @throws InvalidGeometry naming the face or half-edge: a side that is not finite or zero, a triangle flatter than
   ///         1e-13 of its longest side, sides that do not close, lengths that differ, twins that are not mutual or join
   ///         other vertices, a vertex with several fans or none
   PolyhedralSurface(const HalfEdges& edges, std::span<const FaceSides> sides, std::span<const Half> corners = {});
+  /// The same, asking for the sides of one face after the other.
+  PolyhedralSurface(const HalfEdges& edges, const std::function<FaceSides(Index)>& sides_of,
+                    std::span<const Half> corners = {});
   /// By lengths alone: length s of a face is that of its side s. Flat caps are known only to 1e-8 this way.
   /// @throws InvalidGeometry as above
   static PolyhedralSurface from_lengths(const HalfEdges& edges, std::span<const std::array<double, 3>> lengths,
                                         std::span<const Half> corners = {});
 
   Index vertex_count() const noexcept { return static_cast<Index>(corner_.size()); }
-  Index face_count() const noexcept { return static_cast<Index>(record_.size() / 3); }
+  Index face_count() const noexcept { return static_cast<Index>(face_.size()); }
 
-  const HalfRecord& record(Half h) const { return record_[h]; }
+  HalfRecord record(Half h) const {
+    const auto [face, s] = split(h);
+    const Face& f = face_[face];
+    const std::uint32_t n = s == 2 ? 0 : s + 1, p = s == 0 ? 2 : s - 1;
+    return {f.length[s], f.apex_x[s],
+            f.apex_y[s], f.apex_x[n] * f.length[n] / f.length[s],
+            f.length[p], f.length[n],
+            f.tail[s],   f.tail[n],
+            f.tail[p],   f.beyond[p],
+            f.beyond[n], static_cast<std::uint8_t>((f.mirrored >> p & 1) | (f.mirrored >> n & 1) << 1)};
+  }
   /// Angle of the face at the tail of a half-edge.
-  double angle(Half h) const { return angle_[h]; }
+  double angle(Half h) const {
+    const auto [face, s] = split(h);
+    return face_[face].angle[s];
+  }
   /// Sum of the angles about a vertex.
   double angle_sum(Index vertex) const { return angle_sum_[vertex]; }
   bool on_boundary(Index vertex) const { return on_boundary_[vertex] != 0; }
@@ -79,8 +97,8 @@ class PolyhedralSurface {
   double mean_length() const noexcept { return mean_length_; }
 
   /// The corner beyond the side met last (left) or first (right) when turning counter-clockwise; half < 0: boundary.
-  Corner turn_left(Corner c) const { return edges().turn_left(c); }
-  Corner turn_right(Corner c) const { return edges().turn_right(c); }
+  Corner turn_left(Corner c) const { return beyond(c.forward ? previous(c.half) : c.half, !c.forward, c.forward); }
+  Corner turn_right(Corner c) const { return beyond(c.forward ? c.half : previous(c.half), c.forward, c.forward); }
   /// The angle at a vertex from its first corner's right side to the right side of this corner.
   double turned(Corner corner) const;
 
@@ -90,15 +108,32 @@ class PolyhedralSurface {
   Vec2 place(const MeshPoint& point) const;
 
  private:
-  HalfEdges edges() const { return {tail_, twin_, mirrored_}; }
-  void set_records(std::span<const FaceSides> sides);
-  void set_fans(std::span<const Half> corners);
+  /// In two cache lines, by its sides or by the corners where they start.
+  struct alignas(64) Face {
+    double length[3], apex_x[3], apex_y[3], angle[3];
+    Index tail[3];
+    Half beyond[3];         ///< negative on the boundary
+    std::uint8_t mirrored;  ///< bit s: the face beyond side s is oppositely oriented
+  };
 
-  std::vector<Index> tail_;
-  std::vector<Half> twin_;
-  std::vector<std::uint8_t> mirrored_;
-  std::vector<HalfRecord> record_;
-  std::vector<double> angle_;
+  struct FaceSide {
+    std::uint32_t face, side;
+  };
+  static FaceSide split(Half h) {
+    const auto u = static_cast<std::uint32_t>(h);
+    return {u / 3, u % 3};
+  }
+  Corner beyond(Half side, bool vertex_is_tail, bool forward) const {
+    const Face& f = face_[side / 3];
+    const Half twin = f.beyond[side % 3];
+    if (twin < 0) return {};
+    return detail::corner_beyond(twin, next(twin), (f.mirrored >> side % 3 & 1) != 0, vertex_is_tail, forward);
+  }
+  void set_face(Index face, const HalfEdges& edges, const FaceSides& sides);
+  void check_lengths() const;
+  void set_fans(const HalfEdges& edges, std::span<const Half> corners);
+
+  std::vector<Face> face_;
   std::vector<double> angle_sum_;
   std::vector<std::uint8_t> on_boundary_;
   std::vector<Corner> corner_;

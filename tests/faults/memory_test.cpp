@@ -1,0 +1,67 @@
+// What maps allocate: bytes at most, and how often.
+#include <gtest/gtest.h>
+
+#include "ahm/maps/log_map_solver.hpp"
+#include "ahm/surface/exact/exact_geodesics.hpp"
+#include "ahm/testing/triangle_meshes.hpp"
+#include "ahm/trimesh/triangle_mesh_surface.hpp"
+#include "failing_allocations.hpp"
+
+namespace ahm::test {
+namespace {
+
+auto sphere(Index n) {
+  const Mesh mesh = split_icosphere(n);
+  return trimesh::TriangleMeshSurface::build(mesh.positions, mesh.faces);
+}
+
+/// Bytes that the layout and a map take beyond the surface.
+long exact_bytes(const Surface& surface, double tolerance) {
+  const PeakBytes peak;
+  const ExactGeodesics geodesics(surface);
+  geodesics.log_map(Vertex(0), {.tolerance = tolerance, .progress = {}});
+  return peak();
+}
+
+long heat_bytes(const Surface& surface) {
+  const PeakBytes peak;
+  const LogMapSolver solver(surface.graph());
+  solver.solve(Source::at_vertex(Vertex(0)));
+  return peak();
+}
+
+TEST(ExactMaps, TakeLessThanAFifthOfTheMemoryOfHeat) {
+  const auto surface = sphere(40000);
+  const long heat = heat_bytes(surface);
+  for (double tolerance : {0.0, 1e-3}) {
+    const long bytes = exact_bytes(surface, tolerance);
+    EXPECT_LT(5 * bytes, heat) << tolerance;
+    EXPECT_LT(bytes, 550L * surface.graph().size()) << tolerance;
+  }
+}
+
+/// Windows lie in chunks that are used again, so allocations follow those that wait at a time.
+TEST(ExactMaps, AllocateNothingPerWindow) {
+  struct Count {
+    Offset windows;
+    long allocations;
+  };
+  const auto count = [](Index n, double tolerance) {
+    const auto built = sphere(n);
+    const ExactGeodesics geodesics(built);
+    const auto& triangles = geodesics.triangles().surface;
+    exact::ExactOptions options;
+    options.tolerance = tolerance;
+    const long before = allocations();
+    const exact::ExactMap map = exact::exact_map(triangles, triangles.vertex_point(Vertex(0)), options);
+    return Count{map.statistics().windows, allocations() - before};
+  };
+  for (double tolerance : {0.0, 1e-3}) {
+    const Count small = count(2500, tolerance), large = count(10000, tolerance);
+    EXPECT_LT(100 * large.allocations, large.windows) << tolerance;
+    EXPECT_LT(100 * (large.allocations - small.allocations), large.windows - small.windows) << tolerance;
+  }
+}
+
+}  // namespace
+}  // namespace ahm::test
