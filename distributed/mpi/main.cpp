@@ -24,7 +24,7 @@ const std::string name = "ahm-mpi";
 struct Arguments {
   MapArguments logmap;
   LocalArguments local;
-  Deal deal = Deal::cards;
+  Deal deal = Deal::arrival;
   bool traffic = false;
 };
 
@@ -91,29 +91,36 @@ void print_traffic(const MpiTeam& team) {
   }
 }
 
-void make_map(const Arguments& a) {
-  TiledMapOptions options = first_alone([&] { return map_options(a.logmap); });
+void make_map(const Arguments& a, bool coordinates) {
+  TiledMapOptions options = first_alone([&] { return map_options(a.logmap, coordinates); });
   const TiledGraph graph = first_alone([&] { return TiledGraph(a.logmap.folder, a.logmap.memory / 2); });
   options.heat.threads = 1;
   if (rank_of() == 0) options.heat.progress = telling(name);
-  const Source source = source_at(find_sources(graph, a.logmap.sources));
-  int ranks = 1;
-  MPI_Comm_size(MPI_COMM_WORLD, &ranks);
-  MpiTeam team(MPI_COMM_WORLD, graph, deal_tiles(graph.manifest().first_vertices(), a.deal, ranks),
-               options.heat.accuracy);
-  const TiledMapSummary s = team_log_map(graph, source, a.logmap.output, options, team,
-                                         [&](std::size_t tile) { return team.owns_tile(tile); });
-  if (team.rank() == 0)
-    std::cout << s.ok << " of " << graph.size() << " vertices have coordinates, the farthest at " << s.farthest << '\n'
-              << s.march.bands << " bands, the largest of " << s.march.largest_band << " vertices; " << s.march.solved
-              << " vertices solved by " << team.size() << " ranks\n";
+  const std::vector<Vertex> sources = find_sources(graph, a.logmap.sources);
+  const Source source = source_at(sources);
+  TileOwners owners;
+  owners.rank = rank_of();
+  MPI_Comm_size(MPI_COMM_WORLD, &owners.ranks);
+  std::vector<double> distances;
+  if (a.deal == Deal::arrival)
+    distances = first_alone([&] { return tile_distances(graph.middles(), positions_of(graph, sources)); });
+  owners.of_tile = deal_tiles(graph.manifest().first_vertices(), a.deal, owners.ranks, distances);
+  MpiTeam team(MPI_COMM_WORLD, graph, owners.of_tile, options.heat.accuracy);
+  const TiledMapSummary s = team_log_map(graph, source, a.logmap.output, options, team, owners);
+  if (team.rank() == 0) {
+    print_map(s, graph.size(), coordinates);
+    std::cout << "; " << s.march.solved << " vertices solved by " << team.size() << " ranks\n";
+  }
   if (a.traffic) print_traffic(team);
 }
 
 /// Tile by tile, whoever is free: no rank waits for another.
 void make_local_maps(Arguments& a) {
-  const TiledGraph graph = first_alone([&] { return TiledGraph(a.local.folder, a.local.memory); });
-  a.local.options.keep = a.local.counts ? Keep::counts : Keep::maps;
+  const TiledGraph graph = first_alone([&] {
+    TiledGraph tiles(a.local.folder, a.local.memory);
+    check_local_maps(tiles, a.local.options);
+    return tiles;
+  });
   std::int64_t next = 0, made = 0;
   std::int64_t* counter = nullptr;
   MPI_Win window = MPI_WIN_NULL;
@@ -139,11 +146,16 @@ void make_local_maps(Arguments& a) {
 }
 
 void add_commands(CLI::App& app, Arguments& a) {
-  CLI::App& map = *app.add_subcommand("logmap", "the log map, with distances, that all ranks march together");
-  add_map_options(map, a.logmap);
-  add_deal_option(map, a.deal);
-  map.add_flag("--traffic", a.traffic, "tell messages, bytes, memory and time of each rank");
-  map.callback([&] { make_map(a); });
+  const auto add_map = [&](const std::string& command, const std::string& text, bool coordinates) {
+    CLI::App& map = *app.add_subcommand(command, text);
+    add_march_options(map, a.logmap);
+    if (coordinates) add_variant_option(map, a.logmap);
+    add_deal_option(map, a.deal);
+    map.add_flag("--traffic", a.traffic, "tell messages, bytes, memory and time of each rank");
+    map.callback([&, coordinates] { make_map(a, coordinates); });
+  };
+  add_map("logmap", "the log map, with distances, that all ranks march together; killed, it goes on", true);
+  add_map("distance", "distances alone, those of logmap --variant localized, for less", false);
   CLI::App& local = *app.add_subcommand("local-maps", "the map around every vertex; each rank takes tile after tile");
   add_local_options(local, a.local);
   local.callback([&] { make_local_maps(a); });

@@ -18,7 +18,6 @@ class MpiTeam final : public MarchTeam {
 
   int rank() const { return rank_; }
   int size() const { return size_; }
-  bool owns_tile(std::size_t tile) const { return owner_of_tile_[tile] == rank_; }
 
   bool owns(Index vertex) const override { return owner(vertex) == rank_; }
   double least(double value) override { return -greatest(-value); }

@@ -27,12 +27,12 @@ struct MapArguments {
   double radius = std::numeric_limits<double>::infinity(), t_coef = 1;
   std::size_t memory = std::size_t{2} << 30;
   unsigned threads = 0;
+  Index checkpoint = TiledMapOptions().checkpoint;
 };
 
 struct LocalArguments {
   std::string folder, output;
   TiledLocalMapOptions options;
-  bool counts = false;
   std::size_t memory = std::size_t{2} << 30;
 };
 
@@ -55,17 +55,24 @@ inline std::size_t peak_megabytes() {
   return static_cast<std::size_t>(usage.ru_maxrss) / 1024;
 }
 
-inline void add_map_options(CLI::App& app, MapArguments& a) {
+/// Of whatever is marched.
+inline void add_march_options(CLI::App& app, MapArguments& a) {
   app.add_option("folder", a.folder, "of tiles")->required();
   app.add_option("-o,--output", a.output, "folder for the map")->required();
   app.add_option("--source", a.sources,
                  "row of the input, or position x,y,z: the vertex nearest to it; several: from the nearest of them")
       ->capture_default_str();
   app.add_option("--radius", a.radius, "no farther than this");
-  app.add_option("--variant", a.variant, "adaptive or localized")->capture_default_str();
   app.add_option("--t-coef", a.t_coef, "diffusion time over the square of the mean edge length")->capture_default_str();
   app.add_option("--memory", a.memory, "for tiles of the graph and of the map, as 2GB; bands come on top")
       ->transform(CLI::AsSizeValue(false));
+  app.add_option("--checkpoint", a.checkpoint, "bands after which a run that is killed may go on; 0: never")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+}
+
+inline void add_variant_option(CLI::App& app, MapArguments& a) {
+  app.add_option("--variant", a.variant, "adaptive or localized")->capture_default_str();
 }
 
 inline void add_local_options(CLI::App& app, LocalArguments& a) {
@@ -73,16 +80,21 @@ inline void add_local_options(CLI::App& app, LocalArguments& a) {
   app.add_option("-o,--output", a.output, "folder for the maps")->required();
   app.add_option("--radius", a.options.maps.radius, "how far each map goes")->required();
   app.add_option("--nearest", a.options.maps.nearest, "keep only so many of each; 0: all")->capture_default_str();
-  app.add_flag("--counts", a.counts, "keep of each map only how many vertices it has, and their area");
+  app.add_option(
+      "--feature", a.options.features,
+      "keep of each map only these: count, area, curvature, mean:FILE.npy (of a number per row of the input)");
   app.add_option("--memory", a.memory, "for tiles of the graph, as 2GB; the maps of a tile come on top")
       ->transform(CLI::AsSizeValue(false));
   app.add_option("--threads", a.options.maps.heat.threads, "0: one per core")->capture_default_str();
 }
 
 inline void add_deal_option(CLI::App& app, Deal& deal) {
-  app.add_option("--deal", deal, "which tiles a rank owns: cards (every K-th, the default) or ranges (successive ones)")
-      ->transform(
-          CLI::CheckedTransformer(std::map<std::string, Deal>{{"ranges", Deal::ranges}, {"cards", Deal::cards}}));
+  app.add_option(
+         "--deal", deal,
+         "which tiles a rank owns: arrival (of those that the front comes to next, one each; the default), cards "
+         "(every K-th) or ranges (successive ones)")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, Deal>{{"ranges", Deal::ranges}, {"cards", Deal::cards}, {"arrival", Deal::arrival}}));
 }
 
 inline Vertex source_vertex(const TiledGraph& graph, const std::string& text) {
@@ -109,11 +121,19 @@ inline std::vector<Vertex> source_vertices(const TiledGraph& graph, const std::v
   return result;
 }
 
+inline std::vector<Vec3> positions_of(const TiledGraph& graph, const std::vector<Vertex>& vertices) {
+  std::vector<Vec3> result;
+  for (Vertex vertex : vertices) result.push_back(graph.frame(vertex.index)->origin);
+  return result;
+}
+
 inline Source source_at(const std::vector<Vertex>& vertices) { return Source::at_vertices(vertices); }
 
 /// Half of the memory is for the graph's tiles, half for the map's.
-inline TiledMapOptions map_options(const MapArguments& a) {
+inline TiledMapOptions map_options(const MapArguments& a, bool coordinates) {
   TiledMapOptions options;
+  options.coordinates = coordinates;
+  options.checkpoint = a.checkpoint;
   options.radius = a.radius;
   options.memory = a.memory / 2;
   options.heat.t_coef = a.t_coef;
@@ -122,6 +142,13 @@ inline TiledMapOptions map_options(const MapArguments& a) {
     throw InvalidArgument("--variant '" + a.variant + "' is neither adaptive nor localized");
   options.heat.variant = a.variant == "adaptive" ? Variant::adaptive : Variant::localized;
   return options;
+}
+
+inline void print_map(const TiledMapSummary& s, Index vertices, bool coordinates) {
+  if (s.begun_at > 0) std::cout << "went on after band " << s.begun_at << " of a run that did not end\n";
+  std::cout << s.ok << " of " << vertices << " vertices have " << (coordinates ? "coordinates" : "distances")
+            << ", the farthest at " << s.farthest << '\n'
+            << s.march.bands << " bands, the largest of " << s.march.largest_band << " vertices";
 }
 
 }  // namespace ahm::distributed::program

@@ -29,12 +29,12 @@ struct Arguments {
   std::size_t memory = std::size_t{2} << 30;
   std::optional<std::size_t> number;
   ScheduleOptions schedule;
-  Deal deal = Deal::cards;
+  Deal deal = Deal::arrival;
   std::vector<int> ranks{1, 2, 4, 8, 16, 32, 64};
 };
 
 void add_tile_options(CLI::App& app, Arguments& a) {
-  app.add_option("input", a.input, "binary PLY file of points")->required();
+  app.add_option("input", a.input, "file of points: binary PLY or PCD, or LAS")->required();
   app.add_option("-o,--output", a.folder, "folder for the tiles, a new one")->required();
   app.add_option("--tile-points", a.tile.tile_points, "points per tile")->capture_default_str();
   app.add_option("--k", a.tile.k, "neighbours per point; 0: 30")->capture_default_str();
@@ -52,7 +52,6 @@ void add_build_options(CLI::App& app, Arguments& a) {
 
 void make_local_maps(Arguments& a) {
   const TiledGraph graph(a.local.folder, a.local.memory);
-  a.local.options.keep = a.local.counts ? Keep::counts : Keep::maps;
   std::size_t made = 0;
   for (std::size_t t = a.number.value_or(0); t < (a.number ? *a.number + 1 : graph.tiles()); ++t)
     made += write_local_maps(graph, t, a.local.output, a.local.options);
@@ -69,30 +68,44 @@ void print(const Manifest& m) {
               << m.reflections << " reflections\n";
 }
 
-void make_map(const MapArguments& a) {
+void make_map(const MapArguments& a, bool coordinates) {
   const TiledGraph graph(a.folder, a.memory / 2);
-  TiledMapOptions options = map_options(a);
+  TiledMapOptions options = map_options(a, coordinates);
   options.heat.progress = telling(name);
   const TiledMapSummary s = write_log_map(graph, source_at(source_vertices(graph, a.sources)), a.output, options);
-  std::cout << s.ok << " of " << graph.size() << " vertices have coordinates, the farthest at " << s.farthest << '\n'
-            << s.march.bands << " bands, the largest of " << s.march.largest_band << " vertices; tiles were put aside "
-            << s.releases << " times, parts of the map put aside " << s.spills << " times; peak memory "
-            << peak_megabytes() << " MB\n";
+  print_map(s, graph.size(), coordinates);
+  std::cout << "; tiles were put aside " << s.releases << " times, parts of the map put aside " << s.spills
+            << " times; peak memory " << peak_megabytes() << " MB\n";
+}
+
+/// Mean positions of these tiles' vertices.
+std::vector<Vec3> middles_of(const TiledGraph& graph, const std::vector<Index>& first) {
+  std::vector<Vec3> result(first.size() - 1, Vec3{0, 0, 0});
+  for (std::size_t t = 0; t < result.size(); ++t) {
+    for (Index i = first[t]; i < first[t + 1]; ++i)
+      for (std::size_t c = 0; c < 3; ++c) result[t][c] += graph.frame(i)->origin[c];
+    for (double& x : result[t]) x /= std::max(1, first[t + 1] - first[t]);
+  }
+  return result;
 }
 
 /// A line per number of ranks.
 void simulate(const Arguments& a) {
   const TiledGraph graph(a.logmap.folder, a.logmap.memory);
   const auto tiles =
-      a.number ? equal_tiles(graph.size(), static_cast<Index>(*a.number)) : graph.manifest().first_vertices();
-  const auto bands = march_schedule(graph, source_vertices(graph, a.logmap.sources), tiles, a.schedule);
+      a.number ? equal_tiles(graph.size(),
+                             static_cast<Index>(std::min<std::size_t>(*a.number, std::numeric_limits<Index>::max())))
+               : graph.manifest().first_vertices();
+  const std::vector<Vertex> sources = source_vertices(graph, a.logmap.sources);
+  const auto distances = tile_distances(middles_of(graph, tiles), positions_of(graph, sources));
+  const auto bands = march_schedule(graph, sources, tiles, a.schedule);
   std::cout << bands.size() << " bands\n";
   for (int ranks : a.ranks) {
     if (ranks < 1) throw InvalidArgument("--ranks " + std::to_string(ranks) + " must be at least 1");
-    const SharedLoad load = share_out(bands, deal_tiles(tiles, a.deal, ranks), ranks);
+    const SharedLoad load = share_out(bands, deal_tiles(tiles, a.deal, ranks, distances), ranks);
     std::cout << ranks << " ranks: " << load.solved << " vertices solved, the largest band " << load.largest_band
               << ", the largest part of one " << load.largest_part << ", active " << load.active << ", balance "
-              << load.balance << '\n';
+              << load.balance << ", messages " << load.messages << ", halo " << load.halo << '\n';
   }
 }
 
@@ -121,15 +134,24 @@ void add_building(CLI::App& app, Arguments& a) {
 }
 
 void add_maps(CLI::App& app, Arguments& a) {
-  CLI::App& map = *app.add_subcommand("logmap", "the log map of one source");
-  add_map_options(map, a.logmap);
-  map.add_option("--threads", a.logmap.threads, "0: one per core")->capture_default_str();
-  map.callback([&] { make_map(a.logmap); });
-  CLI::App& rows = *app.add_subcommand("rows", "a map as CSV: row, u, v, distance, spread, status");
+  const auto add_map = [&](const std::string& command, const std::string& text, bool coordinates) {
+    CLI::App& map = *app.add_subcommand(command, text);
+    add_march_options(map, a.logmap);
+    if (coordinates) add_variant_option(map, a.logmap);
+    map.add_option("--threads", a.logmap.threads, "0: one per core")->capture_default_str();
+    map.callback([&, coordinates] { make_map(a.logmap, coordinates); });
+  };
+  add_map("logmap", "the log map of one source; killed, it goes on from its last checkpoint", true);
+  add_map("distance", "distances alone, those of logmap --variant localized, for less", false);
+  CLI::App& rows = *app.add_subcommand(
+      "rows", "a map as CSV: row, u, v, distance, spread, status; row, distance, status; row and features");
   rows.add_option("folder", a.folder, "of tiles")->required();
-  rows.add_option("map", a.map, "folder of the map")->required();
+  rows.add_option("map", a.map, "folder of the map, or of features of local maps")->required();
   rows.add_option("-o,--output", a.output, "CSV file")->required();
-  rows.callback([&] { write_rows(TiledGraph(a.folder, a.memory), a.map, a.output); });
+  rows.callback([&] {
+    const bool is_local = std::filesystem::exists(Manifest::file(a.map, "local", 0));
+    (is_local ? write_feature_rows : write_rows)(TiledGraph(a.folder, a.memory), a.map, a.output);
+  });
   CLI::App& schedule = *app.add_subcommand("simulate", "how evenly ranks of ahm-mpi would share the bands of a map");
   schedule.add_option("folder", a.logmap.folder, "of tiles")->required();
   schedule.add_option("--source", a.logmap.sources, "as logmap");

@@ -7,6 +7,7 @@
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
@@ -154,22 +155,31 @@ void ArrayFile::check_header(std::string_view kind) const {
     if (entry.place > size_ || entry.bytes > size_ - entry.place) fail("its header is damaged; build it again");
 }
 
-std::span<const std::byte> ArrayFile::find(std::string_view name, std::size_t element) const {
+/// In the table; as many as arrays: nowhere.
+std::size_t ArrayFile::place_of(std::string_view name) const {
   Header header;
   std::memcpy(&header, data_, sizeof(header));
-  const Entry* table = reinterpret_cast<const Entry*>(data_ + sizeof(Header));
+  const std::span table(reinterpret_cast<const Entry*>(data_ + sizeof(Header)), header.arrays);
   const Name wanted = name_of(name);
-  for (std::size_t k = 0; k < header.arrays; ++k) {
-    const Entry& entry = table[k];
-    if (entry.name != wanted) continue;
-    if (entry.element != element) fail("array '" + std::string(name) + "' has elements of another size");
-    const std::span bytes(data_ + entry.place, entry.bytes);
-    if (!(verified_ >> k & 1) && checksum(bytes) != entry.checksum)
-      fail("array '" + std::string(name) + "' is damaged (its checksum is wrong); remove the file and build it again");
-    verified_ |= std::uint64_t{1} << k;
-    return bytes;
-  }
-  fail("it has no array '" + std::string(name) + "'");
+  return static_cast<std::size_t>(std::ranges::find(table, wanted, &Entry::name) - table.begin());
+}
+
+bool ArrayFile::has(std::string_view name) const {
+  Header header;
+  std::memcpy(&header, data_, sizeof(header));
+  return place_of(name) < header.arrays;
+}
+
+std::span<const std::byte> ArrayFile::find(std::string_view name, std::size_t element) const {
+  if (!has(name)) fail("it has no array '" + std::string(name) + "'");
+  const std::size_t k = place_of(name);
+  const Entry& entry = reinterpret_cast<const Entry*>(data_ + sizeof(Header))[k];
+  if (entry.element != element) fail("array '" + std::string(name) + "' has elements of another size");
+  const std::span bytes(data_ + entry.place, entry.bytes);
+  if (!(verified_ >> k & 1) && checksum(bytes) != entry.checksum)
+    fail("array '" + std::string(name) + "' is damaged (its checksum is wrong); remove the file and build it again");
+  verified_ |= std::uint64_t{1} << k;
+  return bytes;
 }
 
 }  // namespace ahm::distributed

@@ -123,6 +123,7 @@ void finish_graph(TileFolder& folder) {
   Manifest& m = folder.manifest();
   double all = 0;
   std::int64_t edges = 0;
+  std::vector<Vec3> middles;
   std::vector<double> sums(static_cast<std::size_t>(m.components), 0.0);
   std::vector<std::int64_t> counts(sums.size(), 0);
   for (std::size_t t = 0; t < folder.tiles(); ++t) {
@@ -137,6 +138,10 @@ void finish_graph(TileFolder& folder) {
         sums[component[i]] += l;
         ++counts[component[i]];
       }
+    Vec3 sum{0, 0, 0};
+    const auto positions = file.get<Vec3>("positions");
+    for (const Vec3& p : positions) sum = sum + p;
+    middles.push_back(1.0 / std::max<double>(1, static_cast<double>(positions.size())) * sum);
     m.tiles[t].edges = row_begin.back();
     edges += row_begin.back();
   }
@@ -148,7 +153,7 @@ void finish_graph(TileFolder& folder) {
   std::vector<double> lengths(sums.size(), m.mean_edge_length);
   for (std::size_t c = 0; c < sums.size() && sums.size() > 1; ++c)
     if (sums[c] > 0) lengths[c] *= sums[c] / static_cast<double>(counts[c]) / of_all;
-  write_arrays(folder.path() / "components", "components", {array("edge_lengths", lengths)});
+  write_arrays(folder.path() / "components", "components", {array("edge_lengths", lengths), array("middles", middles)});
   folder.finish(Stage::built);
 }
 

@@ -124,6 +124,15 @@ std::optional<Frame> TiledGraph::frame(Index vertex) const {
   return Frame{t.file.get<Vec3>("positions")[vertex], axes.x, axes.y, normal};
 }
 
+std::vector<Vec3> TiledGraph::middles() const {
+  const ArrayFile file(folder_ / "components", "components");
+  if (!file.has("middles"))
+    throw IoError("the tiles in '" + folder_.string() +
+                  "' were built before their middles were kept; deal them as cards, or build them again");
+  const auto middles = file.get<Vec3>("middles");
+  return {middles.begin(), middles.end()};
+}
+
 TiledGraph::TileRows TiledGraph::rows(std::size_t number) const {
   const Tile& t = tile(number);
   return {t.file.get<Index>("point_rows"), t.file.get<Index>("rows"), t.file.get<Index>("removed"), t.component};

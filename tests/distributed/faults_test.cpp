@@ -6,8 +6,6 @@
 
 #include <chrono>
 #include <csignal>
-#include <iterator>
-#include <map>
 #include <thread>
 
 #include "ahm/distributed/tiled_log_map.hpp"
@@ -20,16 +18,6 @@ namespace {
 
 using distributed::Manifest;
 using distributed::TiledGraph;
-
-/// Names and bytes of all files in a folder.
-std::map<std::string, std::string> contents(const std::filesystem::path& folder) {
-  std::map<std::string, std::string> result;
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    std::ifstream file(entry.path(), std::ios::binary);
-    result[entry.path().filename().string()] = {std::istreambuf_iterator<char>(file), {}};
-  }
-  return result;
-}
 
 void flip_bit(const std::filesystem::path& path, std::uintmax_t at) {
   std::fstream file(path, std::ios::binary | std::ios::in | std::ios::out);

@@ -94,6 +94,22 @@ TEST(TiledGraph, IsThatOfAnotherNumberOfNeighbours) {
   expect_same(TiledCloud(hills(100), {.tile_points = 2500, .k = 12}), 3);
 }
 
+/// Of the same points, whatever the file.
+TEST(TiledGraph, IsThatOfAPcdFile) {
+  const TiledCloud cloud(hills(60), {.tile_points = 1000});
+  const auto input = cloud.folder.directory() / "points.pcd", tiles = cloud.folder.directory() / "others";
+  const std::string count = std::to_string(cloud.points.size());
+  std::ofstream(input, std::ios::binary) << "FIELDS x y z\nSIZE 8 8 8\nTYPE F F F\nPOINTS " << count
+                                         << "\nDATA binary\n"
+                                         << std::string_view(reinterpret_cast<const char*>(cloud.points.data()),
+                                                             cloud.points.size() * sizeof(Vec3));
+  distributed::plan_tiles(input, tiles, {.tile_points = 1000});
+  auto expected = contents(cloud.tiles), found = contents(tiles);
+  expected.erase("manifest.json"), found.erase("manifest.json");  // they name their inputs
+  EXPECT_GT(expected.size(), 3u);
+  EXPECT_TRUE(found == expected);
+}
+
 TEST(TiledGraph, IsThatOfACloudInOneTile) {
   expect_same(TiledCloud(hills(40), {.tile_points = 100'000}), 1);
   expect_same(TiledCloud(hills(3), {.tile_points = 100}), 1);

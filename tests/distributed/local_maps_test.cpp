@@ -13,7 +13,6 @@ namespace ahm::test {
 namespace {
 
 using distributed::ArrayFile;
-using distributed::Keep;
 using distributed::Manifest;
 using distributed::TiledGraph;
 
@@ -77,28 +76,6 @@ TEST(TiledLocalMaps, AreThoseOfTheWholeGraphToTheMargin) {
   const TiledCloud cloud(points, {.tile_points = 1000});
   cloud.build();
   expect_same_maps(cloud, 5, Variant::adaptive, 1e-3);
-}
-
-TEST(TiledLocalMaps, AreReducedInPlace) {
-  const TiledCloud cloud(hills(60), {.tile_points = 1000});
-  cloud.build();
-  const TiledGraph graph(cloud.tiles, 1 << 30);
-  const auto folder = cloud.folder.directory() / "local", counts = cloud.folder.directory() / "counts";
-  write_local_maps(graph, 1, folder, {.maps = {.radius = 3}});
-  write_local_maps(graph, 1, counts, {.maps = {.radius = 3}, .keep = Keep::counts});
-  const ArrayFile maps(Manifest::file(folder, "local", 1), "local"),
-      reduced(Manifest::file(counts, "local", 1), "local");
-  const auto indptr = maps.get<Offset>("indptr");
-  const auto weights = maps.get<double>("weights"), area = reduced.get<double>("area");
-  const auto count = reduced.get<Index>("count");
-  ASSERT_EQ(count.size() + 1, indptr.size());
-  ASSERT_GT(count.size(), 500u);
-  for (std::size_t s = 0; s < count.size(); ++s) {
-    EXPECT_EQ(count[s], indptr[s + 1] - indptr[s]);
-    double sum = 0;
-    for (Offset e = indptr[s]; e < indptr[s + 1]; ++e) sum += weights[e];
-    EXPECT_EQ(area[s], sum);
-  }
 }
 
 TEST(TiledLocalMaps, AreMadeOnce) {

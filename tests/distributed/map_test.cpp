@@ -12,6 +12,8 @@
 namespace ahm::test {
 namespace {
 
+using distributed::ArrayFile;
+using distributed::Manifest;
 using distributed::TiledGraph;
 
 bool same_bits(const std::vector<double>& a, std::span<const double> b) {
@@ -49,6 +51,43 @@ TEST(TiledLogMap, HasTheBitsOfTheMapInMemory) {
   expect_same_map(cloud, Row(0), Variant::adaptive, everything);
   expect_same_map(cloud, Row(130 * 65 + 65), Variant::localized, everything);
   expect_same_map(cloud, Row(130 * 65 + 65), Variant::adaptive, 40);
+}
+
+/// Of distances alone: those of the localized map, to the bit, and nothing else on disk.
+TEST(TiledLogMap, DistancesAloneAreThoseOfTheLocalizedMap) {
+  const TiledCloud cloud(two_hills(70, 40), {.tile_points = 600});
+  cloud.build();
+  const TiledGraph graph(cloud.tiles, 1 << 30);
+  const Vertex vertices[] = {graph.vertex_of_row(Row(11)).value(), graph.vertex_of_row(Row(70 * 35)).value()};
+  const auto folder = cloud.folder.directory() / "map", alone = cloud.folder.directory() / "distance";
+  for (double radius : {std::numeric_limits<double>::infinity(), 20.0})
+    for (std::size_t memory : {std::size_t{1} << 14, std::size_t{1} << 30}) {
+      distributed::TiledMapOptions options{.radius = radius, .memory = memory};
+      options.heat.variant = Variant::localized;
+      const auto expected = write_log_map(graph, Source::at_vertices(vertices), folder, options);
+      options.coordinates = false;
+      options.heat.variant = Variant::adaptive;  // means nothing then
+      const auto found = write_log_map(graph, Source::at_vertices(vertices), alone, options);
+      EXPECT_EQ(found.ok, expected.ok);
+      EXPECT_EQ(found.farthest, expected.farthest);
+      EXPECT_EQ(found.march.solved, expected.march.solved);
+      for (std::size_t t = 0; t < graph.tiles(); ++t) {
+        const ArrayFile a(Manifest::file(folder, "map", t), "map"), b(Manifest::file(alone, "map", t), "map");
+        EXPECT_TRUE(test::same_bits(a.get<double>("distance"), b.get<double>("distance")));
+        EXPECT_TRUE(test::same_bits(a.get<std::uint8_t>("status"), b.get<std::uint8_t>("status")));
+        expect_error<IoError>([&] { b.get<double>("coordinates"); }, "no array 'coordinates'");
+      }
+    }
+  const auto csv = cloud.folder.directory() / "distance.csv";
+  write_rows(graph, alone, csv);
+  std::ifstream file(csv);
+  std::string line;
+  std::getline(file, line);
+  EXPECT_EQ(line, "row,distance,status");
+  Index rows = 0;
+  for (; std::getline(file, line); ++rows)
+    if (line.starts_with("11,")) EXPECT_EQ(line, "11,0,ok");
+  EXPECT_EQ(rows, static_cast<Index>(cloud.points.size()));
 }
 
 TEST(TiledLogMap, HasThemWithReflections) {

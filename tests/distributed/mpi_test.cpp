@@ -9,6 +9,7 @@
 #include <csignal>
 #include <iterator>
 #include <set>
+#include <sstream>
 #include <thread>
 
 #include "ahm/distributed/tiled_local_maps.hpp"
@@ -23,6 +24,7 @@
 namespace ahm::test {
 namespace {
 
+using distributed::ArrayFile;
 using distributed::Manifest;
 using distributed::TiledGraph;
 using std::filesystem::path;
@@ -135,7 +137,7 @@ class MpiMap : public testing::Test {
 
   /// Makes the map with each number of ranks, and compares it to that of one process.
   static void expect_map_of_one(const TiledCloud& cloud, const std::vector<Row>& rows, Variant variant, double radius,
-                                const std::vector<int>& numbers, const std::string& deal = "cards") {
+                                const std::vector<int>& numbers, const std::string& deal = "arrival") {
     const TiledGraph graph(cloud.tiles, 1 << 30);
     std::vector<Vertex> vertices;
     for (Row row : rows) vertices.push_back(graph.vertex_of_row(row).value());
@@ -161,7 +163,7 @@ constexpr double everything = std::numeric_limits<double>::infinity();
 TEST_F(MpiMap, IsThatOfOneProcessAdaptive) {
   const TiledCloud cloud(two_hills(70, 30), {.tile_points = 400});
   cloud.build();
-  expect_map_of_one(cloud, {Row(70 * 35 + 35)}, Variant::adaptive, everything, {1, 2, 3, 4});
+  expect_map_of_one(cloud, {Row(70 * 35 + 35)}, Variant::adaptive, everything, {1, 2, 3, 4}, "cards");
 }
 
 TEST_F(MpiMap, IsThatOfOneProcessLocalized) {
@@ -227,9 +229,11 @@ TEST_F(MpiMap, LocalMapsAreThoseOfOneProcess) {
   cloud.build();
   const TiledGraph graph(cloud.tiles, 1 << 30);
   const auto alone = cloud.folder.directory() / "alone", together = cloud.folder.directory() / "together";
-  distributed::TiledLocalMapOptions options{.maps = {.radius = 4}, .keep = distributed::Keep::counts};
+  distributed::TiledLocalMapOptions options;
+  options.maps.radius = 4;
+  options.features = {"count", "curvature"};
   for (std::size_t t = 0; t < graph.tiles(); ++t) write_local_maps(graph, t, alone, options);
-  run(cloud, 3, {"local-maps", cloud.tiles, "-o", together, "--radius", "4", "--counts"});
+  run(cloud, 3, {"local-maps", cloud.tiles, "-o", together, "--radius", "4", "--feature", "count", "curvature"});
   for (std::size_t t = 0; t < graph.tiles(); ++t) {
     const auto expected = text_of(Manifest::file(alone, "local", t));
     EXPECT_FALSE(expected.empty());
@@ -269,6 +273,13 @@ TEST_F(MpiMap, AnErrorOfAllRanksIsSaidOnce) {
   EXPECT_NE(at, std::string::npos) << log;
   EXPECT_EQ(log.find("build them first", at + 1), std::string::npos) << log;
   EXPECT_NE(run(cloud, 2, {"logmap", cloud.tiles, "-o", "map", "--nonsense"}, 2).find("--nonsense"), std::string::npos);
+  cloud.build();
+  const auto no_feature = run(
+      cloud, 3,
+      {"local-maps", cloud.tiles, "-o", cloud.folder.directory() / "map", "--radius", "3", "--feature", "cuont"}, 1);
+  const auto first = no_feature.find("'cuont' is none of");
+  EXPECT_NE(first, std::string::npos) << no_feature;
+  EXPECT_EQ(no_feature.find("'cuont' is none of", first + 1), std::string::npos) << no_feature;
 }
 
 /// A file that cannot be written: a folder stands in its place, with something in it.
@@ -313,6 +324,90 @@ TEST_F(MpiMap, AKilledRankEndsAll) {
   for (int tries = 0; tries < 600 && std::any_of(children.begin(), children.end(), is_alive); ++tries)
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
   EXPECT_TRUE(std::none_of(children.begin(), children.end(), is_alive));
+}
+
+/// As above; then as many ranks go on from the last checkpoint to the same bytes, and others do not.
+TEST_F(MpiMap, GoesOnAfterAKilledRank) {
+  const TiledCloud cloud(strip(), {.tile_points = 400});
+  cloud.build();
+  const auto directory = cloud.folder.directory(), whole = directory / "whole", map = directory / "map",
+             kept = directory / "kept";
+  path tile;
+  {
+    const TiledGraph graph(cloud.tiles, 1 << 30);
+    ASSERT_LT(graph.frame(0)->origin[0], 100);
+    tile = Manifest::file(cloud.tiles, "graph", graph.tile_of(graph.nearest_vertex({300, 5, 0}).index));
+  }
+  const auto words = [&](const path& output) {
+    return std::vector<std::string>{
+        "logmap",   cloud.tiles, "-o",           output, "--source", row_of_first_tile(cloud),
+        "--memory", "64KB",      "--checkpoint", "1"};
+  };
+  const std::vector<std::string> make = words(map);
+  run(cloud, 3, words(whole));
+  std::filesystem::rename(tile, kept);
+  ASSERT_EQ(::mkfifo(tile.c_str(), 0600), 0);
+  {
+    Ranks ranks = start(cloud, 3, make);
+    for (int tries = 0; tries < 3000 && !std::filesystem::exists(map / "march.json"); ++tries) {
+      ASSERT_EQ(ranks.wait(std::chrono::seconds(0)), -1) << ranks.log();
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+    ::kill(ranks.children().at(1), SIGKILL);
+    EXPECT_GT(ranks.wait(std::chrono::seconds(60)), 0) << ranks.log();
+  }
+  std::filesystem::rename(kept, tile);
+  const auto refused = run(cloud, 2, make, 1);
+  const auto at = refused.find("or by other ranks");
+  EXPECT_NE(at, std::string::npos) << refused;
+  EXPECT_EQ(refused.find("or by other ranks", at + 1), std::string::npos) << refused;
+  const auto log = run(cloud, 3, make);
+  EXPECT_NE(log.find("went on after band"), std::string::npos) << log;
+  EXPECT_TRUE(contents(map) == contents(whole));
+}
+
+/// The sum over ranks of a number that `--traffic` tells.
+std::int64_t told(const std::string& log, const std::string& what) {
+  const auto at = log.find("\n" + what + ": ");
+  EXPECT_NE(at, std::string::npos) << log;
+  std::istringstream numbers(log.substr(at + what.size() + 3, log.find('\n', at + 1) - at));
+  std::int64_t sum = 0;
+  for (std::int64_t number = 0; numbers >> number;) sum += number;
+  return sum;
+}
+
+TEST_F(MpiMap, DistancesAloneAreThoseOfOneProcessForLess) {
+  const TiledCloud cloud(two_hills(70, 30), {.tile_points = 400});
+  cloud.build();
+  const TiledGraph graph(cloud.tiles, 1 << 30);
+  const auto directory = cloud.folder.directory();
+  const Vertex source = graph.vertex_of_row(Row(70 * 35 + 35)).value();
+  distributed::TiledMapOptions options;
+  options.coordinates = false;
+  const double near = 1e-9 * write_log_map(graph, Source::at_vertex(source), directory / "alone", options).farthest;
+  for (int ranks : {1, 3}) {
+    const auto words = [&](const std::string& command, const path& output) {
+      return std::vector<std::string>{command, cloud.tiles, "-o", output, "--source", "2485", "--traffic"};
+    };
+    const auto log = run(cloud, ranks, words("distance", directory / "distance"));
+    Index compared = 0;
+    for (std::size_t t = 0; t < graph.tiles(); ++t) {
+      const ArrayFile a(Manifest::file(directory / "alone", "map", t), "map"),
+          b(Manifest::file(directory / "distance", "map", t), "map");
+      EXPECT_TRUE(same_bits(a.get<std::uint8_t>("status"), b.get<std::uint8_t>("status")));
+      const auto expected = a.get<double>("distance"), found = b.get<double>("distance");
+      for (std::size_t i = 0; i < expected.size(); ++i)
+        if (!std::isnan(expected[i])) {
+          EXPECT_NEAR(found[i], expected[i], near);
+          ++compared;
+        }
+    }
+    EXPECT_EQ(compared, 70 * 70);
+    const auto map = run(cloud, ranks, words("logmap", directory / "map"));
+    // By A lambda, both second moments, and a test of A; the map's two coordinates, too. By B displacements; the map's frames.
+    EXPECT_EQ(7 * told(log, "solves"), 5 * told(map, "solves"));
+    EXPECT_LT(told(log, "iterations"), told(map, "iterations"));
+  }
 }
 
 }  // namespace

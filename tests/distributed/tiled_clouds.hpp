@@ -8,6 +8,8 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
+#include <map>
 #include <numbers>
 #include <random>
 #include <string>
@@ -47,6 +49,30 @@ inline std::vector<Vec3> two_hills(Index side, Index other_side) {
   std::vector<Vec3> points = hills(side);
   for (const Vec3& p : hills(other_side, 2)) points.push_back({400 + p[0], p[1], p[2]});
   return points;
+}
+
+/// A long strip, for many bands, and something else.
+inline std::vector<Vec3> strip() {
+  std::vector<Vec3> points;
+  std::mt19937_64 random(9);
+  std::uniform_real_distribution<double> shift(-0.3, 0.3);
+  for (Index i = 0; i < 400; ++i)
+    for (Index j = 0; j < 12; ++j) {
+      const double x = i + shift(random), y = j + shift(random);
+      points.push_back({x, y, 4 * std::sin(x / 17)});
+    }
+  for (const Vec3& p : hills(15, 2)) points.push_back({p[0], 100 + p[1], p[2]});
+  return points;
+}
+
+/// Names and bytes of all files in a folder.
+inline std::map<std::string, std::string> contents(const std::filesystem::path& folder) {
+  std::map<std::string, std::string> result;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    std::ifstream file(entry.path(), std::ios::binary);
+    result[entry.path().filename().string()] = {std::istreambuf_iterator<char>(file), {}};
+  }
+  return result;
 }
 
 /// A cloud of which tiles are built.

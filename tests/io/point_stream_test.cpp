@@ -45,13 +45,13 @@ std::string mixed_ply(int count, bool big) {
 
 class PointStreams : public testing::Test {
  protected:
-  std::filesystem::path file(const std::string& bytes) const {
-    const auto path = folder_.directory() / "points.ply";
+  std::filesystem::path file(const std::string& bytes, const std::string& name = "points.ply") const {
+    const auto path = folder_.directory() / name;
     std::ofstream(path, std::ios::binary) << bytes;
     return path;
   }
-  void expect_refused(const std::string& bytes, const std::string& why) const {
-    const auto path = file(bytes);
+  void expect_refused(const std::string& bytes, const std::string& why, const std::string& name = "points.ply") const {
+    const auto path = file(bytes, name);
     expect_error<IoError>([&] { io::PointStream stream(path); }, why);
   }
 
@@ -74,6 +74,80 @@ TEST_F(PointStreams, ReadWhatTheWholeFileHolds) {
       EXPECT_EQ(points, expected);
     }
   }
+}
+
+/// LAS 1.2 of point format 1, with three bytes before the points and two behind each.
+std::string las(int count, std::uint32_t told, std::uint8_t format = 1) {
+  std::string bytes = "LASF" + std::string(20, '\0') + '\1' + '\2';
+  bytes.resize(94, '\0');
+  append(bytes, std::uint16_t{227}, false), append(bytes, std::uint32_t{230}, false);
+  append(bytes, std::uint32_t{0}, false);
+  bytes += static_cast<char>(format);
+  append(bytes, std::uint16_t{30}, false), append(bytes, told, false);
+  bytes.resize(131, '\0');
+  for (double x : {0.001, 0.002, 0.5, 431000.0, 5412000.0, -100.0}) append(bytes, x, false);
+  bytes.resize(230, '\0');
+  for (int i = 0; i < count; ++i) {
+    for (std::int32_t x : {7 * i - 1500, -i, i * i}) append(bytes, x, false);
+    bytes.resize(230 + 30 * (static_cast<std::size_t>(i) + 1), '\0');
+  }
+  return bytes;
+}
+
+TEST_F(PointStreams, ReadLasAsTheWholeFileIsRead) {
+  const auto path = file(las(100, 100), "points.las");
+  const std::vector<Vec3> expected = io::read(path).points;
+  ASSERT_EQ(expected.size(), 100u);
+  io::PointStream stream(path);
+  EXPECT_EQ(stream.size(), 100u);
+  EXPECT_FALSE(stream.has_normals());
+  std::vector<Vec3> points(150);
+  EXPECT_EQ(stream.read(points), 100u);
+  points.resize(100);
+  EXPECT_EQ(points, expected);
+  EXPECT_EQ(points[3][1], -3 * 0.002 + 5412000);
+  expect_refused(las(99, 100), "100 points of 30 bytes do not fit", "points.las");
+  expect_refused(las(1, 1, 0x81), "compressed (LAZ)", "points.las");
+  expect_refused("LASF", "ends within its header", "points.las");
+}
+
+/// Coordinates of several types, out of order, among others.
+std::string pcd(const std::string& data, int count, const std::string& types = "F U F I F") {
+  const std::string points = std::to_string(count);
+  std::string bytes = "# .PCD v0.7\nVERSION 0.7\nFIELDS z ring x y more\nSIZE 8 1 4 2 4\nTYPE " + types +
+                      "\nCOUNT 1 1 1 1 3\nWIDTH " + points + "\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " + points +
+                      "\nDATA " + data + "\n";
+  for (int i = 0; i < count; ++i) {
+    append(bytes, 0.1 * i, false);
+    bytes += '\n';
+    append(bytes, 0.25f * static_cast<float>(i), false), append(bytes, static_cast<std::int16_t>(-i), false);
+    bytes += std::string(12, '\n');
+  }
+  return bytes;
+}
+
+TEST_F(PointStreams, ReadBinaryPcd) {
+  io::PointStream stream(file(pcd("binary", 1000), "points.pcd"));
+  ASSERT_EQ(stream.size(), 1000u);
+  EXPECT_FALSE(stream.has_normals());
+  std::vector<Vec3> points(1000);
+  EXPECT_EQ(stream.read(points), 1000u);
+  for (int i = 0; i < 1000; ++i) EXPECT_EQ(points[i], (Vec3{0.25 * i, -1.0 * i, 0.1 * i}));
+  const std::string normals =
+      "FIELDS x y z normal_x normal_y normal_z\nSIZE 4 4 4 4 4 4\nTYPE F F F F F F\nPOINTS 1\nDATA binary\n";
+  EXPECT_TRUE(io::PointStream(file(normals + std::string(24, '\0'), "points.pcd")).has_normals());
+  std::string cut = pcd("binary", 10);
+  cut.pop_back();
+  expect_refused(cut, "cut short", "points.pcd");
+  expect_refused(pcd("ascii", 0), "text file", "points.pcd");
+  expect_refused(pcd("binary_compressed", 0), "compressed", "points.pcd");
+  const std::string long_x = "FIELDS x y z\nSIZE 8 4 4\nTYPE I F F\nPOINTS 0\nDATA binary\n";
+  expect_refused(long_x, "whole numbers of 8 bytes", "points.pcd");
+}
+
+TEST_F(PointStreams, AreOfFormatsThatCanBeReadBlockByBlock) {
+  for (const char* name : {"points.xyz", "points.obj", "points.ply.gz", "points"})
+    expect_refused("0 0 0\n", ".ply, .pcd or .las", name);
 }
 
 TEST_F(PointStreams, KnowOfNormals) {

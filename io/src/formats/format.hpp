@@ -15,12 +15,15 @@
 
 namespace ahm::io {
 
+struct PointRecords;
+
 /// What cannot be done with a format stays null.
 struct Format {
   std::vector<std::string> extensions;  ///< lower case, with their dot
   std::vector<std::string> signatures =
       {};  ///< a file without a name is of this format where it begins with one of these
   Geometry (*read)(const Input& in) = nullptr;
+  PointRecords (*records)(const Input& in) = nullptr;  ///< for `PointStream`: where points are, from a file's beginning
   void (*write)(AtomicFile& file, const Table& table) = nullptr;
   void (*write_textured)(const std::filesystem::path& path, std::span<const MeshPart> parts) = nullptr;
   std::string missing = {};  ///< a library this build is without, and the functions above therefore null

@@ -8,6 +8,7 @@
 #include "formats/format.hpp"
 #include "little_endian.hpp"
 #include "read/colors.hpp"
+#include "read/point_records.hpp"
 
 namespace ahm::io {
 namespace {
@@ -54,10 +55,10 @@ LasHeader parse_fields(const Input& in) {
         in, 94,
         "a header of " + std::to_string(size) + " bytes is too small for LAS 1." + std::to_string(header.minor));
   header.begin = load_at<std::uint32_t>(in.bytes, 96);
-  if (header.begin < size || header.begin > in.bytes.size())
+  if (header.begin < size || header.begin > in.size())
     fail_at_byte(in, 96,
                  "the points cannot begin at byte " + std::to_string(header.begin) + " of " +
-                     std::to_string(in.bytes.size()) + "; the file is cut short or damaged");
+                     std::to_string(in.size()) + "; the file is cut short or damaged");
   header.format = load_at<std::uint8_t>(in.bytes, 104);
   header.stride = load_at<std::uint16_t>(in.bytes, 105);
   header.points = load_at<std::uint32_t>(in.bytes, 107);
@@ -93,7 +94,7 @@ LasHeader parse_header(const Input& in) {
                  "records of " + std::to_string(header.stride) + " bytes are too small for point format " +
                      std::to_string(header.format));
   check_vertex_count(in, header.points);
-  const std::uint64_t left = in.bytes.size() - header.begin;
+  const std::uint64_t left = in.size() - header.begin;
   if (header.points > left / header.stride)
     fail_at_byte(in, header.begin,
                  std::to_string(header.points) + " points of " + std::to_string(header.stride) +
@@ -137,6 +138,18 @@ Geometry read(const Input& in) {
 
 }  // namespace
 
-Format las_format() { return {.extensions = {".las"}, .signatures = {"LASF"}, .read = read}; }
+PointRecords las_records(const Input& in) {
+  const LasHeader header = parse_header(in);
+  PointRecords records{.begin = header.begin, .count = header.points, .stride = header.stride};
+  records.at = {0, 4, 8};
+  records.type.fill(PlyType::int32);
+  records.is_swapped = std::endian::native == std::endian::big;
+  records.is_scaled = true;
+  records.scale = header.scale;
+  records.offset = header.offset;
+  return records;
+}
+
+Format las_format() { return {.extensions = {".las"}, .signatures = {"LASF"}, .read = read, .records = las_records}; }
 
 }  // namespace ahm::io

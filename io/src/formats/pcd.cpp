@@ -1,4 +1,5 @@
 #include "formats/format.hpp"
+#include "read/point_records.hpp"
 #ifdef AHM_WITH_PCL
 #include "ahm/util/module.hpp"
 #include "pcd_module.hpp"
@@ -17,7 +18,8 @@ Geometry read(const Input& in) {
 #endif
 
 Format pcd_format() {
-  Format format{.extensions = {".pcd"}, .signatures = {"# .PCD", "VERSION"}, .write = write_pcd};
+  Format format{
+      .extensions = {".pcd"}, .signatures = {"# .PCD", "VERSION"}, .records = pcd_records, .write = write_pcd};
 #ifdef AHM_WITH_PCL
   format.read = read;
 #else

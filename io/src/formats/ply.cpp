@@ -11,6 +11,7 @@
 #include "read/colors.hpp"
 #include "read/ply_header.hpp"
 #include "read/ply_value.hpp"
+#include "read/point_records.hpp"
 #include "read/properties.hpp"
 #include "read/text.hpp"
 
@@ -303,6 +304,7 @@ Format ply_format() {
   return {.extensions = {".ply"},
           .signatures = {"ply"},
           .read = read,
+          .records = ply_records,
           .write = write_ply,
           .write_textured = write_textured_ply};
 }

@@ -17,6 +17,9 @@ struct Input {
   std::filesystem::path path;
   std::string bytes;
   std::uint64_t beyond = 0;  ///< where only the beginning was loaded: bytes that follow
+
+  /// Bytes of the file.
+  std::uint64_t size() const { return bytes.size() + beyond; }
 };
 
 /// Reads a regular file, and unpacks what is compressed with gzip, whatever its name. @throws IoError with the system's

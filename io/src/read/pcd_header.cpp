@@ -146,7 +146,7 @@ void set_points(const Input& in, const RawHeader& raw, PcdHeader& header) {
 [[noreturn]] void fail_size(const Input& in, const PcdHeader& header, std::uint64_t needed) {
   fail_at_byte(in, header.body,
                std::to_string(header.points) + " points of " + std::to_string(header.point_size) + " bytes need " +
-                   std::to_string(needed) + " bytes, but only " + std::to_string(in.bytes.size() - header.body) +
+                   std::to_string(needed) + " bytes, but only " + std::to_string(in.size() - header.body) +
                    " follow the header; the file is cut short");
 }
 
@@ -202,20 +202,29 @@ void check_text(const Input& in, const PcdHeader& header) {
 
 }  // namespace
 
-PcdHeader check_pcd(const Input& in) {
+PcdHeader parse_pcd_header(const Input& in) {
   PcdHeader header;
   const RawHeader raw = read_lines(in, header);
   set_fields(in, raw, header);
   check_positions(in, raw, header);
   set_points(in, raw, header);
+  return header;
+}
+
+void check_pcd_size(const Input& in, const PcdHeader& header) {
   const std::uint64_t plain = header.points * header.point_size;  // below 2^31 times 2^20
+  if (plain > in.size() - header.body) fail_size(in, header, plain);
+}
+
+PcdHeader check_pcd(const Input& in) {
+  PcdHeader header = parse_pcd_header(in);
   if (header.data == PcdData::ascii) {
     if (header.points > in.bytes.size() - header.body) fail_size(in, header, 2 * header.points);
     check_text(in, header);
   } else if (header.data == PcdData::binary) {
-    if (plain > in.bytes.size() - header.body) fail_size(in, header, plain);
+    check_pcd_size(in, header);
   } else {
-    check_compressed(in, header, plain);
+    check_compressed(in, header, header.points * header.point_size);
   }
   return header;
 }

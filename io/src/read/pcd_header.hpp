@@ -33,6 +33,11 @@ struct PcdHeader {
   std::int64_t body_line = 0;  ///< number of the first line behind the header
 };
 
+/// Reads the header and checks fields and counts against each other. @throws IoError naming the line
+PcdHeader parse_pcd_header(const Input& in);
+/// That a file of uncompressed binary points holds as many as its header says. @throws IoError naming the byte
+void check_pcd_size(const Input& in, const PcdHeader& header);
+
 /// Reads the header and checks everything a PCD reader would have to believe: fields and counts against each other and
 /// against the size of the file, the sizes of compressed data, and in text every line and word. What passes is safe to
 /// hand on.

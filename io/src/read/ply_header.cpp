@@ -95,7 +95,7 @@ class HeaderLines {
 /// it.
 void check_against_size(const Input& in, const PlyHeader& header) {
   // A text file may end without a line end, so that one separator is missing.
-  std::uint64_t left = in.bytes.size() + in.beyond - header.body + (header.format == PlyFormat::ascii ? 1 : 0);
+  std::uint64_t left = in.size() - header.body + (header.format == PlyFormat::ascii ? 1 : 0);
   for (const PlyElement& element : header.elements) {
     const bool text = header.format == PlyFormat::ascii;
     const std::uint64_t least = text ? 2 * element.properties.size() : element.fixed_size();

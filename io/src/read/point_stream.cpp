@@ -1,31 +1,24 @@
 #include "ahm/io/point_stream.hpp"
 
 #include <algorithm>
-#include <array>
 #include <fstream>
-#include <optional>
 #include <string>
 #include <vector>
 
+#include "formats/format.hpp"
 #include "read/input.hpp"
-#include "read/ply_value.hpp"
+#include "read/point_records.hpp"
 
 namespace ahm::io {
 
 struct PointStream::Impl {
   Input in;  ///< the beginning of the file
   std::ifstream file;
-  PlyFormat format = PlyFormat::little_endian;
-  std::uint64_t begin = 0, count = 0, next = 0;  ///< bytes before the first point; points
-  std::size_t stride = 0;                        ///< bytes per point
-  std::array<std::size_t, 3> at{};               ///< of x, y, z in a point
-  std::array<PlyType, 3> type{};
-  bool has_normals = false;
+  PointRecords records;
+  std::uint64_t next = 0;  ///< number of a point
   std::vector<char> buffer;
 
   void open();
-  void find_points(const PlyHeader& header);
-  void find_coordinates(const PlyElement& vertex);
 };
 
 /// Loads what the header may take of the file.
@@ -40,49 +33,21 @@ void PointStream::Impl::open() {
   if (!file.read(in.bytes.data(), static_cast<std::streamsize>(in.bytes.size()))) fail(in, "reading it failed");
 }
 
-void PointStream::Impl::find_points(const PlyHeader& header) {
-  if (header.format == PlyFormat::ascii)
-    fail(in, "it is a text file, of which only the whole can be read; make it binary");
-  format = header.format;
-  begin = header.body;
-  for (const PlyElement& element : header.elements)
-    if (element.name == "face" && element.count > 0) fail(in, "it has faces; only clouds of points can be streamed");
-  for (const PlyElement& element : header.elements) {
-    if (element.name == "vertex") {
-      if (element.has_list()) fail(in, "its vertices have lists, so that points cannot be found without reading all");
-      return find_coordinates(element);
-    }
-    if (element.has_list()) fail(in, "lists of element '" + element.name + "' stand before its vertices");
-    begin += element.count * element.fixed_size();
-  }
-  fail(in, "it has no element 'vertex'");
-}
-
-void PointStream::Impl::find_coordinates(const PlyElement& vertex) {
-  const auto offset_of = [&](std::size_t property) {
-    std::size_t offset = 0;
-    for (std::size_t p = 0; p < property; ++p) offset += size_of(vertex.properties[p].type);
-    return offset;
-  };
-  count = vertex.count;
-  stride = vertex.fixed_size();
-  constexpr std::array names{"x", "y", "z"}, normals{"nx", "ny", "nz"};
-  for (std::size_t c = 0; c < 3; ++c) {
-    const auto property = vertex.find(names[c]);
-    if (!property) fail(in, std::string("its vertices have no property '") + names[c] + "'");
-    at[c] = offset_of(*property);
-    type[c] = vertex.properties[*property].type;
-  }
-  has_normals = std::ranges::all_of(normals, [&](const char* name) { return vertex.find(name).has_value(); });
-}
-
 PointStream::PointStream(const std::filesystem::path& path) : impl_(std::make_unique<Impl>()) {
-  impl_->in.path = path;
-  impl_->open();
-  impl_->find_points(parse_ply_header(impl_->in));
-  check_vertex_count(impl_->in, impl_->count);
-  impl_->in.bytes.clear();
-  impl_->in.bytes.shrink_to_fit();
+  Impl& s = *impl_;
+  s.in.path = path;
+  const Format* format = find_format(lower_extension(path));
+  if (format == nullptr || format->records == nullptr) {
+    std::vector<std::string> known;
+    for (const Format& other : formats())
+      if (other.records != nullptr) known.insert(known.end(), other.extensions.begin(), other.extensions.end());
+    fail(s.in, "points are read block by block from " + list_of(known, "or") + " files; convert it to one");
+  }
+  s.open();
+  s.records = format->records(s.in);
+  check_vertex_count(s.in, s.records.count);
+  s.in.bytes.clear();
+  s.in.bytes.shrink_to_fit();
   rewind();
 }
 
@@ -90,19 +55,21 @@ PointStream::~PointStream() = default;
 PointStream::PointStream(PointStream&&) noexcept = default;
 PointStream& PointStream::operator=(PointStream&&) noexcept = default;
 
-std::uint64_t PointStream::size() const noexcept { return impl_->count; }
-bool PointStream::has_normals() const noexcept { return impl_->has_normals; }
+std::uint64_t PointStream::size() const noexcept { return impl_->records.count; }
+bool PointStream::has_normals() const noexcept { return impl_->records.has_normals; }
 
 std::size_t PointStream::read(std::span<Vec3> points) {
   Impl& s = *impl_;
-  const auto wanted = static_cast<std::size_t>(std::min<std::uint64_t>(points.size(), s.count - s.next));
-  s.buffer.resize(wanted * s.stride);
+  const PointRecords& r = s.records;
+  const auto wanted = static_cast<std::size_t>(std::min<std::uint64_t>(points.size(), r.count - s.next));
+  s.buffer.resize(wanted * r.stride);
   if (!s.file.read(s.buffer.data(), static_cast<std::streamsize>(s.buffer.size())))
-    fail(s.in, "it ends at or after point " + std::to_string(s.next) + " of " + std::to_string(s.count));
-  const bool swap = is_swapped(s.format);
+    fail(s.in, "it ends at or after point " + std::to_string(s.next) + " of " + std::to_string(r.count));
   for (std::size_t i = 0; i < wanted; ++i)
-    for (std::size_t c = 0; c < 3; ++c)
-      points[i][c] = load_value(s.type[c], s.buffer.data() + i * s.stride + s.at[c], swap);
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double value = load_value(r.type[c], s.buffer.data() + i * r.stride + r.at[c], r.is_swapped);
+      points[i][c] = r.is_scaled ? value * r.scale[c] + r.offset[c] : value;
+    }
   s.next += wanted;
   return wanted;
 }
@@ -110,7 +77,7 @@ std::size_t PointStream::read(std::span<Vec3> points) {
 void PointStream::rewind() {
   impl_->next = 0;
   impl_->file.clear();
-  impl_->file.seekg(static_cast<std::streamoff>(impl_->begin));
+  impl_->file.seekg(static_cast<std::streamoff>(impl_->records.begin));
 }
 
 }  // namespace ahm::io

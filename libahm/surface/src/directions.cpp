@@ -1,16 +1,15 @@
 #include "ahm/surface/directions.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 #include <string>
 
 #include "ahm/error.hpp"
 #include "ahm/util/parallel.hpp"
 #include "ahm/util/small_math.hpp"
 #include "ahm/util/vec.hpp"
+#include "paraboloid.hpp"
 
 namespace ahm {
 namespace {
@@ -43,28 +42,18 @@ void collect_two_rings(const TangentGraph& graph, Index vertex, std::vector<Inde
   std::erase(both, vertex);
 }
 
-/// The shape operator of a vertex from the heights of others over its tangent plane; NaN where these do not tell.
-Eigen::Matrix2d shape_operator(const Frame& frame, std::span<const Vec3> others) {
-  double reach = 0;  // the unit of length here
+/// Of a vertex, from the heights of others over its tangent plane.
+PrincipalCurvature curvature_by(const Frame& frame, std::span<const Vec3> others) {
+  double reach = 0;
   for (const Vec3& p : others) reach = std::max(reach, length(p - frame.origin));
-  // z = t . (x, y) + (a x^2 + 2 b x y + c y^2) / 2, each row over |(x, y)|^2: normal equations in (t, a, b, c).
-  using Row = Eigen::Matrix<double, 5, 1>;
-  Eigen::Matrix<double, 5, 5> normal = Eigen::Matrix<double, 5, 5>::Zero();
-  Row right = Row::Zero();
+  Paraboloid fit(reach);
   for (const Vec3& p : others) {
     const Vec3 away = p - frame.origin;
-    const double x = dot(away, frame.x) / reach, y = dot(away, frame.y) / reach, r = std::hypot(x, y);
-    if (!(r > 0)) continue;
-    const double c = x / r, s = y / r;
-    const Row row{c / r, s / r, c * c / 2, c * s, s * s / 2};
-    normal += row * row.transpose();
-    right += row * (dot(away, frame.normal) / reach / r / r);
+    const Vec2 x{dot(away, frame.x), dot(away, frame.y)};
+    const double share = length(x) / reach;
+    if (share > 0) fit.add(x, dot(away, frame.normal), std::pow(share, -4));
   }
-  Eigen::FullPivLU<Eigen::Matrix<double, 5, 5>> lu(normal);
-  lu.setThreshold(1e-10);
-  if (!lu.isInvertible()) return Eigen::Matrix2d::Constant(std::numeric_limits<double>::quiet_NaN());
-  const Row fit = lu.solve(right);
-  return (Eigen::Matrix2d() << fit[2], fit[3], fit[3], fit[4]).finished() / -reach;
+  return fit.curvature();
 }
 
 /// Length of the mean of the neighbours' directions carried to the vertex, as axes (angles count twice): 1 where all are
@@ -140,16 +129,9 @@ PrincipalCurvatures curvature_directions(const TangentGraph& graph, unsigned thr
       collect_two_rings(graph, i, first, both);
       others.clear();
       for (Index j : both) others.push_back(frame_of(graph, j, name).origin);
-      const Eigen::Matrix2d S = shape_operator(frame_of(graph, i, name), others);
-      const double mean = (S(0, 0) + S(1, 1)) / 2, half = (S(0, 0) - S(1, 1)) / 2, gap = std::hypot(half, S(0, 1));
-      // S turns like a vector of twice the angle: the eigenvector of mean + gap lies at half the angle of (half, S_01).
-      const double sign = mean < 0 ? -1 : 1, angle = std::atan2(sign * S(0, 1), sign * half) / 2;
-      double* values = result.values.data() + 2 * static_cast<std::size_t>(i);
-      double* direction = result.directions.data() + 2 * static_cast<std::size_t>(i);
-      values[0] = mean + sign * gap;
-      values[1] = mean - sign * gap;
-      direction[0] = std::cos(angle);
-      direction[1] = std::sin(angle);
+      const auto [values, direction] = curvature_by(frame_of(graph, i, name), others);
+      std::copy_n(values.begin(), 2, result.values.begin() + 2 * static_cast<std::ptrdiff_t>(i));
+      std::copy_n(direction.begin(), 2, result.directions.begin() + 2 * static_cast<std::ptrdiff_t>(i));
     }
   });
   return result;

@@ -17,12 +17,6 @@
 #include "visit_point.hpp"
 
 namespace ahm {
-namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-}  // namespace
-
 struct Surface::Lazy {
   std::once_flag once;
   std::optional<FaceTree> tree;
@@ -37,7 +31,9 @@ Surface::Surface(Surface&&) noexcept = default;
 Surface& Surface::operator=(Surface&&) noexcept = default;
 
 std::vector<Vec3> Surface::normals() const {
-  std::vector<Vec3> result(rows().row_count(), Vec3{nan, nan, nan});
+  Vec3 none;
+  none.fill(std::numeric_limits<double>::quiet_NaN());
+  std::vector<Vec3> result(rows().row_count(), none);
   for (std::size_t r = 0; r < result.size(); ++r)
     if (const auto vertex = rows().vertex(Row(static_cast<Index>(r))))
       if (const auto frame = graph().frame(vertex->index)) result[r] = frame->normal;

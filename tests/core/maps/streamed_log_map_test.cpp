@@ -12,6 +12,7 @@
 #include "ahm/testing/flat_graphs.hpp"
 #include "ahm/testing/graph_changes.hpp"
 #include "maps/march.hpp"
+#include "maps/team_log_map.hpp"
 
 namespace ahm::test {
 namespace {
@@ -65,6 +66,75 @@ TEST(StreamedLogMap, HasTheBitsOfAMarchThatKeepsEverything) {
       EXPECT_TRUE(same_bits(rows.spread, expected.spread()));
     }
   }
+}
+
+TEST(StreamedLogMap, DistancesAloneAreThoseOfTheLocalizedMap) {
+  for (const CsrGraphData& data : {sphere_graph(6000), as_blocks(sphere_graph(6000)), bent_lattice(16)}) {
+    const CsrGraph graph = telling(data);
+    Rows expected(graph), rows(graph);
+    const Source source = Source::at_vertex(Vertex{5});
+    const MarchStatistics march = stream_log_map(graph, source, {}, {.variant = Variant::localized}, expected);
+    const MarchStatistics alone = stream_distances(graph, source, {}, {}, rows);
+    EXPECT_EQ(alone.bands, march.bands);
+    EXPECT_GT(march.bands, 1);
+    EXPECT_EQ(rows.told, expected.told);
+    EXPECT_EQ(rows.status, expected.status);
+    EXPECT_TRUE(same_bits(rows.distance, expected.distance));
+    EXPECT_EQ(rows.phi, std::vector<double>(rows.phi.size(), 0.0));
+    for (Index i = 0; i < graph.size(); ++i)
+      EXPECT_NEAR(rows.spread[i] * rows.spread[i], expected.spread[i] * expected.spread[i], 1e-12);
+  }
+}
+
+/// Keeps the state after one band, or the next one where that was too thin, and begins with one.
+struct OneBand final : MarchKeeper {
+  std::optional<MarchState> begin() override { return state; }
+  void end_band(const March& march) override {
+    if (!state && march.statistics().bands >= band) state = march.state();
+  }
+  Index band = 0;
+  std::optional<MarchState> state;
+};
+
+/// From the end of any band on, all that is left comes out as if the march had never ended.
+TEST(StreamedLogMap, GoesOnFromTheEndOfAnyBand) {
+  for (const CsrGraphData& data : {sphere_graph(6000), as_blocks(sphere_graph(6000)), bent_lattice(16)})
+    for (MarchGoal goal : {MarchGoal::map, MarchGoal::distances}) {
+      const CsrGraph graph = telling(data);
+      const Source source = Source::at_vertex(Vertex{5});
+      Alone alone(graph.dimension());
+      Rows expected(graph);
+      const MarchStatistics march = team_log_map(graph, source, {}, {}, expected, alone, goal);
+      ASSERT_GT(march.bands, 2);
+      for (Index band = 1; band < march.bands; ++band) {
+        OneBand keeper;
+        keeper.band = band;
+        Rows first(graph), second(graph);
+        team_log_map(graph, source, {}, {}, first, alone, goal, &keeper);
+        ASSERT_TRUE(keeper.state.has_value());
+        if (keeper.state->statistics.bands == march.bands) continue;  // the last
+        std::vector<int> before(first.told.size(), 0);
+        for (Index vertex : keeper.state->vertices) ++before[vertex];
+        const std::vector<Index>& passed = keeper.state->passed;
+        for (std::size_t run = 0; run < passed.size(); run += 2)
+          for (Index vertex = passed[run]; vertex < passed[run + 1]; ++vertex) ++before[vertex];
+        const MarchStatistics again = team_log_map(graph, source, {}, {}, second, alone, goal, &keeper);
+        EXPECT_EQ(again.bands, march.bands);
+        EXPECT_EQ(again.solved, march.solved);
+        Index after = 0;
+        for (Index i = 0; i < graph.size(); ++i) {
+          EXPECT_EQ(before[i] + second.told[i], 1);
+          if (second.told[i] == 0) continue;
+          ++after;
+          EXPECT_EQ(second.status[i], expected.status[i]);
+          EXPECT_TRUE(same_bits(std::span(&second.distance[i], 1), std::span(&expected.distance[i], 1)));
+          EXPECT_TRUE(same_bits(std::span(second.phi).subspan(i * second.d, second.d),
+                                std::span(expected.phi).subspan(i * second.d, second.d)));
+        }
+        EXPECT_GT(after, 0);
+        EXPECT_LT(after, graph.size());
+      }
+    }
 }
 
 TEST(StreamedLogMap, EndsAtTheRadius) {

@@ -65,6 +65,7 @@ class ArrayFile {
     const std::span<const std::byte> bytes = find(name, sizeof(T));
     return {reinterpret_cast<const T*>(bytes.data()), bytes.size() / sizeof(T)};
   }
+  bool has(std::string_view name) const;
   /// Bytes of the file.
   std::size_t size() const noexcept { return size_; }
   const std::filesystem::path& path() const noexcept { return path_; }
@@ -72,6 +73,7 @@ class ArrayFile {
   void release() const noexcept;
 
  private:
+  std::size_t place_of(std::string_view name) const;
   std::span<const std::byte> find(std::string_view name, std::size_t element) const;
   void check_header(std::string_view kind) const;
   void unmap() noexcept;

@@ -54,6 +54,8 @@ class TiledGraph final : public TangentGraph {
   std::size_t tiles() const noexcept { return manifest_.tiles.size(); }
   std::size_t tile_of(Index vertex) const;
   Index first_vertex(std::size_t tile) const { return first_[tile]; }
+  /// Mean position of each tile's vertices, world units. @throws IoError (tiles built before these were kept)
+  std::vector<Vec3> middles() const;
   /// Input rows at the vertices of a tile: those of its vertex i are rows[begin[i]] to rows[begin[i + 1]].
   struct TileRows {
     std::span<const Index> begin, rows, removed, component;

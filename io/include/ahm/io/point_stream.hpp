@@ -17,7 +17,7 @@
 
 namespace ahm::io {
 
-/// Reads the points of a binary PLY file block by block, in the order of the file.
+/// Reads the points of a binary PLY or PCD file, or of a LAS file, block by block, in the order of the file: those that `read` finds.
 class PointStream {
  public:
   /// @throws IoError when the file cannot be read, is none that can be streamed (text, compressed, of another format; lists

@@ -210,6 +210,12 @@ void AffineHeat::radial_at(std::size_t source, Index vertex, double* out) const 
   for (double& component : r) component *= stretch;
 }
 
+void AffineHeat::displacement_at(std::size_t source, Index vertex, double* out) const {
+  system_.radial(frames(source), vertex, unknown(source), n_, out);
+  const double heat = lambda(source)[vertex], unit = solution_unit(graph_);
+  for (std::size_t a = 0; a < d_; ++a) out[a] = out[a] / heat * unit;
+}
+
 void AffineHeat::coordinates_at(std::size_t source, Index vertex, double* phi) const {
   system_.read(frames(source), vertex, unknown(source), n_, phi);
   const double heat = lambda(source)[vertex], unit = solution_unit(graph_);

@@ -47,7 +47,7 @@ class AffineHeat {
 
   /// Solves for lambda and the frames, which everything below needs.
   void diffuse();
-  /// Solves for lambda alone: enough for variants that put no frames into their system.
+  /// Solves for lambda alone: enough for variants that put no frames into their system, but for `frames` and `coordinates_at`.
   void diffuse_heat();
 
   /// Solves for the variant's unknown, in units of `solution_unit(graph)`.
@@ -78,6 +78,8 @@ class AffineHeat {
   double distance_at(std::size_t source, Index vertex) const;
   /// r of one source at a vertex: d numbers in its frame, units of the unknown.
   void radial_at(std::size_t source, Index vertex, double* out) const;
+  /// z_i of one source in the frame of the vertex, world units: as long as phi_i.
+  void displacement_at(std::size_t source, Index vertex, double* out) const;
   /// phi_i of one source in world units.
   void coordinates_at(std::size_t source, Index vertex, double* phi) const;
 

@@ -9,13 +9,13 @@
 
 namespace ahm {
 
-KnownValues::KnownValues(const TangentGraph& graph, const VariantSystem& system)
+KnownValues::KnownValues(const TangentGraph& graph, const VariantSystem& system, bool with_frames)
     : system_(system),
       layout_(graph.transport_layout()),
       d_(static_cast<std::size_t>(graph.dimension())),
-      width_(layout_.width()),
+      width_(with_frames ? layout_.width() : 0),
       to_units_(graph.length_unit() / solution_unit(graph)),
-      rows_(3 + 2 * d_ + width_),
+      rows_(row_width()),
       exponents_(1) {}
 
 void KnownValues::take(Index number, Index place, const AffineHeat& heat, std::size_t source, HeatExponents exponents) {
@@ -32,7 +32,14 @@ void KnownValues::take(Index number, Index place, const AffineHeat& heat, std::s
     row[2] = 0;
     std::fill_n(row + 3 + d_, d_, 0.0);
   }
-  heat.frames(source).raw(place, row + 3 + 2 * d_);
+  if (width_ > 0) heat.frames(source).raw(place, row + 3 + 2 * d_);
+  *exponents_[number] = exponents;
+}
+
+void KnownValues::put(Index number, std::span<const double> row, HeatExponents exponents) {
+  rows_.grow_to(number + 1);
+  exponents_.grow_to(number + 1);
+  std::copy(row.begin(), row.end(), rows_[number]);
   *exponents_[number] = exponents;
 }
 
@@ -65,7 +72,6 @@ void KnownValues::add_to(RightHandSide& in, const Star& star, std::size_t edge, 
   const Transport R = star.transport(edge);
   const double heat = std::ldexp(conductance, exponents_[number]->heat - exponents.heat);
   const double pair_factor[] = {-2 * heat * to_units_};
-  const double turn = std::ldexp(conductance, exponents_[number]->frame - exponents.frame);
   const double lambda = this->heat(number);
   in.heat.back() += heat * lambda;
   Scratch e(d_), seen(d_);
@@ -80,6 +86,8 @@ void KnownValues::add_to(RightHandSide& in, const Star& star, std::size_t edge, 
       heat * (squared_length(number) + dot(e.span(), e.span()) * lambda - 2 * dot(e.span(), seen.span()));
   system_.add_pairs(star.only(edge), pair_factor, value(number), in.pairs.data() + in.pairs.size() - d_ * d_);
   system_.add_known(heat, R, value(number), in.values.data() + in.values.size() - d_);
+  if (width_ == 0) return;
+  const double turn = std::ldexp(conductance, exponents_[number]->frame - exponents.frame);
   R.add_product(turn, frame(number).data(), in.frames.data() + in.frames.size() - width_);
 }
 

@@ -21,10 +21,17 @@ struct HeatExponents {
 /// underflows at any distance. Vertices go by the numbers of `ReachedNumbers`.
 class KnownValues {
  public:
-  KnownValues(const TangentGraph& graph, const VariantSystem& system);
+  /// @param with_frames  else of solves without frames
+  KnownValues(const TangentGraph& graph, const VariantSystem& system, bool with_frames);
 
   /// Takes over what vertex `place` of a solve found.
   void take(Index number, Index place, const AffineHeat& heat, std::size_t source, HeatExponents exponents);
+
+  /// All that is known of a vertex but its exponents.
+  std::span<const double> row(Index number) const { return {rows_[number], row_width()}; }
+  HeatExponents exponents(Index number) const { return *exponents_[number]; }
+  std::size_t row_width() const { return 3 + 2 * d_ + width_; }
+  void put(Index number, std::span<const double> row, HeatExponents exponents);
 
   double heat(Index number) const { return *rows_[number]; }
   std::size_t bytes() const { return rows_.bytes() + exponents_.bytes(); }
@@ -49,7 +56,7 @@ class KnownValues {
 
   const VariantSystem& system_;
   TransportLayout layout_;
-  std::size_t d_, width_;
+  std::size_t d_, width_;     ///< width of frames, 0 without them
   double to_units_;           ///< from the graph's lengths to those of the solution
   GrowingRows<double> rows_;  ///< lambda, both second moments, the unknown, r, U~
   GrowingRows<HeatExponents> exponents_;

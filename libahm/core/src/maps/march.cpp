@@ -34,31 +34,85 @@ double heat_distance(double length, double weight, double tau, const Diagonal& d
 }  // namespace
 
 March::March(const TangentGraph& graph, const HeatOptions& options, const MarchScales& scales, Variant variant,
-             double radius, unsigned threads, Progress progress, MarchSink* sink, MarchTeam* team)
+             double radius, unsigned threads, Progress progress, MarchSink* sink, MarchTeam* team, MarchGoal goal)
     : graph_(graph),
       options_(options),
       variant_(variant),
       scales_(scales),
       sink_(sink),
+      goal_(goal),
       alone_(team ? nullptr : std::make_unique<Alone>(graph.dimension())),
       team_(team ? *team : *alone_),
       // What lies ahead by x influences what lies behind by exp(-2 x).
       margin_(1.6 - 0.5 * std::log(options.accuracy)),
       step_(std::min(default_step, team_.reach())),
       radius_(radius),
+      depth_(step_ + margin_),
       progress_(std::move(progress)),
       threads_(threads),
       d_(static_cast<std::size_t>(graph.dimension())),
       numbers_(graph.size()),
       ways_(1),
-      known_(graph, system_of(variant)),
+      known_(graph, system_of(variant), goal == MarchGoal::map),
       found_(d_ + 2),
       nothing_(d_, NAN) {
   options_.progress = {};
   options_.threads = threads;
 }
 
-void March::run(const Source& source) { march(&source); }
+void March::run(const Source& source, MarchKeeper* keeper) {
+  keeper_ = keeper;
+  const std::optional<MarchState> begun = keeper ? keeper->begin() : std::nullopt;
+  if (begun) restore(*begun);
+  march(begun ? nullptr : &source);
+}
+
+MarchState March::state() const {
+  MarchState state;
+  state.statistics = statistics_;
+  state.depth = depth_;
+  state.accepted = accepted_count_;
+  state.front = front_;
+  numbers_.visit(
+      [&](Index vertex, Index number) {
+        if (!ways_[number]->accepted) return;
+        const std::span known = known_.row(number), found(found_[number], d_ + 2);
+        state.vertices.push_back(vertex);
+        state.values.insert(state.values.end(), known.begin(), known.end());
+        state.values.insert(state.values.end(), found.begin(), found.end());
+        state.exponents.push_back(known_.exponents(number));
+      },
+      [&](Index begin, Index end) {
+        if (!state.passed.empty() && state.passed.back() == begin)
+          state.passed.back() = end;
+        else
+          state.passed.insert(state.passed.end(), {begin, end});
+      });
+  return state;
+}
+
+void March::restore(const MarchState& state) {
+  const std::size_t known = known_.row_width(), width = known + d_ + 2;
+  if (state.values.size() != state.vertices.size() * width || state.exponents.size() != state.vertices.size())
+    throw InvalidArgument("the state of a march is that of another one");
+  for (std::size_t run = 0; run + 1 < state.passed.size(); run += 2)
+    for (Index vertex = state.passed[run]; vertex < state.passed[run + 1]; ++vertex) {
+      way(vertex);
+      forget(vertex);
+    }
+  for (std::size_t k = 0; k < state.vertices.size(); ++k) {
+    way(state.vertices[k]).accepted = true;
+    const Index number = numbers_.find(state.vertices[k]);
+    const auto row = std::span(state.values).subspan(k * width, width);
+    known_.put(number, row.first(known), state.exponents[k]);
+    found_.grow_to(number + 1);
+    std::copy_n(row.begin() + static_cast<std::ptrdiff_t>(known), d_ + 2, found_[number]);
+  }
+  front_ = state.front;
+  statistics_ = state.statistics;
+  depth_ = state.depth;
+  accepted_count_ = state.accepted;
+}
 
 void March::run_on(const AffineHeat& heat, std::size_t s) {
   std::vector<Index> reached;
@@ -72,21 +126,21 @@ void March::run_on(const AffineHeat& heat, std::size_t s) {
 void March::march(const Source* source) {
   OneBlasThread one_thread;
   without_openmp_regions([&] {
-    double depth = step_ + margin_;
     while (source || team_.sum(static_cast<std::int64_t>(front_.size())) > 0) {
       progress_.step("solve", static_cast<double>(accepted_count_) / graph_.size());
-      const bool advanced = advance(source, depth);
-      if (advanced)
-        source = nullptr;
-      else
-        depth *= 1.4;  // and stays so: where one band was too thin, the next ones would be
+      if (!advance(source)) {
+        depth_ *= 1.4;  // and stays so: where one band was too thin, the next ones would be
+        continue;
+      }
+      source = nullptr;
+      if (keeper_) keeper_->end_band(*this);
     }
   });
 }
 
 /// Solves one band and accepts its near part. Returns false when the band was too thin for anything to be accepted.
-bool March::advance(const Source* source, double depth) {
-  const Band band = find_band(source, depth);
+bool March::advance(const Source* source) {
+  const Band band = find_band(source);
   const std::int64_t size = team_.sum(static_cast<std::int64_t>(band.own));
   if (size == 0) {
     front_.clear();
@@ -127,7 +181,10 @@ bool March::advance(const Source* source, double depth) {
   for (Index vertex : band.vertices) way(vertex).place = -1;
 
   AffineHeat heat(patch, operators, variant_, {std::move(right_hand_side)}, threads_);
-  heat.diffuse();
+  if (goal_ == MarchGoal::map)
+    heat.diffuse();
+  else
+    heat.diffuse_heat();
   heat.solve();
   heat.solve_squares();
   if (!graph_.is_delaunay()) heat.solve_lengths();
@@ -168,10 +225,10 @@ std::optional<std::vector<Index>> March::near_part(const Band& band, std::int64_
   return near;
 }
 
-/// The vertices ahead of the front within `depth` of heat distance, own ones in the order of the graph.
-March::Band March::find_band(const Source* source, double depth) {
+/// The vertices ahead of the front within `depth_` of heat distance, own ones in the order of the graph.
+March::Band March::find_band(const Source* source) {
   Band band;
-  band.vertices = search(source, depth);
+  band.vertices = search(source);
   // The graph's own order keeps neighbours close in memory; that of the distance scatters them all around the front.
   std::sort(band.vertices.begin(), band.vertices.end());
   band.own = band.vertices.size();
@@ -188,7 +245,7 @@ March::Band March::find_band(const Source* source, double depth) {
 
 /// Dijkstra's algorithm, the levels on the front being those of the heat that was found there: each member among its own
 /// vertices, again as long as something comes from others. What is found does not depend on who owns what.
-std::vector<Index> March::search(const Source* source, double depth) {
+std::vector<Index> March::search(const Source* source) {
   Tentative tentative{*this};
   ShortestPaths<float, Tentative> paths(tentative, far_away);
   std::vector<Ahead> ahead;
@@ -224,12 +281,12 @@ std::vector<Index> March::search(const Source* source, double depth) {
     for (Index vertex : front_) base = std::min(base, known_.level(numbers_.find(vertex)));
     base = team_.least(base);
     for (Index vertex : front_)
-      if (const double beyond = known_.level(numbers_.find(vertex)) - base; beyond <= depth) spread(vertex, beyond);
+      if (const double beyond = known_.level(numbers_.find(vertex)) - base; beyond <= depth_) spread(vertex, beyond);
   }
   cross();
 
   std::vector<Index> found, touched;
-  const double limit = team_.least(paths.empty() ? far_away : paths.least()) + depth;
+  const double limit = team_.least(paths.empty() ? far_away : paths.least()) + depth_;
   do
     paths.run([&](Index vertex, float distance) {
       if (distance > limit) return touched.push_back(vertex);
@@ -300,10 +357,14 @@ void March::accept(Index vertex, Index place, const AffineHeat& heat, std::size_
   known_.take(number, place, heat, s, exponents);
   found_.grow_to(number + 1);
   const std::span phi(found_[number], d_);
-  heat.coordinates_at(s, place, phi.data());
+  const bool has_frames = goal_ == MarchGoal::map;
+  if (has_frames)
+    heat.coordinates_at(s, place, phi.data());
+  else
+    heat.displacement_at(s, place, phi.data());
   found_[number][d_] = heat.root_mean_square_at(s, place);
   found_[number][d_ + 1] = heat.distance_at(s, place);
-  const bool good = known_.heat(number) > 0 && heat.frames(s).heat(place) > 0 && all_finite(phi);
+  const bool good = known_.heat(number) > 0 && (!has_frames || heat.frames(s).heat(place) > 0) && all_finite(phi);
   if (!good) std::fill(phi.begin(), phi.end(), NAN);
   if (sink_ && own) sink_->accept(vertex, {phi, found_[number][d_], found_[number][d_ + 1]});
 }

@@ -17,6 +17,7 @@
 #include "heat/component_scales.hpp"
 #include "maps/affine_heat.hpp"
 #include "maps/known_values.hpp"
+#include "maps/march_state.hpp"
 #include "maps/march_team.hpp"
 #include "maps/reached_rows.hpp"
 #include "maps/vertex_row.hpp"
@@ -54,6 +55,12 @@ class MarchSink {
   virtual void accept(Index vertex, const HeatRow& found) = 0;
 };
 
+/// What a march looks for.
+enum class MarchGoal {
+  map,
+  distances,  ///< alone, without frames: coordinates are those of z in the frame of each vertex; the variant must be localized
+};
+
 class March {
  public:
   /// @param options  accuracy, ordering, kind of factorization; the graph must have been checked
@@ -62,10 +69,14 @@ class March {
   ///                 has passed the vertex, so that memory grows with the front
   /// @param team     null: alone. Else one of those who march together, which takes a sink; it is told of own vertices
   March(const TangentGraph& graph, const HeatOptions& options, const MarchScales& scales, Variant variant,
-        double radius, unsigned threads, Progress progress, MarchSink* sink = nullptr, MarchTeam* team = nullptr);
+        double radius, unsigned threads, Progress progress, MarchSink* sink = nullptr, MarchTeam* team = nullptr,
+        MarchGoal goal = MarchGoal::map);
 
   /// Marches from a checked source.
-  void run(const Source& source);
+  /// @param keeper  null: nothing is kept. Else the march, which has a sink, goes on from where it says
+  void run(const Source& source, MarchKeeper* keeper = nullptr);
+  /// At the end of a band.
+  MarchState state() const;
   /// Marches on from where a solve on the whole graph ended, source number `s` of `heat`.
   void run_on(const AffineHeat& heat, std::size_t s);
 
@@ -117,9 +128,10 @@ class March {
   };
 
   void march(const Source* source);
-  bool advance(const Source* source, double depth);
-  Band find_band(const Source* source, double depth);
-  std::vector<Index> search(const Source* source, double depth);
+  void restore(const MarchState& state);
+  bool advance(const Source* source);
+  Band find_band(const Source* source);
+  std::vector<Index> search(const Source* source);
   void find_edge(Band& band);
   double heat_distance_along(const Ahead& edge) const;
   std::optional<std::vector<Index>> near_part(const Band& band, std::int64_t size,
@@ -143,9 +155,12 @@ class March {
   Variant variant_;
   const MarchScales& scales_;
   MarchSink* sink_;
+  MarchGoal goal_;
+  MarchKeeper* keeper_ = nullptr;
   std::unique_ptr<MarchTeam> alone_;
   MarchTeam& team_;
   double margin_, step_, radius_;
+  double depth_;  ///< of bands
   Progress progress_;
   unsigned threads_;
   std::size_t d_;

@@ -52,6 +52,20 @@ class ReachedNumbers {
     own = forgotten;
     if (++gone_[place] == std::min(page_size, vertices_ - place * page_size)) pages_[place].reset();
   }
+  /// In the order of vertices: calls each(vertex, number) for those that have one, gone(begin, end) for those that were forgotten.
+  template <class Each, class Gone>
+  void visit(const Each& each, const Gone& gone) const {
+    for (std::size_t place = 0; place < pages_.size(); ++place) {
+      const auto begin = static_cast<Index>(place * page_size),
+                 end = static_cast<Index>(std::min(vertices_, (place + 1) * page_size));
+      if (!pages_[place] && gone_[place] > 0) gone(begin, end);
+      for (Index vertex = begin; pages_[place] && vertex < end; ++vertex)
+        if (const Index number = (*pages_[place])[static_cast<std::size_t>(vertex - begin)]; number >= 0)
+          each(vertex, number);
+        else if (number == forgotten)
+          gone(vertex, vertex + 1);
+    }
+  }
   /// Numbers given so far, at most as many as there were at a time.
   Index count() const { return count_; }
   std::size_t bytes() const {

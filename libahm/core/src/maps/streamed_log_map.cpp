@@ -35,14 +35,14 @@ class GraphScales final : public MarchScales {
 /// Makes rows of what the march finds.
 class Rows final : public MarchSink {
  public:
-  Rows(const TangentGraph& graph, const Source& source, double radius, MapSink& sink)
-      : radius_(radius), sink_(sink), phi_(static_cast<std::size_t>(graph.dimension())) {
+  Rows(const TangentGraph& graph, const Source& source, double radius, MarchGoal goal, MapSink& sink)
+      : radius_(radius), sink_(sink), phi_(goal == MarchGoal::map ? static_cast<std::size_t>(graph.dimension()) : 0) {
     for (std::size_t k = 0; k < source.vertices().size(); ++k)
       if (source.weights()[k] > 0) placed_[source.vertices()[k].index] = source.place(k).distance;
   }
 
   void accept(Index vertex, const HeatRow& found) override {
-    std::copy(found.phi.begin(), found.phi.end(), phi_.begin());
+    std::copy_n(found.phi.begin(), phi_.size(), phi_.begin());
     VertexRow row = vertex_row(found);
     if (const auto placed = placed_.find(vertex); placed != placed_.end()) row.distance = placed->second;
     if (row.status == Status::ok && row.distance > radius_) row.status = Status::beyond_radius;
@@ -56,7 +56,7 @@ class Rows final : public MarchSink {
  private:
   double radius_;
   MapSink& sink_;
-  std::vector<double> phi_;
+  std::vector<double> phi_;                   ///< empty for distances alone
   std::unordered_map<Index, double> placed_;  ///< the source's own vertices
 };
 
@@ -87,15 +87,23 @@ MarchStatistics stream_log_map(const TangentGraph& graph, const Source& source, 
   return team_log_map(graph, source, options, map, sink, alone);
 }
 
+MarchStatistics stream_distances(const TangentGraph& graph, const Source& source, const HeatOptions& options,
+                                 const MapOptions& map, MapSink& sink) {
+  Alone alone(graph.dimension());
+  return team_log_map(graph, source, options, map, sink, alone, MarchGoal::distances);
+}
+
 MarchStatistics team_log_map(const TangentGraph& graph, const Source& source, const HeatOptions& options,
-                             const MapOptions& map, MapSink& sink, MarchTeam& team) {
+                             const MapOptions& map, MapSink& sink, MarchTeam& team, MarchGoal goal,
+                             MarchKeeper* keeper) {
   check(graph, source, options, map);
   const GraphScales scales(graph, options.t_coef);
-  Rows rows(graph, source, map.radius, sink);
+  Rows rows(graph, source, map.radius, goal, sink);
+  const Variant variant = goal == MarchGoal::map ? map.variant.value_or(options.variant) : Variant::localized;
   const unsigned threads = detail::thread_count(map.threads.value_or(options.threads));
-  March march(graph, options, scales, map.variant.value_or(options.variant), map.radius, threads,
-              map.progress.value_or(options.progress), &rows, &team);
-  march.run(source);
+  March march(graph, options, scales, variant, map.radius, threads, map.progress.value_or(options.progress), &rows,
+              &team, goal);
+  march.run(source, keeper);
   return march.statistics();
 }
 

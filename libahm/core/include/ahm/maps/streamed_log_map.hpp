@@ -18,7 +18,7 @@ namespace ahm {
 /// What a map says of a vertex; numbers are NaN where the status is not `ok`. Lengths in world units.
 struct MapRow {
   Status status;                        ///< ok, beyond_radius or unreached
-  std::span<const double> coordinates;  ///< phi, d numbers in the source's frame
+  std::span<const double> coordinates;  ///< phi, d numbers in the source's frame; none of `stream_distances`
   double distance;                      ///< as `LogMap::distance`
   double spread;                        ///< as `LogMap::spread`
 };
@@ -43,5 +43,11 @@ class MapSink {
 /// NotPositiveDefinite (of a band), Cancelled, and what graph and sink throw
 MarchStatistics stream_log_map(const TangentGraph& graph, const Source& source, const HeatOptions& options,
                                const MapOptions& map, MapSink& sink);
+
+/// The distances of the localized map alone, to the bit, whatever variant the options name; its spread to rounding. No frames are
+/// solved for, which is one of the two solves with B in every band.
+/// @throws as `stream_log_map`
+MarchStatistics stream_distances(const TangentGraph& graph, const Source& source, const HeatOptions& options,
+                                 const MapOptions& map, MapSink& sink);
 
 }  // namespace ahm
