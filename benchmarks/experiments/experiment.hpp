@@ -11,7 +11,7 @@
 /// }
 /// \endcode
 ///
-/// `Settings::toy` asks for sizes that take seconds; the same laws must hold (tests/experiments_test.cpp).
+/// `Settings::toy` asks for sizes that take seconds; the same laws must hold (benchmarks/tests/experiments).
 #pragma once
 
 #include <concepts>

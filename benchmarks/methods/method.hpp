@@ -51,7 +51,7 @@ Method affine_heat(const TangentGraph& graph, Variant variant, double t_coef = 1
 Method unfolded_distance(const TangentGraph& graph);
 
 /// The affine heat method as written: its (d + 1) n x (d + 1) n operator assembled and factored by LU for every source
-/// (Soliman & Sharp 2025, Alg. 1 and 2).
+/// ([SS25] Alg. 1 and 2).
 Method reference_operator(const TangentGraph& graph, Variant variant, double t_coef = 1.0);
 
 struct VectorHeatOptions {
@@ -60,7 +60,7 @@ struct VectorHeatOptions {
   /// edge short. true: the edges at the source take the field at their other end.
   bool radial_at_source = false;
 };
-/// VHM_log, the log map of the vector heat method (Sharp, Soliman & Crane 2019, "The Vector Heat Method").
+/// VHM_log, the log map of the vector heat method [SSC19].
 /// @throws as `HeatOperators`; NotPositiveDefinite (weights)
 Method vector_heat_log(const TangentGraph& graph, const VectorHeatOptions& options = {});
 
@@ -72,24 +72,22 @@ enum class FrameTurn {
 
 struct DiscreteExponentialOptions {
   FrameTurn turn = FrameTurn::along_path;
-  /// Average what all neighbours nearer to the source predict, weighted by inverse edge length (Schmidt 2013), instead
+  /// Average what all neighbours nearer to the source predict, weighted by inverse edge length [Sch13], instead
   /// of following the shortest path of edges alone.
   bool upwind_average = false;
 };
-/// DEM, discrete exponential map (Schmidt, Grimm & Wyvill 2006, "Interactive Decal Compositing with Discrete Exponential
-/// Maps").
+/// DEM, discrete exponential map [SGW06].
 /// @throws InvalidArgument (a turn in space on a graph that is no surface with known frames)
 Method discrete_exponential(const TangentGraph& graph, const DiscreteExponentialOptions& options = {});
 
-/// SEM, smoothed exponential map (Herholz & Alexa 2019, "Efficient Computation of Smoothed Exponential Maps").
+/// SEM, smoothed exponential map [HA19].
 /// @param t_coef  of heat for direction and distance; the smoothing. 50 as in the authors' program
 /// @throws as `heat_distance`
 Method smoothed_exponential(const TangentGraph& graph, double t_coef = 50.0);
 
 // Distances.
 
-/// HM, the heat method (Crane, Weischedel & Wardetzky 2013, "Geodesics in Heat") on a graph: gradient by a fit to the
-/// star, divergence over edges.
+/// HM, the heat method [CWW13] on a graph: gradient by a fit to the star, divergence over edges.
 /// @throws as `HeatOperators`; NotPositiveDefinite (weights)
 Method heat_distance(const TangentGraph& graph, double t_coef = 1.0);
 
@@ -98,7 +96,7 @@ Method heat_distance(const TangentGraph& graph, double t_coef = 1.0);
 Method heat_distance(const trimesh::TriangleMesh& mesh, double t_coef = 1.0);
 
 #ifdef AHM_METHODS_CGAL
-/// Exact distance on the polyhedron (Xin & Wang 2009, by CGAL). Vertices and positions as given.
+/// Exact distance on the polyhedron ([XW09], by CGAL). Vertices and positions as given.
 /// @throws InvalidGeometry when the faces are no oriented manifold
 Method exact_distance(std::span<const Vec3> positions, std::span<const Triangle> faces);
 #endif

@@ -1,5 +1,5 @@
 /// \file
-/// SHM, the signed heat method (Feng & Crane 2024, "A Heat Method for Generalized Signed Distance"), on any graph.
+/// SHM, the signed heat method [FC24], on any graph.
 ///
 /// \code
 /// const ahm::methods::SignedHeat shm(graph);

@@ -21,6 +21,17 @@ void tilt(Mesh& mesh) {
   for (const auto& p : mesh.plane) mesh.positions.push_back(tilted(p[0], p[1]));
 }
 
+/// The quad a b c d as two triangles, cut along its diagonal ac or bd.
+void add_quad(Mesh& mesh, Index a, Index b, Index c, Index d, bool cut_ac) {
+  if (cut_ac) {
+    mesh.faces.push_back({a, b, c});
+    mesh.faces.push_back({a, c, d});
+  } else {
+    mesh.faces.push_back({a, b, d});
+    mesh.faces.push_back({b, c, d});
+  }
+}
+
 /// A jittered grid of side x side points in the unit square, random diagonals. Border points stay on the border. Up to
 /// 0.25 spacings of jitter every quad is convex.
 Mesh jittered_grid(Index side, unsigned seed, double jitter_u = 0.24, double jitter_v = 0.24) {
@@ -36,13 +47,7 @@ Mesh jittered_grid(Index side, unsigned seed, double jitter_u = 0.24, double jit
   for (Index i = 0; i + 1 < side; ++i)
     for (Index j = 0; j + 1 < side; ++j) {
       const Index a = i * side + j, b = a + side, c = b + 1, d = a + 1;
-      if (random() % 2) {
-        mesh.faces.push_back({a, b, c});
-        mesh.faces.push_back({a, c, d});
-      } else {
-        mesh.faces.push_back({a, b, d});
-        mesh.faces.push_back({b, c, d});
-      }
+      add_quad(mesh, a, b, c, d, random() % 2 != 0);
     }
   return mesh;
 }
@@ -225,13 +230,7 @@ Mesh torus(Index n) {
     for (Index j = 0; j < across; ++j) {
       auto at = [&](Index x, Index y) { return x % around * across + y % across; };
       const Index a = at(i, j), b = at(i + 1, j), c = at(i + 1, j + 1), d = at(i, j + 1);
-      if (random() % 2) {
-        mesh.faces.push_back({a, b, c});
-        mesh.faces.push_back({a, c, d});
-      } else {
-        mesh.faces.push_back({a, b, d});
-        mesh.faces.push_back({b, c, d});
-      }
+      add_quad(mesh, a, b, c, d, random() % 2 != 0);
     }
   return mesh;
 }
@@ -250,13 +249,7 @@ Mesh flat_square(Index side, double jitter, unsigned seed) {
   for (Index j = 0; j + 1 < side; ++j)
     for (Index i = 0; i + 1 < side; ++i) {
       const Index a = j * side + i, b = a + 1, c = b + side, d = a + side;
-      if (random() % 2) {
-        mesh.faces.push_back({a, b, c});
-        mesh.faces.push_back({a, c, d});
-      } else {
-        mesh.faces.push_back({a, b, d});
-        mesh.faces.push_back({b, c, d});
-      }
+      add_quad(mesh, a, b, c, d, random() % 2 != 0);
     }
   lift(mesh);
   return mesh;

@@ -1,7 +1,7 @@
 # Fails when a relative link of a page leads to a file that is not there.
 cmake_minimum_required(VERSION 3.22)
 set(pages "")
-foreach(folder . docs libahm backends io view apps tests testing benchmarks examples)
+foreach(folder . docs libahm backends io view viewer distributed apps python packaging tests testing benchmarks examples)
   if(folder STREQUAL ".")
     file(GLOB found "${ROOT}/*.md")
   else()

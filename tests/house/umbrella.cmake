@@ -1,4 +1,5 @@
-# Fails when ahm/ahm.hpp leaves out a public header of the library, or when a file names another version than ahm/version.hpp.
+# Fails when ahm/ahm.hpp leaves out a public header of the library, when a page names a header that is not there, or when a file
+# names another version than ahm/version.hpp.
 cmake_minimum_required(VERSION 3.22)
 file(READ "${ROOT}/libahm/applications/include/ahm/ahm.hpp" umbrella)
 set(count 0)
@@ -15,6 +16,26 @@ foreach(room core surface applications)
 endforeach()
 if(count LESS 30)
   message(FATAL_ERROR "only ${count} headers found")
+endif()
+
+file(GLOB_RECURSE headers "${ROOT}/libahm/*.hpp" "${ROOT}/backends/*.hpp" "${ROOT}/io/*.hpp" "${ROOT}/view/*.hpp" "${ROOT}/viewer/*.hpp"
+  "${ROOT}/testing/*.hpp" "${ROOT}/distributed/*.hpp")
+file(GLOB pages "${ROOT}/*.md" "${ROOT}/docs/*.md")
+set(named 0)
+foreach(page IN LISTS pages)
+  file(READ "${page}" text)
+  string(REGEX MATCHALL "[`<\"]ahm/[a-z0-9_/]+\\.hpp" names "${text}")
+  foreach(name IN LISTS names)
+    math(EXPR named "${named} + 1")
+    string(SUBSTRING "${name}" 1 -1 name)
+    string(FIND "${headers}" "/include/${name}" found)
+    if(found EQUAL -1)
+      message(SEND_ERROR "${page} names ${name}, which is not there")
+    endif()
+  endforeach()
+endforeach()
+if(named EQUAL 0)
+  message(FATAL_ERROR "no page names a header")
 endif()
 
 foreach(file CITATION.cff pyproject.toml packaging/libahm/vcpkg.json)

@@ -17,7 +17,7 @@ namespace ahm::app {
 struct InputOptions {
   std::string path;              ///< "-": standard input
   std::string format;            ///< extension; empty: as the path says
-  std::string backend = "auto";  ///< or a name of the table in input/backends.cpp
+  std::string backend = "auto";  ///< or the name of one of `backends()`
   unsigned threads = 0;          ///< 0: one per core
 
   // Point clouds

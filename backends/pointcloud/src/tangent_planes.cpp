@@ -66,18 +66,19 @@ bool drop_unreachable(const CleanPoints& cloud, const CloudOptions& options, std
                       Neighborhoods& result) {
   std::vector<double> radius = result.radius;
   std::atomic<bool> all{true};
-  detail::parallel_chunks(static_cast<Offset>(counts.size()), points_per_task, options.threads, [&](Offset begin, Offset end) {
-    for (Offset i = begin; i < end; ++i) {
-      const auto first = result.indices.begin() + i * result.k;
-      const auto last = std::remove_if(first, first + counts[i], [&](Index j) {
-        return norm(cloud.points[j] - cloud.points[i]) > options.max_edge_ratio * result.radius[j];
+  detail::parallel_chunks(
+      static_cast<Offset>(counts.size()), points_per_task, options.threads, [&](Offset begin, Offset end) {
+        for (Offset i = begin; i < end; ++i) {
+          const auto first = result.indices.begin() + i * result.k;
+          const auto last = std::remove_if(first, first + counts[i], [&](Index j) {
+            return norm(cloud.points[j] - cloud.points[i]) > options.max_edge_ratio * result.radius[j];
+          });
+          if (last == first + counts[i]) continue;
+          all = false;
+          counts[i] = static_cast<Index>(last - first);
+          if (counts[i] > 0) radius[i] = norm(cloud.points[*(last - 1)] - cloud.points[i]);
+        }
       });
-      if (last == first + counts[i]) continue;
-      all = false;
-      counts[i] = static_cast<Index>(last - first);
-      if (counts[i] > 0) radius[i] = norm(cloud.points[*(last - 1)] - cloud.points[i]);
-    }
-  });
   result.radius = std::move(radius);
   return all;
 }
@@ -146,7 +147,8 @@ void fit_planes(const CleanPoints& cloud, const NeighborSearch& search, const Cl
                 Neighborhoods& neighborhoods, TangentPlanes& planes) {
   const auto n = static_cast<Offset>(cloud.points.size());
   planes.normals.assign(static_cast<std::size_t>(n), Vec3{0, 0, 0});
-  std::vector<std::vector<WiderNeighborhood>> wider(static_cast<std::size_t>((n + points_per_task - 1) / points_per_task));
+  std::vector<std::vector<WiderNeighborhood>> wider(
+      static_cast<std::size_t>((n + points_per_task - 1) / points_per_task));
   std::atomic<Index> thick{0};
   detail::parallel_chunks(n, points_per_task, options.threads, [&](Offset begin, Offset end) {
     Index thick_here = 0;

@@ -1,5 +1,5 @@
 /// \file
-/// A triangulation of a mesh's own metric, flipped to the intrinsic Delaunay triangulation [BS07].
+/// A triangulation of a mesh's own metric, flipped to the intrinsic Delaunay triangulation [BS07, SGC21].
 #pragma once
 
 #include <array>

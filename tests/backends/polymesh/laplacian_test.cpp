@@ -1,4 +1,4 @@
-// The Laplacian and mass of Bunge, Herholz, Kazhdan, Botsch 2020.
+// The Laplacian and mass [BHKB20].
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>

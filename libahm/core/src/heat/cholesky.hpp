@@ -1,5 +1,5 @@
 /// \file
-/// Sparse Cholesky factorization behind a small interface; cholesky.cpp is the only file that knows CHOLMOD.
+/// Sparse Cholesky factorization behind a small interface; cholesky.cpp is the only file that knows CHOLMOD [CDHR08].
 #pragma once
 
 #include <memory>

@@ -1,7 +1,6 @@
 /// \file
 /// A polygon mesh as a surface, in either of two discretizations: without triangulating it, by the Laplacian and mass of
-/// Bunge, Herholz, Kazhdan, Botsch 2020 [BHKB20], every pair of corners of a polygon an edge; or refined by their virtual
-/// vertices, as a triangle mesh.
+/// [BHKB20], every pair of corners of a polygon an edge; or refined by their virtual vertices, as a triangle mesh.
 ///
 /// \code
 /// auto surface = ahm::polymesh::PolygonMeshSurface::build(positions, face_begin, face_vertices);
