@@ -22,7 +22,8 @@
 namespace ahm::distributed::program {
 
 struct MapArguments {
-  std::string folder, output, variant = "adaptive";
+  std::string folder, output;
+  Variant variant = Variant::adaptive;
   std::vector<std::string> sources{"0"};
   double radius = std::numeric_limits<double>::infinity(), t_coef = 1;
   std::size_t memory = std::size_t{2} << 30;
@@ -72,7 +73,12 @@ inline void add_march_options(CLI::App& app, MapArguments& a) {
 }
 
 inline void add_variant_option(CLI::App& app, MapArguments& a) {
-  app.add_option("--variant", a.variant, "adaptive or localized")->capture_default_str();
+  std::map<std::string, Variant> named;
+  for (Variant variant : all_variants) named.emplace(to_string(variant), variant);
+  const auto take = [&a, named](const std::string& name) { a.variant = named.at(name); };
+  app.add_option_function<std::string>("--variant", take, "of the diffusion")
+      ->check(CLI::IsMember(named))
+      ->default_str(std::string(to_string(a.variant)));
 }
 
 inline void add_local_options(CLI::App& app, LocalArguments& a) {
@@ -138,9 +144,7 @@ inline TiledMapOptions map_options(const MapArguments& a, bool coordinates) {
   options.memory = a.memory / 2;
   options.heat.t_coef = a.t_coef;
   options.heat.threads = a.threads;
-  if (a.variant != "adaptive" && a.variant != "localized")
-    throw InvalidArgument("--variant '" + a.variant + "' is neither adaptive nor localized");
-  options.heat.variant = a.variant == "adaptive" ? Variant::adaptive : Variant::localized;
+  options.heat.variant = a.variant;
   return options;
 }
 

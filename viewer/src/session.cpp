@@ -260,13 +260,15 @@ struct Session::Impl {
     Settings reach = settings;  // the tool path needs no map of the rest, whose factors would take long
     if (makers.is_large()) reach.radius = 1.5 * cover.radius;
     const LogMap made = in_turn(stop, [&] { return map(source, placed, reach, stop, true); });
-    const CoveragePath path = coverage_path(inverse_map(surface, made, {.threads = options.threads}), cover);
+    const CoveragePath path = coverage_path(surface, inverse_map(surface, made, {.threads = options.threads}), cover);
     if (path.points.empty()) throw InvalidArgument("no line of the pattern meets a trusted part of the surface");
     std::vector<Vec3> points;
     json pieces = {0};
     double length = 0;
+    std::size_t carried = 0;
     for (std::size_t k = 0; k < path.points.size(); ++k) {
       const CoveragePoint& point = path.points[k];
+      if (!point.between) ++carried;
       if (k > 0 && point.piece != path.points[k - 1].piece) pieces.push_back(k);
       if (k + 1 == path.points.size() || path.points[k + 1].piece != point.piece) length += point.arclength;
       points.push_back(point.position);
@@ -274,7 +276,7 @@ struct Session::Impl {
     return answer_of({{"points", positions(page, points)},
                       {"pieces", pieces},
                       {"length", length / page.scale()},
-                      {"covered", static_cast<double>(path.points.size()) / static_cast<double>(path.planned)},
+                      {"covered", static_cast<double>(carried) / static_cast<double>(path.planned)},
                       {"command", command(options, "coverage",
                                           {"--source", spec(surface, source), "--radius", number(cover.radius),
                                            "--spacing", number(cover.spacing), "--pattern", pattern, "-o", "path.csv"},
