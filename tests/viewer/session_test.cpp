@@ -151,7 +151,8 @@ TEST_F(LargeViewerSession, MarchesStrokes) {
 TEST_F(LargeViewerSession, MarchesToolPathsToTheirOwnRadius) {
   const PlacedSource source = large.surface.source(Row{7});
   const LogMap map = march->solve(source.source, {.frames = true});
-  const CoveragePath expected = coverage_path(inverse_map(large.surface, map), {.radius = 0.1, .spacing = 0.02});
+  const CoveragePath expected =
+      coverage_path(large.surface, inverse_map(large.surface, map), {.radius = 0.1, .spacing = 0.02});
   const Answer answer = session->answer(
       "coverage", request({{"source", {{"row", 7}}}, {"cover", 0.1}, {"spacing", 0.02}, {"pattern", "raster"}}));
   ASSERT_EQ(answer.status, 200) << answer.body;
