@@ -100,7 +100,8 @@ inline void add_deal_option(CLI::App& app, Deal& deal) {
          "which tiles a rank owns: arrival (of those that the front comes to next, one each; the default), cards "
          "(every K-th) or ranges (successive ones)")
       ->transform(CLI::CheckedTransformer(
-          std::map<std::string, Deal>{{"ranges", Deal::ranges}, {"cards", Deal::cards}, {"arrival", Deal::arrival}}));
+          std::map<std::string, Deal>{{"ranges", Deal::ranges}, {"cards", Deal::cards}, {"arrival", Deal::arrival}}))
+      ->option_text("NAME");
 }
 
 inline Vertex source_vertex(const TiledGraph& graph, const std::string& text) {

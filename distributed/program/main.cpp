@@ -7,6 +7,7 @@
 #include <iostream>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "ahm/distributed/build_tiles.hpp"
@@ -141,7 +142,8 @@ void add_maps(CLI::App& app, Arguments& a) {
     map.add_option("--threads", a.logmap.threads, "0: one per core")->capture_default_str();
     map.callback([&, coordinates] { make_map(a.logmap, coordinates); });
   };
-  add_map("logmap", "the log map of one source; killed, it goes on from its last checkpoint", true);
+  add_map("logmap",
+          "the log map, from the nearest of one or several sources; killed, it goes on from its last checkpoint", true);
   add_map("distance", "distances alone, those of logmap --variant localized, for less", false);
   CLI::App& rows = *app.add_subcommand(
       "rows", "a map as CSV: row, u, v, distance, spread, status; row, distance, status; row and features");
@@ -168,6 +170,14 @@ void add_maps(CLI::App& app, Arguments& a) {
   local.callback([&] { make_local_maps(a); });
 }
 
+/// What is wrong, and the option of this program that helps.
+std::string told(const Error& error) {
+  const std::string_view fault = error.fault();
+  if (fault == "non_finite") return std::string(error.problem()) + "; --drop-nan leaves them out";
+  if (fault == "normals_given") return std::string(error.problem()) + "; --ignore-normals estimates others";
+  return error.what();
+}
+
 int run(int argc, char** argv) {
   Arguments a;
   CLI::App app("Clouds that do not fit into memory: tiles of their graph, and log maps over them.", name);
@@ -190,6 +200,8 @@ int main(int argc, char** argv) {
     return run(argc, argv);
   } catch (const std::bad_alloc&) {
     std::cerr << "ahm-tiles: error: out of memory; plan smaller tiles\n";
+  } catch (const Error& e) {
+    std::cerr << "ahm-tiles: error: " << told(e) << '\n';
   } catch (const std::exception& e) {
     std::cerr << "ahm-tiles: error: " << e.what() << '\n';
   } catch (...) {

@@ -135,7 +135,8 @@ std::vector<Vec3> TiledGraph::middles() const {
 
 TiledGraph::TileRows TiledGraph::rows(std::size_t number) const {
   const Tile& t = tile(number);
-  return {t.file.get<Index>("point_rows"), t.file.get<Index>("rows"), t.file.get<Index>("removed"), t.component};
+  return {t.file.get<Index>("point_rows"), t.file.get<Index>("rows"), t.file.get<Index>("removed"), t.component,
+          t.file.get<Vec3>("positions")};
 }
 
 std::optional<Vertex> TiledGraph::vertex_of_row(Row row) const {

@@ -1,14 +1,17 @@
 #include "ahm/distributed/tiled_log_map.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "ahm/error.hpp"
 #include "ahm/io/atomic_file.hpp"
+#include "ahm/util/vec.hpp"
 #include "csv_rows.hpp"
 #include "map_checkpoint.hpp"
 #include "map_writer.hpp"
@@ -85,6 +88,17 @@ TiledMapSummary team_log_map(const TiledGraph& graph, const Source& source, cons
   return s;
 }
 
+namespace {
+
+/// Where a map of one source has it, as `place_in_space`.
+std::optional<Vec3> place_of_source(const TiledGraph& graph, const nlohmann::json& summary) {
+  const auto sources = summary.value("source_vertices", std::vector<Index>());
+  if (sources.size() != 1 || sources[0] < 0 || sources[0] >= graph.size()) return std::nullopt;
+  return graph.frame(sources[0])->origin;
+}
+
+}  // namespace
+
 void write_rows(const TiledGraph& graph, const std::filesystem::path& folder, const std::filesystem::path& csv) {
   std::ifstream summary(folder / "map.json");
   const auto whole = nlohmann::json::parse(summary, nullptr, false);
@@ -92,6 +106,7 @@ void write_rows(const TiledGraph& graph, const std::filesystem::path& folder, co
     throw IoError("cannot read '" + (folder / "map.json").string() +
                   "': the map is not finished, or not one of these tiles");
   const MarchGoal goal = whole.value("coordinates", true) ? MarchGoal::map : MarchGoal::distances;
+  const std::optional<Vec3> source = place_of_source(graph, whole);
   io::AtomicFile file(csv);
   file.write(goal == MarchGoal::map ? "row,u,v,distance,spread,status\n" : "row,distance,status\n");
   for (std::size_t t = 0; t < graph.tiles(); ++t) {
@@ -100,9 +115,12 @@ void write_rows(const TiledGraph& graph, const std::filesystem::path& folder, co
     if (tile.status.size() + 1 != rows.begin.size())
       throw IoError("the map's tile " + std::to_string(t) + " is not one of these tiles; make the map again");
     const auto values = [&](std::size_t i) {
-      std::vector<double> numbers{tile.distance[i]};
-      if (goal == MarchGoal::map)
-        numbers = {tile.coordinates[2 * i], tile.coordinates[2 * i + 1], tile.distance[i], tile.spread[i]};
+      // As on the rows of a surface: distances of heat may be below the straight line, which no way on it is.
+      const double d = source && !std::isnan(tile.distance[i])
+                           ? std::max(tile.distance[i], ahm::distance(rows.positions[i], *source))
+                           : tile.distance[i];
+      std::vector<double> numbers{d};
+      if (goal == MarchGoal::map) numbers = {tile.coordinates[2 * i], tile.coordinates[2 * i + 1], d, tile.spread[i]};
       std::string line;
       for (double number : numbers) append_number(line += ',', number);
       return line += "," + std::string(to_string(static_cast<Status>(tile.status[i])));

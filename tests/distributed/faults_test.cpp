@@ -4,8 +4,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <chrono>
 #include <csignal>
+#include <cstdio>
 #include <thread>
 
 #include "ahm/distributed/tiled_log_map.hpp"
@@ -241,6 +243,24 @@ TEST(TileFaults, ATileThatDoesNotFitIntoMemoryIsNamed) {
   TiledCloud cloud(hills(80), {.tile_points = 1500});
   expect_error<ResourceExhausted>([&] { distributed::build_tiles(cloud.tiles, {.memory = 1 << 20}); }, "tile 0");
   expect_error<InvalidArgument>([&] { TiledGraph(cloud.tiles, 1 << 20); }, "build them first");
+}
+
+/// What helps is an option of the program, not a member of the library.
+TEST(TilesProgram, NamesItsOwnOptions) {
+  std::vector<Vec3> points = hills(10);
+  points[3][0] = NAN;
+  const TemporaryFolder folder;
+  const auto input = folder.directory() / "points.ply";
+  write_points(input, points);
+  const std::string command = std::string(AHM_TILES_PROGRAM) + " plan " + input.string() + " -o " +
+                              (folder.directory() / "tiles").string() + " 2>&1";
+  std::FILE* const pipe = ::popen(command.c_str(), "r");
+  ASSERT_NE(pipe, nullptr);
+  std::array<char, 400> text{};
+  const std::size_t length = std::fread(text.data(), 1, text.size(), pipe);
+  EXPECT_EQ(WEXITSTATUS(::pclose(pipe)), 1);
+  EXPECT_EQ(std::string(text.data(), length),
+            "ahm-tiles: error: 1 points of the file are not finite; --drop-nan leaves them out\n");
 }
 
 }  // namespace

@@ -59,6 +59,7 @@ class TiledGraph final : public TangentGraph {
   /// Input rows at the vertices of a tile: those of its vertex i are rows[begin[i]] to rows[begin[i + 1]].
   struct TileRows {
     std::span<const Index> begin, rows, removed, component;
+    std::span<const Vec3> positions;  ///< of vertices, world units
   };
   TileRows rows(std::size_t tile) const;
   /// Times that memory of tiles was given back.

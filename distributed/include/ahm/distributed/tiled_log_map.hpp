@@ -41,7 +41,9 @@ struct TiledMapSummary {
 TiledMapSummary write_log_map(const TiledGraph& graph, const Source& source, const std::filesystem::path& folder,
                               const TiledMapOptions& options);
 
-/// All rows of the input as CSV: row, u, v, distance, spread, status, or row, distance, status; tile by tile, in the order of the graph. @throws IoError
+/// The rows of the input as CSV: row, u, v, distance, spread, status, or row, distance, status; tile by tile, in the order of the
+/// graph, without points that are not finite. As by `Surface::on_rows`, distances from one source are no less than the straight
+/// line in space, below which those of the tiles may be. @throws IoError
 void write_rows(const TiledGraph& graph, const std::filesystem::path& folder, const std::filesystem::path& csv);
 
 }  // namespace ahm::distributed
