@@ -101,6 +101,49 @@ bool passes_vertex(const GeodesicPath& path) {
                      [](const MeshPoint& p) { return std::ranges::max(p.barycentric) > 1 - 1e-9; });
 }
 
+TEST(GeodesicPath, RunsAlongTheBoundaryWithinRounding) {
+  // A bent strip that unrolls to a rectangle: rays that leave its straight boundary at any small angle, or lie on it.
+  constexpr Index cuts = 120;
+  Mesh mesh;
+  for (Index k = 0; k <= cuts; ++k)
+    for (double x : {0.0, 0.05}) mesh.positions.push_back({x, 0.1 * k, 0.3 * std::sin(1.2 * k)});
+  for (Index k = 0; k < cuts; ++k) {
+    const Index a = 2 * k;
+    mesh.faces.push_back({a, a + 1, a + 3});
+    mesh.faces.push_back({a, a + 3, a + 2});
+  }
+  const Polyhedron solid(mesh);
+  std::vector<double> along{0};
+  for (Index k = 0; k < cuts; ++k)
+    along.push_back(along.back() + distance(mesh.positions[2 * k], mesh.positions[2 * k + 2]));
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  const auto unrolled = [&](const MeshPoint& p) {
+    Vec2 place{};
+    for (int s = 0; s < 3; ++s) {
+      const Index v = solid.surface.record(3 * p.face + s).tail;
+      place[0] += p.barycentric[s] * 0.05 * (v % 2);
+      place[1] += p.barycentric[s] * along[v / 2];
+    }
+    return place;
+  };
+  for (int k = 0; k < 3000; ++k) {
+    MeshPoint end[2];
+    for (MeshPoint& p : end) {  // near a side, on it, or a vertex
+      p = random_point(solid.surface, random);
+      const double small = k % 3 == 0 ? 0.0 : std::pow(10, -16 * uniform(random));
+      p.barycentric[p.face % 2 == 0 ? 0 : 1] *= small;
+      if (uniform(random) < 0.3) p.barycentric = {0, 0, 1};
+      const double sum = p.barycentric[0] + p.barycentric[1] + p.barycentric[2];
+      for (double& weight : p.barycentric) weight /= sum;
+    }
+    const GeodesicPath path = exact::geodesic_path(solid.surface, end[0], end[1]);
+    const double expected = norm(unrolled(end[1]) - unrolled(end[0])) / solid.mesh.length_unit();
+    EXPECT_NEAR(solid.length(path.points), expected, 1e-12);
+    EXPECT_NEAR(path.length, expected, 1e-12);
+  }
+}
+
 TEST(Trace, FollowsTheShortestPathToItsEnd) {
   for (const Mesh& mesh : shapes()) {
     const Polyhedron solid(mesh);

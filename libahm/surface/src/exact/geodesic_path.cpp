@@ -73,10 +73,12 @@ class Backwards {
       const Index through = grazed(exit, end_distance);
       if (through >= 0) return through;
       if (exit.walked > first) path_.points.push_back(point_on(surface_, exit.side, exit.along));
-      line = cross_side(surface_, line, exit);
-      if (line.half < 0 || path_.points.size() > most_points())
-        throw Error("a path of length " + detail::number(end_distance) + " was lost beyond face " +
-                    std::to_string(exit.side / 3));
+      const Line beyond = cross_side(surface_, line, exit);
+      if (beyond.half < 0 && origin < 0 && map_.sources()[map_.origins()[in.origin].source].face == exit.side / 3)
+        return origin;  // on the boundary
+      if (beyond.half < 0) return end_of_side(line, exit, end_distance);
+      if (path_.points.size() > most_points()) lost(exit, end_distance);
+      line = beyond;
       exit = leave_upwards(surface_, line);
     }
     return origin;
@@ -88,8 +90,28 @@ class Backwards {
     const bool at_tail = exit.along < graze_margin * r.length;
     if (!at_tail && exit.along < (1 - graze_margin) * r.length) return -1;
     const Index vertex = at_tail ? r.tail : r.head;
-    const double left = map_.distance(Vertex{vertex}), margin = 1e-9 * end_distance;
-    return left < end_distance && std::abs(left + exit.walked - end_distance) <= margin ? vertex : -1;
+    return passes(vertex, exit.walked, end_distance) ? vertex : -1;
+  }
+
+  /// Where a path that runs along the boundary leaves it by rounding: the vertex ahead, which shortest paths pass.
+  Index end_of_side(const Line& line, const Exit& exit, double end_distance) const {
+    const HalfRecord& r = surface_.record(exit.side);
+    const bool to_head = in_frame_of(surface_, line, exit.side).direction[0] > 0;
+    const Index vertex = to_head ? r.head : r.tail;
+    const double walked = exit.walked + (to_head ? r.length - exit.along : exit.along);
+    if (!passes(vertex, walked, end_distance)) lost(exit, end_distance);
+    return vertex;
+  }
+
+  /// Whether shortest paths to a vertex, which a path has come back to, are part of this one.
+  bool passes(Index vertex, double walked, double end_distance) const {
+    const double left = map_.distance(Vertex{vertex});
+    return left < end_distance && std::abs(left + walked - end_distance) <= 1e-9 * end_distance;
+  }
+
+  [[noreturn]] static void lost(const Exit& exit, double end_distance) {
+    throw Error("a path of length " + detail::number(end_distance) + " was lost beyond face " +
+                std::to_string(exit.side / 3));
   }
 
   std::size_t most_points() const { return 3 * static_cast<std::size_t>(surface_.face_count()) + 3; }
