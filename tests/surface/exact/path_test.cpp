@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "ahm/error.hpp"
+#include "ahm/surface/exact/shortened_path.hpp"
 #include "ahm/util/vec.hpp"
 #include "polyhedra.hpp"
 
@@ -20,6 +21,18 @@ using exact::TraceEnd;
 
 std::vector<Mesh> shapes() {
   return {icosphere(7), sliver_square(300), holed_square(14), folded_strip(11), moebius_mesh(40, 6), maze(3)};
+}
+
+/// Of triangles a hundred times as long as high.
+Mesh flat_strip() {
+  Mesh mesh;
+  for (Index k = 0; k <= 60; ++k)
+    for (double x : {0.0, 0.001}) mesh.positions.push_back({x, 0.1 * k, 0});
+  for (Index a = 0; a < 120; a += 2) {
+    mesh.faces.push_back({a, a + 1, a + 3});
+    mesh.faces.push_back({a, a + 3, a + 2});
+  }
+  return mesh;
 }
 
 TEST(GeodesicPath, IsAsLongAsTheExactDistance) {
@@ -56,6 +69,45 @@ TEST(GeodesicPath, GoesThroughFacesThatSharePoints) {
       EXPECT_LE(first - all.begin(), 3) << "two neighbouring points lie in one face";
     }
   }
+}
+
+TEST(GeodesicPath, GoesThroughFacesThatSharePointsHoweverNearToASide) {
+  std::mt19937_64 random(8);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  for (const Mesh& mesh : {icosphere(7), flat_square(9, 0), moebius_mesh(40, 6), flat_strip()}) {
+    const Polyhedron solid(mesh);
+    const auto beside = [&] {  // a side, and perhaps a vertex
+      MeshPoint p = random_point(solid.surface, random);
+      for (int s = 0; s < 2; ++s)
+        if (s == 0 || uniform(random) < 0.3) p.barycentric[s] *= std::pow(10, (s == 0 ? -17 : -4) * uniform(random));
+      const double sum = p.barycentric[0] + p.barycentric[1] + p.barycentric[2];
+      for (double& weight : p.barycentric) weight /= sum;
+      return p;
+    };
+    for (int k = 0; k < 500; ++k) {
+      const GeodesicPath path = exact::geodesic_path(solid.surface, beside(), beside());
+      EXPECT_NEAR(solid.length(path.points), path.length, 1e-10);
+      if (path.points.size() < 2) continue;
+      const GeodesicPath taut = exact::shortened_path(solid.surface, path.points);
+      EXPECT_NEAR(taut.length, path.length, 1e-10);
+    }
+  }
+}
+
+TEST(GeodesicPath, StartsHoweverNearToASideOfANeedle) {
+  const Polyhedron solid(flat_strip());
+  for (double beside : {0.0, 2e-14, 6e-14, 2e-13, 6e-13, 1e-12})
+    for (Index face : {60, 61})
+      for (int s = 0; s < 3; ++s) {
+        MeshPoint from{face, {}};
+        from.barycentric[s] = beside;
+        from.barycentric[(s + 1) % 3] = 0.3;
+        from.barycentric[(s + 2) % 3] = 0.7 - beside;
+        const ExactMap map = exact::exact_map(solid.surface, from);
+        const Vec3 at = solid.position(from);
+        for (Index v = 0; v < map.size(); ++v)
+          EXPECT_NEAR(map.distance(Vertex(v)), distance(at, solid.mesh.position(Vertex(v))), 1e-12);
+      }
 }
 
 TEST(GeodesicPath, IsTheSameCurveTurnedRound) {
