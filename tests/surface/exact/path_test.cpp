@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "ahm/error.hpp"
+#include "ahm/surface/exact/shortened_path.hpp"
 #include "ahm/util/vec.hpp"
 #include "polyhedra.hpp"
 
@@ -20,6 +21,18 @@ using exact::TraceEnd;
 
 std::vector<Mesh> shapes() {
   return {icosphere(7), sliver_square(300), holed_square(14), folded_strip(11), moebius_mesh(40, 6), maze(3)};
+}
+
+/// Of triangles a hundred times as long as high.
+Mesh flat_strip() {
+  Mesh mesh;
+  for (Index k = 0; k <= 60; ++k)
+    for (double x : {0.0, 0.001}) mesh.positions.push_back({x, 0.1 * k, 0});
+  for (Index a = 0; a < 120; a += 2) {
+    mesh.faces.push_back({a, a + 1, a + 3});
+    mesh.faces.push_back({a, a + 3, a + 2});
+  }
+  return mesh;
 }
 
 TEST(GeodesicPath, IsAsLongAsTheExactDistance) {
@@ -56,6 +69,45 @@ TEST(GeodesicPath, GoesThroughFacesThatSharePoints) {
       EXPECT_LE(first - all.begin(), 3) << "two neighbouring points lie in one face";
     }
   }
+}
+
+TEST(GeodesicPath, GoesThroughFacesThatSharePointsHoweverNearToASide) {
+  std::mt19937_64 random(8);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  for (const Mesh& mesh : {icosphere(7), flat_square(9, 0), moebius_mesh(40, 6), flat_strip()}) {
+    const Polyhedron solid(mesh);
+    const auto beside = [&] {  // a side, and perhaps a vertex
+      MeshPoint p = random_point(solid.surface, random);
+      for (int s = 0; s < 2; ++s)
+        if (s == 0 || uniform(random) < 0.3) p.barycentric[s] *= std::pow(10, (s == 0 ? -17 : -4) * uniform(random));
+      const double sum = p.barycentric[0] + p.barycentric[1] + p.barycentric[2];
+      for (double& weight : p.barycentric) weight /= sum;
+      return p;
+    };
+    for (int k = 0; k < 500; ++k) {
+      const GeodesicPath path = exact::geodesic_path(solid.surface, beside(), beside());
+      EXPECT_NEAR(solid.length(path.points), path.length, 1e-10);
+      if (path.points.size() < 2) continue;
+      const GeodesicPath taut = exact::shortened_path(solid.surface, path.points);
+      EXPECT_NEAR(taut.length, path.length, 1e-10);
+    }
+  }
+}
+
+TEST(GeodesicPath, StartsHoweverNearToASideOfANeedle) {
+  const Polyhedron solid(flat_strip());
+  for (double beside : {0.0, 2e-14, 6e-14, 2e-13, 6e-13, 1e-12})
+    for (Index face : {60, 61})
+      for (int s = 0; s < 3; ++s) {
+        MeshPoint from{face, {}};
+        from.barycentric[s] = beside;
+        from.barycentric[(s + 1) % 3] = 0.3;
+        from.barycentric[(s + 2) % 3] = 0.7 - beside;
+        const ExactMap map = exact::exact_map(solid.surface, from);
+        const Vec3 at = solid.position(from);
+        for (Index v = 0; v < map.size(); ++v)
+          EXPECT_NEAR(map.distance(Vertex(v)), distance(at, solid.mesh.position(Vertex(v))), 1e-12);
+      }
 }
 
 TEST(GeodesicPath, IsTheSameCurveTurnedRound) {
@@ -99,6 +151,49 @@ TEST(GeodesicPath, IsTheSumOfItsLegsThroughStopsAndBack) {
 bool passes_vertex(const GeodesicPath& path) {
   return std::any_of(path.points.begin() + 1, path.points.end() - 1,
                      [](const MeshPoint& p) { return std::ranges::max(p.barycentric) > 1 - 1e-9; });
+}
+
+TEST(GeodesicPath, RunsAlongTheBoundaryWithinRounding) {
+  // A bent strip that unrolls to a rectangle: rays that leave its straight boundary at any small angle, or lie on it.
+  constexpr Index cuts = 120;
+  Mesh mesh;
+  for (Index k = 0; k <= cuts; ++k)
+    for (double x : {0.0, 0.05}) mesh.positions.push_back({x, 0.1 * k, 0.3 * std::sin(1.2 * k)});
+  for (Index k = 0; k < cuts; ++k) {
+    const Index a = 2 * k;
+    mesh.faces.push_back({a, a + 1, a + 3});
+    mesh.faces.push_back({a, a + 3, a + 2});
+  }
+  const Polyhedron solid(mesh);
+  std::vector<double> along{0};
+  for (Index k = 0; k < cuts; ++k)
+    along.push_back(along.back() + distance(mesh.positions[2 * k], mesh.positions[2 * k + 2]));
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  const auto unrolled = [&](const MeshPoint& p) {
+    Vec2 place{};
+    for (int s = 0; s < 3; ++s) {
+      const Index v = solid.surface.record(3 * p.face + s).tail;
+      place[0] += p.barycentric[s] * 0.05 * (v % 2);
+      place[1] += p.barycentric[s] * along[v / 2];
+    }
+    return place;
+  };
+  for (int k = 0; k < 3000; ++k) {
+    MeshPoint end[2];
+    for (MeshPoint& p : end) {  // near a side, on it, or a vertex
+      p = random_point(solid.surface, random);
+      const double small = k % 3 == 0 ? 0.0 : std::pow(10, -16 * uniform(random));
+      p.barycentric[p.face % 2 == 0 ? 0 : 1] *= small;
+      if (uniform(random) < 0.3) p.barycentric = {0, 0, 1};
+      const double sum = p.barycentric[0] + p.barycentric[1] + p.barycentric[2];
+      for (double& weight : p.barycentric) weight /= sum;
+    }
+    const GeodesicPath path = exact::geodesic_path(solid.surface, end[0], end[1]);
+    const double expected = norm(unrolled(end[1]) - unrolled(end[0])) / solid.mesh.length_unit();
+    EXPECT_NEAR(solid.length(path.points), expected, 1e-12);
+    EXPECT_NEAR(path.length, expected, 1e-12);
+  }
 }
 
 TEST(Trace, FollowsTheShortestPathToItsEnd) {

@@ -9,6 +9,7 @@
 #include "ahm/error.hpp"
 #include "ahm/util/text.hpp"
 #include "check_point.hpp"
+#include "strip.hpp"
 #include "walk.hpp"
 
 namespace ahm::exact {
@@ -45,7 +46,7 @@ class Backwards {
     const Vec2 place = surface_.place(target);
     path_.points.push_back(target);
     path_.end_direction = positive_angle(std::atan2(in.from[1] - place[1], in.from[0] - place[0]));
-    back_from(piece(in, place, map_.target_distance(k), false));
+    back_from(piece(in, place, map_.target_distance(k), &target));
     return finish(in.origin, map_.target_distance(k), map_.target_direction(k));
   }
 
@@ -55,31 +56,49 @@ class Backwards {
     while (vertex >= 0 && map_.arrival(Vertex{vertex}).half >= 0) {
       path_.points.push_back(surface_.vertex_point(Vertex{vertex}));
       const Arrival& in = map_.arrival(Vertex{vertex});
-      vertex = piece(in, apex(surface_.record(in.half)), map_.distance(Vertex{vertex}), true);
+      vertex = piece(in, apex(surface_.record(in.half)), map_.distance(Vertex{vertex}), nullptr);
     }
   }
 
   /// Adds the crossings of the straight piece that comes in at a place of its last face, or at its apex.
+  /// @param target  at that place; null: at the apex
   /// @return the vertex it comes from, or the first it goes through: both sides of that may be covered by windows, within
   ///         rounding, but only its own map says which one is right. -1: a source that is no vertex.
-  Index piece(const Arrival& in, const Place& end, double end_distance, bool at_apex) {
-    const Index origin = map_.origins()[in.origin].vertex;
+  Index piece(const Arrival& in, const Place& end, double end_distance, const MeshPoint* target) {
+    const Origin& origin = map_.origins()[in.origin];
     const Place back = in.from - end;
-    const double length = norm(back), first = end_margin * length, last = (1 - end_margin) * length;
-    if (!(length > 0)) return origin;
+    const double length = norm(back);
+    if (!(length > 0)) return origin.vertex;
     Line line{in.half, end, {back[0] / length, back[1] / length}};
-    Exit exit = at_apex ? leave_through(surface_, line, in.half) : leave(surface_, line);
-    while (exit.walked < last) {
+    Exit exit = target ? leave(surface_, line) : leave_through(surface_, line, in.half);
+    const auto at_end = [&] { return exit.walked >= (1 - end_margin) * length; };
+    const auto with_source = [&] { return lies_in(map_.sources()[origin.source], line.half / 3); };
+    const auto arrived = [&] {
+      return at_end() && (origin.vertex >= 0 || with_source() || exit.walked > (1 + end_margin) * length);
+    };
+    while (!arrived()) {
       const Index through = grazed(exit, end_distance);
       if (through >= 0) return through;
-      if (exit.walked > first) path_.points.push_back(point_on(surface_, exit.side, exit.along));
-      line = cross_side(surface_, line, exit);
-      if (line.half < 0 || path_.points.size() > most_points())
-        throw Error("a path of length " + detail::number(end_distance) + " was lost beyond face " +
-                    std::to_string(exit.side / 3));
+      if (!(target && exit.walked <= end_margin * length && lies_on(*target, exit.side)))
+        path_.points.push_back(point_on(surface_, exit.side, exit.along));
+      const Line across = cross_side(surface_, line, exit);
+      if (across.half < 0 && origin.vertex < 0 && (at_end() || with_source())) return -1;
+      if (across.half < 0) return end_of_side(line, exit, end_distance);
+      if (path_.points.size() > most_points()) lost(exit, end_distance);
+      line = across;
       exit = leave_upwards(surface_, line);
     }
-    return origin;
+    return origin.vertex;
+  }
+
+  static bool lies_on(const MeshPoint& point, Half side) {
+    return point.face == side / 3 && point.barycentric[previous(side) % 3] == 0;
+  }
+  bool lies_in(const MeshPoint& point, Index face) const {
+    if (point.face == face) return true;
+    for (Half side = 3 * point.face; side < 3 * point.face + 3; ++side)
+      if (lies_on(point, side) && beyond(surface_, side) >= 0 && beyond(surface_, side) / 3 == face) return true;
+    return false;
   }
 
   /// The vertex at an exit, if shortest paths to it are part of this one.
@@ -88,8 +107,28 @@ class Backwards {
     const bool at_tail = exit.along < graze_margin * r.length;
     if (!at_tail && exit.along < (1 - graze_margin) * r.length) return -1;
     const Index vertex = at_tail ? r.tail : r.head;
-    const double left = map_.distance(Vertex{vertex}), margin = 1e-9 * end_distance;
-    return left < end_distance && std::abs(left + exit.walked - end_distance) <= margin ? vertex : -1;
+    return passes(vertex, exit.walked, end_distance) ? vertex : -1;
+  }
+
+  /// Where a path that runs along the boundary leaves it by rounding: the vertex ahead, which shortest paths pass.
+  Index end_of_side(const Line& line, const Exit& exit, double end_distance) const {
+    const HalfRecord& r = surface_.record(exit.side);
+    const bool to_head = in_frame_of(surface_, line, exit.side).direction[0] > 0;
+    const Index vertex = to_head ? r.head : r.tail;
+    const double walked = exit.walked + (to_head ? r.length - exit.along : exit.along);
+    if (!passes(vertex, walked, end_distance)) lost(exit, end_distance);
+    return vertex;
+  }
+
+  /// Whether shortest paths to a vertex, which a path has come back to, are part of this one.
+  bool passes(Index vertex, double walked, double end_distance) const {
+    const double left = map_.distance(Vertex{vertex});
+    return left < end_distance && std::abs(left + walked - end_distance) <= 1e-9 * end_distance;
+  }
+
+  [[noreturn]] static void lost(const Exit& exit, double end_distance) {
+    throw Error("a path of length " + detail::number(end_distance) + " was lost beyond face " +
+                std::to_string(exit.side / 3));
   }
 
   std::size_t most_points() const { return 3 * static_cast<std::size_t>(surface_.face_count()) + 3; }

@@ -62,12 +62,12 @@ void Propagation::add_source(const MeshPoint& point) {
     }
   }
   if (zeros == 2) return add_vertex_source(origin2, surface_.record(first + corner).tail);
-  // The sides of the face that the source sees at an angle; the one it lies on, it sees through.
+  // The sides of the face that the source sees at an angle; those it lies on, within rounding, it sees through.
   Ray ray{first, surface_.place(point), 0, origin2};
   for (int s = 0; s < 3; ++s) {
     const HalfRecord& r = surface_.record(ray.half);
     offer(r.apex, distance(ray.from, apex(r)), ray, apex(r));
-    if (zeros == 1 && s == zero)
+    if ((zeros == 1 && s == zero) || on_line(exact::beyond_right(r, ray.from), r.right))
       see_beyond_right(ray);
     else
       light_right(ray, 0, r.right);
