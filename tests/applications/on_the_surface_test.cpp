@@ -2,13 +2,18 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <vector>
 
 #include "ahm/applications/coverage.hpp"
 #include "ahm/applications/mean.hpp"
 #include "ahm/applications/surface_curve.hpp"
 #include "ahm/error.hpp"
 #include "ahm/maps/log_map_solver.hpp"
+#include "ahm/polymesh/polygon_mesh_surface.hpp"
+#include "ahm/surface/exact/flat_triangles.hpp"
+#include "ahm/testing/polygon_meshes.hpp"
 #include "ahm/testing/triangle_meshes.hpp"
 #include "ahm/testing/vectors.hpp"
 #include "ahm/trimesh/triangle_mesh_surface.hpp"
@@ -67,6 +72,24 @@ TEST(OnTheSurface, CoverPathsAreShortestBetweenPointsOfTheirPattern) {
       last = &p;
     }
   }
+}
+
+TEST(OnTheSurface, CoverPathsOfPolygonsThatAreNotFlatLieOnTheTrianglesOfTheirPaths) {
+  Polygons mesh = cube_sphere(7);
+  for (Vec3& p : mesh.positions) p[2] += 0.2 * p[0] * p[1];
+  const auto surface = polymesh::PolygonMeshSurface::build(mesh.positions, mesh.begin, mesh.corners);
+  const ExactGeodesics geodesics(surface);
+  const FlatTriangles& flat = geodesics.triangles();
+  std::vector<std::array<Index, 3>> faces;
+  for (Index f = 0; f < flat.surface.face_count(); ++f)
+    faces.push_back(
+        {flat.surface.record(3 * f).tail, flat.surface.record(3 * f + 1).tail, flat.surface.record(3 * f + 2).tail});
+  const auto triangles = TriangleMeshSurface::build(flat.positions, faces);
+  const InverseMap inverse = inverse_map(surface, geodesics.log_map(Row{5}, {}, {.frames = true, .progress = {}}));
+  const CoveragePath path = coverage_path(surface, inverse, {.radius = 1, .spacing = 0.2});
+  EXPECT_GT(path.points.size(), 100u);
+  EXPECT_EQ(path.straight_reason, "");
+  expect_on(triangles, path, 1e-12);
 }
 
 TEST(OnTheSurface, CoverPathsOfPlanesAreTheSameAsWithStraightLines) {

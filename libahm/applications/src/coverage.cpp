@@ -6,6 +6,7 @@
 #include <numbers>
 #include <optional>
 #include <string>
+#include <variant>
 
 #include "ahm/error.hpp"
 #include "ahm/maps/cost.hpp"
@@ -84,8 +85,10 @@ class Carrier {
     Vec2 before{};
     for (std::size_t k = 0; k < line.size(); ++k) {
       const Vec2 q{c_ * line[k][0] - s_ * line[k][1], s_ * line[k][0] + c_ * line[k][1]};
-      const auto point = inverse_.at(q[0], q[1]);
-      if (!point || (size() > 0 && !reaches(*point, q, inverse_.max_stretch() * length(q - before)))) end_piece();
+      auto point = inverse_.at(q[0], q[1]);
+      const SurfacePoint last = place_;
+      if (point && geodesics_ != nullptr) place(*point);
+      if (!point || (size() > 0 && !reaches(last, *point, q, inverse_.max_stretch() * length(q - before)))) end_piece();
       if (point) append(*point, q, number);
       before = q;
     }
@@ -99,14 +102,22 @@ class Carrier {
   std::size_t size() const { return path_.points.size() - begin_; }  // of the current piece
   double distance(const InversePoint& point) const { return length(point.position - path_.points.back().position); }
 
+  /// Finds the point on the surface. Inside polygons that are not flat it is moved to the triangles on which paths run.
+  void place(InversePoint& point) {
+    const Surface& surface = geodesics_->surface();
+    place_ = surface.closest_point(point.position).point;
+    const auto* inside = std::get_if<FacePoint>(&place_);
+    if (inside != nullptr && surface.faces()[static_cast<std::size_t>(inside->face)].size() > 3)
+      point.position = geodesics_->position(geodesics_->point(place_));
+  }
+
   /// Whether the way from the last point to this one is no longer than that; the points where it bends become those of
   /// the piece.
-  bool reaches(const InversePoint& point, const Vec2& q, double most) {
+  bool reaches(const SurfacePoint& from, const InversePoint& point, const Vec2& q, double most) {
     if (distance(point) > most) return false;
     if (geodesics_ == nullptr) return true;
     const CoveragePoint last = path_.points.back();
-    const exact::GeodesicPath way =
-        geodesics_->locally_shortest_path(on_surface(last.position), on_surface(point.position));
+    const exact::GeodesicPath way = geodesics_->locally_shortest_path(from, place_);
     if (way.status != Status::ok || way.length > most) return false;
     const std::vector<Vec3> corners = bends(*geodesics_, way);
     double walked = 0;
@@ -120,7 +131,6 @@ class Carrier {
     }
     return true;
   }
-  SurfacePoint on_surface(const Vec3& position) const { return geodesics_->surface().closest_point(position).point; }
 
   void append(const InversePoint& point, const Vec2& q, Index line) {
     if (path_.points.size() == path_.points.capacity()) check_memory();
@@ -174,6 +184,7 @@ class Carrier {
   const InverseMap& inverse_;
   const ExactGeodesics* geodesics_;
   double spacing_, c_, s_;
+  SurfacePoint place_ = Row{};  ///< of the last point of the pattern, where paths join them
   CoveragePath path_;
   std::size_t begin_ = 0;
 };
