@@ -11,6 +11,7 @@
 
 #include "ahm/error.hpp"
 #include "ahm/io/atomic_file.hpp"
+#include "ahm/maps/place_in_space.hpp"
 #include "ahm/util/vec.hpp"
 #include "csv_rows.hpp"
 #include "map_checkpoint.hpp"
@@ -90,11 +91,11 @@ TiledMapSummary team_log_map(const TiledGraph& graph, const Source& source, cons
 
 namespace {
 
-/// Where a map of one source has it, as `place_in_space`.
+/// Where a map of one source has it.
 std::optional<Vec3> place_of_source(const TiledGraph& graph, const nlohmann::json& summary) {
   const auto sources = summary.value("source_vertices", std::vector<Index>());
   if (sources.size() != 1 || sources[0] < 0 || sources[0] >= graph.size()) return std::nullopt;
-  return graph.frame(sources[0])->origin;
+  return place_in_space(graph, Source::at_vertex(Vertex(sources[0])));
 }
 
 }  // namespace
@@ -119,10 +120,11 @@ void write_rows(const TiledGraph& graph, const std::filesystem::path& folder, co
       const double d = source && !std::isnan(tile.distance[i])
                            ? std::max(tile.distance[i], ahm::distance(rows.positions[i], *source))
                            : tile.distance[i];
-      std::vector<double> numbers{d};
-      if (goal == MarchGoal::map) numbers = {tile.coordinates[2 * i], tile.coordinates[2 * i + 1], d, tile.spread[i]};
       std::string line;
-      for (double number : numbers) append_number(line += ',', number);
+      const auto add = [&](double number) { append_number(line += ',', number); };
+      if (goal == MarchGoal::map) add(tile.coordinates[2 * i]), add(tile.coordinates[2 * i + 1]);
+      add(d);
+      if (goal == MarchGoal::map) add(tile.spread[i]);
       return line += "," + std::string(to_string(static_cast<Status>(tile.status[i])));
     };
     write_tile_rows(file, rows, values,

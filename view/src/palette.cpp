@@ -2,12 +2,14 @@
 
 #include <array>
 
+#include "ahm/util/srgb.hpp"
+
 namespace ahm::view::glsl {
 
 // Included rather than compiled by itself: a browser gets the same text.
 #include "palette.glsl"
 
-float from_srgb(float tone) { return tone <= 0.04045F ? tone / 12.92F : std::pow((tone + 0.055F) / 1.055F, 2.4F); }
+float from_srgb(float tone) { return detail::light_of(tone); }
 
 std::uint8_t to_srgb_byte(std::uint16_t light) {
   static const auto tones = [] {

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "ahm/util/srgb.hpp"
 #include "ahm/util/text.hpp"
 #include "formats/format.hpp"
 #include "formats/gltf.hpp"
@@ -21,12 +22,6 @@ constexpr int float32 = 5126, uint32 = 5125, array_buffer = 34962, element_array
 
 /// Models smaller than this lose digits in single precision.
 constexpr double least_size = 1e-30;
-
-/// Linear light of an sRGB level (IEC 61966-2-1).
-double light_of(std::uint8_t level) {
-  const double tone = level / 255.;
-  return tone <= 0.04045 ? tone / 12.92 : std::pow((tone + 0.055) / 1.055, 2.4);
-}
 
 Vec3 middle_of(std::span<const MeshPart> parts) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -75,7 +70,7 @@ class GlbFile {
       });
     if (!part.colors.empty())
       attributes["COLOR_0"] = add_floats("VEC3", 3, point_of.size(), [&](std::size_t k, std::size_t c) {
-        return light_of(part.colors[own[point_of[k]]][c]);
+        return detail::light_of(part.colors[own[point_of[k]]][c] / 255.);
       });
     const std::size_t begin = bytes_.size();
     for (Index vertex : triangles) append(bytes_, static_cast<std::uint32_t>(vertex));
