@@ -4,6 +4,7 @@
 #include "ahm/distributed/tiled_local_maps.hpp"
 #include "ahm/error.hpp"
 #include "ahm/util/vec.hpp"
+#include "csv_lines.hpp"
 #include "support/expect_error.hpp"
 #include "tiled_clouds.hpp"
 
@@ -244,15 +245,8 @@ TEST(LocalFeatures, AreWrittenAsRowsOfTheInput) {
   options.features = {"mean:" + (directory / "half.npy").string(), "curvature", "area", "count"};
   for (std::size_t t = 0; t < graph.tiles(); ++t) write_local_maps(graph, t, folder, options);
   write_feature_rows(graph, folder, csv);
-  std::ifstream file(csv);
-  std::string line;
-  std::getline(file, line);
-  EXPECT_EQ(line, "row,count,area,curvature_1,curvature_2,direction_x,direction_y,direction_z,mean_0");
-  std::map<int, std::string> rows;
-  while (std::getline(file, line)) {
-    const auto comma = line.find(',');
-    EXPECT_TRUE(rows.emplace(std::stoi(line.substr(0, comma)), line.substr(comma)).second) << line;
-  }
+  std::map<int, std::string> rows =
+      csv_lines(csv, "row,count,area,curvature_1,curvature_2,direction_x,direction_y,direction_z,mean_0");
   EXPECT_EQ(rows.size(), points.size());
   EXPECT_EQ(rows[1600], rows[77]);
   EXPECT_EQ(rows[1601], ",,,,,,,,");

@@ -6,6 +6,7 @@
 
 #include "ahm/distributed/tiled_log_map.hpp"
 #include "ahm/error.hpp"
+#include "csv_lines.hpp"
 #include "map_rows.hpp"
 #include "support/expect_error.hpp"
 #include "tiled_clouds.hpp"
@@ -81,14 +82,9 @@ TEST(TiledLogMap, DistancesAloneAreThoseOfTheLocalizedMap) {
     }
   const auto csv = cloud.folder.directory() / "distance.csv";
   write_rows(graph, alone, csv);
-  std::ifstream file(csv);
-  std::string line;
-  std::getline(file, line);
-  EXPECT_EQ(line, "row,distance,status");
-  Index rows = 0;
-  for (; std::getline(file, line); ++rows)
-    if (line.starts_with("11,")) EXPECT_EQ(line, "11,0,ok");
-  EXPECT_EQ(rows, static_cast<Index>(cloud.points.size()));
+  std::map<int, std::string> rows = csv_lines(csv, "row,distance,status");
+  EXPECT_EQ(rows[11], ",0,ok");
+  EXPECT_EQ(rows.size(), cloud.points.size());
 }
 
 TEST(TiledLogMap, HasThemWithReflections) {
@@ -157,15 +153,7 @@ TEST(TiledLogMap, IsWrittenAsRowsOfTheInput) {
   expect_error<IoError>([&] { write_rows(graph, folder, csv); }, "not finished");
   write_log_map(graph, Source::at_vertex(graph.vertex_of_row(Row(77)).value()), folder, {});
   write_rows(graph, folder, csv);
-  std::ifstream file(csv);
-  std::string line;
-  std::getline(file, line);
-  EXPECT_EQ(line, "row,u,v,distance,spread,status");
-  std::map<int, std::string> rows;
-  while (std::getline(file, line)) {
-    const auto comma = line.find(',');
-    EXPECT_TRUE(rows.emplace(std::stoi(line.substr(0, comma)), line.substr(comma)).second) << line;
-  }
+  std::map<int, std::string> rows = csv_lines(csv, "row,u,v,distance,spread,status");
   EXPECT_EQ(rows.size(), points.size());
   EXPECT_NE(rows[77].find(",0,"), std::string::npos) << rows[77];  // the distance
   EXPECT_TRUE(rows[77].ends_with(",ok"));
