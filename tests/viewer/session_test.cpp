@@ -231,6 +231,20 @@ TEST_F(ViewerSession, OfManyRequestsOfAClientTheNewestIsAnswered) {
   }
 }
 
+TEST_F(ViewerSession, ARequestThatIsOvertakenByANewerOneIsTheOneCancelled) {
+  const auto numbered = [&](const json& number, const char* client = "a") {
+    return session.answer("map", json{{"source", {{"row", 3}}}, {"number", number}, {"client", client}}.dump()).status;
+  };
+  EXPECT_EQ(numbered(5), 200);
+  EXPECT_EQ(numbered(4), 409);
+  EXPECT_EQ(numbered(6), 200);
+  EXPECT_EQ(numbered(1, "b"), 200);  // another client counts for itself
+  EXPECT_EQ(numbered(-1), 400);
+  EXPECT_EQ(numbered("7"), 400);
+  const json stroke = {{"points", {{{"row", 0}}, {{"row", 30}}}}, {"number", 2}, {"client", "a"}};
+  EXPECT_EQ(session.answer("stroke", stroke.dump()).status, 409);  // of the same kind as a map
+}
+
 TEST(ViewerSessionOfACloud, TellsGradientsOfEveryDiscAndHasNoPaths) {
   io::Geometry geometry;
   for (int x = 0; x < 20; ++x)

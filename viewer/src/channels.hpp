@@ -4,9 +4,12 @@
 #include <cstdint>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <stop_token>
 #include <string>
 #include <utility>
+
+#include "ahm/types.hpp"
 
 namespace ahm::viewer {
 
@@ -15,13 +18,20 @@ class Channels {
   enum class Kind { map, path, coverage };
 
   /// Stops what this client asked for before, of this kind.
-  std::stop_token begin(const std::string& client, Kind kind) {
+  /// @param number  of the request, where the client counts them: requests may overtake each other on their way, and one that
+  ///                comes after a newer one is stopped itself
+  std::stop_token begin(const std::string& client, Kind kind, std::optional<Index> number) {
     const std::lock_guard lock(mutex_);
     const std::pair key(client, kind);
     if (newest_.size() >= most && !newest_.contains(key)) forget_oldest();
     Entry& entry = newest_[key];
+    std::stop_source own;
+    if (number && entry.number && *number < *entry.number) {
+      own.request_stop();
+      return own.get_token();
+    }
     entry.stop.request_stop();
-    entry = {std::stop_source(), ++count_};
+    entry = {std::move(own), ++count_, number};
     return entry.stop.get_token();
   }
 
@@ -38,13 +48,14 @@ class Channels {
   static constexpr std::size_t most = 192;
   struct Entry {
     std::stop_source stop;
-    std::uint64_t number = 0;
+    std::uint64_t begun = 0;      ///< in the order of all
+    std::optional<Index> number;  ///< the client's own
   };
 
   void forget_oldest() {
     auto oldest = newest_.begin();
     for (auto it = newest_.begin(); it != newest_.end(); ++it)
-      if (it->second.number < oldest->second.number) oldest = it;
+      if (it->second.begun < oldest->second.begun) oldest = it;
     newest_.erase(oldest);
   }
 

@@ -67,6 +67,10 @@ std::string Request::client() const {
   return value.get<std::string>();
 }
 
+std::optional<Index> Request::number() const {
+  return has("number") ? std::optional(index(at("number"), "number")) : std::nullopt;
+}
+
 SurfacePoint Request::point(const char* name) const { return read_point(at(name), name); }
 
 std::vector<SurfacePoint> Request::points(const char* name) const {

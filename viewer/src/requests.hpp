@@ -2,6 +2,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -17,6 +18,7 @@ class Request {
   explicit Request(std::string_view body);
 
   std::string client() const;
+  std::optional<Index> number() const;  ///< by which the client counts its requests
   SurfacePoint point(const char* name) const;
   std::vector<SurfacePoint> points(const char* name) const;
   /// @param usual  of what is not given

@@ -172,7 +172,7 @@ struct Session::Impl {
   }
 
   Answer answer_map(const Request& request) {
-    const std::stop_token stop = channels.begin(request.client(), Channels::Kind::map);
+    const std::stop_token stop = channels.begin(request.client(), Channels::Kind::map, request.number());
     const SurfacePoint source = request.point("source");
     const Settings settings = request.settings(options.settings);
     const PlacedSource placed = surface.source(source, settings.u_axis);
@@ -193,7 +193,7 @@ struct Session::Impl {
   }
 
   Answer answer_stroke(const Request& request) {
-    const std::stop_token stop = channels.begin(request.client(), Channels::Kind::map);
+    const std::stop_token stop = channels.begin(request.client(), Channels::Kind::map, request.number());
     const std::vector<SurfacePoint> points = request.points("points");
     const Settings settings = of_curve(request.settings(options.settings));
     const std::vector<CurvePoint> given(points.begin(), points.end());
@@ -230,7 +230,7 @@ struct Session::Impl {
   }
 
   Answer answer_path(const Request& request) {
-    const std::stop_token stop = channels.begin(request.client(), Channels::Kind::path);
+    const std::stop_token stop = channels.begin(request.client(), Channels::Kind::path, request.number());
     const std::array ends{request.point("from"), request.point("to")};
     for (const SurfacePoint& end : ends) surface.source(end);  // checks
     SurfaceLine path;
@@ -246,7 +246,7 @@ struct Session::Impl {
   }
 
   Answer answer_coverage(const Request& request) {
-    const std::stop_token stop = channels.begin(request.client(), Channels::Kind::coverage);
+    const std::stop_token stop = channels.begin(request.client(), Channels::Kind::coverage, request.number());
     const SurfacePoint source = request.point("source");
     const Settings settings = of_patch(request.settings(options.settings));
     CoverageOptions cover;

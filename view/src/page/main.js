@@ -6,7 +6,8 @@
 Ahm.Server = class {
   constructor() {
     this.client = Array.from(crypto.getRandomValues(new Uint8Array(8)), (b) => b.toString(16).padStart(2, "0")).join("");
-    this.number = 0;
+    this.number = 0;  // of maps asked for
+    this.sent = 0;    // requests, which may overtake each other
   }
 
   async get(name) {
@@ -16,7 +17,7 @@ Ahm.Server = class {
   }
 
   async post(name, request, signal) {
-    const body = JSON.stringify(Object.assign({ client: this.client }, request));
+    const body = JSON.stringify(Object.assign({ client: this.client, number: ++this.sent }, request));
     const answer = await fetch(name, { method: "POST", headers: { "Content-Type": "application/json" }, body: body, signal: signal });
     if (!answer.ok) throw Object.assign(new Error(await this.reason(answer)), { status: answer.status });
     return answer;

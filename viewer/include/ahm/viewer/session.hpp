@@ -72,7 +72,8 @@ std::string spec(const Surface& surface, const SurfacePoint& point);
 /// | export   | "source", "format"                                     | the file                                      |
 ///
 /// A newer request for a map or a stroke by the same client cancels the older one, and so does one for a path or a tool path
-/// those of its kind; what is cancelled is answered with status 409. The end of the session cancels all.
+/// those of its kind; what is cancelled is answered with status 409. The end of the session cancels all. Newer is what comes later; of a client that
+/// counts its requests, by choice, with "number", what has the greater one, since requests may overtake each other.
 /// What cannot be answered has the status 400, 404 or 503 and a JSON object with "error".
 class Session {
  public:
