@@ -126,6 +126,21 @@ TEST(March, GoesOnWhereTheGlobalSolveEnds) {
   EXPECT_LT(difference(LogMapSolver(graph, marching).solve(Source::at_vertex(Vertex{0})), map), 1e-9);
 }
 
+TEST(March, EndsWhereHeatDistancesAreBeyondAllNumbers) {
+  FlatGraph flat = planar_triangulation(60);
+  CsrGraphData& data = flat.data;
+  for (Index i = 0; i < flat.size(); ++i)  // nothing flows to vertex 0, so that length alone says how far it is
+    for (Offset e = data.row_begin[i]; e < data.row_begin[i + 1]; ++e)
+      if (i == 0 || data.neighbors[e] == 0) data.weights[e] = -std::abs(data.weights[e]);
+  const CsrGraph graph(data);
+  for (const double t_coef : {1e-60, 1e-280}) {
+    const HeatOptions options{.t_coef = t_coef, .strategy = Strategy::march};
+    const LogMap map = LogMapSolver(graph, options).solve(Source::at_vertex(Vertex{7}));
+    EXPECT_EQ(map.status(Vertex{7}), Status::ok) << t_coef;
+    EXPECT_EQ(map.status(Vertex{0}), Status::unreached) << t_coef;
+  }
+}
+
 TEST(March, MasksOtherComponents) {
   const FlatGraph flat = planar_triangulation(60);
   const CsrGraph graph(doubled(flat.data));

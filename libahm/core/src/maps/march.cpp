@@ -21,6 +21,9 @@ constexpr double default_step = 24;
 
 constexpr float far_away = std::numeric_limits<float>::infinity();
 
+/// Heat distances end here: what lies farther ahead has no order among itself, and is still reached.
+constexpr double farthest = 1e30;
+
 /// How much of the decay exp(-x) of heat an edge brings: its length over sqrt(tau), or what the one edge lets through at
 /// the least, where it is far longer than sqrt(tau). An upper bound, for ordering vertices.
 /// @param diagonal  called for the diagonal entry m + tau sum w of A at the edge's end, if it is needed
@@ -205,7 +208,7 @@ std::vector<Index> March::search(const Source* source) {
   std::vector<Crossing> leaving;
   auto offer = [&](const Ahead& edge, double distance) {
     const double along = heat_distance_along(edge);  // negative weights may ask for less than nothing, and for ever
-    paths.offer(edge.vertex, static_cast<float>(distance + (along < 0 ? 0 : along)));
+    paths.offer(edge.vertex, static_cast<float>(std::min(distance + (along < 0 ? 0 : along), farthest)));
   };
   auto spread = [&](Index from, double distance) {
     const Star star = graph_.star(from);

@@ -16,14 +16,14 @@ namespace ahm {
 template <class Distance, class Known>
 class ShortestPaths {
  public:
-  /// @param unset  what `known` holds where nothing is known yet
+  /// @param unset  what `known` holds where nothing is known yet; no vertex is reached at that distance
   ShortestPaths(Known& known, Distance unset) : known_(known), unset_(unset) {}
 
   /// Keeps the distance if it is the least so far.
   /// @return whether it is
   bool offer(Index vertex, Distance distance) {
     Distance& known = known_[vertex];
-    if (known != unset_ && !(distance < known)) return false;
+    if (distance == unset_ || (known != unset_ && !(distance < known))) return false;
     queue_.push({known = distance, vertex});
     return true;
   }
