@@ -69,6 +69,64 @@ TEST(Mesh, IsTheIdentityOnAFlatSheetFromAVertexAndFromInsideAFace) {
   }
 }
 
+/// Two maps, exact to rounding, of the same rows.
+void expect_same(const std::vector<Row>& a, const std::vector<Row>& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    ASSERT_EQ(a[i].status, b[i].status) << i;
+    if (a[i].status != "ok") continue;
+    ASSERT_NEAR(a[i].u, b[i].u, 1e-10) << i;
+    ASSERT_NEAR(a[i].v, b[i].v, 1e-10) << i;
+  }
+}
+
+TEST(Mesh, OfTheSurroundingsAloneGivesTheSameMap) {
+  // A flat sheet is exact at any diffusion time. One face comes twice, so that --repair gives those after it new numbers.
+  const std::string twice = sheet(30) + "f 1 2 32\nf 400 401 431\n";
+  const std::vector<std::vector<std::string>> choices = {{}, {"--method", "exact"}, {"--backend", "polymesh"}};
+  for (const std::string source : {"435", "0.4,0.03,0.02", "face:700:.5,.3,.2"})
+    for (const auto& choice : choices)
+      for (const bool repaired : {false, true}) {
+        std::vector<std::string> more{"--radius", "0.2", "--u-axis", "1,0,0"};
+        more.insert(more.end(), choice.begin(), choice.end());
+        if (repaired) more.emplace_back("--repair");
+        const std::string& mesh = repaired ? twice : sheet(30);
+        const auto whole = map(mesh, source, more);
+        more.emplace_back("--local");
+        expect_same(whole, map(mesh, source, more));
+      }
+}
+
+TEST(Mesh, OfTheSurroundingsKeepsAllFacesInItsOutputs) {
+  Folder folder;
+  const auto input = folder.write("mesh.obj", sheet(30) + "v 9 9 9\n");
+  const auto out = [&](const std::string& name, const std::vector<std::string>& more) {
+    std::vector<std::string> words{"logmap",    input,
+                                   "-s",        "face:700:.5,.3,.2",
+                                   "--radius",  "0.2",
+                                   "-o",        folder / (name + ".ply"),
+                                   "--corners", folder / (name + ".obj"),
+                                   "--json",    folder / (name + ".json")};
+    words.insert(words.end(), more.begin(), more.end());
+    const Outcome outcome = run(words);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return io::read(folder / (name + ".ply"));
+  };
+  const io::Geometry whole = out("whole", {}), local = out("local", {"--local"});
+  EXPECT_EQ(whole.face_vertices, local.face_vertices);
+  EXPECT_EQ(io::read(folder / "whole.obj").face_count(), whole.face_count());
+  EXPECT_EQ(io::read(folder / "local.obj").face_count(), whole.face_count());
+  const auto json = read_json(folder / "local.json").at("trimesh");
+  EXPECT_LT(json.at("faces"), 1000);
+  EXPECT_GT(json.at("beyond"), 400);
+  EXPECT_EQ(json.at("unreferenced"), 1);
+}
+
+TEST(Mesh, HasNoSurroundingsWhereNoFaceIs) {
+  expect_refused(sheet(5) + "v 9 9 9\n", "no face comes within 0.15 of the source 25", {"--radius", "0.1", "--local"},
+                 "25");
+}
+
 TEST(Mesh, IsChosenForTrianglesAndReportsItself) {
   Folder folder;
   const auto input = folder.write("mesh.obj", sheet(12));

@@ -151,8 +151,7 @@ void add_local(CLI::App& app, InputOptions& o, const std::string& radius) {
   app.add_flag("--local", o.around_source,
                radius +
                    ": build the graph of the surroundings of the source only, fast on huge\n"
-                   "scans; the diffusion time is then that of the surroundings")
-      ->group("Point clouds");
+                   "scans and meshes; the diffusion time is then that of the surroundings");
 }
 
 void add_mesh_options(CLI::App& app, InputOptions& o) {

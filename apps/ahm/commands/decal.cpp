@@ -82,7 +82,8 @@ struct Amount {
 };
 
 SurfaceFaces faces_behind(const DecalCommandOptions& options, const Input& input) {
-  return options.alone ? SurfaceFaces() : surface_faces(input.surface());
+  if (options.alone) return {};
+  return input.near ? given_faces(input.geometry) : surface_faces(input.surface());
 }
 
 void write_mesh(const DecalCommandOptions& options, const Input& input, const Decal& decal, const Image& image,

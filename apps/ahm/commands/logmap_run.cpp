@@ -53,18 +53,12 @@ void write_results(const LogmapOptions& options, const PlacedSource& source, con
 /// The faces as they were given, with the map at their corners.
 void write_corners(const std::string& path, const Input& input, const LogMap& map) {
   const Surface& surface = input.surface();
-  const FaceList all = surface.faces();
-  if (all.size() == 0) throw InvalidArgument("--corners " + path + ": the surface has no faces");
-  const std::vector<Vec2> at = surface.on_corners(map);
-  std::vector<double> coordinates;
-  for (const Vec2& q : at) coordinates.insert(coordinates.end(), q.begin(), q.end());
-  SurfaceFaces faces;
-  faces.points.assign(surface.positions().begin(), surface.positions().end());
-  faces.begin.assign(all.begin.begin(), all.begin.end());
-  faces.corner_points.assign(all.vertices.begin(), all.vertices.end());
+  if (surface.faces().size() == 0) throw InvalidArgument("--corners " + path + ": the surface has no faces");
+  const SurfaceFaces faces = given_faces(input.geometry);
+  const std::vector<double> coordinates = at_given_corners(input, surface.on_corners(map));
   const auto is_mapped = [&](std::size_t f) {
-    return std::all_of(at.begin() + all.begin[f], at.begin() + all.begin[f + 1],
-                       [](const Vec2& q) { return !std::isnan(q[0]); });
+    return std::all_of(coordinates.begin() + 2 * faces.begin[f], coordinates.begin() + 2 * faces.begin[f + 1],
+                       [](double x) { return !std::isnan(x); });
   };
   const FacesPart mapped(faces, is_mapped, coordinates);
   const FacesPart rest(faces, [&](std::size_t f) { return !is_mapped(f); });

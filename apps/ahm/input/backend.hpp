@@ -39,6 +39,7 @@ struct Backend {
                  const Progress& progress);
   /// How many vertices of its own the graph will have beside those of the input; null: none.
   std::size_t (*more_vertices)(const io::Geometry& input, const InputOptions& options) = nullptr;
+  bool uses_faces = true;  ///< or points alone
 };
 
 /// All of them, in the order in which `auto` asks them.

@@ -12,10 +12,9 @@ void check_mesh_input(const std::string& backend, const io::Geometry& input, con
   if (input.face_count() == 0)
     throw InvalidArgument(
         fmt::format("--backend {}: the input has no faces; --backend pointcloud maps its points", backend));
-  if (options.voxel || options.outliers || options.drop_nan || options.local)
+  if (options.voxel || options.outliers || options.drop_nan)
     throw InvalidArgument(
-        "--voxel, --outliers, --drop-nan and --local are for point clouds; add --backend pointcloud to map the "
-        "vertices as one");
+        "--voxel, --outliers and --drop-nan are for point clouds; add --backend pointcloud to map the vertices as one");
   if (source) position_in(input, *source, "--source");
 }
 

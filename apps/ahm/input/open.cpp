@@ -12,6 +12,7 @@
 #include "ahm/surface/directions.hpp"
 #include "cli/source_list.hpp"
 #include "input/repair.hpp"
+#include "input/surroundings.hpp"
 #include "output/wording.hpp"
 
 namespace ahm::app {
@@ -29,6 +30,54 @@ SourceSpec in_remaining_faces(const SourceSpec& spec, const RepairedMesh& mesh, 
   return in_remaining_faces(spec, mesh);
 } catch (const InvalidArgument& e) {
   throw InvalidArgument(fmt::format("{} {}: {}", option, to_string(spec), e.what()));
+}
+
+Built build(const Backend& backend, const io::Geometry& geometry, const std::optional<RepairedMesh>& mesh,
+            const InputOptions& options, const std::optional<SourceSpec>& place, Journal& journal) {
+  return mesh ? build_repaired(backend, geometry, *mesh, options, place, journal.progress())
+              : backend.build(geometry, options, place, journal.progress());
+}
+
+/// The number of a face among those that the surface has. @throws InvalidArgument where --local left it out
+SourceSpec in_near_faces(const SourceSpec& spec, const std::vector<Index>& near) {
+  const auto* face = std::get_if<SourceFace>(&spec);
+  if (face == nullptr) return spec;
+  const auto place = std::ranges::lower_bound(near, face->face);
+  if (place == near.end() || *place != face->face)
+    throw InvalidArgument("the face is too far from the source; leave --local out");
+  SourceFace result = *face;
+  result.face = static_cast<Index>(place - near.begin());
+  return result;
+}
+
+/// Vertices too far away are no unused ones.
+void count_beyond(std::int64_t beyond, Built& built) {
+  std::int64_t unused = 0;
+  for (Figure& figure : built.report)
+    if (figure.id == "unreferenced") figure.value = unused = std::get<std::int64_t>(figure.value) - beyond;
+  built.report.push_back({"beyond", beyond});
+  std::erase_if(built.warnings, [&](Warning& w) {
+    if (w.id == "unreferenced") w.numbers = {static_cast<double>(unused)};
+    return w.id == "unreferenced" && unused == 0;
+  });
+}
+
+/// A surface of the faces around the source; the geometry keeps all of them.
+Input open_surroundings(io::Geometry geometry, const Backend& backend, std::optional<RepairedMesh> mesh,
+                        const InputOptions& options, const SourceSpec& place, Journal& journal) {
+  position_in(geometry, place, "--source");
+  std::vector<Index> near = surrounding_faces(geometry, *options.local, place);
+  const std::vector<Offset> begin = geometry.face_begin;
+  const std::vector<Index> vertices = geometry.face_vertices;
+  const std::int64_t beyond = keep_faces(geometry, near);
+  std::optional<RepairedMesh> part = mesh;
+  if (part) keep_faces(*part, near);
+  Built built = build(backend, geometry, part, options, in_near_faces(place, near), journal);
+  count_beyond(beyond, built);
+  journal.add_warnings(built.warnings);
+  geometry.face_begin = begin;
+  geometry.face_vertices = vertices;
+  return {std::move(geometry), &backend, std::move(built), std::move(mesh), std::move(near)};
 }
 
 }  // namespace
@@ -53,8 +102,9 @@ Input open_input(io::Geometry geometry, const InputOptions& options, Journal& jo
   const std::optional<SourceSpec> place =
       mesh && source ? std::optional(in_remaining_faces(*source, *mesh, "--source")) : source;
   const Backend& backend = choose_backend(geometry, options.backend);
-  Built built = mesh ? build_repaired(backend, geometry, *mesh, options, place, journal.progress())
-                     : backend.build(geometry, options, place, journal.progress());
+  if (options.local && place && geometry.face_count() > 0 && backend.uses_faces)
+    return open_surroundings(std::move(geometry), backend, std::move(mesh), options, *place, journal);
+  Built built = build(backend, geometry, mesh, options, place, journal);
   journal.add_warnings(built.warnings);
   return {std::move(geometry), &backend, std::move(built), std::move(mesh)};
 }
@@ -78,7 +128,8 @@ Input open_around(const InputOptions& options, std::optional<double> radius, Jou
 }
 
 SurfacePoint point_of(const Input& input, const SourceSpec& given) {
-  const SourceSpec spec = input.repaired ? in_remaining_faces(given, *input.repaired) : given;
+  SourceSpec spec = input.repaired ? in_remaining_faces(given, *input.repaired) : given;
+  if (input.near) spec = in_near_faces(spec, *input.near);
   if (const auto* face = std::get_if<SourceFace>(&spec)) return FacePoint{face->face, face->weights};
   if (const auto* position = std::get_if<SourcePosition>(&spec)) return input.surface().nearest_row(position->position);
   return Row(std::get<SourceVertex>(spec).index);

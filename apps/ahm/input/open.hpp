@@ -17,6 +17,8 @@ struct Input {
   const Backend* backend;
   Built built;
   std::optional<RepairedMesh> repaired = {};  ///< the faces of `geometry` are those that remained
+  /// With --local of a mesh: the faces of `geometry` that the surface has, ascending. None: all.
+  std::optional<std::vector<Index>> near = {};
 
   const Surface& surface() const { return *built.surface; }
   const TangentGraph& graph() const { return surface().graph(); }

@@ -95,6 +95,6 @@ Built build(const io::Geometry& input, const InputOptions& options, const std::o
 
 }  // namespace
 
-Backend pointcloud_backend() { return {"pointcloud", suits, pointcloud::build_cost, build}; }
+Backend pointcloud_backend() { return {"pointcloud", suits, pointcloud::build_cost, build, nullptr, false}; }
 
 }  // namespace ahm::app

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include "ahm/io/formats.hpp"
@@ -25,6 +27,28 @@ void check_texture_output(const std::string& input, const OutputOptions& output,
     for (const std::string& part : parts) outputs.push_back({"--output", stem.string() + "_" + part + ".png"});
   }
   check_outputs({input, image}, outputs, output.keep_existing);
+}
+
+SurfaceFaces given_faces(const io::Geometry& input) {
+  SurfaceFaces faces;
+  if (input.face_count() == 0) return faces;
+  faces.points = input.points;
+  faces.begin = input.face_begin;
+  faces.corner_points = input.face_vertices;
+  return faces;
+}
+
+std::vector<double> at_given_corners(const Input& input, const std::vector<Vec2>& at) {
+  const io::Geometry& all = input.geometry;
+  std::vector<double> result(2 * all.face_vertices.size(), NAN);
+  const std::size_t faces = input.near ? input.near->size() : all.face_count();
+  auto from = at.begin();
+  for (std::size_t f = 0; f < faces; ++f) {
+    const std::size_t given = input.near ? static_cast<std::size_t>((*input.near)[f]) : f;
+    for (Offset c = all.face_begin[given]; c < all.face_begin[given + 1]; ++c, ++from)
+      std::copy(from->begin(), from->end(), result.begin() + 2 * c);
+  }
+  return result;
 }
 
 }  // namespace ahm::app

@@ -9,6 +9,7 @@
 #include "ahm/io/textured_mesh.hpp"
 #include "ahm/surface/surface_faces.hpp"
 #include "cli/options.hpp"
+#include "input/open.hpp"
 
 namespace ahm::app {
 
@@ -18,6 +19,12 @@ namespace ahm::app {
 void check_texture_output(const std::string& input, const OutputOptions& output,
                           const std::vector<std::string>& extensions, const std::vector<std::string>& parts,
                           const std::string& image);
+
+/// The faces as the input has them, without normals; empty for a cloud.
+SurfaceFaces given_faces(const io::Geometry& input);
+
+/// Numbers of the corners of the surface's faces, two each, as those of all faces of the input: NaN where --local left one out.
+std::vector<double> at_given_corners(const Input& input, const std::vector<Vec2>& at);
 
 /// Some faces of a surface, with or without texture coordinates, as a part of a textured mesh.
 class FacesPart {

@@ -1,0 +1,79 @@
+#include "input/surroundings.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <span>
+
+#include "ahm/error.hpp"
+#include "ahm/util/vec.hpp"
+#include "cli/source_list.hpp"
+
+namespace ahm::app {
+namespace {
+
+/// That of a position is the nearest of the faces' vertices.
+Vec3 center_of(const io::Geometry& input, const SourceSpec& source) {
+  const Vec3 given = position_in(input, source, "--source");
+  if (!std::holds_alternative<SourcePosition>(source)) return given;
+  const Index nearest = *std::ranges::min_element(input.face_vertices, {},
+                                                  [&](Index vertex) { return distance(input.points[vertex], given); });
+  return input.points[nearest];
+}
+
+/// From a point to the box around a face: no greater than to the face.
+double distance_to_box(const Vec3& p, std::span<const Index> face, const std::vector<Vec3>& points) {
+  Vec3 away{};
+  for (std::size_t c = 0; c < 3; ++c) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const Index vertex : face) low = std::min(low, points[vertex][c]), high = std::max(high, points[vertex][c]);
+    away[c] = std::max({low - p[c], p[c] - high, 0.0});
+  }
+  return norm(away);
+}
+
+void keep_faces(std::vector<Offset>& begin, std::vector<Index>& vertices, const std::vector<Index>& kept) {
+  std::vector<Offset> kept_begin{0};
+  std::vector<Index> kept_vertices;
+  for (const Index f : kept) {
+    kept_vertices.insert(kept_vertices.end(), vertices.begin() + begin[f], vertices.begin() + begin[f + 1]);
+    kept_begin.push_back(static_cast<Offset>(kept_vertices.size()));
+  }
+  begin = std::move(kept_begin);
+  vertices = std::move(kept_vertices);
+}
+
+std::int64_t used_vertices(const io::Geometry& input) {
+  std::vector<bool> used(input.points.size(), false);
+  for (const Index vertex : input.face_vertices) used[vertex] = true;
+  return std::count(used.begin(), used.end(), true);
+}
+
+}  // namespace
+
+std::vector<Index> surrounding_faces(const io::Geometry& input, double radius, const SourceSpec& source) {
+  const Vec3 center = center_of(input, source);
+  std::vector<Index> result;
+  for (std::size_t f = 0; f < input.face_count(); ++f)
+    if (distance_to_box(center, input.face(f), input.points) <= 1.5 * radius) result.push_back(static_cast<Index>(f));
+  if (result.empty())
+    throw InvalidArgument(
+        fmt::format("--local: no face comes within {:.6g} of the source {}", 1.5 * radius, to_string(source)));
+  return result;
+}
+
+std::int64_t keep_faces(io::Geometry& input, const std::vector<Index>& kept) {
+  const std::int64_t before = used_vertices(input);
+  keep_faces(input.face_begin, input.face_vertices, kept);
+  return before - used_vertices(input);
+}
+
+void keep_faces(RepairedMesh& mesh, const std::vector<Index>& kept) {
+  keep_faces(mesh.face_begin, mesh.face_vertices, kept);
+  std::vector<Index> given;
+  for (const Index f : kept) given.push_back(mesh.given_face[f]);
+  mesh.given_face = std::move(given);
+}
+
+}  // namespace ahm::app

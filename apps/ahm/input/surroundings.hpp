@@ -1,0 +1,25 @@
+/// \file
+/// --local: what a map of a radius needs of a mesh.
+#pragma once
+
+#include <vector>
+
+#include "ahm/io/geometry.hpp"
+#include "ahm/surface/mesh_repair.hpp"
+#include "cli/options.hpp"
+
+namespace ahm::app {
+
+/// The faces that come within one and a half radii of the source in a straight line, or of the vertex nearest to it where it
+/// is a position: no path of the length of the radius comes farther than that, and half of it keeps the new boundary away.
+/// @param input   with faces
+/// @param source  in its faces
+/// @return ascending. @throws InvalidArgument where no face comes so near
+std::vector<Index> surrounding_faces(const io::Geometry& input, double radius, const SourceSpec& source);
+
+/// Leaves these faces alone. @param kept  ascending
+/// @return how many vertices no face uses any more
+std::int64_t keep_faces(io::Geometry& input, const std::vector<Index>& kept);
+void keep_faces(RepairedMesh& mesh, const std::vector<Index>& kept);
+
+}  // namespace ahm::app
