@@ -110,9 +110,38 @@ TEST_F(ReadGltf, ReadsColorsOfVertices) {
       {{"bufferView", 2}, {"componentType", 5121}, {"normalized", true}, {"count", 4}, {"type", "VEC4"}});
   json["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", 60}, {"byteLength", 16}});
   const Geometry g =
-      read_bytes("c.glb", glb(json, square_bytes() + std::string("\xff\x01\x02\xff", 4) + std::string(12, '\x07')));
-  EXPECT_EQ(g.colors[0], (std::array<std::uint8_t, 3>{255, 1, 2}));
-  EXPECT_EQ(g.colors[3], (std::array<std::uint8_t, 3>{7, 7, 7}));
+      read_bytes("c.glb", glb(json, square_bytes() + std::string("\xff\x80\x40\xff", 4) + std::string(12, '\0')));
+  EXPECT_EQ(g.colors[0], (std::array<std::uint8_t, 3>{255, 188, 137})) << "linear light: half of it is no middle gray";
+  EXPECT_EQ(g.colors[3], (std::array<std::uint8_t, 3>{0, 0, 0}));
+}
+
+TEST_F(ReadGltf, TakesTheColorOfTheMaterialTimesThatOfVertices) {
+  Json json = square();
+  json["materials"] = Json::parse(R"([{"pbrMetallicRoughness": {"baseColorFactor": [0.5, 1, 0.25, 1]}}])");
+  json["meshes"][0]["primitives"][0]["material"] = 0;
+  EXPECT_EQ(read_bytes("m.glb", glb(json)).colors[2], (std::array<std::uint8_t, 3>{188, 255, 137}));
+  json["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"] = Json::parse("[1, 1, 1]");
+  EXPECT_THROW(read_bytes("m.glb", glb(json)), IoError) << "four numbers";
+  json["materials"] = Json::array();
+  EXPECT_THROW(read_bytes("m.glb", glb(json)), IoError);
+}
+
+TEST_F(ReadGltf, GivesTheColorsBackThatWereWritten) {
+  std::vector<Vec3> points;
+  std::vector<std::array<std::uint8_t, 3>> colors;
+  std::vector<Offset> begin{0};
+  std::vector<Index> vertices;
+  for (int level = 0; level < 256; ++level) {
+    points.push_back({static_cast<double>(level), static_cast<double>(level % 2), 0});
+    colors.push_back({static_cast<std::uint8_t>(level), static_cast<std::uint8_t>(255 - level), 128});
+    if (level < 2) continue;
+    for (const int corner : {level - 2, level - 1, level}) vertices.push_back(corner);
+    begin.push_back(static_cast<Offset>(vertices.size()));
+  }
+  MeshPart part;
+  part.name = "part", part.points = points, part.faces = {begin, vertices}, part.colors = colors;
+  write_textured(path("w.glb"), std::span(&part, 1));
+  EXPECT_EQ(read(path("w.glb")).colors, colors);
 }
 
 TEST_F(ReadGltf, RefusesEveryTruncation) {

@@ -3,14 +3,15 @@
 #include "formats/gltf.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
 #include "ahm/error.hpp"
+#include "ahm/util/srgb.hpp"
 #include "ahm/util/text.hpp"
 #include "ahm/util/weld.hpp"
 #include "formats/format.hpp"
-#include "read/colors.hpp"
 #include "read/free_memory.hpp"
 #include "read/gltf_scene.hpp"
 
@@ -20,6 +21,7 @@ namespace {
 using Json = GltfFile::Json;
 
 constexpr std::uint64_t none = std::numeric_limits<std::uint64_t>::max();
+constexpr Vec3 white{1, 1, 1};
 enum Mode : std::uint64_t { points = 0, lines = 1, line_strip = 3, triangles = 4, strip = 5, fan = 6 };
 
 class GltfReader {
@@ -31,9 +33,7 @@ class GltfReader {
     for (const GltfPlacement& placed : placed_meshes(in_, file_)) read_mesh(placed);
     if (g_.points.empty()) fail(in_, "it holds no vertex");
     if (lines_ > 0) g_.warnings.push_back({"lines_ignored", {static_cast<double>(lines_)}, {}});
-    if (has_colors_ && colors_.size() == g_.points.size()) {
-      if (auto colors = to_colors(colors_)) g_.colors = std::move(*colors);
-    }
+    if (has_colors_ && lights_.size() == g_.points.size()) keep_colors();
     if (!g_.face_begin.empty()) join_seams();
     return std::move(g_);
   }
@@ -63,7 +63,7 @@ class GltfReader {
     const std::uint64_t position = file_.whole(*attributes, "POSITION", none);
     if (position == none) fail(in_, "a primitive has no POSITION");
     const std::size_t first = g_.points.size(), count = add_points(position, columns);
-    add_colors(file_.whole(*attributes, "COLOR_0", none), first, count);
+    add_lights(file_.whole(*attributes, "COLOR_0", none), base_color(primitive), first, count);
     if (mode != points)
       add_faces(mode, corners(file_.whole(primitive, "indices", none), count), first, mirrors(columns));
   }
@@ -108,9 +108,21 @@ class GltfReader {
     return array.count;
   }
 
-  /// White where a primitive has none and another one has.
-  void add_colors(std::uint64_t accessor, std::size_t first, std::size_t count) {
-    colors_.resize(first + count, Vec3{1, 1, 1});
+  /// That of the primitive's material, linear light; white where nothing is said.
+  Vec3 base_color(const Json& primitive) const {
+    const std::uint64_t number = file_.whole(primitive, "material", none);
+    if (number == none) return white;
+    const Json& material = file_.item("materials", number);
+    const auto surface = material.find("pbrMetallicRoughness");
+    if (surface == material.end() || !surface->is_object()) return white;
+    const std::vector<double> factor = file_.numbers(*surface, "baseColorFactor", 4);
+    return factor.empty() ? white : Vec3{factor[0], factor[1], factor[2]};
+  }
+
+  /// Those of the vertices times that of their material.
+  void add_lights(std::uint64_t accessor, const Vec3& base, std::size_t first, std::size_t count) {
+    lights_.resize(first + count, base);
+    has_colors_ = has_colors_ || base != white;
     if (accessor == none) return;
     const GltfArray array = vectors(accessor, 3);
     if (array.count != count)
@@ -118,7 +130,16 @@ class GltfReader {
            "a primitive has " + std::to_string(count) + " positions and " + std::to_string(array.count) + " colors");
     has_colors_ = true;
     for (std::uint64_t k = 0; k < count; ++k)
-      for (std::size_t c = 0; c < 3; ++c) colors_[first + k][c] = array.values[k * array.width + c];
+      for (std::size_t c = 0; c < 3; ++c) lights_[first + k][c] *= array.values[k * array.width + c];
+  }
+
+  void keep_colors() {
+    for (const Vec3& light : lights_) {
+      auto& color = g_.colors.emplace_back();
+      for (std::size_t c = 0; c < 3; ++c)
+        color[c] = static_cast<std::uint8_t>(
+            std::lround(255 * detail::tone_of(light[c] > 0 ? std::min(light[c], 1.0) : 0.0)));  // of NaN: black
+    }
   }
 
   std::vector<std::size_t> corners(std::uint64_t accessor, std::size_t count) {
@@ -178,7 +199,7 @@ class GltfReader {
   const Input& in_;
   GltfFile file_;
   Geometry g_;
-  std::vector<Vec3> colors_;
+  std::vector<Vec3> lights_;  ///< linear
   bool has_colors_ = false;
   std::size_t lines_ = 0;
 };
