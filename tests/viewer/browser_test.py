@@ -8,6 +8,7 @@ import csv
 import json
 import math
 import pathlib
+import shlex
 import shutil
 import signal
 import subprocess
@@ -151,6 +152,14 @@ class Page(unittest.TestCase):
         self.js("ahm.stage.draw()")
         self.driver.save_screenshot(str(self.work / (name + ".png")))
 
+    def downloaded(self, name):
+        file = self.work / "downloads" / name
+        for _ in range(600):
+            if file.exists():
+                break
+            time.sleep(0.1)
+        return file.read_bytes()
+
     def library_rows(self, source, name="library.csv", path=None, *more):
         file = self.work / name
         subprocess.run([options.ahm, "logmap", str(path or self.mesh), "--source", source, "-o", str(file), *more], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
@@ -217,12 +226,7 @@ class Page(unittest.TestCase):
         self.open(self.mesh, "--source", 123)
         self.library_rows("123", "export.csv")
         self.driver.find_element(By.ID, "export").click()
-        file = self.work / "downloads" / "map.csv"
-        for _ in range(600):
-            if file.exists():
-                break
-            time.sleep(0.1)
-        self.assertEqual(file.read_bytes(), (self.work / "export.csv").read_bytes())
+        self.assertEqual(self.downloaded("map.csv"), (self.work / "export.csv").read_bytes())
 
     def test_every_field_is_drawn(self):
         self.open(self.mesh, "--source", 0)
@@ -269,6 +273,10 @@ class Page(unittest.TestCase):
         self.settled()
         self.assertTrue(self.text("command").startswith("ahm stroke"))
         self.shot("stroke")
+        self.driver.find_element(By.ID, "export").click()
+        command = shlex.split(self.text("command"))
+        subprocess.run([options.ahm, *command[1:]], cwd=self.work, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        self.assertEqual(self.downloaded("stroke.csv"), (self.work / "stroke.csv").read_bytes())
 
     def test_a_decal_lies_on_the_map(self):
         self.open(self.mesh)

@@ -140,7 +140,9 @@ TEST_F(LargeViewerSession, MarchesMaps) {
 TEST_F(LargeViewerSession, MarchesStrokes) {
   const std::vector<CurvePoint> ends{SurfacePoint(Row{7}), SurfacePoint(Row{9})};
   const SurfaceCurve curve = draw_curve(large.surface, ends);
-  const auto expected = large.surface.on_rows(march->solve(curve.source, {.radius = 0.05}));
+  const double edge = large.surface.graph().mean_edge_length() * large.surface.graph().length_unit();
+  const LogMap map = march->solve(curve.source, {.radius = 0.05 + 2 * edge});
+  const auto expected = rows_from_curve(large.surface, map, curve, 0.05);
   const Answer answer = session->answer("stroke", request({{"points", {{{"row", 7}}, {{"row", 9}}}}}));
   ASSERT_EQ(answer.status, 200) << answer.body;
   const Unpacked bundle(answer.body);
@@ -284,6 +286,8 @@ TEST(ViewerSessionExport, SendsWhatItsWriterWrites) {
   const Session session(sphere.surface, sphere.geometry, options);
   const std::string n = std::to_string(sphere.geometry.points.size());
   EXPECT_EQ(session.answer("export", request({{"source", {{"row", 0}}}, {"format", "csv"}})).body, n + " " + n);
+  const json points = {{{"row", 0}}, {{"row", 30}}};
+  EXPECT_EQ(session.answer("export", request({{"points", points}, {"format", "csv"}})).body, n + " 0") << "a stroke";
   EXPECT_FALSE(folder.empty());
   EXPECT_FALSE(std::filesystem::exists(folder));
   EXPECT_EQ(session.answer("export", request({{"source", {{"row", 0}}}, {"format", "../csv"}})).status, 400);

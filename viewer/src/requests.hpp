@@ -26,10 +26,11 @@ class Request {
   double positive(const char* name) const;
   /// @param allowed  words
   std::string word(const char* name, const std::vector<std::string>& allowed) const;
+  /// Whether there is such a member, not null.
+  bool has(const char* name) const;
 
  private:
   const nlohmann::json& at(const char* name) const;
-  bool has(const char* name) const;
 
   nlohmann::json json_;
 };

@@ -157,9 +157,8 @@ struct Session::Impl {
   }
 
   /// A map by row, and how it is told.
-  std::string bundle(const LogMap& map, const Vec3& source, const std::optional<Frame>& frame, view::Scene shown,
-                     view::Pattern pattern, const json& more) const {
-    const RowLogMap rows = surface.on_rows(map);
+  std::string bundle(const LogMap& map, const RowLogMap& rows, const Vec3& source, const std::optional<Frame>& frame,
+                     view::Scene shown, view::Pattern pattern, const json& more) const {
     const std::vector<double> quality = map.spread().empty() ? std::vector<double>() : quality_of(map, rows);
     shown.u = rows.u, shown.v = rows.v;
     shown.quality = quality;
@@ -182,7 +181,7 @@ struct Session::Impl {
                        {"command", command(options, "logmap", {"--source", where, "-o", "map.csv"}, settings)},
                        {"decal", decal_command(where, settings)}};
     return {200, "application/octet-stream",
-            bundle(made, placed.position, placed.frame, scene, view::Pattern::polar, more)};
+            bundle(made, surface.on_rows(made), placed.position, placed.frame, scene, view::Pattern::polar, more)};
   }
 
   /// The page knows the image and its size, and puts them in.
@@ -192,38 +191,47 @@ struct Session::Impl {
                    of_patch(settings));
   }
 
+  SurfaceCurve curve_of(const Request& request) const {
+    const std::vector<SurfacePoint> points = request.points("points");
+    return draw_curve(surface, std::vector<CurvePoint>(points.begin(), points.end()));
+  }
+
+  /// As far as its distances go, which are not the map's own.
+  LogMap stroke(const SurfaceCurve& curve, const Settings& settings, const std::stop_token& stop) {
+    const double radius = radius_of(settings) + 2 * surface.graph().mean_edge_length() * surface.graph().length_unit();
+    Progress progress;
+    progress.stop = stop;
+    if (settings.method == Method::exact)
+      return makers.geodesics().log_map(curve.samples, {.radius = radius, .progress = progress}).map;
+    MapOptions heat;
+    heat.variant = settings.variant;
+    heat.radius = radius;
+    heat.progress = progress;
+    return makers.solver(settings, stop).solve(curve.source, heat);
+  }
+
   Answer answer_stroke(const Request& request) {
     const std::stop_token stop = channels.begin(request.client(), Channels::Kind::map, request.number());
-    const std::vector<SurfacePoint> points = request.points("points");
     const Settings settings = of_curve(request.settings(options.settings));
-    const std::vector<CurvePoint> given(points.begin(), points.end());
-    const SurfaceCurve curve = draw_curve(surface, given);
-    const LogMap made = in_turn(stop, [&] {
-      if (settings.method == Method::exact) {
-        ExactMapOptions exact;
-        exact.radius = radius_of(settings);
-        exact.progress.stop = stop;
-        return makers.geodesics().log_map(curve.samples, exact).map;
-      }
-      MapOptions heat;
-      heat.variant = settings.variant;
-      heat.radius = radius_of(settings);
-      heat.progress.emplace().stop = stop;
-      return makers.solver(settings, stop).solve(curve.source, heat);
-    });
+    const SurfaceCurve curve = curve_of(request);
+    const LogMap made = in_turn(stop, [&] { return stroke(curve, settings, stop); });
     std::string list;
-    for (const SurfacePoint& point : points) list.append(list.empty() ? "" : " ").append(spec(surface, point));
+    for (const SurfacePoint& point : request.points("points"))
+      list.append(list.empty() ? "" : " ").append(spec(surface, point));
     view::Scene shown = scene;
     shown.curve = curve.points;
     return {200, "application/octet-stream",
-            bundle(made, curve.points.front(), curve.first, shown, view::Pattern::grid,
+            bundle(made, rows_from_curve(surface, made, curve, radius_of(settings)), curve.points.front(), curve.first,
+                   shown, view::Pattern::grid,
                    {{"command", command(options, "stroke", {"--curve", list, "-o", "stroke.csv"}, settings)}})};
   }
 
-  SurfaceLine path_between(const std::array<SurfacePoint, 2>& ends) {
+  SurfaceLine path_between(const std::array<SurfacePoint, 2>& ends, const std::stop_token& stop) {
     if (surface.faces().size() == 0) return shortest_line(surface, ends[0], ends[1]);
     const ExactGeodesics& geodesics = makers.geodesics();
-    const exact::GeodesicPath path = geodesics.path(ends);
+    Progress progress;
+    progress.stop = stop;
+    const exact::GeodesicPath path = geodesics.paths(std::span(&ends, 1), progress, 1).front();
     SurfaceLine line{path.status, {}, path.length};
     for (const exact::MeshPoint& point : path.points) line.points.push_back(geodesics.position(point));
     return line;
@@ -234,7 +242,7 @@ struct Session::Impl {
     const std::array ends{request.point("from"), request.point("to")};
     for (const SurfacePoint& end : ends) surface.source(end);  // checks
     SurfaceLine path;
-    in_turn(stop, [&] { path = path_between(ends); });
+    in_turn(stop, [&] { path = path_between(ends, stop); });
     if (path.status != Status::ok)
       throw InvalidArgument("there is no path: the surface does not connect the two points");
     return answer_of(
@@ -286,13 +294,22 @@ struct Session::Impl {
   Answer answer_export(const Request& request) {
     if (!options.write) throw InvalidArgument("request: this session exports nothing");
     const std::string format = request.word("format", options.formats);
-    const SurfacePoint source = request.point("source");
     const Settings settings = request.settings(options.settings);
-    const PlacedSource placed = surface.source(source, settings.u_axis);
     const std::stop_token stop = channels.until_the_end();
-    const LogMap made = in_turn(stop, [&] { return map(source, placed, settings, stop); });
-    const RowLogMap rows = surface.on_rows(made);
-    const std::vector<double> quality = quality_of(made, rows);
+    RowLogMap rows;
+    std::vector<double> quality;
+    if (request.has("points")) {
+      const SurfaceCurve curve = curve_of(request);
+      const Settings near = of_curve(settings);
+      const LogMap made = in_turn(stop, [&] { return stroke(curve, near, stop); });
+      rows = rows_from_curve(surface, made, curve, radius_of(near));
+    } else {
+      const SurfacePoint source = request.point("source");
+      const PlacedSource placed = surface.source(source, settings.u_axis);
+      const LogMap made = in_turn(stop, [&] { return map(source, placed, settings, stop); });
+      rows = surface.on_rows(made);
+      quality = quality_of(made, rows);
+    }
     return {200, "application/octet-stream",
             exported(format, [&](const std::filesystem::path& file) { options.write(file, rows, quality); })};
   }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
 #include "ahm/applications/surface_curve.hpp"
 #include "ahm/error.hpp"
@@ -47,12 +46,6 @@ struct StrokeCommandOptions {
   StrokeOptions shape;
   std::vector<std::array<double, 2>> positions;  ///< of the points of the curve; empty: by arclength
 };
-
-/// From a vertex with these coordinates to the curve, in the plane of coordinates.
-double distance_from_curve(double u, double v, double length, const StrokeOptions& shape) {
-  if (shape.shape == StrokeShape::circle) return std::abs(std::hypot(u, v) - length / (2 * std::numbers::pi));
-  return shape.closed ? std::abs(v) : std::hypot(std::max({0.0, -u, u - length}), v);
-}
 
 CurvePoint curve_point(const Input& input, const SourceSpec& spec) {
   if (const auto* position = std::get_if<SourcePosition>(&spec)) return position->position;
@@ -100,19 +93,16 @@ void comment_on_curve(const SurfaceCurve& curve, double edge, Journal& journal) 
         curve.jump, curve.jump / edge));
 }
 
-void write_results(const SurfaceCurve& curve, const StrokeOptions& shape, const RowLogMap& rows,
-                   const std::vector<double>& distance, Results& results, Journal& journal) {
+void write_results(const SurfaceCurve& curve, const StrokeOptions& shape, const RowLogMap& rows, Results& results,
+                   Journal& journal) {
   io::Table table = results.table();
-  table.add("u", rows.u);
-  table.add("v", rows.v);
-  table.add("distance", distance);
-  table.add("status", rows.status);
+  add_stroke(table, rows);
   std::vector<Vec3> line = curve.points;
   if (shape.closed) line.push_back(line.front());
   view::Scene scene = results.scene();
   scene.u = rows.u;
   scene.v = rows.v;
-  scene.distance = distance;
+  scene.distance = rows.distance;
   scene.curve = line;
   scene.source = line.front();
   if (curve.first) scene.source_axes = {curve.first->x, curve.first->y, curve.first->normal};
@@ -122,10 +112,10 @@ void write_results(const SurfaceCurve& curve, const StrokeOptions& shape, const 
 }
 
 void report(const StrokeCommandOptions& options, const Input& input, const SurfaceCurve& curve, const RowLogMap& rows,
-            const std::vector<double>& distance, Journal& journal) {
+            Journal& journal) {
   const auto mapped = std::count(rows.status.begin(), rows.status.end(), Status::ok);
   double farthest = 0;
-  for (double d : distance) farthest = std::max(farthest, std::isnan(d) ? 0 : d);
+  for (double d : rows.distance) farthest = std::max(farthest, std::isnan(d) ? 0 : d);
   nlohmann::ordered_json j = summary("ahm stroke", options.input.path, options.output, input);
   j["curve"] = {{"given", options.curve.size()},
                 {"points", curve.points.size()},
@@ -155,15 +145,6 @@ SolveOptions beyond_radius(SolveOptions options, double edge) {
   return options;
 }
 
-/// Leaves out what lies farther from the curve, by the distance that is told.
-void leave_out_beyond(double radius, RowLogMap& rows, std::vector<double>& distance) {
-  for (std::size_t i = 0; i < distance.size(); ++i) {
-    if (!(distance[i] > radius)) continue;
-    rows.u[i] = rows.v[i] = distance[i] = NAN;
-    rows.status[i] = Status::beyond_radius;
-  }
-}
-
 void run(const StrokeCommandOptions& options) {
   check_results(options.input.path, options.output);
   Journal journal(options.output.verbosity);
@@ -172,17 +153,12 @@ void run(const StrokeCommandOptions& options) {
   comment_on_curve(curve, input.mean_edge_length(), journal);
 
   const LogMap map = solve(beyond_radius(options.solve, input.mean_edge_length()), input, curve, journal);
-  RowLogMap rows = input.surface().on_rows(map);
-  std::vector<double> distance;
-  for (std::size_t i = 0; i < rows.u.size(); ++i)
-    distance.push_back(options.positions.empty()
-                           ? distance_from_curve(rows.u[i], rows.v[i], curve.length, options.shape)
-                           : rows.distance[i]);
-  if (options.solve.radius) leave_out_beyond(*options.solve.radius, rows, distance);
+  const RowLogMap rows = options.solve.radius ? rows_from_curve(input.surface(), map, curve, *options.solve.radius)
+                                              : rows_from_curve(input.surface(), map, curve);
   comment_on_statuses(rows.status, options.input.path, journal);
   Results results(options.output, input, options.input);
-  write_results(curve, options.shape, rows, distance, results, journal);
-  report(options, input, curve, rows, distance, journal);
+  write_results(curve, options.shape, rows, results, journal);
+  report(options, input, curve, rows, journal);
   results.keep();
 }
 

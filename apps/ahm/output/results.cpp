@@ -110,6 +110,13 @@ void add_map(io::Table& table, const RowLogMap& rows, const std::vector<double>&
   if (!rows.error_estimate.empty()) table.add("error_estimate", rows.error_estimate);
 }
 
+void add_stroke(io::Table& table, const RowLogMap& rows) {
+  table.add("u", rows.u);
+  table.add("v", rows.v);
+  table.add("distance", rows.distance);
+  table.add("status", rows.status);
+}
+
 io::Table Results::table() const { return table_of(input_, normals_, input_.colors); }
 
 view::Scene Results::scene() const {

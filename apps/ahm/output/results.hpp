@@ -37,6 +37,8 @@ io::Table table_of(const io::Geometry& input, const std::vector<Vec3>& normals,
 
 /// The columns of a map: u, v, distance, angle, status, quality, spread, error_estimate.
 void add_map(io::Table& table, const RowLogMap& rows, const std::vector<double>& quality);
+/// Those of a map from a curve: u, v, distance, status.
+void add_stroke(io::Table& table, const RowLogMap& rows);
 
 /// The files of a run: all of them or, after a failure, none.
 class Results {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <utility>
@@ -233,12 +234,20 @@ SurfaceCurve draw(const Surface& surface, std::span<const CurvePoint> given, boo
   return curve;
 }
 
+/// From a point with these coordinates to the curve, in the plane of coordinates.
+double distance_from_curve(double u, double v, double length, const StrokeOptions& shape) {
+  if (shape.shape == StrokeShape::circle) return std::abs(std::hypot(u, v) - length / (2 * std::numbers::pi));
+  return shape.closed ? std::abs(v) : std::hypot(std::max({0.0, -u, u - length}), v);
+}
+
 }  // namespace
 
 SurfaceCurve draw_curve(const Surface& surface, std::span<const CurvePoint> given, const StrokeOptions& options) {
-  return draw(surface, given, options.closed, [&](const auto&, const auto& sources, const auto& lengths) {
+  SurfaceCurve curve = draw(surface, given, options.closed, [&](const auto&, const auto& sources, const auto& lengths) {
     return stroke_points(sources, lengths, options);
   });
+  curve.shape = options;
+  return curve;
 }
 
 SurfaceCurve draw_curve(const Surface& surface, std::span<const CurvePoint> given, std::span<const Vec2> positions,
@@ -254,6 +263,19 @@ SurfaceCurve draw_curve(const Surface& surface, std::span<const CurvePoint> give
     }
     return stroke_points(sources, lengths, places, closed);
   });
+}
+
+RowLogMap rows_from_curve(const Surface& surface, const LogMap& map, const SurfaceCurve& curve, double radius) {
+  RowLogMap rows = surface.on_rows(map);
+  for (std::size_t i = 0; i < rows.u.size(); ++i) {
+    if (curve.shape) rows.distance[i] = distance_from_curve(rows.u[i], rows.v[i], curve.length, *curve.shape);
+    if (!(rows.distance[i] > radius)) continue;
+    rows.u[i] = rows.v[i] = rows.angle[i] = rows.distance[i] = NAN;
+    for (std::vector<double>* more : {&rows.spread, &rows.error_estimate})
+      if (!more->empty()) (*more)[i] = NAN;
+    rows.status[i] = Status::beyond_radius;
+  }
+  return rows;
 }
 
 }  // namespace ahm

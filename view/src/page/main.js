@@ -133,7 +133,7 @@ Ahm.Viewer = class {
     if (!this.dragging) return;
     this.dragging = false;
     this.stage.controls.enabled = true;
-    if (this.tool === "stroke") this.ask_stroke();
+    if (this.tool === "stroke") this.ask_stroke(this.picked.map((h) => h.source));
   }
 
   click(hit) {
@@ -228,22 +228,28 @@ Ahm.Viewer = class {
     this.stage.set_marks({ curve: this.picked.map((h) => h.position) });
   }
 
-  ask_stroke() {
-    if (this.picked.length < 2) return;
+  ask_stroke(points) {
+    if (points.length < 2) return;
     return this.attempt(async () => {
-      const begin = performance.now(), request = Object.assign({ points: this.picked.map((h) => h.source) }, this.settings());
+      const begin = performance.now(), request = Object.assign({ points: points }, this.settings());
       this.panel.say("computing …");
       const map = await this.server.map("stroke", request);
       if (!map) return;
-      this.request = null;
+      this.request = request;
       this.show(map, "grid");
       this.time_of(begin);
     });
   }
 
+  // With other settings.
+  ask_again() {
+    if (!this.request) return;
+    return this.request.points ? this.ask_stroke(this.request.points) : this.ask_map(this.request.source);
+  }
+
   async ask_coverage() {
     const positive = (id) => Number(this.element(id).value);
-    if (!this.request) return;
+    if (!this.request || !this.request.source) return;
     const request = Object.assign({}, this.request, {
       cover: positive("coverage_radius"), spacing: positive("coverage_spacing"), pattern: this.element("coverage_pattern").value
     });
@@ -302,14 +308,14 @@ Ahm.Viewer = class {
   export_map() {
     return this.attempt(async () => {
       if (!this.request) throw new Error("export: click a point first");
-      const format = this.element("format").value;
+      const format = this.element("format").value, name = this.request.points ? "stroke" : "map";
       const answer = await this.server.post("export", Object.assign({ format: format }, this.request));
       const link = document.createElement("a");
       link.href = URL.createObjectURL(await answer.blob());
-      link.download = "map." + format;
+      link.download = name + "." + format;
       link.click();
       URL.revokeObjectURL(link.href);
-      this.panel.say("saved map." + format);
+      this.panel.say("saved " + link.download);
     });
   }
 
@@ -333,7 +339,7 @@ Ahm.Viewer = class {
     element("method").querySelector("option:last-child").disabled = !info.has_faces;
     const method_changed = () => {
       for (const row of document.querySelectorAll(".heat")) row.hidden = element("method").value !== "heat";
-      if (this.request) this.ask_map(this.request.source);
+      this.ask_again();
     };
     for (const id of ["method", "variant", "order", "t_coef", "radius", "u_axis"]) element(id).addEventListener("change", method_changed);
     for (const id of ["coverage_radius", "coverage_spacing", "coverage_pattern"])

@@ -39,7 +39,8 @@ struct SessionOptions {
   Settings settings;                        ///< that the page starts with
   std::optional<SurfacePoint> source = {};  ///< that it starts from; none: what lies in the middle of the picture
   unsigned threads = 0;                     ///< 0: one per core
-  /// Writes a map by row to a file, by its ending; none: nothing is exported.
+  /// Writes a map by row to a file, by its ending; none: nothing is exported. `quality` is empty for a map from a curve,
+  /// which has the columns of a stroke.
   std::function<void(const std::filesystem::path&, const RowLogMap&, const std::vector<double>& quality)> write = {};
   std::vector<std::string> formats = {};                 ///< endings that `write` knows, without the dot
   std::function<std::string(const Error&)> worded = {};  ///< messages in the caller's words; none: what()
@@ -69,7 +70,7 @@ std::string spec(const Surface& surface, const SurfacePoint& point);
 /// | stroke   | "points": along a curve                                | bundle of the map, with the curve             |
 /// | path     | "from", "to" (meshes)                                  | JSON: "points", "length", "command"           |
 /// | coverage | "source", "cover": radius, "spacing", "pattern"        | JSON: "points", "pieces", "length", "covered" |
-/// | export   | "source", "format"                                     | the file                                      |
+/// | export   | "source", or "points" of a stroke; "format"            | the file                                      |
 ///
 /// A newer request for a map or a stroke by the same client cancels the older one, and so does one for a path or a tool path
 /// those of its kind; what is cancelled is answered with status 409. The end of the session cancels all. Newer is what comes later; of a client that

@@ -9,6 +9,7 @@
 /// \endcode
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -37,6 +38,7 @@ struct SurfaceCurve {
   /// message of `Surface::flat_triangles`, or that the surface does not connect their ends.
   Index straight = 0;
   std::string straight_reason;
+  std::optional<StrokeOptions> shape;  ///< of the coordinates; none: the user's own
 };
 
 /// Joins the given points, cuts the lines into pieces of half a mean edge length at the most, and takes the nearest points
@@ -52,5 +54,11 @@ SurfaceCurve draw_curve(const Surface& surface, std::span<const CurvePoint> give
 /// @param positions  one (u, v) per given point, world units; straight in between, along which consecutive ones differ
 SurfaceCurve draw_curve(const Surface& surface, std::span<const CurvePoint> given, std::span<const Vec2> positions,
                         bool closed = false);
+
+/// The map from a curve by row. Its distances are those from the curve, in the plane of coordinates: the map's own, from
+/// samples of the curve, are told where the coordinates are the user's own.
+/// @param radius  rows farther than this are beyond it, world units; the map must reach two edges farther
+RowLogMap rows_from_curve(const Surface& surface, const LogMap& map, const SurfaceCurve& curve,
+                          double radius = std::numeric_limits<double>::infinity());
 
 }  // namespace ahm
