@@ -273,6 +273,8 @@ class Page(unittest.TestCase):
         self.settled()
         self.assertTrue(self.text("command").startswith("ahm stroke"))
         self.shot("stroke")
+        row = int(self.text("at_row"))  # still under the pointer
+        self.assertEqual(self.text("at_v"), self.js("return Ahm.number(ahm.panel.length_of(ahm.stage.map.uv[2 * arguments[0] + 1]))", row))
         self.driver.find_element(By.ID, "export").click()
         command = shlex.split(self.text("command"))
         subprocess.run([options.ahm, *command[1:]], cwd=self.work, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)

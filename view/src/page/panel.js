@@ -46,6 +46,7 @@ Ahm.Panel = class {
     this.element("source_section").hidden = !map.spec;
     if (map.command) this.element("command").textContent = map.command;
     this.set_ring();
+    this.tell(this.told);
   }
 
   set_field(name) {
@@ -95,6 +96,7 @@ Ahm.Panel = class {
 
   // What is known of a row; null: nothing is under the pointer.
   tell(hit) {
+    this.told = hit;
     const { map, surface } = this.stage, put = (id, text) => { this.element("at_" + id).textContent = text; };
     const names = ["row", "status", "position", "u", "v", "distance", "spread"];
     if (!hit) return names.forEach((name) => put(name, "–"));
