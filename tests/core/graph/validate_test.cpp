@@ -31,6 +31,28 @@ TEST(Validate, AcceptsSoundGraphs) {
   EXPECT_NO_THROW(validate(CsrGraph(lattice3(4).data)));
 }
 
+TEST(Validate, NamesTheFirstBrokenLawOnAnyNumberOfThreads) {
+  CsrGraphData g = sphere_graph(40000);  // more than one chunk of vertices
+  g.weights[g.row_begin[39000]] *= 2;
+  g.masses[38000] = 0;
+  for (const unsigned threads : {1U, 4U})
+    for (int run = 0; run < 5; ++run) try {
+        validate(CsrGraph(g), threads);
+        ADD_FAILURE();
+      } catch (const InvalidGraph& e) {
+        EXPECT_NE(std::string(e.what()).find("mass of vertex 38000"), std::string::npos) << e.what();
+      }
+  g.masses[38000] = 1;
+  g.weights[g.row_begin[100]] *= 2;
+  for (const unsigned threads : {1U, 4U}) try {
+      validate(CsrGraph(g), threads);
+      ADD_FAILURE();
+    } catch (const InvalidGraph& e) {
+      EXPECT_NE(std::string(e.what()).find("100"), std::string::npos) << e.what();
+      EXPECT_NE(std::string(e.what()).find("another weight"), std::string::npos) << e.what();
+    }
+}
+
 TEST(Validate, NamesTheBrokenLaw) {
   const CsrGraphData g = sphere_graph(80);
   expect_invalid(

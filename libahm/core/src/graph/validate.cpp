@@ -1,13 +1,16 @@
 #include "ahm/graph/validate.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <cstdint>
 #include <numeric>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "ahm/error.hpp"
+#include "ahm/util/parallel.hpp"
 #include "ahm/util/small_math.hpp"
 #include "ahm/util/text.hpp"
 
@@ -18,19 +21,6 @@ constexpr double transport_tolerance = 1e-8;
 constexpr double weight_tolerance = 1e-10;
 
 std::string edge_name(Index i, Index j) { return "edge " + std::to_string(i) + " -> " + std::to_string(j); }
-
-/// A star that outlives the next call of `TangentGraph::star`.
-struct OwnedStar {
-  OwnedStar(const Star& s, TransportLayout layout)
-      : layout(layout),
-        neighbors(s.neighbors.begin(), s.neighbors.end()),
-        weights(s.weights.begin(), s.weights.end()),
-        transports(s.transports.begin(), s.transports.end()) {}
-  TransportLayout layout;
-  std::vector<Index> neighbors;
-  std::vector<double> weights;
-  std::vector<double> transports;
-};
 
 void check_star_shape(const Star& s, Index i, int dimension, std::size_t transport_width) {
   const std::size_t degree = s.degree(), d = static_cast<std::size_t>(dimension);
@@ -63,59 +53,83 @@ std::size_t check_vertex(const TangentGraph& graph, Index i) {
   return s.degree();
 }
 
-/// Matches every edge i -> j, of these places in the star of i, with an unused edge j -> i of the same weight and inverse
-/// transport.
-void check_pair(const OwnedStar& from, std::span<const std::size_t> edges, Index i, const Star& to, Index j) {
-  std::vector<bool> used(to.degree(), false);
-  for (std::size_t e : edges) {
-    bool weight_seen = false, matched = false;
-    for (std::size_t r = 0; r < to.degree() && !matched; ++r) {
-      if (to.neighbors[r] != i || used[r]) continue;
-      const double w = from.weights[e];
-      if (std::abs(to.weights[r] - w) > weight_tolerance * std::abs(w)) continue;
-      weight_seen = true;
-      const Transport R_ji(from.layout, from.transports.data() + e * from.layout.width());
-      if (!(R_ji.distance_from_inverse(to.transport(r)) <= transport_tolerance)) continue;
-      used[r] = matched = true;
-    }
-    if (!matched)
-      throw InvalidGraph(edge_name(i, j) + (weight_seen
-                                                ? ": the transports of the two directions are not inverse to each other"
-                                                : ": the reverse edge is missing or has another weight"));
-  }
-  const auto backward = static_cast<std::size_t>(std::count(to.neighbors.begin(), to.neighbors.end(), i));
-  if (edges.size() != backward)
-    throw InvalidGraph(edge_name(j, i) + ": " + std::to_string(backward) + " edges, but " +
-                       std::to_string(edges.size()) + " in the other direction");
-}
+/// Matches edges with those in the other direction; what it needs is kept from vertex to vertex.
+class PairCheck {
+ public:
+  explicit PairCheck(const TangentGraph& graph) : graph_(graph), layout_(graph.transport_layout()) {}
 
-/// Checks the pairs (i, j) of which i has more neighbours, or as many and the smaller number, so that the time is not
-/// quadratic in degrees.
-/// @return how many edges lead from and to i there
-std::size_t check_pairs_at(const TangentGraph& graph, Index i) {
-  const OwnedStar from(graph.star(i), graph.transport_layout());
-  const std::size_t degree = from.neighbors.size();
-  std::vector<std::size_t> by_target(degree);
-  std::iota(by_target.begin(), by_target.end(), std::size_t{0});
-  std::stable_sort(by_target.begin(), by_target.end(),
-                   [&](std::size_t a, std::size_t b) { return from.neighbors[a] < from.neighbors[b]; });
-  std::size_t checked = 0;
-  for (std::size_t first = 0, last; first < degree; first = last) {
-    const Index j = from.neighbors[by_target[first]];
-    for (last = first; last < degree && from.neighbors[by_target[last]] == j;) ++last;
-    const Star to = graph.star(j);
-    if (to.degree() > degree || (to.degree() == degree && j < i)) continue;
-    check_pair(from, std::span(by_target).subspan(first, last - first), i, to, j);
-    checked += 2 * (last - first);
+  /// Checks the pairs (i, j) of which i has more neighbours, or as many and the smaller number, so that the time is not
+  /// quadratic in degrees.
+  /// @return how many edges lead from and to i there
+  std::size_t at(Index i) {
+    copy(graph_.star(i));
+    const std::size_t degree = neighbors_.size();
+    by_target_.resize(degree);
+    std::iota(by_target_.begin(), by_target_.end(), std::size_t{0});
+    // By place where neighbours are the same: a stable sort without its buffer.
+    std::sort(by_target_.begin(), by_target_.end(), [&](std::size_t a, std::size_t b) {
+      return neighbors_[a] != neighbors_[b] ? neighbors_[a] < neighbors_[b] : a < b;
+    });
+    std::size_t checked = 0;
+    for (std::size_t first = 0, last; first < degree; first = last) {
+      const Index j = neighbors_[by_target_[first]];
+      for (last = first; last < degree && neighbors_[by_target_[last]] == j;) ++last;
+      const Star to = graph_.star(j);
+      if (to.degree() > degree || (to.degree() == degree && j < i)) continue;
+      match(std::span(by_target_).subspan(first, last - first), i, to, j);
+      checked += 2 * (last - first);
+    }
+    return checked;
   }
-  return checked;
-}
+
+ private:
+  void copy(const Star& star) {
+    neighbors_.assign(star.neighbors.begin(), star.neighbors.end());
+    weights_.assign(star.weights.begin(), star.weights.end());
+    transports_.assign(star.transports.begin(), star.transports.end());
+  }
+
+  /// Every edge i -> j, of these places in the star of i, with an unused edge j -> i of the same weight and inverse transport.
+  void match(std::span<const std::size_t> edges, Index i, const Star& to, Index j) {
+    used_.assign(to.degree(), 0);
+    std::size_t backward = 0;
+    for (std::size_t r = 0; r < to.degree(); ++r) backward += to.neighbors[r] == i ? 1 : 0;
+    for (const std::size_t e : edges) {
+      bool weight_seen = false, matched = false;
+      for (std::size_t r = 0; r < to.degree() && !matched; ++r) {
+        if (to.neighbors[r] != i || used_[r] != 0) continue;
+        const double w = weights_[e];
+        if (std::abs(to.weights[r] - w) > weight_tolerance * std::abs(w)) continue;
+        weight_seen = true;
+        const Transport R_ji(layout_, transports_.data() + e * layout_.width());
+        if (!(R_ji.distance_from_inverse(to.transport(r)) <= transport_tolerance)) continue;
+        matched = true;
+        used_[r] = 1;
+      }
+      if (!matched)
+        throw InvalidGraph(edge_name(i, j) +
+                           (weight_seen ? ": the transports of the two directions are not inverse to each other"
+                                        : ": the reverse edge is missing or has another weight"));
+    }
+    if (edges.size() != backward)
+      throw InvalidGraph(edge_name(j, i) + ": " + std::to_string(backward) + " edges, but " +
+                         std::to_string(edges.size()) + " in the other direction");
+  }
+
+  const TangentGraph& graph_;
+  TransportLayout layout_;
+  std::vector<Index> neighbors_;  ///< of i; a star lives until the next one is asked for
+  std::vector<double> weights_, transports_;
+  std::vector<std::size_t> by_target_;
+  std::vector<std::uint8_t> used_;  ///< edges of j
+};
 
 /// Names an edge without a reverse one; some must be there.
 [[noreturn]] void name_edge_without_reverse(const TangentGraph& graph) {
   for (Index i = 0; i < graph.size(); ++i) {
-    const OwnedStar from(graph.star(i), graph.transport_layout());
-    for (Index j : from.neighbors) {
+    const Star star = graph.star(i);
+    const std::vector<Index> neighbors(star.neighbors.begin(), star.neighbors.end());
+    for (Index j : neighbors) {
       const Star to = graph.star(j);
       if (std::find(to.neighbors.begin(), to.neighbors.end(), i) == to.neighbors.end())
         throw InvalidGraph(edge_name(i, j) + ": the reverse edge is missing or has another weight");
@@ -124,9 +138,26 @@ std::size_t check_pairs_at(const TangentGraph& graph, Index i) {
   throw InvalidGraph("the graph's stars change from one call to the next");
 }
 
+void check_edges(const TangentGraph& graph, unsigned threads) {
+  constexpr Offset chunk = 1 << 14;
+  std::atomic<std::size_t> edges{0}, checked{0};
+  detail::parallel_chunks(graph.size(), chunk, threads, [&](Offset begin, Offset end) {
+    std::size_t sum = 0;
+    for (Offset i = begin; i < end; ++i) sum += check_vertex(graph, static_cast<Index>(i));
+    edges += sum;
+  });
+  detail::parallel_chunks(graph.size(), chunk, threads, [&](Offset begin, Offset end) {
+    PairCheck pairs(graph);
+    std::size_t sum = 0;
+    for (Offset i = begin; i < end; ++i) sum += pairs.at(static_cast<Index>(i));
+    checked += sum;
+  });
+  if (checked != edges) name_edge_without_reverse(graph);
+}
+
 }  // namespace
 
-void validate(const TangentGraph& graph) {
+void validate(const TangentGraph& graph, unsigned threads) {
   const int d = graph.dimension();
   if (graph.size() < 1) throw InvalidGraph("the graph has no vertices");
   if (d < 1) throw InvalidGraph("dimension " + std::to_string(d) + " must be at least 1");
@@ -136,10 +167,12 @@ void validate(const TangentGraph& graph) {
   if (!(h > 0) || !std::isfinite(h))
     throw InvalidGraph("mean edge length " + detail::number(h) + " must be finite and > 0");
 
-  std::size_t edges = 0, checked = 0;
-  for (Index i = 0; i < graph.size(); ++i) edges += check_vertex(graph, i);
-  for (Index i = 0; i < graph.size(); ++i) checked += check_pairs_at(graph, i);
-  if (checked != edges) name_edge_without_reverse(graph);
+  try {
+    check_edges(graph, threads);
+  } catch (const InvalidGraph&) {
+    check_edges(graph, 1);  // names the first one
+    throw;
+  }
 }
 
 }  // namespace ahm

@@ -100,7 +100,7 @@ void check_heat_options(const TangentGraph& graph, const HeatOptions& options) {
     throw InvalidArgument("expected_maps is " + std::to_string(options.expected_maps) + "; it must be >= 0 (0: many)");
   if (options.check_graph) {
     options.progress.step("check", 0.0);
-    validate(graph);
+    validate(graph, options.threads);
   }
   diffusion_time(options.t_coef, graph.mean_edge_length());
 }

@@ -19,7 +19,8 @@ namespace ahm {
 /// \code
 /// ahm::validate(graph);  // throws InvalidGraph "edge 3 -> 17: the transport is not orthogonal"
 /// \endcode
+/// @param threads  0: one per core; what is thrown does not depend on it
 /// @throws InvalidGraph
-void validate(const TangentGraph& graph);
+void validate(const TangentGraph& graph, unsigned threads = 1);
 
 }  // namespace ahm
