@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 
+#include "ahm/error.hpp"
 #include "ahm/maps/log_map_solver.hpp"
 #include "ahm/surface/exact/exact_geodesics.hpp"
 #include "ahm/viewer/session.hpp"
@@ -49,6 +50,11 @@ class Makers {
       throw InvalidArgument("paths and exact maps run over faces, which this input does not have");
     if (!geodesics_) geodesics_.emplace(surface_);
     return *geodesics_;
+  }
+
+  /// The same; null where there are no flat faces.
+  const ExactGeodesics* flat_faces() try { return &geodesics(); } catch (const Error&) {
+    return nullptr;
   }
 
  private:

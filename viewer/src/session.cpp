@@ -267,8 +267,13 @@ struct Session::Impl {
     const PlacedSource placed = surface.source(source, settings.u_axis);
     Settings reach = settings;  // the tool path needs no map of the rest, whose factors would take long
     if (makers.is_large()) reach.radius = 1.5 * cover.radius;
-    const LogMap made = in_turn(stop, [&] { return map(source, placed, reach, stop, true); });
-    const CoveragePath path = coverage_path(surface, inverse_map(surface, made, {.threads = options.threads}), cover);
+    const ExactGeodesics* flat = nullptr;
+    const LogMap made = in_turn(stop, [&] {
+      flat = makers.flat_faces();
+      return map(source, placed, reach, stop, true);
+    });
+    const InverseMap inverse = inverse_map(surface, made, {.threads = options.threads});
+    const CoveragePath path = flat ? coverage_path(*flat, inverse, cover) : coverage_path(inverse, cover);
     if (path.points.empty()) throw InvalidArgument("no line of the pattern meets a trusted part of the surface");
     std::vector<Vec3> points;
     json pieces = {0};

@@ -212,10 +212,16 @@ CoveragePath coverage_path(const InverseMap& inverse, const CoverageOptions& opt
   return carry(inverse, options, nullptr);
 }
 
+CoveragePath coverage_path(const ExactGeodesics& geodesics, const InverseMap& inverse, const CoverageOptions& options) {
+  check(options);
+  return carry(inverse, options, &geodesics);
+}
+
 CoveragePath coverage_path(const Surface& surface, const InverseMap& inverse, const CoverageOptions& options) {
   check(options);
   const FlatFaces faces(surface);
-  CoveragePath path = carry(inverse, options, faces.geodesics ? &*faces.geodesics : nullptr);
+  CoveragePath path =
+      faces.geodesics ? coverage_path(*faces.geodesics, inverse, options) : coverage_path(inverse, options);
   path.straight_reason = faces.reason;
   return path;
 }

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "ahm/applications/inverse_map.hpp"
+#include "ahm/surface/exact/exact_geodesics.hpp"
 
 namespace ahm {
 
@@ -68,5 +69,7 @@ CoveragePath coverage_path(const InverseMap& inverse, const CoverageOptions& opt
 /// @param surface  that the map is of
 /// @throws InvalidArgument (as above)
 CoveragePath coverage_path(const Surface& surface, const InverseMap& inverse, const CoverageOptions& options);
+/// The same on faces that are laid out already, for many paths of one surface.
+CoveragePath coverage_path(const ExactGeodesics& geodesics, const InverseMap& inverse, const CoverageOptions& options);
 
 }  // namespace ahm
