@@ -215,7 +215,7 @@ py::object path(const BodyPtr& body, const py::tuple& stops, bool closed, bool f
       throw InvalidArgument(at.name + ": " + std::to_string(points.size()) + " point; a path needs at least 2");
     if (closed) points.push_back(points.front());
     exact::GeodesicPath found = through(geodesics, points, fast, progress);
-    if (taut && found.status == Status::ok) found = geodesics.shortened(found.points, closed);
+    if (taut && found.points.size() > 1) found = geodesics.shortened(found.points, closed);  // a point is taut
     return Curve(*body, found);
   }));
 }

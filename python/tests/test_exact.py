@@ -199,6 +199,9 @@ def test_loops_around_nothing_shrink_and_taut_paths_keep_their_ends(flat_surface
     taut = ahm.geodesic_path(s, [0, 12, 142], taut=True)
     assert bent.length == pytest.approx(5.5) and taut.length == pytest.approx(np.hypot(3, 2.5))
     np.testing.assert_allclose(taut.points[[0, -1]], s.points[[0, 142]], atol=1e-12)
+    for closed in (False, True):
+        nothing = ahm.geodesic_path(s, 5, 5, taut=True, closed=closed)
+        assert nothing.length == 0 and np.array_equal(nothing.points[0], s.points[5])
 
 
 def test_paths_and_traces_of_flat_clouds_are_straight(flat_surfaces):
