@@ -74,7 +74,7 @@ Vec2 combine(const Weights& w, const std::array<Vec2, 3>& q) {
   return {w[0] * q[0][0] + w[1] * q[1][0] + w[2] * q[2][0], w[0] * q[0][1] + w[1] * q[1][1] + w[2] * q[2][1]};
 }
 
-/// What is left of a triangle inside the image, as barycentric weights (Sutherland & Hodgman 1974); empty: nothing.
+/// What is left of a triangle inside the image, as barycentric weights [SH74]; empty: nothing.
 std::vector<Weights> clipped(const Placement& image, const std::array<Vec2, 3>& q) {
   std::vector<Weights> polygon{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, kept;
   std::vector<double> inside;

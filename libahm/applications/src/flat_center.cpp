@@ -53,7 +53,7 @@ Slope slope_at(const FlatPoints& points, const VectorXd& x) {
   return slope;
 }
 
-/// The better of Newton's step and Weiszfeld's, which never fails to go down. Newton's may be worse by rounding.
+/// The better of Newton's step and Weiszfeld's, which never fails to go down, at points too [VZ00]. Newton's may be worse by rounding.
 VectorXd step(const FlatPoints& points, const VectorXd& x, const Slope& slope) {
   VectorXd weiszfeld = (1 - slope.weight / slope.pull.norm()) / slope.rate * slope.pull;
   if (slope.weight > 0) return weiszfeld;

@@ -42,7 +42,7 @@ ChartBox box_along(const std::vector<Vec2>& hull, double c, double s) {
   return box;
 }
 
-/// One side of the least rectangle lies along a side of the convex hull (Freeman & Shapira 1975).
+/// One side of the least rectangle lies along a side of the convex hull [FS75].
 ChartBox least_box(const std::vector<Vec2>& hull) {
   ChartBox best = box_along(hull, 1, 0);
   double least = std::numeric_limits<double>::infinity();

@@ -9,7 +9,7 @@
 
 namespace ahm::exact {
 
-/// Items by ascending key, in any order within a bucket. Keys more than the ring of buckets ahead wait in its last
+/// Items by ascending key, in any order within a bucket [XWLLH15]. Keys more than the ring of buckets ahead wait in its last
 /// bucket: they come too early, which costs the algorithm time and nothing else. Memory grows by chunks and is used again.
 template <class Item>
 class BucketQueue {
