@@ -28,6 +28,7 @@ Table orders(const Settings&);
 Table polygons(const Settings&);
 Table radial(const Settings&);
 Table runtime(const Settings&);
+Table stages_of_a_map(const Settings&);
 Table tessellations(const Settings&);
 Table times(const Settings&);
 Table trust(const Settings&);
@@ -104,6 +105,7 @@ std::span<const Experiment> experiments() {
                  "The paper compares with these methods, figure by figure.", methods_compared},
       Experiment{"mesh_scaling", "scaling", "Time and memory of meshes", "Not in the paper.", mesh_scaling},
       Experiment{"cloud_scaling", "scaling", "Time and memory of clouds", "Not in the paper.", cloud_scaling},
+      Experiment{"stages", "scaling", "Each stage, and the least it could take", "Not in the paper.", stages_of_a_map},
       Experiment{"march", "scaling", "One map by march", "Not in the paper.", march},
       Experiment{"far", "scaling", "Flat tubes and cubes by march", "Not in the paper.", far},
       Experiment{"local_maps", "scaling", "Local maps of every vertex", "Not in the paper.", local_maps},

@@ -1,7 +1,7 @@
 // From graph to factors: assembly, symbolic analysis, factorization.
 #include <benchmark/benchmark.h>
-#include <cholmod.h>
 
+#include "factor_size.hpp"
 #include "graphs.hpp"
 #include "heat/assemble.hpp"
 #include "heat/cholesky.hpp"
@@ -9,8 +9,8 @@
 
 namespace {
 
-using ahm::Ordering, ahm::SparseUpper, ahm::bench::report_bandwidth, ahm::bench::report_flops, ahm::bench::run,
-    ahm::bench::Shape;
+using ahm::Ordering, ahm::SparseUpper, ahm::bench::factor_size, ahm::bench::FactorSize, ahm::bench::report_bandwidth,
+    ahm::bench::report_flops, ahm::bench::run, ahm::bench::Shape;
 
 ahm::AssembledOperators operators(const ahm::TangentGraph& graph) {
   const double h = graph.mean_edge_length();
@@ -42,31 +42,6 @@ void analyze(benchmark::State& state, Shape shape, Ordering ordering) {
   state.SetItemsProcessed(state.iterations() * state.range(0));
 }
 
-/// What CHOLMOD says of the factor of a pattern: its entries without padding, and the operations of a real factorization.
-struct Count {
-  double entries, flops;
-};
-
-Count count(SparseUpper& matrix, Ordering ordering) {
-  cholmod_common common;
-  cholmod_l_start(&common);
-  common.nmethods = 1;
-  common.method[0].ordering = ordering == Ordering::amd ? CHOLMOD_AMD : CHOLMOD_METIS;
-  cholmod_sparse view{};
-  view.nrow = view.ncol = static_cast<std::size_t>(matrix.size());
-  view.nzmax = matrix.rows.size();
-  view.p = matrix.column_begin.data();
-  view.i = matrix.rows.data();
-  view.stype = view.sorted = view.packed = 1;
-  view.itype = CHOLMOD_LONG;
-  view.xtype = CHOLMOD_PATTERN;
-  cholmod_factor* L = cholmod_l_analyze(&view, &common);
-  const Count result{common.lnz, common.fl};
-  cholmod_l_free_factor(&L, &common);
-  cholmod_l_finish(&common);
-  return result;
-}
-
 /// Numbers into the analyzed pattern; the check of the residual is part of it.
 void factorize(benchmark::State& state, Shape shape, Ordering ordering, bool scalar) {
   ahm::AssembledOperators matrices = operators(graph_of(shape, static_cast<ahm::Index>(state.range(0))));
@@ -75,7 +50,7 @@ void factorize(benchmark::State& state, Shape shape, Ordering ordering, bool sca
   const double seconds =
       run(state, [&] { benchmark::DoNotOptimize(ahm::CholeskyFactor(matrix, symbolic, "benchmark")); });
   const ahm::CholeskyFactor factor(matrix, symbolic, "benchmark");
-  const Count size = count(matrices.A, ordering);
+  const FactorSize size = factor_size(matrices.A, ordering);
   state.counters["nnz(L)"] = size.entries;
   state.counters["stored"] = static_cast<double>(factor.nonzeros());
   state.counters["MB"] = 1e-6 * static_cast<double>(factor.bytes());

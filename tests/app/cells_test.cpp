@@ -38,6 +38,24 @@ TEST(CellsCommand, TwoPointsOfAPlaneShareItAtTheirBisector) {
   }
 }
 
+TEST(CellsCommand, TakesEveryVertexAsASource) {
+  const Folder folder;
+  const int n = 3000;
+  std::string all;
+  for (int i = n; i-- > 0;) all += std::to_string(i) + "\n";
+  const auto input = folder.write("sphere.xyz", xyz(sphere(n)));
+  const std::string out = folder / "cells.csv";
+  const Outcome outcome = run({"cells", input, "--sources", folder.write("all.txt", all), "-o", out});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  for (NumberRow p : read_numbers(out)) {
+    EXPECT_EQ(p["label"], n - 1 - p["index"]);
+    EXPECT_EQ(p["distance"], 0);
+  }
+  const Outcome twice = run({"cells", input, "--sources", folder.write("twice.txt", all + "17\n"), "-o", out});
+  EXPECT_EQ(twice.status, 1);
+  EXPECT_NE(twice.err.find("--sources 17"), std::string::npos) << twice.err;
+}
+
 TEST(CellsCommand, SpreadSourcesLieFartherApartThanAnyPointFromItsSource) {
   const Folder folder;
   const int n = 3000;

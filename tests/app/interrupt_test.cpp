@@ -4,6 +4,10 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <chrono>
+#include <random>
+#include <thread>
+
 #include "program.hpp"
 
 namespace ahm::test {
@@ -56,6 +60,35 @@ TEST(Killed, LeavesWhatTheNextRunRemoves) {
   folder.write(".ahm-" + std::to_string(running.pid) + "-0.tmp", "index,x,");
   EXPECT_EQ(run({"logmap", input, "--source", "0", "-o", folder / "map.csv"}).status, 0);
   EXPECT_EQ(folder.files(), (Words{"map.csv", "sphere.xyz"}));
+}
+
+/// The moments are seeded, where they fall is not: the same holds of each.
+TEST(Killed, AtRandomMomentsLeavesTheOldFileOrTheWholeNewOne) {
+  Folder folder;
+  const auto input = folder.write("sphere.xyz", xyz(sphere(2000)));
+  const Words words{"logmap", input, "--source", "0", "-o", folder / "map.csv"};
+  const auto start_of_run = std::chrono::steady_clock::now();
+  ASSERT_EQ(run(words).status, 0);
+  const std::chrono::duration<double> length = std::chrono::steady_clock::now() - start_of_run;
+  const std::string whole = read_text(folder / "map.csv");
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> moment(0, 1.2);
+  for (const int signal : {SIGKILL, SIGINT, SIGTERM})
+    for (int times = 0; times < 8; ++times) {
+      folder.write("map.csv", "precious\n");
+      const Running running = start(words);
+      std::this_thread::sleep_for(moment(random) * length);
+      kill(running.pid, signal);
+      const int status = finish(running).status;
+      const std::string text = read_text(folder / "map.csv");
+      EXPECT_TRUE(text == whole || text == "precious\n") << text.substr(0, 80);
+      if (status == 0) {
+        EXPECT_EQ(text, whole);
+      }
+    }
+  EXPECT_EQ(run(words).status, 0);
+  EXPECT_EQ(folder.files(), (Words{"map.csv", "sphere.xyz"}));
+  EXPECT_EQ(read_text(folder / "map.csv"), whole);
 }
 
 TEST(ClosedPipe, IsNoSuccessAndNoNoise) {

@@ -11,11 +11,13 @@
 
 #include "ahm/error.hpp"
 #include "ahm/graph/csr_graph.hpp"
+#include "ahm/maps/unfolding_front.hpp"
 #include "ahm/pointcloud/point_cloud_surface.hpp"
 #include "ahm/testing/flat_graphs.hpp"
 #include "ahm/testing/graph_changes.hpp"
 #include "ahm/testing/triangle_meshes.hpp"
 #include "ahm/trimesh/triangle_mesh_surface.hpp"
+#include "farthest.hpp"
 
 namespace ahm::test {
 namespace {
@@ -148,6 +150,46 @@ TEST(FarthestPoints, AreSpreadAsAGreedyCoverOfThePlane) {
     }
     EXPECT_NEAR(away[chosen[k + 1].index], *std::max_element(away.begin(), away.end()), 1e-10);
   }
+}
+
+/// As the definition says, by looking at all vertices each time.
+TEST(FarthestPoints, AreTheFirstOfThoseFarthestFromAllBefore) {
+  const CsrGraph graph(doubled(planar_triangulation(16).data));
+  std::vector<Vertex> expected{Vertex{3}};
+  UnfoldingFront front(graph, UnfoldingFront::stars(graph));
+  while (expected.size() < 200) {
+    front.add(Source::at_vertex(expected.back()));
+    front.run();
+    Vertex farthest{0};
+    for (Index i = 1; i < graph.size(); ++i)
+      if (front.distance(Vertex(i)) > front.distance(farthest)) farthest = Vertex(i);
+    expected.push_back(farthest);
+  }
+  EXPECT_EQ(farthest_points(graph, Vertex{3}, 200), expected);
+}
+
+/// n points of n: were all looked at for each, that would be n^2 times.
+TEST(FarthestPoints, AreFoundWithoutLookingAtAllEachTime) {
+  constexpr Index n = 1 << 12;
+  std::vector<double> distance(n, std::numeric_limits<double>::infinity());
+  Farthest farthest(n);
+  Offset changes = 0, looks = 0;
+  std::vector<bool> chosen(n, false);
+  Vertex next{0};
+  for (Index k = 0; k < n; ++k) {
+    chosen[next.index] = true;
+    // Around the chosen one, as far as it is nearer than those before: points of a line.
+    for (int side : {-1, 1})
+      for (Index i = side < 0 ? next.index : next.index + 1; i >= 0 && i < n; i += side) {
+        const double away = std::abs(i - next.index);
+        if (!(away < distance[i])) break;
+        distance[i] = away, ++changes;
+      }
+    next = farthest.of([&](Vertex v) { return ++looks, distance[v.index]; });
+  }
+  EXPECT_EQ(std::count(chosen.begin(), chosen.end(), true), n);
+  EXPECT_LE(looks, changes + n);  // each change once, and each answer
+  EXPECT_LT(changes, n * 14);     // n log2 n and a little
 }
 
 TEST(FarthestPoints, VisitEveryComponentFirst) {

@@ -46,11 +46,13 @@ struct CellsOptions {
 /// Sources as vertices of the graph.
 std::vector<Vertex> vertices_of(const Input& input, const std::vector<SourceSpec>& specs) {
   std::vector<Vertex> result;
+  std::vector<bool> taken(static_cast<std::size_t>(input.graph().size()), false);
   for (const SourceSpec& spec : specs) {
     const Vertex vertex = vertex_at(input, spec, "--sources");
-    if (std::find(result.begin(), result.end(), vertex) != result.end())
+    if (taken[vertex.index])
       throw InvalidArgument(
           fmt::format("--sources {}: this is the vertex of an entry before; give every source once", to_string(spec)));
+    taken[vertex.index] = true;
     result.push_back(vertex);
   }
   return result;
@@ -59,6 +61,8 @@ std::vector<Vertex> vertices_of(const Input& input, const std::vector<SourceSpec
 /// A vertex that is none of the input's (inside a polygon) gives way to its nearest neighbour that is one and is free.
 void move_to_rows(const Surface& surface, std::vector<Vertex>& vertices) {
   const RowMap& rows = surface.rows();
+  std::vector<bool> taken(static_cast<std::size_t>(surface.graph().size()), false);
+  for (const Vertex vertex : vertices) taken[vertex.index] = true;
   for (auto& vertex : vertices) {
     if (rows.row(vertex)) continue;
     const Star star = surface.graph().star(vertex.index);
@@ -67,11 +71,12 @@ void move_to_rows(const Surface& surface, std::vector<Vertex>& vertices) {
     for (std::size_t e = 0; e < star.degree(); ++e) {
       const Vertex j(star.neighbors[e]);
       const double away = std::hypot(star.log(e)[0], star.log(e)[1]);
-      if (!rows.row(j) || !(away < least)) continue;
-      if (std::find(vertices.begin(), vertices.end(), j) != vertices.end()) continue;
+      if (!rows.row(j) || !(away < least) || taken[j.index]) continue;
       least = away;
       nearest = j;
     }
+    taken[vertex.index] = false;
+    taken[nearest.index] = true;
     vertex = nearest;
   }
 }

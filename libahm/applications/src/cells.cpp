@@ -8,6 +8,7 @@
 
 #include "ahm/error.hpp"
 #include "ahm/util/memory.hpp"
+#include "farthest.hpp"
 
 namespace ahm {
 namespace {
@@ -77,14 +78,12 @@ std::vector<Vertex> farthest_points(const TangentGraph& graph, Vertex first, Ind
   return detail::with_memory_check("spreading points", [&] {
     std::vector<Vertex> points{first};
     UnfoldingFront front(graph, UnfoldingFront::stars(graph));
+    Farthest farthest(n);
     while (points.size() < static_cast<std::size_t>(count)) {
       progress.step("farthest points", static_cast<double>(points.size()) / count);
       front.add(Source::at_vertex(points.back()));
       front.run();
-      Vertex farthest{0};
-      for (Index i = 1; i < n; ++i)
-        if (front.distance(Vertex(i)) > front.distance(farthest)) farthest = Vertex(i);
-      points.push_back(farthest);
+      points.push_back(farthest.of([&](Vertex vertex) { return front.distance(vertex); }));
     }
     return points;
   });

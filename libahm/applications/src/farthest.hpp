@@ -1,0 +1,53 @@
+/// \file
+/// The farthest vertex, again and again while distances shrink.
+///
+/// \code
+/// ahm::Farthest farthest(graph.size());
+/// const ahm::Vertex vertex = farthest.of([&](ahm::Vertex v) { return front.distance(v); });
+/// \endcode
+#pragma once
+
+#include <algorithm>
+#include <limits>
+#include <vector>
+
+#include "ahm/types.hpp"
+
+namespace ahm {
+
+/// A heap of distances as they were, whose top is put right until it is true: a vertex is looked at only when it is on top,
+/// which it leaves when its distance has shrunk.
+class Farthest {
+ public:
+  /// All distances begin as infinity.
+  explicit Farthest(Index vertices) {
+    heap_.reserve(static_cast<std::size_t>(vertices));
+    for (Index i = 0; i < vertices; ++i) heap_.push_back({std::numeric_limits<double>::infinity(), i});
+  }
+
+  /// The first of those that are farthest.
+  /// @param distance  of a vertex, never more than in calls before, no NaN
+  template <class Distance>
+  Vertex of(const Distance& distance) {
+    for (;;) {
+      const Entry top = heap_.front();
+      const double now = distance(Vertex(top.vertex));
+      if (now == top.distance) return Vertex(top.vertex);
+      std::pop_heap(heap_.begin(), heap_.end());
+      heap_.back().distance = now;
+      std::push_heap(heap_.begin(), heap_.end());
+    }
+  }
+
+ private:
+  struct Entry {
+    double distance;
+    Index vertex;
+    bool operator<(const Entry& other) const {
+      return distance != other.distance ? distance < other.distance : vertex > other.vertex;
+    }
+  };
+  std::vector<Entry> heap_;
+};
+
+}  // namespace ahm
