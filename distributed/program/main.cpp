@@ -35,7 +35,8 @@ struct Arguments {
 };
 
 void add_tile_options(CLI::App& app, Arguments& a) {
-  app.add_option("input", a.input, "file of points: binary PLY or PCD, or LAS")->required();
+  app.add_option("input", a.input, "file of points: PLY, PCD, LAS, or text (.xyz, .txt, .asc, .csv, .pts); also .gz")
+      ->required();
   app.add_option("-o,--output", a.folder, "folder for the tiles, a new one")->required();
   app.add_option("--tile-points", a.tile.tile_points, "points per tile")->capture_default_str();
   app.add_option("--k", a.tile.k, "neighbours per point; 0: 30")->capture_default_str();
