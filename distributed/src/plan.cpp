@@ -17,6 +17,7 @@
 #include "clean_points.hpp"
 #include "cut_points.hpp"
 #include "stream_median.hpp"
+#include "tile_folder.hpp"
 
 namespace ahm::distributed {
 namespace {
@@ -150,8 +151,7 @@ class Cutter {
 };
 
 void check(const TileOptions& options) {
-  if (options.tile_points < 100)
-    throw InvalidArgument("tile_points is " + std::to_string(options.tile_points) + "; it must be at least 100");
+  check_tile_points(options.tile_points);
   if (options.k != 0 && options.k < 3)
     throw InvalidArgument("k is " + std::to_string(options.k) + "; it must be at least 3 (default 30)");
   if (!(options.max_edge_ratio >= 1))
@@ -178,8 +178,7 @@ std::filesystem::path folder_that_exists(std::filesystem::path folder) {
 Manifest plan_tiles(const std::filesystem::path& input, const std::filesystem::path& folder, const TileOptions& options,
                     const Progress& progress) {
   check(options);
-  if (std::filesystem::exists(folder / "manifest.json"))
-    throw InvalidArgument("'" + folder.string() + "' holds tiles already; build them, or remove the folder");
+  check_no_tiles(folder);
   io::PointStream stream(input, folder_that_exists(folder));
   check(options, stream);
   std::filesystem::create_directories(folder);

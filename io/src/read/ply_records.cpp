@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <string>
 
+#include "ahm/error.hpp"
 #include "read/point_records.hpp"
 
 namespace ahm::io {
@@ -32,7 +33,8 @@ std::optional<PointRecords> ply_records(const Input& in) {
   records.is_swapped = is_swapped(header.format);
   for (const PlyElement& element : header.elements)
     if ((element.name == "face" || element.name == "tristrips") && element.count > 0)
-      fail(in, "it has faces; only clouds of points can be streamed");
+      throw IoError("no_cloud", "cannot read " + quoted_path(in.path) + ": it has faces",
+                    "only clouds of points can be streamed");
   if (header.format == PlyFormat::ascii) return std::nullopt;
   for (const PlyElement& element : header.elements) {
     if (element.name == "vertex") {

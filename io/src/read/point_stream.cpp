@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "ahm/error.hpp"
 #include "formats/format.hpp"
 #include "read/byte_stream.hpp"
 #include "read/point_records.hpp"
@@ -49,7 +50,10 @@ const Format& format_of(const std::filesystem::path& path) {
   std::vector<std::string> known;
   for (const Format& other : formats())
     if (streams(other)) known.insert(known.end(), other.extensions.begin(), other.extensions.end());
-  fail({path, {}}, "points are read block by block from " + list_of(known, "or") + " files; convert it to one");
+  throw IoError(
+      "no_cloud",
+      "cannot read " + quoted_path(path) + ": points are read block by block from " + list_of(known, "or") + " files",
+      "convert it to one");
 }
 
 }  // namespace

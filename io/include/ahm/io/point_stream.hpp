@@ -24,7 +24,8 @@ class PointStream {
  public:
   /// @param scratch  folder whose disk has room for such a file
   /// @throws IoError as `read`, and when the file is none that can be streamed (of another format; lists at vertices of
-  /// binary PLY; coordinates of PCD that are whole numbers of 8 bytes, or in text such as do not fit their type), has faces, or the disk is full
+  /// binary PLY; coordinates of PCD that are whole numbers of 8 bytes, or in text such as do not fit their type), has faces, or the
+  /// disk is full; fault "no_cloud" where it has faces, or is of another format
   explicit PointStream(const std::filesystem::path& path,
                        const std::filesystem::path& scratch = std::filesystem::temp_directory_path());
   ~PointStream();
