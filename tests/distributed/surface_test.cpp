@@ -21,6 +21,7 @@
 #include "ahm/testing/triangle_meshes.hpp"
 #include "ahm/trimesh/triangle_mesh_surface.hpp"
 #include "csv_lines.hpp"
+#include "npy_column.hpp"
 #include "ranks.hpp"
 #include "support/expect_error.hpp"
 #include "support/temporary_folder.hpp"
@@ -163,6 +164,49 @@ TEST(TiledSurface, OfPolygonsHasItsMaps) {
 TEST(TiledSurface, OfAMoebiusBandHasItsMaps) {  // reflections
   const Mesh mesh = moebius_mesh(120, 16);
   expect_same_maps(TriangleMeshSurface::build(mesh.positions, mesh.faces), 600, 3, Row(50));
+}
+
+TEST(TiledSurface, HasTheMapFromSeveralRowsAndTheDistancesAlone) {
+  const Mesh mesh = torus(3000);
+  const auto surface = TriangleMeshSurface::build(mesh.positions, mesh.faces);
+  const TiledSurface tiled(surface, 500);
+  const TiledGraph graph(tiled.tiles, 1 << 24);
+  std::vector<Vertex> in_tiles, in_memory;
+  for (Index row : {3, 1500, 2900}) {
+    in_tiles.push_back(graph.vertex_of_row(Row(row)).value());
+    in_memory.push_back(surface.vertex(Row(row)));
+  }
+  const LogMapSolver solver(surface.graph(), {.strategy = Strategy::march});
+  const Source source = Source::at_vertices(in_tiles), expected = Source::at_vertices(in_memory);
+  write_log_map(graph, source, tiled.map, {});
+  distributed::write_rows(graph, tiled.map, tiled.csv);
+  expect_rows(tiled, surface.on_rows(solver.solve(expected, {.spread = true})));
+
+  const auto distances = tiled.folder.directory() / "distances";
+  write_log_map(graph, source, distances, {.coordinates = false});
+  distributed::write_rows(graph, distances, tiled.csv);
+  const RowLogMap localized = surface.on_rows(solver.solve(expected, {.variant = Variant::localized}));
+  for (const auto& [row, line] : csv_lines(tiled.csv, "row,distance,status"))
+    ASSERT_NEAR(std::stod(line.substr(1)), localized.distance[static_cast<std::size_t>(row)], 1e-9) << "row " << row;
+}
+
+/// Over rows alone, of which the vertices inside refined polygons have none.
+TEST(TiledSurface, OfPolygonsHasMeansOfColumns) {
+  const Polygons mesh = dual_sphere(6);
+  const auto surface = PolygonMeshSurface::build(mesh.positions, mesh.begin, mesh.corners);
+  ASSERT_GT(surface.graph().size(), mesh.vertices());
+  const TiledSurface tiled(surface, 300);
+  const TiledGraph graph(tiled.tiles, 1 << 24);
+  const auto column = tiled.folder.directory() / "ones.npy";
+  write_column(column, std::vector<double>(mesh.positions.size(), 1.0));
+  distributed::TiledLocalMapOptions options;
+  options.maps.radius = 0.5;
+  options.features = {"mean:" + column.string()};
+  for (std::size_t t = 0; t < graph.tiles(); ++t) {
+    ASSERT_TRUE(write_local_maps(graph, t, tiled.map, options));
+    const distributed::ArrayFile file(Manifest::file(tiled.map, "local", t), "local");
+    for (double mean : file.get<double>("mean")) ASSERT_NEAR(mean, 1, 1e-12);
+  }
 }
 
 TEST(TiledSurface, HasTheFramesAndTheLocalMapsOfTheSurface) {

@@ -162,7 +162,7 @@ TEST(StreamedLogMap, RefusesWhatNeedsTheWholeGraph) {
   EXPECT_THROW(stream_log_map(graph, source, {.order = 2}, {}, rows), InvalidArgument);
   EXPECT_THROW(stream_log_map(graph, source, {}, {.frames = true}, rows), InvalidArgument);
   EXPECT_THROW(stream_log_map(graph, source, {}, {.radius = 0}, rows), InvalidArgument);
-  Source curve;
+  Source curve(2);
   curve.add(Vertex{5}, 1, Vec2{0, 0}, {}, {.point = 0, .distance = 0});
   EXPECT_THROW(stream_log_map(graph, curve, {}, {}, rows), InvalidArgument);
 }
