@@ -1,5 +1,5 @@
 /// \file
-/// The program ahm-tiles: clouds that do not fit into memory, from a file of points to a log map, step by step.
+/// The program ahm-tiles: clouds that do not fit into memory, from a file of points to a log map, step by step; and meshes.
 
 #include <CLI/CLI.hpp>
 #include <array>
@@ -12,6 +12,7 @@
 
 #include "ahm/distributed/build_tiles.hpp"
 #include "program/arguments.hpp"
+#include "program/plan_mesh.hpp"
 
 namespace {
 
@@ -35,9 +36,12 @@ struct Arguments {
 };
 
 void add_tile_options(CLI::App& app, Arguments& a) {
-  app.add_option("input", a.input, "file of points: binary PLY or PCD, or LAS")->required();
+  app.add_option("input", a.input,
+                 "points: PLY, PCD, LAS, or text (.xyz, .txt, .asc, .csv, .pts); or a mesh of any kind that ahm reads; "
+                 "also .gz")
+      ->required();
   app.add_option("-o,--output", a.folder, "folder for the tiles, a new one")->required();
-  app.add_option("--tile-points", a.tile.tile_points, "points per tile")->capture_default_str();
+  app.add_option("--tile-points", a.tile.tile_points, "points, or vertices of a mesh, per tile")->capture_default_str();
   app.add_option("--k", a.tile.k, "neighbours per point; 0: 30")->capture_default_str();
   app.add_flag("--drop-nan", a.tile.drop_non_finite, "leave out points that are not finite");
   app.add_flag("--ignore-normals", a.tile.ignore_normals, "estimate normals, though the file has some");
@@ -110,10 +114,21 @@ void simulate(const Arguments& a) {
   }
 }
 
+/// Points, or else a mesh.
+Manifest plan_input(const Arguments& a) {
+  try {
+    return plan_tiles(a.input, a.folder, a.tile, telling(name));
+  } catch (const IoError& error) {
+    if (error.fault() != "no_cloud") throw;
+  }
+  return plan_mesh(a.input, a.folder, a.tile, telling(name));
+}
+
 void add_building(CLI::App& app, Arguments& a) {
-  CLI::App& plan = *app.add_subcommand("plan", "cut a file of points into tiles");
+  CLI::App& plan = *app.add_subcommand(
+      "plan", "cut a file of points into tiles; those of a mesh, which must fit into memory, are built at once");
   add_tile_options(plan, a);
-  plan.callback([&] { print(plan_tiles(a.input, a.folder, a.tile, telling(name))); });
+  plan.callback([&] { print(plan_input(a)); });
   CLI::App& build = *app.add_subcommand("build", "build the graph of all tiles; killed, it goes on where it was");
   add_build_options(build, a);
   build.callback([&] {

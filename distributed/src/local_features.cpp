@@ -37,7 +37,7 @@ class Area final : public LocalFeature {
   std::vector<double> area_;
 };
 
-/// Of columns of the input.
+/// Of columns of the input, over the vertices at its rows: those inside refined polygons have none.
 class Means final : public LocalFeature {
  public:
   Means(const std::vector<std::string>& files, const TiledGraph& graph) : graph_(graph) {
@@ -54,14 +54,15 @@ class Means final : public LocalFeature {
     return checksum(std::as_bytes(std::span(values)));
   }
   void enter(std::span<const Index> region) override {
-    values_.clear(), means_.clear();
-    for (Index vertex : region) append(values_, vertex);
+    values_.clear(), means_.clear(), has_row_.clear();
+    for (Index vertex : region) has_row_.push_back(append(values_, vertex));
   }
   void add(const VertexMap& map) override {
     const std::size_t width = columns_.size(), first = means_.size();
     means_.resize(first + width, 0.0);
     double all = 0;
     for (std::size_t e = 0; e < map.neighbors.size(); ++e) {
+      if (!has_row_[to_size(map.neighbors[e].index)]) continue;
       const double* values = values_.data() + to_size(map.neighbors[e].index) * width;
       for (std::size_t c = 0; c < width; ++c) means_[first + c] += map.weights[e] * values[c];
       all += map.weights[e];
@@ -71,8 +72,8 @@ class Means final : public LocalFeature {
   void put(std::vector<NamedArray>& arrays) const override { arrays.push_back(array("mean", means_)); }
 
  private:
-  /// Of each column the mean of the rows at a vertex.
-  void append(std::vector<double>& values, Index vertex) const {
+  /// Of each column the mean of the rows at a vertex. @return whether there are some
+  bool append(std::vector<double>& values, Index vertex) const {
     const std::size_t tile = graph_.tile_of(vertex);
     const TiledGraph::TileRows at = graph_.rows(tile);
     const auto i = to_size(vertex - graph_.first_vertex(tile));
@@ -81,11 +82,13 @@ class Means final : public LocalFeature {
       for (Index r = at.begin[i]; r < at.begin[i + 1]; ++r) sum += column[to_size(at.rows[to_size(r)])];
       values.push_back(sum / (at.begin[i + 1] - at.begin[i]));
     }
+    return at.begin[i] < at.begin[i + 1];
   }
 
   const TiledGraph& graph_;
   std::vector<RowValues> columns_;
   std::vector<double> values_, means_;  ///< of the region, and what was found
+  std::vector<char> has_row_;           ///< of the region
 };
 
 class Curvature final : public LocalFeature {

@@ -22,25 +22,27 @@ Json to_json(const Manifest& m) {
   Json tiles = Json::array();
   for (const TileFacts& t : m.tiles) tiles.push_back({t.cut, t.hash, t.points, t.vertices, t.edges});
   const TileOptions& o = m.options;
-  return {{"input", m.input},
-          {"options",
-           {{"tile_points", o.tile_points},
-            {"k", o.k},
-            {"max_edge_ratio", o.max_edge_ratio},
-            {"drop_non_finite", o.drop_non_finite},
-            {"ignore_normals", o.ignore_normals}}},
-          {"stage", to_string(m.stage)},
-          {"points", m.points},
-          {"non_finite", m.non_finite},
-          {"placement", {m.first, m.middle, m.second}},
-          {"k", m.k},
-          {"noise", m.noise},
-          {"mollification", m.mollification},
-          {"blocks", m.kind == TransportKind::block},
-          {"reflections", m.reflections},
-          {"components", m.components},
-          {"mean_edge_length", m.mean_edge_length},
-          {"tiles", tiles}};
+  Json result{{"input", m.input},
+              {"options",
+               {{"tile_points", o.tile_points},
+                {"k", o.k},
+                {"max_edge_ratio", o.max_edge_ratio},
+                {"drop_non_finite", o.drop_non_finite},
+                {"ignore_normals", o.ignore_normals}}},
+              {"stage", to_string(m.stage)},
+              {"points", m.points},
+              {"non_finite", m.non_finite},
+              {"placement", {m.first, m.middle, m.second}},
+              {"k", m.k},
+              {"noise", m.noise},
+              {"mollification", m.mollification},
+              {"blocks", m.kind == TransportKind::block},
+              {"reflections", m.reflections},
+              {"components", m.components},
+              {"mean_edge_length", m.mean_edge_length},
+              {"tiles", tiles}};
+  if (m.is_surface) result["surface"] = {{"delaunay", m.is_delaunay}};
+  return result;
 }
 
 Stage stage_of(const std::string& name) {
@@ -49,7 +51,7 @@ Stage stage_of(const std::string& name) {
   throw IoError("'" + name + "' is no stage");
 }
 
-Manifest from_json(const Json& j) {
+Manifest from_json(const Json& j, bool is_surface) {
   Manifest m;
   const Json &o = j.at("options"), &placement = j.at("placement");
   m.input = j.at("input").get<std::string>();
@@ -68,6 +70,8 @@ Manifest from_json(const Json& j) {
   m.reflections = j.at("reflections").get<std::int64_t>();
   m.components = j.at("components").get<Index>();
   m.mean_edge_length = j.at("mean_edge_length").get<double>();
+  m.is_surface = is_surface;
+  m.is_delaunay = is_surface && j.at("surface").at("delaunay").get<bool>();
   for (const Json& t : j.at("tiles"))
     m.tiles.push_back({t.at(0).get<std::uint64_t>(), t.at(1).get<std::uint64_t>(), t.at(2).get<Index>(),
                        t.at(3).get<Index>(), t.at(4).get<std::int64_t>()});
@@ -99,12 +103,13 @@ Manifest Manifest::read(const std::filesystem::path& folder) {
   if (!file) throw IoError(place + "it is not there; plan the tiles first");
   try {
     const Json whole = Json::parse(file);
-    if (whole.at("version") != format_version)
-      throw IoError(place + "its version is " + whole.at("version").dump() + ", this is " +
-                    std::to_string(format_version) + "; plan the tiles again");
+    const Json& version = whole.at("version");
+    if (version != cloud_version && version != surface_version)
+      throw IoError(place + "its version is " + version.dump() + "; " + std::to_string(cloud_version) + " and " +
+                    std::to_string(surface_version) + " are known; plan the tiles again");
     if (whole.at("checksum") != hash_of(whole.at("tiles").dump()))
       throw IoError(place + "it is damaged (its checksum is wrong); plan the tiles again");
-    return from_json(whole.at("tiles"));
+    return from_json(whole.at("tiles"), version == surface_version);
   } catch (const Json::exception& e) {
     throw IoError(place + "it is damaged (" + e.what() + "); plan the tiles again");
   }
@@ -112,7 +117,9 @@ Manifest Manifest::read(const std::filesystem::path& folder) {
 
 void Manifest::write(const std::filesystem::path& folder) const {
   const Json content = to_json(*this);
-  const Json whole{{"version", format_version}, {"checksum", hash_of(content.dump())}, {"tiles", content}};
+  const Json whole{{"version", is_surface ? surface_version : cloud_version},
+                   {"checksum", hash_of(content.dump())},
+                   {"tiles", content}};
   io::AtomicFile file(manifest_in(folder));
   file.write(whole.dump(1) + "\n");
   file.commit();

@@ -17,6 +17,7 @@
 #include "clean_points.hpp"
 #include "cut_points.hpp"
 #include "stream_median.hpp"
+#include "tile_folder.hpp"
 
 namespace ahm::distributed {
 namespace {
@@ -149,13 +150,15 @@ class Cutter {
   std::vector<Part> parts_;
 };
 
-void check(const TileOptions& options, const io::PointStream& stream) {
-  if (options.tile_points < 100)
-    throw InvalidArgument("tile_points is " + std::to_string(options.tile_points) + "; it must be at least 100");
+void check(const TileOptions& options) {
+  check_tile_points(options.tile_points);
   if (options.k != 0 && options.k < 3)
     throw InvalidArgument("k is " + std::to_string(options.k) + "; it must be at least 3 (default 30)");
   if (!(options.max_edge_ratio >= 1))
     throw InvalidArgument("max_edge_ratio is " + detail::number(options.max_edge_ratio) + "; it must be at least 1");
+}
+
+void check(const TileOptions& options, const io::PointStream& stream) {
   if (stream.has_normals() && !options.ignore_normals)
     throw InvalidArgument("normals_given", "the file has normals, which tiles do not use yet",
                           "set ignore_normals to have them estimated");
@@ -163,15 +166,22 @@ void check(const TileOptions& options, const io::PointStream& stream) {
     throw ResourceExhausted("the file has " + std::to_string(stream.size()) + " points; at most 2^30 are supported");
 }
 
+/// It, or the one in which it is to be made.
+std::filesystem::path folder_that_exists(std::filesystem::path folder) {
+  folder = std::filesystem::absolute(folder);
+  while (!std::filesystem::is_directory(folder) && folder.has_relative_path()) folder = folder.parent_path();
+  return folder;
+}
+
 }  // namespace
 
 Manifest plan_tiles(const std::filesystem::path& input, const std::filesystem::path& folder, const TileOptions& options,
                     const Progress& progress) {
-  io::PointStream stream(input);
+  check(options);
+  check_no_tiles(folder);
+  io::PointStream stream(input, folder_that_exists(folder));
   check(options, stream);
   std::filesystem::create_directories(folder);
-  if (std::filesystem::exists(folder / "manifest.json"))
-    throw InvalidArgument("'" + folder.string() + "' holds tiles already; build them, or remove the folder");
   Manifest m;
   m.input = std::filesystem::absolute(input).string();
   m.options = options;

@@ -8,9 +8,21 @@
 #include "ahm/distributed/array_file.hpp"
 #include "ahm/distributed/build_tiles.hpp"
 #include "ahm/distributed/manifest.hpp"
+#include "ahm/error.hpp"
 #include "clean_points.hpp"
 
 namespace ahm::distributed {
+
+/// @throws InvalidArgument
+inline void check_tile_points(Index tile_points) {
+  if (tile_points < 100)
+    throw InvalidArgument("tile_points is " + std::to_string(tile_points) + "; it must be at least 100");
+}
+/// That a folder does not hold tiles already. @throws InvalidArgument
+inline void check_no_tiles(const std::filesystem::path& folder) {
+  if (std::filesystem::exists(folder / "manifest.json"))
+    throw InvalidArgument("'" + folder.string() + "' holds tiles already; build them, or remove the folder");
+}
 
 /// The kinds of files that steps leave.
 namespace kind {

@@ -119,9 +119,11 @@ Star TiledGraph::star(Index vertex) const {
 
 std::optional<Frame> TiledGraph::frame(Index vertex) const {
   const Tile& t = tile_at(vertex);
-  const Vec3 normal = t.file.get<Vec3>("normals")[vertex];
+  const Vec3 normal = t.file.get<Vec3>("normals")[vertex], origin = t.file.get<Vec3>("positions")[vertex];
+  if (manifest_.is_surface)
+    return Frame{origin, t.file.get<Vec3>("x_axes")[vertex], t.file.get<Vec3>("y_axes")[vertex], normal};
   const pointcloud::PlaneAxes axes(normal);
-  return Frame{t.file.get<Vec3>("positions")[vertex], axes.x, axes.y, normal};
+  return Frame{origin, axes.x, axes.y, normal};
 }
 
 std::vector<Vec3> TiledGraph::middles() const {
@@ -158,9 +160,9 @@ Vertex TiledGraph::nearest_vertex(const Vec3& position) const {
   double least = std::numeric_limits<double>::infinity();
   Index nearest = 0;
   for (std::size_t t = 0; t < tiles(); ++t) {
-    const auto positions = tile(t).file.get<Vec3>("positions");
-    for (std::size_t i = 0; i < positions.size(); ++i)
-      if (const double d = norm(positions[i] - position); d < least) {
+    const TileRows here = rows(t);
+    for (std::size_t i = 0; i < here.positions.size(); ++i)
+      if (const double d = norm(here.positions[i] - position); d < least && here.begin[i] < here.begin[i + 1]) {
         least = d;
         nearest = first_[t] + static_cast<Index>(i);
       }

@@ -107,7 +107,7 @@ void write_rows(const TiledGraph& graph, const std::filesystem::path& folder, co
     throw IoError("cannot read '" + (folder / "map.json").string() +
                   "': the map is not finished, or not one of these tiles");
   const MarchGoal goal = whole.value("coordinates", true) ? MarchGoal::map : MarchGoal::distances;
-  const std::optional<Vec3> source = place_of_source(graph, whole);
+  const std::optional<Vec3> source = graph.is_delaunay() ? std::nullopt : place_of_source(graph, whole);
   io::AtomicFile file(csv);
   file.write(goal == MarchGoal::map ? "row,u,v,distance,spread,status\n" : "row,distance,status\n");
   for (std::size_t t = 0; t < graph.tiles(); ++t) {

@@ -220,6 +220,19 @@ TEST(TileFaults, InputsThatCannotBeTiledAreRefused) {
   write_points(input, {{0, 0, 0}, {1, 0, 0}, {0, NAN, 0}, {0, 1, 0}});
   expect_error<InvalidGeometry>([&] { plan(); }, "1 points of the file are not finite");
   plan({.drop_non_finite = true});
+  const auto text = folder.directory() / "points.xyz";
+  const auto plan_text = [&](const std::string& lines, const distributed::TileOptions& options = {}) {
+    std::filesystem::remove_all(tiles);
+    std::ofstream(text) << lines;
+    distributed::plan_tiles(text, tiles, options);
+  };
+  expect_error<IoError>([&] { plan_text("0 0 0\n0 1 x\n"); }, "line 2: 'x' is not a number");
+  EXPECT_FALSE(std::filesystem::exists(tiles));
+  expect_error<InvalidGeometry>([&] { plan_text("0 0 0\n0 1 nan\n1 0 0\n1 1 0\n"); },
+                                "1 points of the file are not finite");
+  plan_text("0 0 0\n0 1 nan\n1 0 0\n1 1 0\n", {.drop_non_finite = true});
+  expect_error<InvalidArgument>([&] { plan_text("0 0 0 0 0 1\n1 0 0 0 0 1\n0 1 0 0 0 1\n"); }, "normals");
+  plan_text("0 0 0 0 0 1\n1 0 0 0 0 1\n0 1 0 0 0 1\n", {.ignore_normals = true});
   write_points(input, hills(20));
   expect_error<InvalidArgument>([&] { plan({.tile_points = 10}); }, "tile_points");
   expect_error<InvalidArgument>([&] { plan({.k = 2}); }, "k is 2");

@@ -5,6 +5,7 @@
 #include "ahm/error.hpp"
 #include "ahm/util/vec.hpp"
 #include "csv_lines.hpp"
+#include "npy_column.hpp"
 #include "support/expect_error.hpp"
 #include "tiled_clouds.hpp"
 
@@ -17,23 +18,6 @@ using distributed::TiledGraph;
 using std::filesystem::path;
 
 /// A file as NumPy writes it.
-void write_npy(const path& name, const std::string& type, const std::string& shape, std::string_view bytes) {
-  std::string header = "{'descr': '" + type + "', 'fortran_order': False, 'shape': " + shape + ", }";
-  header.resize((10 + header.size() + 1 + 63) / 64 * 64 - 11, ' ');
-  header += '\n';
-  const auto size = static_cast<std::uint16_t>(header.size());
-  std::ofstream file(name, std::ios::binary);
-  file.write("\x93NUMPY\x01\x00", 8).write(reinterpret_cast<const char*>(&size), 2) << header << bytes;
-}
-
-std::string bytes_of(const std::vector<double>& values) {
-  return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(double)};
-}
-
-void write_column(const path& name, const std::vector<double>& values) {
-  write_npy(name, "<f8", "(" + std::to_string(values.size()) + ",)", bytes_of(values));
-}
-
 TEST(LocalFeatures, CountTheVerticesOfMapsAndAddTheirMasses) {
   const TiledCloud cloud(hills(60), {.tile_points = 1000});
   cloud.build();

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <sstream>
 
 #include "ahm/distributed/tiled_log_map.hpp"
 #include "tiled_clouds.hpp"
@@ -94,20 +95,36 @@ TEST(TiledGraph, IsThatOfAnotherNumberOfNeighbours) {
   expect_same(TiledCloud(hills(100), {.tile_points = 2500, .k = 12}), 3);
 }
 
+/// The same points as text.
+std::string lines_of(const std::vector<Vec3>& points) {
+  std::ostringstream text;
+  text.precision(17);
+  for (const Vec3& p : points) text << p[0] << ' ' << p[1] << ' ' << p[2] << '\n';
+  return text.str();
+}
+
 /// Of the same points, whatever the file.
-TEST(TiledGraph, IsThatOfAPcdFile) {
+TEST(TiledGraph, IsThatOfAnyKindOfFile) {
   const TiledCloud cloud(hills(60), {.tile_points = 1000});
-  const auto input = cloud.folder.directory() / "points.pcd", tiles = cloud.folder.directory() / "others";
-  const std::string count = std::to_string(cloud.points.size());
-  std::ofstream(input, std::ios::binary) << "FIELDS x y z\nSIZE 8 8 8\nTYPE F F F\nPOINTS " << count
-                                         << "\nDATA binary\n"
-                                         << std::string_view(reinterpret_cast<const char*>(cloud.points.data()),
-                                                             cloud.points.size() * sizeof(Vec3));
-  distributed::plan_tiles(input, tiles, {.tile_points = 1000});
-  auto expected = contents(cloud.tiles), found = contents(tiles);
-  expected.erase("manifest.json"), found.erase("manifest.json");  // they name their inputs
-  EXPECT_GT(expected.size(), 3u);
-  EXPECT_TRUE(found == expected);
+  const std::string count = std::to_string(cloud.points.size()), text = lines_of(cloud.points),
+                    fields = "FIELDS x y z\nSIZE 8 8 8\nTYPE F F F\nPOINTS " + count + "\nDATA ",
+                    bytes(reinterpret_cast<const char*>(cloud.points.data()), cloud.points.size() * sizeof(Vec3));
+  const std::map<std::string, std::string> files = {
+      {"points.pcd", fields + "binary\n" + bytes},
+      {"text.pcd", fields + "ascii\n" + text},
+      {"text.ply", "ply\nformat ascii 1.0\nelement vertex " + count +
+                       "\nproperty double x\nproperty double y\nproperty double z\nend_header\n" + text},
+      {"points.xyz", text},
+      {"points.pts", count + "\n" + text}};
+  for (const auto& [name, content] : files) {
+    const auto input = cloud.folder.directory() / name, tiles = cloud.folder.directory() / ("tiles of " + name);
+    std::ofstream(input, std::ios::binary) << content;
+    distributed::plan_tiles(input, tiles, {.tile_points = 1000});
+    auto expected = contents(cloud.tiles), found = contents(tiles);
+    expected.erase("manifest.json"), found.erase("manifest.json");  // they name their inputs
+    EXPECT_GT(expected.size(), 3u);
+    EXPECT_TRUE(found == expected) << name;
+  }
 }
 
 TEST(TiledGraph, IsThatOfACloudInOneTile) {

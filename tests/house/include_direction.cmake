@@ -43,7 +43,8 @@ forbid(testing "Eigen/" "only the reference operator needs Eigen" "reference_ope
 foreach(folder libahm backends io view viewer testing)
   forbid(${folder} "ahm/distributed/" "what does not fit into memory stands on what does")
 endforeach()
-forbid(distributed "ahm/(view|viewer|applications|trimesh|polymesh|grid|pcl)/" "tiles stand on clouds, io and the core")
+forbid(distributed "ahm/(view|viewer|applications|trimesh|polymesh|grid|pcl)/" "tiles stand on clouds, io and the core; only the program opens meshes"
+  "program/plan_mesh\\.cpp$")
 foreach(folder libahm backends io view viewer apps distributed)
   forbid(${folder} "ahm/testing/" "testing is for tests and benchmarks")
 endforeach()

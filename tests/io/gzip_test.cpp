@@ -3,6 +3,7 @@
 #include <zlib.h>
 
 #include "files.hpp"
+#include "streamed.hpp"
 
 namespace ahm::io::test {
 namespace {
@@ -101,6 +102,31 @@ TEST_F(ReadGzip, RefusesMoreThanAThirdOfTheFreeMemory) {
   int status = 0;
   ASSERT_EQ(::waitpid(child, &status, 0), child);
   EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
+}
+
+TEST_F(ReadGzip, IsStreamedAsItIsRead) {
+  std::string text, numbers;
+  for (int i = 0; i < 50'000; ++i) {
+    text += std::to_string(i * 37 % 1000) + " " + std::to_string(i) + " " + std::to_string(0.3 * i) + "\n";
+    for (const float x : {1.5F * static_cast<float>(i), 2.F, -static_cast<float>(i)}) numbers += bytes_of(x);
+  }
+  const std::string binary =
+      "ply\nformat binary_little_endian 1.0\nelement vertex 50000\nproperty float x\nproperty float y\n"
+      "property float z\nend_header\n" +
+      numbers;
+  for (const auto& [name, bytes] : {std::pair<std::string, std::string>{"a.xyz", text}, {"a.ply", binary}}) {
+    const std::string packed = gzip(bytes.substr(0, 100'000)) + gzip(bytes.substr(100'000));
+    EXPECT_TRUE(expect_streamed_as_read(make(name + ".gz", packed)));
+    EXPECT_TRUE(expect_streamed_as_read(make(name, packed + std::string(100, '\0'))));
+    EXPECT_FALSE(expect_streamed_as_read(make(name, packed + "more")));
+    for (const std::size_t length : {std::size_t{3}, std::size_t{100}, packed.size() / 2, packed.size() - 1})
+      EXPECT_FALSE(expect_streamed_as_read(make(name, packed.substr(0, length))));
+    std::string damaged = packed;
+    damaged[packed.size() - 6] = static_cast<char>(damaged[packed.size() - 6] ^ 1);
+    EXPECT_FALSE(expect_streamed_as_read(make(name, damaged)));
+  }
+  EXPECT_FALSE(expect_streamed_as_read(make("cut.ply.gz", gzip(binary.substr(0, binary.size() - 1)))));
+  EXPECT_FALSE(expect_streamed_as_read(make("e.xyz.gz", gzip(""))));
 }
 
 }  // namespace

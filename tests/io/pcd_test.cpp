@@ -4,6 +4,7 @@
 
 #include "ahm/io/write.hpp"
 #include "files.hpp"
+#include "streamed.hpp"
 #include "table.hpp"
 
 namespace ahm::io::test {
@@ -313,6 +314,83 @@ TEST_F(WritePcd, PacksColorsAsPclDoesAndStoresIntensityAsFloats) {
 TEST_F(WritePcd, ReportsAFullDisk) {
   std::filesystem::create_symlink("/dev/full", path("a.pcd"));
   EXPECT_THROW(write(path("a.pcd"), Result().table()), IoError);
+}
+
+/// LZF with repetitions of near and of the farthest bytes.
+std::string lzf(const std::string& bytes) {
+  std::string result, literals;
+  const auto flush = [&] {
+    result += stored_lzf(literals);
+    literals.clear();
+  };
+  for (std::size_t at = 0; at < bytes.size();) {
+    std::size_t length = 0, back = 0;
+    for (const std::size_t b : {1u, 2u, 4u, 8u, 12u, 100u, 4000u, 8191u, 8192u}) {
+      std::size_t same = 0;
+      while (b <= at && same < 264 && at + same < bytes.size() && bytes[at + same] == bytes[at + same - b]) ++same;
+      if (same > length) length = same, back = b - 1;
+    }
+    if (length < 3) {
+      literals += bytes[at++];
+      continue;
+    }
+    flush();
+    const std::size_t told = length - 2;
+    result += static_cast<char>((std::min<std::size_t>(told, 7) << 5) + (back >> 8));
+    if (told >= 7) result += static_cast<char>(told - 7);
+    result += static_cast<char>(back & 255);
+    at += length;
+  }
+  flush();
+  return result;
+}
+
+TEST_F(ReadPcd, OfCompressedPointsIsStreamedAsItIsRead) {
+  const int points = 40'000;
+  std::string planes;
+  for (int i = 0; i < points; ++i) planes += bytes_of(0.5F * static_cast<float>(i % 2048));
+  for (int i = 0; i < points; ++i) planes += "hi";
+  for (int i = 0; i < points; ++i) planes += bytes_of(std::sin(0.1 * i));
+  for (int i = 0; i < points; ++i) planes += bytes_of(static_cast<std::int16_t>(i / 100));
+  for (int i = 0; i < points; ++i) planes += "end";
+  const std::string packed = lzf(planes), head = header("y hist x z more", "4 1 8 2 1", "F U F I U", "1 2 1 1 3",
+                                                        points, "binary_compressed");
+  ASSERT_LT(packed.size(), planes.size() * 3 / 4);
+  const auto sized = [&](const std::string& body) {
+    return head + bytes_of(static_cast<std::uint32_t>(body.size())) +
+           bytes_of(static_cast<std::uint32_t>(planes.size())) + body;
+  };
+  EXPECT_TRUE(expect_streamed_as_read(make("a.pcd", sized(packed))));
+  EXPECT_FALSE(expect_streamed_as_read(make("a.pcd", sized(packed).substr(0, packed.size()))));
+  std::string damaged = packed;
+  for (const std::string& body : {packed + '\0' + 'x', packed.substr(0, packed.size() - 1), "\xff" + packed}) {
+    EXPECT_NE(find_whole(make("a.pcd", sized(body))).error.find("damaged"), std::string::npos);
+    EXPECT_NE(find_streamed(make("a.pcd", sized(body))).error.find("damaged"), std::string::npos);
+  }
+  EXPECT_FALSE(expect_streamed_as_read(make("a.pcd", head)));
+  EXPECT_TRUE(expect_streamed_as_read(make("a.pcd", doubles(0, "binary_compressed") + compressed(""))));
+}
+
+TEST_F(ReadPcd, OfTextIsStreamedAsItIsRead) {
+  const std::string head = header("y _ x hist z", "4 1 8 4 4", "F U F F F", "1 2 1 3 1", 2, "ascii"), rest = " 9 9 ";
+  for (const std::string body : {"2 9 9 1 7 7 7 3.5\r\nnan 9 9 -1 7 7 7 -inf\n", "2 9 9 1 7 7 7 3.5\n2 9 9 1 7 7 7\n",
+                                 "2 9 9 1 7 7 7 3,5\n2 9 9 1 7 7 7 1\n", "2 9 9 1 7 7 7 1\n",
+                                 "1 9 9 1 7 7 7 1\n1 9 9 1 7 7 7 1\n1 9 9 1 7 7 7 1\n"})
+    for (std::size_t length = 0; length <= body.size(); ++length)
+      expect_streamed_as_read(make("a.pcd", head + body.substr(0, length)));
+  std::string numbers;
+  const int points = 20'000;
+  for (int i = 0; i < points; ++i) {
+    std::array<char, 100> line{};
+    std::snprintf(line.data(), line.size(), "%.9g %.17g %d 0 0 1\n", std::exp(0.01 * (i - 10'000)), std::sin(1.0 * i),
+                  i);
+    numbers += line.data();
+  }
+  EXPECT_TRUE(expect_streamed_as_read(make("b.pcd", header("x y z normal_x normal_y normal_z", "4 8 2 4 4 4",
+                                                           "F F U F F F", "1 1 1 1 1 1", points, "ascii") +
+                                                        numbers)));
+  const auto unfit = make("c.pcd", header("x y z", "4 4 1", "F F I", "1 1 1", 1, "ascii") + "1 2 128\n");
+  EXPECT_NE(find_streamed(unfit).error.find("'128' does not fit"), std::string::npos);
 }
 
 }  // namespace

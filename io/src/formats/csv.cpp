@@ -36,10 +36,14 @@ void write(AtomicFile& file, const Table& table) {
   }
 }
 
-Geometry read(const Input& in) { return read_columns(in, {.format = "CSV text", .tabs_separate = true}); }
+constexpr ColumnDialect dialect{.format = "CSV text", .tabs_separate = true};
+
+Geometry read(const Input& in) { return read_columns(in, dialect); }
+
+bool take_points(const ByteStream& file, const TakePoint& take) { return take_columns(file, dialect, take); }
 
 }  // namespace
 
-Format csv_format() { return {.extensions = {".csv"}, .read = read, .write = write}; }
+Format csv_format() { return {.extensions = {".csv"}, .read = read, .take_points = take_points, .write = write}; }
 
 }  // namespace ahm::io

@@ -5,6 +5,8 @@
 /// in io/CMakeLists.txt. `read`, `write`, `check_writable`, `write_textured`, `extensions` and their messages follow.
 #pragma once
 
+#include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,7 +17,9 @@
 
 namespace ahm::io {
 
+class ByteStream;
 struct PointRecords;
+using TakePoint = std::function<void(const Vec3&)>;
 
 /// What cannot be done with a format stays null.
 struct Format {
@@ -23,7 +27,10 @@ struct Format {
   std::vector<std::string> signatures =
       {};  ///< a file without a name is of this format where it begins with one of these
   Geometry (*read)(const Input& in) = nullptr;
-  PointRecords (*records)(const Input& in) = nullptr;  ///< for `PointStream`: where points are, from a file's beginning
+  /// For `PointStream`: where points are, from a file's beginning; nullopt: nowhere in particular (text, compressed).
+  std::optional<PointRecords> (*records)(const Input& in) = nullptr;
+  /// Of such files: hands over all points, and says whether they have normals.
+  bool (*take_points)(const ByteStream& file, const TakePoint& take) = nullptr;
   void (*write)(AtomicFile& file, const Table& table) = nullptr;
   void (*write_textured)(const std::filesystem::path& path, std::span<const MeshPart> parts) = nullptr;
   std::string missing = {};  ///< a library this build is without, and the functions above therefore null

@@ -138,7 +138,7 @@ Geometry read(const Input& in) {
 
 }  // namespace
 
-PointRecords las_records(const Input& in) {
+std::optional<PointRecords> las_records(const Input& in) {
   const LasHeader header = parse_header(in);
   PointRecords records{.begin = header.begin, .count = header.points, .stride = header.stride};
   records.at = {0, 4, 8};

@@ -18,8 +18,11 @@ Geometry read(const Input& in) {
 #endif
 
 Format pcd_format() {
-  Format format{
-      .extensions = {".pcd"}, .signatures = {"# .PCD", "VERSION"}, .records = pcd_records, .write = write_pcd};
+  Format format{.extensions = {".pcd"},
+                .signatures = {"# .PCD", "VERSION"},
+                .records = pcd_records,
+                .take_points = take_pcd_points,
+                .write = write_pcd};
 #ifdef AHM_WITH_PCL
   format.read = read;
 #else

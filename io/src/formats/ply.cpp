@@ -21,11 +21,11 @@ namespace {
 /// Where the next value comes from: words of one line per item, or bytes.
 class Body {
  public:
-  Body(const Input& in, const PlyHeader& header)
+  Body(const Input& in, const PlyHeader& header, Lines&& lines)
       : in_(in),
         text_(header.format == PlyFormat::ascii),
         swap_(is_swapped(header.format)),
-        lines_(std::string_view(in.bytes).substr(text_ ? header.body : in.bytes.size()), header.body_line),
+        lines_(std::move(lines)),
         position_(header.body) {}
 
   void begin_item(const PlyElement& element, std::uint64_t item) {
@@ -169,7 +169,8 @@ class Colors {
   std::vector<Vec3> numbers_;
 };
 
-void read_vertices(const Input& in, const PlyElement& vertex, Body& body, Geometry& g) {
+/// @param take  gets the points, of which the last is kept; null: all are
+void read_vertices(const Input& in, const PlyElement& vertex, Body& body, Geometry& g, const TakePoint* take) {
   for (const PlyProperty& p : vertex.properties) {
     if (p.count_type) {
       fail_at_line(in, vertex.line,
@@ -178,14 +179,15 @@ void read_vertices(const Input& in, const PlyElement& vertex, Body& body, Geomet
   }
   check_vertex_count(in, vertex.count);
   const std::vector<std::size_t> role_of = assign_roles(in, vertex);
-  const auto n = static_cast<std::size_t>(vertex.count);
-  g.points.resize(n);
-  if (std::ranges::count(role_of, std::size_t{3}) > 0) g.normals.resize(n);
-  Colors colors(role_of, vertex, n);
+  const auto n = static_cast<std::size_t>(vertex.count), kept = take != nullptr ? std::size_t{1} : n;
+  g.points.resize(kept);
+  if (std::ranges::count(role_of, std::size_t{3}) > 0) g.normals.resize(kept);
+  Colors colors(role_of, vertex, kept);
   for (std::size_t p = 0; p < role_of.size(); ++p)
-    if (role_of[p] == unused) add_property(g, vertex.properties[p].name, std::vector<double>(n));
-  for (std::size_t i = 0; i < n; ++i) {
-    body.begin_item(vertex, i);
+    if (role_of[p] == unused) add_property(g, vertex.properties[p].name, std::vector<double>(kept));
+  for (std::size_t item = 0; item < n; ++item) {
+    const std::size_t i = take != nullptr ? 0 : item;
+    body.begin_item(vertex, item);
     auto property = g.properties.begin();
     for (std::size_t p = 0; p < role_of.size(); ++p) {
       const std::size_t role = role_of[p];
@@ -200,6 +202,7 @@ void read_vertices(const Input& in, const PlyElement& vertex, Body& body, Geomet
       }
     }
     body.end_item();
+    if (take != nullptr) (*take)(g.points[i]);
   }
   colors.move_to(g);
 }
@@ -276,8 +279,8 @@ void read_items(const Input& in, const PlyElement& element, Body& body, Geometry
   }
 }
 
-Geometry read(const Input& in) {
-  const PlyHeader header = parse_ply_header(in);
+/// @param take  as `read_vertices`
+Geometry read_elements(const Input& in, const PlyHeader& header, Body& body, const TakePoint* take = nullptr) {
   if (std::ranges::find(header.elements, "vertex", &PlyElement::name) == header.elements.end()) {
     fail(in, "the PLY header has no element 'vertex'");
   }
@@ -286,16 +289,29 @@ Geometry read(const Input& in) {
   g.format = names[static_cast<std::size_t>(header.format)];
   if (header.ignored_lines > 0)
     g.warnings.push_back({"header_lines_ignored", {static_cast<double>(header.ignored_lines)}, {}});
-  Body body(in, header);
   for (const PlyElement& element : header.elements) {
     if (element.name == "vertex") {
-      read_vertices(in, element, body, g);
+      read_vertices(in, element, body, g, take);
     } else {
       read_items(in, element, body, g);
     }
   }
   if (!body.at_end()) g.warnings.push_back({"goes_on_after_elements", {}, {}});
   return g;
+}
+
+Geometry read(const Input& in) {
+  const PlyHeader header = parse_ply_header(in);
+  const std::size_t text = header.format == PlyFormat::ascii ? header.body : in.bytes.size();
+  Body body(in, header, Lines(std::string_view(in.bytes).substr(text), header.body_line));
+  return read_elements(in, header, body);
+}
+
+/// Of text.
+bool take_points(const ByteStream& file, const TakePoint& take) {
+  const PlyHeader header = parse_ply_header(file.head());
+  Body body(file.head(), header, Lines(file, header.body, header.body_line));
+  return !read_elements(file.head(), header, body, &take).normals.empty();
 }
 
 }  // namespace
@@ -305,6 +321,7 @@ Format ply_format() {
           .signatures = {"ply"},
           .read = read,
           .records = ply_records,
+          .take_points = take_points,
           .write = write_ply,
           .write_textured = write_textured_ply};
 }

@@ -5,10 +5,14 @@
 namespace ahm::io {
 namespace {
 
-Geometry read(const Input& in) { return read_columns(in, {.format = "PTS text", .fourth_is_intensity = true}); }
+constexpr ColumnDialect dialect{.format = "PTS text", .fourth_is_intensity = true};
+
+Geometry read(const Input& in) { return read_columns(in, dialect); }
+
+bool take_points(const ByteStream& file, const TakePoint& take) { return take_columns(file, dialect, take); }
 
 }  // namespace
 
-Format pts_format() { return {.extensions = {".pts"}, .read = read}; }
+Format pts_format() { return {.extensions = {".pts"}, .read = read, .take_points = take_points}; }
 
 }  // namespace ahm::io

@@ -4,10 +4,14 @@
 namespace ahm::io {
 namespace {
 
-Geometry read(const Input& in) { return read_columns(in, {.format = "XYZ text"}); }
+constexpr ColumnDialect dialect{.format = "XYZ text"};
+
+Geometry read(const Input& in) { return read_columns(in, dialect); }
+
+bool take_points(const ByteStream& file, const TakePoint& take) { return take_columns(file, dialect, take); }
 
 }  // namespace
 
-Format xyz_format() { return {.extensions = {".xyz", ".txt", ".asc"}, .read = read}; }
+Format xyz_format() { return {.extensions = {".xyz", ".txt", ".asc"}, .read = read, .take_points = take_points}; }
 
 }  // namespace ahm::io

@@ -55,40 +55,60 @@ char find_delimiter(std::string_view line, const ColumnDialect& dialect) {
 }
 
 /// Whole numbers up to 255 cannot all be meant as normals when one exceeds 1.
-bool look_like_levels(const std::vector<Vec3>& values) {
-  const auto is_level = [](double v) { return v >= 0 && v <= 255 && v == std::floor(v); };
-  const auto all_levels = [&](const Vec3& n) { return std::ranges::all_of(n, is_level); };
-  const auto too_long = [](const Vec3& n) { return *std::ranges::max_element(n) > 1; };
-  return std::ranges::all_of(values, all_levels) && std::ranges::any_of(values, too_long);
-}
+class LevelTest {
+ public:
+  void add(const Vec3& value) {
+    all_levels_ = all_levels_ && std::ranges::all_of(value, is_level);
+    too_long_ = too_long_ || *std::ranges::max_element(value) > 1;
+  }
+  bool are_levels() const { return all_levels_ && too_long_; }
+
+ private:
+  static bool is_level(double v) { return v >= 0 && v <= 255 && v == std::floor(v); }
+
+  bool all_levels_ = true, too_long_ = false;
+};
 
 class ColumnReader {
  public:
-  ColumnReader(const Input& in, const ColumnDialect& dialect)
-      : in_(in), dialect_(dialect), lines_(without_byte_order_mark(in.bytes)) {}
+  /// @param take  gets the points, and nothing is kept; null: all is kept
+  ColumnReader(const Input& in, Lines&& lines, const ColumnDialect& dialect, const TakePoint* take = nullptr)
+      : in_(in), dialect_(dialect), take_(take), lines_(std::move(lines)) {}
 
   Geometry read() {
+    read_rows();
+    keep();
+    return std::move(g_);
+  }
+
+  /// Whether points have normals.
+  bool take() {
+    read_rows();
+    return std::ranges::any_of(triples_, [](const Triple& t) { return t.role == ColumnRole::normals; });
+  }
+
+ private:
+  void read_rows() {
     g_.format = dialect_.format;
     while (next_line()) {
       if (begins_block()) continue;
       if (columns_ == 0 && named_columns()) continue;
       read_row();
     }
-    if (g_.points.empty())
+    if (count_ == 0)
       fail(in_, names_found_ ? "the file holds no point below the column names" : "the file holds no point");
     if (left_.value_or(0) > 0)
       fail_at_line(in_, lines_.number(),
                    "the file ends " + std::to_string(*left_) + " points before the announced number");
-    check_vertex_count(in_, g_.points.size());
-    finish();
-    return std::move(g_);
+    check_vertex_count(in_, count_);
+    choose_roles();
   }
 
- private:
   /// Three columns that are one vector.
   struct Triple {
     ColumnRole role;
     std::array<std::size_t, 3> columns;
+    LevelTest levels = {};
     std::vector<Vec3> values = {};
   };
 
@@ -115,8 +135,7 @@ class ColumnReader {
 
   /// A line of one whole number: so many points follow.
   bool begins_block() {
-    if (line_.find_first_of(" \t,;") != std::string_view::npos || (left_ ? *left_ > 0 : !g_.points.empty()))
-      return false;
+    if (line_.find_first_of(" \t,;") != std::string_view::npos || (left_ ? *left_ > 0 : count_ > 0)) return false;
     const std::optional<std::int64_t> count = to_whole(line_);
     if (!count || *count < 0) return false;
     left_ = *count;
@@ -150,7 +169,7 @@ class ColumnReader {
       const std::string_view word = words_[other.column];
       const std::optional<double> value = word.empty() ? std::numeric_limits<double>::quiet_NaN() : to_real(word);
       other.is_numbers = value.has_value();
-      if (value) other.values.push_back(*value);
+      if (value && take_ == nullptr) other.values.push_back(*value);
     }
   }
 
@@ -164,10 +183,18 @@ class ColumnReader {
     if (words_.size() != columns_)
       fail_at_line(in_, lines_.number(),
                    std::to_string(words_.size()) + " columns, but the lines before have " + std::to_string(columns_));
-    g_.points.push_back(vector(position_));
-    for (Triple& triple : triples_) triple.values.push_back(vector(triple.columns));
+    ++count_;
+    const Vec3 point = vector(position_);
+    for (Triple& triple : triples_) {
+      const Vec3 value = vector(triple.columns);
+      triple.levels.add(value);
+      if (take_ == nullptr) triple.values.push_back(value);
+    }
     read_others();
-    if (intensity_) intensity_->push_back(real_or_fail(in_, lines_.number(), words_[3]));
+    const double intensity = intensity_ ? real_or_fail(in_, lines_.number(), words_[3]) : 0;
+    if (take_ != nullptr) return (*take_)(point);
+    g_.points.push_back(point);
+    if (intensity_) intensity_->push_back(intensity);
   }
 
   /// By their number, of a file that does not name them.
@@ -191,19 +218,21 @@ class ColumnReader {
   }
 
   /// Unnamed columns are normals unless they can only be colors. Of two, one must be each.
-  void finish() {
+  void choose_roles() {
+    for (Triple& triple : triples_)
+      if (triple.role == ColumnRole::unknown) tell(triple);
+    if (triples_.size() < 2 || triples_[0].role != triples_[1].role) return;
+    triples_.clear();
+    ignore_columns();
+  }
+
+  void keep() {
     if (intensity_) g_.properties.push_back({"intensity", std::move(*intensity_)});
     for (Other& other : others_) {
       if (other.is_numbers)
         add_property(g_, other.name, std::move(other.values));
       else
         g_.warnings.push_back({"column_ignored", {}, {}, other.name});
-    }
-    for (Triple& triple : triples_)
-      if (triple.role == ColumnRole::unknown) tell(triple);
-    if (triples_.size() == 2 && triples_[0].role == triples_[1].role) {
-      triples_.clear();
-      return ignore_columns();
     }
     for (Triple& triple : triples_) {
       if (triple.role == ColumnRole::normals) {
@@ -217,7 +246,7 @@ class ColumnReader {
   }
 
   void tell(Triple& triple) {
-    triple.role = look_like_levels(triple.values) ? ColumnRole::colors : ColumnRole::normals;
+    triple.role = triple.levels.are_levels() ? ColumnRole::colors : ColumnRole::normals;
     if (triple.role == ColumnRole::normals) return;
     const auto first = static_cast<double>(triple.columns[0] + 1);
     g_.warnings.push_back({"columns_as_colors", {first, first + 2}, {}});
@@ -225,8 +254,10 @@ class ColumnReader {
 
   const Input& in_;
   const ColumnDialect& dialect_;
+  const TakePoint* take_;
   Lines lines_;
   Geometry g_;
+  std::uint64_t count_ = 0;  ///< of points
   std::string_view line_;
   Words words_;
   char delimiter_ = '\0';    ///< not known yet
@@ -241,6 +272,14 @@ class ColumnReader {
 
 }  // namespace
 
-Geometry read_columns(const Input& in, const ColumnDialect& dialect) { return ColumnReader(in, dialect).read(); }
+Geometry read_columns(const Input& in, const ColumnDialect& dialect) {
+  return ColumnReader(in, Lines(without_byte_order_mark(in.bytes)), dialect).read();
+}
+
+bool take_columns(const ByteStream& file, const ColumnDialect& dialect, const TakePoint& take) {
+  const Input& in = file.head();
+  const std::size_t mark = in.bytes.size() - without_byte_order_mark(in.bytes).size();
+  return ColumnReader(in, Lines(file, mark), dialect, &take).take();
+}
 
 }  // namespace ahm::io

@@ -4,6 +4,7 @@
 
 #include "ahm/io/geometry.hpp"
 #include "read/input.hpp"
+#include "read/point_records.hpp"
 
 namespace ahm::io {
 
@@ -18,5 +19,7 @@ struct ColumnDialect {
 /// (also behind //), perhaps a line with the number of points, after which so many follow, and then another such block.
 /// @throws IoError naming the line
 Geometry read_columns(const Input& in, const ColumnDialect& dialect);
+/// The same, of which points alone are kept. @return whether they have normals
+bool take_columns(const ByteStream& file, const ColumnDialect& dialect, const TakePoint& take);
 
 }  // namespace ahm::io

@@ -6,16 +6,16 @@
 #include <algorithm>
 #include <limits>
 #include <new>
+#include <utility>
 
 #include "ahm/error.hpp"
 #include "read/free_memory.hpp"
 
 namespace ahm::io {
-namespace {
 
-class Inflater {
+class Gunzip::Inflater {
  public:
-  Inflater(const Input& in, std::uint64_t most) : in_(in), most_(most) {
+  Inflater(const Input& in, std::function<std::string_view()> more) : in_(in), more_(std::move(more)) {
     constexpr int only_gzip = 16 + MAX_WBITS;
     if (::inflateInit2(&stream_, only_gzip) != Z_OK) throw std::bad_alloc();
   }
@@ -23,70 +23,107 @@ class Inflater {
   Inflater& operator=(const Inflater&) = delete;
   ~Inflater() { ::inflateEnd(&stream_); }
 
-  std::string all() {
-    std::string result;
-    for (;;) {
-      if (made_ == result.size()) grow(result);
-      const int state = step(result);
-      if (state == Z_STREAM_END && !next_member()) break;
-      if (state != Z_STREAM_END && taken_ == in_.bytes.size() && made_ < result.size())
+  std::size_t read(std::span<char> room) {
+    std::size_t made = 0;
+    while (made < room.size() && !done_) {
+      fetch();
+      made += step(room.subspan(made));
+      if (member_ends_)
+        done_ = !next_member();
+      else if (made < room.size() && !fetch())
         fail_at_byte(in_, taken_, "the compressed data ends here, but not what it stands for; the file is cut short");
     }
-    result.resize(made_);
-    return result;
+    return made;
   }
 
  private:
-  /// Twice as much room, from four times the file on.
-  void grow(std::string& result) const {
-    constexpr std::size_t least = 1 << 16;
-    if (result.size() >= most_)
-      throw ResourceExhausted("cannot read " + quoted_path(in_.path) + ": unpacked it is larger than " +
-                              std::to_string(most_ >> 20) + " MB, a third of the memory that is free");
-    const std::uint64_t wanted = result.empty() ? 4 * in_.bytes.size() : 2 * result.size();
-    result.resize(std::min<std::uint64_t>(most_, std::max<std::uint64_t>(wanted, least)));
+  /// Whether there are bytes to unpack.
+  bool fetch() {
+    if (given_.empty() && !ended_) {
+      given_ = more_();
+      ended_ = given_.empty();
+    }
+    return !given_.empty();
   }
 
-  int step(std::string& result) {
+  std::size_t step(std::span<char> room) {
     constexpr std::size_t longest = std::numeric_limits<uInt>::max();
-    const std::size_t give = std::min(longest, in_.bytes.size() - taken_),
-                      room = std::min(longest, result.size() - made_);
-    stream_.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(in_.bytes.data() + taken_));
+    const std::size_t give = std::min(longest, given_.size()), most = std::min(longest, room.size());
+    stream_.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(given_.data()));
     stream_.avail_in = static_cast<uInt>(give);
-    stream_.next_out = reinterpret_cast<Bytef*>(result.data() + made_);
-    stream_.avail_out = static_cast<uInt>(room);
+    stream_.next_out = reinterpret_cast<Bytef*>(room.data());
+    stream_.avail_out = static_cast<uInt>(most);
     const int state = ::inflate(&stream_, Z_NO_FLUSH);
-    taken_ += give - stream_.avail_in;
-    made_ += room - stream_.avail_out;
+    take(give - stream_.avail_in);
     if (state == Z_MEM_ERROR) throw std::bad_alloc();
     if (state != Z_OK && state != Z_STREAM_END && state != Z_BUF_ERROR)
       fail_at_byte(in_, taken_,
                    std::string("the compressed data is damaged (zlib: ") +
                        (stream_.msg != nullptr ? stream_.msg : "a dictionary is missing") + ")");
-    return state;
+    member_ends_ = state == Z_STREAM_END;
+    return most - stream_.avail_out;
+  }
+
+  void take(std::size_t bytes) {
+    given_.remove_prefix(bytes);
+    taken_ += bytes;
   }
 
   /// Whether another member follows. Zeros may fill the last block of a tape.
   bool next_member() {
-    const std::string_view rest = std::string_view(in_.bytes).substr(taken_);
-    if (rest.find_first_not_of('\0') == std::string_view::npos) return false;
-    if (!rest.starts_with("\x1f\x8b")) fail_at_byte(in_, taken_, "the file goes on behind its compressed data");
-    ::inflateReset(&stream_);
-    return true;
+    if (!fetch()) return false;
+    const std::size_t begin = taken_;
+    if (given_.front() == '\x1f') return ::inflateReset(&stream_) == Z_OK;
+    while (fetch()) {
+      if (given_.find_first_not_of('\0') != std::string_view::npos)
+        fail_at_byte(in_, begin, "the file goes on behind its compressed data");
+      take(given_.size());
+    }
+    return false;
   }
 
   const Input& in_;
-  std::uint64_t most_;
+  std::function<std::string_view()> more_;
+  std::string_view given_;
   z_stream stream_{};
-  std::size_t taken_ = 0, made_ = 0;
+  std::size_t taken_ = 0;  ///< bytes of the file
+  bool ended_ = false, member_ends_ = false, done_ = false;
 };
+
+Gunzip::Gunzip(const Input& in, std::function<std::string_view()> more)
+    : inflater_(std::make_unique<Inflater>(in, std::move(more))) {}
+
+Gunzip::~Gunzip() = default;
+
+std::size_t Gunzip::read(std::span<char> room) { return inflater_->read(room); }
+
+namespace {
+
+/// Twice as much room, from four times the file on.
+void grow(const Input& in, std::uint64_t most, std::string& room) {
+  constexpr std::size_t least = 1 << 16;
+  if (room.size() >= most)
+    throw ResourceExhausted("cannot read " + quoted_path(in.path) + ": unpacked it is larger than " +
+                            std::to_string(most >> 20) + " MB, a third of the memory that is free");
+  const std::uint64_t wanted = room.empty() ? 4 * in.bytes.size() : 2 * room.size();
+  room.resize(std::min<std::uint64_t>(most, std::max<std::uint64_t>(wanted, least)));
+}
 
 }  // namespace
 
 bool is_gzip(const Input& in) { return in.bytes.starts_with("\x1f\x8b"); }
 
 void gunzip(Input& in) {
-  in.bytes = Inflater(in, free_memory() / 3).all();
+  const std::uint64_t most = free_memory() / 3;
+  Gunzip packed(in, [all = std::string_view(in.bytes)]() mutable { return std::exchange(all, {}); });
+  std::string result;
+  std::size_t made = 0;
+  while (made == result.size()) {
+    grow(in, most, result);
+    made += packed.read(std::span(result).subspan(made));
+  }
+  result.resize(made);
+  in.bytes = std::move(result);
   if (in.bytes.empty()) fail(in, "the file is empty (0 bytes) when unpacked");
 }
 

@@ -1,61 +1,23 @@
 #include "read/input.hpp"
 
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
 #include <limits>
-#include <system_error>
 
 #include "ahm/error.hpp"
 #include "ahm/types.hpp"
 #include "read/gunzip.hpp"
+#include "read/regular_file.hpp"
 
 namespace ahm::io {
-namespace {
-
-/// Closes a file descriptor when it leaves scope.
-struct Descriptor {
-  int value;
-  explicit Descriptor(int fd) : value(fd) {}
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  ~Descriptor() {
-    if (value >= 0) ::close(value);
-  }
-};
-
-[[noreturn]] void fail_with_errno(const Input& in, int error) { fail(in, std::generic_category().message(error)); }
-
-}  // namespace
 
 Input load(const std::filesystem::path& path) {
   Input in{path, {}};
-  // Not blocking, so that a named pipe nobody writes to is refused rather than waited for.
-  Descriptor fd(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
-  struct stat info {};
-  if (fd.value < 0 || ::fstat(fd.value, &info) != 0) fail_with_errno(in, errno);
-  if (S_ISDIR(info.st_mode)) fail_with_errno(in, EISDIR);
-  if (!S_ISREG(info.st_mode)) fail(in, "not a regular file (a pipe or device); copy its contents to a file first");
-  if (info.st_size == 0) fail(in, "the file is empty (0 bytes)");
-
-  in.bytes.resize(info.st_size);
-  std::size_t done = 0;
-  while (done < in.bytes.size()) {
-    const ssize_t got = ::read(fd.value, in.bytes.data() + done, in.bytes.size() - done);
-    if (got < 0 && errno == EINTR) continue;
-    if (got < 0) fail_with_errno(in, errno);
-    if (got == 0)
-      fail_at_byte(in, done, "the file became shorter while it was read; read it again when it is complete");
-    done += static_cast<std::size_t>(got);
-  }
-  if (is_gzip(in)) {
-    gunzip(in);
-  } else if (lower_extension(path) == ".gz") {
-    fail(in, "the file is named .gz, but is not compressed with gzip");
-  }
+  const RegularFile file(path);
+  in.bytes.resize(file.size());
+  if (const std::size_t done = file.read(0, in.bytes); done < in.bytes.size())
+    fail_at_byte(in, done, "the file became shorter while it was read; read it again when it is complete");
+  check_gzip_name(in);
+  if (is_gzip(in)) gunzip(in);
   return in;
 }
 
@@ -71,6 +33,11 @@ Input load(std::istream& stream) {
   if (in.bytes.empty()) fail(in, "the stream is empty (0 bytes)");
   if (is_gzip(in)) gunzip(in);
   return in;
+}
+
+void check_gzip_name(const Input& in) {
+  if (!is_gzip(in) && lower_extension(in.path) == ".gz")
+    fail(in, "the file is named .gz, but is not compressed with gzip");
 }
 
 void fail(const Input& in, const std::string& what) {

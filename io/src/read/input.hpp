@@ -29,6 +29,9 @@ Input load(const std::filesystem::path& path);
 /// The same of all that a stream holds, under the name "-". @throws IoError; an empty stream is refused here
 Input load(std::istream& stream);
 
+/// That a file whose name says that gzip compressed it is. @throws IoError
+void check_gzip_name(const Input& in);
+
 /// Throws IoError "cannot read 'path': what".
 [[noreturn]] void fail(const Input& in, const std::string& what);
 /// Throws IoError "cannot read 'path', line 12: what".

@@ -150,56 +150,6 @@ void set_points(const Input& in, const RawHeader& raw, PcdHeader& header) {
                    " follow the header; the file is cut short");
 }
 
-void check_compressed(const Input& in, const PcdHeader& header, std::uint64_t plain) {
-  if (std::ranges::find(header.fields, "_", &PcdField::name) != header.fields.end()) {
-    // PCL's writer drops padding when it compresses, and its reader assumes that all do.
-    fail_at_byte(in, header.body,
-                 "compressed data with padding fields '_' has no agreed meaning; save it uncompressed");
-  }
-  std::array<std::uint32_t, 2> sizes{};  // compressed, plain
-  const std::uint64_t left = in.bytes.size() - header.body;
-  if (left < sizeof sizes) fail_size(in, header, sizeof sizes);
-  std::memcpy(sizes.data(), in.bytes.data() + header.body, sizeof sizes);
-  if (sizes[0] > left - sizeof sizes) {
-    fail_at_byte(in, header.body,
-                 "the compressed size " + std::to_string(sizes[0]) + " exceeds the " +
-                     std::to_string(left - sizeof sizes) + " bytes that follow; the file is cut short");
-  }
-  if (sizes[1] != plain) {
-    fail_at_byte(in, header.body + 4,
-                 "the uncompressed size " + std::to_string(sizes[1]) + " is not that of " +
-                     std::to_string(header.points) + " points: " + std::to_string(plain));
-  }
-  // Three bytes of LZF stand for at most 264, so that a larger size cannot be true and need not be allocated.
-  if (plain / 88 > sizes[0])
-    fail_at_byte(in, header.body, "the compressed size " + std::to_string(sizes[0]) + " is too small");
-}
-
-/// Every word must be a number and every line must have all of them: PCL takes "1,5" as 1 and 1e400 as infinity.
-void check_text(const Input& in, const PcdHeader& header) {
-  std::uint64_t per_point = 0;
-  for (const PcdField& field : header.fields) per_point += field.count;
-  Lines lines(std::string_view(in.bytes).substr(header.body), header.body_line);
-  std::uint64_t point = 0;
-  while (lines.next_filled('\0')) {
-    if (point++ == header.points)
-      fail_at_line(in, lines.number(), "more lines than the " + std::to_string(header.points) + " points");
-    std::string_view rest = lines.line();
-    std::uint64_t words = 0;
-    for (std::string_view word = next_word(rest); !word.empty(); word = next_word(rest), ++words) {
-      real_or_fail(in, lines.number(), word);
-    }
-    if (words != per_point) {
-      fail_at_line(in, lines.number(),
-                   "found " + std::to_string(words) + " numbers, expected " + std::to_string(per_point));
-    }
-  }
-  if (point < header.points) {
-    fail_at_line(in, lines.number(),
-                 "the file ends after " + std::to_string(point) + " of " + std::to_string(header.points) + " points");
-  }
-}
-
 }  // namespace
 
 PcdHeader parse_pcd_header(const Input& in) {
@@ -216,15 +166,67 @@ void check_pcd_size(const Input& in, const PcdHeader& header) {
   if (plain > in.size() - header.body) fail_size(in, header, plain);
 }
 
+std::array<std::uint32_t, 2> pcd_sizes(const Input& in, const PcdHeader& header) {
+  const std::uint64_t plain = header.points * header.point_size;
+  if (std::ranges::find(header.fields, "_", &PcdField::name) != header.fields.end()) {
+    // PCL's writer drops padding when it compresses, and its reader assumes that all do.
+    fail_at_byte(in, header.body,
+                 "compressed data with padding fields '_' has no agreed meaning; save it uncompressed");
+  }
+  std::array<std::uint32_t, 2> sizes{};  // compressed, plain
+  const std::uint64_t left = in.size() - header.body;
+  if (in.bytes.size() - header.body < sizeof sizes) fail_size(in, header, sizeof sizes);
+  std::memcpy(sizes.data(), in.bytes.data() + header.body, sizeof sizes);
+  if (sizes[0] > left - sizeof sizes) {
+    fail_at_byte(in, header.body,
+                 "the compressed size " + std::to_string(sizes[0]) + " exceeds the " +
+                     std::to_string(left - sizeof sizes) + " bytes that follow; the file is cut short");
+  }
+  if (sizes[1] != plain) {
+    fail_at_byte(in, header.body + 4,
+                 "the uncompressed size " + std::to_string(sizes[1]) + " is not that of " +
+                     std::to_string(header.points) + " points: " + std::to_string(plain));
+  }
+  // Three bytes of LZF stand for at most 264, so that a larger size cannot be true and need not be allocated.
+  if (plain / 88 > sizes[0])
+    fail_at_byte(in, header.body, "the compressed size " + std::to_string(sizes[0]) + " is too small");
+  return sizes;
+}
+
+/// Every word must be a number and every line must have all of them: PCL takes "1,5" as 1 and 1e400 as infinity.
+void read_pcd_text(const Input& in, const PcdHeader& header, Lines& lines,
+                   const std::function<void(const std::vector<std::string_view>&)>& use) {
+  if (header.points > in.size() - header.body) fail_size(in, header, 2 * header.points);
+  std::uint64_t per_point = 0;
+  for (const PcdField& field : header.fields) per_point += field.count;
+  std::uint64_t point = 0;
+  Words words;
+  while (lines.next_filled('\0')) {
+    if (point++ == header.points)
+      fail_at_line(in, lines.number(), "more lines than the " + std::to_string(header.points) + " points");
+    split_words(lines.line(), words);
+    for (std::string_view word : words) real_or_fail(in, lines.number(), word);
+    if (words.size() != per_point) {
+      fail_at_line(in, lines.number(),
+                   "found " + std::to_string(words.size()) + " numbers, expected " + std::to_string(per_point));
+    }
+    use(words);
+  }
+  if (point < header.points) {
+    fail_at_line(in, lines.number(),
+                 "the file ends after " + std::to_string(point) + " of " + std::to_string(header.points) + " points");
+  }
+}
+
 PcdHeader check_pcd(const Input& in) {
   PcdHeader header = parse_pcd_header(in);
   if (header.data == PcdData::ascii) {
-    if (header.points > in.bytes.size() - header.body) fail_size(in, header, 2 * header.points);
-    check_text(in, header);
+    Lines lines(std::string_view(in.bytes).substr(header.body), header.body_line);
+    read_pcd_text(in, header, lines, [](const Words&) {});
   } else if (header.data == PcdData::binary) {
     check_pcd_size(in, header);
   } else {
-    check_compressed(in, header, header.points * header.point_size);
+    pcd_sizes(in, header);
   }
   return header;
 }

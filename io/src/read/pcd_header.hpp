@@ -4,11 +4,13 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "read/input.hpp"
+#include "read/text.hpp"
 
 namespace ahm::io {
 
@@ -37,6 +39,13 @@ struct PcdHeader {
 PcdHeader parse_pcd_header(const Input& in);
 /// That a file of uncompressed binary points holds as many as its header says. @throws IoError naming the byte
 void check_pcd_size(const Input& in, const PcdHeader& header);
+
+/// The lines of a file of text, each as many numbers as fields have values. @throws IoError naming the line
+void read_pcd_text(const Input& in, const PcdHeader& header, Lines& lines,
+                   const std::function<void(const std::vector<std::string_view>&)>& use);
+/// The compressed size and the uncompressed one, which stand at the beginning of compressed data.
+/// @throws IoError naming the byte, where they do not fit the header or the file
+std::array<std::uint32_t, 2> pcd_sizes(const Input& in, const PcdHeader& header);
 
 /// Reads the header and checks everything a PCD reader would have to believe: fields and counts against each other and
 /// against the size of the file, the sizes of compressed data, and in text every line and word. What passes is safe to

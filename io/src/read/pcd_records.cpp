@@ -1,9 +1,7 @@
-#include <algorithm>
-#include <optional>
-#include <string>
+#include "read/pcd_records.hpp"
 
-#include "read/pcd_header.hpp"
-#include "read/point_records.hpp"
+#include <algorithm>
+#include <string>
 
 namespace ahm::io {
 namespace {
@@ -19,27 +17,37 @@ std::optional<PlyType> type_of(const PcdField& field) {
 
 }  // namespace
 
-PointRecords pcd_records(const Input& in) {
-  const PcdHeader header = parse_pcd_header(in);
-  if (header.data == PcdData::ascii) fail(in, "it is a text file, of which only the whole can be read; make it binary");
-  if (header.data == PcdData::compressed) fail(in, "its points are compressed; save it as binary");
-  check_pcd_size(in, header);
-  PointRecords records{.begin = header.body, .count = header.points};
+std::optional<std::size_t> axis_of(const PcdField& field) {
+  const auto axis = std::string("xyz").find(field.name);
+  return field.name.size() == 1 && axis != std::string::npos ? std::optional(axis) : std::nullopt;
+}
+
+bool has_normals(const PcdHeader& header) {
+  return std::ranges::count_if(header.fields, [](const PcdField& field) {
+           return field.name.size() == 8 && field.name.starts_with("normal_");
+         }) == 3;
+}
+
+PointRecords records_of(const Input& in, const PcdHeader& header) {
+  PointRecords records{.begin = header.body, .count = header.points, .has_normals = has_normals(header)};
   records.is_swapped = std::endian::native == std::endian::big;
-  int normals = 0;
   for (const PcdField& field : header.fields) {
-    const auto axis = std::string("xyz").find(field.name);
-    if (field.name.size() == 1 && axis != std::string::npos) {
+    if (const auto axis = axis_of(field)) {
       const auto type = type_of(field);
       if (!type) fail(in, "its coordinates are whole numbers of 8 bytes; make them real ones");
-      records.at[axis] = records.stride;
-      records.type[axis] = *type;
+      records.at[*axis] = records.stride;
+      records.type[*axis] = *type;
     }
-    normals += field.name.size() == 8 && field.name.starts_with("normal_") ? 1 : 0;
     records.stride += field.size * field.count;
   }
-  records.has_normals = normals == 3;
   return records;
+}
+
+std::optional<PointRecords> pcd_records(const Input& in) {
+  const PcdHeader header = parse_pcd_header(in);
+  if (header.data != PcdData::binary) return std::nullopt;
+  check_pcd_size(in, header);
+  return records_of(in, header);
 }
 
 }  // namespace ahm::io

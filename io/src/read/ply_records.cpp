@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <string>
 
+#include "ahm/error.hpp"
 #include "read/point_records.hpp"
 
 namespace ahm::io {
@@ -26,14 +27,15 @@ void find_coordinates(const Input& in, const PlyElement& vertex, PointRecords& r
 
 }  // namespace
 
-PointRecords ply_records(const Input& in) {
+std::optional<PointRecords> ply_records(const Input& in) {
   const PlyHeader header = parse_ply_header(in);
-  if (header.format == PlyFormat::ascii)
-    fail(in, "it is a text file, of which only the whole can be read; make it binary");
   PointRecords records{.begin = header.body};
   records.is_swapped = is_swapped(header.format);
   for (const PlyElement& element : header.elements)
-    if (element.name == "face" && element.count > 0) fail(in, "it has faces; only clouds of points can be streamed");
+    if ((element.name == "face" || element.name == "tristrips") && element.count > 0)
+      throw IoError("no_cloud", "cannot read " + quoted_path(in.path) + ": it has faces",
+                    "only clouds of points can be streamed");
+  if (header.format == PlyFormat::ascii) return std::nullopt;
   for (const PlyElement& element : header.elements) {
     if (element.name == "vertex") {
       if (element.has_list()) fail(in, "its vertices have lists, so that points cannot be found without reading all");

@@ -4,8 +4,11 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
+#include <optional>
 
 #include "ahm/types.hpp"
+#include "read/byte_stream.hpp"
 #include "read/input.hpp"
 #include "read/ply_value.hpp"
 
@@ -22,9 +25,14 @@ struct PointRecords {
   bool has_normals = false;  ///< every point has one
 };
 
-/// Of these formats, from the beginning of a file. @throws IoError, also where points are no such records
-PointRecords ply_records(const Input& in);
-PointRecords las_records(const Input& in);
-PointRecords pcd_records(const Input& in);
+/// Gets points one after the other.
+using TakePoint = std::function<void(const Vec3&)>;
+
+/// Of these formats, from the beginning of a file; nullopt where it is text or compressed. @throws IoError
+std::optional<PointRecords> ply_records(const Input& in);
+std::optional<PointRecords> las_records(const Input& in);
+std::optional<PointRecords> pcd_records(const Input& in);
+/// Of PCD files that are text or compressed. @return whether points have normals @throws IoError
+bool take_pcd_points(const ByteStream& file, const TakePoint& take);
 
 }  // namespace ahm::io

@@ -7,6 +7,8 @@
 namespace ahm::io {
 namespace {
 
+constexpr std::size_t block_size = std::size_t{1} << 18;  // of a file that is read as its lines are
+
 constexpr bool is_blank(char c) noexcept { return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
 
 /// from_chars knows no leading plus sign, files do.
@@ -41,9 +43,42 @@ Lines::Lines(std::string_view text, std::int64_t first_number) : text_(text), nu
   if (text_.find('\n') == std::string_view::npos && text_.find('\r') != std::string_view::npos) end_ = '\r';
 }
 
+Lines::Lines(const ByteStream& file, std::uint64_t begin, std::int64_t first_number)
+    : file_(std::make_unique<ByteStream>(file, begin)), number_(first_number - 1) {
+  ByteStream ahead(file, begin);
+  std::string block(block_size, '\0');
+  bool returns = false;
+  while (const std::size_t count = ahead.read(block)) {
+    const auto text = std::string_view(block).substr(0, count);
+    if (text.find('\n') != std::string_view::npos) return;
+    returns = returns || text.find('\r') != std::string_view::npos;
+  }
+  if (returns) end_ = '\r';
+}
+
+/// Puts more of the file behind what is left of the text; false at its end.
+bool Lines::read_on() {
+  constexpr std::size_t longest = std::size_t{1} << 26;
+  if (!file_) return false;
+  buffer_.erase(0, position_);
+  position_ = 0;
+  const std::size_t left = buffer_.size();
+  if (left > longest) fail_at_line(file_->head(), number_ + 1, "the line is longer than 64 MB");
+  buffer_.resize(left + block_size);
+  const std::size_t count = file_->read(std::span(buffer_).subspan(left));
+  buffer_.resize(left + count);
+  text_ = buffer_;
+  return count > 0;
+}
+
 bool Lines::next() {
-  if (position_ >= text_.size()) return false;
-  const std::size_t end = text_.find(end_, position_);
+  if (position_ >= text_.size() && !read_on()) return false;
+  std::size_t end = text_.find(end_, position_);
+  while (end == std::string_view::npos) {
+    const std::size_t searched = text_.size() - position_;
+    if (!read_on()) break;
+    end = text_.find(end_, searched);
+  }
   line_ = text_.substr(position_, end == std::string_view::npos ? end : end - position_);
   position_ = end == std::string_view::npos ? text_.size() : end + 1;
   if (line_.ends_with('\r')) line_.remove_suffix(1);

@@ -3,10 +3,13 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
+#include "read/byte_stream.hpp"
 #include "read/input.hpp"
 
 namespace ahm::io {
@@ -15,6 +18,8 @@ namespace ahm::io {
 class Lines {
  public:
   explicit Lines(std::string_view text, std::int64_t first_number = 1);
+  /// Of a file from this byte on, of which some is in memory at a time; not to be moved once the first line is read.
+  Lines(const ByteStream& file, std::uint64_t begin, std::int64_t first_number = 1);
 
   /// Moves to the next line; false at the end.
   bool next();
@@ -22,7 +27,7 @@ class Lines {
   /// without it.
   bool next_filled(char comment);
 
-  /// Without the line end.
+  /// Without the line end; valid until the next.
   std::string_view line() const noexcept { return line_; }
   /// 1-based number of the current line.
   std::int64_t number() const noexcept { return number_; }
@@ -30,6 +35,10 @@ class Lines {
   std::size_t position() const noexcept { return position_; }
 
  private:
+  bool read_on();
+
+  std::unique_ptr<ByteStream> file_;  ///< null: `text_` is all there is
+  std::string buffer_;                ///< of it
   std::string_view text_;
   std::string_view line_;
   std::size_t position_ = 0;

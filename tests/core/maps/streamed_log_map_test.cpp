@@ -50,7 +50,9 @@ bool same_bits(std::span<const double> a, std::span<const double> b) {
 }
 
 TEST(StreamedLogMap, HasTheBitsOfAMarchThatKeepsEverything) {
-  for (const CsrGraphData& data : {sphere_graph(6000), as_blocks(sphere_graph(6000)), bent_lattice(16)}) {
+  CsrGraphData unfolded = sphere_graph(6000);
+  unfolded.is_delaunay = true;
+  for (const CsrGraphData& data : {sphere_graph(6000), as_blocks(sphere_graph(6000)), bent_lattice(16), unfolded}) {
     const CsrGraph graph = telling(data);
     const LogMapSolver kept(graph, {.strategy = Strategy::march});
     for (Variant variant : all_variants) {
@@ -160,9 +162,9 @@ TEST(StreamedLogMap, RefusesWhatNeedsTheWholeGraph) {
   EXPECT_THROW(stream_log_map(graph, source, {.order = 2}, {}, rows), InvalidArgument);
   EXPECT_THROW(stream_log_map(graph, source, {}, {.frames = true}, rows), InvalidArgument);
   EXPECT_THROW(stream_log_map(graph, source, {}, {.radius = 0}, rows), InvalidArgument);
-  CsrGraphData triangulation = graph.data();
-  triangulation.is_delaunay = true;
-  EXPECT_THROW(stream_log_map(CsrGraph(triangulation), source, {}, {}, rows), InvalidArgument);
+  Source curve(2);
+  curve.add(Vertex{5}, 1, Vec2{0, 0}, {}, {.point = 0, .distance = 0});
+  EXPECT_THROW(stream_log_map(graph, curve, {}, {}, rows), InvalidArgument);
 }
 
 TEST(StreamedLogMap, ForgetsWhatTheFrontHasPassed) {

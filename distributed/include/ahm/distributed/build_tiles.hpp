@@ -28,7 +28,7 @@ struct BuildOptions {
   Progress progress = {};
 };
 
-/// Cuts a file of points (`io::PointStream`) along a Morton curve, reading it about eight times, and writes the manifest last: where
+/// Cuts a file of points (`io::PointStream`) along a Morton curve, reading it about eight times (text and what is compressed once), and writes the manifest last: where
 /// there is none, planning begins anew.
 /// @param folder  made where it does not exist
 /// @throws IoError, InvalidGeometry (fewer than 3 points, non-finite ones), InvalidArgument (options; normals that are not to

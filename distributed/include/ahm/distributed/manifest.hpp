@@ -34,6 +34,9 @@ struct TileFacts {
   std::int64_t edges = 0;  ///< directed
 };
 
+/// The version of manifest.json of clouds, and of surfaces that were built in memory; others are refused.
+inline constexpr std::uint32_t cloud_version = 1, surface_version = 2;
+
 /// The file manifest.json of a folder.
 struct Manifest {
   std::string input;
@@ -49,6 +52,8 @@ struct Manifest {
   std::int64_t reflections = 0;
   Index components = 0;
   double mean_edge_length = 0;
+  bool is_surface = false;   ///< built in memory (`tile_surface`); of such, the next, too
+  bool is_delaunay = false;  ///< `TangentGraph::is_delaunay`
   std::vector<TileFacts> tiles;
 
   /// @throws IoError (missing, damaged, of another version)

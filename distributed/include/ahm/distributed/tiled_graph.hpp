@@ -39,7 +39,8 @@ class TiledGraph final : public TangentGraph {
   Star star(Index vertex) const override;
   Offset edge_count() const noexcept override { return edges_; }
   double length_unit() const noexcept override { return unit_; }
-  /// x and y as `pointcloud::PointCloudSurface` has them.
+  bool is_delaunay() const noexcept override { return manifest_.is_delaunay; }
+  /// As the surface has them; of clouds x and y as `pointcloud::PointCloudSurface`.
   std::optional<Frame> frame(Index vertex) const override;
 
   /// Component of a vertex, numbered in the order of their first vertices.
@@ -47,7 +48,7 @@ class TiledGraph final : public TangentGraph {
   /// The vertex of an input row; none where it was removed. Reads all tiles.
   /// @throws InvalidArgument (no such row)
   std::optional<Vertex> vertex_of_row(Row row) const;
-  /// The vertex nearest to a position in world units. Reads all tiles.
+  /// The vertex at a row that is nearest to a position in world units. Reads all tiles.
   Vertex nearest_vertex(const Vec3& position) const;
 
   const Manifest& manifest() const noexcept { return manifest_; }

@@ -17,12 +17,17 @@
 
 namespace ahm::io {
 
-/// Reads the points of a binary PLY or PCD file, or of a LAS file, block by block, in the order of the file: those that `read` finds.
+/// Reads the points of a PLY, PCD, LAS, XYZ, TXT, ASC, CSV or PTS file, or of one of these compressed with gzip, block by block, in
+/// the order of the file: those that `read` finds. Text and what is compressed are read once and for all into a file without a
+/// name, 24 bytes per point, which is gone with this object or the process.
 class PointStream {
  public:
-  /// @throws IoError when the file cannot be read, is none that can be streamed (text, compressed, of another format; lists
-  /// at vertices), has faces, or is cut short
-  explicit PointStream(const std::filesystem::path& path);
+  /// @param scratch  folder whose disk has room for such a file
+  /// @throws IoError as `read`, and when the file is none that can be streamed (of another format; lists at vertices of
+  /// binary PLY; coordinates of PCD that are whole numbers of 8 bytes, or in text such as do not fit their type), has faces, or the
+  /// disk is full; fault "no_cloud" where it has faces, or is of another format
+  explicit PointStream(const std::filesystem::path& path,
+                       const std::filesystem::path& scratch = std::filesystem::temp_directory_path());
   ~PointStream();
   PointStream(PointStream&&) noexcept;
   PointStream& operator=(PointStream&&) noexcept;

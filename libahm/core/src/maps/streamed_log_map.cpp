@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <unordered_map>
 #include <vector>
 
 #include "ahm/error.hpp"
+#include "ahm/maps/unfolding_front.hpp"
 #include "ahm/util/parallel.hpp"
 #include "ahm/util/text.hpp"
 #include "heat/check_options.hpp"
@@ -37,6 +39,12 @@ class Rows final : public MarchSink {
  public:
   Rows(const TangentGraph& graph, const Source& source, double radius, MarchGoal goal, MapSink& sink)
       : radius_(radius), sink_(sink), phi_(goal == MarchGoal::map ? static_cast<std::size_t>(graph.dimension()) : 0) {
+    if (unfolds(graph, source)) {
+      front_.emplace(graph);
+      front_->add(source);
+      front_->run(radius);
+      return;
+    }
     for (std::size_t k = 0; k < source.vertices().size(); ++k)
       if (source.weights()[k] > 0) placed_[source.vertices()[k].index] = source.place(k).distance;
   }
@@ -44,7 +52,10 @@ class Rows final : public MarchSink {
   void accept(Index vertex, const HeatRow& found) override {
     std::copy_n(found.phi.begin(), phi_.size(), phi_.begin());
     VertexRow row = vertex_row(found);
-    if (const auto placed = placed_.find(vertex); placed != placed_.end()) row.distance = placed->second;
+    if (front_)
+      row.distance = front_->distance(Vertex(vertex));
+    else if (const auto placed = placed_.find(vertex); placed != placed_.end())
+      row.distance = placed->second;
     if (row.status == Status::ok && row.distance > radius_) row.status = Status::beyond_radius;
     if (row.status != Status::ok) {
       std::fill(phi_.begin(), phi_.end(), NAN);
@@ -57,6 +68,7 @@ class Rows final : public MarchSink {
   double radius_;
   MapSink& sink_;
   std::vector<double> phi_;                   ///< empty for distances alone
+  std::optional<UnfoldingFront> front_;       ///< that knows the distances; none: heat does
   std::unordered_map<Index, double> placed_;  ///< the source's own vertices
 };
 
@@ -70,8 +82,7 @@ void check(const TangentGraph& graph, const Source& source, const HeatOptions& o
   quiet.check_graph = false;
   check_heat_options(graph, quiet);
   check_source(source, graph);
-  if (unfolds(graph, source))
-    throw InvalidArgument("distances on triangulations and from curves are unfolded, which needs the whole graph");
+  if (source.is_curve()) throw InvalidArgument("streamed maps begin at points, not along curves");
   for (Vertex vertex : source.vertices()) {
     const double h = graph.component_edge_length(vertex.index);
     if (!(h > 0)) throw InvalidArgument("the graph does not tell the mean edge length of its components");

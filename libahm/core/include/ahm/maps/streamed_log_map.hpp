@@ -34,9 +34,10 @@ class MapSink {
 /// of are beyond the radius, without heat, or in a component without the source.
 ///
 /// Memory is in proportion to the march's front (about 300 bytes per vertex of a band, besides its factors) and 10 bytes per
-/// 256 vertices of the graph; the graph is asked for stars along the front alone, from one thread.
-/// @param graph    tells `component_edge_length` of every vertex; not `is_delaunay`, whose distances are unfolded. It is
-///                 not validated
+/// 256 vertices of the graph; the graph is asked for stars along the front alone, from one thread. Where it `is_delaunay`, distances
+/// are unfolded first, by a front that keeps 30 bytes per vertex of the graph.
+/// @param graph    tells `component_edge_length` of every vertex. It is not validated
+/// @param source   points, not a curve
 /// @param options  order 1; strategy and `check_graph` mean nothing here
 /// @param map      without frames
 /// @throws InvalidArgument (source, options, a graph of another kind), InvalidGraph (an edge that only one end knows),

@@ -1,0 +1,79 @@
+#include "read/regular_file.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include "ahm/error.hpp"
+#include "read/input.hpp"
+
+namespace ahm::io {
+namespace {
+
+[[noreturn]] void refuse(const std::filesystem::path& path, const std::string& what) {
+  throw IoError("cannot read " + quoted_path(path) + ": " + what);
+}
+
+std::string reason(int error) { return std::generic_category().message(error); }
+
+}  // namespace
+
+RegularFile::RegularFile(const std::filesystem::path& path) : RegularFile() {  // hence closed where this throws
+  path_ = path;
+  // Not blocking, so that a named pipe nobody writes to is refused rather than waited for.
+  descriptor_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  struct stat info {};
+  if (descriptor_ < 0 || ::fstat(descriptor_, &info) != 0) refuse(path, reason(errno));
+  if (S_ISDIR(info.st_mode)) refuse(path, reason(EISDIR));
+  if (!S_ISREG(info.st_mode)) refuse(path, "not a regular file (a pipe or device); copy its contents to a file first");
+  if (info.st_size == 0) refuse(path, "the file is empty (0 bytes)");
+  size_ = static_cast<std::uint64_t>(info.st_size);
+}
+
+RegularFile RegularFile::without_name(const std::filesystem::path& folder) {
+  RegularFile file;
+  file.path_ = folder;
+  std::string name = (folder / "points.XXXXXX").string();
+  file.descriptor_ = ::mkostemp(name.data(), O_CLOEXEC);
+  if (file.descriptor_ < 0 || ::unlink(name.c_str()) != 0)
+    throw IoError("cannot write a file in " + quoted_path(folder) + ": " + reason(errno));
+  return file;
+}
+
+RegularFile::~RegularFile() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+RegularFile::RegularFile(RegularFile&& other) noexcept
+    : path_(std::move(other.path_)), descriptor_(std::exchange(other.descriptor_, -1)), size_(other.size_) {}
+
+std::size_t RegularFile::read(std::uint64_t position, std::span<char> room) const {
+  std::size_t done = 0;
+  while (done < room.size()) {
+    const ssize_t got =
+        ::pread(descriptor_, room.data() + done, room.size() - done, static_cast<off_t>(position + done));
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) refuse(path_, reason(errno));
+    if (got == 0) break;
+    done += static_cast<std::size_t>(got);
+  }
+  return done;
+}
+
+void RegularFile::append(std::span<const char> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t put = ::pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(size_));
+    if (put < 0 && errno == EINTR) continue;
+    if (put < 0) throw IoError("cannot write a file in " + quoted_path(path_) + ": " + reason(errno));
+    size_ += static_cast<std::uint64_t>(put);
+    bytes = bytes.subspan(static_cast<std::size_t>(put));
+  }
+}
+
+}  // namespace ahm::io
