@@ -97,6 +97,25 @@ TEST(Mesh, OfTheSurroundingsAloneGivesTheSameMap) {
       }
 }
 
+TEST(Mesh, OfTheSurroundingsIsNeverPinchedByTheCut) {
+  // A sheet with a square hole in every other cell of a coarser grid: balls touch the bars beyond holes at corners alone.
+  constexpr int m = 41;
+  std::ostringstream text;
+  for (int j = 0; j < m; ++j)
+    for (int i = 0; i < m; ++i) text << "v " << i << ' ' << j << ' ' << 0.01 * (i * i % 7) << '\n';
+  for (int j = 0; j + 1 < m; ++j)
+    for (int i = 0; i + 1 < m; ++i) {
+      if (i % 4 >= 2 && j % 4 >= 2) continue;
+      const int a = j * m + i + 1;
+      text << "f " << a << ' ' << a + 1 << ' ' << a + m + 1 << "\nf " << a << ' ' << a + m + 1 << ' ' << a + m << '\n';
+    }
+  for (const std::string source : {"0", "420", "861", "1000", "1240"})
+    for (const std::string radius : {"2", "3.1", "4.4", "5", "6.3", "7.7", "9", "11"}) {
+      const auto rows = map(text.str(), source, {"--radius", radius, "--local"});
+      ASSERT_EQ(rows[static_cast<std::size_t>(std::stoi(source))].status, "ok") << source << ", " << radius;
+    }
+}
+
 TEST(Mesh, OfTheSurroundingsKeepsAllFacesInItsOutputs) {
   Folder folder;
   const auto input = folder.write("mesh.obj", sheet(30) + "v 9 9 9\n");

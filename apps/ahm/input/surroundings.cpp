@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 #include <span>
+#include <utility>
 
 #include "ahm/error.hpp"
 #include "ahm/util/vec.hpp"
@@ -50,13 +51,49 @@ std::int64_t used_vertices(const io::Geometry& input) {
   return std::count(used.begin(), used.end(), true);
 }
 
+/// Vertices around which the kept faces lie in several fans: more faces there than sides that two of them share.
+std::vector<bool> pinched_vertices(const io::Geometry& input, const std::vector<bool>& kept) {
+  std::vector<std::pair<Index, Index>> sides;
+  std::vector<Index> fans(input.points.size(), 0);
+  for (std::size_t f = 0; f < kept.size(); ++f) {
+    if (!kept[f]) continue;
+    const auto face = input.face(f);
+    for (std::size_t c = 0; c < face.size(); ++c) {
+      ++fans[face[c]];
+      sides.emplace_back(std::minmax(face[c], face[(c + 1) % face.size()]));
+    }
+  }
+  std::sort(sides.begin(), sides.end());
+  for (std::size_t k = 1; k < sides.size(); ++k)
+    if (sides[k] == sides[k - 1]) --fans[sides[k].first], --fans[sides[k].second];
+  std::vector<bool> result(fans.size());
+  for (std::size_t v = 0; v < fans.size(); ++v) result[v] = fans[v] > 1;
+  return result;
+}
+
+/// Adds the faces of pinched vertices until there are none, but for those that are pinched in the input.
+void close_fans(const io::Geometry& input, std::vector<bool>& kept) {
+  for (bool more = true; more;) {
+    more = false;
+    const std::vector<bool> pinched = pinched_vertices(input, kept);
+    for (std::size_t f = 0; f < kept.size(); ++f) {
+      if (kept[f] || std::ranges::none_of(input.face(f), [&](Index v) { return pinched[v]; })) continue;
+      kept[f] = more = true;
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<Index> surrounding_faces(const io::Geometry& input, double radius, const SourceSpec& source) {
   const Vec3 center = center_of(input, source);
+  std::vector<bool> kept(input.face_count());
+  for (std::size_t f = 0; f < kept.size(); ++f)
+    kept[f] = distance_to_box(center, input.face(f), input.points) <= 1.5 * radius;
+  close_fans(input, kept);
   std::vector<Index> result;
-  for (std::size_t f = 0; f < input.face_count(); ++f)
-    if (distance_to_box(center, input.face(f), input.points) <= 1.5 * radius) result.push_back(static_cast<Index>(f));
+  for (std::size_t f = 0; f < kept.size(); ++f)
+    if (kept[f]) result.push_back(static_cast<Index>(f));
   if (result.empty())
     throw InvalidArgument(
         fmt::format("--local: no face comes within {:.6g} of the source {}", 1.5 * radius, to_string(source)));

@@ -12,6 +12,7 @@ namespace ahm::app {
 
 /// The faces that come within one and a half radii of the source in a straight line, or of the vertex nearest to it where it
 /// is a position: no path of the length of the radius comes farther than that, and half of it keeps the new boundary away.
+/// Where they would meet at a vertex alone, all faces of the vertex are kept, too.
 /// @param input   with faces
 /// @param source  in its faces
 /// @return ascending. @throws InvalidArgument where no face comes so near

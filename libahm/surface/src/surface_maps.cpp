@@ -48,10 +48,15 @@ RowLogMap Surface::on_rows(const LogMap& map) const {
     result.status[r] = best.status;
     if (!best.vertex) continue;
     const Vertex v = *best.vertex;
+    const double away = source ? std::max(map.distance(v), distance(positions()[r], *source)) : map.distance(v);
+    if (away > map.radius()) {
+      result.status[r] = Status::beyond_radius;
+      continue;
+    }
     const auto phi = map.coordinates(v);
     result.u[r] = phi[0];
     result.v[r] = phi[1];
-    result.distance[r] = source ? std::max(map.distance(v), distance(positions()[r], *source)) : map.distance(v);
+    result.distance[r] = away;
     if (!map.spread().empty()) result.spread[r] = map.spread()[v.index];
     result.angle[r] = std::atan2(phi[1], phi[0]);
     if (!error.empty()) result.error_estimate[r] = error[v.index];

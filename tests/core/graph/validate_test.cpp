@@ -82,6 +82,9 @@ TEST(Validate, NamesTheBrokenLaw) {
       g, [](auto& b) { b.neighbors[0] = 80; }, "outside [0, 80)");
   expect_invalid(
       g, [](auto& b) { b.mean_edge_length = 0.0; }, "mean edge length");
+  for (const double unit : {0.0, -1.0, static_cast<double>(INFINITY), static_cast<double>(NAN)})
+    expect_invalid(
+        g, [&](auto& b) { b.length_unit = unit; }, "unit of length");
   expect_invalid(
       g, [](auto& b) { b.weights.pop_back(); }, "'weights' has length");
   expect_invalid(

@@ -217,7 +217,7 @@ Ahm.Viewer = class {
       const answer = await (await this.server.post("path", { from: from.source, to: to.source })).json();
       this.stage.set_marks({ curve: answer.points, dots: [answer.points[0], answer.points[answer.points.length - 1]] });
       this.element("command").textContent = answer.command;
-      this.panel.say("a path, " + Ahm.number(answer.length) + " long");
+      this.panel.say("a path, " + Ahm.number(this.panel.length_of(answer.length)) + " long");
     });
   }
 
@@ -257,7 +257,7 @@ Ahm.Viewer = class {
     this.stage.set_marks({ curve: answer.points, pieces: answer.pieces });
     this.panel.say("");
     this.element("command").textContent = answer.command;
-    this.element("tool_hint").textContent = Ahm.number(answer.length, 4) + " long, " + (100 * answer.covered).toFixed(1) + " % on the surface";
+    this.element("tool_hint").textContent = Ahm.number(this.panel.length_of(answer.length), 4) + " long, " + (100 * answer.covered).toFixed(1) + " % on the surface";
   }
 
   place_decal() {

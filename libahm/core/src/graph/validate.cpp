@@ -166,6 +166,9 @@ void validate(const TangentGraph& graph, unsigned threads) {
   const double h = graph.mean_edge_length();
   if (!(h > 0) || !std::isfinite(h))
     throw InvalidGraph("mean edge length " + detail::number(h) + " must be finite and > 0");
+  const double unit = graph.length_unit();
+  if (!(unit > 0) || !std::isfinite(unit))
+    throw InvalidGraph("the unit of length is " + detail::number(unit) + "; it must be finite and > 0");
 
   try {
     check_edges(graph, threads);

@@ -134,6 +134,7 @@ LogMap extrapolate(const TangentGraph& graph, const ComponentScales& scales, dou
                    {first.spread().begin(), first.spread().end()},
                    {middle.frames().begin(), middle.frames().end()},
                    std::move(error)};
+  extras.radius = radius;
   for (std::size_t k = 1; k < maps.size(); ++k) extras.march += maps[k]->march();
   return LogMap(first.dimension(), first.variant(), marched ? Strategy::march : Strategy::global, first.source(),
                 std::move(coordinates), std::move(status), std::move(extras));

@@ -209,6 +209,7 @@ LogMap LogMapSolver::Impl::map_of(const Values& values, Strategy how, const Marc
   std::vector<Status> status(n);
   MapExtras extras{
       march, std::vector<double>(n), std::vector<double>(map.spread && !source.is_curve() ? n : 0), {}, {}};
+  extras.radius = map.radius;
   if (map.frames) extras.frames.resize(n * d * d);
   detail::for_each_index(n, threads, [&](std::size_t i) {
     const auto vertex = static_cast<Index>(i);

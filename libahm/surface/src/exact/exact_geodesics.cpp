@@ -206,6 +206,7 @@ LabelledLogMap ExactGeodesics::log_map(const Placed& from, Source source, const 
   std::vector<Index> labels;
   MapExtras extras;
   extras.method = Method::exact;
+  extras.radius = options.radius;
   const auto size = static_cast<std::size_t>(exact.size());
   coordinates.reserve(2 * size);
   labels.reserve(size);

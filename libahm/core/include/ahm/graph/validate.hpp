@@ -7,7 +7,7 @@
 namespace ahm {
 
 /// Checks every law a `TangentGraph` must keep and names the first one that is broken, with its vertex or edge:
-///  - n >= 1, d >= 1; `rotation2` only for d = 2; mean edge length finite and > 0;
+///  - n >= 1, d >= 1; `rotation2` only for d = 2; mean edge length and unit of length finite and > 0;
 ///  - masses finite and > 0;
 ///  - neighbours in range, no self loops; weights, logs and transports finite;
 ///  - transports orthogonal: R R^T = id to 1e-8;

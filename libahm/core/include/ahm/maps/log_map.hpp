@@ -8,6 +8,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -41,6 +42,7 @@ struct MapExtras {
   std::vector<double> frames;
   std::vector<double> error_estimate;
   Method method = Method::heat;
+  double radius = std::numeric_limits<double>::infinity();
 };
 
 /// Why a vertex has coordinates, or has none.
@@ -83,6 +85,8 @@ class LogMap {
   /// With HeatOptions::order = 2: an estimate of |error of phi_i| in world units, from the disagreement of the
   /// diffusion times; NaN where not ok. Good to a factor of about three inside the cut locus (docs/accuracy.md).
   std::span<const double> error_estimate() const noexcept { return extras_.error_estimate; }
+  /// That was asked for, world units; infinite: none.
+  double radius() const noexcept { return extras_.radius; }
   /// The source whose frame the coordinates refer to.
   const Source& source() const noexcept { return source_; }
 
