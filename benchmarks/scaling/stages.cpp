@@ -8,6 +8,7 @@
 #include <string>
 
 #include "ahm/io/read.hpp"
+#include "ahm/io/temporary_folder.hpp"
 #include "ahm/io/write.hpp"
 #include "ahm/maps/log_map_solver.hpp"
 #include "ahm/pointcloud/point_cloud_surface.hpp"
@@ -79,23 +80,6 @@ struct CloudInput {
 
 double file_bytes(const std::filesystem::path& path) { return static_cast<double>(std::filesystem::file_size(path)); }
 
-/// A file of this process.
-class OwnFile {
- public:
-  OwnFile()
-      : path_(std::filesystem::temp_directory_path() / ("ahm_bench_stages_" + std::to_string(getpid()) + ".ply")) {}
-  OwnFile(const OwnFile&) = delete;
-  OwnFile& operator=(const OwnFile&) = delete;
-  ~OwnFile() {
-    std::error_code ignored;
-    std::filesystem::remove(path_, ignored);
-  }
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
-
 /// Of one thread, bytes and operations per second.
 struct Speeds {
   double copy, dgemm, zgemm;
@@ -122,7 +106,8 @@ template <class Input>
 std::vector<double> measure(Index n, const Speeds& speeds) {
   const auto [copy, dgemm, zgemm] = speeds;
   const Input input(n);
-  const OwnFile file;
+  const io::TemporaryFolder folder("ahm_bench_");
+  const std::filesystem::path file = folder.directory() / "input.ply";
   const auto rows = static_cast<Index>(input.points.size());
   std::vector<Offset> begin;
   std::vector<Index> corners;
@@ -134,11 +119,11 @@ std::vector<double> measure(Index n, const Speeds& speeds) {
   io::Table table;
   table.add({"x", "y", "z"}, input.points);
   table.faces = {begin, corners};
-  io::write(file.path(), table);
+  io::write(file, table);
   std::vector<double> numbers{static_cast<double>(rows)};
   const auto add = [&](double seconds, double least) { numbers.insert(numbers.end(), {seconds, least}); };
 
-  add(usual_seconds([&] { io::read(file.path()); }), (file_bytes(file.path()) + input.bytes()) / copy);
+  add(usual_seconds([&] { io::read(file); }), (file_bytes(file) + input.bytes()) / copy);
 
   const auto surface = input.surface();
   const CsrGraph& graph = surface.graph();
@@ -177,8 +162,8 @@ std::vector<double> measure(Index n, const Speeds& speeds) {
   table.add("distance", map->distances());
   table.add("status", map->status());
   const double columns = input.bytes() + 9.0 * rows;
-  const double writing = usual_seconds([&] { io::write(file.path(), table); });
-  add(writing, (columns + file_bytes(file.path())) / copy);
+  const double writing = usual_seconds([&] { io::write(file, table); });
+  add(writing, (columns + file_bytes(file)) / copy);
   return numbers;
 }
 

@@ -1,9 +1,7 @@
 // Maps of the tiles of a mesh are those of the mesh in memory, row for row.
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <fstream>
 #include <limits>
 #include <memory>
@@ -23,6 +21,7 @@
 #include "csv_lines.hpp"
 #include "npy_column.hpp"
 #include "ranks.hpp"
+#include "said_by.hpp"
 #include "support/expect_error.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -255,15 +254,6 @@ TEST(TiledSurface, RefusesWhatTilesCannotSay) {
                                 "row 0 has 2 vertices");
 }
 
-std::string said_by(const std::string& command) {
-  std::FILE* const pipe = ::popen((command + " 2>&1").c_str(), "r");
-  std::string text;
-  for (std::array<char, 400> part{}; const std::size_t length = std::fread(part.data(), 1, part.size(), pipe);)
-    text.append(part.data(), length);
-  EXPECT_EQ(WEXITSTATUS(::pclose(pipe)), text.find("error") == std::string::npos ? 0 : 1) << text;
-  return text;
-}
-
 TEST(TiledSurface, IsMadeByTheProgram) {
   const TemporaryFolder folder;
   const Mesh mesh = icosphere(8);
@@ -276,14 +266,14 @@ TEST(TiledSurface, IsMadeByTheProgram) {
   for (const Triangle& f : mesh.faces) off << "3 " << f[0] << ' ' << f[1] << ' ' << f[2] << '\n';
   off.close();
   const std::string program = AHM_TILES_PROGRAM, plan = program + " plan " + file.string() + " -o " + tiles.string();
-  EXPECT_NE(said_by(plan + " --k 60").find("--k and --drop-nan are for clouds"), std::string::npos);
+  EXPECT_NE(said_by(plan + " --k 60", 1).find("--k and --drop-nan are for clouds"), std::string::npos);
   EXPECT_NE(said_by(plan + " --tile-points 200").find("tiles, built"), std::string::npos);
   said_by(program + " build " + tiles.string());
   said_by(program + " logmap " + tiles.string() + " -o " + map.string() + " --source 0");
   said_by(program + " rows " + tiles.string() + " " + map.string() + " -o " + csv.string());
   EXPECT_EQ(csv_lines(csv, "row,u,v,distance,spread,status").size(), mesh.positions.size());
   std::ofstream(folder.directory() / "cloud.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
-  EXPECT_NE(said_by(program + " plan " + (folder.directory() / "cloud.obj").string() + " -o " + map.string() + "2")
+  EXPECT_NE(said_by(program + " plan " + (folder.directory() / "cloud.obj").string() + " -o " + map.string() + "2", 1)
                 .find("has no faces"),
             std::string::npos);
 }

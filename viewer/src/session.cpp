@@ -60,6 +60,20 @@ Settings of_curve(Settings settings) {
 
 double radius_of(const Settings& settings) { return settings.radius.value_or(std::numeric_limits<double>::infinity()); }
 
+Progress until(const std::stop_token& stop) {
+  Progress progress;
+  progress.stop = stop;
+  return progress;
+}
+
+MapOptions heat_options(const Settings& settings, double radius, const std::stop_token& stop) {
+  MapOptions options;
+  options.variant = settings.variant;
+  options.radius = radius;
+  options.progress = until(stop);
+  return options;
+}
+
 json positions(const view::PageSurface& page, std::span<const Vec3> points) {
   json out = json::array();
   for (const Vec3& x : points) out.push_back(page.to_page(x));
@@ -137,18 +151,13 @@ struct Session::Impl {
   /// @param placed  the source on the surface, with the u axis of the settings
   LogMap map(const SurfacePoint& source, const PlacedSource& placed, const Settings& settings,
              const std::stop_token& stop, bool frames = false) {
-    Progress progress;
-    progress.stop = stop;
     const double radius = radius_of(settings);
     if (settings.method == Method::exact) {
       const auto u_axis = placed.frame ? std::optional(placed.frame->x) : std::nullopt;
-      return makers.geodesics().log_map(source, u_axis, {.radius = radius, .frames = frames, .progress = progress});
+      return makers.geodesics().log_map(source, u_axis, {.radius = radius, .frames = frames, .progress = until(stop)});
     }
-    MapOptions heat;
-    heat.variant = settings.variant;
-    heat.radius = radius;
+    MapOptions heat = heat_options(settings, radius, stop);
     heat.frames = frames;
-    heat.progress = progress;
     return makers.solver(settings, stop).solve(placed.source, heat);
   }
 
@@ -198,16 +207,10 @@ struct Session::Impl {
 
   /// As far as its distances go, which are not the map's own.
   LogMap stroke(const SurfaceCurve& curve, const Settings& settings, const std::stop_token& stop) {
-    const double radius = radius_of(settings) + 2 * surface.graph().mean_edge_length() * surface.graph().length_unit();
-    Progress progress;
-    progress.stop = stop;
+    const double radius = reach_from_curve(surface.graph(), radius_of(settings));
     if (settings.method == Method::exact)
-      return makers.geodesics().log_map(curve.samples, {.radius = radius, .progress = progress}).map;
-    MapOptions heat;
-    heat.variant = settings.variant;
-    heat.radius = radius;
-    heat.progress = progress;
-    return makers.solver(settings, stop).solve(curve.source, heat);
+      return makers.geodesics().log_map(curve.samples, {.radius = radius, .progress = until(stop)}).map;
+    return makers.solver(settings, stop).solve(curve.source, heat_options(settings, radius, stop));
   }
 
   Answer answer_stroke(const Request& request) {
@@ -229,9 +232,7 @@ struct Session::Impl {
   SurfaceLine path_between(const std::array<SurfacePoint, 2>& ends, const std::stop_token& stop) {
     if (surface.faces().size() == 0) return shortest_line(surface, ends[0], ends[1]);
     const ExactGeodesics& geodesics = makers.geodesics();
-    Progress progress;
-    progress.stop = stop;
-    const exact::GeodesicPath path = geodesics.paths(std::span(&ends, 1), progress, 1).front();
+    const exact::GeodesicPath path = geodesics.paths(std::span(&ends, 1), until(stop), 1).front();
     SurfaceLine line{path.status, {}, path.length};
     for (const exact::MeshPoint& point : path.points) line.points.push_back(geodesics.position(point));
     return line;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "ahm/applications/surface_curve.hpp"
@@ -139,12 +140,6 @@ void report(const StrokeCommandOptions& options, const Input& input, const Surfa
   deliver(std::move(j), text, options.output, journal);
 }
 
-/// As far as the map has to reach: its own distance from a curve is that from samples of it.
-SolveOptions beyond_radius(SolveOptions options, double edge) {
-  if (options.radius) *options.radius += 2 * edge;
-  return options;
-}
-
 void run(const StrokeCommandOptions& options) {
   check_results(options.input.path, options.output);
   Journal journal(options.output.verbosity);
@@ -152,9 +147,11 @@ void run(const StrokeCommandOptions& options) {
   const SurfaceCurve curve = draw_curve(input, options);
   comment_on_curve(curve, input.mean_edge_length(), journal);
 
-  const LogMap map = solve(beyond_radius(options.solve, input.mean_edge_length()), input, curve, journal);
-  const RowLogMap rows = options.solve.radius ? rows_from_curve(input.surface(), map, curve, *options.solve.radius)
-                                              : rows_from_curve(input.surface(), map, curve);
+  const double radius = options.solve.radius.value_or(std::numeric_limits<double>::infinity());
+  SolveOptions reaching = options.solve;
+  if (reaching.radius) reaching.radius = reach_from_curve(input.graph(), radius);
+  const LogMap map = solve(reaching, input, curve, journal);
+  const RowLogMap rows = rows_from_curve(input.surface(), map, curve, radius);
   comment_on_statuses(rows.status, options.input.path, journal);
   Results results(options.output, input, options.input);
   write_results(curve, options.shape, rows, results, journal);

@@ -38,16 +38,9 @@ Built build(const Backend& backend, const io::Geometry& geometry, const std::opt
               : backend.build(geometry, options, place, journal.progress());
 }
 
-/// The number of a face among those that the surface has. @throws InvalidArgument where --local left it out
+/// In the faces that --local left.
 SourceSpec in_near_faces(const SourceSpec& spec, const std::vector<Index>& near) {
-  const auto* face = std::get_if<SourceFace>(&spec);
-  if (face == nullptr) return spec;
-  const auto place = std::ranges::lower_bound(near, face->face);
-  if (place == near.end() || *place != face->face)
-    throw InvalidArgument("the face is too far from the source; leave --local out");
-  SourceFace result = *face;
-  result.face = static_cast<Index>(place - near.begin());
-  return result;
+  return in_kept_faces(spec, near, "the face is too far from the source; leave --local out");
 }
 
 /// Vertices too far away are no unused ones.
@@ -56,10 +49,9 @@ void count_beyond(std::int64_t beyond, Built& built) {
   for (Figure& figure : built.report)
     if (figure.id == "unreferenced") figure.value = unused = std::get<std::int64_t>(figure.value) - beyond;
   built.report.push_back({"beyond", beyond});
-  std::erase_if(built.warnings, [&](Warning& w) {
-    if (w.id == "unreferenced") w.numbers = {static_cast<double>(unused)};
-    return w.id == "unreferenced" && unused == 0;
-  });
+  for (Warning& warning : built.warnings)
+    if (warning.id == "unreferenced") warning.numbers = {static_cast<double>(unused)};
+  if (unused == 0) std::erase_if(built.warnings, [](const Warning& w) { return w.id == "unreferenced"; });
 }
 
 /// A surface of the faces around the source; the geometry keeps all of them.

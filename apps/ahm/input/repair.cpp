@@ -34,14 +34,19 @@ std::optional<RepairedMesh> repair(io::Geometry& input, const InputOptions& opti
   return mesh;
 }
 
-SourceSpec in_remaining_faces(const SourceSpec& spec, const RepairedMesh& mesh) {
+SourceSpec in_kept_faces(const SourceSpec& spec, const std::vector<Index>& kept, const char* gone) {
   const auto* face = std::get_if<SourceFace>(&spec);
   if (face == nullptr) return spec;
-  const auto place = mesh.remaining(face->face);
-  if (!place) throw InvalidArgument("there is no such face, or the repair has dropped it; choose another one");
+  const auto place = std::ranges::lower_bound(kept, face->face);
+  if (place == kept.end() || *place != face->face) throw InvalidArgument(gone);
   SourceFace result = *face;
-  result.face = *place;
+  result.face = static_cast<Index>(place - kept.begin());
   return result;
+}
+
+SourceSpec in_remaining_faces(const SourceSpec& spec, const RepairedMesh& mesh) {
+  return in_kept_faces(spec, mesh.given_face,
+                       "there is no such face, or the repair has dropped it; choose another one");
 }
 
 Built build_repaired(const Backend& backend, const io::Geometry& input, RepairedMesh mesh, const InputOptions& options,

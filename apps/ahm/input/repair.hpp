@@ -13,6 +13,8 @@ namespace ahm::app {
 /// @return none where nothing is asked for. @throws InvalidArgument where the input has no faces to mend
 std::optional<RepairedMesh> repair(io::Geometry& input, const InputOptions& options);
 
+/// The source in faces of which those are kept, ascending. @throws InvalidArgument where its face is none: `gone`
+SourceSpec in_kept_faces(const SourceSpec& spec, const std::vector<Index>& kept, const char* gone);
 /// The source in the faces that remain. @throws InvalidArgument where its face was dropped
 SourceSpec in_remaining_faces(const SourceSpec& spec, const RepairedMesh& mesh);
 

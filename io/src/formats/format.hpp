@@ -5,7 +5,6 @@
 /// in io/CMakeLists.txt. `read`, `write`, `check_writable`, `write_textured`, `extensions` and their messages follow.
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -13,13 +12,10 @@
 
 #include "ahm/io/geometry.hpp"
 #include "read/input.hpp"
+#include "read/point_records.hpp"
 #include "write/writers.hpp"
 
 namespace ahm::io {
-
-class ByteStream;
-struct PointRecords;
-using TakePoint = std::function<void(const Vec3&)>;
 
 /// What cannot be done with a format stays null.
 struct Format {

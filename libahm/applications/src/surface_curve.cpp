@@ -265,6 +265,10 @@ SurfaceCurve draw_curve(const Surface& surface, std::span<const CurvePoint> give
   });
 }
 
+double reach_from_curve(const TangentGraph& graph, double radius) {
+  return radius + 2 * graph.mean_edge_length() * graph.length_unit();
+}
+
 RowLogMap rows_from_curve(const Surface& surface, const LogMap& map, const SurfaceCurve& curve, double radius) {
   RowLogMap rows = surface.on_rows(map);
   for (std::size_t i = 0; i < rows.u.size(); ++i) {

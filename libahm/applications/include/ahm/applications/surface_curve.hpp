@@ -55,9 +55,13 @@ SurfaceCurve draw_curve(const Surface& surface, std::span<const CurvePoint> give
 SurfaceCurve draw_curve(const Surface& surface, std::span<const CurvePoint> given, std::span<const Vec2> positions,
                         bool closed = false);
 
+/// How far a map from a curve must reach for all rows within a radius of the curve, world units: its own distances are those
+/// from samples.
+double reach_from_curve(const TangentGraph& graph, double radius);
+
 /// The map from a curve by row. Its distances are those from the curve, in the plane of coordinates: the map's own, from
 /// samples of the curve, are told where the coordinates are the user's own.
-/// @param radius  rows farther than this are beyond it, world units; the map must reach two edges farther
+/// @param radius  rows farther than this are beyond it, world units; the map must reach `reach_from_curve`
 RowLogMap rows_from_curve(const Surface& surface, const LogMap& map, const SurfaceCurve& curve,
                           double radius = std::numeric_limits<double>::infinity());
 
