@@ -25,7 +25,7 @@ constexpr double right = 0.1;
 /// Of all vertices and sources together.
 struct Found {
   std::vector<double> length_error, distance_error;  ///< relative: |phi|, and the distance
-  std::vector<double> quality;
+  std::vector<double> quality, by_length;            ///< the second compares |phi| with the distance instead of vectors
   std::vector<char> is_right;
 };
 
@@ -68,16 +68,19 @@ void compare(const Surface& surface, const exact::ExactMap& truth, const View& v
     found.length_error.push_back(std::abs(std::abs(ours[k]) - away[k]) / away[k]);
     found.distance_error.push_back(std::abs(map.distances()[vertices[k]] - away[k]) / away[k]);
     found.quality.push_back(quality[vertices[k]]);
+    const double d = map.distances()[vertices[k]],
+                 by_length = std::hypot(map.spread()[vertices[k]] / 0.3, (std::abs(ours[k]) - d) / 0.1) / d;
+    found.by_length.push_back(1 / (1 + by_length * by_length));
     found.is_right.push_back(std::abs(ours[k] - turn * exact[k]) < right * away[k]);
   }
 }
 
 /// Area under the curve of right ones against wrong ones: how often a right vertex has the higher quality of a pair.
 /// Empty where all are of one kind.
-Cell area_under_curve(const Found& found) {
-  std::vector<std::size_t> order(found.quality.size());
+Cell area_under_curve(std::span<const double> quality, const Found& found) {
+  std::vector<std::size_t> order(quality.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(), [&](auto a, auto b) { return found.quality[a] < found.quality[b]; });
+  std::sort(order.begin(), order.end(), [&](auto a, auto b) { return quality[a] < quality[b]; });
   double above = 0, wrong = 0, right_ones = 0;
   for (std::size_t k : order) {
     if (!found.is_right[k]) {
@@ -104,19 +107,31 @@ void measure(const Surface& surface, const View& view, Table& table) {
       compare(surface, exact::exact_map(polyhedral, polyhedral.vertex_point(source)), view,
               solver.solve(Source::at_vertex(view.vertex(source))), found);
     }
-    double trusted = 0, right_trusted = 0, all_right = 0;
     const auto count = static_cast<double>(found.quality.size());
-    for (std::size_t k = 0; k < found.quality.size(); ++k) {
-      const bool is_trusted = found.quality[k] >= trusted_quality;
-      trusted += is_trusted;
-      right_trusted += is_trusted && found.is_right[k];
-      all_right += found.is_right[k];
+    const double all_right = static_cast<double>(std::count(found.is_right.begin(), found.is_right.end(), 1));
+    std::vector<Cell> row{surface.name(),
+                          view.name,
+                          surface.size(),
+                          std::string(to_string(variant)),
+                          mean(found.distance_error),
+                          quantile(found.distance_error, 0.95),
+                          quantile(found.distance_error, 1),
+                          mean(found.length_error),
+                          quantile(found.length_error, 0.95),
+                          quantile(found.length_error, 1),
+                          all_right / count};
+    for (const auto* quality : {&found.quality, &found.by_length}) {
+      double trusted = 0, right_trusted = 0;
+      for (std::size_t k = 0; k < quality->size(); ++k) {
+        const bool is_trusted = (*quality)[k] >= trusted_quality;
+        trusted += is_trusted;
+        right_trusted += is_trusted && found.is_right[k];
+      }
+      row.push_back(area_under_curve(*quality, found));
+      row.push_back(trusted / count);
+      row.push_back(trusted > 0 ? Cell(right_trusted / trusted) : Cell());
     }
-    table.add({surface.name(), view.name, surface.size(), std::string(to_string(variant)), mean(found.distance_error),
-               quantile(found.distance_error, 0.95), quantile(found.distance_error, 1), mean(found.length_error),
-               quantile(found.length_error, 0.95), quantile(found.length_error, 1), all_right / count,
-               area_under_curve(found), trusted / count, trusted > 0 ? Cell(right_trusted / trusted) : Cell(),
-               all_right > 0 ? Cell(right_trusted / all_right) : Cell()});
+    table.add(std::move(row));
   }
 }
 
@@ -133,7 +148,7 @@ void measure(const Surface& surface, Table& table) {
 Table trust(const Settings& settings) {
   Table table({"mesh", "as", "vertices", "variant", "distance mean", "distance 95%", "distance max", "|phi| mean",
                "|phi| 95%", "|phi| max", "right", "area under curve", "trusted", "right among trusted",
-               "trusted among right"});
+               "area under curve, by length", "trusted, by length", "right among trusted, by length"});
   const Index n = settings.toy ? 640 : 10000;
   measure(Surface("sphere", test::split_icosphere(n)), table);
   measure(Surface("torus", torus(n)), table);

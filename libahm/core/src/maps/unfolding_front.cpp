@@ -107,7 +107,7 @@ Index UnfoldingFront::add(const Source& source) {
     const bool mirrored = !axes.empty() && axes[0] * axes[3] < axes[1] * axes[2];
     given.push_back({vertex, first + point, away / unit, {offset.data()[0], offset.data()[1]}, mirrored});
     const bool beside = away != 0 && source.vertices().size() == 1;
-    if (source.is_curve() || !(beside || directions_)) continue;
+    if (source.is_curve()) continue;
     // The neighbours lie in the tangent plane of the point's only vertex, too, and of one that all but is the point.
     const Star star = graph_.star(vertex);
     for (std::size_t e = 0; e < star.degree(); ++e) {
