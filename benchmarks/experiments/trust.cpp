@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <functional>
 #include <numeric>
 
 #include "ahm/maps/log_map_solver.hpp"
 #include "ahm/maps/quality.hpp"
+#include "ahm/pointcloud/point_cloud_surface.hpp"
 #include "ahm/surface/exact/exact_map.hpp"
 #include "ahm/testing/triangle_meshes.hpp"
 #include "experiments/comparison.hpp"
@@ -23,45 +25,62 @@ constexpr double right = 0.1;
 /// Of all vertices and sources together.
 struct Found {
   std::vector<double> length_error, distance_error;  ///< relative: |phi|, and the distance
-  std::vector<double> quality;
+  std::vector<double> quality, by_length;            ///< the second compares |phi| with the distance instead of vectors
   std::vector<char> is_right;
 };
 
+/// A graph of a surface, and which of its vertices is one of the surface's.
+struct View {
+  std::string name;
+  const TangentGraph& graph;
+  std::function<Vertex(Vertex)> vertex;
+};
+
 /// Vertices nearer than two edges are left out: there the vectors are short and the edges few.
-void compare(const Surface& surface, const exact::ExactMap& truth, const LogMap& map, Found& found) {
+void compare(const Surface& surface, const exact::ExactMap& truth, const View& view, const LogMap& map, Found& found) {
   const double unit = surface.graph().length_unit(), near = 2 * surface.mean_edge();
-  const std::vector<double> quality = map_quality(surface.graph(), map);
+  const std::vector<double> quality = map_quality(view.graph, map);
   std::vector<Complex> exact, ours;
   std::vector<std::size_t> vertices;
   for (Index i = 0; i < surface.size(); ++i) {
-    const Vertex v(i);
-    if (map.status(v) != Status::ok || !(truth.distance(v) * unit > near)) continue;
-    vertices.push_back(static_cast<std::size_t>(i));
-    exact.emplace_back(unit * truth.coordinates(v)[0], unit * truth.coordinates(v)[1]);
+    const Vertex own(i), v = view.vertex(own);
+    if (map.status(v) != Status::ok || !(truth.distance(own) * unit > near)) continue;
+    vertices.push_back(static_cast<std::size_t>(v.index));
+    exact.emplace_back(unit * truth.coordinates(own)[0], unit * truth.coordinates(own)[1]);
     ours.emplace_back(map.coordinates(v)[0], map.coordinates(v)[1]);
   }
-  // The axes of the two differ by a turn: the one that fits best near the source.
+  // The axes of the two differ by a turn, and those of points perhaps by a reflection: what fits best near the source.
   std::vector<double> away;
   for (Complex z : exact) away.push_back(std::abs(z));
   const double third = away.empty() ? 0 : quantile(away, 0.3);
-  Complex turn = 0;
-  for (std::size_t k = 0; k < exact.size(); ++k)
-    if (away[k] < third) turn += ours[k] * std::conj(exact[k]);
+  Complex turn = 0, turn_back = 0;
+  for (std::size_t k = 0; k < exact.size(); ++k) {
+    if (!(away[k] < third)) continue;
+    turn += ours[k] * std::conj(exact[k]);
+    turn_back += ours[k] * exact[k];
+  }
+  if (std::abs(turn_back) > std::abs(turn)) {
+    turn = turn_back;
+    for (Complex& z : exact) z = std::conj(z);
+  }
   turn /= std::abs(turn);
   for (std::size_t k = 0; k < exact.size(); ++k) {
     found.length_error.push_back(std::abs(std::abs(ours[k]) - away[k]) / away[k]);
     found.distance_error.push_back(std::abs(map.distances()[vertices[k]] - away[k]) / away[k]);
     found.quality.push_back(quality[vertices[k]]);
+    const double d = map.distances()[vertices[k]],
+                 by_length = std::hypot(map.spread()[vertices[k]] / 0.3, (std::abs(ours[k]) - d) / 0.1) / d;
+    found.by_length.push_back(1 / (1 + by_length * by_length));
     found.is_right.push_back(std::abs(ours[k] - turn * exact[k]) < right * away[k]);
   }
 }
 
 /// Area under the curve of right ones against wrong ones: how often a right vertex has the higher quality of a pair.
 /// Empty where all are of one kind.
-Cell area_under_curve(const Found& found) {
-  std::vector<std::size_t> order(found.quality.size());
+Cell area_under_curve(std::span<const double> quality, const Found& found) {
+  std::vector<std::size_t> order(quality.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(), [&](auto a, auto b) { return found.quality[a] < found.quality[b]; });
+  std::sort(order.begin(), order.end(), [&](auto a, auto b) { return quality[a] < quality[b]; });
   double above = 0, wrong = 0, right_ones = 0;
   for (std::size_t k : order) {
     if (!found.is_right[k]) {
@@ -78,40 +97,62 @@ double mean(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-void measure(const Surface& surface, Table& table) {
+void measure(const Surface& surface, const View& view, Table& table) {
   const exact::PolyhedralSurface polyhedral = surface.polyhedron();
   for (Variant variant : all_variants) {
-    const LogMapSolver solver(surface.graph(), {.variant = variant});
+    const LogMapSolver solver(view.graph, {.variant = variant});
     Found found;
     for (int s = 0; s < source_count; ++s) {
       const Vertex source(surface.size() / 11 + s * (surface.size() / source_count));
-      compare(surface, exact::exact_map(polyhedral, polyhedral.vertex_point(source)),
-              solver.solve(Source::at_vertex(source)), found);
+      compare(surface, exact::exact_map(polyhedral, polyhedral.vertex_point(source)), view,
+              solver.solve(Source::at_vertex(view.vertex(source))), found);
     }
-    double trusted = 0, right_trusted = 0, all_right = 0;
     const auto count = static_cast<double>(found.quality.size());
-    for (std::size_t k = 0; k < found.quality.size(); ++k) {
-      const bool is_trusted = found.quality[k] >= trusted_quality;
-      trusted += is_trusted;
-      right_trusted += is_trusted && found.is_right[k];
-      all_right += found.is_right[k];
+    const double all_right = static_cast<double>(std::count(found.is_right.begin(), found.is_right.end(), 1));
+    std::vector<Cell> row{surface.name(),
+                          view.name,
+                          surface.size(),
+                          std::string(to_string(variant)),
+                          mean(found.distance_error),
+                          quantile(found.distance_error, 0.95),
+                          quantile(found.distance_error, 1),
+                          mean(found.length_error),
+                          quantile(found.length_error, 0.95),
+                          quantile(found.length_error, 1),
+                          all_right / count};
+    for (const auto* quality : {&found.quality, &found.by_length}) {
+      double trusted = 0, right_trusted = 0;
+      for (std::size_t k = 0; k < quality->size(); ++k) {
+        const bool is_trusted = (*quality)[k] >= trusted_quality;
+        trusted += is_trusted;
+        right_trusted += is_trusted && found.is_right[k];
+      }
+      row.push_back(area_under_curve(*quality, found));
+      row.push_back(trusted / count);
+      row.push_back(trusted > 0 ? Cell(right_trusted / trusted) : Cell());
     }
-    table.add({surface.name(), surface.size(), std::string(to_string(variant)), mean(found.distance_error),
-               quantile(found.distance_error, 0.95), quantile(found.distance_error, 1), mean(found.length_error),
-               quantile(found.length_error, 0.95), quantile(found.length_error, 1), all_right / count,
-               area_under_curve(found), trusted / count, trusted > 0 ? Cell(right_trusted / trusted) : Cell()});
+    table.add(std::move(row));
   }
+}
+
+/// As triangles, and where no vertex is dropped or joined to another, its vertices as points.
+void measure(const Surface& surface, Table& table) {
+  measure(surface, {"triangles", surface.graph(), [](Vertex v) { return v; }}, table);
+  const auto cloud = pointcloud::PointCloudSurface::build(surface.points());
+  if (cloud.graph().size() != surface.size()) return;
+  measure(surface, {"points", cloud.graph(), [&](Vertex v) { return *cloud.rows().vertex(Row(v.index)); }}, table);
 }
 
 }  // namespace
 
 Table trust(const Settings& settings) {
-  Table table({"mesh", "vertices", "variant", "distance mean", "distance 95%", "distance max", "|phi| mean",
-               "|phi| 95%", "|phi| max", "right", "area under curve", "trusted", "right among trusted"});
+  Table table({"mesh", "as", "vertices", "variant", "distance mean", "distance 95%", "distance max", "|phi| mean",
+               "|phi| 95%", "|phi| max", "right", "area under curve", "trusted", "right among trusted",
+               "area under curve, by length", "trusted, by length", "right among trusted, by length"});
   const Index n = settings.toy ? 640 : 10000;
   measure(Surface("sphere", test::split_icosphere(n)), table);
   measure(Surface("torus", torus(n)), table);
-  for_user_surfaces(settings, 20000, [&](const Surface& surface) { measure(surface, table); });
+  for_user_surfaces(settings, 60000, [&](const Surface& surface) { measure(surface, table); });
   table.seen = fmt::format("95th percentile of the relative error, medians over meshes: distance {:.3f}, |phi| {:.2f}.",
                            quantile(table.numbers("distance 95%"), 0.5), quantile(table.numbers("|phi| 95%"), 0.5));
   return table;

@@ -219,7 +219,7 @@ TEST(StarTriangles, CoverTheCellsOfAGridAndSpareItsHoles) {
     for (int x = 4; x < 8; ++x) shape.blocked[20 * y + x] = 1;
   const grid::GridGraph graph(shape);
   const LogMap map = LogMapSolver(graph).solve(Source::at_vertex(Vertex{220}), {.frames = true});
-  const InverseMap inverse = inverse_map(graph, map);
+  const InverseMap inverse = inverse_map(graph, map, {.min_quality = 0});
   for (const auto& [u, v] : points_in_disc(0.99, 1000)) {
     const bool hole = u > -0.6 && u < -0.2 && v > -0.6 && v < -0.2;
     const auto point = inverse.at(u, v);

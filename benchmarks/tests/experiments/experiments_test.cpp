@@ -85,6 +85,12 @@ TEST(OrdersExperiment, TheSecondIsNearerOnTheSphereAndNowhereMuchWorse) {
   EXPECT_LT(table.where("mesh", "sphere").where("variant", "adaptive").largest("trusted order 2 / 1"), 0.5);
 }
 
+TEST(TrustExperiment, VectorsThatAreTrustedAreRight) {
+  const Table& table = toy("trust");
+  EXPECT_GE(table.smallest("area under curve"), 0.9);
+  EXPECT_GE(table.smallest("right among trusted"), 0.9);
+}
+
 TEST(CloudsExperiment, HeatHasTheDistancesOfTheCleanSphere) {
   const Table sphere = toy("clouds").where("cloud", "sphere").where("noise", "0");
   EXPECT_LT(sphere.where("variant", "unfolded").largest("95%"), 0.02);

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <random>
 
+#include "ahm/maps/quality.hpp"
 #include "ahm/testing/vectors.hpp"
 #include "solved_cloud.hpp"
 
@@ -51,6 +52,38 @@ TEST(FlatCloud, IsTheIdentityOnARegularGrid) {
   for (int x = 0; x < 40; ++x)
     for (int y = 0; y < 40; ++y) cloud.points.push_back({x * 1.0, y * 1.0, 0.0});
   for (Index p : {0, 820, 1599}) EXPECT_LT(flat_error(cloud, Solved(cloud), p, Variant::adaptive), gate * 56);
+}
+
+// Heat goes straight through a wall; the quality tells where the way around it is another.
+TEST(FlatCloud, IsNotTrustedBehindAWall) {
+  Cloud cloud;
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> shift(-0.3, 0.3);
+  const int side = 60;
+  for (int x = 0; x < side; ++x)
+    for (int y = 0; y < side; ++y) {
+      const Vec3 p{(x + shift(random)) / side, (y + shift(random)) / side, 0};
+      if (std::abs(p[0] - 0.5) > 0.3 || std::abs(p[1] - 0.5) > 0.06) cloud.points.push_back(p);
+    }
+  const auto nearest = [&](double x, double y) {
+    const auto away = [&](const Vec3& p) { return std::hypot(p[0] - x, p[1] - y); };
+    const auto found = std::min_element(cloud.points.begin(), cloud.points.end(),
+                                        [&](const Vec3& a, const Vec3& b) { return away(a) < away(b); });
+    return static_cast<Index>(found - cloud.points.begin());
+  };
+  const Solved solved(cloud);
+  const LogMap map = solved.solver.solve(solved.graph.source(Row(nearest(0.5, 0.3))).source);
+  const auto quality = on_rows(solved.graph.on_rows(map), map_quality(solved.graph.graph(), map));
+  int behind = 0;
+  for (std::size_t i = 0; i < cloud.points.size(); ++i) {
+    const Vec3& p = cloud.points[i];
+    const double offset = std::abs(p[0] - 0.5);
+    if (p[1] < 0.42) EXPECT_GT(quality[i], 0.99) << p[0] << ", " << p[1];
+    if (p[1] < 0.6 || offset > 0.15) continue;
+    EXPECT_LT(quality[i], trusted_quality) << p[0] << ", " << p[1];
+    ++behind;
+  }
+  EXPECT_GT(behind, 300);
 }
 
 TEST(FlatCloud, CoversItsArea) {

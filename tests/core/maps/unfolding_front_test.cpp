@@ -42,6 +42,76 @@ TEST(UnfoldingFront, IsExactInSpace) {
   }
 }
 
+/// Distance times direction, n x 2.
+std::vector<double> vectors(const TangentGraph& graph, const Source& source) {
+  UnfoldingFront front(graph, nullptr, true);
+  front.add(source);
+  front.run();
+  std::vector<double> result;
+  for (Index i = 0; i < graph.size(); ++i)
+    for (double x : front.direction(Vertex(i))) result.push_back(front.distance(Vertex(i)) * x);
+  return result;
+}
+
+// Away from the notches of its outline a plane is seen from inside by straight lines.
+TEST(UnfoldingFront, KnowsTheDirectionsOfThePlane) {
+  const Index side = 40, source = 20 * side + 20;
+  const FlatGraph flat = planar_triangulation(side);
+  const CsrGraph graph(flat.data);
+  const std::array turned{0.6, 0.8};
+  const auto found = vectors(graph, Source::at_vertex(Vertex(source)));
+  const auto found_turned = vectors(graph, Source::at_vertex(Vertex(source), turned));
+  for (Index i = 0; i < flat.size(); ++i) {
+    const Index row = i / side, column = i % side;
+    if (i == source || std::min(row, column) < 2 || std::max(row, column) > side - 3) continue;
+    const auto exact = flat.exact(source, i);
+    ASSERT_NEAR(found[2 * i], exact[0], 1e-9) << "vertex " << i;
+    ASSERT_NEAR(found[2 * i + 1], exact[1], 1e-9) << "vertex " << i;
+    ASSERT_NEAR(found_turned[2 * i], 0.6 * exact[0] + 0.8 * exact[1], 1e-9) << "vertex " << i;
+    ASSERT_NEAR(found_turned[2 * i + 1], 0.6 * exact[1] - 0.8 * exact[0], 1e-9) << "vertex " << i;
+  }
+}
+
+TEST(UnfoldingFront, KnowsTheSameDirectionsWhereFramesAreTurnedOver) {
+  const FlatGraph plain = planar_triangulation(20, TransportKind::block),
+                  mixed = planar_triangulation(20, TransportKind::block, true);
+  const Index source = 210;  // its frame is not
+  const CsrGraph a(plain.data), b(mixed.data);
+  const auto expected = vectors(a, Source::at_vertex(Vertex(source))),
+             found = vectors(b, Source::at_vertex(Vertex(source)));
+  for (Index i = 0; i < plain.size(); ++i) {
+    if (i == source) continue;
+    const auto p = plain.exact(source, i), q = mixed.exact(source, i);  // the same plane, in axes of their own
+    const double cosine = p[0] * q[0] + p[1] * q[1], sine = p[0] * q[1] - p[1] * q[0];
+    const double squared = p[0] * p[0] + p[1] * p[1];
+    ASSERT_NEAR(found[2 * i], (cosine * expected[2 * i] - sine * expected[2 * i + 1]) / squared, 1e-9)
+        << "vertex " << i;
+    ASSERT_NEAR(found[2 * i + 1], (sine * expected[2 * i] + cosine * expected[2 * i + 1]) / squared, 1e-9)
+        << "vertex " << i;
+  }
+}
+
+// A tube is flat: on either side of the line opposite to the source vectors are those of the plane.
+TEST(UnfoldingFront, KnowsTheDirectionsOnBothSidesOfACutLocus) {
+  const Index rings = 60, around = 14;
+  const CsrGraph graph(tube(rings, around));
+  const auto found = vectors(graph, Source::at_vertex(Vertex(30 * around)));
+  for (Index r = 0; r < rings; ++r)
+    for (Index k = 0; k < around; ++k) {
+      if ((r == 30 && k == 0) || 2 * k == around) continue;
+      ASSERT_NEAR(found[2 * (r * around + k)], r - 30, 1e-9) << r << ", " << k;
+      ASSERT_NEAR(found[2 * (r * around + k) + 1], 2 * k < around ? k : k - around, 1e-9) << r << ", " << k;
+    }
+}
+
+TEST(UnfoldingFront, AgreesWithItselfWhereEdgesAreATriangulation) {
+  const CsrGraph graph(planar_triangulation(20).data);
+  std::vector<Vertex> all;
+  for (Index i = 0; i < 280; ++i) all.emplace_back(i);
+  EXPECT_GT(UnfoldingFront::agreement(graph, all), 0.95);
+  EXPECT_EQ(UnfoldingFront::agreement(CsrGraph(line_graph(300).data), all), 0);
+}
+
 TEST(UnfoldingFront, TellsTheNearestOfManyAndGoesOnFromThere) {
   const CsrGraph graph(tube(40, 12));
   const std::array sources{Vertex{5}, Vertex{100}, Vertex{301}, Vertex{470}};

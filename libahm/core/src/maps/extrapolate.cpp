@@ -132,6 +132,7 @@ LogMap extrapolate(const TangentGraph& graph, const ComponentScales& scales, dou
   MapExtras extras{first.march(),
                    std::move(distances),
                    {first.spread().begin(), first.spread().end()},
+                   {first.directions().begin(), first.directions().end()},
                    {middle.frames().begin(), middle.frames().end()},
                    std::move(error)};
   extras.radius = radius;

@@ -79,9 +79,11 @@ std::vector<std::uint8_t> halved_vertices(const TangentGraph& graph) {
 void UnfoldingFront::Stars::find_neighbors(const TangentGraph& graph, Index vertex, std::vector<Neighbor>& neighbors) {
   neighbors.clear();
   const Star star = graph.star(vertex);
+  const bool may_reflect = graph.transport_layout().may_reflect();
   for (std::size_t e = 0; e < star.degree(); ++e) {
     const Vec2 log{star.logs[2 * e], star.logs[2 * e + 1]};
-    neighbors.push_back({star.neighbors[e], log, std::sqrt(log[0] * log[0] + log[1] * log[1]), turn(log), e});
+    neighbors.push_back({star.neighbors[e], log, std::sqrt(log[0] * log[0] + log[1] * log[1]), turn(log), e,
+                         may_reflect && star.transport(e).reflects()});
   }
   std::sort(neighbors.begin(), neighbors.end(),
             [](const Neighbor& a, const Neighbor& b) { return a.turn != b.turn ? a.turn < b.turn : a.edge < b.edge; });
@@ -93,7 +95,7 @@ void UnfoldingFront::Stars::append_corners(const TangentGraph& graph, Index vert
   for (std::size_t k = 0; k < neighbors.size(); ++k) {
     const Neighbor &right = neighbors[k], &left = neighbors[k + 1 < neighbors.size() ? k + 1 : 0];
     const Vec2 angle = corner(right.length, left.length, third_side(graph, right, left));
-    corners.push_back({right.vertex, right.length, angle[0], angle[1]});
+    corners.push_back({right.vertex, right.reflects, right.length, angle[0], angle[1]});
   }
 }
 
@@ -207,9 +209,9 @@ class UnfoldingFront::Stars::Halving {
   /// A corner of halves, of a triangle with those sides.
   static Corner half(Index neighbor, double right, double left, double across) {
     const Vec2 angle = corner(right, left, across);
-    return {neighbor, 0.5 * right, angle[0], angle[1]};
+    return {neighbor, false, 0.5 * right, angle[0], angle[1]};
   }
-  Corner open_half(Index neighbor, Offset c) const { return {neighbor, 0.5 * corners_[c].length, NAN, NAN}; }
+  Corner open_half(Index neighbor, Offset c) const { return {neighbor, false, 0.5 * corners_[c].length, NAN, NAN}; }
 
   /// The corner of a vertex between the first halves of two sides.
   Corner half(Offset c) const {
@@ -266,6 +268,36 @@ std::optional<UnfoldingFront::Stars::HalfSide> UnfoldingFront::Stars::midpoint(I
     found = {half.neighbor, half.length};
   }
   return found;
+}
+
+double UnfoldingFront::agreement(const TangentGraph& graph, std::span<const Vertex> vertices) {
+  std::vector<Neighbor> neighbors;
+  std::vector<Corner> corners, others;
+  const auto next = [](const std::vector<Corner>& around, std::size_t k) {
+    return around[k + 1 < around.size() ? k + 1 : 0].neighbor;
+  };
+  // Whether a vertex sees a triangle with these two, on either side.
+  const auto sees = [&](Index vertex, Index a, Index b) {
+    others.clear();
+    Stars::append_corners(graph, vertex, neighbors, others);
+    for (std::size_t k = 0; k < others.size(); ++k) {
+      const Index right = others[k].neighbor, left = next(others, k);
+      if (!std::isnan(others[k].cosine) && ((right == a && left == b) || (right == b && left == a))) return true;
+    }
+    return false;
+  };
+  Offset seen = 0, agreed = 0;
+  for (const Vertex vertex : vertices) {
+    corners.clear();
+    Stars::append_corners(graph, vertex.index, neighbors, corners);
+    for (std::size_t k = 0; k < corners.size(); ++k) {
+      if (std::isnan(corners[k].cosine)) continue;
+      const Index right = corners[k].neighbor, left = next(corners, k);
+      ++seen;
+      agreed += sees(right, left, vertex.index) && sees(left, vertex.index, right);
+    }
+  }
+  return seen > 0 ? static_cast<double>(agreed) / static_cast<double>(seen) : 0;
 }
 
 std::shared_ptr<const UnfoldingFront::Stars> UnfoldingFront::stars(const TangentGraph& graph) {

@@ -55,16 +55,24 @@ struct Found {
   double distance = 0;          ///< of heat
 };
 
-/// Distances unfolded from a source; empty: they are measured by heat.
-std::vector<double> unfolded(const TangentGraph& graph, const std::shared_ptr<const UnfoldingFront::Stars>& stars,
-                             const Source& source, double radius) {
+/// What a front found; empty: distances are measured by heat.
+struct Unfolded {
+  std::vector<double> distances, directions;
+};
+
+Unfolded unfolded_from(const TangentGraph& graph, const std::shared_ptr<const UnfoldingFront::Stars>& stars,
+                       const Source& source, const MapSettings& map) {
   if (!unfolds(graph, source)) return {};
-  UnfoldingFront front(graph, stars);
+  UnfoldingFront front(graph, stars, map.spread && !source.is_curve());
   front.add(source);
-  front.run(radius);
-  std::vector<double> distances(static_cast<std::size_t>(graph.size()));
-  for (std::size_t i = 0; i < distances.size(); ++i) distances[i] = front.distance(Vertex(i));
-  return distances;
+  front.run(map.radius);
+  const auto n = static_cast<std::size_t>(graph.size());
+  Unfolded found{std::vector<double>(n), std::vector<double>(front.has_directions() ? 2 * n : 0)};
+  for (std::size_t i = 0; i < n; ++i) {
+    found.distances[i] = front.distance(Vertex(i));
+    if (!found.directions.empty()) std::ranges::copy(front.direction(Vertex(i)), found.directions.begin() + 2 * i);
+  }
+  return found;
 }
 
 /// One diffusion time.
@@ -113,14 +121,13 @@ struct LogMapSolver::Impl {
   }
   template <class Values>
   LogMap map_of(const Values& values, Strategy how, const MarchStatistics& march, const Source& source,
-                std::span<const double> unfolded, const MapSettings& map, unsigned threads) const;
-  LogMap marched(const March& front, const Source& source, std::span<const double> unfolded, const MapSettings& map,
+                const Unfolded& unfolded, const MapSettings& map, unsigned threads) const;
+  LogMap marched(const March& front, const Source& source, const Unfolded& unfolded, const MapSettings& map,
                  unsigned threads) const;
-  LogMap finished(AffineHeat& heat, std::size_t time, std::size_t s, const Source& source,
-                  std::span<const double> unfolded, const MapSettings& map, unsigned threads) const;
-  std::vector<LogMap> solve_block(std::size_t time, std::span<const Source> sources,
-                                  std::vector<std::vector<double>>& unfolded, const MapSettings& map,
-                                  unsigned threads) const;
+  LogMap finished(AffineHeat& heat, std::size_t time, std::size_t s, const Source& source, const Unfolded& unfolded,
+                  const MapSettings& map, unsigned threads) const;
+  std::vector<LogMap> solve_block(std::size_t time, std::span<const Source> sources, std::vector<Unfolded>& unfolded,
+                                  const MapSettings& map, unsigned threads) const;
   std::vector<LogMap> solve_block(std::span<const Source> sources, const MapSettings& map, unsigned threads) const;
 };
 
@@ -198,17 +205,21 @@ class GlobalValues {
 };
 
 /// The map that `values` tell of.
-/// @param unfolded  distances; empty: those of heat
+/// @param unfolded  empty: distances are those of heat
 template <class Values>
 LogMap LogMapSolver::Impl::map_of(const Values& values, Strategy how, const MarchStatistics& march,
-                                  const Source& source, std::span<const double> unfolded, const MapSettings& map,
+                                  const Source& source, const Unfolded& unfolded, const MapSettings& map,
                                   unsigned threads) const {
   const auto n = static_cast<std::size_t>(graph.size()), d = static_cast<std::size_t>(graph.dimension());
   const SourceComponents components(source, scales.components.of_vertex);
   std::vector<double> coordinates(n * d);
   std::vector<Status> status(n);
-  MapExtras extras{
-      march, std::vector<double>(n), std::vector<double>(map.spread && !source.is_curve() ? n : 0), {}, {}};
+  MapExtras extras{march,
+                   std::vector<double>(n),
+                   std::vector<double>(map.spread && !source.is_curve() ? n : 0),
+                   unfolded.directions,
+                   {},
+                   {}};
   extras.radius = map.radius;
   if (map.frames) extras.frames.resize(n * d * d);
   detail::for_each_index(n, threads, [&](std::size_t i) {
@@ -219,11 +230,11 @@ LogMap LogMapSolver::Impl::map_of(const Values& values, Strategy how, const Marc
     status[i] = !components.hold(vertex)     ? Status::disconnected
                 : found.status == Status::ok ? row.status
                                              : found.status;
-    extras.distances[i] = unfolded.empty() ? row.distance : unfolded[i];
+    extras.distances[i] = unfolded.distances.empty() ? row.distance : unfolded.distances[i];
     if (!extras.spread.empty()) extras.spread[i] = row.spread;
     if (map.frames) values.axes(vertex, extras.frames.data() + i * d * d);
   });
-  if (unfolded.empty()) place_source(source, extras.distances);
+  if (unfolded.distances.empty()) place_source(source, extras.distances);
   for (std::size_t i = 0; i < n; ++i) {
     if (status[i] == Status::ok && extras.distances[i] > map.radius) status[i] = Status::beyond_radius;
     if (status[i] == Status::ok) continue;
@@ -235,14 +246,14 @@ LogMap LogMapSolver::Impl::map_of(const Values& values, Strategy how, const Marc
                 std::move(extras));
 }
 
-LogMap LogMapSolver::Impl::marched(const March& front, const Source& source, std::span<const double> unfolded,
+LogMap LogMapSolver::Impl::marched(const March& front, const Source& source, const Unfolded& unfolded,
                                    const MapSettings& map, unsigned threads) const {
   return map_of(MarchedValues(front, map.radius), Strategy::march, front.statistics(), source, unfolded, map, threads);
 }
 
 /// Where a global solve leaves vertices beyond its reach, strategy `automatic` marches on.
 LogMap LogMapSolver::Impl::finished(AffineHeat& heat, std::size_t time, std::size_t s, const Source& source,
-                                    std::span<const double> unfolded, const MapSettings& map, unsigned threads) const {
+                                    const Unfolded& unfolded, const MapSettings& map, unsigned threads) const {
   LogMap result = map_of(GlobalValues(heat, s), Strategy::global, {}, source, unfolded, map, threads);
   if (options.strategy != Strategy::automatic || result.count(Status::unreached) == 0) return result;
   if (!heat.has_squares()) heat.solve_squares();
@@ -253,14 +264,14 @@ LogMap LogMapSolver::Impl::finished(AffineHeat& heat, std::size_t time, std::siz
 }
 
 /// Solves one block of sources at one diffusion time.
-/// @param unfolded  distances of the sources, empty ones for those of heat; made here unless a time before has
+/// @param unfolded  of the sources; made here unless a time before has
 std::vector<LogMap> LogMapSolver::Impl::solve_block(std::size_t time, std::span<const Source> sources,
-                                                    std::vector<std::vector<double>>& unfolded, const MapSettings& map,
+                                                    std::vector<Unfolded>& unfolded, const MapSettings& map,
                                                     unsigned threads) const {
   std::vector<LogMap> maps;
   const auto unfold = [&] {
     if (unfolded.empty())
-      for (const Source& source : sources) unfolded.push_back(ahm::unfolded(graph, stars(), source, map.radius));
+      for (const Source& source : sources) unfolded.push_back(unfolded_from(graph, stars(), source, map));
   };
   if (strategy == Strategy::march) {
     unfold();
@@ -307,7 +318,7 @@ std::vector<LogMap> LogMapSolver::Impl::solve_block(std::span<const Source> sour
   MapSettings wider = map;
   if (times.size() > 1)  // the maps of different times differ a little at the radius
     wider.radius += 8 * *std::max_element(scales.edge_length.begin(), scales.edge_length.end()) * graph.length_unit();
-  std::vector<std::vector<double>> unfolded;
+  std::vector<Unfolded> unfolded;
   if (times.size() == 1) return solve_block(0, sources, unfolded, map, threads);
   std::vector<std::vector<LogMap>> at_times;
   for (std::size_t time = 0; time < times.size(); ++time) {

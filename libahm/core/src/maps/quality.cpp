@@ -8,12 +8,61 @@
 
 #include "ahm/error.hpp"
 #include "ahm/maps/place_in_space.hpp"
+#include "ahm/maps/unfolding_front.hpp"
 #include "ahm/util/parallel.hpp"
 #include "ahm/util/small_math.hpp"
 #include "ahm/util/vec.hpp"
 #include "heat/component_scales.hpp"
 
 namespace ahm {
+namespace {
+
+/// What a spread and a difference come to, relative to the distance, where no more than every second vector is right.
+constexpr double doubtful_spread = 0.3, doubtful_difference = 0.1;
+/// In mean edge lengths, by which fronts over edges that are no triangulation may be off.
+constexpr double forgiven = 1;
+/// Of the triangles that vertices see around them, the shares that the others must see, too, for a front's directions to count at all
+/// and in full: with noise every vertex sees triangles of its own.
+constexpr double believed_from = 0.7, believed_in_full = 0.8;
+/// As many vertices are asked for them.
+constexpr std::size_t asked = 1000;
+/// A vertex of a map that ends at a radius is nearer than this many radii for the front, or else the two differ by far.
+constexpr double reach = 1.25;
+
+/// How far a vector is from d times a direction, which is NaN at the source itself.
+double difference(std::span<const double> phi, double d, std::span<const double> direction) {
+  return d == 0 ? length(phi) : std::hypot(phi[0] - d * direction[0], phi[1] - d * direction[1]);
+}
+
+/// The vectors of a front over edges that are no triangulation, beside those of a map.
+class Comparison {
+ public:
+  Comparison(const TangentGraph& graph, const LogMap& map) : map_(map), front_(graph, nullptr, true) {
+    front_.add(map.source());
+    front_.run(reach * map.radius());
+    std::vector<Vertex> reached, some;
+    for (Index i = 0; i < graph.size(); ++i)
+      if (map.status()[i] == Status::ok) reached.emplace_back(i);
+    for (std::size_t k = 0; k < reached.size(); k += reached.size() / asked + 1) some.push_back(reached[k]);
+    const double share = UnfoldingFront::agreement(graph, some);
+    belief_ = std::clamp((share - believed_from) / (believed_in_full - believed_from), 0.0, 1.0);
+  }
+
+  /// How far phi is off by what the front says, world units.
+  double off(Vertex vertex, double h) const {
+    const std::span<const double> phi = map_.coordinates(vertex);
+    const double d = front_.distance(vertex), longer = d - length(phi);
+    if (!(belief_ > 0) || front_.is_bent(vertex)) return longer - forgiven * h;
+    return std::max(longer, belief_ * difference(phi, d, front_.direction(vertex))) - forgiven * h;
+  }
+
+ private:
+  const LogMap& map_;
+  UnfoldingFront front_;
+  double belief_;  ///< in directions
+};
+
+}  // namespace
 
 std::vector<double> map_quality(const TangentGraph& graph, const LogMap& map, unsigned threads) {
   if (map.size() != graph.size() || map.dimension() != graph.dimension())
@@ -28,16 +77,21 @@ std::vector<double> map_quality(const TangentGraph& graph, const LogMap& map, un
   // Unfolded distances are never below the straight line; those of heat may be.
   const bool may_be_short = map.method() == Method::heat && !graph.is_delaunay();
   const std::optional<Vec3> source = may_be_short ? place_in_space(graph, map.source()) : std::nullopt;
+  std::optional<Comparison> comparison;
+  if (may_be_short && graph.dimension() == 2) comparison.emplace(graph, map);
   detail::for_each_index(quality.size(), threads, [&](std::size_t i) {
     if (map.status()[i] != Status::ok) return;
-    const auto vertex = static_cast<Index>(i);
+    const Vertex vertex(static_cast<Index>(i));
+    const std::span<const double> phi = map.coordinates(vertex);
+    const double h = scales.h(vertex.index) * graph.length_unit();
     double d = map.distances()[i];
-    if (const auto frame = source ? graph.frame(vertex) : std::nullopt)
+    if (const auto frame = source ? graph.frame(vertex.index) : std::nullopt)
       d = std::max(d, distance(frame->origin, *source));
-    const double away = std::max(d, scales.h(vertex) * graph.length_unit());
-    const double spread = map.spread()[i] / away;
-    const double off = (length(map.coordinates(Vertex(i))) / away - d / away) * 3;
-    const double doubt = std::hypot(spread, off) / 0.3;
+    double off = std::abs(length(phi) - d);
+    if (!map.directions().empty()) off = difference(phi, map.distances()[i], map.directions().subspan(2 * i, 2));
+    if (comparison) off = std::max(off, comparison->off(vertex, h));
+    const double away = std::max(d, h);
+    const double doubt = std::hypot(map.spread()[i] / away / doubtful_spread, off / away / doubtful_difference);
     quality[i] = 1 / (1 + doubt * doubt);
   });
   return quality;

@@ -22,6 +22,8 @@ constexpr Index most_gains = 40;
 constexpr Index most_points = 8;
 /// Sides that are shorter than this share of the other two, or of a distance, no longer tell where its point lies.
 constexpr double shortest_side = 1e-6, shortest_side_far_away = 1e-13;
+/// Of a ray shorter than this share of a side nobody knows the direction.
+constexpr double least_ray = 1e-6;
 
 /// The square of the distance of c from a point at distances `from_a` and `from_b`, beyond the side ab of a triangle with
 /// a at 0, b at (ab, 0) and c at (cx, cy) above, the point below; `limit` where it is no less, or where the straight line
@@ -37,11 +39,40 @@ double squared_across(double from_a, double from_b, double ab, double cx, double
   return std::min(limit, (cx - x) * (cx - x) + height * height);
 }
 
+/// `v` turned as the ray `from` must be to become the ray `to`, the other way round if `side` is -1; unit length.
+Vec2 turned(const Vec2& v, const Vec2& from, const Vec2& to, double side) {
+  const double along = dot(from, to), across = side * cross(from, to), by = std::hypot(along, across);
+  return {(v[0] * along - v[1] * across) / by, (v[1] * along + v[0] * across) / by};
+}
+
+/// The direction at the point of the ray to c, from those of the rays to a and b, in the layout of `squared_across`, where
+/// it crosses the side: what both say, by how near they are.
+/// @param side  1: a, b, c counterclockwise; -1: clockwise
+Vec2 direction_across(double from_a, double from_b, double ab, double cx, double cy, const Vec2& to_a, const Vec2& to_b,
+                      double side) {
+  const double x = 0.5 * (ab + (from_a - from_b) * (from_a + from_b) / ab);
+  const double depth = std::sqrt(std::max(0.0, (from_a - x) * (from_a + x)));
+  const Vec2 a{-x, depth}, b{ab - x, depth}, c{cx - x, cy + depth};
+  const double share = std::clamp((x * cy + cx * depth) / (ab * (cy + depth)), 0.0, 1.0);
+  const Vec2 by_a = turned(to_a, a, c, side), by_b = turned(to_b, b, c, side);
+  if (!(from_a > least_ray * ab) || std::isnan(to_a[0])) return by_b;
+  if (!(from_b > least_ray * ab) || std::isnan(to_b[0])) return by_a;
+  const Vec2 sum{(1 - share) * by_a[0] + share * by_b[0], (1 - share) * by_a[1] + share * by_b[1]};
+  const double size = length(sum);
+  return size > 0 ? Vec2{sum[0] / size, sum[1] / size} : by_a;
+}
+
+Vec2 unit_vector(const Vec2& v) {
+  const double size = length(v);
+  return {v[0] / size, v[1] / size};  // NaN of nothing
+}
+
 }  // namespace
 
-UnfoldingFront::UnfoldingFront(const TangentGraph& graph, std::shared_ptr<const Stars> stars)
+UnfoldingFront::UnfoldingFront(const TangentGraph& graph, std::shared_ptr<const Stars> stars, bool directions)
     : graph_(graph),
       d_(static_cast<std::size_t>(graph.dimension())),
+      directions_(directions && d_ == 2),
       stars_(stars || !graph.is_delaunay() ? std::move(stars)
                                            : std::make_shared<const Stars>(graph, halved_vertices(graph), false)) {
   head_.assign(static_cast<std::size_t>(stars_ ? stars_->size() : graph.size()), none);
@@ -52,46 +83,61 @@ Index UnfoldingFront::add(const Source& source) {
   check_source(source, graph_);
   const double unit = graph_.length_unit();
   const Index first = points_;
-  std::vector<Waiting> given;
-  const auto give = [&](Index vertex, Index point, double distance, std::span<const double> displacement) {
-    offer(vertex, point, distance, 0, displacement);
-    if (stars_) given.push_back({distance, vertex, point});
-  };
-  Scratch back(d_);
+  const bool may_reflect = graph_.transport_layout().may_reflect();
+  std::vector<Given> given;
+  Scratch offset(d_), back(d_);
   for (std::size_t k = 0; k < source.vertices().size(); ++k) {
     if (!(source.weights()[k] > 0)) continue;
     const auto [point, away] = source.place(k);
     points_ = std::max(points_, first + point + 1);
+    const std::span<const double> axes =
+        source.axes().empty() ? source.axes() : source.axes().subspan(k * d_ * d_, d_ * d_);
     for (std::size_t c = 0; c < d_; ++c) {
+      offset.data()[c] = source.offsets().empty() ? 0 : source.offsets()[k * d_ + c] / unit;
       back.data()[c] = 0;
-      for (std::size_t a = 0; a < d_ && !source.offsets().empty(); ++a)
-        back.data()[c] -= source.axes()[(k * d_ + c) * d_ + a] * source.offsets()[k * d_ + a] / unit;
     }
+    for (std::size_t c = 0; c < d_; ++c)
+      for (std::size_t a = 0; a < d_ && !source.offsets().empty(); ++a)
+        back.data()[c] -= axes[c * d_ + a] * offset.data()[a];
     const Index vertex = source.vertices()[k].index;
-    give(vertex, first + point, away / unit, back.span());
-    if (d_ != 2 || away == 0 || source.is_curve() || source.vertices().size() > 1) continue;
-    // A point beside its only vertex, in whose tangent plane the neighbours lie too.
+    if (d_ != 2) {
+      offer(vertex, first + point, away / unit, 0, back.span(), {});
+      continue;
+    }
+    const bool mirrored = !axes.empty() && axes[0] * axes[3] < axes[1] * axes[2];
+    given.push_back({vertex, first + point, away / unit, {offset.data()[0], offset.data()[1]}, mirrored});
+    const bool beside = away != 0 && source.vertices().size() == 1;
+    if (source.is_curve()) continue;
+    // The neighbours lie in the tangent plane of the point's only vertex, too, and of one that all but is the point.
     const Star star = graph_.star(vertex);
-    for (std::size_t e = 0; e < star.degree(); ++e)
-      give(star.neighbors[e], first + point,
-           std::hypot(star.log(e)[0] - back.data()[0], star.log(e)[1] - back.data()[1]), {});
+    for (std::size_t e = 0; e < star.degree(); ++e) {
+      if (!beside && !(away / unit <= least_ray * length(star.log(e)))) continue;
+      const Vec2 from{star.log(e)[0] - back.data()[0], star.log(e)[1] - back.data()[1]};
+      const Vec2 there =
+          axes.empty() ? from : Vec2{axes[0] * from[0] + axes[2] * from[1], axes[1] * from[0] + axes[3] * from[1]};
+      given.push_back({star.neighbors[e], first + point, std::hypot(from[0], from[1]), there,
+                       mirrored != (may_reflect && star.transport(e).reflects())});
+    }
   }
-  offer_midpoints(given);
+  for (const Given& one : given)
+    offer(one.vertex, one.point, one.distance, 0, {}, {unit_vector(one.offset), one.mirrored});
+  if (stars_) offer_midpoints(given);
   return first;
 }
 
 /// A point of a triangle is at the distance of its median from the midpoint of a side whose ends' distances are given.
-void UnfoldingFront::offer_midpoints(std::vector<Waiting>& given) {
-  std::sort(given.begin(), given.end(), [](const Waiting& a, const Waiting& b) {
-    return std::tie(a.point, a.vertex) < std::tie(b.point, b.vertex);
-  });
+void UnfoldingFront::offer_midpoints(std::vector<Given>& given) {
+  std::sort(given.begin(), given.end(),
+            [](const Given& a, const Given& b) { return std::tie(a.point, a.vertex) < std::tie(b.point, b.vertex); });
   for (std::size_t i = 0; i < given.size(); ++i)
     for (std::size_t j = i + 1; j < given.size() && given[j].point == given[i].point; ++j) {
       const auto side = stars_->midpoint(given[i].vertex, given[j].vertex);
       if (!side) continue;
       const double a = given[i].distance, b = given[j].distance;
       const double squared = 0.5 * (a * a + b * b) - side->half * side->half;
-      offer(side->midpoint, given[i].point, std::sqrt(std::max(0.0, squared)), 0, {});
+      const Vec2 between{given[i].offset[0] + given[j].offset[0], given[i].offset[1] + given[j].offset[1]};
+      offer(side->midpoint, given[i].point, std::sqrt(std::max(0.0, squared)), 0, {},
+            {unit_vector(between), given[i].mirrored});
     }
 }
 
@@ -107,6 +153,16 @@ void UnfoldingFront::run(double radius) {
 double UnfoldingFront::distance(Vertex vertex) const {
   const Index head = head_[vertex.index];
   return head == none ? std::numeric_limits<double>::infinity() : entries_[head].distance * graph_.length_unit();
+}
+
+Vec2 UnfoldingFront::direction(Vertex vertex) const {
+  const Index head = head_[vertex.index];
+  return head == none || !directions_ ? Vec2{NAN, NAN} : ways_[head].direction;
+}
+
+bool UnfoldingFront::is_bent(Vertex vertex) const {
+  const Index head = head_[vertex.index];
+  return head != none && directions_ && ways_[head].bent;
 }
 
 Index UnfoldingFront::nearest(Vertex vertex) const {
@@ -133,7 +189,7 @@ Index UnfoldingFront::replace_farthest(Index vertex, Index point, double distanc
 
 /// Keeps a distance if it is the least from its point, and that point the nearest or nearly so.
 void UnfoldingFront::offer(Index vertex, Index point, double distance, double slack,
-                           std::span<const double> displacement) {
+                           std::span<const double> displacement, const Way& way) {
   Index own = head_[vertex], before = none;
   const double nearest = own == none ? std::numeric_limits<double>::infinity() : entries_[own].distance;
   if (!(distance <= nearest + slack)) return;
@@ -148,12 +204,14 @@ void UnfoldingFront::offer(Index vertex, Index point, double distance, double sl
     own = static_cast<Index>(entries_.size());
     entries_.push_back({distance, point, head_[vertex], 0});
     if (d_ != 2) displacements_.resize(displacements_.size() + d_);
+    if (directions_) ways_.emplace_back();
     head_[vertex] = own;
   } else if (!(distance < entries_[own].distance * (1 - least_gain)) || entries_[own].gains == most_gains) {
     return;
   }
   ++entries_[own].gains;
   entries_[own].distance = distance;
+  if (directions_) ways_[own] = way;
   if (d_ != 2)
     std::copy(displacement.begin(), displacement.end(), displacements_.begin() + static_cast<std::ptrdiff_t>(own * d_));
   // The nearest comes first.
@@ -178,6 +236,11 @@ std::span<const UnfoldingFront::Corner> UnfoldingFront::around(Index vertex) {
   return around_;
 }
 
+/// Whether a star has a gap, at a boundary.
+bool UnfoldingFront::is_open(std::span<const Corner> corners) {
+  return std::any_of(corners.begin(), corners.end(), [](const Corner& c) { return std::isnan(c.cosine); });
+}
+
 /// Along the edges of a vertex, and across the triangles of its star: from its own distance and that of one neighbour to
 /// the other.
 void UnfoldingFront::spread(Index from, Index point, double distance) {
@@ -186,30 +249,44 @@ void UnfoldingFront::spread(Index from, Index point, double distance) {
   const std::size_t degree = corners.size();
   known_.resize(degree);
   double longest = 0;
+  const auto way_of = [&](const Entry* entry) { return directions_ ? ways_[entry - entries_.data()] : Way{}; };
+  const Way own = way_of(find(from, point));
+  const bool bends = own.bent || (directions_ && distance > 0 && is_open(corners));
   for (std::size_t k = 0; k < degree; ++k) {
     const Entry* entry = find(corners[k].neighbor, point);
     const double before = entry ? entry->distance : std::numeric_limits<double>::infinity();
     const double along = distance + corners[k].length;
-    known_[k] = {before, std::min(before, along), along};
+    known_[k] = {before, std::min(before, along), along,
+                 before <= along ? way_of(entry) : Way{own.direction, false, bends}};
     longest = std::max(longest, corners[k].length);
   }
   for (std::size_t k = 0; k < degree; ++k) {
     const std::size_t next = k + 1 < degree ? k + 1 : 0;
     const Corner &right = corners[k], &left = corners[next];
     if (std::isnan(right.cosine)) continue;
-    const auto unfold = [&](std::size_t base, double base_length, std::size_t target, double target_length) {
+    const auto unfold = [&](std::size_t base, double base_length, std::size_t target, double target_length,
+                            double side) {
       if (!(known_[base].now < known_[base].along)) return;
       const double limit = known_[target].now * known_[target].now;
-      const double found = squared_across(distance, known_[base].now, base_length, target_length * right.cosine,
-                                          target_length * right.sine, limit);
-      if (found < limit) known_[target].now = std::sqrt(found);
+      const double cx = target_length * right.cosine, cy = target_length * right.sine;
+      const double found = squared_across(distance, known_[base].now, base_length, cx, cy, limit);
+      if (!(found < limit)) return;
+      known_[target].now = std::sqrt(found);
+      if (!directions_) return;
+      const Way& other = known_[base].way;
+      known_[target].way.direction = direction_across(distance, known_[base].now, base_length, cx, cy, own.direction,
+                                                      other.direction, own.mirrored ? -side : side);
+      known_[target].way.bent = own.bent || other.bent;
     };
-    unfold(k, right.length, next, left.length);
-    unfold(next, left.length, k, right.length);
+    unfold(k, right.length, next, left.length, 1);
+    unfold(next, left.length, k, right.length, -1);
   }
   // What unfolds to a border comes from a few edges beyond.
-  for (std::size_t k = 0; k < degree; ++k)
-    if (known_[k].now < known_[k].before) offer(corners[k].neighbor, point, known_[k].now, 4 * longest, {});
+  for (std::size_t k = 0; k < degree; ++k) {
+    if (!(known_[k].now < known_[k].before)) continue;
+    known_[k].way.mirrored = own.mirrored != corners[k].reflects;
+    offer(corners[k].neighbor, point, known_[k].now, 4 * longest, {}, known_[k].way);
+  }
 }
 
 /// The displacement to the point, from vertex to vertex.
@@ -222,7 +299,7 @@ void UnfoldingFront::carry(Index from, Index point) {
     Scratch left(d_);
     for (std::size_t a = 0; a < d_; ++a) left.data()[a] = here.data()[a] - star.log(e)[a];
     star.transport(e).apply_inverse(left.data(), there.data());
-    offer(star.neighbors[e], point, length(there.span()), 2 * length(star.log(e)), there.span());
+    offer(star.neighbors[e], point, length(there.span()), 2 * length(star.log(e)), there.span(), {});
   }
 }
 

@@ -39,6 +39,7 @@ struct MapExtras {
   MarchStatistics march;
   std::vector<double> distances;
   std::vector<double> spread;
+  std::vector<double> directions;
   std::vector<double> frames;
   std::vector<double> error_estimate;
   Method method = Method::heat;
@@ -110,6 +111,10 @@ class LogMap {
   /// units: 0 on flat graphs, small inside the cut locus, about the distance on it. NaN where not ok; of an exact map half
   /// of the longest jump to a neighbour, beyond the length of the side; empty from a curve and without MapOptions::spread.
   std::span<const double> spread() const noexcept { return extras_.spread; }
+  /// Where distances are unfolded, the unit vectors in which the ways to the vertices leave the source (`UnfoldingFront`), n x 2 in
+  /// its frame: beside phi, which `map_quality` compares with them. NaN at the source itself. Empty elsewhere, from a curve and
+  /// without MapOptions::spread.
+  std::span<const double> directions() const noexcept { return extras_.directions; }
   /// Number of vertices with this status.
   Index count(Status status) const noexcept;
 

@@ -18,15 +18,19 @@ namespace ahm {
 /// Vertices of a lower quality have, as a rule, a vector that is wrong by more than a tenth of its length.
 inline constexpr double trusted_quality = 0.5;
 
-/// How far the vector phi can be trusted: by the spread of the ways that heat took, and by how well its length agrees with
-/// the distance.
+/// How far the vector phi can be trusted: by the spread of the ways that heat took, and by how well it agrees with the vector
+/// psi of geodesic polar coordinates, distance and direction of an `UnfoldingFront`.
 ///
-///     s_i = | (spread_i, 3 (|phi_i| - d_i)) | / max(d_i, h),   q_i = 1 / (1 + (s_i / 0.3)^2)
+///     s_i = | (spread_i / 0.3, |phi_i - psi_i| / 0.1) | / max(d_i, h),   q_i = 1 / (1 + s_i^2)
 ///
-/// with h the mean edge length of the vertex's component; d is no less than the straight line in space, where the graph has
-/// frames. It is 1 on flat geometry without holes, falls with h on smooth
-/// surfaces, and is low across a cut locus, behind holes, where heat knows the straight line only, and where features are
-/// coarser than edges. Against exact vectors in docs/accuracy.md.
+/// with d the distance, no less than the straight line in space where the graph has frames, and h the mean edge length of the
+/// vertex's component. |phi - psi| is no less than ||phi| - d|, and that alone in other dimensions than 2; of a map by
+/// `Method::exact` there is the spread alone. Where the edges are no Delaunay triangulation a front is less exact: h is
+/// forgiven; its direction counts only where stars agree on their triangles, which noise undoes (`UnfoldingFront::agreement`), and
+/// ways do not bend at the boundary, whose notches are accidents of the sampling. There remains that it is longer than phi.
+///
+/// It is 1 on flat geometry without holes, falls with h on smooth surfaces, and is low across a cut locus, behind holes, where
+/// heat knows the straight line only, and where features are coarser than edges. Against exact vectors in docs/accuracy.md.
 /// @param threads  0: one per core
 /// @return n numbers in (0, 1]; NaN where the map is not ok
 /// @throws InvalidArgument when the map is from a curve, belongs to another graph or was made without its spread

@@ -39,9 +39,15 @@ class UnfoldingFront {
   class Stars;
   static std::shared_ptr<const Stars> stars(const TangentGraph& graph);
 
-  /// @param graph  must outlive the front
-  /// @param stars  of this graph; none: looked up vertex by vertex
-  explicit UnfoldingFront(const TangentGraph& graph, std::shared_ptr<const Stars> stars = nullptr);
+  /// Of the triangles that these vertices see between their neighbours, the share that the other two corners see, too: 1 of a
+  /// triangulation, less of a cloud with noise, where stars contradict each other. d = 2; 0 where there are no triangles.
+  static double agreement(const TangentGraph& graph, std::span<const Vertex> vertices);
+
+  /// @param graph       must outlive the front
+  /// @param stars       of this graph; none: looked up vertex by vertex
+  /// @param directions  whether to keep `direction`, too (d = 2)
+  explicit UnfoldingFront(const TangentGraph& graph, std::shared_ptr<const Stars> stars = nullptr,
+                          bool directions = false);
 
   /// Adds the points of a source, which get the next numbers, from 0.
   /// @return the number of the first
@@ -53,6 +59,12 @@ class UnfoldingFront {
 
   /// The distance to the nearest point, world units; infinity where the front did not come.
   double distance(Vertex vertex) const;
+  /// The direction in which the way leaves its nearest point, in the frame of the source, unit length: so distance times direction are
+  /// geodesic polar coordinates [MR12]. NaN where the front did not come, and at the point itself.
+  Vec2 direction(Vertex vertex) const;
+  bool has_directions() const noexcept { return directions_; }
+  /// Whether the way bends at the boundary somewhere, around a hole or in a notch. Known with directions.
+  bool is_bent(Vertex vertex) const;
   /// The number of the nearest point; -1 where the front did not come. Of equally near ones any.
   Index nearest(Vertex vertex) const;
 
@@ -62,9 +74,16 @@ class UnfoldingFront {
     double distance;
     Index point, next, gains;
   };
+  /// How the way of an entry leaves its point, in the frame of the source.
+  struct Way {
+    Vec2 direction;
+    bool mirrored = false;  ///< whether the frame of the vertex is turned over against it
+    bool bent = false;      ///< at the boundary
+  };
   /// A neighbour of a vertex, and the angle from it to the next one counterclockwise.
   struct Corner {
     Index neighbor;
+    bool reflects;  ///< its frame is turned over against that of the vertex
     double length;
     double cosine, sine;  ///< NaN where the star is open
   };
@@ -74,10 +93,12 @@ class UnfoldingFront {
     Vec2 log;
     double length, turn;
     std::size_t edge;
+    bool reflects;
   };
   /// What is known of a neighbour while a vertex spreads: its distance before and now, and that along the edge.
   struct Known {
     double before, now, along;
+    Way way;
   };
   struct Waiting {
     double distance;
@@ -89,18 +110,30 @@ class UnfoldingFront {
   };
 
   const Entry* find(Index vertex, Index point) const;
-  void offer_midpoints(std::vector<Waiting>& given);
-  void offer(Index vertex, Index point, double distance, double slack, std::span<const double> displacement);
+  /// A vertex whose place beside a point is known, in the frame of the source.
+  struct Given {
+    Index vertex, point;
+    double distance;
+    Vec2 offset;
+    bool mirrored;
+  };
+
+  void offer_midpoints(std::vector<Given>& given);
+  void offer(Index vertex, Index point, double distance, double slack, std::span<const double> displacement,
+             const Way& way);
   Index replace_farthest(Index vertex, Index point, double distance);
   void spread(Index from, Index point, double distance);
   void carry(Index from, Index point);
   std::span<const Corner> around(Index vertex);
+  static bool is_open(std::span<const Corner> corners);
 
   const TangentGraph& graph_;
   std::size_t d_;
   std::vector<Index> head_;  ///< of the entries of a vertex or midpoint, nearest first; -1: none
   std::vector<Entry> entries_;
   std::vector<double> displacements_;  ///< d per entry, from the vertex to the point in its frame; d = 2: empty
+  bool directions_;
+  std::vector<Way> ways_;  ///< of the entries, where directions are kept
   std::priority_queue<Waiting, std::vector<Waiting>, std::greater<>> queue_;
   std::shared_ptr<const Stars> stars_;
   std::vector<Corner> around_;  ///< of the vertex at hand, where its star is not kept
