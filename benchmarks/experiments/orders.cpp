@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 
 #include "ahm/maps/log_map_solver.hpp"
 #include "ahm/maps/quality.hpp"
@@ -15,35 +14,6 @@ namespace ahm::bench {
 namespace {
 
 constexpr int source_count = 3;
-
-/// An open cone of the given total angle and slant 1, its apex inside, in jittered rings.
-Mesh cone(double angle, int rings) {
-  std::mt19937 random(1);
-  std::uniform_real_distribution<double> jitter(-0.15, 0.15);
-  const double narrow = angle / (2 * std::numbers::pi), steep = std::sqrt(1 - narrow * narrow);
-  Mesh mesh{{{0, 0, 0}}, {}};
-  std::vector<int> first{0}, count{1};
-  for (int k = 1; k <= rings; ++k) {
-    first.push_back(static_cast<int>(mesh.positions.size()));
-    count.push_back(static_cast<int>(std::lround(angle * k)));
-    for (int i = 0; i < count[k]; ++i) {
-      const double turn = (i + 0.5 * (k % 2) + jitter(random)) / count[k] * 2 * std::numbers::pi;
-      const double r = (k + (k < rings ? jitter(random) : 0)) / rings;
-      mesh.positions.push_back({r * narrow * std::cos(turn), r * narrow * std::sin(turn), -r * steep});
-    }
-  }
-  for (int i = 0; i < count[1]; ++i) mesh.faces.push_back({0, 1 + i, 1 + (i + 1) % count[1]});
-  for (int k = 1; k < rings; ++k) {
-    const auto turn = [&](int ring, int i) { return (i + 0.5 * (ring % 2)) / count[ring]; };
-    for (int i = 0, j = 0; i < count[k] || j < count[k + 1];) {
-      const bool inner = j == count[k + 1] || (i < count[k] && turn(k, i + 1) < turn(k + 1, j + 1));
-      const int a = first[k] + i % count[k], b = first[k + 1] + j % count[k + 1];
-      inner ? ++i : ++j;
-      mesh.faces.push_back({a, b, inner ? first[k] + i % count[k] : first[k + 1] + j % count[k + 1]});
-    }
-  }
-  return mesh;
-}
 
 /// A saddle whose points crowd at two sides: x and y as squares.
 Mesh graded(int side) {

@@ -36,6 +36,8 @@ Mesh stretched_icosphere(Index n, double factor);
 Mesh ellipsoid(Index n);
 /// Sphere with smooth bumps, a few across.
 Mesh bumpy_sphere(Index n);
+/// Open cone of the given total angle and slant 1, its apex inside, in jittered rings.
+Mesh cone(double angle, int rings);
 /// Open tube of the given radius about the x axis and length 2, its quads as square as can be.
 Mesh tube(int around, double radius);
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <complex>
 #include <functional>
+#include <numbers>
 #include <numeric>
 
 #include "ahm/maps/log_map_solver.hpp"
@@ -152,6 +153,11 @@ Table trust(const Settings& settings) {
   const Index n = settings.toy ? 640 : 10000;
   measure(Surface("sphere", test::split_icosphere(n)), table);
   measure(Surface("torus", torus(n)), table);
+  for (double degrees : {60.0, 150.0, 250.0, 320.0}) {
+    const double angle = degrees * std::numbers::pi / 180;
+    measure(Surface(fmt::format("cone {:.0f}", degrees), cone(angle, static_cast<int>(std::sqrt(2 * n / angle)))),
+            table);
+  }
   for_user_surfaces(settings, 60000, [&](const Surface& surface) { measure(surface, table); });
   table.seen = fmt::format("95th percentile of the relative error, medians over meshes: distance {:.3f}, |phi| {:.2f}.",
                            quantile(table.numbers("distance 95%"), 0.5), quantile(table.numbers("|phi| 95%"), 0.5));

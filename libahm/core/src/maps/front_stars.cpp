@@ -19,6 +19,8 @@ namespace {
 constexpr double same_length = 1e-9;
 /// Angles around a vertex that miss 2 pi by no more are those of a flat or finely sampled surface.
 constexpr double least_bend = 0.01;
+/// Hubs of more neighbours are not asked for their triangles: it would take as long for each of them.
+constexpr std::size_t most_neighbors = 200;
 /// By less than this share of the longest side do the sides of a triangle without area miss the triangle inequality.
 constexpr double degenerate = 1e-9;
 
@@ -286,13 +288,16 @@ double UnfoldingFront::agreement(const TangentGraph& graph, std::span<const Vert
     }
     return false;
   };
+  const auto is_asked = [&](Index vertex) { return graph.star(vertex).degree() <= most_neighbors; };
   Offset seen = 0, agreed = 0;
   for (const Vertex vertex : vertices) {
+    if (!is_asked(vertex.index)) continue;
     corners.clear();
     Stars::append_corners(graph, vertex.index, neighbors, corners);
     for (std::size_t k = 0; k < corners.size(); ++k) {
       if (std::isnan(corners[k].cosine)) continue;
       const Index right = corners[k].neighbor, left = next(corners, k);
+      if (!is_asked(right) || !is_asked(left)) continue;
       ++seen;
       agreed += sees(right, left, vertex.index) && sees(left, vertex.index, right);
     }
