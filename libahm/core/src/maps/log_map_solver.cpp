@@ -70,7 +70,9 @@ Unfolded unfolded_from(const TangentGraph& graph, const std::shared_ptr<const Un
   Unfolded found{std::vector<double>(n), std::vector<double>(front.has_directions() ? 2 * n : 0)};
   for (std::size_t i = 0; i < n; ++i) {
     found.distances[i] = front.distance(Vertex(i));
-    if (!found.directions.empty()) std::ranges::copy(front.direction(Vertex(i)), found.directions.begin() + 2 * i);
+    if (found.directions.empty()) continue;
+    const Vec2 direction = front.is_bent(Vertex(i)) ? Vec2{NAN, NAN} : front.direction(Vertex(i));
+    std::ranges::copy(direction, found.directions.begin() + 2 * i);
   }
   return found;
 }

@@ -29,9 +29,9 @@ constexpr std::size_t asked = 1000;
 /// A vertex of a map that ends at a radius is nearer than this many radii for the front, or else the two differ by far.
 constexpr double reach = 1.25;
 
-/// How far a vector is from d times a direction, which is NaN at the source itself.
+/// How far a vector is from d times a direction.
 double difference(std::span<const double> phi, double d, std::span<const double> direction) {
-  return d == 0 ? length(phi) : std::hypot(phi[0] - d * direction[0], phi[1] - d * direction[1]);
+  return std::hypot(phi[0] - d * direction[0], phi[1] - d * direction[1]);
 }
 
 /// The vectors of a front over edges that are no triangulation, beside those of a map.
@@ -52,7 +52,7 @@ class Comparison {
   double off(Vertex vertex, double h) const {
     const std::span<const double> phi = map_.coordinates(vertex);
     const double d = front_.distance(vertex), longer = d - length(phi);
-    if (!(belief_ > 0) || front_.is_bent(vertex)) return longer - forgiven * h;
+    if (!(belief_ > 0) || d == 0 || front_.is_bent(vertex)) return longer - forgiven * h;
     return std::max(longer, belief_ * difference(phi, d, front_.direction(vertex))) - forgiven * h;
   }
 
@@ -88,7 +88,8 @@ std::vector<double> map_quality(const TangentGraph& graph, const LogMap& map, un
     if (const auto frame = source ? graph.frame(vertex.index) : std::nullopt)
       d = std::max(d, distance(frame->origin, *source));
     double off = std::abs(length(phi) - d);
-    if (!map.directions().empty()) off = difference(phi, map.distances()[i], map.directions().subspan(2 * i, 2));
+    if (!map.directions().empty() && !std::isnan(map.directions()[2 * i]))
+      off = difference(phi, map.distances()[i], map.directions().subspan(2 * i, 2));
     if (comparison) off = std::max(off, comparison->off(vertex, h));
     const double away = std::max(d, h);
     const double doubt = std::hypot(map.spread()[i] / away / doubtful_spread, off / away / doubtful_difference);

@@ -24,13 +24,14 @@ inline constexpr double trusted_quality = 0.5;
 ///     s_i = | (spread_i / 0.3, |phi_i - psi_i| / 0.1) | / max(d_i, h),   q_i = 1 / (1 + s_i^2)
 ///
 /// with d the distance, no less than the straight line in space where the graph has frames, and h the mean edge length of the
-/// vertex's component. |phi - psi| is no less than ||phi| - d|, and that alone in other dimensions than 2; of a map by
-/// `Method::exact` there is the spread alone. Where the edges are no Delaunay triangulation a front is less exact: h is
-/// forgiven; its direction counts only where stars agree on their triangles, which noise undoes (`UnfoldingFront::agreement`), and
-/// ways do not bend at the boundary, whose notches are accidents of the sampling. There remains that it is longer than phi.
+/// vertex's component. |phi - psi| is no less than ||phi| - d|, and that alone where the way bends at the boundary, around a hole or in
+/// a notch of the sampling, and in other dimensions than 2; of a map by `Method::exact` there is the spread alone. Where the edges
+/// are no Delaunay triangulation a front is less exact: h is forgiven, and its direction counts only where stars agree on
+/// their triangles, which noise undoes (`UnfoldingFront::agreement`); there remains that the way is longer than phi.
 ///
-/// It is 1 on flat geometry without holes, falls with h on smooth surfaces, and is low across a cut locus, behind holes, where
-/// heat knows the straight line only, and where features are coarser than edges. Against exact vectors in docs/accuracy.md.
+/// It is 1 on flat convex geometry, falls with h on smooth surfaces, and is low across a cut locus, where bumps turn directions,
+/// where features are coarser than edges, and behind holes where the way around is longer by a tenth and more: heat knows the
+/// straight line only. Against exact vectors in docs/accuracy.md.
 /// @param threads  0: one per core
 /// @return n numbers in (0, 1]; NaN where the map is not ok
 /// @throws InvalidArgument when the map is from a curve, belongs to another graph or was made without its spread
