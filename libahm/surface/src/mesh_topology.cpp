@@ -1,7 +1,11 @@
 #include "ahm/surface/mesh_topology.hpp"
 
+#include <algorithm>
+#include <utility>
+
 #include "ahm/surface/glued_mesh.hpp"
 #include "ahm/surface/gluing.hpp"
+#include "ahm/util/disjoint_sets.hpp"
 
 namespace ahm {
 namespace {
@@ -44,6 +48,20 @@ MeshInspection inspect_mesh(Index vertices, const FaceList& faces) {
     if (const Index f = rest.number[later]; !left_out[f]) left_out[f] = true, result.duplicates.push_back(f);
   if (!result.duplicates.empty()) rest = without(faces, left_out);
   if (!rest.number.empty()) result.topology = detail::GluedMesh(vertices, rest.faces(), NonManifold::split).report();
+  return result;
+}
+
+FaceParts face_parts(Index vertices, const FaceList& faces) {
+  detail::Gluing gluing = detail::glue(vertices, faces, NonManifold::split);
+  const auto count = static_cast<Index>(faces.size());
+  std::vector<Index> face_of(faces.vertices.size());
+  for (Index f = 0; f < count; ++f)
+    std::fill(face_of.begin() + faces.begin[f], face_of.begin() + faces.begin[f + 1], f);
+  detail::DisjointSets joined(faces.size());
+  for (std::size_t h = 0; h < face_of.size(); ++h)
+    if (const detail::Half other = gluing.partner[h]; other >= 0) joined.join(face_of[h], face_of[other]);
+  FaceParts result{std::vector<Index>(faces.size()), std::move(gluing.reversed)};
+  for (Index f = 0; f < count; ++f) result.part[f] = joined.root(f);
   return result;
 }
 

@@ -54,6 +54,15 @@ struct MeshInspection {
 /// @throws InvalidGeometry (offsets)
 MeshInspection inspect_mesh(Index vertices, const FaceList& faces);
 
+/// How a surface of some faces joins and turns them.
+struct FaceParts {
+  std::vector<Index> part;  ///< per face, the first of those that it hangs together with over edges of two faces
+  std::vector<std::uint8_t> reversed;  ///< per face, 1 where it is turned over to agree with the majority of its part
+};
+
+/// @throws InvalidGeometry (no faces; faces that no surface is built of, as `MeshInspection` lists them)
+FaceParts face_parts(Index vertices, const FaceList& faces);
+
 /// components, boundary_loops, orientable, reoriented, unreferenced, non_manifold_edges, non_manifold_vertices: the figures
 /// of a mesh's report that are about its topology.
 Report figures(const TopologyReport& topology);
