@@ -81,14 +81,9 @@ struct Amount {
   }
 };
 
-SurfaceFaces faces_behind(const DecalCommandOptions& options, const Input& input) {
-  if (options.alone) return {};
-  return input.near ? given_faces(input.geometry) : surface_faces(input.surface());
-}
-
 void write_mesh(const DecalCommandOptions& options, const Input& input, const Decal& decal, const Image& image,
                 const Vec3& source) {
-  const SurfaceFaces faces = faces_behind(options, input);
+  const SurfaceFaces faces = options.alone ? SurfaceFaces() : all_faces(input);
   const FacesPart behind(faces, [](std::size_t) { return true; });
   std::vector<double> corners;
   for (Index v : decal.face_vertices)
@@ -134,7 +129,7 @@ std::vector<std::array<std::uint8_t, 3>> painted(const Input& input, const std::
 void write_points(const DecalCommandOptions& options, const Input& input, const InverseMap& inverse, const Image& image,
                   const Vec3& source) {
   const auto colors = painted(input, image_coordinates_of_vertices(inverse, options.decal), image);
-  const std::vector<Vec3> normals = input.surface().normals();
+  const std::vector<Vec3> normals = input.normals();
   const io::Geometry& given = input.geometry;
   io::Table table = table_of(given, given.normals, colors);
   table.title = "colored by libahm";
