@@ -11,13 +11,14 @@
 #include <thread>
 
 #include "token.hpp"
+#include "workers.hpp"
 
 namespace ahm::viewer {
 namespace {
 
 constexpr std::size_t largest_body = 1 << 20;
-constexpr std::size_t workers = 8;
-constexpr int backlog = 1024;  // connections that wait for a worker
+constexpr std::size_t most_workers = 1000;  // each for a connection that is open, if only for nothing to come
+constexpr int backlog = 1024;               // connections that wait for a worker
 
 constexpr const char* gets[] = {"surface", "info"};
 constexpr const char* posts[] = {"map", "stroke", "path", "coverage", "export"};
@@ -66,8 +67,9 @@ struct Server::Impl {
   std::atomic<bool> is_finished{false};
 
   Impl(const Session& given, int wanted) : session(given) {
-    listener.new_task_queue = [] { return new httplib::ThreadPool(workers); };  // NOLINT: httplib deletes it
-    listener.set_keep_alive_max_count(1);                                       // an idle connection keeps no worker
+    listener.new_task_queue = [] { return new Workers(most_workers); };  // NOLINT: httplib deletes it
+    listener.set_keep_alive_max_count(1);
+    listener.set_keep_alive_timeout(5);  // for a first byte
     listener.set_read_timeout(5);
     listener.set_write_timeout(30);
     listener.set_payload_max_length(largest_body);
