@@ -55,7 +55,8 @@ void count_beyond(std::int64_t beyond, Built& built) {
 
 /// A surface of the faces around the source; the geometry keeps all of them.
 Input open_surroundings(io::Geometry geometry, const Backend& backend, std::optional<RepairedMesh> mesh,
-                        const InputOptions& options, const SourceSpec& place, Journal& journal) {
+                        std::size_t given_faces, const InputOptions& options, const SourceSpec& place,
+                        Journal& journal) {
   position_in(geometry, place, "--source");
   Surroundings near = surroundings(geometry, *options.local, place);
   const std::vector<Offset> begin = geometry.face_begin;
@@ -70,7 +71,7 @@ Input open_surroundings(io::Geometry geometry, const Backend& backend, std::opti
   journal.add_warnings(built.warnings);
   geometry.face_begin = begin;
   geometry.face_vertices = vertices;
-  return {std::move(geometry), &backend, std::move(built), std::move(mesh), std::move(near)};
+  return {std::move(geometry), &backend, std::move(built), std::move(mesh), std::move(near), given_faces};
 }
 
 }  // namespace
@@ -91,15 +92,16 @@ io::Geometry read_input(const InputOptions& options, Journal& journal) {
 Input open_input(io::Geometry geometry, const InputOptions& options, Journal& journal,
                  const std::optional<SourceSpec>& source) {
   journal.start("graph");
+  const std::size_t given_faces = geometry.face_count();
   std::optional<RepairedMesh> mesh = repair(geometry, options);
   const std::optional<SourceSpec> place =
       mesh && source ? std::optional(in_remaining_faces(*source, *mesh, "--source")) : source;
   const Backend& backend = choose_backend(geometry, options.backend);
   if (options.local && place && geometry.face_count() > 0 && backend.uses_faces)
-    return open_surroundings(std::move(geometry), backend, std::move(mesh), options, *place, journal);
+    return open_surroundings(std::move(geometry), backend, std::move(mesh), given_faces, options, *place, journal);
   Built built = build(backend, geometry, mesh, options, place, journal);
   journal.add_warnings(built.warnings);
-  return {std::move(geometry), &backend, std::move(built), std::move(mesh)};
+  return {std::move(geometry), &backend, std::move(built), std::move(mesh), std::nullopt, given_faces};
 }
 
 Input open_input(const InputOptions& options, Journal& journal, const std::optional<SourceSpec>& source) {

@@ -20,6 +20,7 @@ struct Input {
   std::optional<RepairedMesh> repaired = {};  ///< the faces of `geometry` are those that remained
   /// With --local of a mesh: the faces of `geometry` that the surface has. None: all.
   std::optional<Surroundings> near = {};
+  std::size_t given_faces = 0;  ///< of the file, before the repair
 
   const Surface& surface() const { return *built.surface; }
   const TangentGraph& graph() const { return surface().graph(); }

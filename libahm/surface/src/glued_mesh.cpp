@@ -96,7 +96,8 @@ void GluedMesh::build_half_edges(const FaceList& faces, NonManifold non_manifold
 /// others.
 void GluedMesh::number_vertices(NonManifold non_manifold) {
   Fans fans = find_fans(half_edges(), report_.vertices, dropped_);
-  report_.non_manifold_vertices = static_cast<Index>(fans.later.size());
+  report_.non_manifold_vertices = static_cast<Index>(fans.pinched.count());
+  report_.added_vertices = static_cast<Index>(fans.later.size());
   if (fans.pinched.count() > 0 && non_manifold == NonManifold::error)
     throw InvalidGeometry("non_manifold_vertices",
                           std::to_string(fans.pinched.count()) +

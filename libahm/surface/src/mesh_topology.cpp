@@ -72,7 +72,8 @@ Report figures(const TopologyReport& t) {
           {"reoriented", t.reoriented},
           {"unreferenced", t.unreferenced},
           {"non_manifold_edges", t.non_manifold_edges},
-          {"non_manifold_vertices", t.non_manifold_vertices}};
+          {"non_manifold_vertices", t.non_manifold_vertices},
+          {"added_vertices", t.added_vertices}};
 }
 
 std::vector<Warning> warnings(const TopologyReport& t) {
@@ -83,7 +84,10 @@ std::vector<Warning> warnings(const TopologyReport& t) {
   warn("unreferenced", t.unreferenced);
   warn("reoriented", t.reoriented);
   warn("non_manifold_edges", t.non_manifold_edges);
-  warn("non_manifold_vertices", t.non_manifold_vertices);
+  if (t.non_manifold_vertices > 0)
+    result.push_back({"non_manifold_vertices",
+                      {static_cast<double>(t.non_manifold_vertices), static_cast<double>(t.added_vertices)},
+                      {}});
   if (!t.orientable) result.push_back({"not_orientable", {}, {}});
   if (t.components > 1) warn("components", t.components);
   return result;

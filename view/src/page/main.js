@@ -170,7 +170,10 @@ Ahm.Viewer = class {
     };
     const out = { method: text("method"), radius: number("radius") ?? null };
     if (out.method === "heat") Object.assign(out, { variant: text("variant"), order: Number(text("order")), t_coef: number("t_coef") });
-    if (text("u_axis") !== "") out.u_axis = text("u_axis").split(/[\s,]+/).map(Number);
+    if (text("u_axis") !== "") {
+      out.u_axis = text("u_axis").split(/[\s,]+/).map(Number);
+      if (out.u_axis.length !== 3 || !out.u_axis.every(Number.isFinite)) throw new Error("u axis: '" + text("u_axis") + "' is no direction X,Y,Z");
+    }
     return out;
   }
 
