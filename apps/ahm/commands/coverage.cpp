@@ -163,12 +163,9 @@ void offer(CLI::App& app, CoverageCommandOptions& o) {
   add_parsed(app, "--radius", o.path.radius, parse_positive, "R", "How far to go, along the surface")->required();
   add_parsed(app, "--spacing", o.path.spacing, parse_positive, "S", "Between lines or turns")->required();
   add_table_output(app, o.output)->required();
-  add_parsed(
-      app, "--pattern", o.path.pattern,
-      [](const std::string& text) {
-        return choice({"raster", "spiral"})(text) == "raster" ? CoveragePattern::raster : CoveragePattern::spiral;
-      },
-      "NAME", "raster (default) or spiral");
+  add_parsed(app, "--pattern", o.path.pattern,
+             choice_of<CoveragePattern>({{"raster", CoveragePattern::raster}, {"spiral", CoveragePattern::spiral}}),
+             "NAME", "raster (default) or spiral");
   add_parsed(app, "--angle", o.path.angle, parse_degrees, "DEG", "Direction of the lines, from the u axis (default 0)");
   add_parsed(app, "--step", o.path.step, parse_positive, "L", "Between points of the path (default: S / 2)");
   add_min_quality(app, o.min_quality);
