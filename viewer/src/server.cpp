@@ -7,8 +7,10 @@
 #include <atomic>
 #include <charconv>
 #include <chrono>
+#include <functional>
 #include <mutex>
 #include <thread>
+#include <utility>
 
 #include "token.hpp"
 #include "workers.hpp"
@@ -27,6 +29,16 @@ constexpr const char* posts[] = {"map", "stroke", "path", "coverage", "export"};
 class Listener : public httplib::Server {
  public:
   bool wait_longer() { return ::listen(svr_sock_, backlog) == 0; }
+};
+
+/// httplib's own has a number of threads from the start.
+class Queue final : public httplib::TaskQueue {
+ public:
+  void enqueue(std::function<void()> task) override { workers_.enqueue(std::move(task)); }
+  void shutdown() override { workers_.end(); }
+
+ private:
+  Workers workers_{most_workers};
 };
 
 void send(const Answer& answer, httplib::Response& response) {
@@ -67,7 +79,7 @@ struct Server::Impl {
   std::atomic<bool> is_finished{false};
 
   Impl(const Session& given, int wanted) : session(given) {
-    listener.new_task_queue = [] { return new Workers(most_workers); };  // NOLINT: httplib deletes it
+    listener.new_task_queue = [] { return new Queue; };  // NOLINT: httplib deletes it
     listener.set_keep_alive_max_count(1);
     listener.set_keep_alive_timeout(5);  // for a first byte
     listener.set_read_timeout(5);

@@ -1,8 +1,6 @@
 // A thread for every connection that is open, so that those on which nothing comes keep nobody waiting.
 #pragma once
 
-#include <httplib.h>
-
 #include <condition_variable>
 #include <cstddef>
 #include <functional>
@@ -15,19 +13,20 @@
 namespace ahm::viewer {
 
 /// Starts threads as connections come, up to a number; they are kept for the next ones. Beyond it connections wait.
-class Workers final : public httplib::TaskQueue {
+class Workers {
  public:
   explicit Workers(std::size_t most) : most_(most) {}
   Workers(const Workers&) = delete;
 
-  void enqueue(std::function<void()> task) override {
+  void enqueue(std::function<void()> task) {
     const std::lock_guard lock(mutex_);
     tasks_.push_back(std::move(task));
     if (tasks_.size() > idle_ && threads_.size() < most_) start();
     wake_.notify_one();
   }
 
-  void shutdown() override {
+  /// When all is done that was begun or waits.
+  void end() {
     {
       const std::lock_guard lock(mutex_);
       ends_ = true;
