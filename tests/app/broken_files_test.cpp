@@ -97,7 +97,10 @@ TEST(Files, DirectoriesAndMissingOnesAreRefusedWithTheReason) {
   std::filesystem::create_directory(folder / "a.ply");
   const auto directory = run({"logmap", folder / "a.ply", "--source", "0", "-o", folder / "map.csv"});
   EXPECT_EQ(directory.status, 1);
-  EXPECT_NE(directory.err.find("irectory"), std::string::npos) << directory.err;
+  EXPECT_NE(directory.err.find("it is a folder"), std::string::npos) << directory.err;
+  const auto unnamed = run({"logmap", folder / "", "--source", "0", "-o", folder / "map.csv"});
+  EXPECT_EQ(unnamed.status, 1);
+  EXPECT_NE(unnamed.err.find("it is a folder"), std::string::npos) << unnamed.err;
   const auto missing = run({"logmap", folder / "b.ply", "--source", "0", "-o", folder / "map.csv"});
   EXPECT_EQ(missing.status, 1);
   EXPECT_NE(missing.err.find("No such file"), std::string::npos) << missing.err;

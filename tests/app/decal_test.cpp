@@ -61,6 +61,22 @@ TEST(DecalCommand, LaysTheImageOnAPlate) {
   }
 }
 
+TEST(DecalCommand, KeepsTheNormalsOfWhatIsFarAway) {
+  if (!io::has_images()) GTEST_SKIP() << "this build has no stb";
+  Folder folder;
+  const std::string image = half_and_half(folder), plate_file = folder.write("plate.off", plate());
+  for (const std::string local : {"", "--local"}) {
+    std::vector<std::string> words{"decal",     plate_file, "--image", image, "--source",
+                                   "0.3,0.3,5", "--size",   "0.3",     "-o",  folder / "decal.obj"};
+    if (!local.empty()) words.push_back(local);
+    const Outcome outcome = run(words);
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    const io::Geometry decal = io::read(folder / "decal.obj");
+    EXPECT_GE(decal.normals.size(), 441U) << local;
+    for (const Vec3& normal : decal.normals) EXPECT_NEAR(normal[2], 1, 1e-9) << local;
+  }
+}
+
 TEST(DecalCommand, PaintsPointsUnderTheOpaquePart) {
   if (!io::has_images()) GTEST_SKIP() << "this build has no stb";
   Folder folder;

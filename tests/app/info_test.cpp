@@ -206,6 +206,22 @@ TEST(Info, CountsWhatIsWrongWithAMesh) {
   Mesh flat = icosphere(3);
   flat.positions[flat.faces[0][0]] = flat.positions[flat.faces[0][1]];
   EXPECT_GT(info(folder.write("flat.obj", obj(flat))).at("mesh").at("degenerate_faces"), 0);
+  // A square, a quadrilateral and a pentagon whose corners lie on a line, and a needle of a 10^12th of its length.
+  const std::string lines =
+      folder.write("lines.off",
+                   "OFF\n9 4 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n2 1 0\n3 1 0\n4 1 0\n0.5 1e-12 0\n0 2 0\n"
+                   "4 0 1 2 3\n4 2 4 5 6\n5 3 2 4 5 6\n3 0 1 7\n");
+  EXPECT_EQ(info(lines).at("mesh").at("degenerate_faces"), 3);
+  const std::string text = run({"info", lines}).out;
+  EXPECT_NE(text.find("faces without area  3\n"), std::string::npos) << text;
+  // Two fans of faces meet in one vertex; three pages in an edge.
+  const std::string bow = folder.write("bow.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv -1 0 0\nv -1 -1 0\nf 1 2 3\nf 1 4 5\n");
+  EXPECT_EQ(info(bow).at("mesh").at("non_manifold_vertices"), 1);
+  EXPECT_NE(
+      run({"info", bow}).out.find("1 vertex of several fans of faces; --non-manifold split cuts there: 1 vertex more"),
+      std::string::npos);
+  EXPECT_EQ(json.at("mesh").at("non_manifold_vertices"), 2);
+  EXPECT_EQ(json.at("mesh").at("added_vertices"), 4);
   Polygons turned = cube_sphere(4);
   turned.reverse(5);
   EXPECT_EQ(info(folder.write("turned.obj", obj(turned))).at("mesh").at("reoriented"), 1);

@@ -1,6 +1,8 @@
 // Manual pages and completions are made of the tables that --help prints: what one has, the others have.
 #include <gtest/gtest.h>
 
+#include <cstdio>
+#include <cstdlib>
 #include <regex>
 
 #include "program.hpp"
@@ -53,6 +55,34 @@ TEST(Completion, HasEveryOptionOfTheHelp) {
       EXPECT_TRUE(std::regex_search(fish, std::regex("from " + name + "'[^\n]* -l " + option.substr(2) + " ")))
           << name << " " << option;
     }
+}
+
+/// What bash offers for the last of some words.
+std::string offered(const Folder& folder, const std::string& words) {
+  const std::string script = folder.write("ahm.bash", run({"completion", "bash"}).out);
+  const std::string command = "cd " + (folder / "") + " && bash -c 'source " + script + "; COMP_WORDS=(" + words +
+                              "); COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); _ahm; echo \"${COMPREPLY[*]}\"'";
+  std::string text;
+  FILE* pipe = popen(command.c_str(), "r");
+  char buffer[256];
+  while (pipe != nullptr && std::fgets(buffer, sizeof buffer, pipe) != nullptr) text += buffer;
+  if (pipe != nullptr) pclose(pipe);
+  return text.substr(0, text.find('\n'));
+}
+
+TEST(Completion, OffersTheWordsThatAnOptionTakes) {
+  if (std::system("bash -c 'type compgen' >/dev/null 2>&1") != 0) GTEST_SKIP() << "there is no bash";
+  const Folder folder;
+  EXPECT_EQ(offered(folder, "ahm logmap --method \"\""), "heat exact");
+  EXPECT_EQ(offered(folder, "ahm logmap --method e"), "exact");
+  EXPECT_EQ(offered(folder, "ahm logmap --method = e"), "exact");
+  EXPECT_EQ(offered(folder, "ahm logmap --method ="), "heat exact");
+  EXPECT_EQ(offered(folder, "ahm coverage --pattern s"), "spiral");
+  EXPECT_EQ(offered(folder, "ahm logmap --output ahm"), "ahm.bash");
+  EXPECT_EQ(offered(folder, "ahm logm"), "logmap");
+  const std::string zsh = run({"completion", "zsh"}).out, fish = run({"completion", "fish"}).out;
+  EXPECT_NE(zsh.find(":(heat exact)'"), std::string::npos);
+  EXPECT_NE(fish.find(" -l method -x -a 'heat exact' -d "), std::string::npos);
 }
 
 TEST(Completion, RefusesOtherShells) {

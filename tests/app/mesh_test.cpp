@@ -1,6 +1,7 @@
 // Triangle meshes through the program.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -97,6 +98,55 @@ TEST(Mesh, OfTheSurroundingsAloneGivesTheSameMap) {
       }
 }
 
+/// A sheet of 30 x 30 vertices whose faces face down but for an island of some beside the middle; three more sheets: above it,
+/// off its end, and one that reaches around both in a loop far away.
+std::string islands(bool triangles) {
+  constexpr int m = 30;
+  std::ostringstream text;
+  for (const double z : {0.0, 0.02, 3.0})
+    for (int j = 0; j < m; ++j)
+      for (int i = 0; i < m; ++i) text << "v " << i / 29.0 << ' ' << j / 29.0 << ' ' << z << '\n';
+  text << "v 7 7 7\n";
+  const auto add = [&](std::vector<int> face, bool up) {
+    if (!up) std::reverse(face.begin() + 1, face.end());
+    text << "f";
+    for (const int v : face) text << ' ' << v + 1;
+    text << '\n';
+  };
+  for (int sheet = 0; sheet < 3; ++sheet)
+    for (int j = 0; j + 1 < m; ++j)
+      for (int i = 0; i + 1 < m; ++i) {
+        const int a = (sheet * m + j) * m + i;
+        const bool up = sheet == 0 && std::abs(i - 15) < 7 && std::abs(j - 15) < 7;
+        if (!triangles) {
+          add({a, a + 1, a + m + 1, a + m}, up);
+        } else {
+          add({a, a + 1, a + m + 1}, up);
+          add({a, a + m + 1, a + m}, up);
+        }
+      }
+  // The sheet above hangs together with that below at one end, by faces that no surroundings reach.
+  for (int i = 0; i + 1 < m; ++i) add({i, i + m * m, i + m * m + 1}, true), add({i, i + m * m + 1, i + 1}, true);
+  return text.str();
+}
+
+TEST(Mesh, OfTheSurroundingsIsOrientedLikeAllOfIt) {
+  for (const bool triangles : {true, false})
+    for (const std::string& source :
+         {std::string("465"), std::string(triangles ? "face:840:.5,.3,.2" : "face:420:.4,.3,.2,.1")}) {
+      std::vector<std::string> more{"--radius", "0.15", "--u-axis", "1,0,0"};
+      const auto whole = map(islands(triangles), source, more);
+      more.emplace_back("--local");
+      const auto local = map(islands(triangles), source, more);
+      expect_same(whole, local);
+      // Not the orientation of the island.
+      const auto mapped = std::ranges::count(whole, "ok", &Row::status);
+      EXPECT_GT(mapped, 10);
+      EXPECT_EQ(std::ranges::count(whole, "disconnected", &Row::status), 900);
+      EXPECT_EQ(std::ranges::count(whole, "removed", &Row::status), 1);
+    }
+}
+
 TEST(Mesh, OfTheSurroundingsIsNeverPinchedByTheCut) {
   // A sheet with a square hole in every other cell of a coarser grid: balls touch the bars beyond holes at corners alone.
   constexpr int m = 41;
@@ -133,6 +183,9 @@ TEST(Mesh, OfTheSurroundingsKeepsAllFacesInItsOutputs) {
   };
   const io::Geometry whole = out("whole", {}), local = out("local", {"--local"});
   EXPECT_EQ(whole.face_vertices, local.face_vertices);
+  ASSERT_EQ(whole.normals.size(), local.normals.size());
+  for (std::size_t i = 0; i + 1 < whole.normals.size(); ++i)  // the last lies in no face
+    for (std::size_t c = 0; c < 3; ++c) ASSERT_NEAR(whole.normals[i][c], local.normals[i][c], 1e-6) << i;
   EXPECT_EQ(io::read(folder / "whole.obj").face_count(), whole.face_count());
   EXPECT_EQ(io::read(folder / "local.obj").face_count(), whole.face_count());
   const auto json = read_json(folder / "local.json").at("trimesh");

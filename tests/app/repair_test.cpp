@@ -56,6 +56,18 @@ TEST_F(Repair, MapsATornSheetAsThePlaneItIs) {
   EXPECT_EQ(read_json(folder / "map.json").at("trimesh").at("repair").at("welded"), 384 - 81);
 }
 
+TEST_F(Repair, CountsTheFacesOfTheFileAndSpeaksOfOneAndOfSeveral) {
+  const auto input = folder.write("twice.obj", torn_sheet(5, "f 1 2 3\nv 7 7 7\n"));
+  const Outcome outcome = map(input, {"--repair"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const auto json = read_json(folder / "map.json");
+  EXPECT_EQ(json.at("input").at("faces"), 33);
+  EXPECT_EQ(json.at("trimesh").at("faces"), 32);
+  EXPECT_NE(outcome.err.find(" 1 face was dropped that was given before\n"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find(" 1 vertex is used by no face and was left out\n"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find(" 71 vertices were joined "), std::string::npos) << outcome.err;
+}
+
 TEST_F(Repair, IsNamedWhereAMeshIsRefusedAndThenMapsIt) {
   for (const auto& [more, option] :
        {std::pair<std::string, std::string>{"f 1 1 2\n", "--drop-degenerate"}, {"f 1 2 3\n", "--drop-duplicates"}}) {

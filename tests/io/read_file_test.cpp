@@ -14,7 +14,7 @@ using ReadFile = Files;
 TEST_F(ReadFile, NamesTheSystemsReason) {
   expect_refused(path("absent.ply"), {"No such file"});
   std::filesystem::create_directory(path("dir.ply"));
-  expect_refused(path("dir.ply"), {"Is a directory"});
+  expect_refused(path("dir.ply"), {"it is a folder"});
   make("locked.ply", "ply\n");
   std::filesystem::permissions(path("locked.ply"), std::filesystem::perms::none);
   if (::geteuid() != 0) expect_refused(path("locked.ply"), {"Permission denied"});

@@ -42,11 +42,13 @@ TEST(InspectMesh, CountsTheHandlesAndHolesOfSoundMeshes) {
 TEST(InspectMesh, CountsWhatKeepsAMeshFromBeingAManifold) {
   const MeshInspection pages = inspect(5, {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}});
   EXPECT_EQ(pages.topology.non_manifold_edges, 1);
-  EXPECT_EQ(pages.topology.non_manifold_vertices, 4);  // three copies instead of one, at both ends
+  EXPECT_EQ(pages.topology.non_manifold_vertices, 2);
+  EXPECT_EQ(pages.topology.added_vertices, 4);  // three copies instead of one, at both ends
   EXPECT_EQ(pages.topology.components, 3);
   const MeshInspection bow_tie = inspect(5, {{0, 1, 2}, {0, 3, 4}});
   EXPECT_EQ(bow_tie.topology.non_manifold_edges, 0);
   EXPECT_EQ(bow_tie.topology.non_manifold_vertices, 1);
+  EXPECT_EQ(bow_tie.topology.added_vertices, 1);
   EXPECT_EQ(bow_tie.topology.boundary_loops, 2);
 }
 

@@ -228,6 +228,14 @@ class Page(unittest.TestCase):
         self.driver.find_element(By.ID, "export").click()
         self.assertEqual(self.downloaded("map.csv"), (self.work / "export.csv").read_bytes())
 
+    def expect_export(self, name):
+        """What is saved is what the command line beside it writes."""
+        self.settled()
+        self.driver.find_element(By.ID, "export").click()
+        command = shlex.split(self.text("command"))
+        subprocess.run([options.ahm, *command[1:]], cwd=self.work, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        self.assertEqual(self.downloaded(name), (self.work / name).read_bytes())
+
     def test_every_field_is_drawn(self):
         self.open(self.mesh, "--source", 0)
         self.js("ahm.stage.turn(0, 0.9)")
@@ -259,10 +267,12 @@ class Page(unittest.TestCase):
         self.wait("document.getElementById('command').textContent.startsWith('ahm path')")
         self.settled()
         self.shot("path")
+        self.expect_export("path.obj")
         self.js("ahm.set_tool('coverage')")
         self.wait("document.getElementById('command').textContent.startsWith('ahm coverage')")
         self.settled()
         self.shot("coverage")
+        self.expect_export("path.csv")
         self.js("ahm.set_tool('stroke')")
         (_, x, y), (_, to_x, to_y) = rows[0], rows[-1]
         chain = self.at(x, y).click_and_hold()
@@ -274,11 +284,19 @@ class Page(unittest.TestCase):
         self.assertTrue(self.text("command").startswith("ahm stroke"))
         self.shot("stroke")
         row = int(self.text("at_row"))  # still under the pointer
-        self.assertEqual(self.text("at_v"), self.js("return Ahm.number(ahm.panel.length_of(ahm.stage.map.uv[2 * arguments[0] + 1]))", row))
-        self.driver.find_element(By.ID, "export").click()
-        command = shlex.split(self.text("command"))
-        subprocess.run([options.ahm, *command[1:]], cwd=self.work, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        self.assertEqual(self.downloaded("stroke.csv"), (self.work / "stroke.csv").read_bytes())
+        at_v = self.driver.find_element(By.ID, "at_v").get_attribute("title")  # all of its digits
+        self.assertEqual(at_v, self.js("return Ahm.number(ahm.panel.length_of(ahm.stage.map.uv[2 * arguments[0] + 1]), 9)", row))
+        self.expect_export("stroke.csv")
+        self.js("ahm.set_tool('coverage')")  # on a map from a point again
+        self.wait("document.getElementById('command').textContent.startsWith('ahm coverage')")
+        self.assertEqual(self.js("return ahm.stage.map.pattern"), "polar")
+
+    def draw_stroke(self):
+        self.js("ahm.set_tool('stroke')")
+        rows = self.visible_rows(12)
+        self.js("ahm.ask_stroke([{ row: arguments[0] }, { row: arguments[1] }])", rows[0][0], rows[-1][0])
+        self.wait("ahm.stage.map.pattern === 'grid'")
+        self.settled()
 
     def test_a_decal_lies_on_the_map(self):
         self.open(self.mesh)
@@ -294,6 +312,33 @@ class Page(unittest.TestCase):
         self.assertIn("--image bumps_image.png", self.text("command"))
         self.shot("decal")
         self.assertNotEqual((self.work / "decal.png").read_bytes(), (self.work / "decal_before.png").read_bytes())
+        self.expect_export("decal.glb")
+        # After a stroke it lies where it lay, not along the stroke.
+        command = self.text("command")
+        self.draw_stroke()
+        self.assertEqual(self.js("return ahm.stage.uniforms.decal_frame.value.length()"), 0)
+        self.assertTrue(self.text("command").startswith("ahm stroke"))
+        self.js("ahm.set_tool('decal')")
+        self.wait("document.getElementById('command').textContent.startsWith('ahm decal')")
+        self.settled()
+        self.assertEqual(self.text("command"), command)
+        self.assertEqual(self.js("return ahm.stage.map.pattern"), "polar")
+        self.shot("decal_after_stroke")
+
+    def test_long_numbers_are_whole(self):
+        points, faces = bumpy_sphere(20)
+        path = self.work / "far.off"
+        write_off(path, [tuple(-123456.789 + 1e-3 * x for x in p) for p in points], faces)
+        self.open(path, "--source", 0)
+        row, x, y = self.visible_rows(12)[5]
+        self.at(x, y).perform()
+        self.wait("document.getElementById('at_row').textContent !== '–'")
+        for name in ("position", "u", "v", "distance", "spread", "row", "status"):
+            cell = self.driver.find_element(By.ID, "at_" + name)
+            self.assertTrue(self.js("""const text = document.createRange(); text.selectNodeContents(arguments[0]);
+                return text.getBoundingClientRect().width <= arguments[0].clientWidth""", cell), cell.text)
+        self.assertRegex(self.driver.find_element(By.ID, "at_position").get_attribute("title"), r"^(-123456\.\d+ ?){3}$")
+        self.shot("numbers")
 
     def test_clouds_are_drawn_and_picked(self):
         self.open(self.cloud, "--source", 0)

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <cerrno>
 #include <thread>
 
 #include "sphere.hpp"
@@ -218,6 +219,31 @@ TEST_F(ViewerServer, AnswersAThousandRequestsAtOnce) {
   }
   EXPECT_EQ(right, count);
   EXPECT_EQ(wrong, 0);
+  expect_serving();
+}
+
+TEST_F(ViewerServer, ServesBesideConnectionsOnWhichNothingComes) {
+  // The server closes these after five seconds each. Eight at a time, they would nearly all be closed before it came to the request
+  // after them; a machine on which a request takes five seconds alone gets another try.
+  int open = 0;
+  for (int trial = 0; trial < 3 && open < 200; ++trial) {
+    std::vector<int> idle;
+    for (int k = 0; k < 300; ++k) {
+      idle.push_back(connected());
+      ASSERT_GE(idle.back(), 0);
+      if (k % 2 == 0) {
+        ASSERT_EQ(send(idle.back(), "GET /", 5, MSG_NOSIGNAL), 5);
+      }
+    }
+    expect_serving();
+    open = 0;
+    for (const int fd : idle) {
+      char byte = 0;
+      open += recv(fd, &byte, 1, MSG_DONTWAIT) < 0 && errno == EAGAIN;
+    }
+    for (const int fd : idle) receive(fd);  // until it is closed from there
+  }
+  EXPECT_GE(open, 200);
   expect_serving();
 }
 

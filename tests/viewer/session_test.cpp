@@ -1,12 +1,15 @@
 // What a page is told is what the library finds.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <fstream>
+#include <numbers>
 #include <set>
 #include <thread>
 
 #include "ahm/applications/coverage.hpp"
 #include "ahm/applications/surface_curve.hpp"
+#include "ahm/io/image.hpp"
 #include "ahm/maps/log_map_solver.hpp"
 #include "ahm/pointcloud/point_cloud_surface.hpp"
 #include "ahm/surface/exact/exact_geodesics.hpp"
@@ -277,20 +280,73 @@ TEST(ViewerSessionOfACloud, TellsGradientsOfEveryDiscAndHasNoPaths) {
 TEST(ViewerSessionExport, SendsWhatItsWriterWrites) {
   const Sphere sphere;
   SessionOptions options = sphere_options();
-  options.formats = {"csv"};
+  for (const char* what : {"map", "stroke", "path", "coverage", "decal"}) options.formats[what] = {"csv"};
   std::filesystem::path folder;
   options.write = [&](const std::filesystem::path& file, const RowLogMap& rows, const std::vector<double>& quality) {
     folder = file.parent_path();
     std::ofstream(file) << rows.u.size() << ' ' << quality.size();
   };
+  std::vector<Vec3> path;
+  CoveragePath covered;
+  DecalOptions laid;
+  options.write_path = [&](const std::filesystem::path& file, const std::vector<Vec3>& points) {
+    std::ofstream(file) << (path = points).size();
+  };
+  options.write_coverage = [&](const std::filesystem::path& file, const CoveragePath& points) {
+    std::ofstream(file) << (covered = points).points.size();
+  };
+  options.write_decal = [&](const std::filesystem::path& file, const InverseMap&, const DecalOptions& decal,
+                            const Image& image) {
+    laid = decal;
+    std::ofstream(file) << image.width << ' ' << image.height;
+  };
   const Session session(sphere.surface, sphere.geometry, options);
+  const auto sent = [&](json wanted) {
+    wanted["format"] = "csv";
+    return session.answer("export", request(wanted));
+  };
   const std::string n = std::to_string(sphere.geometry.points.size());
-  EXPECT_EQ(session.answer("export", request({{"source", {{"row", 0}}}, {"format", "csv"}})).body, n + " " + n);
-  const json points = {{{"row", 0}}, {{"row", 30}}};
-  EXPECT_EQ(session.answer("export", request({{"points", points}, {"format", "csv"}})).body, n + " 0") << "a stroke";
+  const json at = {{"row", 0}};
+  EXPECT_EQ(sent({{"what", "map"}, {"source", at}}).body, n + " " + n);
+  EXPECT_EQ(sent({{"what", "stroke"}, {"points", {at, {{"row", 30}}}}}).body, n + " 0");
   EXPECT_FALSE(folder.empty());
   EXPECT_FALSE(std::filesystem::exists(folder));
-  EXPECT_EQ(session.answer("export", request({{"source", {{"row", 0}}}, {"format", "../csv"}})).status, 400);
+
+  const std::string path_points = sent({{"what", "path"}, {"from", at}, {"to", {{"row", 30}}}}).body;
+  const ExactGeodesics geodesics(sphere.surface);
+  const std::array ends{SurfacePoint(Row{0}), SurfacePoint(Row{30})};
+  const auto direct = geodesics.paths(std::span(&ends, 1)).front();
+  ASSERT_EQ(path_points, std::to_string(direct.points.size()));
+  for (std::size_t k = 0; k < path.size(); ++k) EXPECT_EQ(path[k], geodesics.position(direct.points[k]));
+
+  const json cover = {{"what", "coverage"}, {"source", at}, {"cover", 0.5}, {"spacing", 0.1}, {"pattern", "spiral"}};
+  ASSERT_EQ(sent(cover).status, 200);
+  const LogMap map = LogMapSolver(sphere.surface.graph()).solve(sphere.surface.source(Row{0}).source, {.frames = true});
+  const CoveragePath wanted = coverage_path(sphere.surface, inverse_map(sphere.surface, map),
+                                            {.radius = 0.5, .spacing = 0.1, .pattern = CoveragePattern::spiral});
+  ASSERT_EQ(covered.points.size(), wanted.points.size());
+  for (std::size_t k = 0; k < wanted.points.size(); ++k)
+    EXPECT_EQ(covered.points[k].position, wanted.points[k].position);
+
+  // A PNG of 2 x 1 pixels.
+  json decal = {
+      {"what", "decal"},
+      {"source", at},
+      {"size", 0.4},
+      {"angle", 90},
+      {"image", "iVBORw0KGgoAAAANSUhEUgAAAAIAAAABCAIAAAB7QOjdAAAADUlEQVR4nGP4zwAE/wEHAAH/4iOeWQAAAABJRU5ErkJggg=="}};
+  if (io::has_images()) {
+    EXPECT_EQ(sent(decal).body, "2 1");
+    EXPECT_EQ(laid.width, 0.4);
+    EXPECT_EQ(laid.height, 0.2);
+    EXPECT_EQ(laid.angle, std::numbers::pi / 2);
+  }
+  for (const char* image : {"", "?", "iVBORw0KGgo=", "../../etc/passwd"}) {
+    decal["image"] = image;
+    EXPECT_EQ(sent(decal).status, 400) << image;
+  }
+  EXPECT_EQ(session.answer("export", request({{"what", "map"}, {"source", at}, {"format", "../csv"}})).status, 400);
+  EXPECT_EQ(sent({{"what", "surface"}, {"source", at}}).status, 400);
 }
 
 TEST(ViewerCommand, CountsTheFacesOfTheFileAfterARepair) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <exception>
 #include <list>
 #include <memory>
 #include <optional>
@@ -48,7 +49,16 @@ class Makers {
   const ExactGeodesics& geodesics() {
     if (surface_.faces().size() == 0)
       throw InvalidArgument("paths and exact maps run over faces, which this input does not have");
-    if (!geodesics_) geodesics_.emplace(surface_);
+    if (refusal_) std::rethrow_exception(refusal_);
+    try {
+      if (!geodesics_) geodesics_.emplace(surface_);
+    } catch (const InvalidArgument&) {
+      refusal_ = std::current_exception();
+      throw;
+    } catch (const InvalidGeometry&) {
+      refusal_ = std::current_exception();
+      throw;
+    }
     return *geodesics_;
   }
 
@@ -68,6 +78,7 @@ class Makers {
   unsigned threads_;
   std::list<Kept> kept_;
   std::optional<ExactGeodesics> geodesics_;
+  std::exception_ptr refusal_;  ///< why there are none
 };
 
 }  // namespace ahm::viewer

@@ -83,8 +83,16 @@ std::vector<SurfacePoint> Request::points(const char* name) const {
   return points;
 }
 
+double Request::finite(const char* name) const { return viewer::finite(at(name), name); }
+
+std::string Request::text(const char* name) const {
+  const json& value = at(name);
+  if (!value.is_string()) refuse(name, "must be a text");
+  return value.get<std::string>();
+}
+
 double Request::positive(const char* name) const {
-  const double x = finite(at(name), name);
+  const double x = finite(name);
   if (!(x > 0)) refuse(name, "must be greater than 0");
   return x;
 }
@@ -119,7 +127,8 @@ Settings Request::settings(const Settings& usual) const {
   if (!has("u_axis")) return out;
   const json& axis = at("u_axis");
   if (!axis.is_array() || axis.size() != 3) refuse("u_axis", "must be a list of three numbers");
-  out.u_axis = {finite(axis[0], "u_axis"), finite(axis[1], "u_axis"), finite(axis[2], "u_axis")};
+  out.u_axis = {viewer::finite(axis[0], "u_axis"), viewer::finite(axis[1], "u_axis"),
+                viewer::finite(axis[2], "u_axis")};
   return out;
 }
 

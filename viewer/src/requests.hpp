@@ -24,6 +24,8 @@ class Request {
   /// @param usual  of what is not given
   Settings settings(const Settings& usual) const;
   double positive(const char* name) const;
+  double finite(const char* name) const;
+  std::string text(const char* name) const;
   /// @param allowed  words
   std::string word(const char* name, const std::vector<std::string>& allowed) const;
   /// Whether there is such a member, not null.

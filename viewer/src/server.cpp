@@ -7,17 +7,20 @@
 #include <atomic>
 #include <charconv>
 #include <chrono>
+#include <functional>
 #include <mutex>
 #include <thread>
+#include <utility>
 
 #include "token.hpp"
+#include "workers.hpp"
 
 namespace ahm::viewer {
 namespace {
 
-constexpr std::size_t largest_body = 1 << 20;
-constexpr std::size_t workers = 8;
-constexpr int backlog = 1024;  // connections that wait for a worker
+constexpr std::size_t largest_body = 1 << 20, largest_export = 32 << 20;  // an image may come with it
+constexpr std::size_t most_workers = 1000;  // each for a connection that is open, if only for nothing to come
+constexpr int backlog = 1024;               // connections that wait for a worker
 
 constexpr const char* gets[] = {"surface", "info"};
 constexpr const char* posts[] = {"map", "stroke", "path", "coverage", "export"};
@@ -26,6 +29,16 @@ constexpr const char* posts[] = {"map", "stroke", "path", "coverage", "export"};
 class Listener : public httplib::Server {
  public:
   bool wait_longer() { return ::listen(svr_sock_, backlog) == 0; }
+};
+
+/// httplib's own has a number of threads from the start.
+class Queue final : public httplib::TaskQueue {
+ public:
+  void enqueue(std::function<void()> task) override { workers_.enqueue(std::move(task)); }
+  void shutdown() override { workers_.end(); }
+
+ private:
+  Workers workers_{most_workers};
 };
 
 void send(const Answer& answer, httplib::Response& response) {
@@ -45,12 +58,12 @@ bool is_only(const httplib::Request& request, const char* header, const std::vec
          std::find(allowed.begin(), allowed.end(), request.get_header_value(header)) != allowed.end();
 }
 
-bool has_small_json(const httplib::Request& request) {
+bool has_small_json(const httplib::Request& request, std::size_t most) {
   if (request.get_header_value_count("Content-Length") != 1) return false;
   const std::string length = request.get_header_value("Content-Length");
   std::size_t bytes = 0;
   const auto [end, error] = std::from_chars(length.data(), length.data() + length.size(), bytes);
-  return error == std::errc() && end == length.data() + length.size() && bytes <= largest_body &&
+  return error == std::errc() && end == length.data() + length.size() && bytes <= most &&
          is_only(request, "Content-Type", {"application/json", "application/json; charset=utf-8"});
 }
 
@@ -66,11 +79,12 @@ struct Server::Impl {
   std::atomic<bool> is_finished{false};
 
   Impl(const Session& given, int wanted) : session(given) {
-    listener.new_task_queue = [] { return new httplib::ThreadPool(workers); };  // NOLINT: httplib deletes it
-    listener.set_keep_alive_max_count(1);                                       // an idle connection keeps no worker
+    listener.new_task_queue = [] { return new Queue; };  // NOLINT: httplib deletes it
+    listener.set_keep_alive_max_count(1);
+    listener.set_keep_alive_timeout(5);  // for a first byte
     listener.set_read_timeout(5);
     listener.set_write_timeout(30);
-    listener.set_payload_max_length(largest_body);
+    listener.set_payload_max_length(largest_export);
     listener.set_tcp_nodelay(true);
     listener.set_socket_options([](socket_t socket) {
       const int yes = 1;  // no SO_REUSEPORT: nobody else may listen here
@@ -111,7 +125,8 @@ struct Server::Impl {
     if (request.method == "GET" && request.has_header("Content-Length") &&
         request.get_header_value("Content-Length") != "0")
       return 400;
-    if (request.method == "POST" && !has_small_json(request)) return 413;
+    const bool is_export = path.substr(34) == "export";
+    if (request.method == "POST" && !has_small_json(request, is_export ? largest_export : largest_body)) return 413;
     return 0;
   }
 
@@ -125,7 +140,8 @@ struct Server::Impl {
     listener.set_pre_routing_handler([this](const httplib::Request& request, httplib::Response& response) {
       const int status = fault(request);
       if (status == 0) return httplib::Server::HandlerResponse::Unhandled;
-      refuse(request, response, status, status == 413 ? "a JSON body of at most 1 MiB is expected" : "refused");
+      refuse(request, response, status,
+             status == 413 ? "a JSON body of at most 1 MiB is expected, of 32 MiB to export" : "refused");
       return httplib::Server::HandlerResponse::Handled;
     });
     listener.set_error_handler([](const httplib::Request& request, httplib::Response& response) {

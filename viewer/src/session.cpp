@@ -1,10 +1,12 @@
 #include "ahm/viewer/session.hpp"
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <limits>
 #include <mutex>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <thread>
 
 #include "ahm/applications/surface_curve.hpp"
@@ -154,7 +156,9 @@ struct Session::Impl {
     const double radius = radius_of(settings);
     if (settings.method == Method::exact) {
       const auto u_axis = placed.frame ? std::optional(placed.frame->x) : std::nullopt;
-      return makers.geodesics().log_map(source, u_axis, {.radius = radius, .frames = frames, .progress = until(stop)});
+      return makers.geodesics().log_map(
+          source, u_axis,
+          {.radius = radius, .tolerance = settings.tolerance, .frames = frames, .progress = until(stop)});
     }
     MapOptions heat = heat_options(settings, radius, stop);
     heat.frames = frames;
@@ -209,7 +213,9 @@ struct Session::Impl {
   LogMap stroke(const SurfaceCurve& curve, const Settings& settings, const std::stop_token& stop) {
     const double radius = reach_from_curve(surface.graph(), radius_of(settings));
     if (settings.method == Method::exact)
-      return makers.geodesics().log_map(curve.samples, {.radius = radius, .progress = until(stop)}).map;
+      return makers.geodesics()
+          .log_map(curve.samples, {.radius = radius, .tolerance = settings.tolerance, .progress = until(stop)})
+          .map;
     return makers.solver(settings, stop).solve(curve.source, heat_options(settings, radius, stop));
   }
 
@@ -238,26 +244,31 @@ struct Session::Impl {
     return line;
   }
 
-  Answer answer_path(const Request& request) {
-    const std::stop_token stop = channels.begin(request.client(), Channels::Kind::path, request.number());
-    const std::array ends{request.point("from"), request.point("to")};
-    for (const SurfacePoint& end : ends) surface.source(end);  // checks
-    SurfaceLine path;
-    in_turn(stop, [&] { path = path_between(ends, stop); });
+  struct Ends {
+    SurfacePoint from, to;
+  };
+
+  SurfaceLine path(const Ends& ends, const std::stop_token& stop) {
+    for (const SurfacePoint& end : {ends.from, ends.to}) surface.source(end);  // checks
+    SurfaceLine path = in_turn(stop, [&] { return path_between({ends.from, ends.to}, stop); });
     if (path.status != Status::ok)
       throw InvalidArgument("there is no path: the surface does not connect the two points");
-    return answer_of(
-        {{"points", positions(page, path.points)},
-         {"length", path.length / page.scale()},
-         {"command",
-          command(options, "path", {"--from", spec(surface, ends[0]), "--to", spec(surface, ends[1]), "-o", "path.obj"},
-                  {})}});
+    return path;
   }
 
-  Answer answer_coverage(const Request& request) {
-    const std::stop_token stop = channels.begin(request.client(), Channels::Kind::coverage, request.number());
-    const SurfacePoint source = request.point("source");
-    const Settings settings = of_patch(request.settings(options.settings));
+  Answer answer_path(const Request& request) {
+    const std::stop_token stop = channels.begin(request.client(), Channels::Kind::path, request.number());
+    const Ends ends{request.point("from"), request.point("to")};
+    const SurfaceLine made = path(ends, stop);
+    return answer_of(
+        {{"points", positions(page, made.points)},
+         {"length", made.length / page.scale()},
+         {"command",
+          command(options, "path",
+                  {"--from", spec(surface, ends.from), "--to", spec(surface, ends.to), "-o", "path.obj"}, {})}});
+  }
+
+  static CoverageOptions cover_of(const Request& request) {
     CoverageOptions cover;
     cover.radius = request.positive("cover");
     cover.spacing = request.positive("spacing");
@@ -265,6 +276,12 @@ struct Session::Impl {
       throw InvalidArgument("request: more than 500 lines from the source; give a wider \"spacing\"");
     const std::string pattern = request.word("pattern", {"raster", "spiral"});
     cover.pattern = pattern == "raster" ? CoveragePattern::raster : CoveragePattern::spiral;
+    return cover;
+  }
+
+  /// @param settings  `of_patch`
+  CoveragePath tool_path(const SurfacePoint& source, const CoverageOptions& cover, const Settings& settings,
+                         const std::stop_token& stop) {
     const PlacedSource placed = surface.source(source, settings.u_axis);
     Settings reach = settings;  // the tool path needs no map of the rest, whose factors would take long
     if (makers.is_large()) reach.radius = 1.5 * cover.radius;
@@ -274,8 +291,17 @@ struct Session::Impl {
       return map(source, placed, reach, stop, true);
     });
     const InverseMap inverse = inverse_map(surface, made, {.threads = options.threads});
-    const CoveragePath path = flat ? coverage_path(*flat, inverse, cover) : coverage_path(inverse, cover);
+    CoveragePath path = flat ? coverage_path(*flat, inverse, cover) : coverage_path(inverse, cover);
     if (path.points.empty()) throw InvalidArgument("no line of the pattern meets a trusted part of the surface");
+    return path;
+  }
+
+  Answer answer_coverage(const Request& request) {
+    const std::stop_token stop = channels.begin(request.client(), Channels::Kind::coverage, request.number());
+    const SurfacePoint source = request.point("source");
+    const Settings settings = of_patch(request.settings(options.settings));
+    const CoverageOptions cover = cover_of(request);
+    const CoveragePath path = tool_path(source, cover, settings, stop);
     std::vector<Vec3> points;
     json pieces = {0};
     double length = 0;
@@ -287,37 +313,66 @@ struct Session::Impl {
       if (k + 1 == path.points.size() || path.points[k + 1].piece != point.piece) length += point.arclength;
       points.push_back(point.position);
     }
-    return answer_of({{"points", positions(page, points)},
-                      {"pieces", pieces},
-                      {"length", length / page.scale()},
-                      {"covered", static_cast<double>(carried) / static_cast<double>(path.planned)},
-                      {"command", command(options, "coverage",
-                                          {"--source", spec(surface, source), "--radius", number(cover.radius),
-                                           "--spacing", number(cover.spacing), "--pattern", pattern, "-o", "path.csv"},
-                                          settings)}});
+    return answer_of(
+        {{"points", positions(page, points)},
+         {"pieces", pieces},
+         {"length", length / page.scale()},
+         {"covered", static_cast<double>(carried) / static_cast<double>(path.planned)},
+         {"command", command(options, "coverage",
+                             {"--source", spec(surface, source), "--radius", number(cover.radius), "--spacing",
+                              number(cover.spacing), "--pattern",
+                              cover.pattern == CoveragePattern::raster ? "raster" : "spiral", "-o", "path.csv"},
+                             settings)}});
+  }
+
+  void write_map(const Request& request, const std::filesystem::path& file, const std::stop_token& stop) {
+    const Settings settings = request.settings(options.settings);
+    const SurfacePoint source = request.point("source");
+    const PlacedSource placed = surface.source(source, settings.u_axis);
+    const LogMap made = in_turn(stop, [&] { return map(source, placed, settings, stop); });
+    const RowLogMap rows = surface.on_rows(made);
+    options.write(file, rows, quality_of(made, rows));
+  }
+
+  void write_stroke(const Request& request, const std::filesystem::path& file, const std::stop_token& stop) {
+    const Settings settings = of_curve(request.settings(options.settings));
+    const SurfaceCurve curve = curve_of(request);
+    const LogMap made = in_turn(stop, [&] { return stroke(curve, settings, stop); });
+    options.write(file, rows_from_curve(surface, made, curve, radius_of(settings)), {});
+  }
+
+  void write_decal(const Request& request, const std::filesystem::path& file, const std::stop_token& stop) {
+    const Image image = image_of(request.text("image"));
+    const double size = request.positive("size"), longer = std::max(image.width, image.height);
+    DecalOptions decal;
+    decal.width = size * image.width / longer, decal.height = size * image.height / longer;
+    decal.angle = request.finite("angle") * std::numbers::pi / 180;
+    decal.lift = 0.002 * size;
+    Settings settings = of_patch(request.settings(options.settings));
+    settings.radius = map_radius(decal, surface.graph());
+    const SurfacePoint source = request.point("source");
+    const PlacedSource placed = surface.source(source, settings.u_axis);
+    const LogMap made = in_turn(stop, [&] { return map(source, placed, settings, stop, true); });
+    options.write_decal(file, inverse_map(surface, made, {.threads = options.threads}), decal, image);
   }
 
   Answer answer_export(const Request& request) {
-    if (!options.write) throw InvalidArgument("request: this session exports nothing");
-    const std::string format = request.word("format", options.formats);
-    const Settings settings = request.settings(options.settings);
+    std::vector<std::string> kinds;
+    for (const auto& [kind, formats] : options.formats) kinds.push_back(kind);
+    if (kinds.empty()) throw InvalidArgument("request: this session exports nothing");
+    const std::string what = request.word("what", kinds);
+    const std::string format = request.word("format", options.formats.at(what));
     const std::stop_token stop = channels.until_the_end();
-    RowLogMap rows;
-    std::vector<double> quality;
-    if (request.has("points")) {
-      const SurfaceCurve curve = curve_of(request);
-      const Settings near = of_curve(settings);
-      const LogMap made = in_turn(stop, [&] { return stroke(curve, near, stop); });
-      rows = rows_from_curve(surface, made, curve, radius_of(near));
-    } else {
-      const SurfacePoint source = request.point("source");
-      const PlacedSource placed = surface.source(source, settings.u_axis);
-      const LogMap made = in_turn(stop, [&] { return map(source, placed, settings, stop); });
-      rows = surface.on_rows(made);
-      quality = quality_of(made, rows);
-    }
-    return {200, "application/octet-stream",
-            exported(format, [&](const std::filesystem::path& file) { options.write(file, rows, quality); })};
+    const auto write = [&](const std::filesystem::path& file) {
+      if (what == "map") return write_map(request, file, stop);
+      if (what == "stroke") return write_stroke(request, file, stop);
+      if (what == "decal") return write_decal(request, file, stop);
+      if (what == "path")
+        return options.write_path(file, path({request.point("from"), request.point("to")}, stop).points);
+      options.write_coverage(file, tool_path(request.point("source"), cover_of(request),
+                                             of_patch(request.settings(options.settings)), stop));
+    };
+    return {200, "application/octet-stream", exported(format, write)};
   }
 
   json point_as_json(const SurfacePoint& point) const {

@@ -18,31 +18,43 @@ std::vector<CLI::Option*> options_of(CLI::App& app) {
 
 std::string bash(CLI::App& program) {
   std::vector<std::string> names;
-  std::string cases;
+  std::string cases, choices;
   for (CLI::App* app : subcommands_of(program)) {
     names.push_back(app->get_name());
     std::vector<std::string> all;
     for (const CLI::Option* option : options_of(*app))
-      for (std::string& word : names_of(*option)) all.push_back(std::move(word));
+      for (std::string& word : names_of(*option)) {
+        if (const auto& words = choices_of(*option); !words.empty())
+          choices += fmt::format("    {}) choices={} ;;\n", detail::in_quotes(app->get_name() + " " + word),
+                                 detail::in_quotes(fmt::format("{}", fmt::join(words, " "))));
+        all.push_back(std::move(word));
+      }
     cases += fmt::format("    {}) options={} ;;\n", app->get_name(),
                          detail::in_quotes(fmt::format("{}", fmt::join(all, " "))));
   }
   return fmt::format(
       "# Completion of ahm for bash.\n"
       "_ahm() {{\n"
-      "  local word=\"${{COMP_WORDS[COMP_CWORD]}}\" options=''\n"
+      "  local word=\"${{COMP_WORDS[COMP_CWORD]}}\" before=\"${{COMP_WORDS[COMP_CWORD-1]}}\" options='' choices=''\n"
+      "  [ \"$before\" = = ] && before=\"${{COMP_WORDS[COMP_CWORD-2]}}\"\n"
+      "  [ \"$word\" = = ] && word=''\n"
       "  if [ \"$COMP_CWORD\" -eq 1 ]; then\n"
       "    mapfile -t COMPREPLY < <(compgen -W '{} --help --version' -- \"$word\")\n"
       "    return\n"
       "  fi\n"
       "  case \"${{COMP_WORDS[1]}}\" in\n{}  esac\n"
+      "  case \"${{COMP_WORDS[1]}} $before\" in\n{}  esac\n"
+      "  if [ -n \"$choices\" ]; then\n"
+      "    mapfile -t COMPREPLY < <(compgen -W \"$choices\" -- \"$word\")\n"
+      "    return\n"
+      "  fi\n"
       "  case \"$word\" in\n"
       "    -*) mapfile -t COMPREPLY < <(compgen -W \"$options\" -- \"$word\") ;;\n"
       "    *) mapfile -t COMPREPLY < <(compgen -f -- \"$word\") ;;\n"
       "  esac\n"
       "}}\n"
       "complete -o filenames -F _ahm ahm\n",
-      fmt::join(names, " "), cases);
+      fmt::join(names, " "), cases, choices);
 }
 
 /// _arguments reads brackets and colons of a description as its own.
@@ -52,6 +64,19 @@ std::string for_zsh(const std::string& text) {
   return result;
 }
 
+std::string value_for_zsh(const CLI::Option& option) {
+  if (!takes_value(option)) return "";
+  const auto& words = choices_of(option);
+  return ":" + for_zsh(option.get_type_name()) +
+         (words.empty() ? ":_files" : fmt::format(":({})", fmt::join(words, " ")));
+}
+
+std::string value_for_fish(const CLI::Option& option) {
+  if (!takes_value(option)) return "";
+  const auto& words = choices_of(option);
+  return words.empty() ? " -r" : " -x -a " + detail::in_quotes(fmt::format("{}", fmt::join(words, " ")));
+}
+
 std::string zsh(CLI::App& program) {
   std::string names, cases;
   for (CLI::App* app : subcommands_of(program)) {
@@ -59,9 +84,8 @@ std::string zsh(CLI::App& program) {
     cases += fmt::format("    {}) _arguments", app->get_name());
     for (const CLI::Option* option : options_of(*app))
       for (const std::string& word : names_of(*option))
-        cases += " \\\n      " +
-                 detail::in_quotes(word + "[" + for_zsh(first_line(option->get_description())) + "]" +
-                                   (takes_value(*option) ? ":" + for_zsh(option->get_type_name()) + ":_files" : ""));
+        cases += " \\\n      " + detail::in_quotes(word + "[" + for_zsh(first_line(option->get_description())) + "]" +
+                                                   value_for_zsh(*option));
     cases += " \\\n      '*:file:_files' ;;\n";
   }
   return "#compdef ahm\n_ahm() {\n  local -a names=(\n" + names +
@@ -81,8 +105,8 @@ std::string fish(CLI::App& program) {
       result += fmt::format("complete -c ahm -n '__fish_seen_subcommand_from {}'", app->get_name());
       for (const std::string& name : option->get_snames()) result += " -s " + name;
       for (const std::string& name : option->get_lnames()) result += " -l " + name;
-      result += fmt::format("{} -d {}\n", takes_value(*option) ? " -r" : "",
-                            detail::in_quotes(first_line(option->get_description())));
+      result +=
+          fmt::format("{} -d {}\n", value_for_fish(*option), detail::in_quotes(first_line(option->get_description())));
     }
   }
   return result;

@@ -25,10 +25,10 @@ std::string input_help() {
 }
 
 /// Names of formats, and the extension that is found.
-std::function<std::string(const std::string&)> format_parser(io::Use use) {
+ChoiceOf<std::string> format_parser(io::Use use) {
   std::vector<std::pair<std::string, std::string>> names;
   for (const std::string& extension : io::extensions(use)) names.emplace_back(extension.substr(1), extension);
-  return choice_of(std::move(names));
+  return choice_of(names);
 }
 
 void add_input_format(CLI::App& app, InputOptions& o) {
@@ -42,12 +42,10 @@ std::function<Index(const std::string&)> integer_parser(std::int64_t low, std::i
   return [=](const std::string& text) { return static_cast<Index>(parse_integer(text, low, high)); };
 }
 
-std::function<std::string(const std::string&)> choice(std::vector<std::string> allowed) {
-  return [allowed = std::move(allowed)](const std::string& text) {
-    if (std::find(allowed.begin(), allowed.end(), text) == allowed.end())
-      throw std::invalid_argument(fmt::format("'{}' is none of {}", text, fmt::join(allowed, ", ")));
-    return text;
-  };
+std::string Choice::operator()(const std::string& text) const {
+  if (std::ranges::find(words, text) == words.end())
+    throw std::invalid_argument(fmt::format("'{}' is none of {}", text, fmt::join(words, ", ")));
+  return text;
 }
 
 std::string non_empty(const std::string& text) {
@@ -222,7 +220,7 @@ CLI::Option* add_variant(CLI::App& app, SolveOptions& o) {
     variants.emplace_back(to_string(variant), variant);
     names.push_back(variants.back().first + (variant == o.variant ? " (default)" : ""));
   }
-  return add_parsed(app, "--variant", o.variant, choice_of(std::move(variants)), "NAME", one_of(names));
+  return add_parsed(app, "--variant", o.variant, choice_of(variants), "NAME", one_of(names));
 }
 
 CLI::Option* add_t_coef(CLI::App& app, SolveOptions& o) {

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "cli/option_tables.hpp"
 #include "cli/options.hpp"
 
 namespace ahm::app {
@@ -22,35 +23,50 @@ template <class Value, class Parse>
 CLI::Option* add_parsed(CLI::App& app, const std::string& name, Value& value, const Parse& parse,
                         const std::string& type, const std::string& help) {
   const std::string label = name.substr(name.find("--"));
-  return app
-      .add_option_function<std::string>(
-          name,
-          [&value, parse, label](const std::string& text) {
-            try {
-              value = parse(text);
-            } catch (const std::invalid_argument& e) {
-              throw CLI::ValidationError(label, e.what());
-            }
-          },
-          help)
-      ->type_name(type);
+  CLI::Option* option = app.add_option_function<std::string>(
+                               name,
+                               [&value, parse, label](const std::string& text) {
+                                 try {
+                                   value = parse(text);
+                                 } catch (const std::invalid_argument& e) {
+                                   throw CLI::ValidationError(label, e.what());
+                                 }
+                               },
+                               help)
+                            ->type_name(type);
+  if constexpr (requires { parse.words; }) set_choices(*option, parse.words);
+  return option;
 }
 
 /// Parsers for `add_parsed`. @throws std::invalid_argument when they are called
 std::function<Index(const std::string&)> integer_parser(std::int64_t low,
                                                         std::int64_t high = std::numeric_limits<Index>::max());
-std::function<std::string(const std::string&)> choice(std::vector<std::string> allowed);
 std::string non_empty(const std::string& text);
+
+/// A parser of one of some words.
+struct Choice {
+  std::vector<std::string> words;
+  std::string operator()(const std::string& text) const;
+};
 
 /// Words that stand for values.
 template <class Value>
-std::function<Value(const std::string&)> choice_of(std::vector<std::pair<std::string, Value>> allowed) {
+struct ChoiceOf {
   std::vector<std::string> words;
-  for (const auto& [word, value] : allowed) words.push_back(word);
-  return [allowed = std::move(allowed), check = choice(words)](const std::string& text) {
-    check(text);
-    return std::find_if(allowed.begin(), allowed.end(), [&](const auto& a) { return a.first == text; })->second;
-  };
+  std::vector<Value> values;
+  explicit ChoiceOf(const std::vector<std::pair<std::string, Value>>& allowed) {
+    for (const auto& [word, value] : allowed) words.push_back(word), values.push_back(value);
+  }
+  Value operator()(const std::string& text) const {
+    Choice{words}(text);
+    return values[static_cast<std::size_t>(std::ranges::find(words, text) - words.begin())];
+  }
+};
+
+inline Choice choice(std::vector<std::string> words) { return {std::move(words)}; }
+template <class Value>
+ChoiceOf<Value> choice_of(const std::vector<std::pair<std::string, Value>>& allowed) {
+  return ChoiceOf<Value>(allowed);
 }
 
 CLI::Option* add_source(CLI::App& app, SourceOptions& o, const std::string& help);

@@ -1,5 +1,7 @@
 #include "cli/option_tables.hpp"
 
+#include <map>
+
 namespace ahm::app {
 
 std::vector<CLI::App*> subcommands_of(CLI::App& program) {
@@ -16,5 +18,18 @@ std::vector<std::string> names_of(const CLI::Option& option) {
 std::string first_line(const std::string& description) { return description.substr(0, description.find('\n')); }
 
 bool takes_value(const CLI::Option& option) { return option.get_items_expected_max() > 0; }
+
+namespace {
+
+std::map<const CLI::Option*, std::vector<std::string>>& all_choices() {
+  static std::map<const CLI::Option*, std::vector<std::string>> choices;
+  return choices;
+}
+
+}  // namespace
+
+const std::vector<std::string>& choices_of(const CLI::Option& option) { return all_choices()[&option]; }
+
+void set_choices(const CLI::Option& option, const std::vector<std::string>& words) { all_choices()[&option] = words; }
 
 }  // namespace ahm::app

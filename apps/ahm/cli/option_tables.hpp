@@ -19,4 +19,8 @@ std::string first_line(const std::string& description);
 /// Whether a value follows the option.
 bool takes_value(const CLI::Option& option);
 
+/// The words that an option takes; empty: any text. CLI11 has no place for them that --help does not print.
+const std::vector<std::string>& choices_of(const CLI::Option& option);
+void set_choices(const CLI::Option& option, const std::vector<std::string>& words);
+
 }  // namespace ahm::app

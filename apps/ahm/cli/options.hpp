@@ -2,8 +2,10 @@
 /// The command line as data: groups of options, of which each subcommand composes what it offers.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "ahm/heat/heat_operators.hpp"
 #include "ahm/maps/log_map_solver.hpp"
@@ -35,6 +37,7 @@ struct InputOptions {
   std::string non_manifold = "error";   ///< error, split
   std::string discretization = "auto";  ///< of polygons: auto, polygons, refined
   RepairOptions repair;
+  std::vector<std::uint8_t> turned;  ///< with --local: as of `trimesh::MeshOptions`
 };
 
 /// How maps are computed.

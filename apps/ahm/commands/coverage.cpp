@@ -6,9 +6,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "ahm/io/write.hpp"
 #include "cli/numbers.hpp"
 #include "cli/option_adders.hpp"
+#include "commands/coverage_table.hpp"
 #include "commands/solve.hpp"
 #include "commands/subcommand.hpp"
 #include "output/output_paths.hpp"
@@ -40,30 +40,6 @@ struct CoverageCommandOptions {
   CoverageOptions path;
   double min_quality = trusted_quality;
 };
-
-/// Text, with an edge between consecutive points of a piece.
-void write_path(const OutputOptions& output, const CoveragePath& path) {
-  std::vector<Index> piece, line, between;
-  std::vector<Vec3> position, normal, heading;
-  std::vector<double> u, v, arclength, spacing;
-  io::Table table{.title = "coverage path by libahm", .text = true};
-  for (const CoveragePoint& p : path.points) {
-    const auto row = static_cast<Index>(piece.size());
-    if (row > 0 && p.piece == piece.back()) table.edges.push_back({row - 1, row});
-    piece.push_back(p.piece), line.push_back(p.line), between.push_back(p.between);
-    position.push_back(p.position), normal.push_back(p.normal), heading.push_back(p.heading);
-    u.push_back(p.coordinates[0]), v.push_back(p.coordinates[1]);
-    arclength.push_back(p.arclength), spacing.push_back(p.spacing);
-  }
-  table.add("piece", piece), table.add("line", line);
-  table.add({"x", "y", "z"}, position);
-  table.add({"nx", "ny", "nz"}, normal);
-  table.add({"hx", "hy", "hz"}, heading);
-  table.add("u", u), table.add("v", v);
-  table.add("arclength", arclength), table.add("spacing", spacing);
-  table.add("between", between);
-  io::write(output.output, table, output.format);
-}
 
 /// The path on the map, as a picture.
 void write_view(view::Scene scene, const CoveragePath& path, Results& results, Journal& journal) {
@@ -176,7 +152,7 @@ void run(const CoverageCommandOptions& options) {
   Results results(options.output, input, options.input);
   write_view(results.scene(rows, row_quality, source), path, results, journal);
   journal.start("write");
-  write_path(options.output, path);
+  write_coverage(options.output.output, options.output.format, path);
   report(options, input, source, path, trusted_share(input.graph(), map, quality, options), amount, journal);
   results.keep();
 }
@@ -187,12 +163,9 @@ void offer(CLI::App& app, CoverageCommandOptions& o) {
   add_parsed(app, "--radius", o.path.radius, parse_positive, "R", "How far to go, along the surface")->required();
   add_parsed(app, "--spacing", o.path.spacing, parse_positive, "S", "Between lines or turns")->required();
   add_table_output(app, o.output)->required();
-  add_parsed(
-      app, "--pattern", o.path.pattern,
-      [](const std::string& text) {
-        return choice({"raster", "spiral"})(text) == "raster" ? CoveragePattern::raster : CoveragePattern::spiral;
-      },
-      "NAME", "raster (default) or spiral");
+  add_parsed(app, "--pattern", o.path.pattern,
+             choice_of<CoveragePattern>({{"raster", CoveragePattern::raster}, {"spiral", CoveragePattern::spiral}}),
+             "NAME", "raster (default) or spiral");
   add_parsed(app, "--angle", o.path.angle, parse_degrees, "DEG", "Direction of the lines, from the u axis (default 0)");
   add_parsed(app, "--step", o.path.step, parse_positive, "L", "Between points of the path (default: S / 2)");
   add_min_quality(app, o.min_quality);

@@ -15,8 +15,8 @@
 #include "cli/option_adders.hpp"
 #include "commands/solve.hpp"
 #include "commands/subcommand.hpp"
+#include "output/decal_output.hpp"
 #include "output/output_paths.hpp"
-#include "output/results.hpp"
 #include "output/summary.hpp"
 #include "output/texture_output.hpp"
 
@@ -49,14 +49,6 @@ struct DecalCommandOptions {
   bool alone = false;
 };
 
-/// From the source to the farthest point of the image.
-double reach(const DecalOptions& decal) { return std::min(decal.radius, std::hypot(decal.width, decal.height) / 2); }
-
-/// As far as the image reaches, and a few edges more, so that triangles at its border are whole.
-double map_radius(const DecalOptions& decal, const TangentGraph& graph) {
-  return reach(decal) + 5 * graph.mean_edge_length() * graph.length_unit();
-}
-
 /// What the decal amounts to.
 struct Amount {
   DistortionSummary distortion;
@@ -81,69 +73,29 @@ struct Amount {
   }
 };
 
-SurfaceFaces faces_behind(const DecalCommandOptions& options, const Input& input) {
-  if (options.alone) return {};
-  return input.near ? given_faces(input.geometry) : surface_faces(input.surface());
-}
-
-void write_mesh(const DecalCommandOptions& options, const Input& input, const Decal& decal, const Image& image,
-                const Vec3& source) {
-  const SurfaceFaces faces = faces_behind(options, input);
-  const FacesPart behind(faces, [](std::size_t) { return true; });
-  std::vector<double> corners;
-  for (Index v : decal.face_vertices)
-    for (std::size_t c : {0, 1}) corners.push_back(decal.image_coordinates[2 * static_cast<std::size_t>(v) + c]);
-  std::vector<io::MeshPart> parts;
-  if (!behind.empty()) parts.push_back(behind.view("surface"));
-  io::MeshPart& part = parts.emplace_back();
-  part.name = "decal";
-  part.points = decal.points, part.normals = decal.normals;
-  part.faces = {decal.face_begin, decal.face_vertices};
-  part.texture_coordinates = corners;
-  part.texture = &image;
-  part.transparent = true;
-  io::write_textured(options.output.output, parts);
+void write_view(const DecalCommandOptions& options, view::TexturedScene scene, const Vec3& source) {
   if (options.output.view.empty()) return;
-  view::TexturedScene scene;
-  scene.parts = parts;
   scene.towards = source;
   view::write_textured_png(options.output.view, scene, picture_options(options.output.picture, options.input.threads));
 }
 
-/// The colors of the input, light gray where there are none, under the image.
-std::vector<std::array<std::uint8_t, 3>> painted(const Input& input, const std::vector<double>& places,
-                                                 const Image& image) {
-  std::vector<std::array<std::uint8_t, 3>> colors = input.geometry.colors;
-  colors.resize(input.rows(), {200, 200, 200});
-  const RowMap& rows = input.surface().rows();
-  for (std::size_t r = 0; r < colors.size(); ++r) {
-    const auto vertex = rows.vertex(Row(static_cast<Index>(r)));
-    if (!vertex) continue;
-    // Of equal points the first one is in the inverse.
-    const auto k = static_cast<std::size_t>(rows.row(*vertex)->index);
-    if (std::isnan(places[2 * k])) continue;
-    const auto texel = image.sample(places[2 * k], places[2 * k + 1]);
-    for (std::size_t c = 0; c < 3; ++c) {
-      std::uint8_t& color = colors[r][c];
-      color = static_cast<std::uint8_t>(std::lround((1 - texel[3]) * color + texel[3] * 255 * texel[c]));
-    }
-  }
-  return colors;
+void write_mesh(const DecalCommandOptions& options, const Input& input, const Decal& decal, const Image& image,
+                const Vec3& source) {
+  const DecalMesh mesh(options.alone ? SurfaceFaces() : all_faces(input), decal, image);
+  io::write_textured(options.output.output, mesh.parts());
+  view::TexturedScene scene;
+  scene.parts = mesh.parts();
+  write_view(options, scene, source);
 }
 
 void write_points(const DecalCommandOptions& options, const Input& input, const InverseMap& inverse, const Image& image,
                   const Vec3& source) {
   const auto colors = painted(input, image_coordinates_of_vertices(inverse, options.decal), image);
-  const std::vector<Vec3> normals = input.surface().normals();
-  const io::Geometry& given = input.geometry;
-  io::Table table = table_of(given, given.normals, colors);
-  table.title = "colored by libahm";
-  io::write(options.output.output, table);
-  if (options.output.view.empty()) return;
+  io::write(options.output.output, painted_table(input, colors));
+  const std::vector<Vec3> normals = input.normals();
   view::TexturedScene scene;
-  scene.points = given.points, scene.colors = colors, scene.normals = normals;
-  scene.towards = source;
-  view::write_textured_png(options.output.view, scene, picture_options(options.output.picture, options.input.threads));
+  scene.points = input.geometry.points, scene.colors = colors, scene.normals = normals;
+  write_view(options, scene, source);
 }
 
 void report(const DecalCommandOptions& options, const Input& input, const Decal& decal, const Amount& amount,

@@ -14,6 +14,7 @@
 #include "cli/source_list.hpp"
 #include "commands/logmap_report.hpp"
 #include "commands/solve.hpp"
+#include "input/left_out.hpp"
 #include "output/output_paths.hpp"
 #include "output/results.hpp"
 #include "output/texture_output.hpp"
@@ -30,13 +31,6 @@ void comment_on_source(const SourceSpec& spec, const Input& input, const PlacedS
     journal.add_warning(
         fmt::format("the vertex nearest to {} is {:.4g} away, at {:.6g} {:.6g} {:.6g}: {:.0f} mean edge lengths",
                     to_string(*wanted), away, source.position[0], source.position[1], source.position[2], away / edge));
-}
-
-/// What was left out because it is farther than the radius in a straight line already.
-void mark_beyond(const std::vector<Vec3>& points, const Vec3& source, double radius, RowLogMap& rows) {
-  for (std::size_t i = 0; i < points.size(); ++i)
-    if (rows.status[i] == Status::removed && distance(points[i], source) > radius)
-      rows.status[i] = Status::beyond_radius;
 }
 
 void write_results(const LogmapOptions& options, const PlacedSource& source, const RowLogMap& rows,
@@ -95,7 +89,7 @@ void map_from_source(const LogmapOptions& options, const Input& input, std::opti
   const LogMap map = maps->map(options.solve, input, options.source.spec, source, journal);
   RowLogMap rows = input.surface().on_rows(map);
   const std::vector<double> quality = quality_of(input, map, rows, options.solve);
-  if (options.input.around_source) mark_beyond(input.geometry.points, source.position, *options.solve.radius, rows);
+  if (options.input.around_source) settle_left_out(input, source, *options.solve.radius, rows);
   comment_on_statuses(rows.status, options.input.path, journal);
   comment_on_quality(quality, "keep to what is near with --radius, or start elsewhere", journal);
 

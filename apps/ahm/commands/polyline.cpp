@@ -12,11 +12,10 @@
 #include "output/summary.hpp"
 
 namespace ahm::app {
-namespace {
 
-void write_polylines(const OutputOptions& output, const Polylines& curves) {
-  if (output.format.empty() && io::lower_extension(output.output) == ".obj")
-    return io::write_obj_lines(output.output, curves.points, curves.begin);
+void write_polylines(const std::string& file, const std::string& format, const Polylines& curves) {
+  if (format.empty() && io::lower_extension(file) == ".obj")
+    return io::write_obj_lines(file, curves.points, curves.begin);
   std::vector<double> arclength, number;
   io::Table table{.title = "curve by libahm", .text = true};
   for (std::size_t k = 0; k < curves.begin.size(); ++k)
@@ -29,8 +28,10 @@ void write_polylines(const OutputOptions& output, const Polylines& curves) {
   if (curves.numbered) table.add("curve", number);
   table.add({"x", "y", "z"}, curves.points);
   table.add("arclength", arclength);
-  io::write(output.output, table, output.format);
+  io::write(file, table, format);
 }
+
+namespace {
 
 void write_view(const LineFinder& finder, const Input& input, const InputOptions& options, const OutputOptions& output,
                 const Polylines& curves, Journal& journal) {
@@ -68,7 +69,7 @@ void run_polyline(const std::string& name, const InputOptions& options, const Ou
   const Polylines curves = find(finder, input, journal);
   write_view(finder, input, options, output, curves, journal);
   journal.start("write");
-  write_polylines(output, curves);
+  write_polylines(output.output, output.format, curves);
   nlohmann::ordered_json j = summary("ahm " + name, options.path, output, input);
   j.update(curves.json);
   deliver(std::move(j), curves.text, output, journal);

@@ -29,6 +29,9 @@ struct Polylines {  // NOLINT(bugprone-exception-escape): assertions in the dest
   /// The end of curve k.
   Index end(std::size_t k) const { return k + 1 < begin.size() ? begin[k + 1] : static_cast<Index>(points.size()); }
 };
+/// .obj with lines, or a table with edges. @param format  extension; empty: as the name says. @throws IoError
+void write_polylines(const std::string& file, const std::string& format, const Polylines& curves);
+
 using FindPolylines = std::function<Polylines(const LineFinder& finder, const Input& input, Journal& journal)>;
 
 /// Opens the input, finds the curves, and writes them: --output (.csv, .ply with edges, or .obj with lines), --view (the

@@ -4,14 +4,18 @@
 #include <filesystem>
 
 #include "ahm/error.hpp"
+#include "ahm/io/image.hpp"
 #include "ahm/util/shell.hpp"
 #include "ahm/viewer/server.hpp"
 #include "cli/browser.hpp"
 #include "cli/numbers.hpp"
 #include "cli/option_adders.hpp"
+#include "commands/coverage_table.hpp"
 #include "commands/input_words.hpp"
+#include "commands/polyline.hpp"
 #include "commands/solve.hpp"
 #include "commands/subcommand.hpp"
+#include "output/decal_output.hpp"
 #include "output/results.hpp"
 
 namespace ahm::app {
@@ -57,16 +61,40 @@ viewer::SessionOptions session_options(const ViewOptions& options, const Input& 
                       options.solve.order,
                       options.solve.t_coef,
                       first_radius(options, input.graph()),
-                      {}};
+                      {},
+                      options.solve.tolerance};
   if (options.source) session.source = point_of(input, *options.source);
   session.threads = options.input.threads;
-  session.formats = {"csv", "ply", "vtp", "jsonl", "pcd"};
+  session.formats = {{"map", {"csv", "ply", "vtp", "jsonl", "pcd"}},
+                     {"stroke", {"csv", "ply", "vtp", "jsonl", "pcd"}},
+                     {"path", {"obj", "csv", "ply", "vtp", "jsonl"}},
+                     {"coverage", {"csv", "ply", "vtp", "jsonl"}}};
+  if (io::has_images()) session.formats["decal"] = {"glb", "ply"};
   session.worded = [](const Error& error) { return worded(error); };
   session.write = [&input, &normals](const std::filesystem::path& file, const RowLogMap& rows,
                                      const std::vector<double>& quality) {
     io::Table table = table_of(input.geometry, normals, input.geometry.colors);
     quality.empty() ? add_stroke(table, rows) : add_map(table, rows, quality);
     io::write(file, table);
+  };
+  session.write_path = [](const std::filesystem::path& file, const std::vector<Vec3>& points) {
+    Polylines path;
+    path.add(points);
+    write_polylines(file.string(), "", path);
+  };
+  session.write_coverage = [](const std::filesystem::path& file, const CoveragePath& path) {
+    write_coverage(file.string(), "", path);
+  };
+  session.write_decal = [&input](const std::filesystem::path& file, const InverseMap& inverse,
+                                 const DecalOptions& decal, const Image& image) {
+    if (file.extension() == ".ply") {
+      const Colors colors = painted(input, image_coordinates_of_vertices(inverse, decal), image);
+      return io::write(file, painted_table(input, colors));
+    }
+    const Decal made = make_decal(inverse, decal);
+    if (made.face_begin.size() < 2)
+      throw InvalidArgument("no part of the image lies on a trusted part of the surface; choose another source");
+    io::write_textured(file, DecalMesh(all_faces(input), made, image).parts());
   };
   return session;
 }
@@ -103,6 +131,7 @@ void offer(CLI::App& app, ViewOptions& o) {
   app.add_flag("--no-browser", o.no_browser, "Print the address only");
   add_parsed(app, "--port", o.port, integer_parser(0, 65535), "N", "Of 127.0.0.1 (default 0: any that is free)");
   add_method(app, o.solve);
+  add_tolerance(app, o.solve);
   add_parsed(app, "--radius", o.solve.radius, parse_positive, "R",
              "Leave out everything farther than this from the source");
   app.add_flag("--local", o.local,

@@ -55,6 +55,25 @@ std::size_t normals_against_faces(const io::Geometry& input) {
   return count;
 }
 
+std::size_t faces_without_area(const io::Geometry& input) {
+  double unit = 0;
+  for (const Vec3& p : input.points)
+    if (is_finite(p)) unit = std::max(unit, largest(p));
+  std::size_t count = 0;
+  for (std::size_t f = 0; unit > 0 && f < input.face_count(); ++f) {
+    const auto face = input.face(f);
+    double area = 0, longest = 0;
+    for (std::size_t c = 1; c < face.size(); ++c) {
+      const Vec3& first = input.points[face[0]];
+      const Vec3 side = 1 / unit * (input.points[face[c]] - first);
+      longest = std::max({longest, norm(side), norm(1 / unit * (input.points[face[c]] - input.points[face[c - 1]]))});
+      if (c > 1) area += norm(cross(1 / unit * (input.points[face[c - 1]] - first), side));
+    }
+    count += area <= std::max(1e-10 * longest, 0x1p-51) * longest ? 1 : 0;
+  }
+  return count;
+}
+
 }  // namespace
 
 std::optional<LengthRange> range_of(std::vector<double> lengths) {
@@ -67,6 +86,7 @@ MeshSurvey survey_mesh(const io::Geometry& input) {
   MeshSurvey result;
   for (std::size_t f = 0; f < input.face_count(); ++f) ++result.faces_by_corners[input.face(f).size()];
   result.normals_against = normals_against_faces(input);
+  result.without_area = faces_without_area(input);
   result.inspection = inspect_mesh(static_cast<Index>(input.points.size()), input.faces());
   result.edges = range_of(edge_lengths(input));
   return result;

@@ -24,6 +24,7 @@ std::optional<LengthRange> range_of(std::vector<double> lengths);
 struct MeshSurvey {
   std::map<std::size_t, std::size_t> faces_by_corners;
   std::size_t normals_against = 0;  ///< vertices whose given normal points to the back of the faces around
+  std::size_t without_area = 0;     ///< faces whose corners lie on one line: to 1e-10 of their length, or to rounding
   MeshInspection inspection;
   std::optional<LengthRange> edges;  ///< each once; those between finite points
 

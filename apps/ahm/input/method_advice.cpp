@@ -65,9 +65,10 @@ MethodAdvice method_advice(const Surface& surface) {
 std::string as_text(const MethodAdvice& advice) {
   if (!advice.exact_possible) return fmt::format("heat; exact is not possible: {}", advice.problem);
   const auto degrees = [](double angle) {
-    return angle < 10 ? fmt::format("{:.2g}", angle) : fmt::format("{:.0f}", angle);
+    const std::string number = angle < 10 ? fmt::format("{:.2g}", angle) : fmt::format("{:.0f}", angle);
+    return number + (number == "1" ? " degree" : " degrees");
   };
-  const std::string bend = fmt::format("half of the edges bend by at most {} degrees, 5 % by at least {}",
+  const std::string bend = fmt::format("half of the edges bend by at most {}, 5 % by at least {}",
                                        degrees(advice.median_bend), degrees(advice.sharp_bend));
   if (advice.exact_first) return fmt::format("--method exact for a few maps, heat for many ({})", bend);
   return fmt::format("heat; --method exact with --radius, or where it has to follow every face ({})", bend);

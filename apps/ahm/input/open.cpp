@@ -12,7 +12,6 @@
 #include "ahm/surface/directions.hpp"
 #include "cli/source_list.hpp"
 #include "input/repair.hpp"
-#include "input/surroundings.hpp"
 #include "output/wording.hpp"
 
 namespace ahm::app {
@@ -56,20 +55,23 @@ void count_beyond(std::int64_t beyond, Built& built) {
 
 /// A surface of the faces around the source; the geometry keeps all of them.
 Input open_surroundings(io::Geometry geometry, const Backend& backend, std::optional<RepairedMesh> mesh,
-                        const InputOptions& options, const SourceSpec& place, Journal& journal) {
+                        std::size_t given_faces, const InputOptions& options, const SourceSpec& place,
+                        Journal& journal) {
   position_in(geometry, place, "--source");
-  std::vector<Index> near = surrounding_faces(geometry, *options.local, place);
+  Surroundings near = surroundings(geometry, *options.local, place);
   const std::vector<Offset> begin = geometry.face_begin;
   const std::vector<Index> vertices = geometry.face_vertices;
-  const std::int64_t beyond = keep_faces(geometry, near);
+  const std::int64_t beyond = keep_faces(geometry, near.faces);
   std::optional<RepairedMesh> part = mesh;
-  if (part) keep_faces(*part, near);
-  Built built = build(backend, geometry, part, options, in_near_faces(place, near), journal);
+  if (part) keep_faces(*part, near.faces);
+  InputOptions of_part = options;
+  of_part.turned = near.turned();
+  Built built = build(backend, geometry, part, of_part, in_near_faces(place, near.faces), journal);
   count_beyond(beyond, built);
   journal.add_warnings(built.warnings);
   geometry.face_begin = begin;
   geometry.face_vertices = vertices;
-  return {std::move(geometry), &backend, std::move(built), std::move(mesh), std::move(near)};
+  return {std::move(geometry), &backend, std::move(built), std::move(mesh), std::move(near), given_faces};
 }
 
 }  // namespace
@@ -90,15 +92,16 @@ io::Geometry read_input(const InputOptions& options, Journal& journal) {
 Input open_input(io::Geometry geometry, const InputOptions& options, Journal& journal,
                  const std::optional<SourceSpec>& source) {
   journal.start("graph");
+  const std::size_t given_faces = geometry.face_count();
   std::optional<RepairedMesh> mesh = repair(geometry, options);
   const std::optional<SourceSpec> place =
       mesh && source ? std::optional(in_remaining_faces(*source, *mesh, "--source")) : source;
   const Backend& backend = choose_backend(geometry, options.backend);
   if (options.local && place && geometry.face_count() > 0 && backend.uses_faces)
-    return open_surroundings(std::move(geometry), backend, std::move(mesh), options, *place, journal);
+    return open_surroundings(std::move(geometry), backend, std::move(mesh), given_faces, options, *place, journal);
   Built built = build(backend, geometry, mesh, options, place, journal);
   journal.add_warnings(built.warnings);
-  return {std::move(geometry), &backend, std::move(built), std::move(mesh)};
+  return {std::move(geometry), &backend, std::move(built), std::move(mesh), std::nullopt, given_faces};
 }
 
 Input open_input(const InputOptions& options, Journal& journal, const std::optional<SourceSpec>& source) {
@@ -121,7 +124,7 @@ Input open_around(const InputOptions& options, std::optional<double> radius, Jou
 
 SurfacePoint point_of(const Input& input, const SourceSpec& given) {
   SourceSpec spec = input.repaired ? in_remaining_faces(given, *input.repaired) : given;
-  if (input.near) spec = in_near_faces(spec, *input.near);
+  if (input.near) spec = in_near_faces(spec, input.near->faces);
   if (const auto* face = std::get_if<SourceFace>(&spec)) return FacePoint{face->face, face->weights};
   if (const auto* position = std::get_if<SourcePosition>(&spec)) return input.surface().nearest_row(position->position);
   return Row(std::get<SourceVertex>(spec).index);

@@ -8,6 +8,7 @@
 
 #include "cli/journal.hpp"
 #include "input/backend.hpp"
+#include "input/surroundings.hpp"
 
 namespace ahm::app {
 
@@ -17,12 +18,15 @@ struct Input {
   const Backend* backend;
   Built built;
   std::optional<RepairedMesh> repaired = {};  ///< the faces of `geometry` are those that remained
-  /// With --local of a mesh: the faces of `geometry` that the surface has, ascending. None: all.
-  std::optional<std::vector<Index>> near = {};
+  /// With --local of a mesh: the faces of `geometry` that the surface has. None: all.
+  std::optional<Surroundings> near = {};
+  std::size_t given_faces = 0;  ///< of the file, before the repair
 
   const Surface& surface() const { return *built.surface; }
   const TangentGraph& graph() const { return surface().graph(); }
   std::size_t rows() const { return geometry.points.size(); }
+  /// Unit normals per row, NaN where there is none: the surface's, and with --local the mean over the faces that it lacks.
+  std::vector<Vec3> normals() const;
   /// World units.
   double mean_edge_length() const { return graph().mean_edge_length() * graph().length_unit(); }
 };

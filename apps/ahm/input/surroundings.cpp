@@ -85,18 +85,36 @@ void close_fans(const io::Geometry& input, std::vector<bool>& kept) {
 
 }  // namespace
 
-std::vector<Index> surrounding_faces(const io::Geometry& input, double radius, const SourceSpec& source) {
+std::vector<std::uint8_t> Surroundings::turned() const {
+  std::vector<std::uint8_t> result;
+  if (!whole.reversed.empty())
+    for (const Index f : faces) result.push_back(whole.reversed[f]);
+  return result;
+}
+
+std::vector<Index> Surroundings::part_of_vertices(const io::Geometry& input) const {
+  std::vector<Index> result(input.points.size(), -1);
+  for (std::size_t f = 0; f < whole.part.size(); ++f)
+    for (const Index v : input.face(f)) result[v] = whole.part[f];
+  return result;
+}
+
+Surroundings surroundings(const io::Geometry& input, double radius, const SourceSpec& source) {
   const Vec3 center = center_of(input, source);
   std::vector<bool> kept(input.face_count());
   for (std::size_t f = 0; f < kept.size(); ++f)
     kept[f] = distance_to_box(center, input.face(f), input.points) <= 1.5 * radius;
   close_fans(input, kept);
-  std::vector<Index> result;
+  Surroundings result;
   for (std::size_t f = 0; f < kept.size(); ++f)
-    if (kept[f]) result.push_back(static_cast<Index>(f));
-  if (result.empty())
+    if (kept[f]) result.faces.push_back(static_cast<Index>(f));
+  if (result.faces.empty())
     throw InvalidArgument(
         fmt::format("--local: no face comes within {:.6g} of the source {}", 1.5 * radius, to_string(source)));
+  try {
+    result.whole = face_parts(static_cast<Index>(input.points.size()), input.faces());
+  } catch (const InvalidGeometry&) {  // NOLINT(bugprone-empty-catch): there is no surface of all to agree with
+  }
   return result;
 }
 

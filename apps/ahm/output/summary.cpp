@@ -18,7 +18,7 @@ nlohmann::ordered_json summary(const std::string& program, const std::string& pa
                                {{"path", path},
                                 {"format", input.geometry.format},
                                 {"points", input.geometry.points.size()},
-                                {"faces", input.geometry.face_count()}}}};
+                                {"faces", input.given_faces}}}};
   if (!output.output.empty()) j["output"] = output.output == standard_output ? "-" : output.output;
   if (!output.view.empty()) j["view"] = output.view;
   j["backend"] = input.backend->name;

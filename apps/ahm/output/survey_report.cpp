@@ -67,7 +67,7 @@ std::string range_text(const LengthRange& range, const char* what) {
 }
 
 /// "3 of this, 2 of that": the counts that are not zero.
-std::string counts_text(std::initializer_list<std::pair<std::int64_t, const char*>> counts) {
+std::string counts_text(std::initializer_list<std::pair<std::int64_t, std::string>> counts) {
   std::string text;
   for (const auto& [count, what] : counts)
     if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, what);
@@ -82,10 +82,11 @@ std::string faces_text(const MeshSurvey& mesh) {
       others += count;
       continue;
     }
-    const std::string what = corners == 3   ? "triangles"
-                             : corners == 4 ? "quadrilaterals"
-                                            : fmt::format("of {} corners", corners);
-    text += fmt::format("{}{} {}", shown++ == 0 ? "" : ", ", count, what);
+    const auto number = static_cast<std::int64_t>(count);
+    text += shown++ == 0 ? "" : ", ";
+    text += corners == 3   ? counted(number, "triangle")
+            : corners == 4 ? counted(number, "quadrilateral")
+                           : fmt::format("{} of {} corners", count, corners);
   }
   return others > 0 ? text + fmt::format(", {} of more", others) : text;
 }
@@ -117,21 +118,25 @@ std::string orientation_text(const TopologyReport& t) {
 
 std::string non_manifold_text(const TopologyReport& t) {
   if (t.non_manifold_edges == 0 && t.non_manifold_vertices == 0) return "nowhere";
-  return fmt::format(
-      "{} of more than two faces; --non-manifold split cuts there and where fans of faces meet: {} {} more",
-      counted(t.non_manifold_edges, "edge"), t.non_manifold_vertices,
-      t.non_manifold_vertices == 1 ? "vertex" : "vertices");
+  const auto vertices = [](Index count) { return fmt::format("{} {}", count, count == 1 ? "vertex" : "vertices"); };
+  const std::string edges =
+      t.non_manifold_edges > 0 ? counted(t.non_manifold_edges, "edge") + " of more than two faces, " : "";
+  return fmt::format("{}{} of several fans of faces; --non-manifold split cuts there: {} more", edges,
+                     vertices(t.non_manifold_vertices), vertices(t.added_vertices));
 }
 
 std::string repair_text(const RepairSurvey& repair, const TopologyReport& t) {
   const RepairCounts& c = repair.counts;
   if (!c.any() && t.non_manifold_edges == 0 && t.non_manifold_vertices == 0) return "nothing to do";
-  const std::string done = counts_text({{c.welded, "vertices joined"},
-                                        {c.shortened, "faces without repeated corners"},
-                                        {c.degenerate, "degenerate faces dropped"},
-                                        {c.not_finite, "faces dropped that are not finite"},
-                                        {c.duplicates, "duplicate faces dropped"},
-                                        {c.turned, "faces turned over"}});
+  const auto faces = [](Index count, const char* before, const char* after) {
+    return fmt::format("{}{} {}", before, count == 1 ? "face" : "faces", after);
+  };
+  const std::string done = counts_text({{c.welded, c.welded == 1 ? "vertex joined" : "vertices joined"},
+                                        {c.shortened, faces(c.shortened, "", "without repeated corners")},
+                                        {c.degenerate, faces(c.degenerate, "degenerate ", "dropped")},
+                                        {c.not_finite, faces(c.not_finite, "", "dropped, not finite")},
+                                        {c.duplicates, faces(c.duplicates, "duplicate ", "dropped")},
+                                        {c.turned, faces(c.turned, "", "turned over")}});
   return fmt::format("--repair: {}; {} left", c.any() ? done : "cuts only", counted(repair.parts, "part"));
 }
 
@@ -141,8 +146,7 @@ std::string mesh_text(const Survey& s) {
   std::string text;
   if (mesh.edges) text += line("edge lengths", range_text(*mesh.edges, "edges:"));
   text += line("wrong faces", wrong_faces_text(mesh.inspection));
-  if (s.surface && !s.as_cloud)
-    text += line("faces without area", fmt::format("{}", figure<std::int64_t>(*s.surface, "degenerate_faces")));
+  text += line("faces without area", fmt::format("{}", mesh.without_area));
   text += line("unused vertices", fmt::format("{}", t.unreferenced));
   text += line("not a manifold", non_manifold_text(t));
   text += line("repair", repair_text(*s.repair, t));
@@ -228,6 +232,7 @@ nlohmann::ordered_json as_json(const MeshSurvey& mesh) {
                       {"repeating", found.repeating.size()},
                       {"duplicates", found.duplicates.size()}};
   j["parts"] = t.components;
+  j["degenerate_faces"] = mesh.without_area;
   j["edges"] = t.edges;
   j["boundary_edges"] = t.boundary_edges;
   j["boundary_loops"] = t.boundary_loops;
@@ -238,6 +243,7 @@ nlohmann::ordered_json as_json(const MeshSurvey& mesh) {
   j["unreferenced"] = t.unreferenced;
   j["non_manifold_edges"] = t.non_manifold_edges;
   j["non_manifold_vertices"] = t.non_manifold_vertices;
+  j["added_vertices"] = t.added_vertices;
   return j;
 }
 
@@ -252,8 +258,6 @@ void add_surface(const Survey& s, nlohmann::ordered_json& j) {
     j["oriented"] = figure<bool>(surface, "oriented");
     j["degenerate"] = figure<std::int64_t>(surface, "degenerate");
     j["rejected_normals"] = figure<std::int64_t>(surface, "rejected_normals");
-  } else {
-    j["mesh"]["degenerate_faces"] = figure<std::int64_t>(surface, "degenerate_faces");
   }
   j["central_point"] = surface.central_row;
   const MethodAdvice& method = surface.method;

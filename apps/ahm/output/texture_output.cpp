@@ -38,13 +38,24 @@ SurfaceFaces given_faces(const io::Geometry& input) {
   return faces;
 }
 
+SurfaceFaces all_faces(const Input& input) {
+  if (!input.near) return surface_faces(input.surface());
+  SurfaceFaces faces = given_faces(input.geometry);
+  faces.normals = input.normals();
+  const std::vector<std::uint8_t>& reversed = input.near->whole.reversed;
+  for (std::size_t f = 0; f < reversed.size(); ++f)
+    if (reversed[f])
+      std::reverse(faces.corner_points.begin() + faces.begin[f] + 1, faces.corner_points.begin() + faces.begin[f + 1]);
+  return faces;
+}
+
 std::vector<double> at_given_corners(const Input& input, const std::vector<Vec2>& at) {
   const io::Geometry& all = input.geometry;
   std::vector<double> result(2 * all.face_vertices.size(), NAN);
-  const std::size_t faces = input.near ? input.near->size() : all.face_count();
+  const std::size_t faces = input.near ? input.near->faces.size() : all.face_count();
   auto from = at.begin();
   for (std::size_t f = 0; f < faces; ++f) {
-    const std::size_t given = input.near ? static_cast<std::size_t>((*input.near)[f]) : f;
+    const std::size_t given = input.near ? static_cast<std::size_t>(input.near->faces[f]) : f;
     for (Offset c = all.face_begin[given]; c < all.face_begin[given + 1]; ++c, ++from)
       std::copy(from->begin(), from->end(), result.begin() + 2 * c);
   }

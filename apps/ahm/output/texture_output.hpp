@@ -23,6 +23,9 @@ void check_texture_output(const std::string& input, const OutputOptions& output,
 /// The faces as the input has them, without normals; empty for a cloud.
 SurfaceFaces given_faces(const io::Geometry& input);
 
+/// The faces of the input, oriented alike, with normals, also those that --local left out; empty for a cloud.
+SurfaceFaces all_faces(const Input& input);
+
 /// Numbers of the corners of the surface's faces, two each, as those of all faces of the input: NaN where --local left one out.
 std::vector<double> at_given_corners(const Input& input, const std::vector<Vec2>& at);
 

@@ -11,9 +11,11 @@
 namespace ahm::polymesh {
 
 PolygonMesh PolygonMesh::from_faces(std::span<const Vec3> positions, std::span<const Offset> face_begin,
-                                    std::span<const Index> face_vertices, NonManifold non_manifold) {
+                                    std::span<const Index> face_vertices, NonManifold non_manifold,
+                                    std::span<const std::uint8_t> turned) {
   detail::check_positions(positions);
-  PolygonMesh mesh(detail::GluedMesh(static_cast<Index>(positions.size()), {face_begin, face_vertices}, non_manifold));
+  PolygonMesh mesh(
+      detail::GluedMesh(static_cast<Index>(positions.size()), {face_begin, face_vertices}, non_manifold, turned));
   mesh.collect_corners();
   if (!mesh.report().orientable) mesh.orient_vertices();
   mesh.input_.assign(positions.begin(), positions.end());

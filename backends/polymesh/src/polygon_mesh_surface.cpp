@@ -9,11 +9,13 @@
 #include "ahm/error.hpp"
 #include "ahm/surface/directions.hpp"
 #include "ahm/surface/exact/flat_triangles.hpp"
+#include "ahm/surface/unfolded_corners.hpp"
 #include "ahm/trimesh/triangle_mesh_surface.hpp"
 #include "ahm/util/memory.hpp"
 #include "ahm/util/small_math.hpp"
 #include "ahm/util/stopwatch.hpp"
 #include "ahm/util/vec.hpp"
+#include "flat_faces.hpp"
 #include "polygon_edges.hpp"
 
 namespace ahm::polymesh {
@@ -250,7 +252,8 @@ PolygonMeshSurface PolygonMeshSurface::build(std::span<const Vec3> positions, st
   return detail::with_memory_check("building the graph of a polygon mesh", [&] {
     detail::Stopwatch stopwatch;
     options.progress.step("checks", 0.0);
-    PolygonMesh mesh = PolygonMesh::from_faces(positions, face_begin, face_vertices, options.non_manifold);
+    PolygonMesh mesh =
+        PolygonMesh::from_faces(positions, face_begin, face_vertices, options.non_manifold, options.turned);
     return build(std::move(mesh), options, stopwatch.lap());
   });
 }
@@ -276,6 +279,22 @@ PlacedSource PolygonMeshSurface::source_in_face(const FacePoint& point, const st
 Sample PolygonMeshSurface::sample_in_face(const LogMap& map, const FacePoint& point) const {
   if (!impl_->refined) return Surface::sample_in_face(map, point);
   return impl_->refined->at(map, locate(impl_->refinement, point.face, position(point)));
+}
+
+std::vector<Vec2> PolygonMeshSurface::on_corners(const LogMap& map) const {
+  check_map(map);
+  const PolygonMesh& mesh = impl_->mesh;
+  const std::vector<Vec2> places = flat_faces(mesh);
+  const std::vector<Vec2> stored = detail::unfolded_corners(
+      mesh.topology().half_edges(), {impl_->corners, places, mesh.length_unit(), mesh.report().orientable}, map);
+  std::vector<Vec2> result(stored.size());
+  for (Index f = 0; f < mesh.face_count(); ++f)
+    for (std::size_t c = 0; c < mesh.face(f).size(); ++c) {
+      const auto begin = static_cast<std::size_t>(mesh.face_begin()[f]);
+      result[begin + c] =
+          stored[begin + static_cast<std::size_t>(mesh.topology().stored_corner(f, static_cast<Index>(c)))];
+    }
+  return result;
 }
 
 FlatTriangles PolygonMeshSurface::flat_triangles() const {

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 
+#include "ahm/surface/unfolded_corners.hpp"
 #include "impl.hpp"
 
 namespace ahm::trimesh {
@@ -41,80 +42,24 @@ struct MappedFace {
   }
 };
 
-/// The faces of the input mesh with the map on them: sound ones as they are, others unfolded from the nearest sound
-/// one.
-class Unfolding {
- public:
-  Unfolding(const TriangleMesh& mesh, const LogMap& map)
-      : mesh_(mesh),
-        edges_(mesh.topology().half_edges()),
-        phi_(mesh.tails().size()),
-        done_(static_cast<std::size_t>(mesh.face_count()), no) {
-    std::vector<Index> front;
-    for (Index f = 0; f < mesh.face_count(); ++f) {
-      if (mesh.is_dropped(f)) continue;
-      MappedFace face = mapped(f);
-      bool ok = true;
-      for (int s = 0; s < 3; ++s) {
-        const Index v = edges_.tail[3 * f + s];
-        ok = ok && map.status(Vertex(v)) == Status::ok;
-        if (ok) phi_[3 * f + s] = face.phi[s] = coordinates(map, v);
-      }
-      if (!ok) {
-        done_[f] = masked;
-      } else if (face.is_sound(mesh.report().orientable)) {
-        done_[f] = yes;
-        front.push_back(f);
-      }
-    }
-    for (std::size_t at = 0; at < front.size(); ++at)
-      for (Half h = 3 * front[at]; h < 3 * front[at] + 3; ++h) unfold_across(h, front);
-  }
-
-  bool known(Index face) const { return done_[face] == yes; }
-  Vec2 phi(Half corner) const { return phi_[corner]; }
-
- private:
-  enum : std::uint8_t { no, yes, masked };
-
-  MappedFace mapped(Index f) const { return MappedFace(mesh_, mesh_.layout(f).data()); }
-
-  void unfold_across(Half h, std::vector<Index>& front) {
-    const Half t = edges_.twin[h];
-    if (t < 0 || done_[t / 3] != no) return;
-    MappedFace face = mapped(t / 3);
-    const Vec2 a = phi_[h], b = phi_[next(h)], apex = phi_[previous(h)];
-    const bool same_way = edges_.is_mirrored(h);
-    face.phi[t % 3] = same_way ? a : b;
-    face.phi[(t + 1) % 3] = same_way ? b : a;
-    if (!(norm(b - a) > 0) || !(norm(face.side[t % 3]) > 0)) return;
-    // On the other side of the edge than the face it is unfolded from.
-    face.follow(t % 3, (cross(b - a, apex - a) > 0) != same_way);
-    for (int s = 0; s < 3; ++s) phi_[3 * (t / 3) + s] = face.phi[s];
-    done_[t / 3] = yes;
-    front.push_back(t / 3);
-  }
-
-  const TriangleMesh& mesh_;
-  HalfEdges edges_;
-  std::vector<Vec2> phi_;  ///< per half-edge: at the corner of its start
-  std::vector<std::uint8_t> done_;
-};
-
 }  // namespace
 
 std::vector<Vec2> TriangleMeshSurface::on_corners(const LogMap& map) const {
   check_map(map);
   const TriangleMesh& mesh = impl_->mesh;
-  const Unfolding unfolding(mesh, map);
-  std::vector<Vec2> result(mesh.tails().size(), {nan, nan});
+  std::vector<Vec2> places(mesh.tails().size(), {nan, nan});
   for (Index f = 0; f < mesh.face_count(); ++f) {
-    if (!unfolding.known(f)) continue;
-    for (int s = 0; s < 3; ++s) result[3 * f + mesh.stored_corner(f, s)] = unfolding.phi(3 * f + s);
+    if (mesh.is_dropped(f)) continue;
+    const std::array<Vec2, 3> side = mesh.layout(f);
+    places[3 * f] = {0, 0}, places[3 * f + 1] = side[0], places[3 * f + 2] = -side[2];
   }
-  for (Index f = 0; f < mesh.face_count(); ++f)
-    if (mesh.is_dropped(f) && mesh.topology().stand_in(f)[0] >= 0 && unfolding.known(mesh.kept_corner(f, 0) / 3))
-      for (int s = 0; s < 3; ++s) result[3 * f + s] = unfolding.phi(mesh.kept_corner(f, s));
+  const std::vector<Vec2> stored = detail::unfolded_corners(
+      mesh.topology().half_edges(), {mesh.tails(), places, mesh.length_unit(), mesh.report().orientable}, map);
+  std::vector<Vec2> result(stored.size(), {nan, nan});
+  for (Index f = 0; f < mesh.face_count(); ++f) {
+    if (mesh.is_dropped(f) && mesh.topology().stand_in(f)[0] < 0) continue;
+    for (int s = 0; s < 3; ++s) result[3 * f + s] = stored[mesh.kept_corner(f, s)];
+  }
   return result;
 }
 

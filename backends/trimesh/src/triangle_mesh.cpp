@@ -46,22 +46,24 @@ void check_lengths(std::span<const Triangle> faces, std::span<const std::array<d
     }
 }
 
-detail::GluedMesh glued(Index vertices, std::span<const Triangle> faces, NonManifold non_manifold) {
+detail::GluedMesh glued(Index vertices, std::span<const Triangle> faces, NonManifold non_manifold,
+                        std::span<const std::uint8_t> turned) {
   std::vector<Offset> begin(faces.size() + 1);
   for (std::size_t f = 0; f < begin.size(); ++f) begin[f] = static_cast<Offset>(3 * f);
   const std::span corners(faces.empty() ? nullptr : faces.front().data(), 3 * faces.size());
-  return detail::GluedMesh(vertices, {begin, corners}, non_manifold);
+  return detail::GluedMesh(vertices, {begin, corners}, non_manifold, turned);
 }
 
 }  // namespace
 
-TriangleMesh::TriangleMesh(Index vertices, std::span<const Triangle> faces, NonManifold non_manifold)
-    : topology_(glued(vertices, faces, non_manifold)) {}
+TriangleMesh::TriangleMesh(Index vertices, std::span<const Triangle> faces, NonManifold non_manifold,
+                           std::span<const std::uint8_t> turned)
+    : topology_(glued(vertices, faces, non_manifold, turned)) {}
 
 TriangleMesh TriangleMesh::from_positions(std::span<const Vec3> positions, std::span<const Triangle> faces,
-                                          NonManifold non_manifold) {
+                                          NonManifold non_manifold, std::span<const std::uint8_t> turned) {
   detail::check_positions(positions);
-  TriangleMesh mesh(static_cast<Index>(positions.size()), faces, non_manifold);
+  TriangleMesh mesh(static_cast<Index>(positions.size()), faces, non_manifold, turned);
   mesh.input_.assign(positions.begin(), positions.end());
   for (Index v : mesh.input_of_vertex()) mesh.position_.push_back(positions[v]);
   const double as_given = largest_coordinate(mesh.position_);

@@ -33,6 +33,8 @@ constexpr Refused refused[] = {
 
 /// The format of files with this extension, which this build reads. @throws IoError
 const Format& format_to_read(const std::filesystem::path& path, const std::string& extension) {
+  std::error_code none;
+  if (std::filesystem::is_directory(path, none)) fail(path, "it is a folder, not a file");
   if (const Format* format = find_format(extension)) {
     if (format->read != nullptr) return *format;
     if (!format->missing.empty())

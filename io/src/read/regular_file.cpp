@@ -30,7 +30,7 @@ RegularFile::RegularFile(const std::filesystem::path& path) : RegularFile() {  /
   descriptor_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   struct stat info {};
   if (descriptor_ < 0 || ::fstat(descriptor_, &info) != 0) refuse(path, reason(errno));
-  if (S_ISDIR(info.st_mode)) refuse(path, reason(EISDIR));
+  if (S_ISDIR(info.st_mode)) refuse(path, "it is a folder, not a file");
   if (!S_ISREG(info.st_mode)) refuse(path, "not a regular file (a pipe or device); copy its contents to a file first");
   if (info.st_size == 0) refuse(path, "the file is empty (0 bytes)");
   size_ = static_cast<std::uint64_t>(info.st_size);

@@ -199,6 +199,14 @@ class Collector {
 
 }  // namespace
 
+double reach(const DecalOptions& options) {
+  return std::min(options.radius, std::hypot(options.width, options.height) / 2);
+}
+
+double map_radius(const DecalOptions& options, const TangentGraph& graph) {
+  return reach(options) + 5 * graph.mean_edge_length() * graph.length_unit();
+}
+
 Decal make_decal(const InverseMap& inverse, const DecalOptions& options) {
   check(options);
   return detail::with_memory_check("making a decal", [&] {

@@ -49,18 +49,20 @@ bool are_triangles(const FaceList& faces) {
 
 }  // namespace
 
-GluedMesh::GluedMesh(Index vertices, const FaceList& faces, NonManifold non_manifold) {
+GluedMesh::GluedMesh(Index vertices, const FaceList& faces, NonManifold non_manifold,
+                     std::span<const std::uint8_t> turned) {
   report_.vertices = vertices;
   report_.faces = static_cast<Index>(faces.size());
-  build_half_edges(faces, non_manifold);
+  build_half_edges(faces, non_manifold, turned);
   number_vertices(non_manifold);
   count_parts();
 }
 
 /// Half-edges of the oriented faces, tails still input vertices. Turning a face of m corners over, its first corner staying
 /// first, takes side s to side m - 1 - s.
-void GluedMesh::build_half_edges(const FaceList& faces, NonManifold non_manifold) {
-  Gluing gluing = glue(report_.vertices, faces, non_manifold);
+void GluedMesh::build_half_edges(const FaceList& faces, NonManifold non_manifold,
+                                 std::span<const std::uint8_t> turned) {
+  Gluing gluing = glue(report_.vertices, faces, non_manifold, turned);
   report_.non_manifold_edges = gluing.non_manifold_edges;
   report_.reoriented = gluing.reoriented;
   report_.orientable = gluing.orientable;
@@ -94,7 +96,8 @@ void GluedMesh::build_half_edges(const FaceList& faces, NonManifold non_manifold
 /// others.
 void GluedMesh::number_vertices(NonManifold non_manifold) {
   Fans fans = find_fans(half_edges(), report_.vertices, dropped_);
-  report_.non_manifold_vertices = static_cast<Index>(fans.later.size());
+  report_.non_manifold_vertices = static_cast<Index>(fans.pinched.count());
+  report_.added_vertices = static_cast<Index>(fans.later.size());
   if (fans.pinched.count() > 0 && non_manifold == NonManifold::error)
     throw InvalidGeometry("non_manifold_vertices",
                           std::to_string(fans.pinched.count()) +

@@ -85,7 +85,7 @@ class Gluer {
   }
 
   /// Turns faces over until neighbours agree, component by component.
-  void orient() {
+  void orient(std::span<const std::uint8_t> counts_as_turned) {
     const auto count = faces_.size();
     result_.reversed.assign(count, 2);
     std::vector<Index> component;
@@ -96,7 +96,7 @@ class Gluer {
       std::size_t turned = 0;
       for (std::size_t at = 0; at < component.size(); ++at) {
         const Index f = component[at];
-        turned += result_.reversed[f];
+        turned += result_.reversed[f] != (counts_as_turned.empty() ? 0 : counts_as_turned[f]);
         for (Offset h = faces_.begin[f]; h < faces_.begin[f + 1]; ++h) visit_across(static_cast<Half>(h), component);
       }
       const bool turn_all = 2 * turned > component.size();
@@ -239,7 +239,10 @@ std::vector<std::pair<Index, Index>> find_duplicates(Index vertices, const FaceL
   return gluer.duplicates();
 }
 
-Gluing glue(Index vertices, const FaceList& faces, NonManifold non_manifold) {
+Gluing glue(Index vertices, const FaceList& faces, NonManifold non_manifold, std::span<const std::uint8_t> turned) {
+  if (!turned.empty() && turned.size() != faces.size())
+    throw InvalidArgument("'turned' has " + std::to_string(turned.size()) + " entries for " +
+                          std::to_string(faces.size()) + " faces");
   const FaceFaults faults = find_faults(vertices, faces);
   refuse("vertices_outside", faults.outside, faces, "have a vertex outside [0, " + std::to_string(vertices) + ")",
          "number vertices from 0");
@@ -249,7 +252,7 @@ Gluing glue(Index vertices, const FaceList& faces, NonManifold non_manifold) {
   gluer.pair_sides();
   gluer.refuse_duplicates();
   if (non_manifold == NonManifold::error) gluer.refuse_crowded_edges();
-  gluer.orient();
+  gluer.orient(turned);
   return gluer.take();
 }
 

@@ -1,7 +1,11 @@
 #include "ahm/surface/mesh_topology.hpp"
 
+#include <algorithm>
+#include <utility>
+
 #include "ahm/surface/glued_mesh.hpp"
 #include "ahm/surface/gluing.hpp"
+#include "ahm/util/disjoint_sets.hpp"
 
 namespace ahm {
 namespace {
@@ -47,6 +51,20 @@ MeshInspection inspect_mesh(Index vertices, const FaceList& faces) {
   return result;
 }
 
+FaceParts face_parts(Index vertices, const FaceList& faces) {
+  detail::Gluing gluing = detail::glue(vertices, faces, NonManifold::split);
+  const auto count = static_cast<Index>(faces.size());
+  std::vector<Index> face_of(faces.vertices.size());
+  for (Index f = 0; f < count; ++f)
+    std::fill(face_of.begin() + faces.begin[f], face_of.begin() + faces.begin[f + 1], f);
+  detail::DisjointSets joined(faces.size());
+  for (std::size_t h = 0; h < face_of.size(); ++h)
+    if (const detail::Half other = gluing.partner[h]; other >= 0) joined.join(face_of[h], face_of[other]);
+  FaceParts result{std::vector<Index>(faces.size()), std::move(gluing.reversed)};
+  for (Index f = 0; f < count; ++f) result.part[f] = joined.root(f);
+  return result;
+}
+
 Report figures(const TopologyReport& t) {
   return {{"components", t.components},
           {"boundary_loops", t.boundary_loops},
@@ -54,7 +72,8 @@ Report figures(const TopologyReport& t) {
           {"reoriented", t.reoriented},
           {"unreferenced", t.unreferenced},
           {"non_manifold_edges", t.non_manifold_edges},
-          {"non_manifold_vertices", t.non_manifold_vertices}};
+          {"non_manifold_vertices", t.non_manifold_vertices},
+          {"added_vertices", t.added_vertices}};
 }
 
 std::vector<Warning> warnings(const TopologyReport& t) {
@@ -65,7 +84,10 @@ std::vector<Warning> warnings(const TopologyReport& t) {
   warn("unreferenced", t.unreferenced);
   warn("reoriented", t.reoriented);
   warn("non_manifold_edges", t.non_manifold_edges);
-  warn("non_manifold_vertices", t.non_manifold_vertices);
+  if (t.non_manifold_vertices > 0)
+    result.push_back({"non_manifold_vertices",
+                      {static_cast<double>(t.non_manifold_vertices), static_cast<double>(t.added_vertices)},
+                      {}});
   if (!t.orientable) result.push_back({"not_orientable", {}, {}});
   if (t.components > 1) warn("components", t.components);
   return result;

@@ -54,6 +54,7 @@ Ahm.Viewer = class {
     this.panel = new Ahm.Panel(this.stage);
     this.tool = "map";
     this.picked = [];  // of a path or a stroke
+    this.source = null;  // of the last map from a point
     document.body.classList.toggle("still", !server);
     this.listen();
   }
@@ -169,7 +170,10 @@ Ahm.Viewer = class {
     };
     const out = { method: text("method"), radius: number("radius") ?? null };
     if (out.method === "heat") Object.assign(out, { variant: text("variant"), order: Number(text("order")), t_coef: number("t_coef") });
-    if (text("u_axis") !== "") out.u_axis = text("u_axis").split(/[\s,]+/).map(Number);
+    if (text("u_axis") !== "") {
+      out.u_axis = text("u_axis").split(/[\s,]+/).map(Number);
+      if (out.u_axis.length !== 3 || !out.u_axis.every(Number.isFinite)) throw new Error("u axis: '" + text("u_axis") + "' is no direction X,Y,Z");
+    }
     return out;
   }
 
@@ -191,17 +195,28 @@ Ahm.Viewer = class {
       const map = await this.server.map("map", request).finally(() => clearTimeout(slow));
       if (!map) return;
       this.request = request;
-      this.show(map, this.pattern === "polar" ? null : "polar");
+      this.source = source;
+      this.show(map, this.pattern === "polar" ? null : "polar", "map");
       if (this.tool === "decal") this.place_decal();
       if (this.tool === "coverage") await this.ask_coverage();
       this.time_of(begin);
     });
   }
 
-  show(map, wanted) {
+  show(map, wanted, what) {
     this.pattern = map.pattern;
-    this.element("export").disabled = !this.request;
+    this.made_map = { what: what, request: this.request };
     this.panel.show_map(map, wanted);
+    if (this.server) this.offer(map.command, this.made_map);
+  }
+
+  // The command line of what is seen, and what it is: what an export asks for.
+  offer(command, made) {
+    const formats = this.formats[made.what] || [];
+    this.element("command").textContent = command;
+    if (!this.made || this.made.what !== made.what) this.element("format").replaceChildren(...formats.map((word) => new Option(word, word)));
+    this.element("export").disabled = formats.length === 0;
+    this.made = made;
   }
 
   time_of(begin) {
@@ -216,7 +231,7 @@ Ahm.Viewer = class {
       const [from, to] = this.picked;
       const answer = await (await this.server.post("path", { from: from.source, to: to.source })).json();
       this.stage.set_marks({ curve: answer.points, dots: [answer.points[0], answer.points[answer.points.length - 1]] });
-      this.element("command").textContent = answer.command;
+      this.offer(answer.command, { what: "path", request: { from: from.source, to: to.source } });
       this.panel.say("a path, " + Ahm.number(this.panel.length_of(answer.length)) + " long");
     });
   }
@@ -236,7 +251,7 @@ Ahm.Viewer = class {
       const map = await this.server.map("stroke", request);
       if (!map) return;
       this.request = request;
-      this.show(map, "grid");
+      this.show(map, "grid", "stroke");
       this.time_of(begin);
     });
   }
@@ -256,35 +271,40 @@ Ahm.Viewer = class {
     const answer = await (await this.server.post("coverage", request)).json();
     this.stage.set_marks({ curve: answer.points, pieces: answer.pieces });
     this.panel.say("");
-    this.element("command").textContent = answer.command;
+    this.offer(answer.command, { what: "coverage", request: request });
     this.element("tool_hint").textContent = Ahm.number(this.panel.length_of(answer.length), 4) + " long, " + (100 * answer.covered).toFixed(1) + " % on the surface";
   }
 
+  // On a map from a point.
   place_decal() {
     const width = this.stage.surface.scale ? 0.5 * Math.pow(2, Number(this.element("decal_size").value)) : 1;
-    const turn = Number(this.element("decal_turn").value), stage = this.stage;
+    const turn = Number(this.element("decal_turn").value), { stage, decal } = this;
     this.element("decal_size_text").textContent = Ahm.number(this.panel.length_of(width), 3);
     this.element("decal_turn_text").textContent = turn + "°";
-    stage.set_decal(this.tool === "decal" ? this.decal : null, width, turn * Math.PI / 180);
-    if (this.tool !== "decal" || !this.decal || !stage.map || !stage.map.decal) return;
-    const height = width * this.decal.image.height / this.decal.image.width, size = Ahm.number(this.panel.length_of(Math.max(width, height)), 4);
-    this.element("command").textContent =
-      stage.map.decal.replace("@IMAGE@", this.decal_name).replace("@SIZE@", size).replace("@ANGLE@", turn);
+    const is_laid = this.tool === "decal" && decal && stage.map && stage.map.decal;
+    stage.set_decal(is_laid ? decal.texture : null, width, turn * Math.PI / 180);
+    if (!is_laid) return;
+    const { width: w, height: h } = decal.texture.image, size = Ahm.number(this.panel.length_of(width * Math.max(1, h / w)), 4);
+    const words = { "@IMAGE@": decal.name, "@SIZE@": size, "@ANGLE@": turn };
+    const request = Object.assign({}, this.request, { size: Number(size), angle: turn, image: decal.file });
+    this.offer(stage.map.decal.replace(/@[A-Z]+@/g, (word) => words[word]), { what: "decal", request: request });
   }
 
   load_decal(file) {
     if (!file) return;
-    const image = new Image();
+    const image = new Image(), reader = new FileReader();
     image.onload = () => {
-      this.decal = new THREE.Texture(image);
-      this.decal.generateMipmaps = false;
-      this.decal.minFilter = THREE.LinearFilter;
-      this.decal.needsUpdate = true;
-      this.decal_name = /^[\w.-]+$/.test(file.name) ? file.name : "'" + file.name.replace(/'/g, "'\\''") + "'";
+      const texture = new THREE.Texture(image), name = file.name;
+      texture.generateMipmaps = false;
+      texture.minFilter = THREE.LinearFilter;
+      texture.needsUpdate = true;
+      this.decal = { texture: texture, file: reader.result.replace(/^[^,]*,/, ""), name: /^[\w.-]+$/.test(name) ? name : "'" + name.replace(/'/g, "'\\''") + "'" };
       this.place_decal();
     };
     image.onerror = () => this.panel.say(file.name + " is no image that this browser reads", true);
-    image.src = URL.createObjectURL(file);
+    reader.onload = () => { image.src = reader.result; };
+    reader.onerror = () => this.panel.say(file.name + " cannot be read", true);
+    reader.readAsDataURL(file);
   }
 
   set_tool(name) {
@@ -300,19 +320,20 @@ Ahm.Viewer = class {
     this.element("decal_options").hidden = name !== "decal";
     this.element("coverage_options").hidden = name !== "coverage";
     this.stage.set_marks(this.stage.map || {});
-    if (this.stage.map && this.stage.map.command) this.element("command").textContent = this.stage.map.command;
+    if (this.made_map) this.offer(this.stage.map.command, this.made_map);
     this.place_decal();
-    if (name === "coverage") this.attempt(() => this.ask_coverage());
+    // These lie on a map from a point.
+    if ((name === "decal" || name === "coverage") && this.request && this.request.points) this.ask_map(this.source || this.request.points[0]);
+    else if (name === "coverage") this.attempt(() => this.ask_coverage());
   }
 
-  export_map() {
+  export_made() {
     return this.attempt(async () => {
-      if (!this.request) throw new Error("export: click a point first");
-      const format = this.element("format").value, name = this.request.points ? "stroke" : "map";
-      const answer = await this.server.post("export", Object.assign({ format: format }, this.request));
+      const { what, request } = this.made, format = this.element("format").value;
+      const answer = await this.server.post("export", Object.assign({}, request, { what: what, format: format }));
       const link = document.createElement("a");
       link.href = URL.createObjectURL(await answer.blob());
-      link.download = name + "." + format;
+      link.download = (what === "coverage" ? "path" : what) + "." + format;
       link.click();
       URL.revokeObjectURL(link.href);
       this.panel.say("saved " + link.download);
@@ -326,7 +347,7 @@ Ahm.Viewer = class {
       for (const word of words) element(id).add(new Option(word, word, word === usual, word === usual));
     };
     options("variant", info.variants, info.variant);
-    options("format", info.formats, info.formats[0]);
+    this.formats = info.formats;
     const surface = this.stage.surface;
     const covered = Math.min(0.4 * surface.scale, info.radius || Infinity);
     element("coverage_radius").value = Ahm.number(covered, 2);
@@ -346,7 +367,7 @@ Ahm.Viewer = class {
       element(id).addEventListener("change", () => this.attempt(() => this.ask_coverage()));
     for (const id of ["decal_size", "decal_turn"]) element(id).addEventListener("input", () => this.place_decal());
     element("decal_file").addEventListener("change", () => this.load_decal(element("decal_file").files[0]));
-    element("export").addEventListener("click", () => this.export_map());
+    element("export").addEventListener("click", () => this.export_made());
     this.set_tool("map");
     await this.ask_map(info.source || this.middle());
   }

@@ -44,7 +44,6 @@ Ahm.Panel = class {
     stage.set_map(map);
     this.element("spec").textContent = map.spec || "";
     this.element("source_section").hidden = !map.spec;
-    if (map.command) this.element("command").textContent = map.command;
     this.set_ring();
     this.tell(this.told);
   }
@@ -97,19 +96,28 @@ Ahm.Panel = class {
   // What is known of a row; null: nothing is under the pointer.
   tell(hit) {
     this.told = hit;
-    const { map, surface } = this.stage, put = (id, text) => { this.element("at_" + id).textContent = text; };
+    const { map, surface } = this.stage, put = (id, ...numbers) => this.put(this.element("at_" + id), numbers);
     const names = ["row", "status", "position", "u", "v", "distance", "spread"];
     if (!hit) return names.forEach((name) => put(name, "–"));
-    const k = hit.vertex, row = hit.row, p = surface.positions, length = (x) => Ahm.number(this.length_of(x));
-    const at = [0, 1, 2].map((c) => Ahm.number(surface.center[c] + surface.scale * p[3 * k + c]));
-    const of = (array, index) => (map && map[array] ? length(map[array][index]) : "–");
-    put("row", row);
-    put("position", at.join(" "));
+    const k = hit.vertex, row = hit.row, p = surface.positions;
+    const of = (array, index) => (map && map[array] ? this.length_of(map[array][index]) : "–");
+    put("row", String(row));
+    put("position", ...[0, 1, 2].map((c) => surface.center[c] + surface.scale * p[3 * k + c]));
     put("status", map && map.status ? Ahm.statuses[map.status[row]] : "–");
     put("u", map && map.pattern !== "cells" ? of("uv", 2 * row) : "–");
     put("v", map && map.pattern !== "cells" ? of("uv", 2 * row + 1) : "–");
     put("distance", of("distance", row));
     put("spread", of("spread", row));
+  }
+
+  // Words as they are; numbers of six digits, or as many as there is room for, and of all in the tooltip.
+  put(element, values) {
+    const text = (digits) => values.map((x) => typeof x === "string" ? x : Ahm.number(x, digits)).join(" ");
+    element.title = text(9);
+    for (let digits = 6; digits >= 2; --digits) {
+      element.textContent = text(digits);
+      if (element.scrollWidth <= element.clientWidth) break;
+    }
   }
 
   async copy(id) {

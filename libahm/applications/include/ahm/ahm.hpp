@@ -61,5 +61,6 @@
 #include "ahm/surface/surface_faces.hpp"
 #include "ahm/surface/surface_lines.hpp"
 #include "ahm/surface/surface_point.hpp"
+#include "ahm/surface/unfolded_corners.hpp"
 #include "ahm/types.hpp"
 #include "ahm/version.hpp"

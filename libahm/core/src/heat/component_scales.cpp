@@ -59,9 +59,8 @@ double diffusion_time(double t_coef, double h) {
     throw InvalidArgument("t_coef is " + detail::number(t_coef) + "; it must be finite and > 0 (default 1)");
   if (!(tau >= 1e-290) || !(tau <= 1e290))
     throw InvalidArgument("diffusion_time_range",
-                          "the diffusion time " + detail::number(t_coef) +
-                              " times the square of the mean edge length " + detail::number(h) +
-                              " leaves the range of double precision",
+                          "t_coef is " + detail::number(t_coef) +
+                              ": this multiple of the squared mean edge length leaves the range of double precision",
                           "give a t_coef near 1 and the graph a length_unit near its edge length");
   return tau;
 }

@@ -10,13 +10,17 @@
 
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "ahm/applications/coverage.hpp"
+#include "ahm/applications/decal.hpp"
 #include "ahm/error.hpp"
+#include "ahm/image.hpp"
 #include "ahm/io/geometry.hpp"
 #include "ahm/surface/surface.hpp"
 
@@ -30,6 +34,7 @@ struct Settings {
   double t_coef = 1;             ///< > 0
   std::optional<double> radius;  ///< world units, > 0
   std::optional<Vec3> u_axis;    ///< a vector of space
+  double tolerance = 0;          ///< of exact maps (`ExactMapOptions`)
 };
 
 struct SessionOptions {
@@ -42,7 +47,13 @@ struct SessionOptions {
   /// Writes a map by row to a file, by its ending; none: nothing is exported. `quality` is empty for a map from a curve,
   /// which has the columns of a stroke.
   std::function<void(const std::filesystem::path&, const RowLogMap&, const std::vector<double>& quality)> write = {};
-  std::vector<std::string> formats = {};                 ///< endings that `write` knows, without the dot
+  /// Likewise a path, a tool path, and a decal.
+  std::function<void(const std::filesystem::path&, const std::vector<Vec3>&)> write_path = {};
+  std::function<void(const std::filesystem::path&, const CoveragePath&)> write_coverage = {};
+  std::function<void(const std::filesystem::path&, const InverseMap&, const DecalOptions&, const Image&)> write_decal =
+      {};
+  /// Endings that these know, without the dot, by what is written: map, stroke, path, coverage, decal.
+  std::map<std::string, std::vector<std::string>> formats = {};
   std::function<std::string(const Error&)> worded = {};  ///< messages in the caller's words; none: what()
 };
 
@@ -70,7 +81,10 @@ std::string spec(const Surface& surface, const SurfacePoint& point);
 /// | stroke   | "points": along a curve                                | bundle of the map, with the curve             |
 /// | path     | "from", "to" (meshes)                                  | JSON: "points", "length", "command"           |
 /// | coverage | "source", "cover": radius, "spacing", "pattern"        | JSON: "points", "pieces", "length", "covered" |
-/// | export   | "source", or "points" of a stroke; "format"            | the file                                      |
+/// | export   | "what" of these it is, "format", and what it asks for  | the file that the command writes              |
+///
+/// "what" is "map", "stroke", "path", "coverage", or "decal", which asks for "source", "image": a PNG or JPEG file in base64, "size":
+/// its longer side, and "angle" in degrees.
 ///
 /// A newer request for a map or a stroke by the same client cancels the older one, and so does one for a path or a tool path
 /// those of its kind; what is cancelled is answered with status 409. The end of the session cancels all. Newer is what comes later; of a client that

@@ -41,10 +41,13 @@ class PolygonMesh {
  public:
   /// @param face_begin     faces + 1 offsets into `face_vertices`, rising from 0
   /// @param face_vertices  vertex numbers, face after face
+  /// @param turned         per face, 1 where it counts as turned over already when neighbours are oriented like the majority
+  ///                       of their component (`face_parts`); empty: none does
   /// @throws InvalidGeometry (no faces, index out of range, fewer than three corners, vertex repeated in a face,
   ///         duplicate face, coordinate not finite, non-manifold edge or vertex), naming the first ten and the count
   static PolygonMesh from_faces(std::span<const Vec3> positions, std::span<const Offset> face_begin,
-                                std::span<const Index> face_vertices, NonManifold non_manifold = NonManifold::error);
+                                std::span<const Index> face_vertices, NonManifold non_manifold = NonManifold::error,
+                                std::span<const std::uint8_t> turned = {});
 
   Index vertex_count() const noexcept { return topology_.vertex_count(); }
   Index face_count() const noexcept { return topology_.face_count(); }

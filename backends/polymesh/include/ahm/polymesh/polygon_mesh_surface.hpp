@@ -42,6 +42,9 @@ struct PolygonOptions {
   /// factorization may fail.
   bool clamp_weights = true;
   NonManifold non_manifold = NonManifold::error;
+  /// Of a part of a larger mesh, per face: 1 where the larger one turns it over (`face_parts`); neighbours are oriented like
+  /// the majority of their component, faces turned so. Empty: as they are.
+  std::vector<std::uint8_t> turned = {};
   unsigned threads = 0;  ///< 0: one per core; the result does not depend on it
   Progress progress;
 };
@@ -112,6 +115,10 @@ class PolygonMeshSurface final : public Surface {
   FlatTriangles flat_triangles() const override;
   const PolygonDetails& details() const noexcept;
   const PolygonMesh& mesh() const noexcept;
+
+  /// As of triangles (`trimesh::TriangleMeshSurface::on_corners`): polygons that the map tears are laid out beside others, each
+  /// as it lies in the plane perpendicular to its vector area. Cuts run along sides of polygons.
+  std::vector<Vec2> on_corners(const LogMap& map) const override;
 
  protected:
   PlacedSource source_in_face(const FacePoint& point, const std::optional<Vec3>& u_axis) const override;

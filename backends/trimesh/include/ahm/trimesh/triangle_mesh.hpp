@@ -36,10 +36,13 @@ using ahm::TopologyReport;
 class TriangleMesh {
  public:
   /// A mesh in space.
+  /// @param turned  per face, 1 where it counts as turned over already when neighbours are oriented like the majority of their
+  ///                component (`face_parts`); empty: none does
   /// @throws InvalidGeometry (no faces, index out of range, vertex repeated in a face, duplicate face, coordinate not
   ///         finite, non-manifold edge or vertex), naming the first ten elements and the count
   static TriangleMesh from_positions(std::span<const Vec3> positions, std::span<const Triangle> faces,
-                                     NonManifold non_manifold = NonManifold::error);
+                                     NonManifold non_manifold = NonManifold::error,
+                                     std::span<const std::uint8_t> turned = {});
   /// A mesh given by its metric alone.
   /// @param vertices  number of vertices
   /// @param lengths   one triple per face, length s is that of the side from corner s to corner s + 1; finite, >= 0, equal
@@ -94,7 +97,8 @@ class TriangleMesh {
   Half kept_corner(Index face, int corner) const;
 
  private:
-  TriangleMesh(Index vertices, std::span<const Triangle> faces, NonManifold non_manifold);
+  TriangleMesh(Index vertices, std::span<const Triangle> faces, NonManifold non_manifold,
+               std::span<const std::uint8_t> turned = {});
   void contract(const std::vector<double>& lengths, double least);
 
   detail::GluedMesh topology_;

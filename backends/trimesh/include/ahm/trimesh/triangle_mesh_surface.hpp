@@ -32,6 +32,9 @@ struct MeshOptions {
   /// may fail.
   bool clamp_weights = true;
   NonManifold non_manifold = NonManifold::error;
+  /// Of a part of a larger mesh, per face: 1 where the larger one turns it over (`face_parts`); neighbours are oriented like
+  /// the majority of their component, faces turned so. Empty: as they are.
+  std::vector<std::uint8_t> turned = {};
   unsigned threads = 0;  ///< 0: one per core; the result does not depend on it
   Progress progress;
 };
@@ -100,10 +103,10 @@ class TriangleMeshSurface final : public Surface {
   const MeshDetails& details() const noexcept;
   const TriangleMesh& mesh() const noexcept;
 
-  /// A face whose sides the map keeps within a factor of 1.5, and does not turn over, takes the values at its vertices.
-  /// Other faces lie at the cut locus, where the map jumps (blended over a few edges): they are unfolded from the
-  /// nearest face, counted in faces, that is sound. So every face is nearly isometric in itself, and a texture is cut
-  /// open in the middle of the band, along the cut locus.
+  /// A face takes the values at its vertices, unless the map tears it, as across the cut locus (blended over a few edges):
+  /// turns it over, or stretches one of its sides more than twice as much as on the way there from the source.
+  /// Torn faces are unfolded from the nearest face, counted in faces, that is not: nearly isometric in themselves. So a texture
+  /// is cut open in the middle of the band, along the cut locus, and stretched wherever a smooth map is.
   std::vector<Vec2> on_corners(const LogMap& map) const override;
 
   /// Where a point of a face lies in the intrinsic triangulation.
@@ -118,8 +121,8 @@ class TriangleMeshSurface final : public Surface {
  protected:
   PlacedSource source_in_face(const FacePoint& point, const std::optional<Vec3>& u_axis) const override;
   PlacedSource source_on_edge(const EdgePoint& point, const std::optional<Vec3>& u_axis) const override;
-  /// Linear in the face of the intrinsic triangulation that holds the point. Where the map tears that face (see
-  /// `on_corners`), it is laid out along a side that is kept; `Status::unreached` where there is none: at the cut locus
+  /// Linear in the face of the intrinsic triangulation that holds the point. Where the map turns that face over, or a side not
+  /// within a factor of 1.5, it is laid out along a side that is kept; `Status::unreached` where there is none: at the cut locus
   /// interpolate `on_corners` instead.
   Sample sample_in_face(const LogMap& map, const FacePoint& point) const override;
   exact::MeshPoint flat_point_in_face(const FacePoint& point) const override;

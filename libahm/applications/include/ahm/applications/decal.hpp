@@ -36,6 +36,11 @@ struct Decal {
       0;  ///< triangles left out, since another sheet of the map, nearer to the source, lies over the same place
 };
 
+/// From the source to the farthest point of the image, world units.
+double reach(const DecalOptions& options);
+/// Of the map that a decal takes: a few edges more, so that triangles at its border are whole; world units.
+double map_radius(const DecalOptions& options, const TangentGraph& graph);
+
 /// The triangles of the inverse map that lie under the image, cut at its borders: none that are turned over, stretched
 /// or not trusted (`InverseMap`), one sheet where the map folds, and only what hangs together with the one nearest to
 /// the source.

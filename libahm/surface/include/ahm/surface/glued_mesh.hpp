@@ -19,9 +19,10 @@ namespace ahm::detail {
 /// last.
 class GluedMesh {
  public:
+  /// @param turned  as of `glue`
   /// @throws InvalidGeometry (no faces, index out of range, fewer than three corners, vertex repeated in a face, duplicate
   ///         face; faults non_manifold_edges, non_manifold_vertices), naming the first ten and the count
-  GluedMesh(Index vertices, const FaceList& faces, NonManifold non_manifold);
+  GluedMesh(Index vertices, const FaceList& faces, NonManifold non_manifold, std::span<const std::uint8_t> turned = {});
 
   const TopologyReport& report() const { return report_; }
   Index vertex_count() const { return static_cast<Index>(input_of_vertex_.size()); }
@@ -65,7 +66,7 @@ class GluedMesh {
   std::vector<RowVertex> rows() const;
 
  private:
-  void build_half_edges(const FaceList& faces, NonManifold non_manifold);
+  void build_half_edges(const FaceList& faces, NonManifold non_manifold, std::span<const std::uint8_t> turned);
   void number_vertices(NonManifold non_manifold);
   void count_parts();
   void renumber_contracted();

@@ -52,8 +52,9 @@ std::vector<std::pair<Index, Index>> find_duplicates(Index vertices, const FaceL
 
 /// Checks indices, corners, repeated vertices, duplicate faces and edges with more than two faces, and orients every
 /// component like the majority of its faces.
-/// @throws InvalidGeometry
-Gluing glue(Index vertices, const FaceList& faces, NonManifold non_manifold);
+/// @param turned  per face, 1 where it counts as turned over for the majority; empty: none is
+/// @throws InvalidGeometry, InvalidArgument (turned: another number of faces)
+Gluing glue(Index vertices, const FaceList& faces, NonManifold non_manifold, std::span<const std::uint8_t> turned = {});
 
 /// @throws InvalidGeometry (more than 2^30 positions, a coordinate that is not finite)
 void check_positions(std::span<const Vec3> positions);

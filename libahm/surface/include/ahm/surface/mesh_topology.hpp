@@ -28,8 +28,10 @@ struct TopologyReport {
   Index components = 0;    ///< connected components (of vertices, after splitting)
   Index boundary_edges = 0;
   Index boundary_loops = 0;
-  Index non_manifold_edges = 0;     ///< cut (NonManifold::split)
-  Index non_manifold_vertices = 0;  ///< split into several (NonManifold::split)
+  Index non_manifold_edges = 0;  ///< cut (NonManifold::split)
+  Index non_manifold_vertices =
+      0;                     ///< that join several fans of faces, those at such edges too; split (NonManifold::split)
+  Index added_vertices = 0;  ///< by splitting them
   /// Of the mesh as it is built (after splitting, without unreferenced vertices).
   Offset edges = 0;
   Offset euler_characteristic = 0;  ///< vertices - edges + faces
@@ -54,12 +56,21 @@ struct MeshInspection {
 /// @throws InvalidGeometry (offsets)
 MeshInspection inspect_mesh(Index vertices, const FaceList& faces);
 
-/// components, boundary_loops, orientable, reoriented, unreferenced, non_manifold_edges, non_manifold_vertices: the figures
-/// of a mesh's report that are about its topology.
+/// How a surface of some faces joins and turns them.
+struct FaceParts {
+  std::vector<Index> part;  ///< per face, the first of those that it hangs together with over edges of two faces
+  std::vector<std::uint8_t> reversed;  ///< per face, 1 where it is turned over to agree with the majority of its part
+};
+
+/// @throws InvalidGeometry (no faces; faces that no surface is built of, as `MeshInspection` lists them)
+FaceParts face_parts(Index vertices, const FaceList& faces);
+
+/// components, boundary_loops, orientable, reoriented, unreferenced, non_manifold_edges, non_manifold_vertices,
+/// added_vertices: the figures of a mesh's report that are about its topology.
 Report figures(const TopologyReport& topology);
 
 /// What a user should know about a checked mesh. Ids, each with the count of `TopologyReport` as its number: unreferenced,
-/// reoriented, non_manifold_edges (cut), non_manifold_vertices (split), not_orientable (no number), components (of more
+/// reoriented, non_manifold_edges (cut), non_manifold_vertices (split; and how many were added), not_orientable (no number), components (of more
 /// than one).
 std::vector<Warning> warnings(const TopologyReport& topology);
 

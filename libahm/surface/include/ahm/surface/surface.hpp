@@ -96,8 +96,8 @@ class Surface {
   /// A map on the rows: of several vertices of a row the one nearest to the source counts.
   /// @throws InvalidArgument (another graph's map)
   RowLogMap on_rows(const LogMap& map) const;
-  /// (u, v) at every corner of `faces()`, as given; NaN where the map is not ok. Here, of the corner's vertex; triangle
-  /// meshes cut the map open along its cut locus. @throws InvalidArgument (another graph's map)
+  /// (u, v) at every corner of `faces()`, as given; NaN where the map is not ok. Here, of the corner's vertex; meshes cut
+  /// the map open along its cut locus. @throws InvalidArgument (another graph's map)
   virtual std::vector<Vec2> on_corners(const LogMap& map) const;
   /// The map at a point: at a row as `on_rows`, linear in a face and on an edge; in a tangent plane moved on from the row
   /// by the offset, which takes a map with frames. @throws InvalidArgument as `source`; another graph's map
