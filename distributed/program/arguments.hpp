@@ -29,6 +29,7 @@ struct MapArguments {
   std::size_t memory = std::size_t{2} << 30;
   unsigned threads = 0;
   Index checkpoint = TiledMapOptions().checkpoint;
+  int order = 1;
 };
 
 struct LocalArguments {
@@ -72,13 +73,18 @@ inline void add_march_options(CLI::App& app, MapArguments& a) {
       ->capture_default_str();
 }
 
-inline void add_variant_option(CLI::App& app, MapArguments& a) {
+/// Of maps with coordinates.
+inline void add_map_options(CLI::App& app, MapArguments& a) {
   std::map<std::string, Variant> named;
   for (Variant variant : all_variants) named.emplace(to_string(variant), variant);
   const auto take = [&a, named](const std::string& name) { a.variant = named.at(name); };
   app.add_option_function<std::string>("--variant", take, "of the diffusion")
       ->check(CLI::IsMember(named))
       ->default_str(std::string(to_string(a.variant)));
+  app.add_option("--order", a.order,
+                 "1, or 2: extrapolate from maps of several diffusion times, with an estimate of the error")
+      ->check(CLI::IsMember({1, 2}))
+      ->capture_default_str();
 }
 
 inline void add_local_options(CLI::App& app, LocalArguments& a) {
@@ -146,6 +152,7 @@ inline TiledMapOptions map_options(const MapArguments& a, bool coordinates) {
   options.heat.t_coef = a.t_coef;
   options.heat.threads = a.threads;
   options.heat.variant = a.variant;
+  options.heat.order = a.order;
   return options;
 }
 

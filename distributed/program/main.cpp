@@ -3,7 +3,6 @@
 
 #include <CLI/CLI.hpp>
 #include <array>
-#include <csignal>
 #include <iostream>
 #include <optional>
 #include <string>
@@ -11,6 +10,7 @@
 #include <vector>
 
 #include "ahm/distributed/build_tiles.hpp"
+#include "cli/interrupt.hpp"
 #include "program/arguments.hpp"
 #include "program/plan_mesh.hpp"
 
@@ -153,7 +153,7 @@ void add_maps(CLI::App& app, Arguments& a) {
   const auto add_map = [&](const std::string& command, const std::string& text, bool coordinates) {
     CLI::App& map = *app.add_subcommand(command, text);
     add_march_options(map, a.logmap);
-    if (coordinates) add_variant_option(map, a.logmap);
+    if (coordinates) add_map_options(map, a.logmap);
     map.add_option("--threads", a.logmap.threads, "0: one per core")->capture_default_str();
     map.callback([&, coordinates] { make_map(a.logmap, coordinates); });
   };
@@ -210,7 +210,7 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::signal(SIGXFSZ, SIG_IGN);  // a limit of the file size is an error of the write
+  app::install_interrupt_handling(name);
   try {
     return run(argc, argv);
   } catch (const std::bad_alloc&) {

@@ -45,6 +45,8 @@ class TiledGraph final : public TangentGraph {
 
   /// Component of a vertex, numbered in the order of their first vertices.
   Index component(Index vertex) const;
+  /// Mean edge lengths of all components, graph units.
+  std::span<const double> component_edge_lengths() const noexcept { return edge_lengths_; }
   /// The vertex of an input row; none where it was removed. Reads all tiles.
   /// @throws InvalidArgument (no such row)
   std::optional<Vertex> vertex_of_row(Row row) const;

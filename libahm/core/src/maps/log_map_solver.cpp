@@ -22,6 +22,7 @@
 #include "maps/front_stars.hpp"
 #include "maps/heat_distance.hpp"
 #include "maps/march.hpp"
+#include "maps/unfolded_distances.hpp"
 #include "maps/vertex_row.hpp"
 
 namespace ahm {
@@ -57,11 +58,9 @@ struct Found {
 
 /// Distances unfolded from a source; empty: they are measured by heat.
 std::vector<double> unfolded(const TangentGraph& graph, const std::shared_ptr<const UnfoldingFront::Stars>& stars,
-                             const Source& source, double radius) {
+                             const Source& source, double radius, const std::stop_token& stop) {
   if (!unfolds(graph, source)) return {};
-  UnfoldingFront front(graph, stars);
-  front.add(source);
-  front.run(radius);
+  const UnfoldingFront front = unfolded_front(graph, stars, source, radius, stop);
   std::vector<double> distances(static_cast<std::size_t>(graph.size()));
   for (std::size_t i = 0; i < distances.size(); ++i) distances[i] = front.distance(Vertex(i));
   return distances;
@@ -139,7 +138,7 @@ LogMapSolver::Impl::Impl(const TangentGraph& graph, const HeatOptions& options)
       options(options),
       strategy(choose_strategy({graph.size(), graph.dimension(), graph.transport_kind()}, options)),
       scales(graph),
-      diffusion_times(options.order, graph, scales),
+      diffusion_times(options.order, graph.dimension(), scales.sizes),
       times(diffusion_times.count()) {
   for (std::size_t k = 0; k < times.size(); ++k) {
     for (Index c = 0; c < scales.components.count; ++c)
@@ -260,7 +259,8 @@ std::vector<LogMap> LogMapSolver::Impl::solve_block(std::size_t time, std::span<
   std::vector<LogMap> maps;
   const auto unfold = [&] {
     if (unfolded.empty())
-      for (const Source& source : sources) unfolded.push_back(ahm::unfolded(graph, stars(), source, map.radius));
+      for (const Source& source : sources)
+        unfolded.push_back(ahm::unfolded(graph, stars(), source, map.radius, map.progress.stop));
   };
   if (strategy == Strategy::march) {
     unfold();
@@ -305,8 +305,7 @@ void LogMapSolver::Impl::check_memory() const {
 std::vector<LogMap> LogMapSolver::Impl::solve_block(std::span<const Source> sources, const MapSettings& map,
                                                     unsigned threads) const {
   MapSettings wider = map;
-  if (times.size() > 1)  // the maps of different times differ a little at the radius
-    wider.radius += 8 * *std::max_element(scales.edge_length.begin(), scales.edge_length.end()) * graph.length_unit();
+  wider.radius = diffusion_times.radius_of_each(map.radius, scales.edge_length, graph.length_unit());
   std::vector<std::vector<double>> unfolded;
   if (times.size() == 1) return solve_block(0, sources, unfolded, map, threads);
   std::vector<std::vector<LogMap>> at_times;
