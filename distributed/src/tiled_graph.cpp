@@ -135,6 +135,13 @@ std::vector<Vec3> TiledGraph::middles() const {
   return {middles.begin(), middles.end()};
 }
 
+std::vector<Index> TiledGraph::shared_rows() const {
+  const ArrayFile file(folder_ / "components", "components");
+  if (!file.has("shared_rows")) return {};
+  const auto rows = file.get<Index>("shared_rows");
+  return {rows.begin(), rows.end()};
+}
+
 TiledGraph::TileRows TiledGraph::rows(std::size_t number) const {
   const Tile& t = tile(number);
   return {t.file.get<Index>("point_rows"), t.file.get<Index>("rows"), t.file.get<Index>("removed"), t.component,

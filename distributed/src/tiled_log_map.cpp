@@ -251,27 +251,29 @@ void write_rows(const TiledGraph& graph, const std::filesystem::path& folder, co
   file.write(goal == MarchGoal::distances ? "row,distance,status\n"
              : has_error                  ? "row,u,v,distance,spread,error_estimate,status\n"
                                           : "row,u,v,distance,spread,status\n");
+  RowLines lines(file, graph);
   for (std::size_t t = 0; t < graph.tiles(); ++t) {
     const MapTile tile(Manifest::file(folder, MapTile::kind, t), goal);
     const TiledGraph::TileRows rows = graph.rows(t);
     if (tile.status.size() + 1 != rows.begin.size())
       throw IoError("the map's tile " + std::to_string(t) + " is not one of these tiles; make the map again");
-    const auto values = [&](std::size_t i) {
+    const auto line_of = [&](std::size_t i) -> VertexLine {
       // As on the rows of a surface: distances of heat may be below the straight line, which no way on it is.
       const double d = source && !std::isnan(tile.distance[i])
                            ? std::max(tile.distance[i], ahm::distance(rows.positions[i], *source))
                            : tile.distance[i];
-      if (d > radius) return none + std::string(to_string(Status::beyond_radius));
+      if (d > radius) return {none + std::string(to_string(Status::beyond_radius)), tile.distance[i]};
       std::string line;
       const auto add = [&](double number) { append_number(line += ',', number); };
       if (goal == MarchGoal::map) add(tile.coordinates[2 * i]), add(tile.coordinates[2 * i + 1]);
       add(d);
       if (goal == MarchGoal::map) add(tile.spread[i]);
       if (has_error) add(tile.error[i]);
-      return line += "," + std::string(to_string(static_cast<Status>(tile.status[i])));
+      return {line + "," + std::string(to_string(static_cast<Status>(tile.status[i]))), tile.distance[i]};
     };
-    write_tile_rows(file, rows, values, none + std::string(to_string(Status::removed)));
+    lines.add(rows, line_of, none + std::string(to_string(Status::removed)));
   }
+  lines.finish();
   file.commit();
 }
 

@@ -41,7 +41,7 @@ constexpr Sentence sentences[] = {
     {"not_finite_dropped", "{0:.0f} faces were dropped that had a vertex which is not finite"},
     {"duplicates_dropped", "{0:.0f} faces were dropped that were given before"},
     {"faces_turned", "{0:.0f} faces were turned over to agree with their neighbours and look outwards"},
-    {"unreferenced", "{0:.0f} vertices are used by no face and were left out"},
+    {"unreferenced", "{0:.0f} vertices that no face uses were left out"},
     {"reoriented", "{0:.0f} faces were turned over to orient the mesh consistently"},
     {"non_manifold_edges", "{0:.0f} edges with more than two faces were cut"},
     {"non_manifold_vertices", "{0:.0f} additional vertices were made where several fans of faces met"},

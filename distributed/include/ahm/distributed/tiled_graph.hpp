@@ -47,7 +47,7 @@ class TiledGraph final : public TangentGraph {
   Index component(Index vertex) const;
   /// Mean edge lengths of all components, graph units.
   std::span<const double> component_edge_lengths() const noexcept { return edge_lengths_; }
-  /// The vertex of an input row; none where it was removed. Reads all tiles.
+  /// The first vertex of an input row; none where it was removed. Reads all tiles.
   /// @throws InvalidArgument (no such row)
   std::optional<Vertex> vertex_of_row(Row row) const;
   /// The vertex at a row that is nearest to a position in world units. Reads all tiles.
@@ -65,6 +65,8 @@ class TiledGraph final : public TangentGraph {
     std::span<const Vec3> positions;  ///< of vertices, world units
   };
   TileRows rows(std::size_t tile) const;
+  /// Rows with several vertices, where a mesh was cut; ascending.
+  std::vector<Index> shared_rows() const;
   /// Times that memory of tiles was given back.
   std::int64_t releases() const noexcept { return releases_; }
 
