@@ -250,6 +250,9 @@ TEST(TiledLogMap, IsWrittenAsRowsOfTheInput) {
   EXPECT_EQ(graph.vertex_of_row(Row(60 * 60 + 1)), std::nullopt);
   EXPECT_THROW(graph.vertex_of_row(Row(60 * 60 + 2)), InvalidArgument);
   EXPECT_EQ(graph.nearest_vertex(points[77]), graph.vertex_of_row(Row(77)));
+  const Row many[] = {Row(77), Row(60 * 60 + 1), Row(5), Row(77), Row(60 * 60)};
+  const auto found = graph.vertices_of_rows(many);
+  for (std::size_t k = 0; k < found.size(); ++k) EXPECT_EQ(found[k], graph.vertex_of_row(many[k]));
 }
 
 }  // namespace

@@ -50,6 +50,8 @@ class TiledGraph final : public TangentGraph {
   /// The first vertex of an input row; none where it was removed. Reads all tiles.
   /// @throws InvalidArgument (no such row)
   std::optional<Vertex> vertex_of_row(Row row) const;
+  /// Of many, by one pass over the tiles.
+  std::vector<std::optional<Vertex>> vertices_of_rows(std::span<const Row> rows) const;
   /// The vertex at a row that is nearest to a position in world units. Reads all tiles.
   Vertex nearest_vertex(const Vec3& position) const;
 
