@@ -7,7 +7,7 @@
 #include "map_summary.hpp"
 #include "map_writer.hpp"
 #include "maps/edge_paths.hpp"
-#include "maps/unfolded_distances.hpp"
+#include "maps/run_front.hpp"
 
 namespace ahm::distributed {
 
@@ -23,7 +23,9 @@ void find_distances(const TiledGraph& graph, const Source& source, double radius
   const auto put = [&](Index vertex, double distance) { writer.put(vertex, {Status::ok, {}, distance, NAN}); };
   if (graph.is_delaunay()) {
     progress.step("unfold", 0);
-    const UnfoldingFront front = unfolded_front(graph, nullptr, source, radius, progress.stop);
+    UnfoldingFront front(graph);
+    front.add(source);
+    run_front(front, graph, radius, progress.stop);
     for (Index i = 0; i < graph.size(); ++i) put(i, front.distance(Vertex(i)));
   } else {
     edge_paths(graph, source, radius, progress, put);

@@ -22,7 +22,7 @@
 #include "maps/front_stars.hpp"
 #include "maps/heat_distance.hpp"
 #include "maps/march.hpp"
-#include "maps/unfolded_distances.hpp"
+#include "maps/run_front.hpp"
 #include "maps/vertex_row.hpp"
 
 namespace ahm {
@@ -60,7 +60,9 @@ struct Found {
 std::vector<double> unfolded(const TangentGraph& graph, const std::shared_ptr<const UnfoldingFront::Stars>& stars,
                              const Source& source, double radius, const std::stop_token& stop) {
   if (!unfolds(graph, source)) return {};
-  const UnfoldingFront front = unfolded_front(graph, stars, source, radius, stop);
+  UnfoldingFront front(graph, stars);
+  front.add(source);
+  run_front(front, graph, radius, stop);
   std::vector<double> distances(static_cast<std::size_t>(graph.size()));
   for (std::size_t i = 0; i < distances.size(); ++i) distances[i] = front.distance(Vertex(i));
   return distances;

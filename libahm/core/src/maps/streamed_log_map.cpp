@@ -16,8 +16,8 @@
 #include "maps/heat_distance.hpp"
 #include "maps/march.hpp"
 #include "maps/right_hand_side.hpp"
+#include "maps/run_front.hpp"
 #include "maps/team_log_map.hpp"
-#include "maps/unfolded_distances.hpp"
 #include "maps/vertex_row.hpp"
 
 namespace ahm {
@@ -47,7 +47,9 @@ class Rows final : public MarchSink {
     if (distances_) return;
     if (unfolds(graph, source)) {
       progress.step("unfold", 0);
-      front_.emplace(unfolded_front(graph, nullptr, source, radius, progress.stop));
+      front_.emplace(graph);
+      front_->add(source);
+      run_front(*front_, graph, radius, progress.stop);
       return;
     }
     for (std::size_t k = 0; k < source.vertices().size(); ++k)
