@@ -2,12 +2,12 @@
 /// The program ahm-mpi: maps over tiles by the ranks of an MPI run, each of which owns some.
 
 #include <CLI/CLI.hpp>
-#include <csignal>
 #include <iostream>
 #include <string>
 #include <vector>
 
 #include "ahm/distributed/march_schedule.hpp"
+#include "cli/interrupt.hpp"
 #include "mpi/mpi_team.hpp"
 #include "program/arguments.hpp"
 #include "team_map.hpp"
@@ -149,7 +149,7 @@ void add_commands(CLI::App& app, Arguments& a) {
   const auto add_map = [&](const std::string& command, const std::string& text, bool coordinates) {
     CLI::App& map = *app.add_subcommand(command, text);
     add_march_options(map, a.logmap);
-    if (coordinates) add_variant_option(map, a.logmap);
+    if (coordinates) add_map_options(map, a.logmap);
     add_deal_option(map, a.deal);
     map.add_flag("--traffic", a.traffic, "tell messages, bytes, memory and time of each rank");
     map.callback([&, coordinates] { make_map(a, coordinates); });
@@ -205,6 +205,7 @@ int run_with_petsc(int argc, char** argv) {
   int status = 1;
   try {
     check(PetscPopSignalHandler());
+    app::install_interrupt_handling(name);
     check(PetscPushErrorHandler(PetscReturnErrorHandler, nullptr));
     set_default("-pc_type", "bjacobi");
     set_default("-sub_pc_type", "ilu");  // of a symmetric matrix as good as icc, which crashes where a rank has no rows
@@ -221,7 +222,6 @@ int run_with_petsc(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::signal(SIGXFSZ, SIG_IGN);  // a limit of the file size is an error of the write
   try {
     return run_with_petsc(argc, argv);
   } catch (const std::exception& e) {

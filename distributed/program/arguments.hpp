@@ -29,6 +29,7 @@ struct MapArguments {
   std::size_t memory = std::size_t{2} << 30;
   unsigned threads = 0;
   Index checkpoint = TiledMapOptions().checkpoint;
+  int order = 1;
 };
 
 struct LocalArguments {
@@ -72,13 +73,18 @@ inline void add_march_options(CLI::App& app, MapArguments& a) {
       ->capture_default_str();
 }
 
-inline void add_variant_option(CLI::App& app, MapArguments& a) {
+/// Of maps with coordinates.
+inline void add_map_options(CLI::App& app, MapArguments& a) {
   std::map<std::string, Variant> named;
   for (Variant variant : all_variants) named.emplace(to_string(variant), variant);
   const auto take = [&a, named](const std::string& name) { a.variant = named.at(name); };
   app.add_option_function<std::string>("--variant", take, "of the diffusion")
       ->check(CLI::IsMember(named))
       ->default_str(std::string(to_string(a.variant)));
+  app.add_option("--order", a.order,
+                 "1, or 2: extrapolate from maps of several diffusion times, with an estimate of the error")
+      ->check(CLI::IsMember({1, 2}))
+      ->capture_default_str();
 }
 
 inline void add_local_options(CLI::App& app, LocalArguments& a) {
@@ -104,27 +110,38 @@ inline void add_deal_option(CLI::App& app, Deal& deal) {
       ->option_text("NAME");
 }
 
-inline Vertex source_vertex(const TiledGraph& graph, const std::string& text) {
-  if (text.find(',') == std::string::npos) {
-    Index row = 0;
-    if (!CLI::detail::lexical_cast(text, row))
-      throw InvalidArgument("--source '" + text + "' is neither a row nor a position x,y,z");
-    const auto vertex = graph.vertex_of_row(Row(row));
-    if (!vertex) throw InvalidArgument("row " + text + " was removed from the surface; choose another one");
-    return *vertex;
-  }
+inline Vec3 parse_position(const std::string& text) {
   const std::vector<std::string> words = CLI::detail::split(text, ',');
   Vec3 position{};
   bool good = words.size() == 3;
   for (std::size_t c = 0; good && c < 3; ++c)
     good = CLI::detail::lexical_cast(words[c], position[c]) && std::isfinite(position[c]);
   if (!good) throw InvalidArgument("--source '" + text + "' is neither a row nor a position x,y,z");
-  return graph.nearest_vertex(position);
+  return position;
 }
 
+/// Rows by one pass over the tiles, each position by one of its own.
 inline std::vector<Vertex> source_vertices(const TiledGraph& graph, const std::vector<std::string>& texts) {
+  std::vector<Row> rows;
+  for (const std::string& text : texts) {
+    Index row = 0;
+    if (text.find(',') != std::string::npos) continue;
+    if (!CLI::detail::lexical_cast(text, row))
+      throw InvalidArgument("--source '" + text + "' is neither a row nor a position x,y,z");
+    rows.emplace_back(row);
+  }
+  const auto of_rows = graph.vertices_of_rows(rows);
   std::vector<Vertex> result;
-  for (const std::string& text : texts) result.push_back(source_vertex(graph, text));
+  std::size_t next = 0;
+  for (const std::string& text : texts) {
+    if (text.find(',') != std::string::npos) {
+      result.push_back(graph.nearest_vertex(parse_position(text)));
+      continue;
+    }
+    const auto vertex = of_rows[next++];
+    if (!vertex) throw InvalidArgument("row " + text + " was removed from the surface; choose another one");
+    result.push_back(*vertex);
+  }
   return result;
 }
 
@@ -146,6 +163,7 @@ inline TiledMapOptions map_options(const MapArguments& a, bool coordinates) {
   options.heat.t_coef = a.t_coef;
   options.heat.threads = a.threads;
   options.heat.variant = a.variant;
+  options.heat.order = a.order;
   return options;
 }
 

@@ -3,14 +3,15 @@
 
 #include <CLI/CLI.hpp>
 #include <array>
-#include <csignal>
 #include <iostream>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "ahm/distributed/build_tiles.hpp"
+#include "cli/interrupt.hpp"
 #include "program/arguments.hpp"
 #include "program/plan_mesh.hpp"
 
@@ -19,12 +20,14 @@ namespace {
 using namespace ahm;
 using namespace ahm::distributed;
 using namespace ahm::distributed::program;
+using polymesh::Discretization;
 
 const std::string name = "ahm-tiles";
 
 struct Arguments {
   std::string input, folder, map, output, step;
   TileOptions tile;
+  MeshPlan mesh;
   BuildOptions build;
   MapArguments logmap;
   LocalArguments local;
@@ -45,6 +48,21 @@ void add_tile_options(CLI::App& app, Arguments& a) {
   app.add_option("--k", a.tile.k, "neighbours per point; 0: 30")->capture_default_str();
   app.add_flag("--drop-nan", a.tile.drop_non_finite, "leave out points that are not finite");
   app.add_flag("--ignore-normals", a.tile.ignore_normals, "estimate normals, though the file has some");
+  app.add_option(
+         "--non-manifold", a.mesh.non_manifold,
+         "of a mesh, edges of more than two faces and pinched vertices: error (the default) or split, cutting there")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, NonManifold>{{"error", NonManifold::error}, {"split", NonManifold::split}}))
+      ->option_text("HOW");
+  app.add_option("--discretization", a.mesh.discretization,
+                 "of polygons: polygons, refined, or auto (the default): refined, or polygons where a face is twisted")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, Discretization>{{"auto", Discretization::automatic},
+                                                                                {"polygons", Discretization::polygons},
+                                                                                {"refined", Discretization::refined}}))
+      ->option_text("NAME");
+  app.add_flag_callback(
+      "--no-flips", [&a] { a.mesh.flips = false; }, "keep the edges of a mesh as they are");
+  app.add_option("--threads", a.mesh.threads, "to build a mesh; 0: one per core")->capture_default_str();
 }
 
 void add_build_options(CLI::App& app, Arguments& a) {
@@ -117,11 +135,11 @@ void simulate(const Arguments& a) {
 /// Points, or else a mesh.
 Manifest plan_input(const Arguments& a) {
   try {
-    return plan_tiles(a.input, a.folder, a.tile, telling(name));
+    if (a.mesh.is_usual()) return plan_tiles(a.input, a.folder, a.tile, telling(name));
   } catch (const IoError& error) {
     if (error.fault() != "no_cloud") throw;
   }
-  return plan_mesh(a.input, a.folder, a.tile, telling(name));
+  return plan_mesh(a.input, a.folder, a.tile, a.mesh, telling(name));
 }
 
 void add_building(CLI::App& app, Arguments& a) {
@@ -153,7 +171,7 @@ void add_maps(CLI::App& app, Arguments& a) {
   const auto add_map = [&](const std::string& command, const std::string& text, bool coordinates) {
     CLI::App& map = *app.add_subcommand(command, text);
     add_march_options(map, a.logmap);
-    if (coordinates) add_variant_option(map, a.logmap);
+    if (coordinates) add_map_options(map, a.logmap);
     map.add_option("--threads", a.logmap.threads, "0: one per core")->capture_default_str();
     map.callback([&, coordinates] { make_map(a.logmap, coordinates); });
   };
@@ -190,6 +208,9 @@ std::string told(const Error& error) {
   const std::string_view fault = error.fault();
   if (fault == "non_finite") return std::string(error.problem()) + "; --drop-nan leaves them out";
   if (fault == "normals_given") return std::string(error.problem()) + "; --ignore-normals estimates others";
+  if (fault == "non_manifold_edges" || fault == "non_manifold_vertices")
+    return std::string(error.problem()) + "; --non-manifold split cuts the mesh there";
+  if (fault == "twisted_faces") return std::string(error.problem()) + "; --discretization polygons takes them";
   return error.what();
 }
 
@@ -210,7 +231,7 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::signal(SIGXFSZ, SIG_IGN);  // a limit of the file size is an error of the write
+  app::install_interrupt_handling(name);
   try {
     return run(argc, argv);
   } catch (const std::bad_alloc&) {

@@ -3,15 +3,30 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
+#include <string>
 
 #include "ahm/distributed/manifest.hpp"
+#include "ahm/polymesh/polygon_mesh_surface.hpp"
 #include "ahm/progress.hpp"
 
 namespace ahm::distributed::program {
 
-/// Reads a mesh, builds its surface as `ahm logmap` does, and writes its tiles, built.
+/// How its surface is built, as by the options of `ahm logmap`.
+struct MeshPlan {
+  NonManifold non_manifold = NonManifold::error;
+  polymesh::Discretization discretization = polymesh::Discretization::automatic;
+  bool flips = true;
+  unsigned threads = 0;
+
+  bool is_usual() const {
+    return non_manifold == NonManifold::error && discretization == polymesh::Discretization::automatic && flips;
+  }
+};
+
+/// Reads a mesh, builds its surface, and writes its tiles, built.
 /// @throws InvalidArgument (a file without faces; options of clouds), what reading, building and `tile_surface` throw
 Manifest plan_mesh(const std::filesystem::path& input, const std::filesystem::path& folder, const TileOptions& options,
-                   const Progress& progress);
+                   const MeshPlan& mesh, const Progress& progress);
 
 }  // namespace ahm::distributed::program

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstddef>
+#include <map>
 #include <string>
 
 #include "ahm/distributed/tiled_graph.hpp"
@@ -18,21 +19,50 @@ inline void append_number(std::string& line, double value) {
   if (std::isfinite(value)) line.append(text, std::to_chars(text, text + sizeof(text), value).ptr);
 }
 
-/// A line for each row of the input at a vertex of the tile, and for each that has none: its number, and what follows it.
-/// @param values   of a vertex of the tile, called once for each
-/// @param removed  of rows without a vertex
-template <class Values>
-void write_tile_rows(io::AtomicFile& file, const TiledGraph::TileRows& rows, const Values& values,
-                     const std::string& removed) {
+/// What is told of a vertex: of several at one row that of the least rank, the first of equal ones. NaN is none; where all are, the
+/// last is told.
+struct VertexLine {
   std::string text;
-  for (std::size_t i = 0; i + 1 < rows.begin.size(); ++i) {
-    const std::string line = values(i);
-    for (Index r = rows.begin[i]; r < rows.begin[i + 1]; ++r)
-      text += std::to_string(rows.rows[static_cast<std::size_t>(r)]) + line + "\n";
-    if (text.size() > 1 << 20) file.write(text), text.clear();
+  double rank = 0;
+};
+
+/// A line for each row of the input, tile after tile: its number, and what follows it.
+class RowLines {
+ public:
+  RowLines(io::AtomicFile& file, const TiledGraph& graph) : file_(file) {
+    for (Index row : graph.shared_rows()) shared_.emplace(row, VertexLine{{}, NAN});
   }
-  for (Index row : rows.removed) text += std::to_string(row) + removed + "\n";
-  file.write(text);
-}
+
+  /// @param line     of a vertex of the tile, called once for each
+  /// @param removed  of rows without a vertex
+  template <class Line>
+  void add(const TiledGraph::TileRows& rows, const Line& line, const std::string& removed) {
+    for (std::size_t i = 0; i + 1 < rows.begin.size(); ++i) {
+      const VertexLine told = line(i);
+      for (Index r = rows.begin[i]; r < rows.begin[i + 1]; ++r) add(rows.rows[static_cast<std::size_t>(r)], told);
+    }
+    for (Index row : rows.removed) add(row, {removed});
+  }
+  void finish() {
+    for (const auto& [row, line] : shared_) write(row, line);
+    file_.write(text_);
+    text_.clear();
+  }
+
+ private:
+  void add(Index row, const VertexLine& line) {
+    const auto shared = shared_.empty() ? shared_.end() : shared_.find(row);
+    if (shared == shared_.end()) return write(row, line);
+    if (const double best = shared->second.rank; std::isnan(best) || line.rank < best) shared->second = line;
+  }
+  void write(Index row, const VertexLine& line) {
+    text_ += std::to_string(row) + line.text + "\n";
+    if (text_.size() > 1 << 20) file_.write(text_), text_.clear();
+  }
+
+  io::AtomicFile& file_;
+  std::string text_;
+  std::map<Index, VertexLine> shared_;
+};
 
 }  // namespace ahm::distributed

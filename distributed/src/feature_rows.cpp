@@ -85,15 +85,17 @@ void write_feature_rows(const TiledGraph& graph, const std::filesystem::path& fo
   const std::string header = columns(first).header;
   io::AtomicFile file(csv);
   file.write("row" + header + "\n");
+  RowLines lines(file, graph);
   for (std::size_t t = 0; t < graph.tiles(); ++t) {
     const Columns here = graph.manifest().tiles[t].vertices > 0 ? columns(t) : Columns{header, {}, {}};
     if (here.header != header)
       throw IoError("tile " + std::to_string(t) + " has other features than tile " + std::to_string(first) +
                     "; make them again, in a new folder");
-    write_tile_rows(
-        file, graph.rows(t), [&](std::size_t i) { return here.line(i); },
+    lines.add(
+        graph.rows(t), [&](std::size_t i) { return VertexLine{here.line(i)}; },
         std::string(static_cast<std::size_t>(std::count(header.begin(), header.end(), ',')), ','));
   }
+  lines.finish();
   file.commit();
 }
 

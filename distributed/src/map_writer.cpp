@@ -25,14 +25,18 @@ MapTile::MapTile(const std::filesystem::path& path, MarchGoal goal) : is_saved(t
   if (goal == MarchGoal::distances) return;
   take(coordinates, "coordinates");
   take(spread, "spread");
+  if (file.has("error")) take(error, "error");
 }
 
 void MapTile::write(const std::filesystem::path& path) const {
-  if (coordinates.empty() && !distance.empty())
-    return write_arrays(path, kind, {array("distance", distance), array("status", status)});
-  write_arrays(path, kind,
-               {array("coordinates", coordinates), array("distance", distance), array("spread", spread),
-                array("status", status)});
+  std::vector<NamedArray> arrays;
+  const auto has_map = !coordinates.empty() || distance.empty();
+  if (has_map) arrays.push_back(array("coordinates", coordinates));
+  arrays.push_back(array("distance", distance));
+  if (has_map) arrays.push_back(array("spread", spread));
+  if (!error.empty()) arrays.push_back(array("error", error));
+  arrays.push_back(array("status", status));
+  write_arrays(path, kind, arrays);
 }
 
 void MapTile::clear(std::size_t row) {

@@ -17,9 +17,9 @@
 namespace ahm::distributed {
 namespace {
 
-/// The rows at every vertex, and those that have none.
+/// The rows at every vertex, those that have none, and those that have several, where a mesh was cut.
 struct VertexRows {
-  std::vector<Index> begin, rows, removed;
+  std::vector<Index> begin, rows, removed, shared;
 };
 
 VertexRows rows_of(const RowMap& map, Index vertices) {
@@ -27,19 +27,15 @@ VertexRows rows_of(const RowMap& map, Index vertices) {
   result.begin.assign(static_cast<std::size_t>(vertices) + 1, 0);
   for (Index r = 0; r < map.row_count(); ++r) {
     const auto at = map.vertices(Row(r));
-    if (at.size() > 1)
-      throw InvalidArgument("row " + std::to_string(r) + " has " + std::to_string(at.size()) +
-                            " vertices, since the mesh was cut there; tiles have one vertex per row");
-    if (at.empty())
-      result.removed.push_back(r);
-    else
-      ++result.begin[at[0].index + 1];
+    if (at.empty()) result.removed.push_back(r);
+    if (at.size() > 1) result.shared.push_back(r);
+    for (const Vertex vertex : at) ++result.begin[vertex.index + 1];
   }
   for (std::size_t v = 0; v + 1 < result.begin.size(); ++v) result.begin[v + 1] += result.begin[v];
   result.rows.resize(static_cast<std::size_t>(result.begin.back()));
   std::vector<Index> next = result.begin;
   for (Index r = 0; r < map.row_count(); ++r)
-    if (const auto vertex = map.vertex(Row(r))) result.rows[next[vertex->index]++] = r;
+    for (const Vertex vertex : map.vertices(Row(r))) result.rows[next[vertex.index]++] = r;
   return result;
 }
 
@@ -93,6 +89,7 @@ class Cut {
 
   std::size_t tiles() const { return first_.size() - 1; }
   const std::vector<double>& edge_lengths() const { return edge_lengths_; }
+  const std::vector<Index>& shared_rows() const { return rows_.shared; }
 
   /// The arrays of one tile.
   struct Tile {
@@ -189,8 +186,9 @@ Manifest tile_surface(const Surface& surface, const std::string& input, const st
     arrays.push_back(array("identity", identity));
     write_arrays(Manifest::file(folder, kind::graph, t), kind::graph, arrays);
   }
-  write_arrays(folder / "components", "components",
-               {array("edge_lengths", cut.edge_lengths()), array("middles", middles)});
+  write_arrays(
+      folder / "components", "components",
+      {array("edge_lengths", cut.edge_lengths()), array("middles", middles), array("shared_rows", cut.shared_rows())});
   m.write(folder);
   return m;
 }

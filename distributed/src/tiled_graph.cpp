@@ -135,25 +135,43 @@ std::vector<Vec3> TiledGraph::middles() const {
   return {middles.begin(), middles.end()};
 }
 
+std::vector<Index> TiledGraph::shared_rows() const {
+  const ArrayFile file(folder_ / "components", "components");
+  if (!file.has("shared_rows")) return {};
+  const auto rows = file.get<Index>("shared_rows");
+  return {rows.begin(), rows.end()};
+}
+
 TiledGraph::TileRows TiledGraph::rows(std::size_t number) const {
   const Tile& t = tile(number);
   return {t.file.get<Index>("point_rows"), t.file.get<Index>("rows"), t.file.get<Index>("removed"), t.component,
           t.file.get<Vec3>("positions")};
 }
 
-std::optional<Vertex> TiledGraph::vertex_of_row(Row row) const {
-  if (row.index < 0 || static_cast<std::uint64_t>(row.index) >= manifest_.points)
-    throw InvalidArgument("row " + std::to_string(row.index) + " is outside [0, " + std::to_string(manifest_.points) +
-                          ")");
-  for (std::size_t t = 0; t < tiles(); ++t) {
-    const TileRows here = rows(t);
-    const auto found = std::find(here.rows.begin(), here.rows.end(), row.index);
-    if (found == here.rows.end()) continue;
-    const auto at = static_cast<Index>(found - here.rows.begin());
-    const auto next = std::upper_bound(here.begin.begin(), here.begin.end(), at);
-    return Vertex(first_[t] + static_cast<Index>(next - here.begin.begin()) - 1);
+std::optional<Vertex> TiledGraph::vertex_of_row(Row row) const { return vertices_of_rows({&row, 1})[0]; }
+
+std::vector<std::optional<Vertex>> TiledGraph::vertices_of_rows(std::span<const Row> wanted) const {
+  std::vector<std::pair<Index, std::size_t>> places;  // rows and where they are asked for
+  for (const Row row : wanted) {
+    if (row.index < 0 || static_cast<std::uint64_t>(row.index) >= manifest_.points)
+      throw InvalidArgument("row " + std::to_string(row.index) + " is outside [0, " + std::to_string(manifest_.points) +
+                            ")");
+    places.emplace_back(row.index, places.size());
   }
-  return std::nullopt;
+  std::sort(places.begin(), places.end());
+  std::vector<std::optional<Vertex>> found(wanted.size());
+  std::size_t left = wanted.size();
+  for (std::size_t t = 0; t < tiles() && left > 0; ++t) {
+    const TileRows here = rows(t);
+    for (std::size_t i = 0; i + 1 < here.begin.size(); ++i)
+      for (Index r = here.begin[i]; r < here.begin[i + 1]; ++r) {
+        const Index row = here.rows[r];
+        auto at = std::lower_bound(places.begin(), places.end(), std::pair(row, std::size_t{0}));
+        for (; at != places.end() && at->first == row; ++at)
+          if (!found[at->second]) found[at->second] = Vertex(first_[t] + static_cast<Index>(i)), --left;
+      }
+  }
+  return found;
 }
 
 Vertex TiledGraph::nearest_vertex(const Vec3& position) const {

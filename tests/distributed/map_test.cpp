@@ -55,6 +55,58 @@ TEST(TiledLogMap, HasTheBitsOfTheMapInMemory) {
   expect_same_map(cloud, Row(130 * 65 + 65), Variant::adaptive, 40);
 }
 
+/// By two times, and by three where parts are large enough.
+TEST(TiledLogMap, OfSecondOrderHasTheBitsOfTheMapInMemory) {
+  for (const Index side : {70, 130}) {
+    const TiledCloud cloud(two_hills(side, 40), {.tile_points = 1500});
+    cloud.build();
+    const auto surface = pointcloud::PointCloudSurface::build(cloud.points, {}, {.parts_apart = false});
+    const Source source = Source::at_vertex(surface.rows().vertex(Row(side * side / 2)).value());
+    const TiledGraph graph(cloud.tiles, 1 << 22);
+    const LogMapSolver solver(surface.graph(), {.order = 2, .strategy = Strategy::march});
+    for (const double radius : {std::numeric_limits<double>::infinity(), 25.0}) {
+      const LogMap expected = solver.solve(source, {.radius = radius});
+      const auto folder = cloud.folder.directory() / "map", csv = cloud.folder.directory() / "map.csv";
+      const auto summary = write_log_map(graph, source, folder, {.heat = {.order = 2}, .radius = radius});
+      EXPECT_EQ(summary.march.bands, expected.march().bands);
+      EXPECT_EQ(summary.ok, expected.count(Status::ok));
+      const MapRows rows(graph, folder);
+      EXPECT_TRUE(same_bits(rows.coordinates, expected.coordinates()));
+      EXPECT_TRUE(same_bits(rows.distance, expected.distances()));
+      EXPECT_TRUE(same_bits(rows.error, expected.error_estimate()));
+      EXPECT_TRUE(
+          std::equal(rows.status.begin(), rows.status.end(), expected.status().begin(), expected.status().end()));
+      for (const auto& [name, bytes] : contents(folder))
+        EXPECT_TRUE(name == "map.json" || name.ends_with(".map")) << name;
+      write_rows(graph, folder, csv);
+      const auto lines = csv_lines(csv, "row,u,v,distance,spread,error_estimate,status");
+      const RowLogMap on_rows = surface.on_rows(expected);
+      for (const auto& [row, line] : lines) {
+        double number[5];
+        const auto r = static_cast<std::size_t>(row);
+        if (on_rows.status[r] != Status::ok) continue;
+        ASSERT_EQ(std::sscanf(line.c_str(), ",%lf,%lf,%lf,%lf,%lf,ok", number, number + 1, number + 2, number + 3,
+                              number + 4),
+                  5)
+            << line;
+        EXPECT_EQ(number[3], on_rows.spread[r]);
+        EXPECT_EQ(number[4], on_rows.error_estimate[r]);
+      }
+    }
+  }
+}
+
+TEST(TiledLogMap, OfSecondOrderHasCoordinates) {
+  const TiledCloud cloud(hills(20), {.tile_points = 400});
+  cloud.build();
+  const TiledGraph graph(cloud.tiles, 1 << 30);
+  const auto make = [&](const distributed::TiledMapOptions& options) {
+    write_log_map(graph, Source::at_vertex(Vertex{0}), cloud.folder.directory() / "map", options);
+  };
+  expect_error<InvalidArgument>([&] { make({.heat = {.order = 2}, .coordinates = false}); }, "order 1");
+  expect_error<InvalidArgument>([&] { make({.heat = {.order = 3}}); }, "order is 3");
+}
+
 /// Of distances alone: those of the localized map, to the bit, and nothing else on disk.
 TEST(TiledLogMap, DistancesAloneAreThoseOfTheLocalizedMap) {
   const TiledCloud cloud(two_hills(70, 40), {.tile_points = 600});
@@ -142,6 +194,42 @@ TEST(TiledLogMap, HasTheRowsOfTheSurface) {
   EXPECT_GT(raised, 0);
 }
 
+/// Where the straight line raises a row beyond the radius it has none of the map.
+TEST(TiledLogMap, HasTheRowsOfTheSurfaceAsFarAsTheRadius) {
+  const TiledCloud cloud(hills(60), {.tile_points = 1000});
+  cloud.build();
+  const auto surface = pointcloud::PointCloudSurface::build(cloud.points, {}, {.parts_apart = false});
+  const Source source = Source::at_vertex(surface.rows().vertex(Row(0)).value());
+  const LogMapSolver solver(surface.graph(), {.strategy = Strategy::march});
+  const LogMap whole = solver.solve(source);
+  const RowLogMap all = surface.on_rows(whole);
+  std::size_t raised = 0;
+  const auto gain = [&](std::size_t r) { return all.distance[r] - whole.distance(*all.vertex[r]); };
+  for (std::size_t r = 0; r < all.distance.size(); ++r)
+    if (gain(r) > gain(raised)) raised = r;
+  ASSERT_GT(gain(raised), 1e-6);
+  const double radius = all.distance[raised] - 0.5 * gain(raised);
+  const RowLogMap expected = surface.on_rows(solver.solve(source, {.radius = radius}));
+  ASSERT_EQ(expected.status[raised], Status::beyond_radius);
+
+  const TiledGraph graph(cloud.tiles, 1 << 30);
+  const auto folder = cloud.folder.directory() / "map", csv = cloud.folder.directory() / "map.csv";
+  for (const bool coordinates : {true, false}) {
+    distributed::TiledMapOptions options{.radius = radius, .coordinates = coordinates};
+    const auto summary = write_log_map(graph, source, folder, options);
+    write_rows(graph, folder, csv);
+    if (!coordinates) break;  // those of the localized map
+    EXPECT_GT(summary.ok, std::count(expected.status.begin(), expected.status.end(), Status::ok));
+    for (const auto& [row, line] : csv_lines(csv, "row,u,v,distance,spread,status"))
+      EXPECT_TRUE(line.ends_with("," + std::string(to_string(expected.status[static_cast<std::size_t>(row)])))) << line;
+  }
+  for (const auto& [row, line] : csv_lines(csv, "row,distance,status")) {
+    const bool ok = line.ends_with(",ok");
+    EXPECT_EQ(ok, line != ",,beyond_radius") << line;
+    EXPECT_TRUE(!ok || std::stod(line.substr(1)) <= radius) << line;
+  }
+}
+
 TEST(TiledLogMap, IsWrittenAsRowsOfTheInput) {
   std::vector<Vec3> points = hills(60);
   points.push_back(points[77]);
@@ -162,6 +250,9 @@ TEST(TiledLogMap, IsWrittenAsRowsOfTheInput) {
   EXPECT_EQ(graph.vertex_of_row(Row(60 * 60 + 1)), std::nullopt);
   EXPECT_THROW(graph.vertex_of_row(Row(60 * 60 + 2)), InvalidArgument);
   EXPECT_EQ(graph.nearest_vertex(points[77]), graph.vertex_of_row(Row(77)));
+  const Row many[] = {Row(77), Row(60 * 60 + 1), Row(5), Row(77), Row(60 * 60)};
+  const auto found = graph.vertices_of_rows(many);
+  for (std::size_t k = 0; k < found.size(); ++k) EXPECT_EQ(found[k], graph.vertex_of_row(many[k]));
 }
 
 }  // namespace

@@ -32,7 +32,8 @@ struct Ended {};
 distributed::TiledMapSummary make(const TiledCloud& cloud, const path& folder, TiledMapOptions options,
                                   Index bands = 0) {
   const TiledGraph graph(cloud.tiles, 1 << 30);
-  options.heat.progress.report = [&, begun = Index{0}](std::string_view stage, double) mutable {
+  Index begun = 0;
+  options.heat.progress.report = [&](std::string_view stage, double) {
     if (stage == "solve" && ++begun == bands) throw Ended();
   };
   return write_log_map(graph, Source::at_vertex(graph.vertex_of_row(Row(3)).value()), folder, options);
@@ -71,6 +72,26 @@ TEST(MapRestart, AfterAnyBandEndsWithTheSameBytes) {
   const Strip cloud;
   expect_same_bytes(cloud, {}, 1, 1);
   for (const TiledMapOptions& options : all_options()) expect_same_bytes(cloud, options, 3, 5);
+}
+
+/// In the map of either time, and in what is found before.
+TEST(MapRestart, OfSecondOrderEndsWithTheSameBytes) {
+  const Strip cloud;
+  const auto whole = cloud.folder.directory() / "whole", folder = cloud.folder.directory() / "map";
+  TiledMapOptions options{.heat = {.order = 2}, .checkpoint = 3};
+  const Index bands = make(cloud, whole, options).march.bands;
+  const auto expected = contents(whole);
+  for (Index band = 1; band <= bands; band += 4) {
+    EXPECT_THROW(make(cloud, folder, options, band), Ended);
+    EXPECT_FALSE(std::filesystem::exists(folder / "map.json"));
+    expect_error<InvalidArgument>([&] { make(cloud, folder, {}); }, "not finished, of other");
+    const auto summary = make(cloud, folder, options);
+    EXPECT_LE(summary.begun_at, band - 1);
+    EXPECT_GE(summary.begun_at, band - options.checkpoint);
+    EXPECT_EQ(summary.march.bands, bands);
+    ASSERT_TRUE(contents(folder) == expected) << "ended in band " << band;
+    std::filesystem::remove_all(folder);
+  }
 }
 
 TEST(MapRestart, AgainAndAgainEndsWithTheSameBytes) {
@@ -198,11 +219,15 @@ TEST(MapRestart, OfAKilledProgramEndsWithTheSameBytes) {
   ASSERT_EQ(end_of(start(whole)), 0);
   std::filesystem::rename(tile, kept);
   ASSERT_EQ(::mkfifo(tile.c_str(), 0600), 0);
-  const pid_t child = start(folder);
-  for (int tries = 0; tries < 12'000 && !std::filesystem::exists(folder / "march.json"); ++tries)
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  ::kill(child, SIGKILL);
-  EXPECT_EQ(end_of(child), -SIGKILL);
+  for (const int number : {SIGKILL, SIGINT}) {
+    std::filesystem::remove_all(folder);
+    const pid_t child = start(folder);
+    for (int tries = 0; tries < 12'000 && !std::filesystem::exists(folder / "march.json"); ++tries)
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    ::kill(child, number);
+    EXPECT_EQ(end_of(child), number == SIGKILL ? -SIGKILL : 128 + SIGINT);
+  }
+  for (const auto& [name, bytes] : contents(folder)) EXPECT_EQ(name.find(".tmp"), std::string::npos) << name;
   std::filesystem::rename(kept, tile);
   ASSERT_EQ(end_of(start(folder)), 0);
   std::ifstream said(log);

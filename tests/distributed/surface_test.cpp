@@ -60,8 +60,9 @@ std::vector<double> numbers_of(const std::string& line) {
 
 /// The file's u, v, distance, spread and status at every row are those of the surface, to the accuracy of the march; the spread,
 /// which is a root of a difference of squares, to that of its square.
-void expect_rows(const TiledSurface& tiled, const RowLogMap& expected) {
-  const auto lines = csv_lines(tiled.csv, "row,u,v,distance,spread,status");
+void expect_rows(const TiledSurface& tiled, const RowLogMap& expected, bool second_order = false) {
+  const auto lines = csv_lines(
+      tiled.csv, second_order ? "row,u,v,distance,spread,error_estimate,status" : "row,u,v,distance,spread,status");
   ASSERT_EQ(lines.size(), expected.u.size());
   double farthest = 0, worst = 0, worst_square = 0;
   for (double r : expected.distance) farthest = std::max(farthest, std::isnan(r) ? 0 : r);
@@ -105,6 +106,11 @@ void expect_same_maps(const Surface& surface, Index tile_points, std::size_t lea
     distributed::write_rows(graph, tiled.map, tiled.csv);
     expect_rows(tiled, expected(variant));
   }
+  const LogMapSolver second(surface.graph(), {.order = 2, .strategy = Strategy::march});
+  std::filesystem::remove_all(tiled.map);
+  write_log_map(graph, source, tiled.map, {.heat = {.order = 2}, .radius = radius});
+  distributed::write_rows(graph, tiled.map, tiled.csv);
+  expect_rows(tiled, surface.on_rows(second.solve(Source::at_vertex(surface.vertex(row)), {.radius = radius})), true);
   if (std::string(AHM_MPI_PROGRAM).empty()) return;
   std::filesystem::remove_all(tiled.map);
   std::vector<std::string> words{"-n",      "2",        AHM_MPI_PROGRAM,          "logmap", tiled.tiles, "-o",
@@ -245,13 +251,78 @@ TEST(TiledSurface, RefusesWhatTilesCannotSay) {
   expect_error<InvalidArgument>([&] { distributed::tile_surface(surface, "mesh.ply", tiled.tiles, 100); },
                                 "holds tiles already");
   expect_error<InvalidArgument>([&] { distributed::tile_surface(surface, "mesh.ply", tiled.map, 10); }, "tile_points");
-  const std::vector<Vec3> points{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}};
-  const std::vector<Triangle> pinched{{0, 1, 2}, {0, 3, 4}};
-  trimesh::MeshOptions split;
-  split.non_manifold = NonManifold::split;
-  const auto cut = TriangleMeshSurface::build(points, pinched, split);
-  expect_error<InvalidArgument>([&] { distributed::tile_surface(cut, "mesh.ply", tiled.map, 100); },
-                                "row 0 has 2 vertices");
+}
+
+/// Three pages of 20 x 20 squares that meet along the z axis, and a fourth at its foot alone.
+Mesh book() {
+  Mesh mesh;
+  constexpr Index side = 21;
+  std::vector<Index> spine;
+  for (int page = 0; page < 4; ++page) {
+    const double angle = 2 * page, foot = page == 3 ? -1 : 0;
+    std::vector<Index> at;
+    for (Index i = 0; i < side; ++i)
+      for (Index j = 0; j < side; ++j) {
+        const bool is_shared = i == 0 && (page == 3 ? j == side - 1 : page > 0);
+        at.push_back(is_shared ? spine[page == 3 ? 0 : j] : static_cast<Index>(mesh.positions.size()));
+        if (!is_shared) mesh.positions.push_back({i * std::cos(angle) / 20, i * std::sin(angle) / 20, foot + j / 20.0});
+        if (page == 0 && i == 0) spine.push_back(at.back());
+      }
+    for (Index i = 0; i + 1 < side; ++i)
+      for (Index j = 0; j + 1 < side; ++j) {
+        const Index a = at[i * side + j], b = at[(i + 1) * side + j];
+        const Index c = at[(i + 1) * side + j + 1], d = at[i * side + j + 1];
+        mesh.faces.push_back({a, b, c}), mesh.faces.push_back({a, c, d});
+      }
+  }
+  return mesh;
+}
+
+/// Its rows along the cuts have several vertices, of which the nearest tells.
+TEST(TiledSurface, OfACutMeshHasItsMaps) {
+  const Mesh mesh = book();
+  for (const bool flips : {true, false}) {
+    trimesh::MeshOptions options;
+    options.non_manifold = NonManifold::split;
+    options.intrinsic_delaunay = flips;
+    const auto surface = TriangleMeshSurface::build(mesh.positions, mesh.faces, options);
+    ASSERT_GT(surface.rows().vertices(Row(5)).size(), 1u);
+    for (const Row row : {Row(5), Row(200), Row(700)}) expect_same_maps(surface, 300, 5, row);
+  }
+}
+
+void write_off(const std::filesystem::path& name, const Mesh& mesh) {
+  std::ofstream off(name);
+  off.precision(17);
+  off << "OFF\n" << mesh.positions.size() << ' ' << mesh.faces.size() << " 0\n";
+  for (const Vec3& p : mesh.positions) off << p[0] << ' ' << p[1] << ' ' << p[2] << '\n';
+  for (const Triangle& f : mesh.faces) off << "3 " << f[0] << ' ' << f[1] << ' ' << f[2] << '\n';
+}
+
+TEST(TiledSurface, TakesTheOptionsOfMeshesAndTellsWarningsInWords) {
+  const TemporaryFolder folder;
+  Mesh mesh = book();
+  mesh.positions.push_back({9, 9, 9});
+  const auto file = folder.directory() / "book.off";
+  write_off(file, mesh);
+  const auto plan = [&](const std::string& name, const std::string& options, int status = 0) {
+    return said_by(std::string(AHM_TILES_PROGRAM) + " plan " + file.string() + " -o " +
+                       (folder.directory() / name).string() + " " + options,
+                   status);
+  };
+  EXPECT_NE(plan("tiles", "", 1).find("--non-manifold split cuts the mesh there"), std::string::npos);
+  const std::string said = plan("tiles", "--non-manifold split --threads 1");
+  EXPECT_NE(said.find("1 vertex that no face uses was left out"), std::string::npos) << said;
+  EXPECT_NE(said.find("edges with more than two faces were cut"), std::string::npos) << said;
+  EXPECT_TRUE(TiledGraph(folder.directory() / "tiles", 1 << 24).is_delaunay());
+  plan("unflipped", "--non-manifold split --no-flips");
+  EXPECT_FALSE(TiledGraph(folder.directory() / "unflipped", 1 << 24).is_delaunay());
+  std::ofstream(folder.directory() / "points.off") << "OFF\n3 0 0\n0 0 0\n1 0 0\n0 1 0\n";
+  const std::string refused =
+      said_by(std::string(AHM_TILES_PROGRAM) + " plan " + (folder.directory() / "points.off").string() + " -o " +
+                  (folder.directory() / "none").string() + " --no-flips",
+              1);
+  EXPECT_NE(refused.find("--no-flips are for meshes"), std::string::npos) << refused;
 }
 
 TEST(TiledSurface, IsMadeByTheProgram) {
@@ -259,12 +330,7 @@ TEST(TiledSurface, IsMadeByTheProgram) {
   const Mesh mesh = icosphere(8);
   const auto file = folder.directory() / "mesh.off", tiles = folder.directory() / "tiles",
              map = folder.directory() / "map", csv = folder.directory() / "map.csv";
-  std::ofstream off(file);
-  off.precision(17);
-  off << "OFF\n" << mesh.positions.size() << ' ' << mesh.faces.size() << " 0\n";
-  for (const Vec3& p : mesh.positions) off << p[0] << ' ' << p[1] << ' ' << p[2] << '\n';
-  for (const Triangle& f : mesh.faces) off << "3 " << f[0] << ' ' << f[1] << ' ' << f[2] << '\n';
-  off.close();
+  write_off(file, mesh);
   const std::string program = AHM_TILES_PROGRAM, plan = program + " plan " + file.string() + " -o " + tiles.string();
   EXPECT_NE(said_by(plan + " --k 60", 1).find("--k and --drop-nan are for clouds"), std::string::npos);
   EXPECT_NE(said_by(plan + " --tile-points 200").find("tiles, built"), std::string::npos);

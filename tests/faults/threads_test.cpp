@@ -7,8 +7,11 @@
 #include <thread>
 
 #include "ahm/fields/distance.hpp"
+#include "ahm/graph/validate.hpp"
+#include "ahm/maps/local_coordinates.hpp"
 #include "ahm/maps/local_maps.hpp"
 #include "ahm/maps/log_map_solver.hpp"
+#include "ahm/maps/quality.hpp"
 #include "ahm/pointcloud/point_cloud_surface.hpp"
 #include "ahm/polymesh/polygon_mesh_surface.hpp"
 #include "ahm/surface/exact/exact_geodesics.hpp"
@@ -129,6 +132,36 @@ TEST(Threads, MakeTheSameLocalMapsAndPaths) {
   const Numbers expected = numbers(1);
   EXPECT_EQ(numbers(2), expected);
   EXPECT_EQ(numbers(8), expected);
+}
+
+/// Loops over vertices are shared out in chunks of up to 32,768.
+TEST(Threads, ShareOutWhatHasMoreVerticesThanOneChunk) {
+  const auto numbers = [](unsigned threads) {
+    const auto surface = surface_of(torus(40'000), threads);
+    validate(surface.graph(), threads);
+    Numbers all = surface.graph().data().weights;
+    const LogMapSolver solver(surface.graph(), {.strategy = Strategy::march, .threads = threads});
+    const LogMap map = solver.solve(Source::at_vertex(Vertex{7}));
+    for (const double x : numbers_of({map})) all.push_back(x);
+    for (const double x : map_quality(surface.graph(), map, threads)) all.push_back(x);
+    const auto of_cloud = pointcloud::PointCloudSurface::build(flat_cloud(12'000).points, {}, {.threads = threads});
+    all.insert(all.end(), of_cloud.graph().data().weights.begin(), of_cloud.graph().data().weights.end());
+    return all;
+  };
+  EXPECT_TRUE(same(numbers(3), numbers(1)));
+}
+
+/// As charts of atlases are.
+TEST(Threads, SolveOnPatchesOfTheirOwn) {
+  const auto surface = surface_of(holed_square(20), 1);
+  const std::vector<Source> sources = some_sources(surface.graph(), 40);
+  std::vector<Vertex> everything;
+  for (Index i = 0; i < surface.graph().size(); ++i) everything.emplace_back(i);
+  const std::vector<std::span<const Vertex>> regions(sources.size(), std::span<const Vertex>(everything).first(200));
+  const auto numbers = [&](unsigned threads) {
+    return local_coordinates(surface.graph(), sources, regions, {.threads = threads});
+  };
+  EXPECT_TRUE(same(numbers(4), numbers(1)));
 }
 
 }  // namespace

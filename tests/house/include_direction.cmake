@@ -44,7 +44,7 @@ foreach(folder libahm backends io view viewer testing)
   forbid(${folder} "ahm/distributed/" "what does not fit into memory stands on what does")
 endforeach()
 forbid(distributed "ahm/(view|viewer|applications|trimesh|polymesh|grid|pcl)/" "tiles stand on clouds, io and the core; only the program opens meshes"
-  "program/plan_mesh\\.cpp$")
+  "program/plan_mesh\\.[ch]pp$")
 foreach(folder libahm backends io view viewer apps distributed)
   forbid(${folder} "ahm/testing/" "testing is for tests and benchmarks")
 endforeach()

@@ -3,24 +3,26 @@
 #include <signal.h>
 #include <unistd.h>
 
-#include <string_view>
+#include <string>
 
 #include "ahm/io/atomic_file.hpp"
 
 namespace ahm::app {
 namespace {
 
+std::string message;  // set before any handler is
+
 // Only calls that are allowed in a handler.
 extern "C" void on_signal(int number) {
   io::remove_unfinished_files();
-  constexpr std::string_view message = "\nahm: interrupted\n";
   [[maybe_unused]] const ssize_t ignored = write(STDERR_FILENO, message.data(), message.size());
   _exit(128 + number);
 }
 
 }  // namespace
 
-void install_interrupt_handling() {
+void install_interrupt_handling(const std::string& program) {
+  message = "\n" + program + ": interrupted\n";
   signal(SIGPIPE, SIG_IGN);  // writing reports EPIPE
   signal(SIGXFSZ, SIG_IGN);  // writing reports EFBIG
   constexpr int ending[] = {SIGINT, SIGTERM, SIGHUP};

@@ -2,6 +2,8 @@
 /// Ctrl-C and kill: no half-written file, gone within a second.
 #pragma once
 
+#include <string>
+
 namespace ahm::app {
 
 /// On SIGINT, SIGTERM and (unless it is ignored, as under nohup) SIGHUP removes unfinished output files and ends the
@@ -9,6 +11,7 @@ namespace ahm::app {
 /// instead of a signal. Call once, before any thread is started.
 ///
 /// The process ends without unwinding: the longest stage, the factorization, cannot be interrupted.
-void install_interrupt_handling();
+/// @param program  its name, as it appears in what is said then
+void install_interrupt_handling(const std::string& program);
 
 }  // namespace ahm::app

@@ -28,7 +28,7 @@ int report(const std::string& message, int status) {
 }
 
 int run(int argc, char** argv) try {
-  install_interrupt_handling();
+  install_interrupt_handling("ahm");
   parse_command_line(argc, argv)();
   return 0;
 } catch (const UsageError& e) {

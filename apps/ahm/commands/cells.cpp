@@ -162,7 +162,7 @@ void report(const CellsOptions& options, const Input& input, const std::vector<I
   j["largest_distance"] = farthest;
   j["smallest_area"] = smallest->area;
   j["largest_area"] = largest->area;
-  for (std::size_t k = 0; k < rows.size(); ++k)
+  for (std::size_t k = 0; k < rows.size() && !options.output.json.empty(); ++k)  // 2 kB each
     j["sources"].push_back({{"label", k},
                             {"row", rows[k]},
                             {"position", positions[k]},

@@ -45,7 +45,7 @@ constexpr Sentence sentences[] = {
     {"duplicates_dropped", "{0:.0f} [face was|faces were] dropped that [was|were] given before"},
     {"faces_turned",
      "{0:.0f} [face was|faces were] turned over, so that neighbours agree and closed parts look outwards"},
-    {"unreferenced", "{0:.0f} [vertex is|vertices are] used by no face and [was|were] left out"},
+    {"unreferenced", "{0:.0f} [vertex|vertices] that no face uses [was|were] left out"},
     {"reoriented", "{0:.0f} [face was|faces were] turned over to orient the mesh consistently"},
     {"non_manifold_edges", "{0:.0f} [edge|edges] with more than two faces [was|were] cut"},
     {"non_manifold_vertices",

@@ -97,6 +97,7 @@ std::vector<Vertex> farthest_points(const ExactGeodesics& geodesics, Vertex firs
     std::vector<Vertex> points{first};
     std::vector<double> distance(static_cast<std::size_t>(triangles.vertex_count()),
                                  std::numeric_limits<double>::infinity());
+    Farthest farthest(triangles.vertex_count());
     exact::ExactOptions nearer{.tolerance = options.tolerance, .targets = {}, .progress = {}};
     nearer.progress.stop = options.progress.stop;
     while (points.size() < static_cast<std::size_t>(count)) {
@@ -104,9 +105,8 @@ std::vector<Vertex> farthest_points(const ExactGeodesics& geodesics, Vertex firs
       const exact::ExactMap map = exact::exact_map(triangles, triangles.vertex_point(points.back()), nearer);
       for (Index i = 0; i < map.size(); ++i)
         if (const double d = map.distance(Vertex(i)); d < distance[i]) distance[i] = d;  // never so for NaN
-      const auto farthest = std::max_element(distance.begin(), distance.end());
-      points.emplace_back(static_cast<Index>(farthest - distance.begin()));
-      nearer.radius = *farthest;  // beyond, no vertex gets nearer
+      points.push_back(farthest.of([&](Vertex vertex) { return distance[vertex.index]; }));
+      nearer.radius = distance[points.back().index];  // beyond, no vertex gets nearer
     }
     return points;
   });

@@ -164,6 +164,19 @@ TEST(LocalMaps, FindAllNeighboursWhereEdgesGoRoundCorners) {
   EXPECT_EQ(static_cast<Index>(maps.neighbors.size()), expected);
 }
 
+/// Where they alone would fill the memory, before it is taken.
+TEST(LocalMaps, RefuseWhatFillsTheMemory) {
+  const CsrGraph graph(sphere_graph(2000));
+  LocalMapOptions options{.radius = 10, .heat = {.memory = 10'000'000}};
+  EXPECT_THROW(local_maps(graph, options), ResourceExhausted);  // 2000 x 2000 entries
+  EXPECT_EQ(local_maps(graph, every(100, graph), options).neighbors.size(), 20u * 2000u);
+  options.nearest = 9;
+  EXPECT_EQ(local_maps(graph, options).neighbors.size(), 9u * 2000u);
+  options.nearest = 0;
+  options.radius = 0.1;
+  EXPECT_GT(local_maps(graph, options).neighbors.size(), 2000u);
+}
+
 TEST(LocalMaps, RefuseNonsense) {
   const CsrGraph graph(sphere_graph(200));
   for (double radius : {0.0, -1.0, double(NAN), double(INFINITY)})

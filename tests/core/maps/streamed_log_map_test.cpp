@@ -11,6 +11,7 @@
 #include "ahm/testing/curved_graphs.hpp"
 #include "ahm/testing/flat_graphs.hpp"
 #include "ahm/testing/graph_changes.hpp"
+#include "maps/edge_paths.hpp"
 #include "maps/march.hpp"
 #include "maps/team_log_map.hpp"
 
@@ -106,13 +107,13 @@ TEST(StreamedLogMap, GoesOnFromTheEndOfAnyBand) {
       const Source source = Source::at_vertex(Vertex{5});
       Alone alone(graph.dimension());
       Rows expected(graph);
-      const MarchStatistics march = team_log_map(graph, source, {}, {}, expected, alone, goal);
+      const MarchStatistics march = team_log_map(graph, source, {}, {}, expected, alone, {.goal = goal});
       ASSERT_GT(march.bands, 2);
       for (Index band = 1; band < march.bands; ++band) {
         OneBand keeper;
         keeper.band = band;
         Rows first(graph), second(graph);
-        team_log_map(graph, source, {}, {}, first, alone, goal, &keeper);
+        team_log_map(graph, source, {}, {}, first, alone, {.goal = goal, .keeper = &keeper});
         ASSERT_TRUE(keeper.state.has_value());
         if (keeper.state->statistics.bands == march.bands) continue;  // the last
         std::vector<int> before(first.told.size(), 0);
@@ -120,7 +121,8 @@ TEST(StreamedLogMap, GoesOnFromTheEndOfAnyBand) {
         const std::vector<Index>& passed = keeper.state->passed;
         for (std::size_t run = 0; run < passed.size(); run += 2)
           for (Index vertex = passed[run]; vertex < passed[run + 1]; ++vertex) ++before[vertex];
-        const MarchStatistics again = team_log_map(graph, source, {}, {}, second, alone, goal, &keeper);
+        const MarchStatistics again =
+            team_log_map(graph, source, {}, {}, second, alone, {.goal = goal, .keeper = &keeper});
         EXPECT_EQ(again.bands, march.bands);
         EXPECT_EQ(again.solved, march.solved);
         Index after = 0;
@@ -152,6 +154,58 @@ TEST(StreamedLogMap, EndsAtTheRadius) {
   }
   EXPECT_GT(ok, 0);
   EXPECT_LT(ok, graph.size());
+}
+
+/// Against rounds of relaxing all edges until nothing changes.
+TEST(StreamedLogMap, WaysAlongEdgesAreTheShortest) {
+  for (const CsrGraphData& data : {sphere_graph(1500), bent_lattice(8)}) {
+    const CsrGraph graph = telling(data);
+    std::vector<double> shortest(static_cast<std::size_t>(graph.size()), INFINITY);
+    shortest[5] = 0;
+    for (bool changes = true; changes;) {
+      changes = false;
+      for (Index i = 0; i < graph.size(); ++i) {
+        const Star star = graph.star(i);
+        for (std::size_t e = 0; e < star.degree(); ++e) {
+          double square = 0;
+          for (double x : star.log(e)) square += x * x;
+          const double way = shortest[i] + std::sqrt(square) * graph.length_unit();
+          double& there = shortest[star.neighbors[e]];
+          if (way < there * (1 - 1e-12)) there = way, changes = true;
+        }
+      }
+    }
+    const double farthest = *std::max_element(shortest.begin(), shortest.end());
+    for (const double longest : {static_cast<double>(INFINITY), 0.6 * farthest}) {
+      std::vector<int> told(shortest.size(), 0);
+      double last = 0;
+      edge_paths(graph, Source::at_vertex(Vertex{5}), longest, {}, [&](Index vertex, double length) {
+        ++told[vertex];
+        EXPECT_GE(length, last);
+        EXPECT_NEAR(length, shortest[vertex], 1e-12 * farthest);
+        last = length;
+      });
+      for (std::size_t i = 0; i < told.size(); ++i) EXPECT_EQ(told[i], shortest[i] <= longest ? 1 : 0);
+    }
+  }
+}
+
+TEST(StreamedLogMap, IsCancelledWhileDistancesAreUnfolded) {
+  CsrGraphData data = sphere_graph(6000);
+  data.is_delaunay = true;
+  const CsrGraph graph = telling(data);
+  std::stop_source stop;
+  HeatOptions options;
+  options.progress.stop = stop.get_token();
+  options.progress.report = [&](std::string_view stage, double) {
+    EXPECT_EQ(stage, "unfold");
+    stop.request_stop();
+  };
+  Rows rows(graph);
+  EXPECT_THROW(stream_log_map(graph, Source::at_vertex(Vertex{5}), options, {}, rows), Cancelled);
+  options.progress = {};
+  stream_log_map(graph, Source::at_vertex(Vertex{5}), options, {}, rows);
+  EXPECT_EQ(rows.told, std::vector<int>(rows.told.size(), 1));
 }
 
 TEST(StreamedLogMap, RefusesWhatNeedsTheWholeGraph) {

@@ -22,8 +22,7 @@ namespace ahm::distributed {
 /// @param input        what the surface was made of, for messages
 /// @param folder       made where it does not exist
 /// @param tile_points  vertices per tile, at least 100
-/// @throws InvalidArgument (tile_points; a surface without positions; a row with several vertices, where a mesh was cut;
-/// a folder that holds tiles), IoError
+/// @throws InvalidArgument (tile_points; a surface without positions; a folder that holds tiles), IoError
 Manifest tile_surface(const Surface& surface, const std::string& input, const std::filesystem::path& folder,
                       Index tile_points = TileOptions().tile_points, const Progress& progress = {});
 

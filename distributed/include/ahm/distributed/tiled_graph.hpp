@@ -45,9 +45,13 @@ class TiledGraph final : public TangentGraph {
 
   /// Component of a vertex, numbered in the order of their first vertices.
   Index component(Index vertex) const;
-  /// The vertex of an input row; none where it was removed. Reads all tiles.
+  /// Mean edge lengths of all components, graph units.
+  std::span<const double> component_edge_lengths() const noexcept { return edge_lengths_; }
+  /// The first vertex of an input row; none where it was removed. Reads all tiles.
   /// @throws InvalidArgument (no such row)
   std::optional<Vertex> vertex_of_row(Row row) const;
+  /// Of many, by one pass over the tiles.
+  std::vector<std::optional<Vertex>> vertices_of_rows(std::span<const Row> rows) const;
   /// The vertex at a row that is nearest to a position in world units. Reads all tiles.
   Vertex nearest_vertex(const Vec3& position) const;
 
@@ -63,6 +67,8 @@ class TiledGraph final : public TangentGraph {
     std::span<const Vec3> positions;  ///< of vertices, world units
   };
   TileRows rows(std::size_t tile) const;
+  /// Rows with several vertices, where a mesh was cut; ascending.
+  std::vector<Index> shared_rows() const;
   /// Times that memory of tiles was given back.
   std::int64_t releases() const noexcept { return releases_; }
 

@@ -5,17 +5,18 @@
 #include <limits>
 #include <numbers>
 
-#include "ahm/util/shortest_paths.hpp"
+#include "ahm/util/scratch.hpp"
 #include "ahm/util/small_math.hpp"
+#include "maps/edge_paths.hpp"
 #include "maps/heat_distance.hpp"
 
 namespace ahm {
 
-DiffusionTimes::DiffusionTimes(int order, const TangentGraph& graph, const ComponentScales& scales)
-    : count_(order == 1 ? 1 : 2), middle_(scales.sizes.size(), 1.0) {
+DiffusionTimes::DiffusionTimes(int order, int dimension, std::span<const Index> sizes)
+    : count_(order == 1 ? 1 : 2), middle_(sizes.size(), 1.0) {
   if (order == 1) return;
   for (std::size_t k = 0; k < middle_.size(); ++k) {
-    const double c = std::pow(static_cast<double>(scales.sizes[k]), 1.0 / graph.dimension()) / 50;
+    const double c = std::pow(static_cast<double>(sizes[k]), 1.0 / dimension) / 50;
     if (c < 2) continue;
     middle_[k] = c;
     count_ = 3;
@@ -25,6 +26,10 @@ DiffusionTimes::DiffusionTimes(int order, const TangentGraph& graph, const Compo
 double DiffusionTimes::factor(std::size_t k, Index component) const {
   if (k == 0) return 1.0;
   return k + 1 == count_ ? 2 * middle_[component] : middle_[component];
+}
+
+double DiffusionTimes::radius_of_each(double radius, std::span<const double> edge_lengths, double unit) const {
+  return count_ == 1 ? radius : radius + 8 * *std::max_element(edge_lengths.begin(), edge_lengths.end()) * unit;
 }
 
 namespace {
@@ -40,18 +45,10 @@ double share_of_first(double rate, double c, double relative_disagreement, doubl
 }
 
 /// Lengths of the shortest ways along edges from a source, world units; infinite where there is none.
-std::vector<double> edge_paths(const TangentGraph& graph, const Source& source) {
+std::vector<double> all_edge_paths(const TangentGraph& graph, const Source& source) {
   constexpr double none = std::numeric_limits<double>::infinity();
   std::vector<double> lengths(static_cast<std::size_t>(graph.size()), none);
-  ShortestPaths<double, std::vector<double>> paths(lengths, none);
-  const double unit = graph.length_unit();
-  for (std::size_t k = 0; k < source.vertices().size(); ++k)
-    if (source.weights()[k] > 0) paths.offer(source.vertices()[k].index, source.place(k).distance / unit);
-  paths.run([&](Index vertex, double distance) {
-    const Star star = graph.star(vertex);
-    for (std::size_t e = 0; e < star.degree(); ++e) paths.offer(star.neighbors[e], distance + length(star.log(e)));
-  });
-  for (double& x : lengths) x *= unit;
+  edge_paths(graph, source, none, {}, [&](Index vertex, double length) { lengths[vertex] = length; });
   return lengths;
 }
 
@@ -90,42 +87,53 @@ double limit_of(std::span<const double> p1, std::span<const double> pc, std::spa
 
 }  // namespace
 
+ExtrapolatedRow extrapolate_row(const std::array<TimedRow, 3>& rows, const ExtrapolationScales& scales,
+                                DistanceKind kind, double path, double radius, std::span<double> phi) {
+  std::fill(phi.begin(), phi.end(), NAN);
+  for (const TimedRow& row : rows)
+    if (row.status != Status::ok) return {row.status, NAN, NAN};
+  const auto& [first, middle, last] = rows;
+  const double c = scales.middle;
+  const double step = root_2_less_1 * std::sqrt(scales.t_coef * c) * scales.h;  // sqrt(tau_2c) - sqrt(tau_c)
+  Scratch at_zero(phi.size());
+  const std::span<double> limit = at_zero.span();
+  const double disagreement = limit_of(first.phi, middle.phi, last.phi, c, limit);
+  const double w = share_of_first(gap(last.phi, middle.phi) / step, c, disagreement / gap(limit, first.phi),
+                                  last.spread / std::max(last.distance, scales.h));
+  for (std::size_t a = 0; a < phi.size(); ++a) phi[a] = (1 - w) * limit[a] + w * first.phi[a];
+  const double r1 = first.distance, rc = middle.distance, r2 = last.distance;
+  double distance = r1 + (1 - w) * (std::max(0.0, rc - (r2 - rc) / root_2_less_1) - r1);
+  if (!kind.unfolded) distance = std::min(distance, std::max(r1, path));
+  if (!kind.of_curve) shorten(phi, first.phi, std::max(length(first.phi), distance));
+  if (all_finite(phi) && !(distance > radius)) return {Status::ok, distance, std::max(gap(phi, limit), disagreement)};
+  const Status status = all_finite(phi) ? Status::beyond_radius : Status::unreached;
+  std::fill(phi.begin(), phi.end(), NAN);
+  return {status, NAN, NAN};
+}
+
 LogMap extrapolate(const TangentGraph& graph, const ComponentScales& scales, double t_coef, const DiffusionTimes& times,
                    const std::vector<const LogMap*>& maps, double radius) {
-  const LogMap &first = *maps.front(), &middle = *maps[maps.size() - 2], &last = *maps.back();
+  const std::array<const LogMap*, 3> of_times{maps.front(), maps[maps.size() - 2], maps.back()};
+  const LogMap &first = *of_times[0], &middle = *of_times[1];
   const auto n = static_cast<std::size_t>(first.size()), d = static_cast<std::size_t>(first.dimension());
-  std::vector<double> coordinates(n * d, NAN), distances(n, NAN), error(n, NAN), limit(d);
-  std::vector<Status> status(n, Status::ok);
-  const bool is_curve = first.source().is_curve(), unfolded = unfolds(graph, first.source());
-  const std::vector<double> paths = unfolded ? std::vector<double>() : edge_paths(graph, first.source());
+  std::vector<double> coordinates(n * d), distances(n), error(n);
+  std::vector<Status> status(n);
+  const DistanceKind kind{unfolds(graph, first.source()), first.source().is_curve()};
+  const std::vector<double> paths = kind.unfolded ? std::vector<double>() : all_edge_paths(graph, first.source());
   for (std::size_t i = 0; i < n; ++i) {
     const auto vertex = Vertex(i);
-    for (const LogMap* map : maps)
-      if (status[i] == Status::ok) status[i] = map->status(vertex);
-    if (status[i] != Status::ok) continue;
-    const double c = times.middle(scales.component(vertex.index));
+    const auto row = [&](const LogMap& map) {
+      return TimedRow{map.status(vertex), map.coordinates(vertex), map.distance(vertex),
+                      map.spread().empty() ? 0 : map.spread()[i]};
+    };
     const double h = scales.h(vertex.index) * graph.length_unit();
-    const double step = root_2_less_1 * std::sqrt(t_coef * c) * h;  // sqrt(tau_2c) - sqrt(tau_c)
-    const auto p1 = first.coordinates(vertex), pc = middle.coordinates(vertex), p2 = last.coordinates(vertex);
-    const double disagreement = limit_of(p1, pc, p2, c, limit);
-    const double w = share_of_first(gap(p2, pc) / step, c, disagreement / gap(limit, p1),
-                                    last.spread().empty() ? 0 : last.spread()[i] / std::max(last.distance(vertex), h));
-    const std::span phi = std::span(coordinates).subspan(i * d, d);
-    for (std::size_t a = 0; a < d; ++a) phi[a] = (1 - w) * limit[a] + w * p1[a];
-    // Unfolded distances are the same at all times.
-    const double r1 = first.distance(vertex), rc = middle.distance(vertex), r2 = last.distance(vertex);
-    const double at_zero = std::max(0.0, rc - (r2 - rc) / root_2_less_1);
-    distances[i] = r1 + (1 - w) * (at_zero - r1);
-    if (!unfolded) distances[i] = std::min(distances[i], std::max(r1, paths[i]));
-    if (!is_curve) shorten(phi, p1, std::max(length(p1), distances[i]));
-    error[i] = std::max(gap(phi, limit), disagreement);
-    if (!all_finite(phi))
-      status[i] = Status::unreached;
-    else if (distances[i] > radius)
-      status[i] = Status::beyond_radius;
-    if (status[i] == Status::ok) continue;
-    std::fill(phi.begin(), phi.end(), NAN);
-    distances[i] = error[i] = NAN;
+    const ExtrapolatedRow found =
+        extrapolate_row({row(*of_times[0]), row(*of_times[1]), row(*of_times[2])},
+                        {t_coef, times.middle(scales.component(vertex.index)), h}, kind, kind.unfolded ? 0 : paths[i],
+                        radius, std::span(coordinates).subspan(i * d, d));
+    status[i] = found.status;
+    distances[i] = found.distance;
+    error[i] = found.error;
   }
   const bool marched =
       std::any_of(maps.begin(), maps.end(), [](auto* map) { return map->strategy() == Strategy::march; });

@@ -2,6 +2,8 @@
 /// Second order: maps of several diffusion times, extrapolated to time zero (docs/accuracy.md).
 #pragma once
 
+#include <array>
+#include <span>
 #include <vector>
 
 #include "ahm/graph/tangent_graph.hpp"
@@ -15,18 +17,57 @@ namespace ahm {
 /// ~ 1/c, and extrapolation removes the one in sqrt(tau) that grows with them.
 class DiffusionTimes {
  public:
-  DiffusionTimes(int order, const TangentGraph& graph, const ComponentScales& scales);
+  /// @param sizes  vertices of each component
+  DiffusionTimes(int order, int dimension, std::span<const Index> sizes);
 
   /// How many solves: 1; or 3, or 2 where c = 1 everywhere.
   std::size_t count() const { return count_; }
   /// Time number k of a component.
   double factor(std::size_t k, Index component) const;
   double middle(Index component) const { return middle_[component]; }
+  /// How far the map of each time goes, world units, where the extrapolated one goes as far as `radius`: maps of different times
+  /// differ a little there.
+  /// @param edge_lengths  mean ones of all components, in units of `unit`
+  double radius_of_each(double radius, std::span<const double> edge_lengths, double unit) const;
 
  private:
   std::size_t count_;
   std::vector<double> middle_;  ///< c
 };
+
+/// What the map of one time says of a vertex, world units.
+struct TimedRow {
+  Status status;
+  std::span<const double> phi;
+  double distance;
+  double spread;  ///< 0 where it is not known
+};
+
+/// What the maps of all times say together; NaN where not ok.
+struct ExtrapolatedRow {
+  Status status;
+  double distance, error;
+};
+
+/// The scales of a vertex.
+struct ExtrapolationScales {
+  double t_coef;
+  double middle;  ///< c of `DiffusionTimes`
+  double h;       ///< mean edge length of its component, world units
+};
+
+/// How the distances of a source are found.
+struct DistanceKind {
+  bool unfolded;  ///< the same at all times
+  bool of_curve;
+};
+
+/// One vertex: see below.
+/// @param rows  of the first, the middle and the last time; where these are two, the first twice
+/// @param path  length of the shortest way along edges; of unfolded distances it means nothing
+/// @param phi   d numbers, for the coordinates
+ExtrapolatedRow extrapolate_row(const std::array<TimedRow, 3>& rows, const ExtrapolationScales& scales,
+                                DistanceKind kind, double path, double radius, std::span<double> phi);
 
 /// Coordinates extrapolated vertex by vertex from the maps of one source at these times; distances of heat alike, along
 /// the same w.

@@ -8,6 +8,7 @@
 
 #include "ahm/error.hpp"
 #include "ahm/graph/validate.hpp"
+#include "ahm/maps/cost.hpp"
 #include "ahm/util/memory.hpp"
 #include "ahm/util/small_math.hpp"
 #include "ahm/util/text.hpp"
@@ -49,6 +50,40 @@ std::vector<double> radii_of(const TangentGraph& graph, std::span<const Source> 
     });
   }
   return radii;
+}
+
+/// Bytes per entry of the result, at the least.
+double entry_bytes(const TangentGraph& graph) {
+  return static_cast<double>(2 * sizeof(Index) + sizeof(double) * (2 + static_cast<std::size_t>(graph.dimension()) +
+                                                                   graph.transport_layout().width()));
+}
+
+/// Better refused than begun: where so much of the graph lies within the radius of half of the sources that these maps alone
+/// fill the memory. The middle one of some sources, spread over all, tells.
+void check_memory(const TangentGraph& graph, std::span<const Source> sources, std::span<const double> radii,
+                  const LocalMapOptions& options) {
+  const double memory = options.heat.memory > 0 ? static_cast<double>(options.heat.memory) : machine_memory();
+  if (!(memory > 0) || sources.empty()) return;
+  const double half = 0.5 * static_cast<double>(sources.size()) * entry_bytes(graph), enough = memory / half;
+  if (enough >= graph.size()) return;
+  constexpr std::size_t most = 15;
+  const std::size_t samples = std::min(most, sources.size());
+  std::vector<double> counts;
+  Ball ball(graph);
+  for (std::size_t k = 0; k < samples; ++k) {
+    const std::size_t s = (2 * k + 1) * sources.size() / (2 * samples);
+    double count = 0;
+    ball.grow(sources[s].vertices().first(1), radii[s] / graph.length_unit(), [&](Index, double) {
+      return options.nearest == 0 || count < options.nearest ? ++count <= enough : false;
+    });
+    counts.push_back(count);
+  }
+  std::sort(counts.begin(), counts.end());
+  if (const double count = counts[samples / 2]; count > enough)
+    throw ResourceExhausted("half of the " + std::to_string(sources.size()) + " local maps would hold more than " +
+                            detail::number(std::floor(enough)) + " vertices each, and fill the memory of " +
+                            detail::number(std::round(memory / 1e7) / 100) +
+                            " GB; take a smaller radius, fewer sources, or the nearest vertices alone");
 }
 
 /// One source's part of the result.
@@ -218,6 +253,7 @@ LocalMaps local_maps(const TangentGraph& graph, std::span<const Source> sources,
     options.heat.progress.step("group", 0.0);
     const ComponentScales scales(graph);
     std::vector<double> radii = radii_of(graph, sources, options), extent;
+    check_memory(graph, sources, radii, options);
     for (const double radius : radii) extent.push_back(radius / graph.length_unit());
     const auto groups = patch_groups(graph, scales, sources, extent, options.heat, options.margin);
     std::vector<Entries> entries(sources.size());

@@ -22,6 +22,7 @@
 #include "maps/front_stars.hpp"
 #include "maps/heat_distance.hpp"
 #include "maps/march.hpp"
+#include "maps/run_front.hpp"
 #include "maps/vertex_row.hpp"
 
 namespace ahm {
@@ -65,7 +66,7 @@ Unfolded unfolded_from(const TangentGraph& graph, const std::shared_ptr<const Un
   if (!unfolds(graph, source)) return {};
   UnfoldingFront front(graph, stars, map.spread && !source.is_curve());
   front.add(source);
-  front.run(map.radius);
+  run_front(front, graph, map.radius, map.progress.stop);
   const auto n = static_cast<std::size_t>(graph.size());
   Unfolded found{std::vector<double>(n), std::vector<double>(front.has_directions() ? 2 * n : 0)};
   for (std::size_t i = 0; i < n; ++i) {
@@ -148,7 +149,7 @@ LogMapSolver::Impl::Impl(const TangentGraph& graph, const HeatOptions& options)
       options(options),
       strategy(choose_strategy({graph.size(), graph.dimension(), graph.transport_kind()}, options)),
       scales(graph),
-      diffusion_times(options.order, graph, scales),
+      diffusion_times(options.order, graph.dimension(), scales.sizes),
       times(diffusion_times.count()) {
   for (std::size_t k = 0; k < times.size(); ++k) {
     for (Index c = 0; c < scales.components.count; ++c)
@@ -318,8 +319,7 @@ void LogMapSolver::Impl::check_memory() const {
 std::vector<LogMap> LogMapSolver::Impl::solve_block(std::span<const Source> sources, const MapSettings& map,
                                                     unsigned threads) const {
   MapSettings wider = map;
-  if (times.size() > 1)  // the maps of different times differ a little at the radius
-    wider.radius += 8 * *std::max_element(scales.edge_length.begin(), scales.edge_length.end()) * graph.length_unit();
+  wider.radius = diffusion_times.radius_of_each(map.radius, scales.edge_length, graph.length_unit());
   std::vector<Unfolded> unfolded;
   if (times.size() == 1) return solve_block(0, sources, unfolded, map, threads);
   std::vector<std::vector<LogMap>> at_times;

@@ -16,6 +16,7 @@
 #include "maps/heat_distance.hpp"
 #include "maps/march.hpp"
 #include "maps/right_hand_side.hpp"
+#include "maps/run_front.hpp"
 #include "maps/team_log_map.hpp"
 #include "maps/vertex_row.hpp"
 
@@ -37,12 +38,18 @@ class GraphScales final : public MarchScales {
 /// Makes rows of what the march finds.
 class Rows final : public MarchSink {
  public:
-  Rows(const TangentGraph& graph, const Source& source, double radius, MarchGoal goal, MapSink& sink)
-      : radius_(radius), sink_(sink), phi_(goal == MarchGoal::map ? static_cast<std::size_t>(graph.dimension()) : 0) {
+  Rows(const TangentGraph& graph, const Source& source, double radius, const TeamMarch& how, const Progress& progress,
+       MapSink& sink)
+      : radius_(radius),
+        sink_(sink),
+        phi_(how.goal == MarchGoal::map ? static_cast<std::size_t>(graph.dimension()) : 0),
+        distances_(how.distances) {
+    if (distances_) return;
     if (unfolds(graph, source)) {
+      progress.step("unfold", 0);
       front_.emplace(graph);
       front_->add(source);
-      front_->run(radius);
+      run_front(*front_, graph, radius, progress.stop);
       return;
     }
     for (std::size_t k = 0; k < source.vertices().size(); ++k)
@@ -52,7 +59,9 @@ class Rows final : public MarchSink {
   void accept(Index vertex, const HeatRow& found) override {
     std::copy_n(found.phi.begin(), phi_.size(), phi_.begin());
     VertexRow row = vertex_row(found);
-    if (front_)
+    if (distances_)
+      row.distance = distances_->of(vertex);
+    else if (front_)
       row.distance = front_->distance(Vertex(vertex));
     else if (const auto placed = placed_.find(vertex); placed != placed_.end())
       row.distance = placed->second;
@@ -67,12 +76,16 @@ class Rows final : public MarchSink {
  private:
   double radius_;
   MapSink& sink_;
-  std::vector<double> phi_;                   ///< empty for distances alone
+  std::vector<double> phi_;  ///< empty for distances alone
+  const KnownDistances* distances_;
   std::optional<UnfoldingFront> front_;       ///< that knows the distances; none: heat does
   std::unordered_map<Index, double> placed_;  ///< the source's own vertices
 };
 
-void check(const TangentGraph& graph, const Source& source, const HeatOptions& options, const MapOptions& map) {
+}  // namespace
+
+void check_streamed_map(const TangentGraph& graph, const Source& source, const HeatOptions& options,
+                        const MapOptions& map) {
   if (options.order != 1)
     throw InvalidArgument("order is " + std::to_string(options.order) + "; streamed maps have order 1");
   if (map.frames) throw InvalidArgument("streamed maps have no frames");
@@ -90,8 +103,6 @@ void check(const TangentGraph& graph, const Source& source, const HeatOptions& o
   }
 }
 
-}  // namespace
-
 MarchStatistics stream_log_map(const TangentGraph& graph, const Source& source, const HeatOptions& options,
                                const MapOptions& map, MapSink& sink) {
   Alone alone(graph.dimension());
@@ -101,20 +112,20 @@ MarchStatistics stream_log_map(const TangentGraph& graph, const Source& source, 
 MarchStatistics stream_distances(const TangentGraph& graph, const Source& source, const HeatOptions& options,
                                  const MapOptions& map, MapSink& sink) {
   Alone alone(graph.dimension());
-  return team_log_map(graph, source, options, map, sink, alone, MarchGoal::distances);
+  return team_log_map(graph, source, options, map, sink, alone, {.goal = MarchGoal::distances});
 }
 
 MarchStatistics team_log_map(const TangentGraph& graph, const Source& source, const HeatOptions& options,
-                             const MapOptions& map, MapSink& sink, MarchTeam& team, MarchGoal goal,
-                             MarchKeeper* keeper) {
-  check(graph, source, options, map);
+                             const MapOptions& map, MapSink& sink, MarchTeam& team, const TeamMarch& how) {
+  check_streamed_map(graph, source, options, map);
   const GraphScales scales(graph, options.t_coef);
-  Rows rows(graph, source, map.radius, goal, sink);
-  const Variant variant = goal == MarchGoal::map ? map.variant.value_or(options.variant) : Variant::localized;
+  const Progress progress = map.progress.value_or(options.progress);
+  Rows rows(graph, source, map.radius, how, progress, sink);
+  const Variant variant = how.goal == MarchGoal::map ? map.variant.value_or(options.variant) : Variant::localized;
   const unsigned threads = detail::thread_count(map.threads.value_or(options.threads));
-  March march(graph, options, scales, variant, map.radius, threads, map.progress.value_or(options.progress), &rows,
-              &team, goal);
-  march.run(source, keeper);
+  March march(graph, options, how.scales ? *how.scales : scales, variant, map.radius, threads, progress, &rows, &team,
+              how.goal);
+  march.run(source, how.keeper);
   return march.statistics();
 }
 

@@ -8,12 +8,33 @@
 
 namespace ahm {
 
+/// Distances that are known before the march.
+class KnownDistances {
+ public:
+  virtual ~KnownDistances() = default;
+  /// Of a vertex that the march has come to, world units.
+  virtual double of(Index vertex) const = 0;
+};
+
+/// How a team makes a map.
+struct TeamMarch {
+  MarchGoal goal = MarchGoal::map;
+  /// Null: nothing is kept. Else each member has its own, the march goes on from where they say, and sinks are told of what comes
+  /// after that.
+  MarchKeeper* keeper = nullptr;
+  /// Null: those that the graph tells, and `HeatOptions::t_coef`.
+  const MarchScales* scales = nullptr;
+  /// Null: those of heat, or unfolded by each member for itself.
+  const KnownDistances* distances = nullptr;
+};
+
+/// What `team_log_map` asks of its arguments. @throws InvalidArgument
+void check_streamed_map(const TangentGraph& graph, const Source& source, const HeatOptions& options,
+                        const MapOptions& map);
+
 /// As `stream_log_map` or `stream_distances`, called by all members of the team with the same arguments but for `sink`, which is told of
 /// the member's own vertices alone. The graph is asked for stars of these, and for masses and edge lengths of the source's vertices.
-/// @param keeper  null: nothing is kept. Else each member has its own, the march goes on from where they say, and sinks are told
-///                of what comes after that
 MarchStatistics team_log_map(const TangentGraph& graph, const Source& source, const HeatOptions& options,
-                             const MapOptions& map, MapSink& sink, MarchTeam& team, MarchGoal goal = MarchGoal::map,
-                             MarchKeeper* keeper = nullptr);
+                             const MapOptions& map, MapSink& sink, MarchTeam& team, const TeamMarch& how = {});
 
 }  // namespace ahm

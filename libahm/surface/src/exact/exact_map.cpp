@@ -49,18 +49,24 @@ Found propagate(const PolyhedralSurface& surface, std::span<const MeshPoint> sou
 /// whose angles are those of rounding.
 void check_reached(const PolyhedralSurface& surface, const Found& found, double tolerance) {
   const std::span<const double> distance = found.distance;
-  for (Half h = 0; h < 3 * surface.face_count(); ++h) {
-    const HalfRecord& r = surface.record(h);
-    const auto check = [&](Index from, Index to) {
-      const double way = (distance[from] + r.length) * (1 + 1e-9 + 3 * tolerance);
-      if (!(way < found.horizon) || distance[to] <= way) return;
-      throw InvalidGeometry("windows_lost",
-                            "windows were lost on the way to vertex " + std::to_string(to) + ", a side of " +
-                                detail::number(r.length) + " from vertex " + std::to_string(from),
-                            "repair the needles there, allow for a tolerance, or use heat");
-    };
-    check(r.tail, r.head);
-    check(r.head, r.tail);
+  const auto check = [&](Index from, Index to, double length) {
+    const double way = (distance[from] + length) * (1 + 1e-9 + 3 * tolerance);
+    if (!(way < found.horizon) || distance[to] <= way) return;
+    throw InvalidGeometry("windows_lost",
+                          "windows were lost on the way to vertex " + std::to_string(to) + ", a side of " +
+                              detail::number(length) + " from vertex " + std::to_string(from),
+                          "repair the needles there, allow for a tolerance, or use heat");
+  };
+  for (Index v = 0; v < surface.vertex_count(); ++v) {
+    if (!(distance[v] < found.horizon)) continue;  // most, where the radius is small
+    const Corner first = surface.first_corner(v);
+    for (Corner c = first; c.half >= 0;) {
+      const HalfRecord r = surface.record(c.half);
+      check(v, r.head, r.length);
+      check(v, r.apex, r.left);
+      c = surface.turn_left(c);
+      if (c.half == first.half) break;
+    }
   }
 }
 

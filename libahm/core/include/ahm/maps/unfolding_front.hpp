@@ -56,6 +56,10 @@ class UnfoldingFront {
   /// Lets the front go on, as far as `radius` (world units). May be called again after `add`: only what is nearer to the new
   /// points changes.
   void run(double radius = std::numeric_limits<double>::infinity());
+  /// The distance at which the front goes on, world units; infinity where it has come to its end.
+  double next() const {
+    return queue_.empty() ? std::numeric_limits<double>::infinity() : queue_.top().distance * graph_.length_unit();
+  }
 
   /// The distance to the nearest point, world units; infinity where the front did not come.
   double distance(Vertex vertex) const;
