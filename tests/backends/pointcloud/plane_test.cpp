@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 #include <random>
 
 #include "ahm/maps/quality.hpp"
+#include "ahm/maps/unfolding_front.hpp"
 #include "ahm/testing/vectors.hpp"
 #include "solved_cloud.hpp"
 
@@ -84,6 +86,24 @@ TEST(FlatCloud, IsNotTrustedBehindAWall) {
     ++behind;
   }
   EXPECT_GT(behind, 300);
+}
+
+// A line along the diagonals of squares passes between triangles that bend away from it on either side.
+TEST(RolledCloud, OfSquaresIsCrossedDiagonally) {
+  const int around = 120, rows = 40;
+  const double h = 2 * std::numbers::pi / around;
+  Cloud cloud;
+  for (int y = 0; y < rows; ++y)
+    for (int k = 0; k < around; ++k) cloud.points.push_back({std::cos(h * k), std::sin(h * k), h * y});
+  const auto surface = pointcloud::PointCloudSurface::build(cloud.points);
+  UnfoldingFront front(surface.graph());
+  front.add(surface.source(Row(0)).source);
+  front.run();
+  for (int y = 0; y < rows; ++y)
+    for (int k = 0; k < around; ++k) {
+      const double exact = h * std::hypot(y, std::min(k, around - k));
+      ASSERT_NEAR(front.distance(*surface.rows().vertex(Row(y * around + k))), exact, 0.002 * exact) << y << ", " << k;
+    }
 }
 
 TEST(FlatCloud, CoversItsArea) {

@@ -244,6 +244,7 @@ LogMap LogMapSolver::Impl::map_of(const Values& values, Strategy how, const Marc
     std::fill_n(coordinates.begin() + static_cast<std::ptrdiff_t>(i * d), d, NAN);
     extras.distances[i] = NAN;
     if (!extras.spread.empty()) extras.spread[i] = NAN;
+    if (!extras.directions.empty()) extras.directions[2 * i] = extras.directions[2 * i + 1] = NAN;
   }
   return LogMap(static_cast<int>(d), map.variant, how, source, std::move(coordinates), std::move(status),
                 std::move(extras));

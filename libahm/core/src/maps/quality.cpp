@@ -21,7 +21,7 @@ namespace {
 constexpr double doubtful_spread = 0.3, doubtful_difference = 0.1;
 /// In mean edge lengths, by which fronts over edges that are no triangulation may be off.
 constexpr double forgiven = 1;
-/// Of the triangles that vertices see around them, the shares that the others must see, too, for a front's directions to count at all
+/// Of the triangles that vertices see around them, the shares that the others must see, too, for a front to count at all
 /// and in full: with noise every vertex sees triangles of its own.
 constexpr double believed_from = 0.7, believed_in_full = 0.8;
 /// As many vertices are asked for them.
@@ -51,15 +51,16 @@ class Comparison {
   /// How far phi is off by what the front says, world units.
   double off(Vertex vertex, double h) const {
     const std::span<const double> phi = map_.coordinates(vertex);
-    const double d = front_.distance(vertex), longer = d - length(phi);
-    if (!(belief_ > 0) || d == 0 || front_.is_bent(vertex)) return longer - forgiven * h;
-    return std::max(longer, belief_ * difference(phi, d, front_.direction(vertex))) - forgiven * h;
+    const double d = std::min(front_.distance(vertex), reach * map_.radius());
+    double off = d - length(phi);
+    if (d > 0 && !front_.is_bent(vertex)) off = std::max(off, difference(phi, d, front_.direction(vertex)));
+    return belief_ * off - forgiven * h;
   }
 
  private:
   const LogMap& map_;
   UnfoldingFront front_;
-  double belief_;  ///< in directions
+  double belief_;  ///< in what the front says
 };
 
 }  // namespace

@@ -22,20 +22,23 @@ constexpr Index most_gains = 40;
 constexpr Index most_points = 8;
 /// Sides that are shorter than this share of the other two, or of a distance, no longer tell where its point lies.
 constexpr double shortest_side = 1e-6, shortest_side_far_away = 1e-13;
+/// A line may miss the side by this share of it, and is taken to pass its end. Where edges are no triangulation, as between points that lie
+/// in squares, it may pass between two triangles that bend away from it, and seen from neither leave only edges.
+constexpr double missed = 1e-9, missed_between = 1e-3;
 /// Of a ray shorter than this share of a side nobody knows the direction.
 constexpr double least_ray = 1e-6;
 
 /// The square of the distance of c from a point at distances `from_a` and `from_b`, beyond the side ab of a triangle with
 /// a at 0, b at (ab, 0) and c at (cx, cy) above, the point below; `limit` where it is no less, or where the straight line
 /// to the point does not cross that side.
-double squared_across(double from_a, double from_b, double ab, double cx, double cy, double limit) {
+double squared_across(double from_a, double from_b, double ab, double cx, double cy, double limit, double missed) {
   if (!(ab > shortest_side * std::max(std::abs(cx), cy)) || !(ab > shortest_side_far_away * from_a)) return limit;
   const double x = 0.5 * (ab + (from_a - from_b) * (from_a + from_b) / ab);
   const double squared_y = (from_a - x) * (from_a + x), along = (cx - x) * (cx - x) + cy * cy + squared_y;
   if (!(squared_y >= -1e-14 * from_a * from_a) || !(along < limit)) return limit;
   const double depth = std::sqrt(std::max(0.0, squared_y)), height = cy + depth;
   const double at_side = x * cy + cx * depth;  // where the line crosses, times height
-  if (!(at_side >= -1e-9 * ab * height) || !(at_side <= (1 + 1e-9) * ab * height)) return limit;
+  if (!(at_side >= -missed * ab * height) || !(at_side <= (1 + missed) * ab * height)) return limit;
   return std::min(limit, (cx - x) * (cx - x) + height * height);
 }
 
@@ -72,6 +75,7 @@ Vec2 unit_vector(const Vec2& v) {
 UnfoldingFront::UnfoldingFront(const TangentGraph& graph, std::shared_ptr<const Stars> stars, bool directions)
     : graph_(graph),
       d_(static_cast<std::size_t>(graph.dimension())),
+      missed_(graph.is_delaunay() ? missed : missed_between),
       directions_(directions && d_ == 2),
       stars_(stars || !graph.is_delaunay() ? std::move(stars)
                                            : std::make_shared<const Stars>(graph, halved_vertices(graph), false)) {
@@ -269,7 +273,7 @@ void UnfoldingFront::spread(Index from, Index point, double distance) {
       if (!(known_[base].now < known_[base].along)) return;
       const double limit = known_[target].now * known_[target].now;
       const double cx = target_length * right.cosine, cy = target_length * right.sine;
-      const double found = squared_across(distance, known_[base].now, base_length, cx, cy, limit);
+      const double found = squared_across(distance, known_[base].now, base_length, cx, cy, limit, missed_);
       if (!(found < limit)) return;
       known_[target].now = std::sqrt(found);
       if (!directions_) return;

@@ -26,8 +26,9 @@ inline constexpr double trusted_quality = 0.5;
 /// with d the distance, no less than the straight line in space where the graph has frames, and h the mean edge length of the
 /// vertex's component. |phi - psi| is no less than ||phi| - d|, and that alone where the way bends at the boundary, around a hole or in
 /// a notch of the sampling, and in other dimensions than 2; of a map by `Method::exact` there is the spread alone. Where the edges
-/// are no Delaunay triangulation a front is less exact: h is forgiven, and its direction counts only where stars agree on
-/// their triangles, which noise undoes (`UnfoldingFront::agreement`); there remains that the way is longer than phi.
+/// are no Delaunay triangulation a front is less exact: h is forgiven, and it counts only where stars agree on their
+/// triangles, which noise undoes (`UnfoldingFront::agreement`); elsewhere there is ||phi| - d| with the distance of heat, which
+/// sees no holes.
 ///
 /// It is 1 on flat convex geometry, falls with h on smooth surfaces, and is low across a cut locus, where bumps turn directions,
 /// where features are coarser than edges, and behind holes where the way around is longer by a tenth and more: heat knows the

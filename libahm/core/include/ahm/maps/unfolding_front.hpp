@@ -136,6 +136,7 @@ class UnfoldingFront {
   std::vector<Index> head_;  ///< of the entries of a vertex or midpoint, nearest first; -1: none
   std::vector<Entry> entries_;
   std::vector<double> displacements_;  ///< d per entry, from the vertex to the point in its frame; d = 2: empty
+  double missed_;                      ///< share of a side by which a line may miss it
   bool directions_;
   std::vector<Way> ways_;  ///< of the entries, where directions are kept
   std::priority_queue<Waiting, std::vector<Waiting>, std::greater<>> queue_;
