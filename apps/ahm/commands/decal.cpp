@@ -17,6 +17,7 @@
 #include "commands/subcommand.hpp"
 #include "output/decal_output.hpp"
 #include "output/output_paths.hpp"
+#include "output/results.hpp"
 #include "output/summary.hpp"
 #include "output/texture_output.hpp"
 
