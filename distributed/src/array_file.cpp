@@ -145,14 +145,15 @@ void ArrayFile::check_header(std::string_view kind) const {
   if (header.version != format_version)
     fail("its version is " + std::to_string(header.version) + ", this is " + std::to_string(format_version) +
          "; build the tiles again");
-  if (header.size != size_) fail("it is cut short; remove it and build it again");
+  if (header.size != size_) fail("it is cut short; remove its folder and make it again");
   if (header.arrays > most_arrays || sizeof(Header) + header.arrays * sizeof(Entry) > size_)
-    fail("its header is damaged; remove it and build it again");
+    fail("its header is damaged; remove its folder and make it again");
   const std::span table(reinterpret_cast<const Entry*>(data_ + sizeof(Header)), header.arrays);
-  if (header.checksum != checksum_of(header, table)) fail("its header is damaged; remove it and build it again");
+  if (header.checksum != checksum_of(header, table)) fail("its header is damaged; remove its folder and make it again");
   if (header.kind != name_of(kind)) fail("it holds other things than " + std::string(kind));
   for (const Entry& entry : table)
-    if (entry.place > size_ || entry.bytes > size_ - entry.place) fail("its header is damaged; build it again");
+    if (entry.place > size_ || entry.bytes > size_ - entry.place)
+      fail("its header is damaged; remove its folder and make it again");
 }
 
 /// In the table; as many as arrays: nowhere.
@@ -177,7 +178,7 @@ std::span<const std::byte> ArrayFile::find(std::string_view name, std::size_t el
   if (entry.element != element) fail("array '" + std::string(name) + "' has elements of another size");
   const std::span bytes(data_ + entry.place, entry.bytes);
   if (!(verified_ >> k & 1) && checksum(bytes) != entry.checksum)
-    fail("array '" + std::string(name) + "' is damaged (its checksum is wrong); remove the file and build it again");
+    fail("array '" + std::string(name) + "' is damaged (its checksum is wrong); remove its folder and make it again");
   verified_ |= std::uint64_t{1} << k;
   return bytes;
 }

@@ -74,6 +74,15 @@ void require_tiles(const TileFolder& folder, const Rule& rule) {
                             "' of all tiles, and that of tile " + std::to_string(t) + " is not done");
 }
 
+/// What tiles were made from is gone when all are built, so that a single one cannot be made again.
+void require_graph(const TileFolder& folder, const std::filesystem::path& path) {
+  if (folder.manifest().stage != Stage::built) return;
+  for (std::size_t t = 0; t < folder.tiles(); ++t)
+    if (!folder.has(kind::graph, t))
+      throw IoError("tile " + std::to_string(t) + " in '" + path.string() +
+                    "' is missing; remove the folder and make it again");
+}
+
 }  // namespace
 
 void TileFolder::tidy() const {
@@ -102,6 +111,7 @@ bool run_step(const std::filesystem::path& path, std::string_view name, std::opt
   if (tile && *tile >= folder.tiles())
     throw InvalidArgument("tile " + std::to_string(*tile) + " is not there; there are " +
                           std::to_string(folder.tiles()));
+  require_graph(folder, path);
   if (now > rule.stage) return false;
   if (now < rule.stage)
     throw InvalidArgument("step '" + std::string(name) +
@@ -124,6 +134,7 @@ void build_tiles(const std::filesystem::path& path, const BuildOptions& options)
     }
     if (rule.all) rule.all(folder);
   }
+  require_graph(TileFolder(path, options), path);
   TileFolder(path, options).tidy();  // after a process that was killed while it did so
 }
 

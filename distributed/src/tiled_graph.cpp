@@ -39,7 +39,8 @@ TiledGraph::Tile::Tile(ArrayFile mapped, std::size_t width)
   const std::size_t edges = neighbors.size(), vertices = masses.size();
   if (row_begin.size() != vertices + 1 || component.size() != vertices || weights.size() != edges ||
       logs.size() != 2 * edges || transports.size() != width * edges || row_begin.back() != static_cast<Offset>(edges))
-    throw IoError("cannot read '" + file.path().string() + "': its arrays do not fit each other; build it again");
+    throw IoError("cannot read '" + file.path().string() +
+                  "': its arrays do not fit each other; remove its folder and make it again");
 }
 
 TiledGraph::TiledGraph(const std::filesystem::path& folder, std::size_t memory)
@@ -85,7 +86,7 @@ const TiledGraph::Tile& TiledGraph::tile(std::size_t number) const {
     const auto identity = mapped->file.get<std::uint64_t>("identity");
     if (!std::ranges::equal(identity, manifest_.identity(number)))
       throw IoError("cannot read '" + mapped->file.path().string() +
-                    "': it is another tile, or of another graph; build it again");
+                    "': it is another tile, or of another graph; remove its folder and make it again");
     mapped->file.release();  // the test of the checksums has read all of it
     tiles_[number] = std::move(mapped);
   }

@@ -56,6 +56,7 @@ TEST(TileFaults, ATileCutShortOrMissingIsNamed) {
   expect_error<IoError>([&] { go_through(cloud.tiles); }, "cut short");
   std::filesystem::remove(path);
   expect_error<IoError>([&] { go_through(cloud.tiles); }, path.string());
+  expect_error<IoError>([&] { cloud.build(); }, "tile 1 in");  // what it was made from is gone
   std::filesystem::copy(Manifest::file(cloud.tiles, "graph", 0), path);
   expect_error<IoError>([&] { go_through(cloud.tiles); }, "another tile");
 }

@@ -151,6 +151,20 @@ TEST(Corners, ThinFacesAreNotCutOut) {
   });
 }
 
+// Where every face is strained, as on a cube, those at the source are kept, and the others laid out beside them.
+TEST(Corners, CoarseClosedMeshesAreLaidOutWhole) {
+  Polygons cube;
+  cube.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
+  for (const std::vector<Index>& face :
+       {std::vector<Index>{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}})
+    cube.add(face);
+  for_each_surface(cube, [&](const Surface& surface) {
+    const LogMapSolver solver(surface.graph());
+    for (Index row = 0; row < 8; ++row)
+      EXPECT_LT(Corners(surface, solver.solve(surface.source(Row(row)).source)).stretch, 10) << row;  // and finite
+  });
+}
+
 TEST(Corners, GapsBehindATipAreCutOpen) {
   // Of a cone whose tip lacks a fifth of the full angle: behind it, the two sheets lie a wedge apart, turned over nowhere.
   const Index rows = 30, around = 60;

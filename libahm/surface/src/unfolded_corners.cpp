@@ -21,9 +21,15 @@ Vec2 times(const Vec2& a, const Vec2& b) { return {a[0] * b[0] - a[1] * b[1], a[
 class Unfolding {
  public:
   Unfolding(const HalfEdges& edges, const FlatCorners& faces, const LogMap& map)
-      : edges_(edges), faces_(faces), phi_(faces.places.size()), state_(face_count(), unseen), sheet_(state_.size()) {
+      : edges_(edges),
+        faces_(faces),
+        phi_(faces.places.size()),
+        state_(face_count(), unseen),
+        sheet_(state_.size()),
+        at_source_(state_.size()) {
     read(map);
-    judge(map.source());
+    find_source(map.source());
+    judge();
     if (map.method() == Method::heat) widen();
     unfold();
   }
@@ -103,19 +109,25 @@ class Unfolding {
     return true;
   }
 
-  /// All faces, outward from those at the source, and from any other where none leads there.
-  void judge(const Source& source) {
+  void find_source(const Source& source) {
     std::vector<bool> is_source(static_cast<std::size_t>(std::ranges::max(faces_.vertices)) + 1);
     for (const Vertex v : source.vertices()) is_source[v.index] = true;
+    for (Half h = 0; h < edges_.size(); ++h)
+      if (is_source[faces_.vertices[h]]) at_source_[face_of(h)] = true;
+  }
+
+  /// All faces, outward from those at the source, and from any other where none leads there. At the source a map is the sheet,
+  /// however coarse, unless it turns a face over.
+  void judge() {
     std::vector<Index> front;
     const auto visit = [&](Index f, double before) {
       if (state_[f] != unseen) return;
       sheet_[f] = before;
-      state_[f] = is_on_sheet(f) ? known : waiting;
+      state_[f] = is_on_sheet(f) || (at_source_[f] && area(f) > 0) ? known : waiting;
       front.push_back(f);
     };
-    for (Half h = 0; h < edges_.size(); ++h)
-      if (is_source[faces_.vertices[h]]) visit(face_of(h), 0);
+    for (Index f = 0; f < face_count(); ++f)
+      if (at_source_[f]) visit(f, 0);
     std::size_t at = 0;
     for (Index f = 0; f < face_count(); ++f) {
       for (; at < front.size(); ++at)
@@ -134,7 +146,7 @@ class Unfolding {
       for (const Index f : front)
         for (Half h = begin(f); h < begin(f + 1); ++h) {
           const Half t = edges_.twin[h];
-          if (t < 0 || state_[face_of(t)] != known) continue;
+          if (t < 0 || state_[face_of(t)] != known || at_source_[face_of(t)]) continue;
           if (strain(face_of(t)).either <= sheet_[face_of(t)] + blended) continue;
           state_[face_of(t)] = waiting;
           next.push_back(face_of(t));
@@ -189,6 +201,7 @@ class Unfolding {
   std::vector<Vec2> phi_;
   std::vector<std::uint8_t> state_;
   std::vector<double> sheet_;  ///< per face: the strain of the sheet there
+  std::vector<bool> at_source_;
 };
 
 }  // namespace

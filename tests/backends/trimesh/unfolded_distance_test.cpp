@@ -92,5 +92,32 @@ TEST(UnfoldedDistance, OfACoarsePartIsThatOfThePartAlone) {
   }
 }
 
+// Large faces beside small ones: a straight way may cross a side whose ends are both beyond the radius.
+TEST(UnfoldedDistance, IsTheSameWithinARadius) {
+  Mesh flat;
+  flat.positions = {{0, 0, 0}, {10, 0, 0}, {5, -8, 0}, {5, 3, 0}, {6, 3.5, 0}, {4, 3.5, 0}};
+  flat.faces = {{0, 2, 1}, {0, 1, 3}, {1, 4, 3}, {0, 3, 5}, {3, 4, 5}};
+  for (const Mesh& mesh : {flat, prism(5, 3), stretched(prism(4, 6), 7)}) {
+    const auto surface = trimesh::TriangleMeshSurface::build(mesh.positions, mesh.faces);
+    for (Strategy strategy : {Strategy::global, Strategy::march}) {
+      const LogMapSolver solver(surface.graph(), {.strategy = strategy});
+      for (const std::vector<double>& weights : {std::vector{.475, .05, .475}, {.4, .1, .5}, {.1, .1, .8}})
+        for (Index face : {0, 3}) {
+          const Source source = surface.source(FacePoint{face, weights}).source;
+          const LogMap whole = solver.solve(source);
+          const double longest = std::ranges::max(whole.distances());
+          for (double radius : {0.3 * longest, 0.6 * longest, 0.9 * longest}) {
+            const LogMap part = solver.solve(source, {.radius = radius});
+            for (Index i = 0; i < whole.size(); ++i) {
+              const double distance = whole.distance(Vertex(i));
+              ASSERT_EQ(part.status(Vertex(i)) == Status::ok, distance <= radius) << i << ", radius " << radius;
+              if (distance <= radius) ASSERT_NEAR(part.distance(Vertex(i)), distance, 1e-12 * longest) << i;
+            }
+          }
+        }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace ahm::test

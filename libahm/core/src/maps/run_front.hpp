@@ -16,7 +16,7 @@ inline void run_front(UnfoldingFront& front, const TangentGraph& graph, double r
   const double some_edges = 16 * graph.mean_edge_length() * graph.length_unit();
   for (double next = front.next(); next <= radius && std::isfinite(next); next = front.next()) {
     if (stop.stop_requested()) throw Cancelled("cancelled during unfold");
-    front.run(std::min(radius, 1.01 * next + some_edges));
+    front.run(std::min(radius, 1.01 * std::max(next, 0.0) + some_edges));
   }
 }
 

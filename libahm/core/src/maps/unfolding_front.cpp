@@ -111,9 +111,10 @@ Index UnfoldingFront::add(const Source& source) {
     const bool mirrored = !axes.empty() && axes[0] * axes[3] < axes[1] * axes[2];
     given.push_back({vertex, first + point, away / unit, {offset.data()[0], offset.data()[1]}, mirrored});
     const bool beside = away != 0 && source.vertices().size() == 1;
+    const Star star = graph_.star(vertex);
+    for (std::size_t e = 0; e < star.degree(); ++e) longest_ = std::max(longest_, length(star.log(e)));
     if (source.is_curve()) continue;
     // The neighbours lie in the tangent plane of the point's only vertex, too, and of one that all but is the point.
-    const Star star = graph_.star(vertex);
     for (std::size_t e = 0; e < star.degree(); ++e) {
       if (!beside && !(away / unit <= least_ray * length(star.log(e)))) continue;
       const Vec2 from{star.log(e)[0] - back.data()[0], star.log(e)[1] - back.data()[1]};
@@ -146,8 +147,7 @@ void UnfoldingFront::offer_midpoints(std::vector<Given>& given) {
 }
 
 void UnfoldingFront::run(double radius) {
-  const double limit = radius / graph_.length_unit();
-  while (!queue_.empty() && queue_.top().distance <= limit) {
+  while (!queue_.empty() && next() <= radius) {
     const auto [distance, vertex, point] = queue_.top();
     queue_.pop();
     if (const Entry* entry = find(vertex, point); entry && entry->distance == distance) spread(vertex, point, distance);
@@ -285,6 +285,7 @@ void UnfoldingFront::spread(Index from, Index point, double distance) {
     unfold(k, right.length, next, left.length, 1);
     unfold(next, left.length, k, right.length, -1);
   }
+  longest_ = std::max(longest_, longest);
   // What unfolds to a border comes from a few edges beyond.
   for (std::size_t k = 0; k < degree; ++k) {
     if (!(known_[k].now < known_[k].before)) continue;

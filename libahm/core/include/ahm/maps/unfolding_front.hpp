@@ -53,12 +53,13 @@ class UnfoldingFront {
   /// @return the number of the first
   /// @throws InvalidArgument when the source does not fit the graph
   Index add(const Source& source);
-  /// Lets the front go on, as far as `radius` (world units). May be called again after `add`: only what is nearer to the new
-  /// points changes.
+  /// Lets the front go on until all that is nearer than `radius` (world units) has its distance; what lies beyond may have one
+  /// or not, perhaps too long a one. May be called again after `add`: only what is nearer to the new points changes.
   void run(double radius = std::numeric_limits<double>::infinity());
-  /// The distance at which the front goes on, world units; infinity where it has come to its end.
+  /// All that is nearer than this has its distance, world units; infinity at the front's end.
   double next() const {
-    return queue_.empty() ? std::numeric_limits<double>::infinity() : queue_.top().distance * graph_.length_unit();
+    return queue_.empty() ? std::numeric_limits<double>::infinity()
+                          : (queue_.top().distance - longest_) * graph_.length_unit();
   }
 
   /// The distance to the nearest point, world units; infinity where the front did not come.
@@ -136,7 +137,8 @@ class UnfoldingFront {
   std::vector<Index> head_;  ///< of the entries of a vertex or midpoint, nearest first; -1: none
   std::vector<Entry> entries_;
   std::vector<double> displacements_;  ///< d per entry, from the vertex to the point in its frame; d = 2: empty
-  double missed_;                      ///< share of a side by which a line may miss it
+  double longest_ = 0;  ///< edge of what was passed: no straight way within a radius crosses a side farther beyond it
+  double missed_;       ///< share of a side by which a line may miss it
   bool directions_;
   std::vector<Way> ways_;  ///< of the entries, where directions are kept
   std::priority_queue<Waiting, std::vector<Waiting>, std::greater<>> queue_;
