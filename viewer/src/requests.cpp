@@ -91,6 +91,16 @@ std::string Request::text(const char* name) const {
   return value.get<std::string>();
 }
 
+CoverageOptions Request::cover() const {
+  CoverageOptions cover;
+  cover.radius = positive("cover");
+  cover.spacing = positive("spacing");
+  if (cover.radius / cover.spacing > 500)
+    throw InvalidArgument("request: more than 500 lines from the source; give a wider \"spacing\"");
+  cover.pattern = word("pattern", {"raster", "spiral"}) == "raster" ? CoveragePattern::raster : CoveragePattern::spiral;
+  return cover;
+}
+
 double Request::positive(const char* name) const {
   const double x = finite(name);
   if (!(x > 0)) refuse(name, "must be greater than 0");

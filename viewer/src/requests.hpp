@@ -26,6 +26,8 @@ class Request {
   double positive(const char* name) const;
   double finite(const char* name) const;
   std::string text(const char* name) const;
+  /// "cover", "spacing", "pattern"
+  CoverageOptions cover() const;
   /// @param allowed  words
   std::string word(const char* name, const std::vector<std::string>& allowed) const;
   /// Whether there is such a member, not null.

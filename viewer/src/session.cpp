@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <limits>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -17,6 +16,7 @@
 #include "command.hpp"
 #include "exported.hpp"
 #include "makers.hpp"
+#include "map_settings.hpp"
 #include "requests.hpp"
 
 namespace ahm::viewer {
@@ -44,36 +44,6 @@ view::Scene scene_of(const Surface& surface, const io::Geometry& geometry, const
   scene.face_begin = faces.begin;
   scene.face_vertices = faces.vertices;
   return scene;
-}
-
-/// Without what decals and tool paths have no option for, or one of another meaning.
-Settings of_patch(Settings settings) {
-  settings.radius.reset();
-  settings.order = 1;
-  return settings;
-}
-
-/// Without what curves have no option for.
-Settings of_curve(Settings settings) {
-  settings.order = 1;
-  settings.u_axis.reset();
-  return settings;
-}
-
-double radius_of(const Settings& settings) { return settings.radius.value_or(std::numeric_limits<double>::infinity()); }
-
-Progress until(const std::stop_token& stop) {
-  Progress progress;
-  progress.stop = stop;
-  return progress;
-}
-
-MapOptions heat_options(const Settings& settings, double radius, const std::stop_token& stop) {
-  MapOptions options;
-  options.variant = settings.variant;
-  options.radius = radius;
-  options.progress = until(stop);
-  return options;
 }
 
 json positions(const view::PageSurface& page, std::span<const Vec3> points) {
@@ -268,17 +238,6 @@ struct Session::Impl {
                   {"--from", spec(surface, ends.from), "--to", spec(surface, ends.to), "-o", "path.obj"}, {})}});
   }
 
-  static CoverageOptions cover_of(const Request& request) {
-    CoverageOptions cover;
-    cover.radius = request.positive("cover");
-    cover.spacing = request.positive("spacing");
-    if (cover.radius / cover.spacing > 500)
-      throw InvalidArgument("request: more than 500 lines from the source; give a wider \"spacing\"");
-    const std::string pattern = request.word("pattern", {"raster", "spiral"});
-    cover.pattern = pattern == "raster" ? CoveragePattern::raster : CoveragePattern::spiral;
-    return cover;
-  }
-
   /// @param settings  `of_patch`
   CoveragePath tool_path(const SurfacePoint& source, const CoverageOptions& cover, const Settings& settings,
                          const std::stop_token& stop) {
@@ -300,7 +259,7 @@ struct Session::Impl {
     const std::stop_token stop = channels.begin(request.client(), Channels::Kind::coverage, request.number());
     const SurfacePoint source = request.point("source");
     const Settings settings = of_patch(request.settings(options.settings));
-    const CoverageOptions cover = cover_of(request);
+    const CoverageOptions cover = request.cover();
     const CoveragePath path = tool_path(source, cover, settings, stop);
     std::vector<Vec3> points;
     json pieces = {0};
@@ -343,11 +302,8 @@ struct Session::Impl {
 
   void write_decal(const Request& request, const std::filesystem::path& file, const std::stop_token& stop) {
     const Image image = image_of(request.text("image"));
-    const double size = request.positive("size"), longer = std::max(image.width, image.height);
-    DecalOptions decal;
-    decal.width = size * image.width / longer, decal.height = size * image.height / longer;
+    DecalOptions decal = decal_of(image, request.positive("size"));
     decal.angle = request.finite("angle") * std::numbers::pi / 180;
-    decal.lift = 0.002 * size;
     Settings settings = of_patch(request.settings(options.settings));
     settings.radius = map_radius(decal, surface.graph());
     const SurfacePoint source = request.point("source");
@@ -369,7 +325,7 @@ struct Session::Impl {
       if (what == "decal") return write_decal(request, file, stop);
       if (what == "path")
         return options.write_path(file, path({request.point("from"), request.point("to")}, stop).points);
-      options.write_coverage(file, tool_path(request.point("source"), cover_of(request),
+      options.write_coverage(file, tool_path(request.point("source"), request.cover(),
                                              of_patch(request.settings(options.settings)), stop));
     };
     return {200, "application/octet-stream", exported(format, write)};

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "ahm/maps/quality.hpp"
 #include "cli/numbers.hpp"
 #include "cli/option_adders.hpp"
 #include "commands/coverage_table.hpp"
@@ -126,8 +127,9 @@ void run(const CoverageCommandOptions& options) {
   const LogMap map = solve(options.solve, input, options.source.spec, source, journal);
 
   journal.start("path");
+  const std::vector<double> quality = map_quality(input.graph(), map, options.solve.threads);
   const InverseMap inverse =
-      inverse_map(input.surface(), map, {.min_quality = options.min_quality, .threads = options.solve.threads});
+      inverse_map(input.surface(), map, {.min_quality = options.min_quality, .quality = quality});
   const CoveragePath path = coverage_path(input.surface(), inverse, options.path);
   if (path.points.empty())
     throw InvalidArgument(fmt::format(
@@ -143,7 +145,6 @@ void run(const CoverageCommandOptions& options) {
         "lines lie up to {:.4g} apart in space, more than --spacing {}: the surface is saddle-shaped or rough",
         amount.spacing_high, options.path.spacing));
 
-  const std::vector<double> quality = map_quality(input.graph(), map, options.solve.threads);
   const RowLogMap rows = input.surface().on_rows(map);
   const std::vector<double> row_quality = on_rows(rows, quality);
   comment_on_quality(quality_within(options.path.radius, rows, row_quality), "lower --radius, or start elsewhere",

@@ -10,6 +10,7 @@
 #include "ahm/applications/inverse_map.hpp"
 #include "ahm/io/formats.hpp"
 #include "ahm/io/write.hpp"
+#include "ahm/maps/quality.hpp"
 #include "ahm/view/textured_picture.hpp"
 #include "cli/numbers.hpp"
 #include "cli/option_adders.hpp"
@@ -123,10 +124,9 @@ void run(const DecalCommandOptions& given) {
   DecalCommandOptions options = given;
   check_texture_output(options.input.path, options.output, {".obj", ".glb", ".ply"}, {"decal"}, options.image);
   const Image image = io::read_image(options.image);
-  const double longer = std::max(image.width, image.height);
-  options.decal.width = options.size * image.width / longer;
-  options.decal.height = options.size * image.height / longer;
-  options.decal.lift = options.lift.value_or(0.002 * options.size);
+  const DecalOptions usual = decal_of(image, options.size);
+  options.decal.width = usual.width, options.decal.height = usual.height;
+  options.decal.lift = options.lift.value_or(usual.lift);
 
   Journal journal(options.output.verbosity);
   const Input input = open_around(options.input, reach(options.decal), journal, options.source.spec);
@@ -135,12 +135,12 @@ void run(const DecalCommandOptions& given) {
   near.radius = map_radius(options.decal, input.graph());
   const LogMap map = solve(near, input, options.source.spec, source, journal);
 
-  comment_on_quality(quality_of(input, map, input.surface().on_rows(map), options.solve),
-                     "lower --size, or choose another source", journal);
+  const std::vector<double> quality = map_quality(input.graph(), map, options.solve.threads);
+  comment_on_quality(on_rows(input.surface().on_rows(map), quality), "lower --size, or choose another source", journal);
 
   journal.start("decal");
   const InverseMap inverse =
-      inverse_map(input.surface(), map, {.min_quality = options.min_quality, .threads = options.solve.threads});
+      inverse_map(input.surface(), map, {.min_quality = options.min_quality, .quality = quality});
   const Decal decal = make_decal(inverse, options.decal);
   if (decal.face_begin.size() < 2)
     throw InvalidArgument(fmt::format(

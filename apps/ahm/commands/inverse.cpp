@@ -5,6 +5,7 @@
 
 #include "ahm/applications/inverse_map.hpp"
 #include "ahm/io/write.hpp"
+#include "ahm/maps/quality.hpp"
 #include "cli/numbers.hpp"
 #include "cli/option_adders.hpp"
 #include "cli/source_list.hpp"
@@ -74,13 +75,13 @@ void run(const InverseCommandOptions& options) {
   const PlacedSource source = resolve(options.source, input, options.input.threads);
   const LogMap map = solve(options.solve, input, options.source.spec, source, journal);
 
-  comment_on_quality(quality_of(input, map, input.surface().on_rows(map), options.solve),
-                     "start nearer to the points that are looked up", journal);
+  const std::vector<double> quality = map_quality(input.graph(), map, options.solve.threads);
+  comment_on_quality(on_rows(input.surface().on_rows(map), quality), "start nearer to the points that are looked up",
+                     journal);
 
   journal.start("write");
   const std::size_t found =
-      write(options,
-            inverse_map(input.surface(), map, {.min_quality = options.min_quality, .threads = options.solve.threads}));
+      write(options, inverse_map(input.surface(), map, {.min_quality = options.min_quality, .quality = quality}));
   nlohmann::ordered_json j = summary("ahm inverse", options.input.path, options.output, input);
   j["source"] = {{"spec", to_string(options.source.spec)}, {"position", source.position}};
   j["points"] = options.points.size();

@@ -9,6 +9,7 @@
 
 #include "ahm/error.hpp"
 #include "ahm/io/formats.hpp"
+#include "ahm/maps/quality.hpp"
 #include "ahm/util/vec.hpp"
 #include "cli/console.hpp"
 #include "cli/source_list.hpp"
@@ -88,7 +89,7 @@ void map_from_source(const LogmapOptions& options, const Input& input, std::opti
   if (!maps) maps.emplace(options.solve, input, journal, static_cast<int>(count));
   const LogMap map = maps->map(options.solve, input, options.source.spec, source, journal);
   RowLogMap rows = input.surface().on_rows(map);
-  const std::vector<double> quality = quality_of(input, map, rows, options.solve);
+  const std::vector<double> quality = on_rows(rows, map_quality(input.graph(), map, options.solve.threads));
   if (options.input.around_source) settle_left_out(input, source, *options.solve.radius, rows);
   comment_on_statuses(rows.status, options.input.path, journal);
   comment_on_quality(quality, "keep to what is near with --radius, or start elsewhere", journal);

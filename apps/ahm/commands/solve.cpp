@@ -4,7 +4,6 @@
 
 #include "ahm/error.hpp"
 #include "ahm/maps/cost.hpp"
-#include "ahm/maps/quality.hpp"
 #include "cli/system_info.hpp"
 
 namespace ahm::app {
@@ -84,11 +83,6 @@ LogMap Maps::map(const SolveOptions& options, const Input& input, const SourceSp
 LogMap solve(const SolveOptions& options, const Input& input, const SourceSpec& spec, const PlacedSource& source,
              Journal& journal) {
   return Maps(options, input, journal, 1).map(options, input, spec, source, journal);
-}
-
-std::vector<double> quality_of(const Input& input, const LogMap& map, const RowLogMap& rows,
-                               const SolveOptions& options) {
-  return on_rows(rows, map_quality(input.graph(), map, options.threads));
 }
 
 }  // namespace ahm::app

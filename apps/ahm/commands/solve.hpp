@@ -45,8 +45,4 @@ struct Maps {
 LogMap solve(const SolveOptions& options, const Input& input, const SourceSpec& spec, const PlacedSource& source,
              Journal& journal);
 
-/// `map_quality` by row. @param rows  of the map
-std::vector<double> quality_of(const Input& input, const LogMap& map, const RowLogMap& rows,
-                               const SolveOptions& options);
-
 }  // namespace ahm::app

@@ -199,6 +199,13 @@ class Collector {
 
 }  // namespace
 
+DecalOptions decal_of(const Image& image, double longer_side) {
+  const double pixels = std::max(image.width, image.height);
+  return {.width = longer_side * image.width / pixels,
+          .height = longer_side * image.height / pixels,
+          .lift = 0.002 * longer_side};
+}
+
 double reach(const DecalOptions& options) {
   return std::min(options.radius, std::hypot(options.width, options.height) / 2);
 }

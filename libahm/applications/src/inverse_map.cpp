@@ -225,14 +225,27 @@ std::optional<InversePoint> InverseMap::in_triangle(const Triangle& t, const Vec
   return point;
 }
 
+namespace {
+
+/// Empty: none is asked for. @throws InvalidArgument (a quality of other vertices)
+std::vector<double> quality_asked_for(const TangentGraph& graph, const LogMap& map, const InverseMapOptions& options) {
+  if (!(options.min_quality > 0)) return {};
+  if (options.quality.empty()) return map_quality(graph, map, options.threads);
+  if (options.quality.size() != static_cast<std::size_t>(graph.size()))
+    throw InvalidArgument("the quality has " + std::to_string(options.quality.size()) + " entries for " +
+                          std::to_string(graph.size()) + " vertices");
+  return {options.quality.begin(), options.quality.end()};
+}
+
+}  // namespace
+
 InverseMap inverse_map(const TangentGraph& graph, const LogMap& map, const InverseMapOptions& options) {
   const std::vector<Vec3> normals = source_side_normals(graph, map);
   const std::vector<Triangle> triangles = star_triangles(graph, map);
   const std::size_t n = normals.size();
   std::vector<Vec3> positions(n);
   std::vector<std::uint8_t> valid(n);
-  const std::vector<double> quality =
-      options.min_quality > 0 ? map_quality(graph, map, options.threads) : std::vector<double>{};
+  const std::vector<double> quality = quality_asked_for(graph, map, options);
   for (Index i = 0; i < graph.size(); ++i) {
     if (map.status(Vertex(i)) != Status::ok) continue;
     positions[i] = graph.frame(i)->origin;
@@ -248,8 +261,7 @@ InverseMap inverse_map(const Surface& surface, const LogMap& map, const InverseM
   const std::vector<Vec3> graph_normals = source_side_normals(graph, map);
   const RowLogMap rows = surface.on_rows(map);
   const std::size_t n = rows.vertex.size();
-  const std::vector<double> quality =
-      options.min_quality > 0 ? map_quality(graph, map, options.threads) : std::vector<double>{};
+  const std::vector<double> quality = quality_asked_for(graph, map, options);
   std::vector<Vec3> normals(n);
   std::vector<double> coordinates(2 * n);
   std::vector<std::uint8_t> valid(n);

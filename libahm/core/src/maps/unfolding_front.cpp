@@ -28,18 +28,23 @@ constexpr double missed = 1e-9, missed_between = 1e-3;
 /// Of a ray shorter than this share of a side nobody knows the direction.
 constexpr double least_ray = 1e-6;
 
-/// The square of the distance of c from a point at distances `from_a` and `from_b`, beyond the side ab of a triangle with
-/// a at 0, b at (ab, 0) and c at (cx, cy) above, the point below; `limit` where it is no less, or where the straight line
+/// Where a point lies in the layout of a triangle with a at 0, b at (ab, 0) and c at (cx, cy) above: at (x, -depth); and the square of
+/// its distance from c.
+struct Across {
+  double squared, x = 0, depth = 0;
+};
+
+/// Of a point at distances `from_a` and `from_b` below the side ab; `limit` where c is no nearer, or where the straight line
 /// to the point does not cross that side.
-double squared_across(double from_a, double from_b, double ab, double cx, double cy, double limit, double missed) {
-  if (!(ab > shortest_side * std::max(std::abs(cx), cy)) || !(ab > shortest_side_far_away * from_a)) return limit;
+Across across_side(double from_a, double from_b, double ab, double cx, double cy, double limit, double missed) {
+  if (!(ab > shortest_side * std::max(std::abs(cx), cy)) || !(ab > shortest_side_far_away * from_a)) return {limit};
   const double x = 0.5 * (ab + (from_a - from_b) * (from_a + from_b) / ab);
   const double squared_y = (from_a - x) * (from_a + x), along = (cx - x) * (cx - x) + cy * cy + squared_y;
-  if (!(squared_y >= -1e-14 * from_a * from_a) || !(along < limit)) return limit;
+  if (!(squared_y >= -1e-14 * from_a * from_a) || !(along < limit)) return {limit};
   const double depth = std::sqrt(std::max(0.0, squared_y)), height = cy + depth;
   const double at_side = x * cy + cx * depth;  // where the line crosses, times height
-  if (!(at_side >= -missed * ab * height) || !(at_side <= (1 + missed) * ab * height)) return limit;
-  return std::min(limit, (cx - x) * (cx - x) + height * height);
+  if (!(at_side >= -missed * ab * height) || !(at_side <= (1 + missed) * ab * height)) return {limit};
+  return {std::min(limit, (cx - x) * (cx - x) + height * height), x, depth};
 }
 
 /// `v` turned as the ray `from` must be to become the ray `to`, the other way round if `side` is -1; unit length.
@@ -48,18 +53,17 @@ Vec2 turned(const Vec2& v, const Vec2& from, const Vec2& to, double side) {
   return {(v[0] * along - v[1] * across) / by, (v[1] * along + v[0] * across) / by};
 }
 
-/// The direction at the point of the ray to c, from those of the rays to a and b, in the layout of `squared_across`, where
-/// it crosses the side: what both say, by how near they are.
+/// The direction at the point of the ray to c, from those of the rays to a and b: what both say, by how near it crosses the
+/// side.
 /// @param side  1: a, b, c counterclockwise; -1: clockwise
-Vec2 direction_across(double from_a, double from_b, double ab, double cx, double cy, const Vec2& to_a, const Vec2& to_b,
+Vec2 direction_across(const Across& point, double ab, double cx, double cy, const Vec2& to_a, const Vec2& to_b,
                       double side) {
-  const double x = 0.5 * (ab + (from_a - from_b) * (from_a + from_b) / ab);
-  const double depth = std::sqrt(std::max(0.0, (from_a - x) * (from_a + x)));
+  const double x = point.x, depth = point.depth;
   const Vec2 a{-x, depth}, b{ab - x, depth}, c{cx - x, cy + depth};
   const double share = std::clamp((x * cy + cx * depth) / (ab * (cy + depth)), 0.0, 1.0);
   const Vec2 by_a = turned(to_a, a, c, side), by_b = turned(to_b, b, c, side);
-  if (!(from_a > least_ray * ab) || std::isnan(to_a[0])) return by_b;
-  if (!(from_b > least_ray * ab) || std::isnan(to_b[0])) return by_a;
+  if (!(length(a) > least_ray * ab) || std::isnan(to_a[0])) return by_b;
+  if (!(length(b) > least_ray * ab) || std::isnan(to_b[0])) return by_a;
   const Vec2 sum{(1 - share) * by_a[0] + share * by_b[0], (1 - share) * by_a[1] + share * by_b[1]};
   const double size = length(sum);
   return size > 0 ? Vec2{sum[0] / size, sum[1] / size} : by_a;
@@ -112,11 +116,11 @@ Index UnfoldingFront::add(const Source& source) {
     given.push_back({vertex, first + point, away / unit, {offset.data()[0], offset.data()[1]}, mirrored});
     const bool beside = away != 0 && source.vertices().size() == 1;
     const Star star = graph_.star(vertex);
-    for (std::size_t e = 0; e < star.degree(); ++e) longest_ = std::max(longest_, length(star.log(e)));
-    if (source.is_curve()) continue;
-    // The neighbours lie in the tangent plane of the point's only vertex, too, and of one that all but is the point.
     for (std::size_t e = 0; e < star.degree(); ++e) {
-      if (!beside && !(away / unit <= least_ray * length(star.log(e)))) continue;
+      const double side = length(star.log(e));
+      longest_ = std::max(longest_, side);
+      // The neighbours lie in the tangent plane of the point's only vertex, too, and of one that all but is the point.
+      if (source.is_curve() || !(beside || away / unit <= least_ray * side)) continue;
       const Vec2 from{star.log(e)[0] - back.data()[0], star.log(e)[1] - back.data()[1]};
       const Vec2 there =
           axes.empty() ? from : Vec2{axes[0] * from[0] + axes[2] * from[1], axes[1] * from[0] + axes[3] * from[1]};
@@ -273,13 +277,13 @@ void UnfoldingFront::spread(Index from, Index point, double distance) {
       if (!(known_[base].now < known_[base].along)) return;
       const double limit = known_[target].now * known_[target].now;
       const double cx = target_length * right.cosine, cy = target_length * right.sine;
-      const double found = squared_across(distance, known_[base].now, base_length, cx, cy, limit, missed_);
-      if (!(found < limit)) return;
-      known_[target].now = std::sqrt(found);
+      const Across found = across_side(distance, known_[base].now, base_length, cx, cy, limit, missed_);
+      if (!(found.squared < limit)) return;
+      known_[target].now = std::sqrt(found.squared);
       if (!directions_) return;
       const Way& other = known_[base].way;
-      known_[target].way.direction = direction_across(distance, known_[base].now, base_length, cx, cy, own.direction,
-                                                      other.direction, own.mirrored ? -side : side);
+      known_[target].way.direction =
+          direction_across(found, base_length, cx, cy, own.direction, other.direction, own.mirrored ? -side : side);
       known_[target].way.bent = own.bent || other.bent;
     };
     unfold(k, right.length, next, left.length, 1);

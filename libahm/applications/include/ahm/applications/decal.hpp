@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "ahm/applications/inverse_map.hpp"
+#include "ahm/image.hpp"
 
 namespace ahm {
 
@@ -25,6 +26,9 @@ struct DecalOptions {
   double radius = std::numeric_limits<double>::infinity();
   double lift = 0;  ///< along the normals, so that the decal lies above the surface; world units
 };
+
+/// Of an image whose longer side is that long, world units; above the surface by .002 of it.
+DecalOptions decal_of(const Image& image, double longer_side);
 
 /// A piece of the surface under an image.
 struct Decal {

@@ -39,6 +39,8 @@ struct InverseMapOptions {
   /// For `inverse_map`: vertices of a lower `map_quality` are left out; 0: none. It means nothing on maps from a curve
   /// with coordinates of its own.
   double min_quality = trusted_quality;
+  std::span<const double> quality =
+      {};                ///< of the map's vertices, where it is known already (`map_quality`); empty: found
   unsigned threads = 0;  ///< for the quality; 0: one per core
 };
 
