@@ -24,6 +24,10 @@ constexpr std::size_t most_neighbors = 200;
 /// By less than this share of the longest side do the sides of a triangle without area miss the triangle inequality.
 constexpr double degenerate = 1e-9;
 
+/// Angles around a vertex whose edges are in this proportion to each other, or more, may miss the full turn by it: rounding of
+/// the coordinates turns the short ones.
+constexpr double least_turn = 1e-12;
+
 /// A number that grows with the angle of v, from -2 to 2.
 double turn(const Vec2& v) {
   const double along = v[0] / (std::abs(v[0]) + std::abs(v[1]));
@@ -99,6 +103,29 @@ void UnfoldingFront::Stars::append_corners(const TangentGraph& graph, Index vert
     const Vec2 angle = corner(right.length, left.length, third_side(graph, right, left));
     corners.push_back({right.vertex, right.reflects, right.length, angle[0], angle[1]});
   }
+}
+
+double UnfoldingFront::Stars::open_angle(std::span<const Corner> corners) {
+  double angle = 0;
+  bool open = false;
+  for (const Corner& corner : corners)
+    if (std::isnan(corner.cosine)) open = true;
+  for (const Corner& corner : corners)
+    if (open && !std::isnan(corner.cosine)) angle += std::atan2(corner.sine, corner.cosine);
+  return angle;
+}
+
+double UnfoldingFront::Stars::curvature_of(std::span<const Corner> corners) {
+  double missing = 2 * std::numbers::pi, area = 0;  // NaN on boundaries
+  double shortest = std::numeric_limits<double>::infinity(), longest = 0;
+  for (std::size_t k = 0; k < corners.size(); ++k) {
+    const Corner &right = corners[k], &left = corners[k + 1 < corners.size() ? k + 1 : 0];
+    missing -= std::atan2(right.sine, right.cosine);
+    area += right.length * left.length * right.sine / 6;
+    shortest = std::min(shortest, right.length);
+    longest = std::max(longest, right.length);
+  }
+  return std::abs(missing) * shortest > least_turn * longest && area > 0 ? missing / area : 0;
 }
 
 /// Cuts triangles into four. An edge is known by its corner: that of the vertex it starts from, which has the edge to its right.
@@ -250,6 +277,7 @@ UnfoldingFront::Stars::Stars(const TangentGraph& graph, std::vector<std::uint8_t
   for (Index i = 0; i < size_; ++i) {
     if (all || halved[i]) append_corners(graph, i, neighbors, corners_);
     begin_.push_back(static_cast<Offset>(corners_.size()));
+    curvatures_.push_back(keeps(i) ? curvature_of(of(i)) : 0);
   }
   if (!any) return;
   std::vector<Offset> begin;
@@ -258,6 +286,12 @@ UnfoldingFront::Stars::Stars(const TangentGraph& graph, std::vector<std::uint8_t
   begin_ = std::move(begin);
   corners_ = std::move(corners);
   size_ = static_cast<Index>(begin_.size()) - 1;
+  for (Index middle = vertices_; middle < size_; ++middle) {
+    double sum = 0;
+    for (const Corner& corner : of(middle))
+      if (corner.neighbor < vertices_) sum += curvatures_[corner.neighbor];
+    curvatures_.push_back(sum / 2);
+  }
 }
 
 std::optional<UnfoldingFront::Stars::HalfSide> UnfoldingFront::Stars::midpoint(Index a, Index b) const {

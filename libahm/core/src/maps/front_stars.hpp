@@ -31,6 +31,16 @@ class UnfoldingFront::Stars {
                                        static_cast<std::size_t>(begin_[point + 1] - begin_[point]));
   }
 
+  /// Whether the corners of a point are kept.
+  bool keeps(Index point) const { return !of(point).empty(); }
+  /// Gaussian curvature at a point that is kept; at a midpoint the mean of the ends.
+  double curvature(Index point) const { return curvatures_[point]; }
+  /// What the angles of a whole star miss of the full turn, for each of its share of the triangles' area; 0 where the star is
+  /// open, or where it may be rounding.
+  static double curvature_of(std::span<const Corner> corners);
+  /// The sum of the angles of a star that has a gap, at a boundary; else 0.
+  static double open_angle(std::span<const Corner> corners);
+
   /// The midpoint of the edge that joins two vertices, and half its length; none where several do, or triangles are whole.
   struct HalfSide {
     Index midpoint;
@@ -51,6 +61,7 @@ class UnfoldingFront::Stars {
   Index vertices_, size_;
   std::vector<Offset> begin_;
   std::vector<Corner> corners_;
+  std::vector<double> curvatures_;  ///< of the points, where they are kept
 };
 
 /// Components of no more vertices are halved: it makes a front four times the work.

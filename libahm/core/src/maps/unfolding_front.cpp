@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <tuple>
 
 #include "ahm/util/scratch.hpp"
 #include "ahm/util/small_math.hpp"
 #include "ahm/util/vec.hpp"
+#include "maps/focusing.hpp"
 #include "maps/front_stars.hpp"
 #include "maps/right_hand_side.hpp"
 
@@ -16,6 +18,9 @@ namespace {
 constexpr Index none = -1;
 /// Less than this is rounding.
 constexpr double least_gain = 1e-12;
+/// Ways whose lengths differ by less than this share are equally long, and the one along which the front is less bent counts, so that
+/// rounding does not choose between ways through the same flat faces.
+constexpr double same_length = 1e-10, same_focusing = 1e-6;
 /// An entry is bettered no more often: where triangles contradict each other they could go on for ever.
 constexpr Index most_gains = 40;
 /// Points whose distances a vertex knows: the samples of a curve are many, and all but equally near.
@@ -25,13 +30,15 @@ constexpr double shortest_side = 1e-6, shortest_side_far_away = 1e-13;
 /// A line may miss the side by this share of it, and is taken to pass its end. Where edges are no triangulation, as between points that lie
 /// in squares, it may pass between two triangles that bend away from it, and seen from neither leave only edges.
 constexpr double missed = 1e-9, missed_between = 1e-3;
+/// A corner of the boundary is one for ways to bend at where the surface has more of the full turn than half, by this in radians.
+constexpr double least_notch = 0.02;
 /// Of a ray shorter than this share of a side nobody knows the direction.
 constexpr double least_ray = 1e-6;
 
-/// Where a point lies in the layout of a triangle with a at 0, b at (ab, 0) and c at (cx, cy) above: at (x, -depth); and the square of
-/// its distance from c.
+/// Where a point lies in the layout of a triangle with a at 0, b at (ab, 0) and c at (cx, cy) above: at (x, -depth); the square of
+/// its distance from c, and where the line to c crosses the side.
 struct Across {
-  double squared, x = 0, depth = 0;
+  double squared, x = 0, depth = 0, share = 0;
 };
 
 /// Of a point at distances `from_a` and `from_b` below the side ab; `limit` where c is no nearer, or where the straight line
@@ -44,7 +51,8 @@ Across across_side(double from_a, double from_b, double ab, double cx, double cy
   const double depth = std::sqrt(std::max(0.0, squared_y)), height = cy + depth;
   const double at_side = x * cy + cx * depth;  // where the line crosses, times height
   if (!(at_side >= -missed * ab * height) || !(at_side <= (1 + missed) * ab * height)) return {limit};
-  return {std::min(limit, (cx - x) * (cx - x) + height * height), x, depth};
+  return {std::min(limit, (cx - x) * (cx - x) + height * height), x, depth,
+          std::clamp(at_side / (ab * height), 0.0, 1.0)};
 }
 
 /// `v` turned as the ray `from` must be to become the ray `to`, the other way round if `side` is -1; unit length.
@@ -58,15 +66,21 @@ Vec2 turned(const Vec2& v, const Vec2& from, const Vec2& to, double side) {
 /// @param side  1: a, b, c counterclockwise; -1: clockwise
 Vec2 direction_across(const Across& point, double ab, double cx, double cy, const Vec2& to_a, const Vec2& to_b,
                       double side) {
-  const double x = point.x, depth = point.depth;
+  const double x = point.x, depth = point.depth, share = point.share;
   const Vec2 a{-x, depth}, b{ab - x, depth}, c{cx - x, cy + depth};
-  const double share = std::clamp((x * cy + cx * depth) / (ab * (cy + depth)), 0.0, 1.0);
   const Vec2 by_a = turned(to_a, a, c, side), by_b = turned(to_b, b, c, side);
   if (!(length(a) > least_ray * ab) || std::isnan(to_a[0])) return by_b;
   if (!(length(b) > least_ray * ab) || std::isnan(to_b[0])) return by_a;
   const Vec2 sum{(1 - share) * by_a[0] + share * by_b[0], (1 - share) * by_a[1] + share * by_b[1]};
   const double size = length(sum);
   return size > 0 ? Vec2{sum[0] / size, sum[1] / size} : by_a;
+}
+
+/// Whether a front at this distance, so focused, comes before another one.
+bool comes_before(double distance, double focusing, double other, double other_focusing) {
+  if (!(std::abs(distance - other) <= same_length * other)) return distance < other;
+  const double gain = std::abs(other_focusing) - std::abs(focusing);
+  return std::abs(gain) > same_focusing * std::abs(other_focusing) ? gain > 0 : distance < other * (1 - least_gain);
 }
 
 Vec2 unit_vector(const Vec2& v) {
@@ -85,6 +99,7 @@ UnfoldingFront::UnfoldingFront(const TangentGraph& graph, std::shared_ptr<const 
                                            : std::make_shared<const Stars>(graph, halved_vertices(graph), false)) {
   head_.assign(static_cast<std::size_t>(stars_ ? stars_->size() : graph.size()), none);
   entries_.reserve(head_.size());
+  if (stars_) curvatures_.assign(static_cast<std::size_t>(graph.size()), NAN);
 }
 
 Index UnfoldingFront::add(const Source& source) {
@@ -197,7 +212,7 @@ Index UnfoldingFront::replace_farthest(Index vertex, Index point, double distanc
 
 /// Keeps a distance if it is the least from its point, and that point the nearest or nearly so.
 void UnfoldingFront::offer(Index vertex, Index point, double distance, double slack,
-                           std::span<const double> displacement, const Way& way) {
+                           std::span<const double> displacement, const Way& way, double focusing) {
   Index own = head_[vertex], before = none;
   const double nearest = own == none ? std::numeric_limits<double>::infinity() : entries_[own].distance;
   if (!(distance <= nearest + slack)) return;
@@ -210,15 +225,19 @@ void UnfoldingFront::offer(Index vertex, Index point, double distance, double sl
     for (Index e = head_[vertex]; e != own; e = entries_[e].next) before = e;
   } else if (own == none) {
     own = static_cast<Index>(entries_.size());
-    entries_.push_back({distance, point, head_[vertex], 0});
+    entries_.push_back({distance, focusing, point, head_[vertex], 0});
     if (d_ != 2) displacements_.resize(displacements_.size() + d_);
     if (directions_) ways_.emplace_back();
     head_[vertex] = own;
-  } else if (!(distance < entries_[own].distance * (1 - least_gain)) || entries_[own].gains == most_gains) {
+  } else if (!comes_before(distance, focusing, entries_[own].distance, entries_[own].focusing) ||
+             entries_[own].gains == most_gains) {
     return;
+  } else {
+    distance = std::min(distance, entries_[own].distance);
   }
   ++entries_[own].gains;
   entries_[own].distance = distance;
+  entries_[own].focusing = focusing;
   if (directions_) ways_[own] = way;
   if (d_ != 2)
     std::copy(displacement.begin(), displacement.end(), displacements_.begin() + static_cast<std::ptrdiff_t>(own * d_));
@@ -244,9 +263,17 @@ std::span<const UnfoldingFront::Corner> UnfoldingFront::around(Index vertex) {
   return around_;
 }
 
-/// Whether a star has a gap, at a boundary.
-bool UnfoldingFront::is_open(std::span<const Corner> corners) {
-  return std::any_of(corners.begin(), corners.end(), [](const Corner& c) { return std::isnan(c.cosine); });
+/// Gaussian curvature; 0 where it does not count.
+double UnfoldingFront::curvature(Index vertex) {
+  if (curvatures_.empty()) return 0;
+  if (stars_->keeps(vertex)) return stars_->curvature(vertex);
+  double& known = curvatures_[vertex];
+  if (std::isnan(known)) {
+    beside_.clear();
+    Stars::append_corners(graph_, vertex, neighbors_, beside_);
+    known = Stars::curvature_of(beside_);
+  }
+  return known;
 }
 
 /// Along the edges of a vertex, and across the triangles of its star: from its own distance and that of one neighbour to
@@ -258,14 +285,23 @@ void UnfoldingFront::spread(Index from, Index point, double distance) {
   known_.resize(degree);
   double longest = 0;
   const auto way_of = [&](const Entry* entry) { return directions_ ? ways_[entry - entries_.data()] : Way{}; };
-  const Way own = way_of(find(from, point));
-  const bool bends = own.bent || (directions_ && distance > 0 && is_open(corners));
+  const Entry* const here = find(from, point);
+  const Way own = way_of(here);
+  const double focusing = here->focusing, curvature_here = distance > 0 ? curvature(from) : 0;
+  const double angle = distance > 0 ? Stars::open_angle(corners) : 0;
+  const bool bends = own.bent || (directions_ && angle > 0), at_notch = angle > std::numbers::pi + least_notch;
+  const auto focusing_along = [&](const Corner& edge, double along) {
+    if (curvatures_.empty()) return 0.0;
+    if (at_notch) return focusing_around_corner(along, edge.length);
+    return focusing_after(focusing, distance, along, 0.5 * (curvature_here + curvature(edge.neighbor)));
+  };
   for (std::size_t k = 0; k < degree; ++k) {
     const Entry* entry = find(corners[k].neighbor, point);
     const double before = entry ? entry->distance : std::numeric_limits<double>::infinity();
     const double along = distance + corners[k].length;
-    known_[k] = {before, std::min(before, along), along,
-                 before <= along ? way_of(entry) : Way{own.direction, false, bends}};
+    known_[k] = before <= along
+                    ? Known{before, along, entry->focusing, false, way_of(entry)}
+                    : Known{along, along, focusing_along(corners[k], along), true, {own.direction, false, bends}};
     longest = std::max(longest, corners[k].length);
   }
   for (std::size_t k = 0; k < degree; ++k) {
@@ -274,17 +310,32 @@ void UnfoldingFront::spread(Index from, Index point, double distance) {
     if (std::isnan(right.cosine)) continue;
     const auto unfold = [&](std::size_t base, double base_length, std::size_t target, double target_length,
                             double side) {
-      if (!(known_[base].now < known_[base].along)) return;
-      const double limit = known_[target].now * known_[target].now;
+      const Known& other = known_[base];
+      Known& found = known_[target];
+      if (!(other.distance < other.along)) return;
+      const double most = found.distance + (curvatures_.empty() ? 0 : most_beyond_circle * base_length);
+      const double limit = most * most;
       const double cx = target_length * right.cosine, cy = target_length * right.sine;
-      const Across found = across_side(distance, known_[base].now, base_length, cx, cy, limit, missed_);
-      if (!(found.squared < limit)) return;
-      known_[target].now = std::sqrt(found.squared);
+      const Across across = across_side(distance, other.distance, base_length, cx, cy, limit, missed_);
+      if (!(across.squared < limit)) return;
+      double length = std::sqrt(across.squared), bent_by = 0;
+      if (!curvatures_.empty() && across.depth > 0) {
+        const auto between = [&](double a, double b) { return (1 - across.share) * a + across.share * b; };
+        const double height = cy + across.depth, to_side = across.depth / height * length;
+        const double at_side = between(focusing, other.focusing);
+        const double bent =
+            length + beyond_circle(at_side, to_side, base_length, across.share, height * height / across.squared);
+        if (!(bent <= found.distance * (1 + same_length))) return;
+        const double curved = between(curvature_here, curvature(corners[base].neighbor));
+        bent_by = focusing_after(at_side, to_side, length, 0.5 * (curved + curvature(corners[target].neighbor)));
+        length = bent;
+      }
+      if (!comes_before(length, bent_by, found.distance, found.focusing)) return;
+      found = {std::min(length, found.distance), found.along, bent_by, true, found.way};
       if (!directions_) return;
-      const Way& other = known_[base].way;
-      known_[target].way.direction =
-          direction_across(found, base_length, cx, cy, own.direction, other.direction, own.mirrored ? -side : side);
-      known_[target].way.bent = own.bent || other.bent;
+      found.way.direction = direction_across(across, base_length, cx, cy, own.direction, other.way.direction,
+                                             own.mirrored ? -side : side);
+      found.way.bent = own.bent || other.way.bent;
     };
     unfold(k, right.length, next, left.length, 1);
     unfold(next, left.length, k, right.length, -1);
@@ -292,9 +343,9 @@ void UnfoldingFront::spread(Index from, Index point, double distance) {
   longest_ = std::max(longest_, longest);
   // What unfolds to a border comes from a few edges beyond.
   for (std::size_t k = 0; k < degree; ++k) {
-    if (!(known_[k].now < known_[k].before)) continue;
+    if (!known_[k].is_new) continue;
     known_[k].way.mirrored = own.mirrored != corners[k].reflects;
-    offer(corners[k].neighbor, point, known_[k].now, 4 * longest, {}, known_[k].way);
+    offer(corners[k].neighbor, point, known_[k].distance, 4 * longest, {}, known_[k].way, known_[k].focusing);
   }
 }
 

@@ -28,9 +28,12 @@ namespace ahm {
 /// star of a; where the straight line from there to c crosses the side a b, its length is the distance of c, else the way
 /// along the edge a c is. No heat, no operator: O(n log n), about a microsecond a vertex.
 ///
-/// It is exact on flat Delaunay triangulations without holes, and of second order elsewhere. Coarse
-/// and sharp ones (connected components of up to 10,000 vertices, some of them bent) it crosses by the midpoints of the edges,
-/// too, which halves the error; unlike heat it knows the way
+/// On a curved surface the distances between a and b are not those of a circle: on Delaunay triangulations the curvature of
+/// the front is carried along each way, from the angles around the vertices (maps/focusing.hpp).
+///
+/// It is exact on flat Delaunay triangulations without holes, and of second order elsewhere on Delaunay triangulations, of first
+/// order on other graphs. Coarse and sharp ones (connected components of up to 10,000 vertices, some of them bent) it crosses by
+/// the midpoints of the edges, too, which halves the error; unlike heat it knows the way
 /// around a hole and along both sides of a cut locus. Where a graph's lengths are noisy it takes the shortest of many
 /// uncertain ways and is too short. In other dimensions than 2 the displacement from the point is carried along the edges.
 class UnfoldingFront {
@@ -76,7 +79,7 @@ class UnfoldingFront {
  private:
   /// A distance from one point. Beside a border between points both sides are known, so that both can unfold across it.
   struct Entry {
-    double distance;
+    double distance, focusing;
     Index point, next, gains;
   };
   /// How the way of an entry leaves its point, in the frame of the source.
@@ -100,9 +103,11 @@ class UnfoldingFront {
     std::size_t edge;
     bool reflects;
   };
-  /// What is known of a neighbour while a vertex spreads: its distance before and now, and that along the edge.
+  /// What is known of a neighbour while a vertex spreads: its distance, that along the edge, how the front comes to it, and
+  /// whether all this was not known before.
   struct Known {
-    double before, now, along;
+    double distance, along, focusing;
+    bool is_new;
     Way way;
   };
   struct Waiting {
@@ -125,12 +130,12 @@ class UnfoldingFront {
 
   void offer_midpoints(std::vector<Given>& given);
   void offer(Index vertex, Index point, double distance, double slack, std::span<const double> displacement,
-             const Way& way);
+             const Way& way, double focusing = 0);
   Index replace_farthest(Index vertex, Index point, double distance);
   void spread(Index from, Index point, double distance);
   void carry(Index from, Index point);
   std::span<const Corner> around(Index vertex);
-  static bool is_open(std::span<const Corner> corners);
+  double curvature(Index vertex);
 
   const TangentGraph& graph_;
   std::size_t d_;
@@ -140,10 +145,13 @@ class UnfoldingFront {
   double longest_ = 0;  ///< edge of what was passed: no straight way within a radius crosses a side farther beyond it
   double missed_;       ///< share of a side by which a line may miss it
   bool directions_;
+  std::vector<double>
+      curvatures_;         ///< of what is not in `stars_`, where they are known; NaN: not yet. Empty: all as if flat
   std::vector<Way> ways_;  ///< of the entries, where directions are kept
   std::priority_queue<Waiting, std::vector<Waiting>, std::greater<>> queue_;
   std::shared_ptr<const Stars> stars_;
   std::vector<Corner> around_;  ///< of the vertex at hand, where its star is not kept
+  std::vector<Corner> beside_;  ///< of one whose curvature is asked for
   std::vector<Neighbor> neighbors_;
   std::vector<Known> known_;  ///< of its neighbours
   Index points_ = 0;
