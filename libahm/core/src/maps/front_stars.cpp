@@ -34,6 +34,24 @@ double turn(const Vec2& v) {
   return v[1] >= 0 ? 1 - along : along - 1;
 }
 
+/// A sum of angles from 0 to pi by their cosines and sines.
+class AngleSum {
+ public:
+  void add(double cosine, double sine) {
+    const double x = x_ * cosine - y_ * sine, y = x_ * sine + y_ * cosine;
+    turns_ += y_ < 0 && y >= 0;
+    x_ = x, y_ = y;
+  }
+  double sum() const {
+    const double angle = std::atan2(y_, x_);
+    return 2 * std::numbers::pi * (turns_ + (y_ < 0)) + angle;
+  }
+
+ private:
+  double x_ = 1, y_ = 0;
+  int turns_ = 0;
+};
+
 /// The third side of the corner between two neighbours; NaN where the star is open between them.
 template <class Neighbor>
 double third_side(const TangentGraph& graph, const Neighbor& right, const Neighbor& left) {
@@ -106,25 +124,25 @@ void UnfoldingFront::Stars::append_corners(const TangentGraph& graph, Index vert
 }
 
 double UnfoldingFront::Stars::open_angle(std::span<const Corner> corners) {
-  double angle = 0;
-  bool open = false;
+  if (std::ranges::none_of(corners, [](const Corner& corner) { return std::isnan(corner.cosine); })) return 0;
+  AngleSum angle;
   for (const Corner& corner : corners)
-    if (std::isnan(corner.cosine)) open = true;
-  for (const Corner& corner : corners)
-    if (open && !std::isnan(corner.cosine)) angle += std::atan2(corner.sine, corner.cosine);
-  return angle;
+    if (!std::isnan(corner.cosine)) angle.add(corner.cosine, corner.sine);
+  return angle.sum();
 }
 
 double UnfoldingFront::Stars::curvature_of(std::span<const Corner> corners) {
-  double missing = 2 * std::numbers::pi, area = 0;  // NaN on boundaries
-  double shortest = std::numeric_limits<double>::infinity(), longest = 0;
+  AngleSum angle;
+  double area = 0, shortest = std::numeric_limits<double>::infinity(), longest = 0;
   for (std::size_t k = 0; k < corners.size(); ++k) {
     const Corner &right = corners[k], &left = corners[k + 1 < corners.size() ? k + 1 : 0];
-    missing -= std::atan2(right.sine, right.cosine);
+    if (std::isnan(right.cosine)) return 0;
+    angle.add(right.cosine, right.sine);
     area += right.length * left.length * right.sine / 6;
     shortest = std::min(shortest, right.length);
     longest = std::max(longest, right.length);
   }
+  const double missing = 2 * std::numbers::pi - angle.sum();
   return std::abs(missing) * shortest > least_turn * longest && area > 0 ? missing / area : 0;
 }
 

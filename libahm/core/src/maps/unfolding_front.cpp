@@ -32,6 +32,8 @@ constexpr double shortest_side = 1e-6, shortest_side_far_away = 1e-13;
 constexpr double missed = 1e-9, missed_between = 1e-3;
 /// A corner of the boundary is one for ways to bend at where the surface has more of the full turn than half, by this in radians.
 constexpr double least_notch = 0.02;
+/// Stars that are kept until others take their place: those ahead of the front are asked for several times.
+constexpr std::size_t most_seen = 16384;
 /// Of a ray shorter than this share of a side nobody knows the direction.
 constexpr double least_ray = 1e-6;
 
@@ -100,6 +102,7 @@ UnfoldingFront::UnfoldingFront(const TangentGraph& graph, std::shared_ptr<const 
   head_.assign(static_cast<std::size_t>(stars_ ? stars_->size() : graph.size()), none);
   entries_.reserve(head_.size());
   if (stars_) curvatures_.assign(static_cast<std::size_t>(graph.size()), NAN);
+  seen_.resize(std::min<std::size_t>(most_seen, std::max<std::size_t>(1, head_.size())));
 }
 
 Index UnfoldingFront::add(const Source& source) {
@@ -256,11 +259,16 @@ void UnfoldingFront::offer(Index vertex, Index point, double distance, double sl
   queue_.push({distance, vertex, point});
 }
 
+/// Valid until the corners of another vertex are asked for.
 std::span<const UnfoldingFront::Corner> UnfoldingFront::around(Index vertex) {
-  if (stars_ && !stars_->of(vertex).empty()) return stars_->of(vertex);
-  around_.clear();
-  Stars::append_corners(graph_, vertex, neighbors_, around_);
-  return around_;
+  if (stars_ && stars_->keeps(vertex)) return stars_->of(vertex);
+  Seen& seen = seen_[static_cast<std::size_t>(vertex) % seen_.size()];
+  if (seen.vertex != vertex) {
+    seen.vertex = vertex;
+    seen.corners.clear();
+    Stars::append_corners(graph_, vertex, neighbors_, seen.corners);
+  }
+  return seen.corners;
 }
 
 /// Gaussian curvature; 0 where it does not count.
@@ -268,11 +276,7 @@ double UnfoldingFront::curvature(Index vertex) {
   if (curvatures_.empty()) return 0;
   if (stars_->keeps(vertex)) return stars_->curvature(vertex);
   double& known = curvatures_[vertex];
-  if (std::isnan(known)) {
-    beside_.clear();
-    Stars::append_corners(graph_, vertex, neighbors_, beside_);
-    known = Stars::curvature_of(beside_);
-  }
+  if (std::isnan(known)) known = Stars::curvature_of(around(vertex));
   return known;
 }
 
@@ -280,7 +284,11 @@ double UnfoldingFront::curvature(Index vertex) {
 /// the other.
 void UnfoldingFront::spread(Index from, Index point, double distance) {
   if (d_ != 2) return carry(from, point);
-  const std::span<const Corner> corners = around(from);
+  std::span<const Corner> corners = around(from);
+  if (!curvatures_.empty() && !stars_->keeps(from)) {  // those of its neighbours may take their place
+    around_.assign(corners.begin(), corners.end());
+    corners = around_;
+  }
   const std::size_t degree = corners.size();
   known_.resize(degree);
   double longest = 0;

@@ -95,6 +95,11 @@ class UnfoldingFront {
     double length;
     double cosine, sine;  ///< NaN where the star is open
   };
+  /// The corners around a vertex.
+  struct Seen {
+    Index vertex = -1;
+    std::vector<Corner> corners;
+  };
   /// A neighbour of a vertex as it lies in the tangent plane.
   struct Neighbor {
     Index vertex;
@@ -150,8 +155,8 @@ class UnfoldingFront {
   std::vector<Way> ways_;  ///< of the entries, where directions are kept
   std::priority_queue<Waiting, std::vector<Waiting>, std::greater<>> queue_;
   std::shared_ptr<const Stars> stars_;
-  std::vector<Corner> around_;  ///< of the vertex at hand, where its star is not kept
-  std::vector<Corner> beside_;  ///< of one whose curvature is asked for
+  std::vector<Seen> seen_;      ///< stars that `stars_` does not keep, by their vertex modulo the number of these
+  std::vector<Corner> around_;  ///< of the vertex at hand
   std::vector<Neighbor> neighbors_;
   std::vector<Known> known_;  ///< of its neighbours
   Index points_ = 0;
