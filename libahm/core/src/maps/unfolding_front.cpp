@@ -33,7 +33,7 @@ constexpr double missed = 1e-9, missed_between = 1e-3;
 /// A corner of the boundary is one for ways to bend at where the surface has more of the full turn than half, by this in radians.
 constexpr double least_notch = 0.02;
 /// Stars that are kept until others take their place: those ahead of the front are asked for several times.
-constexpr std::size_t most_seen = 16384;
+constexpr std::size_t most_seen = 2048;
 /// Of a ray shorter than this share of a side nobody knows the direction.
 constexpr double least_ray = 1e-6;
 
