@@ -2,11 +2,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <complex>
 #include <functional>
 #include <numbers>
 #include <numeric>
+#include <optional>
 
 #include "ahm/maps/log_map_solver.hpp"
 #include "ahm/maps/quality.hpp"
@@ -76,22 +78,38 @@ void compare(const Surface& surface, const exact::ExactMap& truth, const View& v
   }
 }
 
-/// Area under the curve of right ones against wrong ones: how often a right vertex has the higher quality of a pair.
-/// Empty where all are of one kind.
-Cell area_under_curve(std::span<const double> quality, const Found& found) {
+/// Shares of the wrong ones that are trusted, at which the curve of the right ones is told.
+constexpr std::array wrong_shares{0.01, 0.02, 0.05, 0.1, 0.2, 0.4, 0.7};
+
+/// Receiver operating characteristic of a quality: of the right ones, those that are trusted where so many of the wrong ones are.
+struct Curve {
+  double area;                                      ///< how often a right vertex has the higher quality of a pair
+  std::array<double, wrong_shares.size()> trusted;  ///< shares of the right ones
+};
+
+/// Nothing where all are of one kind.
+std::optional<Curve> curve_of(std::span<const double> quality, const Found& found) {
   std::vector<std::size_t> order(quality.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(), [&](auto a, auto b) { return quality[a] < quality[b]; });
+  std::sort(order.begin(), order.end(), [&](auto a, auto b) { return quality[a] > quality[b]; });
+  const auto all = static_cast<double>(order.size());
+  const auto all_right = static_cast<double>(std::count(found.is_right.begin(), found.is_right.end(), 1));
+  if (all_right == 0 || all_right == all) return std::nullopt;
+  Curve curve{};
   double above = 0, wrong = 0, right_ones = 0;
+  std::size_t share = 0;
   for (std::size_t k : order) {
-    if (!found.is_right[k]) {
-      ++wrong;
+    if (found.is_right[k]) {
+      ++right_ones;
+      above += all - all_right - wrong;
       continue;
     }
-    above += wrong;
-    ++right_ones;
+    ++wrong;
+    while (share < wrong_shares.size() && wrong > wrong_shares[share] * (all - all_right))
+      curve.trusted[share++] = right_ones / all_right;
   }
-  return wrong > 0 && right_ones > 0 ? Cell(above / (wrong * right_ones)) : Cell();
+  curve.area = above / (all_right * (all - all_right));
+  return curve;
 }
 
 double mean(const std::vector<double>& values) {
@@ -128,9 +146,11 @@ void measure(const Surface& surface, const View& view, Table& table) {
         trusted += is_trusted;
         right_trusted += is_trusted && found.is_right[k];
       }
-      row.push_back(area_under_curve(*quality, found));
+      const auto curve = curve_of(*quality, found);
+      row.push_back(curve ? Cell(curve->area) : Cell());
       row.push_back(trusted / count);
       row.push_back(trusted > 0 ? Cell(right_trusted / trusted) : Cell());
+      for (std::size_t k = 0; k < wrong_shares.size(); ++k) row.push_back(curve ? Cell(curve->trusted[k]) : Cell());
     }
     table.add(std::move(row));
   }
@@ -147,9 +167,15 @@ void measure(const Surface& surface, Table& table) {
 }  // namespace
 
 Table trust(const Settings& settings) {
-  Table table({"mesh", "as", "vertices", "variant", "distance mean", "distance 95%", "distance max", "|phi| mean",
-               "|phi| 95%", "|phi| max", "right", "area under curve", "trusted", "right among trusted",
-               "area under curve, by length", "trusted, by length", "right among trusted, by length"});
+  std::vector<std::string> columns{"mesh",          "as",           "vertices",     "variant",
+                                   "distance mean", "distance 95%", "distance max", "|phi| mean",
+                                   "|phi| 95%",     "|phi| max",    "right"};
+  for (const char* by : {"", ", by length"}) {
+    for (const char* name : {"area under curve", "trusted", "right among trusted"})
+      columns.push_back(fmt::format("{}{}", name, by));
+    for (double share : wrong_shares) columns.push_back(fmt::format("right at {} of wrong{}", share, by));
+  }
+  Table table(columns);
   const Index n = settings.toy ? 640 : 10000;
   measure(Surface("sphere", test::split_icosphere(n)), table);
   measure(Surface("torus", torus(n)), table);

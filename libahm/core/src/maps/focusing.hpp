@@ -2,7 +2,7 @@
 /// How a curved surface focuses the front of the points that are equally far from one point.
 ///
 /// At distance r the front is a circle of curvature 1/r in the plane. Elsewhere its geodesic curvature k obeys the Riccati
-/// equation along each way, K being the Gaussian curvature [dC92]:
+/// equation along each way, K being the Gaussian curvature [DoC92]:
 ///
 ///     k' = -k^2 - K,    k = 1/r - m/r^2    hence    m' = K r^2 + m^2/r^2,   m = 0 at the point
 ///
