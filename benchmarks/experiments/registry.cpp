@@ -22,6 +22,7 @@ Table local_maps(const Settings&);
 Table march(const Settings&);
 Table margins(const Settings&);
 Table mazes(const Settings&);
+Table direct(const Settings&);
 Table mesh_scaling(const Settings&);
 Table methods_compared(const Settings&);
 Table orders(const Settings&);
@@ -105,6 +106,7 @@ std::span<const Experiment> experiments() {
                  "The paper compares with these methods, figure by figure.", methods_compared},
       Experiment{"mesh_scaling", "scaling", "Time and memory of meshes", "Not in the paper.", mesh_scaling},
       Experiment{"cloud_scaling", "scaling", "Time and memory of clouds", "Not in the paper.", cloud_scaling},
+      Experiment{"direct", "scaling", "The paper's systems by LU, beside the elimination", "Not in the paper.", direct},
       Experiment{"stages", "scaling", "Each stage, and the least it could take", "Not in the paper.", stages_of_a_map},
       Experiment{"march", "scaling", "One map by march", "Not in the paper.", march},
       Experiment{"far", "scaling", "Flat tubes and cubes by march", "Not in the paper.", far},
