@@ -137,7 +137,7 @@ std::vector<double> by_elimination(Index n, Variant variant) {
   const Source source = Source::at_vertex(Vertex(0));
   std::optional<LogMapSolver> solver;
   return timed([&] { solver.emplace(surface.graph(), HeatOptions{.strategy = Strategy::global, .threads = 1}); },
-               [&] { solver->solve(source, {.variant = variant, .spread = false, .threads = 1}); });
+               [&] { solver->solve(source, {.variant = variant, .threads = 1}); });
 }
 
 /// And how far the two maps differ, as a share of the longest vector.
