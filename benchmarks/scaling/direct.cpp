@@ -23,6 +23,12 @@ using Complex = std::complex<double>;
 using Scalars = Eigen::SparseMatrix<double>;
 using Rotations = Eigen::SparseMatrix<Complex>;
 
+/// UMFPACK's factors, which look at their matrix again for each solve.
+struct Lu {
+  Scalars matrix;
+  Eigen::UmfPackLU<Scalars> factors;
+};
+
 /// Factors as a user of the paper's equations would keep them: of the frames' operator by Cholesky, of the 3n x 3n operator by LU.
 class DirectSolver {
  public:
@@ -55,9 +61,9 @@ class DirectSolver {
     }
     Eigen::VectorXd b = Eigen::VectorXd::Zero(3 * n_);
     b[3 * source + 2] = 1;
-    Eigen::UmfPackLU<Scalars>& lu = variant == Variant::adaptive ? *affine_ : *radial_;
-    const Eigen::VectorXd x = lu.solve(b);
-    check(lu.info());
+    Lu& lu = variant == Variant::adaptive ? *affine_ : *radial_;
+    const Eigen::VectorXd x = lu.factors.solve(b);
+    check(lu.factors.info());
     std::vector<Complex> phi;
     for (Index i = 0; i < n_; ++i) {
       const Complex z(x[3 * i] / x[3 * i + 2], x[3 * i + 1] / x[3 * i + 2]);
@@ -90,7 +96,7 @@ class DirectSolver {
   }
 
   /// M + tau L over (z, 1) [SS25, Eq. 10 and 16].
-  void factor(Eigen::UmfPackLU<Scalars>& lu, Variant variant, const Eigen::VectorXcd& U) const {
+  void factor(Lu& lu, Variant variant, const Eigen::VectorXcd& U) const {
     std::vector<Eigen::Triplet<double>> entries;
     for_each_edge([&](Index i, Index j, double weight, Complex turn, Complex log) {
       const double amount = -tau_ * weight;
@@ -103,20 +109,20 @@ class DirectSolver {
     });
     for (Index i = 0; i < n_; ++i)
       for (int a = 0; a < 3; ++a) entries.emplace_back(3 * i + a, 3 * i + a, diagonal(i));
-    Scalars K(3 * n_, 3 * n_);
-    K.setFromTriplets(entries.begin(), entries.end());
-    lu.compute(K);
-    check(lu.info());
+    lu.matrix.resize(3 * n_, 3 * n_);
+    lu.matrix.setFromTriplets(entries.begin(), entries.end());
+    lu.factors.compute(lu.matrix);
+    check(lu.factors.info());
   }
 
   const CsrGraph& graph_;
   Index n_;
   double tau_;
   Eigen::CholmodSupernodalLLT<Rotations> frames_;
-  std::optional<Eigen::UmfPackLU<Scalars>> affine_, radial_;
+  std::optional<Lu> affine_, radial_;
 };
 
-/// Seconds of the first map of a variant, of further ones, and peak MB; then the map, if `map` is asked for.
+/// Seconds of the first map and of a further one, and peak MB to the first.
 template <class Make, class Solve>
 std::vector<double> timed(const Make& make, const Solve& solve) {
   const double first = cpu_seconds_of([&] {
