@@ -29,22 +29,26 @@ constexpr double missed = 1e-9, missed_between = 1e-3;
 constexpr double least_ray = 1e-6;
 
 /// Where a point lies in the layout of a triangle with a at 0, b at (ab, 0) and c at (cx, cy) above: at (x, -depth); and the square of
-/// its distance from c.
+/// its distance from c, if `found`.
 struct Across {
-  double squared, x = 0, depth = 0;
+  double squared, x, depth;
+  bool found;
 };
 
-/// Of a point at distances `from_a` and `from_b` below the side ab; `limit` where c is no nearer, or where the straight line
-/// to the point does not cross that side.
-Across across_side(double from_a, double from_b, double ab, double cx, double cy, double limit, double missed) {
-  if (!(ab > shortest_side * std::max(std::abs(cx), cy)) || !(ab > shortest_side_far_away * from_a)) return {limit};
+/// Of a point at distances `from_a` and `from_b` below the side ab; not found where c is no nearer than the root of `limit`, or
+/// where the straight line to the point does not cross that side. It is asked a dozen times for each vertex, mostly in vain for
+/// any of these reasons: so all is computed, and decided at once.
+[[gnu::always_inline]] inline Across across_side(double from_a, double from_b, double ab, double cx, double cy,
+                                                 double limit, double missed) {
   const double x = 0.5 * (ab + (from_a - from_b) * (from_a + from_b) / ab);
   const double squared_y = (from_a - x) * (from_a + x), along = (cx - x) * (cx - x) + cy * cy + squared_y;
-  if (!(squared_y >= -1e-14 * from_a * from_a) || !(along < limit)) return {limit};
-  const double depth = std::sqrt(std::max(0.0, squared_y)), height = cy + depth;
+  const double depth = std::sqrt(squared_y > 0 ? squared_y : 0.0), height = cy + depth;
   const double at_side = x * cy + cx * depth;  // where the line crosses, times height
-  if (!(at_side >= -missed * ab * height) || !(at_side <= (1 + missed) * ab * height)) return {limit};
-  return {std::min(limit, (cx - x) * (cx - x) + height * height), x, depth};
+  const double squared = (cx - x) * (cx - x) + height * height;
+  const bool found = (ab > shortest_side * std::max(std::abs(cx), cy)) & (ab > shortest_side_far_away * from_a) &
+                     (squared_y >= -1e-14 * from_a * from_a) & (along < limit) & (squared < limit) &
+                     (at_side >= -missed * ab * height) & (at_side <= (1 + missed) * ab * height);
+  return {squared, x, depth, found};
 }
 
 /// `v` turned as the ray `from` must be to become the ray `to`, the other way round if `side` is -1; unit length.
@@ -278,7 +282,7 @@ void UnfoldingFront::spread(Index from, Index point, double distance) {
       const double limit = known_[target].now * known_[target].now;
       const double cx = target_length * right.cosine, cy = target_length * right.sine;
       const Across found = across_side(distance, known_[base].now, base_length, cx, cy, limit, missed_);
-      if (!(found.squared < limit)) return;
+      if (!found.found) return;
       known_[target].now = std::sqrt(found.squared);
       if (!directions_) return;
       const Way& other = known_[base].way;
