@@ -204,12 +204,11 @@ class Worker {
       heat.coordinates_at(m, vertex, phi);
       if (!heat.reached(m, vertex) || !all_finite(std::span<const double>(phi, d_)))
         distance[k] = std::numeric_limits<double>::infinity();
-      if (distance[k] <= farthest) order_.push_back(vertex);
+      if (distance[k] <= farthest) order_.emplace_back(distance[k], vertex);
     }
     const Outcome outcome = judge(patch, distance, wanted, radius);
     if (outcome != Outcome::complete) return outcome;
-    std::sort(order_.begin(), order_.end(),
-              [&](Index a, Index b) { return distance[a] != distance[b] ? distance[a] < distance[b] : a < b; });
+    std::sort(order_.begin(), order_.end());
     if (options_.nearest > 0 && order_.size() > static_cast<std::size_t>(options_.nearest))
       order_.resize(static_cast<std::size_t>(options_.nearest));
 
@@ -221,9 +220,9 @@ class Worker {
     entries.transports.reserve(size * graph_.transport_layout().width());
     const FrameField frames = heat.frames(m);
     std::vector<double> U(graph_.transport_layout().width());
-    for (Index k : order_) {
+    for (const auto& [from_source, k] : order_) {
       entries.vertices.push_back(patch.vertices[k]);
-      entries.distances.push_back(distance[k]);
+      entries.distances.push_back(from_source);
       entries.logs.insert(entries.logs.end(), phi_.begin() + static_cast<std::ptrdiff_t>(k * d_),
                           phi_.begin() + static_cast<std::ptrdiff_t>((k + 1) * d_));
       frames.frame(k, U.data());
@@ -240,7 +239,7 @@ class Worker {
   std::size_t d_;
   std::vector<double> distances_;  ///< of the patch at hand from each of its sources, n each
   std::vector<double> phi_;
-  std::vector<Index> order_;
+  std::vector<std::pair<double, Index>> order_;  ///< those within the radius, nearest first
 };
 
 LocalMaps joined(const TangentGraph& graph, std::vector<Entries>& entries) {

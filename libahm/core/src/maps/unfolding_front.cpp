@@ -261,15 +261,16 @@ void UnfoldingFront::spread(Index from, Index point, double distance) {
   const std::size_t degree = corners.size();
   known_.resize(degree);
   double longest = 0;
-  const auto way_of = [&](const Entry* entry) { return directions_ ? ways_[entry - entries_.data()] : Way{}; };
-  const Way own = way_of(find(from, point));
+  const auto way_of = [&](const Entry* entry) { return ways_[entry - entries_.data()]; };
+  const Way own = directions_ ? way_of(find(from, point)) : Way{};
   const bool bends = own.bent || (directions_ && distance > 0 && is_open(corners));
   for (std::size_t k = 0; k < degree; ++k) {
     const Entry* entry = find(corners[k].neighbor, point);
     const double before = entry ? entry->distance : std::numeric_limits<double>::infinity();
     const double along = distance + corners[k].length;
-    known_[k] = {before, std::min(before, along), along,
-                 before <= along ? way_of(entry) : Way{own.direction, false, bends}};
+    Known& known = known_[k];
+    known.before = before, known.now = std::min(before, along), known.along = along;
+    if (directions_) known.way = entry && before <= along ? way_of(entry) : Way{own.direction, false, bends};
     longest = std::max(longest, corners[k].length);
   }
   for (std::size_t k = 0; k < degree; ++k) {
