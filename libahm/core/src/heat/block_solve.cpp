@@ -9,39 +9,37 @@ namespace {
 /// Numbers of a row of X that are at work at once: 16 real columns, or the real and then the imaginary parts of 8 complex ones.
 constexpr int width = 16;
 
-/// A number of the factor, real (W = 1) or complex (W = 2), times a row; the sum stays in registers.
+/// Two numbers, which every processor takes at once.
+using Pair [[gnu::vector_size(16), gnu::may_alias]] = double;
+constexpr int pairs = width / 2;
+
+/// A sum of rows, each times a number of the factor, real (W = 1) or complex (W = 2); it stays in registers.
 template <int W>
 struct RowSum {
-  double sum[width] = {};
+  Pair sum[pairs] = {};
 
-  [[gnu::always_inline]] void add(const double* L, const double* x) {
+  [[gnu::always_inline]] void add(const double* L, const double* row) { add(L[0], W == 1 ? 0 : L[1], row); }
+  [[gnu::always_inline]] void add_conjugate(const double* L, const double* row) { add(L[0], W == 1 ? 0 : -L[1], row); }
+  [[gnu::always_inline]] void subtract_from(double* row) const {
+    Pair* x = reinterpret_cast<Pair*>(row);
+#pragma GCC unroll 8
+    for (int c = 0; c < pairs; ++c) x[c] -= sum[c];
+  }
+
+ private:
+  [[gnu::always_inline]] void add(double real, [[maybe_unused]] double imaginary, const double* row) {
+    const Pair* x = reinterpret_cast<const Pair*>(row);
     if constexpr (W == 1) {
-#pragma omp simd
-      for (int c = 0; c < width; ++c) sum[c] += L[0] * x[c];
+#pragma GCC unroll 8
+      for (int c = 0; c < pairs; ++c) sum[c] += real * x[c];
     } else {
-      constexpr int half = width / 2;
-#pragma omp simd
+      constexpr int half = pairs / 2;
+#pragma GCC unroll 4
       for (int c = 0; c < half; ++c) {
-        sum[c] += L[0] * x[c] - L[1] * x[half + c];
-        sum[half + c] += L[0] * x[half + c] + L[1] * x[c];
+        sum[c] += real * x[c] - imaginary * x[half + c];
+        sum[half + c] += real * x[half + c] + imaginary * x[c];
       }
     }
-  }
-  [[gnu::always_inline]] void add_conjugate(const double* L, const double* x) {
-    if constexpr (W == 1) {
-      add(L, x);
-    } else {
-      constexpr int half = width / 2;
-#pragma omp simd
-      for (int c = 0; c < half; ++c) {
-        sum[c] += L[0] * x[c] + L[1] * x[half + c];
-        sum[half + c] += L[0] * x[half + c] - L[1] * x[c];
-      }
-    }
-  }
-  [[gnu::always_inline]] void subtract_from(double* x) const {
-#pragma omp simd
-    for (int c = 0; c < width; ++c) x[c] -= sum[c];
   }
 };
 
