@@ -46,6 +46,9 @@ VoronoiCells voronoi_cells(UnfoldingFront& front, std::span<const Vertex> vertic
   return detail::with_memory_check("labelling by the nearest source", [&] {
     const TangentGraph& graph = front.graph();
     check_vertices(graph, vertices);
+    if (front.points() > std::ssize(vertices))
+      throw InvalidArgument("'front' comes from " + std::to_string(front.points()) + " points, more than the " +
+                            std::to_string(vertices.size()) + " vertices given");
     for (Vertex vertex : vertices.subspan(static_cast<std::size_t>(front.points())))
       front.add(Source::at_vertex(vertex));
     front.run();

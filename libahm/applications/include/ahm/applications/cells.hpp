@@ -30,7 +30,7 @@ struct VoronoiCells {
 VoronoiCells voronoi_cells(const TangentGraph& graph, std::span<const Vertex> vertices);
 /// The same by a front that has come from the first of these vertices before, if from any: it goes on from the others, over what is
 /// nearer to them.
-/// @throws as above
+/// @throws as above; InvalidArgument (more points than vertices)
 VoronoiCells voronoi_cells(UnfoldingFront& front, std::span<const Vertex> vertices);
 /// The same by exact distances over the flat faces.
 /// @param options  radius, beyond which there are no cells; tolerance; progress
