@@ -18,6 +18,7 @@
 #include "ahm/testing/triangle_meshes.hpp"
 #include "ahm/trimesh/triangle_mesh_surface.hpp"
 #include "farthest.hpp"
+#include "support/expect_error.hpp"
 
 namespace ahm::test {
 namespace {
@@ -99,6 +100,21 @@ TEST(Cells, ContainTheirSourcesAndAreConnected) {
     EXPECT_EQ(label[sources[k].index], static_cast<Index>(k));
     EXPECT_EQ(size, std::count(label.begin(), label.end(), static_cast<Index>(k)));
   }
+}
+
+TEST(Cells, AreTheSameByAFrontThatGoesOn) {
+  const CsrGraph graph(planar_triangulation(30).data);
+  const std::vector<Vertex> sources = farthest_points(graph, Vertex{17}, 24);
+  UnfoldingFront front(graph);
+  for (std::size_t count : {1, 2, 7, 24}) {
+    const VoronoiCells fresh = voronoi_cells(graph, std::span(sources).first(count));
+    const VoronoiCells cells = voronoi_cells(front, std::span(sources).first(count));
+    EXPECT_EQ(cells.labels, fresh.labels) << count;
+    for (std::size_t i = 0; i < fresh.distances.size(); ++i)
+      ASSERT_NEAR(cells.distances[i], fresh.distances[i], 1e-13) << count;
+  }
+  expect_error<InvalidArgument>([&] { voronoi_cells(front, std::span(sources).first(5)); },
+                                "24 points, more than the 5");
 }
 
 TEST(Cells, LeaveComponentsWithoutASourceUnlabelled) {

@@ -35,12 +35,22 @@ void check_count(Index vertices, Vertex first, Index count) {
 
 }  // namespace
 
-VoronoiCells voronoi_cells(const TangentGraph& graph, std::span<const Vertex> vertices,
-                           std::shared_ptr<const UnfoldingFront::Stars> stars) {
+VoronoiCells voronoi_cells(const TangentGraph& graph, std::span<const Vertex> vertices) {
   return detail::with_memory_check("labelling by the nearest source", [&] {
+    UnfoldingFront front(graph);
+    return voronoi_cells(front, vertices);
+  });
+}
+
+VoronoiCells voronoi_cells(UnfoldingFront& front, std::span<const Vertex> vertices) {
+  return detail::with_memory_check("labelling by the nearest source", [&] {
+    const TangentGraph& graph = front.graph();
     check_vertices(graph, vertices);
-    UnfoldingFront front(graph, std::move(stars));
-    for (Vertex vertex : vertices) front.add(Source::at_vertex(vertex));
+    if (front.points() > std::ssize(vertices))
+      throw InvalidArgument("'front' comes from " + std::to_string(front.points()) + " points, more than the " +
+                            std::to_string(vertices.size()) + " vertices given");
+    for (Vertex vertex : vertices.subspan(static_cast<std::size_t>(front.points())))
+      front.add(Source::at_vertex(vertex));
     front.run();
     VoronoiCells cells;
     for (Index i = 0; i < graph.size(); ++i) {

@@ -23,7 +23,9 @@ std::vector<double> MapMaker::coordinates(std::span<const Vertex> sources,
   if (solver_ == nullptr || solver_->options().order != 1) return coordinates_of_whole(sources, regions, reach);
   std::vector<Source> starts;
   for (Vertex vertex : sources) starts.push_back(Source::at_vertex(vertex));
-  std::vector<double> result = local_coordinates(solver_->graph(), starts, regions, solver_->options());
+  HeatOptions heat = solver_->options();
+  heat.check_graph = false;  // the solver's graph is checked
+  std::vector<double> result = local_coordinates(solver_->graph(), starts, regions, heat);
   // Where heat dies on its way, the solver marches on.
   auto first = result.begin();
   for (std::size_t s = 0; s < sources.size(); ++s) {
@@ -73,9 +75,8 @@ double MapMaker::longest_way(const FaceList& faces) const {
   return flat.length_unit * side * static_cast<double>(farthest);
 }
 
-VoronoiCells MapMaker::cells(std::span<const Vertex> sources,
-                             const std::shared_ptr<const UnfoldingFront::Stars>& stars) const {
-  return solver_ != nullptr ? voronoi_cells(solver_->graph(), sources, stars)
+VoronoiCells MapMaker::cells(std::span<const Vertex> sources) const {
+  return solver_ != nullptr ? voronoi_cells(solver_->graph(), sources)
                             : voronoi_cells(*geodesics_, sources, {.tolerance = tolerance_, .progress = {}});
 }
 

@@ -7,6 +7,7 @@
 
 #include "ahm/error.hpp"
 #include "heat/blas_control.hpp"
+#include "heat/block_solve.hpp"
 #include "heat/conjugate_gradient.hpp"
 #include "heat/triangular_solve.hpp"
 
@@ -84,6 +85,61 @@ TEST(NarrowSolve, InvertsAFactorWrittenByHand) {
                   L[i][k] * L[j][k] * x[static_cast<std::size_t>(3 * c + order[j])];
       narrow_solve(factor.view(), b, columns);
       for (std::size_t k = 0; k < x.size(); ++k) ASSERT_NEAR(b[k], x[k], 1e-13 * std::abs(x.back())) << columns;
+    }
+  }
+}
+
+/// A factor of real or complex numbers on a chain of supernodes of 1 to 4 columns, each above some rows of those after it.
+struct ChainFactor {
+  Offset n = 0;
+  int width;
+  std::vector<std::int64_t> permutation, super{0}, row_begin{0}, value_begin{0}, indices;
+  std::vector<double> values;
+
+  explicit ChainFactor(bool is_complex) : width(is_complex ? 2 : 1) {
+    constexpr Offset supernodes = 9;
+    for (Offset s = 0; s < supernodes; ++s) super.push_back(n += 1 + s % 4);
+    for (Offset s = 0; s < supernodes; ++s) {
+      const Offset columns = super[s + 1] - super[s];
+      for (Offset r = super[s]; r < n; ++r)
+        if (r < super[s + 1] || r % 3 == 0 || r + 2 >= n) indices.push_back(r);
+      row_begin.push_back(static_cast<std::int64_t>(indices.size()));
+      const Offset rows = row_begin[s + 1] - row_begin[s];
+      value_begin.push_back(value_begin[s] + rows * columns);
+      for (Offset j = 0; j < columns; ++j)
+        for (Offset r = 0; r < rows; ++r)
+          for (int w = 0; w < width; ++w)
+            values.push_back(r < j ? 0 : r == j ? (w == 0 ? 2.0 + 0.1 * s : 0) : std::sin(1.0 + s + 3 * r + 7 * j + w));
+    }
+    for (Offset k = 0; k < n; ++k) permutation.push_back((5 * k + 2) % n);
+  }
+  SupernodalFactor view() const {
+    return {n, width == 2, permutation, super, row_begin, value_begin, indices, values.data()};
+  }
+};
+
+TEST(BlockSolve, IsTheNarrowSolveOfEveryColumnWhateverIsBesideIt) {
+  for (const bool is_complex : {false, true}) {
+    const ChainFactor factor(is_complex);
+    const auto column = static_cast<std::size_t>(factor.n * factor.width);
+    constexpr std::size_t most = 35;
+    std::vector<double> b(most * column), alone;
+    // Some columns are zero but for a number: the way to the root is all there is to solve for, on the way down.
+    for (std::size_t k = 0; k < b.size(); ++k)
+      b[k] = k / column % 3 == 0 && k % column != k / column ? 0 : std::cos(1.0 + static_cast<double>(k));
+    for (std::size_t c = 0; c < most; ++c) {
+      std::vector<double> x(b.begin() + static_cast<std::ptrdiff_t>(c * column),
+                            b.begin() + static_cast<std::ptrdiff_t>((c + 1) * column));
+      narrow_solve(factor.view(), x, 1);
+      alone.insert(alone.end(), x.begin(), x.end());
+    }
+    std::vector<double> all = b;
+    block_solve(factor.view(), all, most);
+    for (std::size_t k = 0; k < all.size(); ++k) ASSERT_NEAR(all[k], alone[k], 1e-11 * (1 + std::abs(alone[k])));
+    for (std::size_t columns : {std::size_t{1}, std::size_t{8}, std::size_t{17}}) {
+      std::vector<double> some(b.begin(), b.begin() + static_cast<std::ptrdiff_t>(columns * column));
+      block_solve(factor.view(), some, static_cast<Offset>(columns));
+      for (std::size_t k = 0; k < some.size(); ++k) ASSERT_EQ(some[k], all[k]) << columns;
     }
   }
 }

@@ -102,7 +102,11 @@ AtlasDistortion distortion(const Atlas& atlas, const FaceList& faces, std::span<
 }
 
 Atlas make_atlas(const MapMaker& maps, std::span<const Vertex> sources, const FaceList& faces) {
-  return detail::with_memory_check("making an atlas", [&] { return AtlasMaker(maps, faces).make(sources); });
+  return detail::with_memory_check("making an atlas", [&] {
+    AtlasMaker maker(maps, faces);
+    maker.make(sources);
+    return maker.take();
+  });
 }
 
 Atlas make_atlas(const MapMaker& maps, std::span<const Vertex> sources, const FaceList& faces,
@@ -116,20 +120,25 @@ Atlas make_atlas(const MapMaker& maps, std::span<const Vertex> sources, const Fa
                           std::to_string(maps.graph().size()));
   return detail::with_memory_check("making an atlas", [&] {
     AtlasMaker maker(maps, faces);
-    Atlas atlas = maker.make(one_per_component(maps.graph(), sources, faces, refine.max_sources));
+    maker.make(one_per_component(maps.graph(), sources, faces, refine.max_sources));
+    const Atlas& atlas = maker.atlas();
     std::vector<bool> is_source(positions.size(), false);
     for (Vertex vertex : atlas.sources) is_source[vertex.index] = true;
+    std::vector<bool> settled(faces.size(), false);  // at the first face of a chart: it wants no other source
     while (true) {
       std::vector<Vertex> more = atlas.sources;
-      for (const Chart& chart : atlas.charts) {
+      for (std::size_t k = 0; k < atlas.charts.size(); ++k) {
         if (more.size() >= refine.max_sources) break;
+        const Chart& chart = atlas.charts[k];
+        if (!maker.is_new(k) && settled[chart.faces.front()]) continue;
         const Index vertex = vertex_to_add(atlas, faces, positions, chart, is_source, refine);
+        settled[chart.faces.front()] = vertex < 0;
         if (vertex < 0 || is_source[vertex]) continue;  // two charts may want the same corner
         is_source[vertex] = true;
         more.push_back(Vertex(vertex));
       }
-      if (more.size() == atlas.sources.size()) return atlas;
-      atlas = maker.make(more);
+      if (more.size() == atlas.sources.size()) return maker.take();
+      maker.make(more);
     }
   });
 }

@@ -46,10 +46,17 @@ std::vector<Index> nearest_of_faces(const FaceList& faces, std::span<const Index
   for (std::size_t f = 0; f < faces.size(); ++f) {
     double least = std::numeric_limits<double>::infinity();
     Index before = nobody;
-    for (Index v : faces[f]) {
+    const auto face = faces[f];
+    if (const Index only = face.empty() ? nobody : label[face.front()];
+        only != nobody && regions.is_known(only) &&
+        std::ranges::all_of(face, [&](Index v) { return label[v] == only; })) {
+      result[f] = only;
+      continue;
+    }
+    for (Index v : face) {
       const Index source = label[v];
       if (source == nobody || source == before) continue;
-      const double sum = sum_of_distances(regions, before = source, faces[f]);
+      const double sum = sum_of_distances(regions, before = source, face);
       if (sum < least || (sum == least && source < result[f])) least = sum, result[f] = source;
     }
   }
@@ -112,11 +119,12 @@ Index best_neighbor(const std::vector<Index>& island, const FaceNeighbors& neigh
 }
 
 /// Gives what is cut off from its cell to a neighbouring chart, as long as that is possible.
-void attach_islands(const FaceNeighbors& neighbors, const FaceList& faces, const Regions& regions, std::size_t sources,
-                    std::vector<Index>& source) {
-  for (bool changed = true; changed;) {
-    changed = false;
-    const Pieces pieces(neighbors, source);
+/// @return the pieces then
+Pieces attach_islands(const FaceNeighbors& neighbors, const FaceList& faces, const Regions& regions,
+                      std::size_t sources, std::vector<Index>& source) {
+  while (true) {
+    bool changed = false;
+    Pieces pieces(neighbors, source);
     const std::vector<Index> main = pieces.largest(source, sources);
     std::vector<std::uint8_t> in_main(source.size(), 0);
     for (std::size_t f = 0; f < source.size(); ++f)
@@ -128,6 +136,7 @@ void attach_islands(const FaceNeighbors& neighbors, const FaceList& faces, const
       for (Index f : piece) source[f] = better;
       changed = true;
     }
+    if (!changed) return pieces;
   }
 }
 
@@ -146,43 +155,45 @@ bool is_mirrored(const Atlas& atlas, const FaceList& faces, const Chart& chart) 
   return balance < 0;
 }
 
-/// The charts of the pieces, in the order of their sources, with the coordinates of their corners.
-Atlas assemble(const FaceNeighbors& neighbors, const FaceList& faces, const Regions& regions,
-               std::span<const Index> source) {
-  Atlas atlas;
-  for (std::vector<Index>& piece : Pieces(neighbors, source).faces) {
+/// The charts of the pieces, in the order of their sources.
+std::vector<Chart> charts_of(Pieces pieces, std::span<const Index> source) {
+  std::vector<Chart> charts;
+  for (std::vector<Index>& piece : pieces.faces) {
     std::sort(piece.begin(), piece.end());
-    atlas.charts.push_back({source[piece.front()], std::move(piece)});
+    charts.push_back({source[piece.front()], std::move(piece)});
   }
-  std::stable_sort(atlas.charts.begin(), atlas.charts.end(), [](const Chart& a, const Chart& b) {
+  std::stable_sort(charts.begin(), charts.end(), [](const Chart& a, const Chart& b) {
     return a.source != b.source ? a.source < b.source : a.faces.size() > b.faces.size();
   });
-  atlas.chart_of_face.assign(faces.size(), nobody);
-  atlas.coordinates.assign(2 * faces.vertices.size(), std::numeric_limits<double>::quiet_NaN());
-  for (std::size_t k = 0; k < atlas.charts.size(); ++k) {
-    const Chart& chart = atlas.charts[k];
-    for (Index f : chart.faces) {
-      atlas.chart_of_face[f] = static_cast<Index>(k);
-      for (Offset c = faces.begin[f]; c < faces.begin[f + 1]; ++c) {
-        const auto q = regions.coordinates(chart.source, faces.vertices[c]);
-        std::copy(q.begin(), q.end(), atlas.coordinates.begin() + 2 * c);
-      }
+  return charts;
+}
+
+/// Puts the corners of a chart where its source has them.
+void put_corners(const FaceList& faces, const Regions& regions, const Chart& chart, Atlas& atlas) {
+  for (Index f : chart.faces)
+    for (Offset c = faces.begin[f]; c < faces.begin[f + 1]; ++c) {
+      const auto q = regions.coordinates(chart.source, faces.vertices[c]);
+      std::copy(q.begin(), q.end(), atlas.coordinates.begin() + 2 * c);
     }
-    if (!is_mirrored(atlas, faces, chart)) continue;
-    for (Index f : chart.faces)
-      for (Offset c = faces.begin[f]; c < faces.begin[f + 1]; ++c) {
-        double& v = atlas.coordinates[2 * c + 1];
-        v = -v;
-      }
-  }
-  return atlas;
+  if (!is_mirrored(atlas, faces, chart)) return;
+  for (Index f : chart.faces)
+    for (Offset c = faces.begin[f]; c < faces.begin[f + 1]; ++c) {
+      double& v = atlas.coordinates[2 * c + 1];
+      v = -v;
+    }
 }
 
 }  // namespace
 
 AtlasMaker::AtlasMaker(const MapMaker& maps, const FaceList& faces)
     : maps_(maps), faces_(faces), neighbors_((check(maps.graph(), faces), FaceNeighbors(faces))) {
-  if (maps.method() == Method::heat) stars_ = UnfoldingFront::stars(maps.graph());
+  if (maps.method() == Method::heat) front_.emplace(maps.graph(), UnfoldingFront::stars(maps.graph()));
+  atlas_.chart_of_face.assign(faces.size(), nobody);
+  atlas_.coordinates.assign(2 * faces.vertices.size(), std::numeric_limits<double>::quiet_NaN());
+}
+
+VoronoiCells AtlasMaker::cells(std::span<const Vertex> sources) {
+  return front_ ? voronoi_cells(*front_, sources) : maps_.cells(sources);
 }
 
 /// From every source as far as to all corners of the faces that touch its cell.
@@ -195,8 +206,8 @@ std::vector<double> AtlasMaker::reach(const VoronoiCells& cells, std::size_t sou
   return farthest;
 }
 
-Atlas AtlasMaker::make(std::span<const Vertex> sources) {
-  const VoronoiCells cells = maps_.cells(sources, stars_);
+void AtlasMaker::make(std::span<const Vertex> sources) {
+  const VoronoiCells cells = this->cells(sources);
   const std::vector<Index>& label = cells.labels;
   const std::vector<double> reach = this->reach(cells, sources.size());
   Regions regions(faces_, label, sources.size());
@@ -208,10 +219,31 @@ Atlas AtlasMaker::make(std::span<const Vertex> sources) {
   regions.keep(missing, maps_.coordinates(starts, wanted, far));
   regions_ = std::move(regions);
   std::vector<Index> source = nearest_of_faces(faces_, label, regions_);
-  attach_islands(neighbors_, faces_, regions_, sources.size(), source);
-  Atlas atlas = assemble(neighbors_, faces_, regions_, source);
-  atlas.sources.assign(sources.begin(), sources.end());
-  return atlas;
+  Pieces pieces = attach_islands(neighbors_, faces_, regions_, sources.size(), source);
+  update(charts_of(std::move(pieces), source), missing);
+  atlas_.sources.assign(sources.begin(), sources.end());
+}
+
+/// Puts these charts into the place of those before; what was so already stays.
+/// @param remade  sources whose maps are other than before, ascending
+void AtlasMaker::update(std::vector<Chart> charts, std::span<const Index> remade) {
+  const std::vector<Index> before = std::exchange(atlas_.chart_of_face, std::vector<Index>(faces_.size(), nobody));
+  is_new_.assign(charts.size(), 1);
+  for (std::size_t k = 0; k < charts.size(); ++k) {
+    const Chart& chart = charts[k];
+    for (Index f : chart.faces) atlas_.chart_of_face[f] = static_cast<Index>(k);
+    const Index same = before[chart.faces.front()];
+    if (same != nobody && atlas_.charts[same].source == chart.source && atlas_.charts[same].faces == chart.faces &&
+        !std::ranges::binary_search(remade, chart.source))
+      is_new_[k] = 0;
+    else
+      put_corners(faces_, regions_, chart, atlas_);
+  }
+  for (std::size_t f = 0; f < faces_.size(); ++f)
+    if (atlas_.chart_of_face[f] == nobody && before[f] != nobody)
+      std::fill(atlas_.coordinates.begin() + 2 * faces_.begin[f], atlas_.coordinates.begin() + 2 * faces_.begin[f + 1],
+                std::numeric_limits<double>::quiet_NaN());
+  atlas_.charts = std::move(charts);
 }
 
 }  // namespace ahm

@@ -2,8 +2,11 @@
 /// Atlases of one surface with more and more sources.
 #pragma once
 
-#include <memory>
+#include <cstdint>
+#include <optional>
 #include <span>
+#include <utility>
+#include <vector>
 
 #include "ahm/applications/atlas.hpp"
 #include "atlas/atlas_regions.hpp"
@@ -18,16 +21,24 @@ class AtlasMaker {
 
   /// @param sources  begin with those of the call before: their cells have only shrunk since, so that their maps need
   /// not be made again
-  Atlas make(std::span<const Vertex> sources);
+  void make(std::span<const Vertex> sources);
+  const Atlas& atlas() const { return atlas_; }
+  Atlas take() { return std::move(atlas_); }
+  /// Whether this chart was not there before the last call, with the same faces in the same places.
+  bool is_new(std::size_t chart) const { return is_new_[chart] != 0; }
 
  private:
+  VoronoiCells cells(std::span<const Vertex> sources);
+  void update(std::vector<Chart> charts, std::span<const Index> remade);
   std::vector<double> reach(const VoronoiCells& cells, std::size_t sources) const;
 
   MapMaker maps_;
   FaceList faces_;
   FaceNeighbors neighbors_;
   Regions regions_;
-  std::shared_ptr<const UnfoldingFront::Stars> stars_;  ///< for cells by heat
+  std::optional<UnfoldingFront> front_;  ///< from all sources so far, for cells by heat
+  Atlas atlas_;
+  std::vector<std::uint8_t> is_new_;  ///< of every chart
 };
 
 }  // namespace ahm

@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numeric>
 #include <span>
 #include <vector>
 
 #include "ahm/applications/atlas.hpp"
+#include "ahm/util/small_math.hpp"
 
 namespace ahm {
 
@@ -35,6 +37,7 @@ class Regions {
     begin_.back() = kept;
     vertices_.resize(at(kept));
     coordinates_.resize(2 * at(kept), std::numeric_limits<double>::quiet_NaN());
+    known_.assign(sources, 0);
   }
 
   /// Takes over from `before`, whose sources come first here, what it has of them.
@@ -49,7 +52,10 @@ class Regions {
         for (std::size_t c = 0; c < 2 && complete; ++c)
           coordinates_[2 * at(k) + c] = before.coordinates_[2 * at(there) + c];
       }
-      if (!complete) missing.push_back(static_cast<Index>(s));
+      if (complete)
+        known_[s] = all_known(static_cast<Index>(s));
+      else
+        missing.push_back(static_cast<Index>(s));
     }
     return missing;
   }
@@ -64,10 +70,13 @@ class Regions {
     for (Index source : sources) {
       const auto end = next + 2 * std::ssize(of(source));
       std::copy(next, end, coordinates_.begin() + 2 * begin_[source]);
+      known_[source] = all_known(source);
       next = end;
     }
   }
 
+  /// Whether the map of a source has coordinates of all of its vertices.
+  bool is_known(Index source) const { return known_[source] != 0; }
   /// NaN where unknown.
   std::array<double, 2> coordinates(Index source, Index vertex) const {
     const Offset k = find(at(source), Vertex(vertex));
@@ -83,6 +92,10 @@ class Regions {
     return found == last || *found != vertex ? -1 : found - vertices_.begin();
   }
 
+  bool all_known(Index source) const {
+    return all_finite(
+        std::span(coordinates_).subspan(2 * at(begin_[source]), 2 * at(begin_[source + 1] - begin_[source])));
+  }
   static std::size_t at(Offset i) { return static_cast<std::size_t>(i); }
 
   template <class Visit>
@@ -102,6 +115,7 @@ class Regions {
   std::vector<Offset> begin_{0};
   std::vector<Vertex> vertices_;
   std::vector<double> coordinates_;
+  std::vector<std::uint8_t> known_;  ///< of every source
 };
 
 }  // namespace ahm

@@ -12,6 +12,7 @@
 #include "ahm/error.hpp"
 #include "ahm/util/text.hpp"
 #include "heat/blas_control.hpp"
+#include "heat/block_solve.hpp"
 #include "heat/triangular_solve.hpp"
 
 namespace ahm {
@@ -282,6 +283,8 @@ CholeskyFactor::CholeskyFactor(CholeskyFactor&&) noexcept = default;
 
 void CholeskyFactor::solve(std::span<double> X, Offset columns) const {
   if (impl_->L->is_super && columns <= max_narrow_columns) return narrow_solve(supernodal_view(*impl_->L), X, columns);
+  if (impl_->L->is_super && nonzeros() <= most_block_numbers)
+    return block_solve(supernodal_view(*impl_->L), X, columns);
   OneBlasThread one_thread;
   Common common;
   cholmod_dense B = dense_view(X, impl_->rows, columns, impl_->is_complex);

@@ -72,6 +72,16 @@ std::vector<double> AffineHeat::translations() const {
     for (std::size_t s = 0; s < rhs_.size(); ++s) {
       const double* lambda = lambda_.data() + s * n_;
       double* out = rho.data() + (s * n_ + i) * d_;
+      if (d_ == 2) {
+        double along = 0, across = 0;
+        for (std::size_t e = 0; e < star.degree(); ++e) {
+          const double amount = factor * star.weights[e] * lambda[star.neighbors[e]];
+          along += amount * (to_units * star.logs[2 * e]);
+          across += amount * (to_units * star.logs[2 * e + 1]);
+        }
+        out[0] = along, out[1] = across;
+        continue;
+      }
       for (std::size_t e = 0; e < star.degree(); ++e) {
         const double amount = factor * star.weights[e] * lambda[star.neighbors[e]];
         for (std::size_t a = 0; a < d_; ++a) out[a] += amount * (to_units * star.logs[e * d_ + a]);

@@ -68,7 +68,7 @@ std::vector<double> local_coordinates(const TangentGraph& graph, std::span<const
       std::vector<Source> group;
       double farthest = 0;
       for (Index s : members) group.push_back(sources[s]), farthest = std::max(farthest, extent[s]);
-      const auto patch = patches.solve(group, farthest + margin * patches.sqrt_tau(group));
+      const auto patch = patches.solve(patches.cut(group, farthest + margin * patches.sqrt_tau(group)));
       for (std::size_t m = 0; m < members.size(); ++m) {
         double* phi = result.data() + begin[members[m]] * d;
         for (const auto [vertex] : regions[members[m]]) {

@@ -116,9 +116,11 @@ class Worker {
     double detour = usual_detour;
     while (true) {
       const bool last = detour >= largest_detour;
-      const double far = reach();
-      const auto patch = patches_.solve(sources, (last ? largest_detour : detour) * far);
-      switch (collect(*patch, members, last ? 0 : far * unit, result)) {
+      const double far = reach(), wanted = last ? 0 : far * unit;
+      Patch patch = patches_.cut(sources, (last ? largest_detour : detour) * far);
+      Outcome outcome = measure(patch, members, wanted);
+      if (outcome == Outcome::complete) outcome = collect(*patches_.solve(std::move(patch)), members, wanted, result);
+      switch (outcome) {
         case Outcome::complete:
           return;
         case Outcome::patch_too_small:
@@ -137,11 +139,44 @@ class Worker {
     radius_too_small,  ///< fewer vertices than the nearest that are asked for lie within
   };
 
-  Outcome collect(PatchMaps& patch, std::span<const Index> members, double wanted, std::vector<Entries>& result) {
+  /// Distances of the patch from those of its sources whose distances need no heat: a patch that is too small is known by them
+  /// before anything is solved on it.
+  Outcome measure(const Patch& patch, std::span<const Index> members, double wanted) {
+    const std::size_t n = patch.vertices.size();
+    std::shared_ptr<const UnfoldingFront::Stars> stars;
     if (graph_.is_delaunay())
-      stars_ = std::make_shared<const UnfoldingFront::Stars>(patch.graph, std::vector<std::uint8_t>(), true);
-    else
-      patch.heat->solve_squares(), patch.heat->solve_lengths();
+      stars = std::make_shared<const UnfoldingFront::Stars>(patch.graph, std::vector<std::uint8_t>(), true);
+    distances_.resize(members.size() * n);
+    for (std::size_t k = 0; k < members.size(); ++k) {
+      // The last members of a group lie at its rim, where a patch that is too small shows first.
+      const std::size_t m = options_.radius > 0 ? members.size() - 1 - k : k;
+      if (!unfolds(graph_, patch.sources[m])) continue;
+      const double radius = radii_[members[m]];
+      UnfoldingFront front(patch.graph, stars);
+      front.add(patch.sources[m]);
+      front.run(std::max(wanted, radius));
+      const std::span<double> distance = distances(m, n);
+      for (std::size_t i = 0; i < n; ++i) distance[i] = front.distance(Vertex(i));
+      const Outcome outcome = judge(patch, distance, wanted, radius);
+      if (outcome != Outcome::complete) return outcome;
+    }
+    return Outcome::complete;
+  }
+
+  /// Whether that is far enough, given the distances of the patch from a source.
+  Outcome judge(const Patch& patch, std::span<const double> distance, double wanted, double radius) const {
+    for (Index k : patch.edge)
+      if (distance[k] < wanted * (1 - 1e-9)) return Outcome::patch_too_small;
+    if (options_.radius > 0 || patch.edge.empty()) return Outcome::complete;
+    return std::ranges::count_if(distance, [&](double d) { return d <= radius; }) < options_.nearest
+               ? Outcome::radius_too_small
+               : Outcome::complete;
+  }
+
+  std::span<double> distances(std::size_t m, std::size_t n) { return std::span(distances_).subspan(m * n, n); }
+
+  Outcome collect(PatchMaps& patch, std::span<const Index> members, double wanted, std::vector<Entries>& result) {
+    if (!graph_.is_delaunay()) patch.heat->solve_squares(), patch.heat->solve_lengths();
     for (std::size_t m = 0; m < members.size(); ++m) {
       const Outcome outcome = collect(patch, m, wanted, radii_[members[m]], result[members[m]]);
       if (outcome != Outcome::complete) return outcome;
@@ -149,46 +184,31 @@ class Worker {
     return Outcome::complete;
   }
 
-  /// Distances of the patch from its source number m, as those of a whole map (`LogMap::distance`), without the midpoints of coarse
-  /// triangulations: nearby they gain little.
-  void measure(const PatchMaps& patch, std::size_t m, double radius) {
-    const std::size_t n = patch.vertices.size();
-    const Source& source = patch.sources[m];
-    distance_.resize(n);
-    if (unfolds(graph_, source)) {
-      UnfoldingFront front(patch.graph, stars_);
-      front.add(source);
-      front.run(radius);
-      for (std::size_t k = 0; k < n; ++k) distance_[k] = front.distance(Vertex(k));
-      return;
-    }
-    for (std::size_t k = 0; k < n; ++k) distance_[k] = patch.heat->distance_at(m, static_cast<Index>(k));
-    place_source(source, distance_);
-  }
-
   /// The vertices within the radius, nearest first.
   Outcome collect(const PatchMaps& patch, std::size_t m, double wanted, double radius, Entries& entries) {
     const std::size_t n = patch.vertices.size();
     const AffineHeat& heat = *patch.heat;
+    const std::span<double> distance = distances(m, n);
+    if (!unfolds(graph_, patch.sources[m])) {
+      for (std::size_t k = 0; k < n; ++k) distance[k] = heat.distance_at(m, static_cast<Index>(k));
+      place_source(patch.sources[m], distance);
+    }
     phi_.resize(n * d_);
-    for (std::size_t k = 0; k < n; ++k) heat.coordinates_at(m, static_cast<Index>(k), phi_.data() + k * d_);
-    measure(patch, m, std::max(wanted, radius));
     order_.clear();
     // A patch without an edge is all there is.
     const double farthest = options_.radius == 0 && patch.edge.empty() ? std::numeric_limits<double>::max() : radius;
     for (std::size_t k = 0; k < n; ++k) {
       const auto vertex = static_cast<Index>(k);
-      const double* phi = phi_.data() + k * d_;
-      if (!heat.reached(m, vertex) || !all_finite(std::span(phi, d_)))
-        distance_[k] = std::numeric_limits<double>::infinity();
-      if (distance_[k] <= farthest) order_.push_back(vertex);
+      if (distance[k] > std::max(wanted, farthest)) continue;
+      double* const phi = phi_.data() + k * d_;
+      heat.coordinates_at(m, vertex, phi);
+      if (!heat.reached(m, vertex) || !all_finite(std::span<const double>(phi, d_)))
+        distance[k] = std::numeric_limits<double>::infinity();
+      if (distance[k] <= farthest) order_.emplace_back(distance[k], vertex);
     }
-    for (Index k : patch.edge)
-      if (distance_[k] < wanted * (1 - 1e-9)) return Outcome::patch_too_small;
-    if (options_.radius == 0 && order_.size() < static_cast<std::size_t>(options_.nearest) && !patch.edge.empty())
-      return Outcome::radius_too_small;
-    std::sort(order_.begin(), order_.end(),
-              [&](Index a, Index b) { return distance_[a] != distance_[b] ? distance_[a] < distance_[b] : a < b; });
+    const Outcome outcome = judge(patch, distance, wanted, radius);
+    if (outcome != Outcome::complete) return outcome;
+    std::sort(order_.begin(), order_.end());
     if (options_.nearest > 0 && order_.size() > static_cast<std::size_t>(options_.nearest))
       order_.resize(static_cast<std::size_t>(options_.nearest));
 
@@ -200,9 +220,9 @@ class Worker {
     entries.transports.reserve(size * graph_.transport_layout().width());
     const FrameField frames = heat.frames(m);
     std::vector<double> U(graph_.transport_layout().width());
-    for (Index k : order_) {
+    for (const auto& [from_source, k] : order_) {
       entries.vertices.push_back(patch.vertices[k]);
-      entries.distances.push_back(distance_[k]);
+      entries.distances.push_back(from_source);
       entries.logs.insert(entries.logs.end(), phi_.begin() + static_cast<std::ptrdiff_t>(k * d_),
                           phi_.begin() + static_cast<std::ptrdiff_t>((k + 1) * d_));
       frames.frame(k, U.data());
@@ -217,9 +237,9 @@ class Worker {
   const LocalMapOptions& options_;
   PatchSolver patches_;
   std::size_t d_;
-  std::vector<double> phi_, distance_;
-  std::shared_ptr<const UnfoldingFront::Stars> stars_;  ///< of the patch at hand
-  std::vector<Index> order_;
+  std::vector<double> distances_;  ///< of the patch at hand from each of its sources, n each
+  std::vector<double> phi_;
+  std::vector<std::pair<double, Index>> order_;  ///< those within the radius, nearest first
 };
 
 LocalMaps joined(const TangentGraph& graph, std::vector<Entries>& entries) {

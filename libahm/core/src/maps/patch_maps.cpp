@@ -44,7 +44,7 @@ double PatchSolver::sqrt_tau(std::span<const Source> sources) const {
   return std::sqrt(options_.t_coef) * h;
 }
 
-std::unique_ptr<PatchMaps> PatchSolver::solve(std::span<const Source> sources, double limit) {
+Patch PatchSolver::cut(std::span<const Source> sources, double limit) {
   std::vector<Vertex> starts;
   for (const Source& source : sources) starts.insert(starts.end(), source.vertices().begin(), source.vertices().end());
   std::vector<Index> vertices, edge;
@@ -61,22 +61,22 @@ std::unique_ptr<PatchMaps> PatchSolver::solve(std::span<const Source> sources, d
         if (edge.empty() || edge.back() != static_cast<Index>(k)) edge.push_back(static_cast<Index>(k));
         return 0.0;
       });
-  std::vector<double> tau;
-  for (Index vertex : vertices) tau.push_back(diffusion_time(options_.t_coef, scales_.h(vertex)));
-  auto patch =
-      std::make_unique<PatchMaps>(std::move(cut), std::move(vertices), std::move(edge), std::move(tau), options_);
+  std::vector<Source> inside;
+  for (const Source& source : sources)
+    inside.push_back(source.renumbered([&](Vertex v) { return Vertex(place_[v.index] - 1); }));
+  for (Index vertex : vertices) place_[vertex] = 0;
+  return {std::move(vertices), std::move(edge), std::move(cut), std::move(inside)};
+}
 
-  std::vector<RightHandSide> right_hand_sides;
-  for (const Source& source : sources) {
-    right_hand_sides.push_back(right_hand_side_of(source, graph_, patch->operators, options_.variant));
-    for (Index& vertex : right_hand_sides.back().vertices) vertex = place_[vertex] - 1;
-    patch->sources.push_back(source.renumbered([&](Vertex v) { return Vertex(place_[v.index] - 1); }));
-  }
-  for (Index vertex : patch->vertices) place_[vertex] = 0;
-  patch->heat.emplace(patch->graph, patch->operators, options_.variant, std::move(right_hand_sides));
-  patch->heat->diffuse();
-  patch->heat->solve();
-  return patch;
+std::unique_ptr<PatchMaps> PatchSolver::solve(Patch patch) const {
+  std::vector<double> tau;
+  for (Index vertex : patch.vertices) tau.push_back(diffusion_time(options_.t_coef, scales_.h(vertex)));
+  auto maps = std::make_unique<PatchMaps>(std::move(patch), std::move(tau), options_);
+  maps->heat.emplace(maps->graph, maps->operators, options_.variant,
+                     right_hand_side_of(maps->sources, maps->graph, maps->operators, options_.variant));
+  maps->heat->diffuse();
+  maps->heat->solve();
+  return maps;
 }
 
 }  // namespace ahm

@@ -21,22 +21,22 @@
 
 namespace ahm {
 
-/// A patch with its natural boundary, its factors with the diffusion times of the whole graph, and the maps on it.
-struct PatchMaps {
-  PatchMaps(CsrGraph cut, std::vector<Index> vertices, std::vector<Index> edge, std::vector<double> tau,
-            const HeatOptions& options)
-      : vertices(std::move(vertices)),
-        edge(std::move(edge)),
-        graph(std::move(cut)),
-        operators(factored_system(graph, std::move(tau), options), graph, {}) {}
-  PatchMaps(const PatchMaps&) = delete;
-  PatchMaps& operator=(const PatchMaps&) = delete;
-
+/// A patch with its natural boundary.
+struct Patch {
   std::vector<Index> vertices;  ///< of the whole graph, ascending; their places there are the patch's own numbers
   std::vector<Index> edge;      ///< the patch's numbers of those with neighbours outside, ascending
   CsrGraph graph;
+  std::vector<Source> sources;  ///< in the patch's numbers
+};
+
+/// A patch, its factors with the diffusion times of the whole graph, and the maps on it.
+struct PatchMaps : Patch {
+  PatchMaps(Patch patch, std::vector<double> tau, const HeatOptions& options)
+      : Patch(std::move(patch)), operators(factored_system(graph, std::move(tau), options), graph, {}) {}
+  PatchMaps(const PatchMaps&) = delete;
+  PatchMaps& operator=(const PatchMaps&) = delete;
+
   HeatOperators operators;
-  std::vector<Source> sources;     ///< in the patch's numbers
   std::optional<AffineHeat> heat;  ///< solved, without squares
 };
 
@@ -46,8 +46,9 @@ class PatchSolver {
   /// @param options  t_coef and variant count. All three must outlive this object.
   PatchSolver(const TangentGraph& graph, const ComponentScales& scales, const HeatOptions& options);
 
-  /// On the patch of all vertices within `limit` along edges (graph units) of any source.
-  std::unique_ptr<PatchMaps> solve(std::span<const Source> sources, double limit);
+  /// The patch of all vertices within `limit` along edges (graph units) of any source.
+  Patch cut(std::span<const Source> sources, double limit);
+  std::unique_ptr<PatchMaps> solve(Patch patch) const;
   /// The largest sqrt(tau) at a vertex of the sources, graph units.
   double sqrt_tau(std::span<const Source> sources) const;
 

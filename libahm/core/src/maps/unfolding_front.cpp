@@ -38,23 +38,26 @@ constexpr std::size_t most_seen = 2048;
 constexpr double least_ray = 1e-6;
 
 /// Where a point lies in the layout of a triangle with a at 0, b at (ab, 0) and c at (cx, cy) above: at (x, -depth); the square of
-/// its distance from c, and where the line to c crosses the side.
+/// its distance from c, and where the line to c crosses the side, if `found`.
 struct Across {
-  double squared, x = 0, depth = 0, share = 0;
+  double squared, x, depth, share;
+  bool found;
 };
 
-/// Of a point at distances `from_a` and `from_b` below the side ab; `limit` where c is no nearer, or where the straight line
-/// to the point does not cross that side.
-Across across_side(double from_a, double from_b, double ab, double cx, double cy, double limit, double missed) {
-  if (!(ab > shortest_side * std::max(std::abs(cx), cy)) || !(ab > shortest_side_far_away * from_a)) return {limit};
+/// Of a point at distances `from_a` and `from_b` below the side ab; not found where c is no nearer than the root of `limit`, or
+/// where the straight line to the point does not cross that side. It is asked a dozen times for each vertex, mostly in vain for
+/// any of these reasons: so all is computed, and decided at once.
+[[gnu::always_inline]] inline Across across_side(double from_a, double from_b, double ab, double cx, double cy,
+                                                 double limit, double missed) {
   const double x = 0.5 * (ab + (from_a - from_b) * (from_a + from_b) / ab);
   const double squared_y = (from_a - x) * (from_a + x), along = (cx - x) * (cx - x) + cy * cy + squared_y;
-  if (!(squared_y >= -1e-14 * from_a * from_a) || !(along < limit)) return {limit};
-  const double depth = std::sqrt(std::max(0.0, squared_y)), height = cy + depth;
+  const double depth = std::sqrt(squared_y > 0 ? squared_y : 0.0), height = cy + depth;
   const double at_side = x * cy + cx * depth;  // where the line crosses, times height
-  if (!(at_side >= -missed * ab * height) || !(at_side <= (1 + missed) * ab * height)) return {limit};
-  return {std::min(limit, (cx - x) * (cx - x) + height * height), x, depth,
-          std::clamp(at_side / (ab * height), 0.0, 1.0)};
+  const double squared = (cx - x) * (cx - x) + height * height;
+  const bool found = (ab > shortest_side * std::max(std::abs(cx), cy)) & (ab > shortest_side_far_away * from_a) &
+                     (squared_y >= -1e-14 * from_a * from_a) & (along < limit) & (squared < limit) &
+                     (at_side >= -missed * ab * height) & (at_side <= (1 + missed) * ab * height);
+  return {squared, x, depth, std::clamp(at_side / (ab * height), 0.0, 1.0), found};
 }
 
 /// `v` turned as the ray `from` must be to become the ray `to`, the other way round if `side` is -1; unit length.
@@ -292,9 +295,9 @@ void UnfoldingFront::spread(Index from, Index point, double distance) {
   const std::size_t degree = corners.size();
   known_.resize(degree);
   double longest = 0;
-  const auto way_of = [&](const Entry* entry) { return directions_ ? ways_[entry - entries_.data()] : Way{}; };
+  const auto way_of = [&](const Entry* entry) { return ways_[entry - entries_.data()]; };
   const Entry* const here = find(from, point);
-  const Way own = way_of(here);
+  const Way own = directions_ ? way_of(here) : Way{};
   const double focusing = here->focusing, curvature_here = distance > 0 ? curvature(from) : 0;
   const double angle = distance > 0 ? Stars::open_angle(corners) : 0;
   const bool bends = own.bent || (directions_ && angle > 0), at_notch = angle > std::numbers::pi + least_notch;
@@ -307,9 +310,12 @@ void UnfoldingFront::spread(Index from, Index point, double distance) {
     const Entry* entry = find(corners[k].neighbor, point);
     const double before = entry ? entry->distance : std::numeric_limits<double>::infinity();
     const double along = distance + corners[k].length;
-    known_[k] = before <= along
-                    ? Known{before, along, entry->focusing, false, way_of(entry)}
-                    : Known{along, along, focusing_along(corners[k], along), true, {own.direction, false, bends}};
+    Known& known = known_[k];
+    known.is_new = !(before <= along);
+    known.distance = known.is_new ? along : before;
+    known.along = along;
+    known.focusing = known.is_new ? focusing_along(corners[k], along) : entry->focusing;
+    if (directions_) known.way = known.is_new ? Way{own.direction, false, bends} : way_of(entry);
     longest = std::max(longest, corners[k].length);
   }
   for (std::size_t k = 0; k < degree; ++k) {
@@ -325,7 +331,7 @@ void UnfoldingFront::spread(Index from, Index point, double distance) {
       const double limit = most * most;
       const double cx = target_length * right.cosine, cy = target_length * right.sine;
       const Across across = across_side(distance, other.distance, base_length, cx, cy, limit, missed_);
-      if (!(across.squared < limit)) return;
+      if (!across.found) return;
       double length = std::sqrt(across.squared), bent_by = 0;
       if (!curvatures_.empty() && across.depth > 0) {
         const auto between = [&](double a, double b) { return (1 - across.share) * a + across.share * b; };
@@ -339,7 +345,9 @@ void UnfoldingFront::spread(Index from, Index point, double distance) {
         length = bent;
       }
       if (!comes_before(length, bent_by, found.distance, found.focusing)) return;
-      found = {std::min(length, found.distance), found.along, bent_by, true, found.way};
+      found.distance = std::min(length, found.distance);
+      found.focusing = bent_by;
+      found.is_new = true;
       if (!directions_) return;
       found.way.direction = direction_across(across, base_length, cx, cy, own.direction, other.way.direction,
                                              own.mirrored ? -side : side);

@@ -7,7 +7,6 @@
 /// \endcode
 #pragma once
 
-#include <memory>
 #include <span>
 #include <vector>
 
@@ -27,10 +26,12 @@ struct VoronoiCells {
 
 /// Cells by geodesic distance (`UnfoldingFront`), all in one pass whatever the number of sources. Exact to ties on flat
 /// Delaunay triangulations without holes.
-/// @param stars  of the graph, where cells are wanted more than once; none: looked up
 /// @throws InvalidArgument (empty, index, a vertex given twice), ResourceExhausted
-VoronoiCells voronoi_cells(const TangentGraph& graph, std::span<const Vertex> vertices,
-                           std::shared_ptr<const UnfoldingFront::Stars> stars = nullptr);
+VoronoiCells voronoi_cells(const TangentGraph& graph, std::span<const Vertex> vertices);
+/// The same by a front that has come from the first of these vertices before, if from any: it goes on from the others, over what is
+/// nearer to them.
+/// @throws as above; InvalidArgument (more points than vertices)
+VoronoiCells voronoi_cells(UnfoldingFront& front, std::span<const Vertex> vertices);
 /// The same by exact distances over the flat faces.
 /// @param options  radius, beyond which there are no cells; tolerance; progress
 /// @throws as above, as `ExactGeodesics::log_map`

@@ -8,7 +8,6 @@
 /// \endcode
 #pragma once
 
-#include <memory>
 #include <span>
 #include <vector>
 
@@ -39,10 +38,8 @@ class MapMaker {
                                   std::span<const double> reach) const;
   /// No corners of a face are farther apart along its sides; of heat, which needs no bound, infinite. World units.
   double longest_way(const FaceList& faces) const;
-  /// @param stars  of the graph, or none; exact cells need none
   /// @throws as `voronoi_cells`
-  VoronoiCells cells(std::span<const Vertex> sources,
-                     const std::shared_ptr<const UnfoldingFront::Stars>& stars = nullptr) const;
+  VoronoiCells cells(std::span<const Vertex> sources) const;
 
  private:
   /// Those of whole maps, a block of sources at a time.

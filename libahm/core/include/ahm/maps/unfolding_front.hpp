@@ -56,6 +56,9 @@ class UnfoldingFront {
   /// @return the number of the first
   /// @throws InvalidArgument when the source does not fit the graph
   Index add(const Source& source);
+  /// How many points were added.
+  Index points() const noexcept { return points_; }
+  const TangentGraph& graph() const noexcept { return graph_; }
   /// Lets the front go on until all that is nearer than `radius` (world units) has its distance; what lies beyond may have one
   /// or not, perhaps too long a one. May be called again after `add`: only what is nearer to the new points changes.
   void run(double radius = std::numeric_limits<double>::infinity());
