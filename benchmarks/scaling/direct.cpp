@@ -153,7 +153,10 @@ std::vector<double> directly(Index n, Variant variant) {
   std::optional<DirectSolver> solver;
   std::vector<Complex> phi;
   const OneBlasThread one;
-  std::vector<double> numbers = timed([&] { solver.emplace(graph); }, [&] { phi = solver->solve(0, variant); });
+  std::vector<double> numbers;
+  without_openmp_regions([&] {  // as the solver does; a process that was forked has no threads for them
+    numbers = timed([&] { solver.emplace(graph); }, [&] { phi = solver->solve(0, variant); });
+  });
   const LogMap map = LogMapSolver(graph, {.strategy = Strategy::global, .threads = 1})
                          .solve(Source::at_vertex(Vertex(0)), {.variant = variant});
   double apart = 0, longest = 0;
