@@ -220,6 +220,8 @@ TEST(MarchExperiment, MapsEveryVertexByBothStrategies) {
   }
 }
 
+TEST(DirectExperiment, GivesTheMapsOfTheElimination) { EXPECT_LT(toy("direct").largest("apart"), 1e-12); }
+
 std::vector<std::string> names() {
   std::vector<std::string> result;
   for (const Experiment& e : experiments()) result.emplace_back(e.name);
