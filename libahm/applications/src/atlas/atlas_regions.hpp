@@ -21,22 +21,25 @@ class Regions {
  public:
   Regions() = default;
   Regions(const FaceList& faces, std::span<const Index> label, std::size_t sources) : begin_(sources + 1, 0) {
-    for_entries(faces, label, [&](Index source, Index) { ++begin_[at(source) + 1]; });
+    // The sources of every vertex first: gone over in order, they have their vertices in order.
+    std::vector<Offset> first(label.size() + 1, 0);
+    for_entries(faces, label, [&](Index, Index vertex) { ++first[at(vertex) + 1]; });
+    std::partial_sum(first.begin(), first.end(), first.begin());
+    std::vector<Index> of_vertex(at(first.back()));
+    std::vector<Offset> end(first.begin(), first.end() - 1);
+    for_entries(faces, label, [&](Index source, Index vertex) { of_vertex[end[vertex]++] = source; });
+    for (std::size_t v = 0; v < label.size(); ++v) {
+      const auto from = of_vertex.begin() + first[v];
+      std::sort(from, of_vertex.begin() + end[v]);
+      end[v] = std::unique(from, of_vertex.begin() + end[v]) - of_vertex.begin();
+      for (Offset k = first[v]; k < end[v]; ++k) ++begin_[at(of_vertex[k]) + 1];
+    }
     std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
     vertices_.resize(at(begin_.back()));
-    std::vector<Offset> end(begin_.begin(), begin_.end() - 1);
-    for_entries(faces, label, [&](Index source, Index vertex) { vertices_[end[source]++] = Vertex(vertex); });
-    Offset kept = 0;
-    for (std::size_t s = 0; s < sources; ++s) {
-      const auto first = vertices_.begin() + begin_[s], last = vertices_.begin() + begin_[s + 1];
-      std::sort(first, last);
-      const auto unique = std::unique(first, last);
-      begin_[s] = kept;
-      kept = std::copy(first, unique, vertices_.begin() + kept) - vertices_.begin();
-    }
-    begin_.back() = kept;
-    vertices_.resize(at(kept));
-    coordinates_.resize(2 * at(kept), std::numeric_limits<double>::quiet_NaN());
+    std::vector<Offset> next(begin_.begin(), begin_.end() - 1);
+    for (std::size_t v = 0; v < label.size(); ++v)
+      for (Offset k = first[v]; k < end[v]; ++k) vertices_[next[of_vertex[k]]++] = Vertex(v);
+    coordinates_.resize(2 * vertices_.size(), std::numeric_limits<double>::quiet_NaN());
     known_.assign(sources, 0);
   }
 
