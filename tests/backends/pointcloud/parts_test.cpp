@@ -105,5 +105,39 @@ TEST(Parts, HaveTheSameMapWhateverTheOrderOfRows) {
   }
 }
 
+/// Two flat sheets, one close behind the other, with normals that point away from each other.
+Cloud thin_wall() {
+  Cloud wall;
+  for (double side : {-1.0, 1.0})
+    for (const Vec3& p : flat_lattice(24)) {
+      wall.points.push_back({p[0], p[1], 0.3 * side * spacing});
+      wall.normals.push_back({0, 0, side});
+    }
+  return wall;
+}
+
+// Whether signs of normals tell sheets apart or are wrong is asked of each part.
+TEST(Parts, HaveTheirOwnThinWalls) {
+  const Cloud wall = thin_wall();
+  Cloud wrong = random_sphere(1500);
+  for (std::size_t i = 0; i < wrong.normals.size(); i += 2) wrong.normals[i] = -1.0 * wrong.normals[i];
+  Cloud file = wrong;
+  for (std::size_t i = 0; i < wall.points.size(); ++i) {
+    file.points.push_back(wall.points[i] + Vec3{50.3, 0, 0});
+    file.normals.push_back(wall.normals[i]);
+  }
+  expect_same_maps({"wrong signs", wrong.points}, file.points, 0, in_order({"", wrong.points}), wrong.normals,
+                   file.normals);
+  const Solved solved(file, true);
+  for (const Index side : {0, 576}) {
+    const RowLogMap map = solved.map(1500 + side);
+    for (Index i = 0; i < 1152; ++i) {
+      const bool same_sheet = (i < 576) == (side == 0);
+      ASSERT_EQ(map.status[1500 + i] == Status::ok, same_sheet);
+      if (same_sheet) ASSERT_NEAR(map.distance[1500 + i], norm(wall.points[i] - wall.points[side]), 1e-9);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace ahm::test
