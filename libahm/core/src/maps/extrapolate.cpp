@@ -56,14 +56,13 @@ struct TimedDistance {
   double limit() const { return std::max(0.0, middle - (last - middle) / root_2_less_1); }
 };
 
-/// How much of the shortest time's distance is kept, at least that of phi: all of it where heat spreads over ways of different
-/// lengths, where edges do not follow the way, as along samples that are much denser one way than the other, and where, with
-/// three times, the two limits disagree by as much as they correct.
-/// @param share  of phi
-double share_of_first_distance(double share, const TimedDistance& r, double c, double relative_spread, double path) {
-  if (!(r.first > 0)) return share;
-  share = std::max({share, ramp(relative_spread, 0.25, 0.5), ramp(path / r.first, 1.1, 1.15)});
+/// How much of the shortest time's distance is kept, at least as much as of phi: all of it where the limit is farther away
+/// than on smooth surfaces, where edges do not follow the way, as between points that are much denser one way than the other,
+/// and where, with three times, the two limits disagree by as much as they correct.
+double share_of_first_distance(double share_of_phi, const TimedDistance& r, double c, double path) {
+  if (!(r.first > 0)) return share_of_phi;
   const double correction = std::abs(r.limit() - r.first);
+  const double share = std::max({share_of_phi, ramp(correction / r.first, 0.05, 0.1), ramp(path / r.first, 1.1, 1.15)});
   if (!(c > 1) || !(correction > 0)) return share;
   const double other = (std::sqrt(c) * r.first - r.middle) / (std::sqrt(c) - 1);
   return std::max(share, ramp(std::abs(r.limit() - other) / correction, 0.25, 0.5));
@@ -121,14 +120,13 @@ ExtrapolatedRow extrapolate_row(const std::array<TimedRow, 3>& rows, const Extra
   Scratch at_zero(phi.size());
   const std::span<double> limit = at_zero.span();
   const double disagreement = limit_of(first.phi, middle.phi, last.phi, c, limit);
-  const double relative_spread = last.spread / std::max(last.distance, scales.h);
-  const double w =
-      share_of_first(gap(last.phi, middle.phi) / step, c, disagreement / gap(limit, first.phi), relative_spread);
+  const double w = share_of_first(gap(last.phi, middle.phi) / step, c, disagreement / gap(limit, first.phi),
+                                  last.spread / std::max(last.distance, scales.h));
   for (std::size_t a = 0; a < phi.size(); ++a) phi[a] = (1 - w) * limit[a] + w * first.phi[a];
   const TimedDistance r{first.distance, middle.distance, last.distance};
   double distance = r.first;
   if (!kind.unfolded) {
-    distance += (1 - share_of_first_distance(w, r, c, relative_spread, path)) * (r.limit() - r.first);
+    distance += (1 - share_of_first_distance(w, r, c, path)) * (r.limit() - r.first);
     distance = std::min(distance, std::max(r.first, path));
   }
   if (!kind.of_curve) shorten(phi, first.phi, std::max(length(first.phi), distance));
