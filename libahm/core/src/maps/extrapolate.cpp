@@ -62,7 +62,8 @@ struct TimedDistance {
 double share_of_first_distance(double share_of_phi, const TimedDistance& r, double c, double path) {
   if (!(r.first > 0)) return share_of_phi;
   const double correction = std::abs(r.limit() - r.first);
-  const double share = std::max({share_of_phi, ramp(correction / r.first, 0.05, 0.1), ramp(path / r.first, 1.1, 1.15)});
+  const double share =
+      std::max({share_of_phi, ramp(correction / r.first, 0.05, 0.1), ramp(path / r.first, 1.1, longest_way)});
   if (!(c > 1) || !(correction > 0)) return share;
   const double other = (std::sqrt(c) * r.first - r.middle) / (std::sqrt(c) - 1);
   return std::max(share, ramp(std::abs(r.limit() - other) / correction, 0.25, 0.5));

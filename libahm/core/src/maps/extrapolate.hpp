@@ -62,6 +62,9 @@ struct DistanceKind {
   bool of_curve;
 };
 
+/// Ways along edges that are this many times as long as the distance at the shortest time might as well be infinite.
+inline constexpr double longest_way = 1.15;
+
 /// One vertex: see below.
 /// @param rows  of the first, the middle and the last time; where these are two, the first twice
 /// @param path  length of the shortest way along edges; of unfolded distances it means nothing
