@@ -84,8 +84,8 @@ void make_graph(TileFolder& folder, std::size_t tile) {
   const pointcloud::WeightedEdges edges = read_edges(edges_file);
   pointcloud::CloudDetails details;
   const CsrGraphData g =
-      tangent_edges(around.cloud, around.planes, edges, vertices.local, static_cast<Index>(vertices.vertex.size()),
-                    false, folder.manifest().noise, folder.options().threads, details, folder.manifest().kind);
+      tangent_edges(around.cloud, around.planes, edges, vertices.local, static_cast<Index>(vertices.vertex.size()), 0,
+                    folder.manifest().noise, folder.options().threads, details, folder.manifest().kind);
   const std::size_t width = TransportLayout{g.kind, 2}.width();
 
   // The tile's own vertices follow each other.

@@ -32,7 +32,7 @@ Json to_json(const Manifest& m) {
               {"stage", to_string(m.stage)},
               {"points", m.points},
               {"non_finite", m.non_finite},
-              {"placement", {m.first, m.middle, m.second}},
+              {"placement", m.exponent},
               {"k", m.k},
               {"noise", m.noise},
               {"mollification", m.mollification},
@@ -53,16 +53,14 @@ Stage stage_of(const std::string& name) {
 
 Manifest from_json(const Json& j, bool is_surface) {
   Manifest m;
-  const Json &o = j.at("options"), &placement = j.at("placement");
+  const Json& o = j.at("options");
   m.input = j.at("input").get<std::string>();
   m.options = {o.at("tile_points").get<Index>(), o.at("k").get<Index>(), o.at("max_edge_ratio").get<double>(),
                o.at("drop_non_finite").get<bool>(), o.at("ignore_normals").get<bool>()};
   m.stage = stage_of(j.at("stage").get<std::string>());
   m.points = j.at("points").get<std::uint64_t>();
   m.non_finite = j.at("non_finite").get<std::uint64_t>();
-  m.first = placement.at(0).get<int>();
-  m.middle = placement.at(1).get<Vec3>();
-  m.second = placement.at(2).get<int>();
+  m.exponent = j.at("placement").get<int>();
   m.k = j.at("k").get<Index>();
   m.noise = j.at("noise").get<double>();
   m.mollification = j.at("mollification").get<double>();

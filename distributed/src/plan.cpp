@@ -56,12 +56,11 @@ double survey(io::PointStream& stream, Manifest& m) {
   return largest;
 }
 
-/// As clean_points places them, medians found by streaming.
-pointcloud::Placement placement_of(io::PointStream& stream, Manifest& m, const Progress& progress) {
-  pointcloud::Placement result;
+/// The exponent of what clean_points places them by, medians found by streaming.
+int exponent_of(io::PointStream& stream, Manifest& m, const Progress& progress) {
   const double largest = survey(stream, m);
   const std::uint64_t finite = m.points - m.non_finite;
-  result.first = largest > 0 ? std::ilogb(largest) : 0;
+  const int first = largest > 0 ? std::ilogb(largest) : 0;
   std::array<StreamMedian, 3> middle{StreamMedian(finite), StreamMedian(finite), StreamMedian(finite)};
   while (!middle[0].done() || !middle[1].done() || !middle[2].done()) {
     progress.step("place", 0.3);
@@ -69,37 +68,38 @@ pointcloud::Placement placement_of(io::PointStream& stream, Manifest& m, const P
       if (!median.done()) median.begin();
     for_each_point(stream, [&](const Vec3& p, std::uint64_t) {
       for (std::size_t axis = 0; axis < 3; ++axis)
-        if (!middle[axis].done()) middle[axis].add(std::scalbn(p[axis], -result.first));
+        if (!middle[axis].done()) middle[axis].add(std::scalbn(p[axis], -first));
     });
     for (StreamMedian& median : middle)
       if (!median.done()) median.end();
   }
-  for (std::size_t axis = 0; axis < 3; ++axis) result.middle[axis] = middle[axis].value();
   StreamMedian spread(finite);
   while (!spread.done()) {
     progress.step("place", 0.6);
     spread.begin();
     for_each_point(stream, [&](const Vec3& point, std::uint64_t) {
-      const Vec3 p = result.place(point);
-      spread.add(std::max({std::abs(p[0]), std::abs(p[1]), std::abs(p[2])}));
+      double largest_difference = 0;
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        largest_difference =
+            std::max(largest_difference, std::abs(std::scalbn(point[axis], -first) - middle[axis].value()));
+      spread.add(largest_difference);
     });
     spread.end();
   }
-  result.second = spread.value() > 0 ? std::ilogb(spread.value()) : 0;
-  return result;
+  return first + (spread.value() > 0 ? std::ilogb(spread.value()) : 0);
 }
 
-/// The places on the curve from which on a new tile begins: even shares of a sample.
-std::vector<std::uint64_t> cuts(io::PointStream& stream, const pointcloud::Placement& placement, const Manifest& m) {
+/// The points on the curve from which on a new tile begins: even shares of a sample.
+std::vector<Vec3> cuts(io::PointStream& stream, const Manifest& m) {
   const std::uint64_t finite = m.points - m.non_finite, stride = finite / most_samples + 1;
-  std::vector<std::uint64_t> sample;
+  std::vector<Vec3> sample;
   std::uint64_t next = 0;
   for_each_point(stream, [&](const Vec3& p, std::uint64_t) {
-    if (next++ % stride == 0) sample.push_back(pointcloud::morton_code(placement.place(p)));
+    if (next++ % stride == 0) sample.push_back(p);
   });
-  std::sort(sample.begin(), sample.end());
+  std::sort(sample.begin(), sample.end(), pointcloud::before_on_curve);
   const std::uint64_t tiles = (finite + m.options.tile_points - 1) / static_cast<std::uint64_t>(m.options.tile_points);
-  std::vector<std::uint64_t> result;
+  std::vector<Vec3> result;
   for (std::uint64_t t = 1; t < tiles; ++t) result.push_back(sample[t * sample.size() / tiles]);
   result.erase(std::unique(result.begin(), result.end()), result.end());
   if (!result.empty() && result.front() == sample.front()) result.erase(result.begin());  // nothing lies before it
@@ -186,14 +186,12 @@ Manifest plan_tiles(const std::filesystem::path& input, const std::filesystem::p
   m.input = std::filesystem::absolute(input).string();
   m.options = options;
   m.points = stream.size();
-  const pointcloud::Placement placement = placement_of(stream, m, progress);
-  m.first = placement.first, m.middle = placement.middle, m.second = placement.second;
-  const std::vector<std::uint64_t> begins = cuts(stream, placement, m);
+  m.exponent = exponent_of(stream, m, progress);
+  const std::vector<Vec3> begins = cuts(stream, m);
   progress.step("cut", 0.8);
   Cutter cutter(folder, begins.size() + 1);
   for_each_point(stream, [&](const Vec3& p, std::uint64_t row) {
-    const std::uint64_t code = pointcloud::morton_code(placement.place(p));
-    const auto tile = std::upper_bound(begins.begin(), begins.end(), code) - begins.begin();
+    const auto tile = std::upper_bound(begins.begin(), begins.end(), p, pointcloud::before_on_curve) - begins.begin();
     cutter.put(static_cast<std::size_t>(tile), {p, static_cast<std::int64_t>(row)});
   });
   cutter.finish(m.tiles);

@@ -32,20 +32,14 @@ void sort_points(TileFolder& folder, std::size_t tile) {
   const pointcloud::Placement placement = folder.placement();
   const std::vector<CutPoint> cut = read_cut(folder, tile);
   struct Key {
-    std::uint64_t code;
     Vec3 placed;
     std::size_t at;
   };
   std::vector<Key> order;
   order.reserve(cut.size());
-  for (std::size_t i = 0; i < cut.size(); ++i) {
-    const Vec3 placed = placement.place(cut[i].point);
-    order.push_back({pointcloud::morton_code(placed), placed, i});
-  }
+  for (std::size_t i = 0; i < cut.size(); ++i) order.push_back({placement.place(cut[i].point), i});
   std::sort(order.begin(), order.end(), [&](const Key& a, const Key& b) {
-    if (a.code != b.code) return a.code < b.code;
-    if (a.placed != b.placed) return a.placed < b.placed;
-    return cut[a.at].row < cut[b.at].row;
+    return a.placed == b.placed ? cut[a.at].row < cut[b.at].row : pointcloud::before_on_curve(a.placed, b.placed);
   });
   std::vector<Vec3> points, placed;
   std::vector<Index> rows, row_begin{0};

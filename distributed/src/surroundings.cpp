@@ -24,7 +24,8 @@ constexpr double bytes_per_point = 1500;
 /// Cells of a grid next to which a tile has points of its own.
 class NearCells {
  public:
-  NearCells(std::span<const Vec3> points, double width) : width_(width) {
+  NearCells(std::span<const Vec3> points, double width)
+      : width_(width), origin_(points.empty() ? Vec3{0, 0, 0} : points.front()) {
     Cell last{};
     bool first = true;
     for (const Vec3& p : points) {
@@ -56,7 +57,7 @@ class NearCells {
     constexpr double most = 1 << 20;  // cells beyond count as one: more points are looked at, none is missed
     Cell cell;
     for (int a = 0; a < 3; ++a)
-      cell[a] = static_cast<std::int64_t>(std::clamp(std::floor(p[a] / width_), -most + 2, most - 2));
+      cell[a] = static_cast<std::int64_t>(std::clamp(std::floor((p[a] - origin_[a]) / width_), -most + 2, most - 2));
     return cell;
   }
   static std::uint64_t key(const Cell& cell) {
@@ -66,6 +67,7 @@ class NearCells {
   }
 
   double width_;
+  Vec3 origin_;
   std::unordered_set<std::uint64_t> own_, near_;
 };
 

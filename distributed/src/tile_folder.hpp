@@ -59,7 +59,7 @@ class TileFolder {
   /// Removes files that the next stages do not need, unless all are to be kept.
   void tidy() const;
 
-  pointcloud::Placement placement() const { return {manifest_.first, manifest_.middle, manifest_.second}; }
+  pointcloud::Placement placement() const { return {manifest_.exponent}; }
   pointcloud::CloudOptions cloud_options() const {
     pointcloud::CloudOptions result;
     if (manifest_.options.k > 0) result.k = manifest_.options.k;

@@ -2,8 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
-#include <limits>
+#include <utility>
 #include <vector>
 
 #include "ahm/distributed/array_file.hpp"
@@ -39,29 +38,19 @@ VertexRows rows_of(const RowMap& map, Index vertices) {
   return result;
 }
 
-/// The vertices along a Morton curve through the box around them.
+/// The vertices along the Morton curve.
 std::vector<Index> along_curve(const TangentGraph& graph) {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  Vec3 least{infinity, infinity, infinity}, most{-infinity, -infinity, -infinity};
+  std::vector<std::pair<Vec3, Index>> places;
   for (Index i = 0; i < graph.size(); ++i) {
     const auto frame = graph.frame(i);
     if (!frame) throw InvalidArgument("the surface has no positions; tiles are cut along them");
-    for (std::size_t c = 0; c < 3; ++c) {
-      least[c] = std::min(least[c], frame->origin[c]);
-      most[c] = std::max(most[c], frame->origin[c]);
-    }
+    places.emplace_back(frame->origin, i);
   }
-  const Vec3 middle = 0.5 * least + 0.5 * most, half = 0.5 * most - 0.5 * least;
-  const double reach = std::max({half[0], half[1], half[2], std::numeric_limits<double>::min()});
-  std::vector<std::pair<std::uint64_t, Index>> places;
-  for (Index i = 0; i < graph.size(); ++i) {
-    Vec3 placed = graph.frame(i)->origin - middle;
-    for (double& x : placed) x = x / reach * 15.9;  // the curve is one through [-16, 16]^3
-    places.emplace_back(pointcloud::morton_code(placed), i);
-  }
-  std::sort(places.begin(), places.end());
+  std::sort(places.begin(), places.end(), [](const auto& a, const auto& b) {
+    return a.first == b.first ? a.second < b.second : pointcloud::before_on_curve(a.first, b.first);
+  });
   std::vector<Index> order;
-  for (const auto& [code, vertex] : places) order.push_back(vertex);
+  for (const auto& [position, vertex] : places) order.push_back(vertex);
   return order;
 }
 
@@ -166,7 +155,7 @@ Manifest tile_surface(const Surface& surface, const std::string& input, const st
   m.options.tile_points = tile_points;
   m.stage = Stage::built;
   m.points = static_cast<std::uint64_t>(surface.rows().row_count());
-  m.first = std::ilogb(graph.length_unit());
+  m.exponent = std::ilogb(graph.length_unit());
   m.kind = graph.transport_kind();
   m.components = static_cast<Index>(cut.edge_lengths().size());
   m.mean_edge_length = graph.mean_edge_length();

@@ -49,7 +49,7 @@ TiledGraph::TiledGraph(const std::filesystem::path& folder, std::size_t memory)
       memory_(memory),
       width_(TransportLayout{manifest_.kind, 2}.width()),
       first_(manifest_.first_vertices()),
-      unit_(std::scalbn(1.0, manifest_.first + manifest_.second)),
+      unit_(std::scalbn(1.0, manifest_.exponent)),
       tiles_(manifest_.tiles.size()) {
   if (manifest_.stage != Stage::built)
     throw InvalidArgument("the tiles in '" + folder.string() + "' are " + std::string(to_string(manifest_.stage)) +

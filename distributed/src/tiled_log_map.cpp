@@ -95,7 +95,7 @@ class Making {
     claim.record();
     first_alone([&] { std::filesystem::remove(folder_ / "map.json"); });
     const bool unfolded = unfolds(graph_, source_);
-    const TileDistances distances = distances_as_far_as(unfolded ? radius : options_.radius);
+    const TileDistances distances = distances_as_far_as(unfolded ? radius : longest_way * radius);
     TiledMapSummary sum;
     std::vector<std::filesystem::path> folders;
     for (std::size_t k = 0; k < times.count(); ++k) {

@@ -32,8 +32,8 @@ void triangulate(TileFolder& folder, std::size_t tile) {
   const AroundFile around(folder, tile);
   const pointcloud::Neighborhoods near = read_neighborhoods(folder, tile);
   pointcloud::CloudDetails details;
-  std::vector<Triangle> triangles = local_delaunay(around.cloud, near, around.planes, false, folder.manifest().noise,
-                                                   folder.cloud_options(), details);
+  std::vector<Triangle> triangles =
+      local_delaunay(around.cloud, near, around.planes, 0, folder.manifest().noise, folder.cloud_options(), details);
   std::erase_if(triangles, [&](const Triangle& t) {
     return !around.complete[t[0]] && !around.complete[t[1]] && !around.complete[t[2]];
   });

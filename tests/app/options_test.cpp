@@ -162,6 +162,25 @@ TEST(Options, EstimateRunsNothing) {
   EXPECT_EQ(run({"logmap", input}).status, 2);
 }
 
+// Of small inputs the program itself is most. (A sanitizer would be more.)
+TEST(Options, EstimateKnowsTheMemoryOfSmallInputs) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "a sanitizer takes memory of its own";
+#endif
+  Folder folder;
+  for (const Index n : {1000, 10000}) {
+    const auto input = folder.write("sphere.xyz", xyz(sphere(n)));
+    const auto json = [&](std::vector<std::string> words) {
+      words.insert(words.begin(), {"logmap", input});
+      words.insert(words.end(), {"--json", "-"});
+      return nlohmann::json::parse(run(words).out);
+    };
+    const double told = json({"--estimate"}).at("global").at("peak_bytes"),
+                 taken = json({"--source", "0", "--strategy", "global", "-o", folder / "map.csv"}).at("peak_rss_bytes");
+    EXPECT_LT(std::abs(told / taken - 1), 1.0 / 3) << n << " points: " << told << " told, " << taken << " taken";
+  }
+}
+
 TEST(ProgressBar, ShowsOnATerminalAndIsGoneAtTheEnd) {
   if (!has_terminals()) GTEST_SKIP() << "this system gives out no pseudo-terminals";
   Folder folder;

@@ -299,6 +299,26 @@ TEST(InverseMap, OfAMeshAnswersOnItsFaces) {
   }
 }
 
+// The source lies at (0, 0) by definition, also where no triangle beside it is to be trusted.
+TEST(InverseMap, HasTheSourceAtTheOrigin) {
+  const Cloud sphere = random_sphere(400);
+  const auto surface = pointcloud::PointCloudSurface::build(sphere.points);
+  const LogMapSolver solver(surface.graph());
+  for (const double trusted : {0.0, 1.0}) {
+    const LogMap map = solver.solve(surface.source(Row(7)).source, {.frames = true});
+    const std::vector<double> quality(static_cast<std::size_t>(surface.graph().size()), trusted);
+    const InverseMap inverse = inverse_map(surface, map, {.quality = quality});
+    EXPECT_EQ(inverse.triangles().empty(), trusted == 0);
+    const auto point = inverse.at(0, 0);
+    ASSERT_TRUE(point);
+    EXPECT_LT(distance(point->position, sphere.points[7]), 1e-12);
+    EXPECT_LT(distance(point->normal, sphere.points[7]), 0.1);
+    const Vec3 axis = surface.graph().frame(surface.vertex(Row(7)).index)->x;
+    EXPECT_LT(distance(point->frame().x, axis), 0.1);
+    EXPECT_EQ(inverse.at(1e-3, 0).has_value(), trusted > 0);
+  }
+}
+
 TEST(InverseMap, RefusesBadArguments) {
   const Patch plane = patch(5, 1, flat);
   Patch broken = plane;

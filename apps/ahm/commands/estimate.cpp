@@ -21,7 +21,7 @@ struct Estimate {
 };
 
 /// Of the program itself.
-constexpr BuildCost base{.bytes = 10e6, .seconds = 0.01};
+constexpr BuildCost base{.bytes = 17e6, .seconds = 0.01};
 
 Estimate estimate(const GraphSize& size, Strategy strategy, const Backend& graph, int order) {
   const Cost cost = estimate_cost(size, strategy, order);

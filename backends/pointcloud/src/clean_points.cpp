@@ -1,7 +1,9 @@
 #include "clean_points.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <string>
 
@@ -23,37 +25,39 @@ Vec3 scaled(const Vec3& p, int exponent) {
   return {std::scalbn(p[0], exponent), std::scalbn(p[1], exponent), std::scalbn(p[2], exponent)};
 }
 
-/// Brings the points to order one about their middle. Medians, since a single stray point must cost the others no digits.
-Placement normalize(std::vector<Vec3>& points) {
+/// What brings the points to order one. Medians, since a single stray point must not make the others small.
+Placement placement_of(const std::vector<Vec3>& points) {
   Placement result;
   double largest = 0;
   for (const Vec3& p : points)
     for (double x : p) largest = std::max(largest, std::abs(x));
-  result.first = largest > 0 ? std::ilogb(largest) : 0;
+  const int first = largest > 0 ? std::ilogb(largest) : 0;  // differences of these do not overflow
+  Vec3 middle{0, 0, 0};
   std::vector<double> values(points.size());
   for (int axis = 0; axis < 3 && !points.empty(); ++axis) {
     std::transform(points.begin(), points.end(), values.begin(),
-                   [&](const Vec3& p) { return std::scalbn(p[axis], -result.first); });
-    result.middle[axis] = median(values);
+                   [&](const Vec3& p) { return std::scalbn(p[axis], -first); });
+    middle[axis] = median(values);
   }
   std::transform(points.begin(), points.end(), values.begin(), [&](const Vec3& point) {
-    const Vec3 p = result.place(point);
+    const Vec3 p = scaled(point, -first) - middle;
     return std::max({std::abs(p[0]), std::abs(p[1]), std::abs(p[2])});
   });
   const double spread = points.empty() ? 0.0 : median(values);
-  result.second = spread > 0 ? std::ilogb(spread) : 0;
-  for (Vec3& p : points) p = result.place(p);
+  result.exponent = first + (spread > 0 ? std::ilogb(spread) : 0);
   return result;
 }
 
-/// Spreads the low 21 bits so that two zero bits follow each.
-std::uint64_t spread_bits(std::uint64_t x) {
-  x &= 0x1fffff;
-  x = (x | x << 32) & 0x1f00000000ffff;
-  x = (x | x << 16) & 0x1f0000ff0000ff;
-  x = (x | x << 8) & 0x100f00f00f00f00f;
-  x = (x | x << 4) & 0x10c30c30c30c30c3;
-  return (x | x << 2) & 0x1249249249249249;
+/// The place of the highest binary digit in which two coordinates differ; a sign is above all digits.
+int highest_difference(double a, double b) {
+  if (a == b) return std::numeric_limits<int>::min();
+  if ((a < 0) != (b < 0)) return std::numeric_limits<int>::max();
+  constexpr int digits = 52;
+  constexpr std::uint64_t magnitude = ~std::uint64_t{0} >> 1;
+  const std::uint64_t x = std::bit_cast<std::uint64_t>(a) & magnitude, y = std::bit_cast<std::uint64_t>(b) & magnitude;
+  const int e = static_cast<int>(x >> digits), f = static_cast<int>(y >> digits);
+  if (e != f) return std::max(e, f);
+  return std::max(e, 1) - std::countl_zero((x ^ y) << (64 - digits)) - 1;
 }
 
 /// Copies the finite points; `kept` are their numbers.
@@ -81,17 +85,16 @@ std::vector<Vec3> finite_points(std::span<const Vec3> input, const std::function
 
 }  // namespace
 
-Vec3 Placement::place(const Vec3& point) const { return scaled(scaled(point, -first) - middle, -second); }
+Vec3 Placement::place(const Vec3& point) const { return scaled(point, -exponent); }
 
-double Placement::unit() const { return std::scalbn(1.0, first + second); }
+double Placement::unit() const { return std::scalbn(1.0, exponent); }
 
-std::uint64_t morton_code(const Vec3& placed) {
-  std::uint64_t code = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double cell = (std::clamp(placed[axis], -16.0, 15.999) + 16.0) * 0x1p16;
-    code |= spread_bits(static_cast<std::uint64_t>(cell)) << axis;
-  }
-  return code;
+bool before_on_curve(const Vec3& point, const Vec3& other) {
+  int deciding = 2, highest = highest_difference(point[2], other[2]);
+  for (int axis : {1, 0})
+    if (const int level = highest_difference(point[axis], other[axis]); level > highest)
+      deciding = axis, highest = level;
+  return point[deciding] < other[deciding];
 }
 
 CleanPoints clean_points(std::span<const Vec3> input, const std::function<Index(std::size_t)>& row,
@@ -100,33 +103,32 @@ CleanPoints clean_points(std::span<const Vec3> input, const std::function<Index(
     throw InvalidGeometry("the cloud has " + std::to_string(input.size()) + " points; at most 2^30 are supported");
   std::vector<Index> kept;
   std::vector<Vec3> placed = finite_points(input, row, options, kept, report);
+  const Placement placement = placement_of(placed);
+  for (Vec3& p : placed) p = placement.place(p);
   CleanPoints clean;
-  clean.unit = normalize(placed).unit();
+  clean.unit = placement.unit();
 
-  struct Key {
-    std::uint64_t code;
+  struct Place {
+    Vec3 point;
     Index position;
   };
-  std::vector<Key> order(placed.size());
-  for (std::size_t i = 0; i < order.size(); ++i) order[i] = {morton_code(placed[i]), static_cast<Index>(i)};
-  std::sort(order.begin(), order.end(), [&](const Key& a, const Key& b) {
-    if (a.code != b.code) return a.code < b.code;
-    if (placed[a.position] != placed[b.position]) return placed[a.position] < placed[b.position];
-    return a.position < b.position;
+  std::vector<Place> order(placed.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = {placed[i], static_cast<Index>(i)};
+  std::sort(order.begin(), order.end(), [](const Place& a, const Place& b) {
+    return a.point == b.point ? a.position < b.position : before_on_curve(a.point, b.point);
   });
 
   clean.clean_of_input.assign(input.size(), -1);
   clean.points.reserve(order.size());
   clean.input.reserve(order.size());
-  for (const Key& key : order) {
-    const Vec3& p = placed[key.position];
+  for (const auto& [p, position] : order) {
     if (clean.points.empty() || clean.points.back() != p) {
       clean.points.push_back(p);
-      clean.input.push_back(kept[key.position]);
+      clean.input.push_back(kept[position]);
     } else {
       ++report.duplicates;
     }
-    clean.clean_of_input[kept[key.position]] = static_cast<Index>(clean.points.size()) - 1;
+    clean.clean_of_input[kept[position]] = static_cast<Index>(clean.points.size()) - 1;
   }
   if (clean.points.size() < 3)
     throw InvalidGeometry("the cloud has " + std::to_string(clean.points.size()) +

@@ -3,7 +3,6 @@
 /// memory.
 #pragma once
 
-#include <cstdint>
 #include <functional>
 #include <span>
 #include <vector>
@@ -12,21 +11,21 @@
 
 namespace ahm::pointcloud {
 
-/// How input points are brought to order one about their middle.
+/// The power of two that brings input points to lengths of order one. Nothing is subtracted: differences of points are those
+/// of the input, to the last bit, whatever else is in the file.
 struct Placement {
-  int first = 0;         ///< exponent of the largest coordinate
-  Vec3 middle{0, 0, 0};  ///< medians of the coordinates, in units of 2^first
-  int second = 0;        ///< exponent of the median distance from there, largest coordinate, in these units
+  int exponent = 0;  ///< of the median distance from the medians of the coordinates, by the largest difference
   Vec3 place(const Vec3& point) const;
-  /// Power of two: input lengths per length of placed points.
+  /// Input lengths per length of placed points.
   double unit() const;
 };
 
-/// Position along the Morton curve through [-16, 16]^3; points beyond count as on its faces.
-std::uint64_t morton_code(const Vec3& placed);
+/// Whether one point lies before another on the Morton curve through all of space: an order of two finite points that
+/// depends on nothing but them, and not on their scale, if that is a power of two.
+bool before_on_curve(const Vec3& point, const Vec3& other);
 
 struct CleanPoints {
-  std::vector<Vec3> points;           ///< distinct, along a Morton curve, (input - center) / unit
+  std::vector<Vec3> points;           ///< distinct, along the Morton curve, input / unit
   std::vector<Index> input;           ///< first input point at each
   std::vector<Index> clean_of_input;  ///< -1: dropped
   double unit = 1.0;                  ///< power of two

@@ -19,7 +19,7 @@ constexpr double least_slope = 2e-3;
 
 /// It is also contradicted when it disagrees with those around it by this many times the angle between fitted planes, and
 /// this much: that tells on points too noisy for slopes to tell.
-constexpr double disagreement = 3;
+constexpr double disagreement = 2;
 constexpr double least_disagreement = 0.1;
 
 constexpr std::size_t most_neighbors = 12;

@@ -50,7 +50,7 @@ void convex_hull(std::vector<Inverted>& points, std::vector<Inverted>& hull) {
 class StarTriangulator {
  public:
   StarTriangulator(const CleanPoints& cloud, const Neighborhoods& neighborhoods, const TangentPlanes& planes,
-                   bool oriented, const PerPart& noise, double max_edge_ratio)
+                   const PerPart& oriented, const PerPart& noise, double max_edge_ratio)
       : cloud_(cloud),
         neighborhoods_(neighborhoods),
         planes_(planes),
@@ -88,7 +88,7 @@ class StarTriangulator {
  private:
   bool accept(Index i, Index j, double length) {
     if (length * neighborhoods_.radius[i] > max_ratio_ * neighborhoods_.radius[j]) return ++too_long, false;
-    if (oriented_ && dot(planes_.normals[i], planes_.normals[j]) < sheet_cosine) return ++other_sheet, false;
+    if (oriented_.at(i) != 0 && dot(planes_.normals[i], planes_.normals[j]) < sheet_cosine) return ++other_sheet, false;
     if (leaves_surface(planes_.normals[i], planes_.normals[j], cloud_.points[j] - cloud_.points[i], noise_.at(i)))
       return ++too_steep, false;
     return true;
@@ -97,7 +97,7 @@ class StarTriangulator {
   const CleanPoints& cloud_;
   const Neighborhoods& neighborhoods_;
   const TangentPlanes& planes_;
-  bool oriented_;
+  const PerPart& oriented_;
   const PerPart& noise_;
   double max_ratio_;
   std::vector<Inverted> images_, hull_;
@@ -130,7 +130,7 @@ std::vector<Triangle> unique_triangles(const std::vector<std::vector<Triangle>>&
 }  // namespace
 
 std::vector<Triangle> local_delaunay(const CleanPoints& cloud, const Neighborhoods& neighborhoods,
-                                     const TangentPlanes& planes, bool oriented, const PerPart& noise,
+                                     const TangentPlanes& planes, const PerPart& oriented, const PerPart& noise,
                                      const CloudOptions& options, CloudDetails& report) {
   const auto n = static_cast<Offset>(cloud.points.size());
   std::vector<std::vector<Triangle>> parts(static_cast<std::size_t>((n + points_per_task - 1) / points_per_task));

@@ -13,10 +13,10 @@ namespace ahm::pointcloud {
 /// Triangulates the neighbours of each point, projected to its tangent plane, and keeps the triangles at the point
 /// itself. A triangle found from several of its corners is listed once, corners ascending, triangles in lexicographic
 /// order.
-/// @param oriented  reject neighbours whose normals point the other way
+/// @param oriented  1 where neighbours whose normals point the other way are rejected
 /// @param noise  of offsets across the surface; neighbours far beyond it, steeply above the surface, are rejected
 std::vector<Triangle> local_delaunay(const CleanPoints& cloud, const Neighborhoods& neighborhoods,
-                                     const TangentPlanes& planes, bool oriented, const PerPart& noise,
+                                     const TangentPlanes& planes, const PerPart& oriented, const PerPart& noise,
                                      const CloudOptions& options, CloudDetails& report);
 
 }  // namespace ahm::pointcloud

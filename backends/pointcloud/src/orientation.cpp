@@ -75,22 +75,31 @@ double Evidence::sign(bool signs_given) const {
   return *std::max_element(n.begin(), n.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
 }
 
-bool have_thin_walls(const CleanPoints& cloud, const TangentPlanes& planes, const Neighborhoods& neighborhoods) {
-  Offset opposed = 0, before = 0, behind = 0;
+std::vector<char> have_thin_walls(const CleanPoints& cloud, const TangentPlanes& planes,
+                                  const Neighborhoods& neighborhoods, const CloudParts& parts) {
+  struct Count {
+    Offset opposed = 0, before = 0, behind = 0;
+  };
+  std::vector<Count> counts(static_cast<std::size_t>(parts.count));
   const auto n = static_cast<Index>(planes.normals.size());
   for (Index i = 0; i < n; ++i)
     for (Index j : neighborhoods.of(i)) {
       if (!(dot(planes.normals[i], planes.normals[j]) < -0.5)) continue;
-      ++opposed;
+      Count& count = counts[parts.of_point[i]];
+      ++count.opposed;
       // Twice the mean of how high each lies above the other.
       const double height = dot(planes.normals[i] - planes.normals[j], cloud.points[j] - cloud.points[i]);
-      before += height > 0;
-      behind += height < 0;
+      count.before += height > 0;
+      count.behind += height < 0;
     }
-  return opposed > 0 && 4 * std::abs(before - behind) >= 3 * opposed;
+  std::vector<char> result;
+  for (const Count& count : counts)
+    result.push_back(count.opposed > 0 && 4 * std::abs(count.before - count.behind) >= 3 * count.opposed);
+  return result;
 }
 
-Index orient_normals(const CleanPoints& cloud, const WeightedEdges& edges, bool signs_given, TangentPlanes& planes) {
+std::vector<Index> orient_normals(const CleanPoints& cloud, const WeightedEdges& edges, bool signs_given,
+                                  const CloudParts& parts, const std::vector<char>& kept, TangentPlanes& planes) {
   const auto n = static_cast<Index>(cloud.points.size());
   SignedForest forest(n);
   for (std::uint32_t e : flattest_first(edges, planes)) {
@@ -99,17 +108,20 @@ Index orient_normals(const CleanPoints& cloud, const WeightedEdges& edges, bool 
   }
   std::vector<Evidence> evidence(static_cast<std::size_t>(n));
   for (Index i = 0; i < n; ++i) evidence[forest.find(i).vertex].count(cloud.points[i]);
+  const auto is_kept = [&](Index i) { return kept[parts.of_point[i]] != 0; };
   for (Index i = 0; i < n; ++i) {
+    if (is_kept(i)) continue;
     const auto [root, sign] = forest.find(i);
     planes.normals[i] = static_cast<double>(sign) * planes.normals[i];
     evidence[root].weigh(cloud.points[i], planes.normals[i], sign);
   }
-  Index against_majority = 0;
+  std::vector<Index> against_majority(static_cast<std::size_t>(parts.count), 0);
   for (Index i = 0; i < n; ++i) {
+    if (is_kept(i)) continue;
     const auto [root, sign] = forest.find(i);
     const bool turn = evidence[root].sign(signs_given) < 0;
     if (turn) planes.normals[i] = -1.0 * planes.normals[i];
-    against_majority += (sign < 0) != turn;
+    against_majority[parts.of_point[i]] += (sign < 0) != turn;
   }
   return against_majority;
 }

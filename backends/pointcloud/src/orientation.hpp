@@ -11,10 +11,11 @@
 
 namespace ahm::pointcloud {
 
-/// Whether neighbours of opposite normals are the two sheets of thin walls: they lie consistently behind, or before, each
-/// other. Normals whose signs are wrong, or turned to a viewpoint, show no such thing: what curvature does to one side of
+/// Of each part, whether neighbours of opposite normals are the two sheets of thin walls: they lie consistently behind, or
+/// before, each other. Normals whose signs are wrong, or turned to a viewpoint, show no such thing: what curvature does to one side of
 /// a pair it undoes on the other, and noise has no direction.
-bool have_thin_walls(const CleanPoints& cloud, const TangentPlanes& planes, const Neighborhoods& neighborhoods);
+std::vector<char> have_thin_walls(const CleanPoints& cloud, const TangentPlanes& planes,
+                                  const Neighborhoods& neighborhoods, const CloudParts& parts);
 
 /// Union-find over vertices that also keeps the relative sign of each vertex to its root, the smallest of its set.
 class SignedForest {
@@ -59,7 +60,9 @@ struct Evidence {
 /// Flips normals so that they agree along a spanning tree of the flattest edges [HDDMS92], per connected component.
 /// The component as a whole keeps the majority of the signs that were given, else points away from its centroid, else
 /// (flat clouds) along its largest coordinate.
-/// @return the number of normals that are flipped against the majority of their component
-Index orient_normals(const CleanPoints& cloud, const WeightedEdges& edges, bool signs_given, TangentPlanes& planes);
+/// @param kept  parts whose normals stay as they are
+/// @return of each part, the number of normals that are flipped against the majority of their component
+std::vector<Index> orient_normals(const CleanPoints& cloud, const WeightedEdges& edges, bool signs_given,
+                                  const CloudParts& parts, const std::vector<char>& kept, TangentPlanes& planes);
 
 }  // namespace ahm::pointcloud

@@ -80,22 +80,35 @@ std::string first_ten(const std::vector<Row>& rows) {
   return list.text();
 }
 
-/// Whether neighbours whose normals are opposed are kept apart.
-bool cut_between_sheets(std::span<const Vec3> given, const CleanPoints& cloud, const TangentPlanes& planes,
-                        const Neighborhoods& neighborhoods, const CloudOptions& options) {
-  if (given.empty() || options.normal_signs == NormalSigns::unoriented) return false;
-  return options.normal_signs == NormalSigns::oriented || have_thin_walls(cloud, planes, neighborhoods);
+/// The parts in which neighbours whose normals are opposed are kept apart.
+std::vector<char> cut_between_sheets(std::span<const Vec3> given, const CleanPoints& cloud, const TangentPlanes& planes,
+                                     const Neighborhoods& neighborhoods, const CloudParts& parts,
+                                     const CloudOptions& options) {
+  const auto all = [&](char cut) { return std::vector<char>(static_cast<std::size_t>(parts.count), cut); };
+  if (given.empty() || options.normal_signs == NormalSigns::unoriented) return all(0);
+  if (options.normal_signs == NormalSigns::oriented) return all(1);
+  return have_thin_walls(cloud, planes, neighborhoods, parts);
 }
 
-/// Makes the signs of the normals consistent, unless the given ones are to be kept.
-void orient(const CleanPoints& cloud, const WeightedEdges& edges, std::span<const Vec3> given, bool cut,
-            const CloudOptions& options, TangentPlanes& planes, CloudDetails& report) {
-  report.oriented = cut;
-  if (cut) return;
+PerPart per_part(const CloudParts& parts, const std::vector<char>& marks) {
+  return {parts.of_point, std::vector<double>(marks.begin(), marks.end())};
+}
+
+/// Makes the signs of the normals consistent, except in parts that are cut, where the given ones are kept.
+/// @return the parts whose given signs are right everywhere
+std::vector<char> orient(const CleanPoints& cloud, const WeightedEdges& edges, std::span<const Vec3> given,
+                         const CloudParts& parts, const std::vector<char>& cut, const CloudOptions& options,
+                         TangentPlanes& planes, CloudDetails& report) {
   const bool signs_given = !given.empty() && options.normal_signs == NormalSigns::automatic;
-  report.turned = orient_normals(cloud, edges, signs_given, planes);
-  report.oriented = signs_given && report.turned == 0;
-  if (!signs_given) report.turned = 0;
+  const std::vector<Index> turned = orient_normals(cloud, edges, signs_given, parts, cut, planes);
+  std::vector<char> trusted = cut;
+  report.turned = 0;
+  for (std::size_t part = 0; part < turned.size() && signs_given; ++part) {
+    report.turned += turned[part];
+    if (turned[part] == 0) trusted[part] = 1;
+  }
+  report.oriented = std::find(trusted.begin(), trusted.end(), 0) == trusted.end();
+  return trusted;
 }
 
 /// Numbers the points that have a mass; lists the rows of points that have none.
@@ -166,10 +179,11 @@ PointCloudSurface PointCloudSurface::build(std::span<const Vec3> input, std::spa
   details.contradicted = planes.contradicted;
   details.thick = planes.thick;
   if (planes.estimated == static_cast<Index>(cloud.points.size())) normals = {};
-  const bool cut = cut_between_sheets(normals, cloud, planes, neighborhoods, options);
+  const std::vector<char> cut = cut_between_sheets(normals, cloud, planes, neighborhoods, *parts, options);
   details.seconds_normals = stopwatch.lap();
 
-  std::vector<Triangle> triangles = local_delaunay(cloud, neighborhoods, planes, cut, noise, options, details);
+  std::vector<Triangle> triangles =
+      local_delaunay(cloud, neighborhoods, planes, per_part(*parts, cut), noise, options, details);
   details.seconds_delaunay = stopwatch.lap();
   neighborhoods = {};
 
@@ -182,9 +196,9 @@ PointCloudSurface PointCloudSurface::build(std::span<const Vec3> input, std::spa
   details.seconds_laplacian = stopwatch.lap();
 
   const std::vector<Index> vertex_of_clean = number_vertices(cloud, edges, kept, details);
-  orient(cloud, edges, normals, cut, options, planes, details);
-  CsrGraphData data = tangent_edges(cloud, planes, edges, vertex_of_clean, details.vertices, details.oriented, noise,
-                                    options.threads, details);
+  const std::vector<char> trusted = orient(cloud, edges, normals, *parts, cut, options, planes, details);
+  CsrGraphData data = tangent_edges(cloud, planes, edges, vertex_of_clean, details.vertices, per_part(*parts, trusted),
+                                    noise, options.threads, details);
   fill_vertex_data(data, points, cloud, planes, edges, vertex_of_clean);
   CsrGraph graph(std::move(data));
   details.components = connected_components(graph).count;

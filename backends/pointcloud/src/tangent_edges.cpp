@@ -52,12 +52,12 @@ std::vector<Offset> row_starts(const WeightedEdges& edges, const std::vector<Ind
 }  // namespace
 
 CsrGraphData tangent_edges(const CleanPoints& cloud, const TangentPlanes& planes, const WeightedEdges& edges,
-                           const std::vector<Index>& vertex_of_clean, Index vertices, bool trusted,
+                           const std::vector<Index>& vertex_of_clean, Index vertices, const PerPart& trusted,
                            const PerPart& noise, unsigned threads, CloudDetails& report,
                            std::optional<TransportKind> kind) {
   const auto count = static_cast<Offset>(edges.tails.size());
   auto is_reflection = [&](std::size_t e) {
-    return !trusted && dot(planes.normals[edges.tails[e]], planes.normals[edges.heads[e]]) < 0;
+    return trusted.at(edges.tails[e]) == 0 && dot(planes.normals[edges.tails[e]], planes.normals[edges.heads[e]]) < 0;
   };
   report.reflections = 0;
   for (std::size_t e = 0; e < edges.tails.size(); ++e) report.reflections += is_reflection(e);

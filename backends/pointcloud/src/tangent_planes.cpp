@@ -26,16 +26,37 @@ constexpr double narrow_ratio = 1e-3;
 /// Neighbours are as thick as wide when their third principal variance is above this share of the second.
 constexpr double thick_ratio = 0.25;
 
+/// Fewer neighbours than half of these make no star of triangles.
+constexpr std::size_t least_neighbors = 8;
+
 /// Buffers of one thread's queries.
 struct QueryBuffers {
   std::vector<Index> indices;
   std::vector<double> squared;
 };
 
-/// Neighbours of point i, nearest first, without i; valid until the buffers' next use.
+/// Squared distances that differ by a smaller share are equal, as those of a lattice are up to rounding.
+constexpr double equal_distances = 1e-9;
+
+/// The k nearest of k + 1, less those that are as far as the one left out, so that none of several equally near ones is
+/// preferred; but at least half of k.
+std::span<const Index> whole_shells(std::span<const Vec3> points, Index i, std::span<const Index> neighbors, Index k) {
+  const auto most = static_cast<std::size_t>(k);
+  if (neighbors.size() <= most) return neighbors;
+  const auto squared = [&](std::size_t m) {
+    const Vec3 offset = points[neighbors[m]] - points[i];
+    return dot(offset, offset);
+  };
+  const double beyond = squared(most) * (1 - equal_distances);
+  std::size_t count = most;
+  while (count > 0 && squared(count - 1) >= beyond) --count;
+  return neighbors.first(2 * count >= std::max(most, least_neighbors) ? count : most);
+}
+
+/// The k neighbours of point i, nearest first, without i; valid until the buffers' next use.
 std::span<const Index> neighbors_of(std::span<const Vec3> points, Index i, const NeighborSearch& search, Index k,
                                     QueryBuffers& buffers) {
-  buffers.indices.resize(static_cast<std::size_t>(k) + 1);
+  buffers.indices.resize(static_cast<std::size_t>(k) + 2);
   buffers.squared.resize(buffers.indices.size());
   const auto wanted = static_cast<Index>(std::min(buffers.indices.size(), points.size()));
   const Index found = search.nearest(points[i], buffers.indices, buffers.squared);
@@ -48,7 +69,7 @@ std::span<const Index> neighbors_of(std::span<const Vec3> points, Index i, const
   // The point is its own nearest neighbour; a search in lower precision may rank it elsewhere or miss it.
   const auto self = std::find(buffers.indices.begin(), buffers.indices.end(), i);
   buffers.indices.erase(self == buffers.indices.end() ? self - 1 : self);
-  return buffers.indices;
+  return whole_shells(points, i, buffers.indices, k);
 }
 
 /// The neighbours, nearest first, up to the first gap behind half of k.

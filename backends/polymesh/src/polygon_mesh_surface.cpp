@@ -352,7 +352,8 @@ std::vector<Warning> PolygonMeshSurface::warnings() const {
   if (impl_->refined) {
     const std::vector<Warning> told = ahm::warnings(impl_->refined->details().topology);
     for (Warning& warning : impl_->refined->warnings())
-      if (std::ranges::find(told, warning.id, &Warning::id) == told.end()) result.push_back(std::move(warning));
+      if (std::ranges::find(told, warning.id, &Warning::id) == told.end() && warning.id != "collinear_faces")
+        result.push_back(std::move(warning));  // collinear pieces of polygons are no faces of the input
     return result;
   }
   if (!d.clamped && d.negative_weights > 0)

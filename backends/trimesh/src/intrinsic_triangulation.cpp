@@ -184,11 +184,11 @@ void IntrinsicTriangulation::flip(Half h) {
   if (!mirrored_.empty()) mirrored_[h] = mirrored_[t] = 0;
 }
 
-Index IntrinsicTriangulation::count_thin() const {
-  Index count = 0;
+std::vector<Index> IntrinsicTriangulation::thin_faces() const {
+  std::vector<Index> faces;
   for (Index f = 0; f < static_cast<Index>(tail_.size() / 3); ++f)
-    count += is_dropped(f) || !(relative_height(sides(f)) >= least_relative_height);
-  return count;
+    if (!is_dropped(f) && !(relative_height(sides(f)) >= least_relative_height)) faces.push_back(f);
+  return faces;
 }
 
 bool IntrinsicTriangulation::has_angles() const {

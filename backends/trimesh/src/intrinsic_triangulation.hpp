@@ -39,7 +39,7 @@ class IntrinsicTriangulation {
   /// Length added to every edge, in units of the mesh.
   double mollification() const { return mollification_; }
   /// Faces of almost no height.
-  Index count_thin() const;
+  std::vector<Index> thin_faces() const;
   /// Whether the angles of all faces have a meaning: no side is so short beside its face that it has no direction.
   bool has_angles() const;
   std::size_t bytes() const;

@@ -39,7 +39,8 @@ void measure_edges(const IntrinsicTriangulation& triangulation, double length_un
 IntrinsicTriangulation triangulate(const TriangleMesh& mesh, const MeshOptions& options, MeshDetails& report) {
   IntrinsicTriangulation triangulation(mesh, false, options.threads);
   measure_edges(triangulation, mesh.length_unit(), report);
-  report.degenerate_faces = triangulation.count_thin();
+  report.collinear = triangulation.thin_faces();
+  report.degenerate_faces = report.dropped_faces + static_cast<Index>(report.collinear.size());
   if (!(report.longest_edge > 0)) throw InvalidGeometry("all vertices of the mesh are at the same place");
   auto flip = [&](IntrinsicTriangulation& t) {
     return !options.intrinsic_delaunay || t.flip_to_delaunay(options.progress);
@@ -152,6 +153,9 @@ std::vector<Warning> TriangleMeshSurface::warnings() const {
   result.insert(result.end(), topology.begin(), topology.end());
   if (d.merged_vertices > 0)
     result.push_back({"merged", {static_cast<double>(d.merged_vertices), static_cast<double>(d.dropped_faces)}, {}});
+  if (!d.collinear.empty())
+    result.push_back(
+        {"collinear_faces", {static_cast<double>(d.collinear.size()), static_cast<double>(d.collinear.front())}, {}});
   if (d.mollification > 0)
     result.push_back({"mollified", {static_cast<double>(d.degenerate_faces), d.mollification}, {}});
   if (d.longest_edge > 1e6 * d.finest) result.push_back({"edge_lengths", {d.finest, d.longest_edge}, {}});

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "ahm/error.hpp"
+#include "ahm/maps/tangent_lines.hpp"
 #include "ahm/surface/surface_faces.hpp"
 #include "ahm/util/shortest_paths.hpp"
 #include "ahm/util/small_math.hpp"
@@ -135,7 +136,7 @@ Frame InversePoint::frame() const {
 }
 
 InverseMap::InverseMap(const MappedSurface& surface, const InverseMapOptions& options)
-    : max_stretch_(options.max_stretch) {
+    : max_stretch_(options.max_stretch), origin_(surface.origin) {
   check(surface, options);
   triangles_ = sorted_triangles(surface, max_stretch_);
   positions_.assign(surface.positions.begin(), surface.positions.end());
@@ -194,6 +195,13 @@ std::array<Vec2, 3> InverseMap::corners(const Triangle& triangle) const {
 
 std::optional<InversePoint> InverseMap::at(double u, double v) const {
   const Vec2 q{u / unit_, v / unit_};
+  const std::optional<InversePoint> found = in_triangles(q);
+  if (!origin_ || q != Vec2{0, 0}) return found;
+  // Where its own triangles are left out another one may lie there.
+  return found && distance(found->position, origin_->position) <= 1e-9 * unit_ ? found : origin_;
+}
+
+std::optional<InversePoint> InverseMap::in_triangles(const Vec2& q) const {
   if (triangles_.empty() || !all_finite(q)) return std::nullopt;
   const std::size_t b = to_size(bucket(1, q[1])) * to_size(buckets_[0]) + to_size(bucket(0, q[0]));
   for (Offset k = bucket_begin_[b]; k < bucket_begin_[b + 1]; ++k)
@@ -237,6 +245,37 @@ std::vector<double> quality_asked_for(const TangentGraph& graph, const LogMap& m
   return {options.quality.begin(), options.quality.end()};
 }
 
+/// The source itself, where it is one point between at most three of the vertices that have a number.
+/// @param number  of a vertex in the arrays of `s`: an optional index
+template <class Number>
+std::optional<InversePoint> origin_of(const TangentGraph& graph, const Source& source, const MappedSurface& s,
+                                      const Number& number) {
+  const std::size_t samples = source.vertices().size();
+  if (source.is_curve() || samples < 1 || samples > 3) return std::nullopt;
+  InversePoint point{};
+  double weights = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t sample = std::min(k, samples - 1);
+    const std::optional<Index> at = number(source.vertices()[sample]);
+    if (!at || source.place(sample).point != 0) return std::nullopt;
+    point.vertices[k] = *at;
+    point.weights[k] = k < samples ? source.weights()[k] : 0;
+    weights += point.weights[k];
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    point.weights[k] /= weights;
+    point.position = point.position + point.weights[k] * s.positions[point.vertices[k]];
+    point.normal = point.normal + point.weights[k] * s.normals[point.vertices[k]];
+  }
+  point.normal = unit_or_zero(point.normal);
+  const Vec2 u = u_axis_at_place(source);
+  const Frame frame = *graph.frame(tangent_place(source).vertex.index);
+  const Vec3 axis = u[0] * frame.x + u[1] * frame.y;
+  point.du = unit_or_zero(axis - dot(axis, point.normal) * point.normal);
+  point.dv = cross(point.normal, point.du);
+  return point;
+}
+
 }  // namespace
 
 InverseMap inverse_map(const TangentGraph& graph, const LogMap& map, const InverseMapOptions& options) {
@@ -253,7 +292,10 @@ InverseMap inverse_map(const TangentGraph& graph, const LogMap& map, const Inver
   }
   std::vector<Index> sources;
   for (Vertex vertex : map.source().vertices()) sources.push_back(vertex.index);
-  return InverseMap({positions, normals, map.coordinates(), valid, triangles, sources}, options);
+  MappedSurface mapped{positions, normals, map.coordinates(), valid, triangles, sources};
+  mapped.origin =
+      origin_of(graph, map.source(), mapped, [](Vertex vertex) { return std::optional<Index>(vertex.index); });
+  return InverseMap(mapped, options);
 }
 
 InverseMap inverse_map(const Surface& surface, const LogMap& map, const InverseMapOptions& options) {
@@ -272,16 +314,26 @@ InverseMap inverse_map(const Surface& surface, const LogMap& map, const InverseM
     coordinates[2 * r] = rows.u[r], coordinates[2 * r + 1] = rows.v[r];
     valid[r] = quality.empty() || quality[v] >= options.min_quality;
   }
-  if (surface.faces().size() > 0)
-    return InverseMap({surface.positions(), normals, coordinates, valid, turned_triangles(surface, normals)}, options);
   const auto row = [&](Index vertex) { return surface.rows().row(Vertex(vertex)); };
+  MappedSurface mapped{surface.positions(), normals, coordinates, valid, {}};
+  mapped.origin = origin_of(graph, map.source(), mapped, [&](Vertex vertex) {
+    const auto at = row(vertex.index);
+    return at ? std::optional<Index>(at->index) : std::nullopt;
+  });
+  if (surface.faces().size() > 0) {
+    const std::vector<Triangle> turned = turned_triangles(surface, normals);
+    mapped.triangles = turned;
+    return InverseMap(mapped, options);
+  }
   std::vector<Triangle> triangles;
   for (const auto& [a, b, c] : star_triangles(graph, map))
     if (row(a) && row(b) && row(c)) triangles.push_back({row(a)->index, row(b)->index, row(c)->index});
   std::vector<Index> sources;
   for (Vertex v : map.source().vertices())
     if (row(v.index)) sources.push_back(row(v.index)->index);
-  return InverseMap({surface.positions(), normals, coordinates, valid, triangles, sources}, options);
+  mapped.triangles = triangles;
+  mapped.sources = sources;
+  return InverseMap(mapped, options);
 }
 
 }  // namespace ahm

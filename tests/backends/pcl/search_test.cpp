@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <thread>
+#include <utility>
 
 #include "ahm/error.hpp"
 #include "clouds.hpp"
@@ -50,6 +51,24 @@ TEST(KdTreeSearch, KeepsTheShapeOfACloudFarFromTheOrigin) {
 TEST(KdTreeSearch, IsIndependentOfScale) {
   expect_agrees(random_box(1000, {0, 0, 0}, 1e-100), 1e-100, 10);
   expect_agrees(random_box(1000, {0, 0, 0}, 1e100), 1e100, 10);
+}
+
+TEST(KdTreeSearch, PrefersLowNumbersOfEquallyNearPoints) {
+  std::vector<Vec3> lattice;
+  for (int i = 0; i < 9; ++i)
+    for (int j = 0; j < 9; ++j)
+      for (int k = 0; k < 9; ++k) lattice.push_back({0.1 * i, 0.1 * j, 0.1 * k});
+  const auto search = kdtree_search(lattice);
+  std::vector<Index> index(24);
+  std::vector<double> squared(24);
+  for (std::size_t q = 0; q < lattice.size(); q += 5) {
+    std::vector<std::pair<double, Index>> expected;
+    for (std::size_t i = 0; i < lattice.size(); ++i)
+      expected.emplace_back(squared_distance(lattice[q], lattice[i]), static_cast<Index>(i));
+    std::sort(expected.begin(), expected.end());
+    search->nearest(lattice[q], index, squared);
+    for (std::size_t r = 0; r < index.size(); ++r) ASSERT_EQ(index[r], expected[r].second) << q << ", " << r;
+  }
 }
 
 TEST(KdTreeSearch, FindsNoMoreThanThereAre) {

@@ -92,18 +92,24 @@ TEST(FlatCloud, IsNotTrustedBehindAWall) {
 TEST(RolledCloud, OfSquaresIsCrossedDiagonally) {
   const int around = 120, rows = 40;
   const double h = 2 * std::numbers::pi / around;
-  Cloud cloud;
-  for (int y = 0; y < rows; ++y)
-    for (int k = 0; k < around; ++k) cloud.points.push_back({std::cos(h * k), std::sin(h * k), h * y});
-  const auto surface = pointcloud::PointCloudSurface::build(cloud.points);
-  UnfoldingFront front(surface.graph());
-  front.add(surface.source(Row(0)).source);
-  front.run();
-  for (int y = 0; y < rows; ++y)
-    for (int k = 0; k < around; ++k) {
-      const double exact = h * std::hypot(y, std::min(k, around - k));
-      ASSERT_NEAR(front.distance(*surface.rows().vertex(Row(y * around + k))), exact, 0.002 * exact) << y << ", " << k;
-    }
+  for (const Vec2 place : {Vec2{0, 0}, Vec2{0.5, 0}, Vec2{0, 0.01}, Vec2{0.5, 10.5}}) {
+    Cloud cloud;
+    for (int y = 0; y < rows; ++y)
+      for (int k = 0; k < around; ++k) {
+        const double angle = h * (k + place[0]);
+        cloud.points.push_back({std::cos(angle) + place[1], std::sin(angle), h * y});
+      }
+    const auto surface = pointcloud::PointCloudSurface::build(cloud.points);
+    UnfoldingFront front(surface.graph());
+    front.add(surface.source(Row(0)).source);
+    front.run();
+    for (int y = 0; y < rows; ++y)
+      for (int k = 0; k < around; ++k) {
+        const double exact = h * std::hypot(y, std::min(k, around - k));
+        ASSERT_NEAR(front.distance(*surface.rows().vertex(Row(y * around + k))), exact, 0.002 * exact)
+            << y << ", " << k;
+      }
+  }
 }
 
 TEST(FlatCloud, CoversItsArea) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "ahm/pointcloud/neighbor_search.hpp"
 #include "ahm/pointcloud/point_cloud_surface.hpp"
@@ -55,6 +56,26 @@ TEST_P(Search, SurvivesManyEqualPoints) {
   std::vector<Vec3> points(300, Vec3{1, 2, 3});
   points.push_back({1, 2, 4});
   expect_brute_force_distances(GetParam().make, points, 10);
+}
+
+TEST_P(Search, PrefersLowNumbersOfEquallyNearPoints) {
+  std::vector<Vec3> lattice;
+  for (int i = 0; i < 9; ++i)
+    for (int j = 0; j < 9; ++j)
+      for (int k = 0; k < 9; ++k) lattice.push_back({1.0 * i, 1.0 * j, 1.0 * k});
+  const auto search = GetParam().make(lattice);
+  std::vector<Index> indices(24);
+  std::vector<double> squared(24);
+  for (std::size_t q = 0; q < lattice.size(); q += 5) {
+    std::vector<std::pair<double, Index>> expected;
+    for (std::size_t i = 0; i < lattice.size(); ++i) {
+      const Vec3 &p = lattice[i], &o = lattice[q];
+      expected.emplace_back(std::pow(p[0] - o[0], 2) + std::pow(p[1] - o[1], 2) + std::pow(p[2] - o[2], 2), i);
+    }
+    std::sort(expected.begin(), expected.end());
+    search->nearest(lattice[q], indices, squared);
+    for (std::size_t r = 0; r < indices.size(); ++r) ASSERT_EQ(indices[r], expected[r].second) << q << ", " << r;
+  }
 }
 
 TEST_P(Search, BuildsTheSameGraph) {

@@ -218,6 +218,15 @@ TEST(MeshFaults, FlatCapsAreFlippedAwayWithoutMollification) {
   EXPECT_LT(plane_error(mesh, map, {1, 0}, {1, 0}), 1e-13);
 }
 
+TEST(MeshFaults, NamesFacesWhoseCornersLieOnALine) {
+  const std::vector<Vec3> positions{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {1, 1, 0}, {1, -1, 0}};
+  const std::vector<Triangle> faces{{3, 0, 1}, {3, 1, 2}, {0, 2, 1}, {2, 0, 4}};
+  const auto warnings = TriangleMeshSurface::build(positions, faces).warnings();
+  const auto warning = std::ranges::find(warnings, "collinear_faces", &Warning::id);
+  ASSERT_NE(warning, warnings.end());
+  EXPECT_EQ(warning->numbers, (std::vector<double>{1, 2}));
+}
+
 TEST(MeshFaults, ThinSliversAtTheBoundary) {
   Mesh mesh = holed_square(15);
   // A vertex 1e-12 beside a boundary edge.

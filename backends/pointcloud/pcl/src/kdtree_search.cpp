@@ -1,10 +1,11 @@
 #include <pcl/kdtree/kdtree_flann.h>
 
 #include <algorithm>
-#include <utility>
+#include <cmath>
 #include <vector>
 
 #include "ahm/pcl/search.hpp"
+#include "ahm/pointcloud/nearest_candidates.hpp"
 #include "float_cloud.hpp"
 
 namespace ahm::pcl_bridge {
@@ -25,24 +26,33 @@ class KdTreeSearch final : public pointcloud::NeighborSearch {
   Index nearest(const Vec3& query, std::span<Index> indices, std::span<double> squared_distances) const override {
     const std::size_t wanted = std::min(indices.size(), points_.size());
     if (wanted == 0) return 0;
-    // A few more than asked for, because rounding to single precision may swap neighbours around the last place.
-    constexpr std::size_t spare = 4;
-    ::pcl::Indices found;
-    std::vector<float> ignored;
-    tree_.nearestKSearch(float_cloud_.convert(query), static_cast<unsigned>(std::min(wanted + spare, points_.size())),
-                         found, ignored);
-    std::vector<std::pair<double, Index>> sorted;
-    sorted.reserve(found.size());
-    for (const auto i : found) sorted.emplace_back(squared_distance(query, points_[i]), static_cast<Index>(i));
-    std::sort(sorted.begin(), sorted.end());
-    for (std::size_t i = 0; i < wanted; ++i) {
-      squared_distances[i] = sorted[i].first;
-      indices[i] = sorted[i].second;
+    // More than asked for, because single precision cannot tell which of the last ones are nearer.
+    std::vector<pointcloud::Candidate> found;
+    for (std::size_t count = wanted + 4;; count *= 2) {
+      const double reached = find(query, std::min(count, points_.size()), found);
+      if (count >= points_.size() || count > most_times * wanted) break;
+      std::nth_element(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(wanted - 1), found.end());
+      if (reached > std::sqrt(found[wanted - 1].first) + rounding * float_cloud_.unit) break;
     }
+    pointcloud::take_nearest(found, wanted, indices, squared_distances);
     return static_cast<Index>(wanted);
   }
 
  private:
+  static constexpr std::size_t most_times = 8;
+  static constexpr double rounding = 4e-7;  ///< of distances of points of order one in single precision
+
+  /// The nearest in single precision, with their distances in double precision.
+  /// @return how far the farthest is in single precision
+  double find(const Vec3& query, std::size_t count, std::vector<pointcloud::Candidate>& found) const {
+    ::pcl::Indices indices;
+    std::vector<float> squared;
+    tree_.nearestKSearch(float_cloud_.convert(query), static_cast<unsigned>(count), indices, squared);
+    found.clear();
+    for (const auto i : indices) found.emplace_back(squared_distance(query, points_[i]), static_cast<Index>(i));
+    return std::sqrt(static_cast<double>(squared.back())) * float_cloud_.unit;
+  }
+
   std::span<const Vec3> points_;
   FloatCloud float_cloud_;
   ::pcl::KdTreeFLANN<::pcl::PointXYZ> tree_;

@@ -35,7 +35,7 @@ struct TileFacts {
 };
 
 /// The version of manifest.json of clouds, and of surfaces that were built in memory; others are refused.
-inline constexpr std::uint32_t cloud_version = 1, surface_version = 2;
+inline constexpr std::uint32_t cloud_version = 3, surface_version = 4;
 
 /// The file manifest.json of a folder.
 struct Manifest {
@@ -43,11 +43,10 @@ struct Manifest {
   TileOptions options;
   Stage stage = Stage::planned;
   std::uint64_t points = 0, non_finite = 0;  ///< rows of the input
-  int first = 0, second = 0;                 ///< `pointcloud::Placement`
-  Vec3 middle{0, 0, 0};
-  Index k = 0;               ///< neighbours used
-  double noise = 0;          ///< across the surface, units of the placed points
-  double mollification = 0;  ///< the same units
+  int exponent = 0;                          ///< `pointcloud::Placement`
+  Index k = 0;                               ///< neighbours used
+  double noise = 0;                          ///< across the surface, units of the placed points
+  double mollification = 0;                  ///< the same units
   TransportKind kind = TransportKind::rotation2;
   std::int64_t reflections = 0;
   Index components = 0;

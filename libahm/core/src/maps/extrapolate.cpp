@@ -44,6 +44,31 @@ double share_of_first(double rate, double c, double relative_disagreement, doubl
                   std::clamp(std::min((relative_disagreement - 0.4) / 0.4, (relative_spread - 0.1) / 0.1), 0.0, 1.0));
 }
 
+constexpr double root_2_less_1 = std::numbers::sqrt2 - 1;
+
+/// 0 up to `low`, 1 from `high` on.
+double ramp(double x, double low, double high) { return std::clamp((x - low) / (high - low), 0.0, 1.0); }
+
+/// Distances of heat from one source at the times 1, c and 2 c.
+struct TimedDistance {
+  double first, middle, last;
+  /// At time 0; not below 0.
+  double limit() const { return std::max(0.0, middle - (last - middle) / root_2_less_1); }
+};
+
+/// How much of the shortest time's distance is kept, at least as much as of phi: all of it where the limit is farther away
+/// than on smooth surfaces, where edges do not follow the way, as between points that are much denser one way than the other,
+/// and where, with three times, the two limits disagree by as much as they correct.
+double share_of_first_distance(double share_of_phi, const TimedDistance& r, double c, double path) {
+  if (!(r.first > 0)) return share_of_phi;
+  const double correction = std::abs(r.limit() - r.first);
+  const double share =
+      std::max({share_of_phi, ramp(correction / r.first, 0.05, 0.1), ramp(path / r.first, 1.1, longest_way)});
+  if (!(c > 1) || !(correction > 0)) return share;
+  const double other = (std::sqrt(c) * r.first - r.middle) / (std::sqrt(c) - 1);
+  return std::max(share, ramp(std::abs(r.limit() - other) / correction, 0.25, 0.5));
+}
+
 /// Lengths of the shortest ways along edges from a source, world units; infinite where there is none.
 std::vector<double> all_edge_paths(const TangentGraph& graph, const Source& source) {
   constexpr double none = std::numeric_limits<double>::infinity();
@@ -63,8 +88,6 @@ void shorten(std::span<double> phi, std::span<const double> p, double longest) {
   const double t = longest > 0 ? std::clamp((std::sqrt(std::max(0.0, b * b + a * c)) - b) / a, 0.0, 1.0) : 0.0;
   for (std::size_t k = 0; k < phi.size(); ++k) phi[k] = p[k] + t * (phi[k] - p[k]);
 }
-
-constexpr double root_2_less_1 = std::numbers::sqrt2 - 1;
 
 double gap(std::span<const double> a, std::span<const double> b) {
   double sum = 0;
@@ -101,9 +124,12 @@ ExtrapolatedRow extrapolate_row(const std::array<TimedRow, 3>& rows, const Extra
   const double w = share_of_first(gap(last.phi, middle.phi) / step, c, disagreement / gap(limit, first.phi),
                                   last.spread / std::max(last.distance, scales.h));
   for (std::size_t a = 0; a < phi.size(); ++a) phi[a] = (1 - w) * limit[a] + w * first.phi[a];
-  const double r1 = first.distance, rc = middle.distance, r2 = last.distance;
-  double distance = r1 + (1 - w) * (std::max(0.0, rc - (r2 - rc) / root_2_less_1) - r1);
-  if (!kind.unfolded) distance = std::min(distance, std::max(r1, path));
+  const TimedDistance r{first.distance, middle.distance, last.distance};
+  double distance = r.first;
+  if (!kind.unfolded) {
+    distance += (1 - share_of_first_distance(w, r, c, path)) * (r.limit() - r.first);
+    distance = std::min(distance, std::max(r.first, path));
+  }
   if (!kind.of_curve) shorten(phi, first.phi, std::max(length(first.phi), distance));
   if (all_finite(phi) && !(distance > radius)) return {Status::ok, distance, std::max(gap(phi, limit), disagreement)};
   const Status status = all_finite(phi) ? Status::beyond_radius : Status::unreached;

@@ -62,6 +62,9 @@ struct DistanceKind {
   bool of_curve;
 };
 
+/// Ways along edges that are this many times as long as the distance at the shortest time might as well be infinite.
+inline constexpr double longest_way = 1.15;
+
 /// One vertex: see below.
 /// @param rows  of the first, the middle and the last time; where these are two, the first twice
 /// @param path  length of the shortest way along edges; of unfolded distances it means nothing
@@ -69,14 +72,17 @@ struct DistanceKind {
 ExtrapolatedRow extrapolate_row(const std::array<TimedRow, 3>& rows, const ExtrapolationScales& scales,
                                 DistanceKind kind, double path, double radius, std::span<double> phi);
 
-/// Coordinates extrapolated vertex by vertex from the maps of one source at these times; distances of heat alike, along
-/// the same w.
+/// Coordinates extrapolated vertex by vertex from the maps of one source at these times; distances of heat alike, with
+/// w_d in place of w.
 ///
 ///     phi* = phi(c) + (phi(c) - phi(2c)) / (sqrt 2 - 1)
 ///     a    = |phi(2c) - phi(c)| / (sqrt(tau_2c) - sqrt(tau_c))
 ///     b    = |phi* - phi*(1, c)| / |phi* - phi(1)|,   s = spread(2c) / max(d, h)
 ///     w    = max( clamp((a - 3)/2, 0, 1),  min( clamp((b - .4)/.4, 0, 1), clamp((s - .1)/.1, 0, 1) ) )
 ///     phi  = (1 - w) phi* + w phi(1)
+///     w_d  = max( w, clamp((e - .05)/.05, 0, 1), clamp((l/d(1) - 1.1)/.05, 0, 1), clamp((b_d - .25)/.25, 0, 1) )
+///
+/// with e = |d* - d(1)| / d(1), l the shortest way along edges and b_d the b of distances (0 with two times).
 ///
 /// No distance is made longer than the shortest way along edges, and phi no longer than its distance, if the shortest time
 /// did not make them so already: there phi is as near to phi* as it may be on the line to phi(1). (Not from curves, where

@@ -11,6 +11,7 @@
 #include "maps/ball.hpp"
 #include "maps/patch_maps.hpp"
 #include "maps/right_hand_side.hpp"
+#include "maps/source_vertices.hpp"
 
 namespace ahm {
 namespace {
@@ -70,12 +71,14 @@ std::vector<double> local_coordinates(const TangentGraph& graph, std::span<const
       for (Index s : members) group.push_back(sources[s]), farthest = std::max(farthest, extent[s]);
       const auto patch = patches.solve(patches.cut(group, farthest + margin * patches.sqrt_tau(group)));
       for (std::size_t m = 0; m < members.size(); ++m) {
+        const SourceVertices own(patch->sources[m], graph.dimension());
         double* phi = result.data() + begin[members[m]] * d;
         for (const auto [vertex] : regions[members[m]]) {
           const auto found = std::ranges::lower_bound(patch->vertices, vertex);
           const auto place = static_cast<Index>(found - patch->vertices.begin());
           if (found != patch->vertices.end() && *found == vertex && patch->heat->reached(m, place)) {
             patch->heat->coordinates_at(m, place, phi);
+            if (const auto* known = own.find(place)) std::copy(known->vector.begin(), known->vector.end(), phi);
             if (!all_finite(std::span(phi, d))) std::fill_n(phi, d, std::numeric_limits<double>::quiet_NaN());
           }
           phi += d;

@@ -16,6 +16,7 @@
 #include "maps/front_stars.hpp"
 #include "maps/heat_distance.hpp"
 #include "maps/patch_maps.hpp"
+#include "maps/source_vertices.hpp"
 
 namespace ahm {
 namespace {
@@ -212,6 +213,8 @@ class Worker {
     if (options_.nearest > 0 && order_.size() > static_cast<std::size_t>(options_.nearest))
       order_.resize(static_cast<std::size_t>(options_.nearest));
 
+    for (const auto& [vertex, known] : SourceVertices(patch.sources[m], graph_.dimension()))
+      std::copy(known.vector.begin(), known.vector.end(), phi_.begin() + static_cast<std::ptrdiff_t>(vertex * d_));
     entries = {};
     const std::size_t size = order_.size();
     entries.vertices.reserve(size);

@@ -23,6 +23,7 @@
 #include "maps/heat_distance.hpp"
 #include "maps/march.hpp"
 #include "maps/run_front.hpp"
+#include "maps/source_vertices.hpp"
 #include "maps/vertex_row.hpp"
 
 namespace ahm {
@@ -238,6 +239,10 @@ LogMap LogMapSolver::Impl::map_of(const Values& values, Strategy how, const Marc
     if (map.frames) values.axes(vertex, extras.frames.data() + i * d * d);
   });
   if (unfolded.distances.empty()) place_source(source, extras.distances);
+  for (const auto& [vertex, known] : SourceVertices(source, graph.dimension())) {
+    std::copy(known.vector.begin(), known.vector.end(), coordinates.begin() + static_cast<std::ptrdiff_t>(vertex * d));
+    if (!extras.spread.empty()) extras.spread[vertex] = 0;
+  }
   for (std::size_t i = 0; i < n; ++i) {
     if (status[i] == Status::ok && extras.distances[i] > map.radius) status[i] = Status::beyond_radius;
     if (status[i] == Status::ok) continue;

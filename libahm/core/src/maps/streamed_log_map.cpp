@@ -4,7 +4,6 @@
 #include <cmath>
 #include <optional>
 #include <string>
-#include <unordered_map>
 #include <vector>
 
 #include "ahm/error.hpp"
@@ -17,6 +16,7 @@
 #include "maps/march.hpp"
 #include "maps/right_hand_side.hpp"
 #include "maps/run_front.hpp"
+#include "maps/source_vertices.hpp"
 #include "maps/team_log_map.hpp"
 #include "maps/vertex_row.hpp"
 
@@ -43,28 +43,31 @@ class Rows final : public MarchSink {
       : radius_(radius),
         sink_(sink),
         phi_(how.goal == MarchGoal::map ? static_cast<std::size_t>(graph.dimension()) : 0),
-        distances_(how.distances) {
+        distances_(how.distances),
+        own_(source, graph.dimension()) {
     if (distances_) return;
     if (unfolds(graph, source)) {
       progress.step("unfold", 0);
       front_.emplace(graph);
       front_->add(source);
       run_front(*front_, graph, radius, progress.stop);
-      return;
     }
-    for (std::size_t k = 0; k < source.vertices().size(); ++k)
-      if (source.weights()[k] > 0) placed_[source.vertices()[k].index] = source.place(k).distance;
   }
 
   void accept(Index vertex, const HeatRow& found) override {
     std::copy_n(found.phi.begin(), phi_.size(), phi_.begin());
     VertexRow row = vertex_row(found);
+    const auto* known = own_.find(vertex);
     if (distances_)
       row.distance = distances_->of(vertex);
     else if (front_)
       row.distance = front_->distance(Vertex(vertex));
-    else if (const auto placed = placed_.find(vertex); placed != placed_.end())
-      row.distance = placed->second;
+    else if (known)
+      row.distance = known->distance;
+    if (known) {
+      std::copy_n(known->vector.begin(), phi_.size(), phi_.begin());
+      row.spread = 0;
+    }
     if (row.status == Status::ok && row.distance > radius_) row.status = Status::beyond_radius;
     if (row.status != Status::ok) {
       std::fill(phi_.begin(), phi_.end(), NAN);
@@ -78,8 +81,8 @@ class Rows final : public MarchSink {
   MapSink& sink_;
   std::vector<double> phi_;  ///< empty for distances alone
   const KnownDistances* distances_;
-  std::optional<UnfoldingFront> front_;       ///< that knows the distances; none: heat does
-  std::unordered_map<Index, double> placed_;  ///< the source's own vertices
+  SourceVertices own_;
+  std::optional<UnfoldingFront> front_;  ///< that knows the distances; none: heat does
 };
 
 }  // namespace

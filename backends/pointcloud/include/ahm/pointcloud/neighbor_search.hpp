@@ -22,8 +22,8 @@ class NeighborSearch {
  public:
   virtual ~NeighborSearch() = default;
 
-  /// The `indices.size()` points nearest to `query`, nearest first; a query that is itself a point of the set finds
-  /// itself.
+  /// The `indices.size()` points nearest to `query`, nearest first, of points at equal distances those of lower numbers; a
+  /// query that is itself a point of the set finds itself.
   /// @param squared_distances  same length as `indices`
   /// @return the number found: the smaller of `indices.size()` and the number of points
   virtual Index nearest(const Vec3& query, std::span<Index> indices, std::span<double> squared_distances) const = 0;
@@ -32,7 +32,7 @@ class NeighborSearch {
 /// Makes a search over `points`, which must be finite and outlive it.
 using NeighborSearchFactory = std::function<std::unique_ptr<NeighborSearch>(std::span<const Vec3> points)>;
 
-/// k-d tree of nanoflann, double precision; of points at equal distances those of lower numbers come first. The default.
+/// k-d tree of nanoflann, double precision. The default.
 std::unique_ptr<NeighborSearch> nanoflann_search(std::span<const Vec3> points);
 
 /// Single k-d tree of FLANN, double precision, exact.

@@ -53,11 +53,12 @@ struct MeshDetails {
   Index dropped_faces = 0;    ///< input faces with such an edge
   /// Length added to every edge, world units, because flips of faces without area made an edge without length; 0: none did.
   double mollification = 0;
-  Index degenerate_faces = 0;  ///< input faces of almost no area (height below 1e-10 of the longest side)
-  Offset closed_edges = 0;     ///< intrinsic edges from a vertex to itself; left out
-  Offset clamped_weights = 0;  ///< negative weights set to 0
-  Offset capped_weights = 0;   ///< weights above 1e4 set to 1e4
-  double shortest_edge = 0;    ///< of the input without those of no length, world units
+  Index degenerate_faces = 0;    ///< input faces of almost no area (height below 1e-10 of the longest side)
+  std::vector<Index> collinear;  ///< those of them that were not dropped: their corners lie on one line
+  Offset closed_edges = 0;       ///< intrinsic edges from a vertex to itself; left out
+  Offset clamped_weights = 0;    ///< negative weights set to 0
+  Offset capped_weights = 0;     ///< weights above 1e4 set to 1e4
+  double shortest_edge = 0;      ///< of the input without those of no length, world units
   double longest_edge = 0;
   double finest = 0;            ///< least of the longest edges at the vertices: needles do not count
   bool flips_stopped = false;   ///< before all edges were Delaunay
@@ -75,7 +76,7 @@ struct MeshDetails {
 ///
 /// Its report: vertices, faces, edges, flips, merged_vertices, dropped_faces, mollification, degenerate_faces, the figures of
 /// its topology, seconds.checks, seconds.delaunay, seconds.graph. Its warnings: flips_stopped; those of the topology; merged
-/// (number of vertices, of faces dropped with them); mollified (number of degenerate faces, length added to every edge);
+/// (number of vertices, of faces dropped with them); collinear_faces (count, the first); mollified (number of degenerate faces, length added to every edge);
 /// edge_lengths (`finest`, longest: too far apart for one diffusion time).
 class TriangleMeshSurface final : public Surface {
  public:

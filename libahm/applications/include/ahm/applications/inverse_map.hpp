@@ -22,6 +22,18 @@
 
 namespace ahm {
 
+/// A point of the surface and the map's derivatives there.
+struct InversePoint {
+  Vec3 position;                  ///< on the flat triangle; world units
+  Vec3 normal;                    ///< unit: those of the corners, interpolated
+  Vec3 du, dv;                    ///< derivatives of the position, constant on a triangle
+  Triangle vertices;              ///< the triangle's corners
+  std::array<double, 3> weights;  ///< barycentric, >= 0 up to rounding, sum 1
+
+  /// Axes in space: x is the heading of u, perpendicular to the normal; y is the normal turned, not dv.
+  Frame frame() const;
+};
+
 /// A map and the surface under it: what `InverseMap` needs. Views only, read during the construction.
 struct MappedSurface {
   std::span<const Vec3> positions;      ///< n
@@ -31,6 +43,8 @@ struct MappedSurface {
   std::span<const Triangle> triangles;  ///< counter-clockwise as seen from the side of the normals; may overlap
   std::span<const Index> sources =
       {};  ///< where the map starts, in the numbers of these arrays; empty: the valid vertex of least |phi|
+  std::optional<InversePoint> origin =
+      {};  ///< what lies at (0, 0), where it is known, whatever the triangles there are like
 };
 
 struct InverseMapOptions {
@@ -42,18 +56,6 @@ struct InverseMapOptions {
   std::span<const double> quality =
       {};                ///< of the map's vertices, where it is known already (`map_quality`); empty: found
   unsigned threads = 0;  ///< for the quality; 0: one per core
-};
-
-/// A point of the surface and the map's derivatives there.
-struct InversePoint {
-  Vec3 position;                  ///< on the flat triangle; world units
-  Vec3 normal;                    ///< unit: those of the corners, interpolated
-  Vec3 du, dv;                    ///< derivatives of the position, constant on a triangle
-  Triangle vertices;              ///< the triangle's corners
-  std::array<double, 3> weights;  ///< barycentric, >= 0 up to rounding, sum 1
-
-  /// Axes in space: x is the heading of u, perpendicular to the normal; y is the normal turned, not dv.
-  Frame frame() const;
 };
 
 /// The inverse of a map where it has one: answers from triangles that keep their orientation in the plane, have valid
@@ -68,7 +70,7 @@ class InverseMap {
   /// @throws InvalidArgument (lengths, indices, max_stretch)
   explicit InverseMap(const MappedSurface& surface, const InverseMapOptions& options = {});
 
-  /// What lies at (u, v), world units; nothing outside the valid region. Thread-safe.
+  /// What lies at (u, v), world units; nothing outside the valid region, but for the source at (0, 0). Thread-safe.
   std::optional<InversePoint> at(double u, double v) const;
 
   /// The triangles that answer, nearest to the source first.
@@ -83,6 +85,7 @@ class InverseMap {
  private:
   void make_buckets();
   Index bucket(std::size_t axis, double x) const;
+  std::optional<InversePoint> in_triangles(const Vec2& q) const;
   std::optional<InversePoint> in_triangle(const Triangle& triangle, const Vec2& q) const;
 
   double max_stretch_;
@@ -90,6 +93,7 @@ class InverseMap {
   std::vector<Vec3> positions_, normals_;
   std::vector<Vec2> plane_;
   std::vector<Triangle> triangles_;
+  std::optional<InversePoint> origin_;
   Vec2 low_{}, high_{};
   double side_ = 1;  // of a bucket
   std::array<Index, 2> buckets_{};
