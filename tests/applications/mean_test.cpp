@@ -117,9 +117,7 @@ TEST(GeometricMedian, IsThePointThatOutweighsTheRest) {
   const std::array points{Vertex{10}, Vertex{200}, Vertex{333}, Vertex{451}};
   const Center median = geometric_median(solver, points, std::array{1.0, 1.0, 3.1, 1.0}, {.start = Vertex{10}});
   EXPECT_EQ(median.vertex, Vertex{333});
-  // What is left is where the map of a vertex puts that vertex itself.
-  const auto self = solver.solve(Source::at_vertex(Vertex{333})).coordinates(Vertex{333});
-  EXPECT_NEAR(std::hypot(median.offset[0] - self[0], median.offset[1] - self[1]), 0, 1e-14);
+  EXPECT_NEAR(std::hypot(median.offset[0], median.offset[1]), 0, 1e-14);
 }
 
 TEST(GeometricMedian, OfPointsOnALineIsTheirMedian) {
