@@ -11,13 +11,14 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 
 namespace ahm {
 
 /// The curvature of a front does not depart from that of the circle by more than this over the length of a side or step:
 /// where it would, the mesh is too coarse to tell.
 inline constexpr double most_bent = 0.2;
-/// `beyond_circle` is no more than this share of the side.
+/// `beyond_circle` is no more than this share of the side, nor of the distance.
 inline constexpr double most_beyond_circle = most_bent / 8;
 
 /// The focusing at distance `to`, from that at distance `from`: the front goes on as over a plane, exactly, and is bent by the
@@ -28,7 +29,8 @@ inline double focusing_after(double focusing, double from, double to, double cur
   const double most = most_bent * to * to / step;
   const double spared = from > 0 ? 1 - focusing * step / (from * to) : 1;  // none left: a focus lies between
   const double over_plane = spared > 0 ? focusing / spared : most;
-  return std::clamp(over_plane + curvature * step * (to * to + to * from + from * from) / 3, -most, most);
+  const double bent = std::clamp(over_plane + curvature * step * (to * to + to * from + from * from) / 3, -most, most);
+  return std::isfinite(bent) ? bent : 0;  // lengths beyond the squares of numbers
 }
 
 /// That of a front which starts anew at a corner of the boundary, where the way bends, `step` before the distance `to`.
@@ -39,7 +41,9 @@ inline double focusing_around_corner(double to, double step) { return to - to * 
 /// @param share         of the side, from one end to the point
 /// @param squared_sine  of the angle between the way and the side
 inline double beyond_circle(double focusing, double distance, double side, double share, double squared_sine) {
-  const double bend = std::clamp(focusing / (distance * distance) * side, -most_bent, most_bent);
+  if (!(distance > 0)) return 0;
+  const double most = most_bent * std::min(1.0, distance / side);
+  const double bend = std::clamp(focusing / (distance * distance) * side, -most, most);
   return 0.5 * share * (1 - share) * squared_sine * side * bend;
 }
 

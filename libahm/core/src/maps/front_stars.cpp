@@ -143,7 +143,8 @@ double UnfoldingFront::Stars::curvature_of(std::span<const Corner> corners) {
     longest = std::max(longest, right.length);
   }
   const double missing = 2 * std::numbers::pi - angle.sum();
-  return std::abs(missing) * shortest > least_turn * longest && area > 0 ? missing / area : 0;
+  const double curvature = std::abs(missing) * shortest > least_turn * longest ? missing / area : 0;
+  return std::isfinite(curvature) ? curvature : 0;
 }
 
 /// Cuts triangles into four. An edge is known by its corner: that of the vertex it starts from, which has the edge to its right.

@@ -333,7 +333,7 @@ void UnfoldingFront::spread(Index from, Index point, double distance) {
       const Across across = across_side(distance, other.distance, base_length, cx, cy, limit, missed_);
       if (!across.found) return;
       double length = std::sqrt(across.squared), bent_by = 0;
-      if (!curvatures_.empty() && across.depth > 0) {
+      if (!curvatures_.empty()) {
         const auto between = [&](double a, double b) { return (1 - across.share) * a + across.share * b; };
         const double height = cy + across.depth, to_side = across.depth / height * length;
         const double at_side = between(focusing, other.focusing);
