@@ -65,5 +65,16 @@ TEST(Focusing, StaysBoundedBehindAFocus) {
   }
 }
 
+TEST(Focusing, TakesNoMoreThanAShareOfTheDistance) {
+  for (double distance : {0.0, 1e-300, 1e-3, 1.0})
+    for (double focusing : {-1e9, 1e9})
+      EXPECT_LE(std::abs(beyond_circle(focusing, distance, 1, 0.5, 1)), most_beyond_circle * distance);
+}
+
+TEST(Focusing, IsFiniteWhereSquaresOfLengthsAreNot) {
+  EXPECT_EQ(focusing_after(0, 1e200, 2e200, 0), 0);
+  EXPECT_TRUE(std::isfinite(focusing_after(1, 1e-200, 2e-200, 1e300)));
+}
+
 }  // namespace
 }  // namespace ahm::test
