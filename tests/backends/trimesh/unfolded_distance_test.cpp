@@ -83,27 +83,6 @@ TEST(UnfoldedDistance, IsOfSecondOrder) {
   }
 }
 
-/// A flat ring of radii 1 and 3.
-Mesh ring(Index around, Index rings) {
-  Mesh mesh;
-  for (Index r = 0; r <= rings; ++r)
-    for (Index k = 0; k < around; ++k) {
-      const double angle = 2 * std::numbers::pi * (k + 0.5 * (r % 2)) / around, radius = 1 + 2.0 * r / rings;
-      mesh.positions.push_back({radius * std::cos(angle), radius * std::sin(angle), 0});
-    }
-  for (Index r = 0; r < rings; ++r)
-    for (Index k = 0; k < around; ++k) {
-      const Index a = r * around + k, b = r * around + (k + 1) % around, c = a + around, d = b + around;
-      mesh.faces.push_back(r % 2 == 0 ? Triangle{a, c, b} : Triangle{a, c, d});
-      mesh.faces.push_back(r % 2 == 0 ? Triangle{b, c, d} : Triangle{a, d, b});
-    }
-  return mesh;
-}
-
-TEST(UnfoldedDistance, GoesAroundAHole) {
-  EXPECT_LT(error_from(SolvedMesh(ring(48, 16)), {Row(5), Row(60), Row(200)}), 0.005);
-}
-
 TEST(UnfoldedDistance, OfACoarsePartIsThatOfThePartAlone) {
   const Mesh part = stretched(icosphere(8), 3);
   const SolvedMesh alone(part), beside(joined(part, icosphere(34), 30));

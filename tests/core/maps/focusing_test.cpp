@@ -34,17 +34,6 @@ TEST(Focusing, IsThatOfTheSphereAndOfTheHyperbolicPlane) {
   }
 }
 
-// Over a plane it stays the circle around the corner.
-TEST(Focusing, IsThatOfACircleAroundTheCornerWhereTheWayBends) {
-  const double to_corner = 5, step = 0.25;
-  const auto circle = [&](double r) { return focusing_around_corner(to_corner + r, r); };
-  for (double r : {0.25, 0.5, 3.0}) {
-    EXPECT_NEAR(1 / (to_corner + r) - circle(r) / ((to_corner + r) * (to_corner + r)), 1 / r, 1e-12);
-    if (r < 2) continue;  // nearer to the corner the step is too long
-    EXPECT_NEAR(focusing_after(circle(r), to_corner + r, to_corner + r + step, 0), circle(r + step), 1e-12);
-  }
-}
-
 // The height of an isosceles triangle with straight sides, on the unit sphere: cos r = cos h cos(s/2).
 TEST(Focusing, TellsTheHeightOfASphericalTriangle) {
   for (double r : {0.3, 1.0, 2.0})

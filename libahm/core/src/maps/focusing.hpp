@@ -33,9 +33,6 @@ inline double focusing_after(double focusing, double from, double to, double cur
   return std::isfinite(bent) ? bent : 0;  // lengths beyond the squares of numbers
 }
 
-/// That of a front which starts anew at a corner of the boundary, where the way bends, `step` before the distance `to`.
-inline double focusing_around_corner(double to, double step) { return to - to * to / step; }
-
 /// By how much the distance of a point on a side is more than on the circle through its ends.
 /// @param distance      of the point
 /// @param share         of the side, from one end to the point

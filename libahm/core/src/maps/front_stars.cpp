@@ -123,14 +123,6 @@ void UnfoldingFront::Stars::append_corners(const TangentGraph& graph, Index vert
   }
 }
 
-double UnfoldingFront::Stars::open_angle(std::span<const Corner> corners) {
-  if (std::ranges::none_of(corners, [](const Corner& corner) { return std::isnan(corner.cosine); })) return 0;
-  AngleSum angle;
-  for (const Corner& corner : corners)
-    if (!std::isnan(corner.cosine)) angle.add(corner.cosine, corner.sine);
-  return angle.sum();
-}
-
 double UnfoldingFront::Stars::curvature_of(std::span<const Corner> corners) {
   AngleSum angle;
   double area = 0, shortest = std::numeric_limits<double>::infinity(), longest = 0;

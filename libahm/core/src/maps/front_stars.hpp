@@ -38,8 +38,6 @@ class UnfoldingFront::Stars {
   /// What the angles of a whole star miss of the full turn, for each of its share of the triangles' area; 0 where the star is
   /// open, or where it may be rounding.
   static double curvature_of(std::span<const Corner> corners);
-  /// The sum of the angles of a star that has a gap, at a boundary; else 0.
-  static double open_angle(std::span<const Corner> corners);
 
   /// The midpoint of the edge that joins two vertices, and half its length; none where several do, or triangles are whole.
   struct HalfSide {

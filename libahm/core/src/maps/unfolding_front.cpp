@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <tuple>
 
 #include "ahm/util/scratch.hpp"
@@ -30,8 +29,6 @@ constexpr double shortest_side = 1e-6, shortest_side_far_away = 1e-13;
 /// A line may miss the side by this share of it, and is taken to pass its end. Where edges are no triangulation, as between points that lie
 /// in squares, it may pass between two triangles that bend away from it, and seen from neither leave only edges.
 constexpr double missed = 1e-9, missed_between = 1e-3;
-/// A corner of the boundary is one for ways to bend at where the surface has more of the full turn than half, by this in radians.
-constexpr double least_notch = 0.02;
 /// Stars that are kept until others take their place: those ahead of the front are asked for several times.
 constexpr std::size_t most_seen = 2048;
 /// Of a ray shorter than this share of a side nobody knows the direction.
@@ -274,6 +271,11 @@ std::span<const UnfoldingFront::Corner> UnfoldingFront::around(Index vertex) {
   return seen.corners;
 }
 
+/// Whether a star has a gap, at a boundary.
+bool UnfoldingFront::is_open(std::span<const Corner> corners) {
+  return std::any_of(corners.begin(), corners.end(), [](const Corner& c) { return std::isnan(c.cosine); });
+}
+
 /// Gaussian curvature; 0 where it does not count.
 double UnfoldingFront::curvature(Index vertex) {
   if (curvatures_.empty()) return 0;
@@ -299,11 +301,9 @@ void UnfoldingFront::spread(Index from, Index point, double distance) {
   const Entry* const here = find(from, point);
   const Way own = directions_ ? way_of(here) : Way{};
   const double focusing = here->focusing, curvature_here = distance > 0 ? curvature(from) : 0;
-  const double angle = distance > 0 ? Stars::open_angle(corners) : 0;
-  const bool bends = own.bent || (directions_ && angle > 0), at_notch = angle > std::numbers::pi + least_notch;
+  const bool bends = own.bent || (directions_ && distance > 0 && is_open(corners));
   const auto focusing_along = [&](const Corner& edge, double along) {
     if (curvatures_.empty()) return 0.0;
-    if (at_notch) return focusing_around_corner(along, edge.length);
     return focusing_after(focusing, distance, along, 0.5 * (curvature_here + curvature(edge.neighbor)));
   };
   for (std::size_t k = 0; k < degree; ++k) {

@@ -143,6 +143,7 @@ class UnfoldingFront {
   void spread(Index from, Index point, double distance);
   void carry(Index from, Index point);
   std::span<const Corner> around(Index vertex);
+  static bool is_open(std::span<const Corner> corners);
   double curvature(Index vertex);
 
   const TangentGraph& graph_;
