@@ -31,7 +31,7 @@ namespace ahm {
 /// On a curved surface the distances between a and b are not those of a circle: on Delaunay triangulations the curvature of
 /// the front is carried along each way, from the angles around the vertices (maps/focusing.hpp).
 ///
-/// It is exact on flat Delaunay triangulations without holes, and of second order elsewhere on Delaunay triangulations, of first
+/// It is exact on flat convex Delaunay triangulations, and of second order elsewhere on Delaunay triangulations, of first
 /// order on other graphs. Coarse and sharp ones (connected components of up to 10,000 vertices, some of them bent) it crosses by
 /// the midpoints of the edges, too, which halves the error; unlike heat it knows the way
 /// around a hole and along both sides of a cut locus. Where a graph's lengths are noisy it takes the shortest of many
