@@ -17,6 +17,9 @@ namespace {
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// Of the vertices of a row the one with coordinates nearest to the source; nothing where there is none.
+/// Lengths may differ by less than this share for no reason.
+constexpr double rounding = 1e-12;
+
 struct Best {
   std::optional<Vertex> vertex;
   Status status = Status::removed;
@@ -50,7 +53,8 @@ RowLogMap Surface::on_rows(const LogMap& map) const {
     result.status[r] = best.status;
     if (!best.vertex) continue;
     const Vertex v = *best.vertex;
-    const double away = source ? std::max(map.distance(v), distance(positions()[r], *source)) : map.distance(v);
+    const double line = source ? distance(positions()[r], *source) : 0;
+    const double away = line > map.distance(v) * (1 + rounding) ? line : map.distance(v);
     if (away > map.radius()) {
       result.status[r] = Status::beyond_radius;
       continue;
