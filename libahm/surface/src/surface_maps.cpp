@@ -16,10 +16,10 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-/// Of the vertices of a row the one with coordinates nearest to the source; nothing where there is none.
 /// Lengths may differ by less than this share for no reason.
 constexpr double rounding = 1e-12;
 
+/// Of the vertices of a row the one with coordinates nearest to the source; nothing where there is none.
 struct Best {
   std::optional<Vertex> vertex;
   Status status = Status::removed;
