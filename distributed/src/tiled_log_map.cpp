@@ -243,7 +243,7 @@ void write_rows(const TiledGraph& graph, const std::filesystem::path& folder, co
     throw IoError("cannot read '" + (folder / "map.json").string() +
                   "': the map is not finished, or not one of these tiles");
   const MarchGoal goal = whole.value("coordinates", true) ? MarchGoal::map : MarchGoal::distances;
-  const std::optional<Vec3> source = graph.is_delaunay() ? std::nullopt : place_of_source(graph, whole);
+  const std::optional<Vec3> source = place_of_source(graph, whole);
   const double radius = whole.value("radius", std::numeric_limits<double>::infinity());
   const bool has_error = whole.value("order", 1) == 2;
   const std::string none = goal == MarchGoal::distances ? ",," : has_error ? ",,,,,," : ",,,,,";
@@ -258,10 +258,8 @@ void write_rows(const TiledGraph& graph, const std::filesystem::path& folder, co
     if (tile.status.size() + 1 != rows.begin.size())
       throw IoError("the map's tile " + std::to_string(t) + " is not one of these tiles; make the map again");
     const auto line_of = [&](std::size_t i) -> VertexLine {
-      // As on the rows of a surface: distances of heat may be below the straight line, which no way on it is.
-      const double d = source && !std::isnan(tile.distance[i])
-                           ? std::max(tile.distance[i], ahm::distance(rows.positions[i], *source))
-                           : tile.distance[i];
+      // As on the rows of a surface: distances may be below the straight line, which no way on it is.
+      const double d = no_shorter_than(source ? ahm::distance(rows.positions[i], *source) : 0, tile.distance[i]);
       if (d > radius) return {none + std::string(to_string(Status::beyond_radius)), tile.distance[i]};
       std::string line;
       const auto add = [&](double number) { append_number(line += ',', number); };

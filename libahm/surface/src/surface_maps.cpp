@@ -16,9 +16,6 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-/// Lengths may differ by less than this share for no reason.
-constexpr double rounding = 1e-12;
-
 /// Of the vertices of a row the one with coordinates nearest to the source; nothing where there is none.
 struct Best {
   std::optional<Vertex> vertex;
@@ -53,8 +50,7 @@ RowLogMap Surface::on_rows(const LogMap& map) const {
     result.status[r] = best.status;
     if (!best.vertex) continue;
     const Vertex v = *best.vertex;
-    const double line = source ? distance(positions()[r], *source) : 0;
-    const double away = line > map.distance(v) * (1 + rounding) ? line : map.distance(v);
+    const double away = no_shorter_than(source ? distance(positions()[r], *source) : 0, map.distance(v));
     if (away > map.radius()) {
       result.status[r] = Status::beyond_radius;
       continue;

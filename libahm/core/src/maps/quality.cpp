@@ -75,7 +75,7 @@ std::vector<double> map_quality(const TangentGraph& graph, const LogMap& map, un
     throw InvalidArgument("map_without_spread", "the map has no spread", "solve with MapOptions::spread");
   std::vector<double> quality(static_cast<std::size_t>(graph.size()), std::numeric_limits<double>::quiet_NaN());
   const ComponentScales scales(graph);
-  // Unfolded distances are never below the straight line; those of heat may be.
+  // Distances of heat may be below the straight line; unfolded ones hardly are.
   const bool may_be_short = map.method() == Method::heat && !graph.is_delaunay();
   const std::optional<Vec3> source = may_be_short ? place_in_space(graph, map.source()) : std::nullopt;
   std::optional<Comparison> comparison;

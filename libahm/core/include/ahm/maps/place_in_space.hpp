@@ -14,4 +14,7 @@ namespace ahm {
 /// frames.
 std::optional<Vec3> place_in_space(const TangentGraph& graph, const Source& source);
 
+/// A distance along a surface, no less than the straight line but for rounding. NaN stays.
+inline double no_shorter_than(double line, double distance) { return line > distance * (1 + 1e-12) ? line : distance; }
+
 }  // namespace ahm
