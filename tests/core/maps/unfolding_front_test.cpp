@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "ahm/error.hpp"
+#include "ahm/testing/curved_graphs.hpp"
 #include "ahm/testing/flat_graphs.hpp"
 #include "ahm/testing/graph_changes.hpp"
 
@@ -132,6 +133,13 @@ TEST(UnfoldingFront, TellsTheNearestOfManyAndGoesOnFromThere) {
       ASSERT_NEAR(alone[front->nearest(Vertex(i))][i], least, 1e-10) << "vertex " << i;
     }
   }
+}
+
+TEST(UnfoldingFront, IsTheSameWithStarsThatAreKept) {
+  const CsrGraph graph(sphere_graph(600));
+  UnfoldingFront kept(graph, UnfoldingFront::stars(graph)), looked_up(graph);
+  for (UnfoldingFront* front : {&kept, &looked_up}) front->add(Source::at_vertex(Vertex(7))), front->run();
+  for (Index i = 0; i < graph.size(); ++i) ASSERT_EQ(kept.distance(Vertex(i)), looked_up.distance(Vertex(i)));
 }
 
 TEST(UnfoldingFront, StopsAtTheRadiusAndAtTheComponent) {

@@ -55,25 +55,12 @@ class BlockSolve {
     if (columns < columns_at_once) std::fill(x_.begin(), x_.end(), 0.0);
     permute<true>(X, columns);
     const auto supernodes = static_cast<Offset>(L_.super.size()) - 1;
-    for (Offset s = 0; s < supernodes; ++s) forward(Supernode(L_, s));
-    for (Offset s = supernodes; s-- > 0;) backward(Supernode(L_, s));
+    for (Offset s = 0; s < supernodes; ++s) forward(Supernode<W>(L_, s));
+    for (Offset s = supernodes; s-- > 0;) backward(Supernode<W>(L_, s));
     permute<false>(X, columns);
   }
 
  private:
-  struct Supernode {
-    Supernode(const SupernodalFactor& L, Offset s)
-        : first(L.super[s]),
-          columns(L.super[s + 1] - first),
-          rows(L.row_begin[s + 1] - L.row_begin[s]),
-          index(L.indices.data() + L.row_begin[s]),
-          values(L.values + L.value_begin[s] * W) {}
-    Offset first, columns, rows;
-    const std::int64_t* index;
-    const double* values;
-    const double* at(Offset row, Offset column) const { return values + (column * rows + row) * W; }
-  };
-
   double* row(Offset k) { return x_.data() + k * width; }
 
   template <bool In>
@@ -93,7 +80,7 @@ class BlockSolve {
   }
 
   /// L y = x
-  void forward(const Supernode& s) {
+  void forward(const Supernode<W>& s) {
     double* own = row(s.first);
     // A point source is zero almost everywhere, and stays so outside its path to the root of the elimination tree.
     if (std::all_of(own, own + s.columns * width, [](double value) { return value == 0; })) return;
@@ -111,7 +98,7 @@ class BlockSolve {
   }
 
   /// L^H x = y
-  void backward(const Supernode& s) {
+  void backward(const Supernode<W>& s) {
     double* own = row(s.first);
     for (Offset j = s.columns; j-- > 0;) {
       RowSum<W> sum;

@@ -23,27 +23,12 @@ class NarrowSolve {
   void solve(std::span<double> X) {
     permute<true>(X);
     const auto supernodes = static_cast<Offset>(L_.super.size()) - 1;
-    for (Offset s = 0; s < supernodes; ++s) forward(Supernode(L_, s));
-    for (Offset s = supernodes; s-- > 0;) backward(Supernode(L_, s));
+    for (Offset s = 0; s < supernodes; ++s) forward(Supernode<W>(L_, s));
+    for (Offset s = supernodes; s-- > 0;) backward(Supernode<W>(L_, s));
     permute<false>(X);
   }
 
  private:
-  struct Supernode {
-    Supernode(const SupernodalFactor& L, Offset s)
-        : first(L.super[s]),
-          columns(L.super[s + 1] - first),
-          rows(L.row_begin[s + 1] - L.row_begin[s]),
-          below(L.indices.data() + L.row_begin[s] + columns),
-          begin(L.value_begin[s]),
-          values(L.values + begin * W) {}
-    Offset first, columns, rows;
-    const std::int64_t* below;
-    Offset begin;
-    const double* values;
-    const double* column(Offset j) const { return values + j * rows * W; }
-  };
-
   template <bool In>
   void permute(std::span<double> X) {
     for (Offset k = 0; k < L_.size; ++k)
@@ -99,7 +84,7 @@ class NarrowSolve {
   /// Asks for a column before it is needed; past the supernode's ends those of its neighbours in memory. Columns are too
   /// short for the processor to find out by itself how to read on, the more so on the way up. (Unless inlined, GCC takes
   /// the function for one without effect and leaves its calls out.)
-  [[gnu::always_inline]] void prefetch(const Supernode& s, Offset column) const {
+  [[gnu::always_inline]] void prefetch(const Supernode<W>& s, Offset column) const {
     constexpr Offset line = 64 / sizeof(double);
     const Offset begin = std::max<Offset>(s.begin + column * s.rows, 0);
     const Offset end = std::min<Offset>(begin + s.rows, L_.value_begin.back());
@@ -111,14 +96,14 @@ class NarrowSolve {
   }
 
   /// L y = x
-  void forward(const Supernode& s) {
+  void forward(const Supernode<W>& s) {
     double* own = x_.data() + s.first * width;
     const Offset below = s.rows - s.columns;
     // A point source is zero almost everywhere, and stays so outside its path to the root of the elimination tree.
     if (std::all_of(own, own + s.columns * width, [](double value) { return value == 0; })) return;
     std::fill_n(below_.begin(), below * width, 0.0);
     for (Offset j = 0; j < s.columns; ++j) {
-      const double* L = s.column(j);
+      const double* L = s.at(0, j);
       double* x = own + j * width;
       prefetch(s, j + 2);
       divide(x, L[j * W]);
@@ -126,17 +111,17 @@ class NarrowSolve {
       add_column(L + s.columns * W, x, 1.0, below_.data(), below);
     }
     for (Offset r = 0; r < below; ++r)
-      for (int c = 0; c < width; ++c) x_[s.below[r] * width + c] -= below_[r * width + c];
+      for (int c = 0; c < width; ++c) x_[s.index[s.columns + r] * width + c] -= below_[r * width + c];
   }
 
   /// L^H x = y
-  void backward(const Supernode& s) {
+  void backward(const Supernode<W>& s) {
     double* own = x_.data() + s.first * width;
     const Offset below = s.rows - s.columns;
     for (Offset r = 0; r < below; ++r)
-      for (int c = 0; c < width; ++c) below_[r * width + c] = x_[s.below[r] * width + c];
+      for (int c = 0; c < width; ++c) below_[r * width + c] = x_[s.index[s.columns + r] * width + c];
     for (Offset j = s.columns; j-- > 0;) {
-      const double* L = s.column(j);
+      const double* L = s.at(0, j);
       double* x = own + j * width;
       prefetch(s, j - 2);
       subtract_products(L + s.columns * W, below_.data(), below, x);

@@ -25,6 +25,23 @@ struct SupernodalFactor {
   const double* values;  ///< complex: interleaved pairs
 };
 
+/// One supernode of a factor of real (W = 1) or complex (W = 2) numbers.
+template <int W>
+struct Supernode {
+  Supernode(const SupernodalFactor& L, Offset s)
+      : first(L.super[s]),
+        columns(L.super[s + 1] - first),
+        rows(L.row_begin[s + 1] - L.row_begin[s]),
+        index(L.indices.data() + L.row_begin[s]),
+        begin(L.value_begin[s]),
+        values(L.values + begin * W) {}
+  Offset first, columns, rows;
+  const std::int64_t* index;  ///< of its rows
+  Offset begin;               ///< of its numbers among those of the factor
+  const double* values;
+  const double* at(Offset row, Offset column) const { return values + (column * rows + row) * W; }
+};
+
 /// X <- K^-1 X for 1 to `max_narrow_columns` columns, column major; complex vectors as interleaved pairs.
 void narrow_solve(const SupernodalFactor& L, std::span<double> X, Offset columns);
 

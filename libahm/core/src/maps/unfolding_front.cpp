@@ -96,13 +96,12 @@ UnfoldingFront::UnfoldingFront(const TangentGraph& graph, std::shared_ptr<const 
     : graph_(graph),
       d_(static_cast<std::size_t>(graph.dimension())),
       missed_(graph.is_delaunay() ? missed : missed_between),
+      is_curved_(graph.is_delaunay() && d_ == 2),
       directions_(directions && d_ == 2),
       stars_(stars || !graph.is_delaunay() ? std::move(stars)
                                            : std::make_shared<const Stars>(graph, halved_vertices(graph), false)) {
   head_.assign(static_cast<std::size_t>(stars_ ? stars_->size() : graph.size()), none);
   entries_.reserve(head_.size());
-  if (stars_) curvatures_.assign(static_cast<std::size_t>(graph.size()), NAN);
-  seen_.resize(std::min<std::size_t>(most_seen, std::max<std::size_t>(1, head_.size())));
 }
 
 Index UnfoldingFront::add(const Source& source) {
@@ -262,6 +261,7 @@ void UnfoldingFront::offer(Index vertex, Index point, double distance, double sl
 /// Valid until the corners of another vertex are asked for.
 std::span<const UnfoldingFront::Corner> UnfoldingFront::around(Index vertex) {
   if (stars_ && stars_->keeps(vertex)) return stars_->of(vertex);
+  if (seen_.empty()) seen_.resize(std::min(most_seen, head_.size()));
   Seen& seen = seen_[static_cast<std::size_t>(vertex) % seen_.size()];
   if (seen.vertex != vertex) {
     seen.vertex = vertex;
@@ -278,8 +278,9 @@ bool UnfoldingFront::is_open(std::span<const Corner> corners) {
 
 /// Gaussian curvature; 0 where it does not count.
 double UnfoldingFront::curvature(Index vertex) {
-  if (curvatures_.empty()) return 0;
+  if (!is_curved_) return 0;
   if (stars_->keeps(vertex)) return stars_->curvature(vertex);
+  if (curvatures_.empty()) curvatures_.assign(static_cast<std::size_t>(graph_.size()), NAN);
   double& known = curvatures_[vertex];
   if (std::isnan(known)) known = Stars::curvature_of(around(vertex));
   return known;
@@ -290,7 +291,7 @@ double UnfoldingFront::curvature(Index vertex) {
 void UnfoldingFront::spread(Index from, Index point, double distance) {
   if (d_ != 2) return carry(from, point);
   std::span<const Corner> corners = around(from);
-  if (!curvatures_.empty() && !stars_->keeps(from)) {  // those of its neighbours may take their place
+  if (is_curved_ && !stars_->keeps(from)) {  // those of its neighbours may take their place
     around_.assign(corners.begin(), corners.end());
     corners = around_;
   }
@@ -303,7 +304,7 @@ void UnfoldingFront::spread(Index from, Index point, double distance) {
   const double focusing = here->focusing, curvature_here = distance > 0 ? curvature(from) : 0;
   const bool bends = own.bent || (directions_ && distance > 0 && is_open(corners));
   const auto focusing_along = [&](const Corner& edge, double along) {
-    if (curvatures_.empty()) return 0.0;
+    if (!is_curved_) return 0.0;
     return focusing_after(focusing, distance, along, 0.5 * (curvature_here + curvature(edge.neighbor)));
   };
   for (std::size_t k = 0; k < degree; ++k) {
@@ -327,13 +328,13 @@ void UnfoldingFront::spread(Index from, Index point, double distance) {
       const Known& other = known_[base];
       Known& found = known_[target];
       if (!(other.distance < other.along)) return;
-      const double most = found.distance + (curvatures_.empty() ? 0 : most_beyond_circle * base_length);
+      const double most = found.distance + (!is_curved_ ? 0 : most_beyond_circle * base_length);
       const double limit = most * most;
       const double cx = target_length * right.cosine, cy = target_length * right.sine;
       const Across across = across_side(distance, other.distance, base_length, cx, cy, limit, missed_);
       if (!across.found) return;
       double length = std::sqrt(across.squared), bent_by = 0;
-      if (!curvatures_.empty()) {
+      if (is_curved_) {
         const auto between = [&](double a, double b) { return (1 - across.share) * a + across.share * b; };
         const double height = cy + across.depth, to_side = across.depth / height * length;
         const double at_side = between(focusing, other.focusing);

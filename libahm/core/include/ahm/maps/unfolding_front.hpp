@@ -153,10 +153,10 @@ class UnfoldingFront {
   std::vector<double> displacements_;  ///< d per entry, from the vertex to the point in its frame; d = 2: empty
   double longest_ = 0;  ///< edge of what was passed: no straight way within a radius crosses a side farther beyond it
   double missed_;       ///< share of a side by which a line may miss it
+  bool is_curved_;      ///< whether the curvature of the surface counts: on Delaunay triangulations
   bool directions_;
-  std::vector<double>
-      curvatures_;         ///< of what is not in `stars_`, where they are known; NaN: not yet. Empty: all as if flat
-  std::vector<Way> ways_;  ///< of the entries, where directions are kept
+  std::vector<double> curvatures_;  ///< of what is not in `stars_`, once one is asked for; NaN: not yet
+  std::vector<Way> ways_;           ///< of the entries, where directions are kept
   std::priority_queue<Waiting, std::vector<Waiting>, std::greater<>> queue_;
   std::shared_ptr<const Stars> stars_;
   std::vector<Seen> seen_;      ///< stars that `stars_` does not keep, by their vertex modulo the number of these
