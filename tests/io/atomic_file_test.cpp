@@ -6,7 +6,10 @@
 #include <sys/stat.h>
 #include <sys/wait.h>
 
+#include <atomic>
+#include <chrono>
 #include <csignal>
+#include <thread>
 
 #include "files.hpp"
 
@@ -163,10 +166,42 @@ TEST_F(AtomicFileTest, LeavesTheFilesOfOthersAlone) {
 }
 
 TEST_F(AtomicFileTest, ForgetsCommittedFiles) {
-  AtomicFile file(path("a.txt"));
-  file.commit();
-  remove_unfinished_files();
+  const pid_t child = ::fork();
+  if (child == 0) {
+    AtomicFile file(path("a.txt"));
+    file.commit();
+    remove_unfinished_files();
+    ::_exit(0);
+  }
+  ::waitpid(child, nullptr, 0);
   EXPECT_TRUE(std::filesystem::exists(path("a.txt")));
+}
+
+TEST_F(AtomicFileTest, IsRemovedWhileOtherThreadsWrite) {
+  for (int tries = 0; tries < 20; ++tries) {
+    const pid_t child = ::fork();
+    if (child == 0) {
+      std::atomic<int> begun{0};
+      for (const char* name : {"a", "b", "c"}) {
+        std::thread([&, name] {
+          for (;;) {
+            AtomicFile file(path(name));
+            ++begun;
+            file.commit();
+          }
+        }).detach();
+      }
+      while (begun < 100) std::this_thread::yield();
+      remove_unfinished_files();
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+      ::_exit(0);
+    }
+    int status = 0;
+    ASSERT_EQ(::waitpid(child, &status, 0), child);
+    EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
+    for (const auto& entry : std::filesystem::directory_iterator(path("")))
+      EXPECT_NE(entry.path().extension(), ".tmp") << entry.path();
+  }
 }
 
 TEST_F(AtomicFileTest, WorksWithMoreFilesThanTheRegistryHolds) {

@@ -32,17 +32,42 @@ struct Slot {
   std::atomic<int> state{free};
   std::array<char, 4096> name{};
 };
-static_assert(std::atomic<int>::is_always_lock_free);
+static_assert(std::atomic<int>::is_always_lock_free && std::atomic<bool>::is_always_lock_free);
 std::array<Slot, 16> unfinished;
+std::atomic<bool> is_ending{false};  // since `remove_unfinished_files`
 
-/// -1 when all slots are taken: the file is then still removed by the destructor, only not by a signal.
-int remember(const std::filesystem::path& path) {
+/// Does not return once the process is ending: what its threads could still do or tell is wrong by then.
+void wait_if_ending() {
+  while (is_ending) ::pause();
+}
+
+/// Holds back the signals of this thread while it lives.
+class NoSignals {
+ public:
+  NoSignals() {
+    sigset_t all;
+    ::sigfillset(&all);
+    ::pthread_sigmask(SIG_SETMASK, &all, &before_);
+  }
+  ~NoSignals() {
+    const int error = errno;
+    ::pthread_sigmask(SIG_SETMASK, &before_, nullptr);
+    errno = error;
+  }
+  NoSignals(const NoSignals&) = delete;
+  NoSignals& operator=(const NoSignals&) = delete;
+
+ private:
+  sigset_t before_{};
+};
+
+/// The slot for a name; -1 when all are taken: the file is then still removed by the destructor, only not by a signal.
+int fill_slot(const std::filesystem::path& path) {
   const std::string& name = path.native();
   for (std::size_t k = 0; k < unfinished.size() && name.size() < unfinished[k].name.size(); ++k) {
     int expected = Slot::free;
     if (!unfinished[k].state.compare_exchange_strong(expected, Slot::filling)) continue;
     std::memcpy(unfinished[k].name.data(), name.c_str(), name.size() + 1);
-    unfinished[k].state.store(Slot::used);
     return static_cast<int>(k);
   }
   return -1;
@@ -51,6 +76,20 @@ int remember(const std::filesystem::path& path) {
 void forget(int& slot) noexcept {
   if (slot >= 0) unfinished[slot].state.store(Slot::free);
   slot = -1;
+}
+
+/// Makes a file and registers its name: -1, and errno, without either. The handler of a signal may run in another thread
+/// at the same time: it waits while a slot is being filled, so that this thread must not be interrupted by another handler
+/// then; and what begins after it waits here for the end of the process.
+int create(const std::filesystem::path& path, int& slot) {
+  const NoSignals undisturbed;
+  slot = fill_slot(path);
+  if (is_ending) forget(slot);
+  wait_if_ending();
+  const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  if (file < 0) forget(slot);
+  if (slot >= 0) unfinished[slot].state.store(Slot::used);
+  return file;
 }
 
 /// Turns the signal that a write to a closed pipe raises into the error EPIPE, for this thread and while it lives.
@@ -159,13 +198,10 @@ AtomicFile::AtomicFile(const std::filesystem::path& path) : path_(path), target_
   tidy_up(target_.parent_path());
   for (int tries = 0; descriptor_ < 0; ++tries) {
     temporary_ = temporary_name(target_);
-    // The name is registered first: a signal between the two steps finds nothing to delete, which is harmless.
-    slot_ = remember(temporary_);
-    descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    descriptor_ = create(temporary_, slot_);
     if (descriptor_ >= 0) break;
     const int error = errno;
     temporary_.clear();
-    forget(slot_);
     if (error != EEXIST || tries == 100) fail(error);
   }
   ::flock(descriptor_, LOCK_EX | LOCK_NB);  // see remove_leftovers
@@ -221,6 +257,7 @@ void AtomicFile::discard() noexcept {
 }
 
 void AtomicFile::fail(int error) {
+  wait_if_ending();
   discard();
   const std::string problem = "cannot write " + quoted_path(path_) + ": " + std::generic_category().message(error);
   if (error == EPIPE) throw IoError("pipe_closed", problem, "nobody reads it any more");
@@ -229,7 +266,10 @@ void AtomicFile::fail(int error) {
 
 void remove_unfinished_files() noexcept {
   const int error = errno;
+  is_ending = true;
   for (Slot& slot : unfinished) {
+    while (slot.state.load() == Slot::filling) {
+    }
     if (slot.state.load() == Slot::used) ::unlink(slot.name.data());
   }
   errno = error;

@@ -59,7 +59,8 @@ class AtomicFile {
 /// (/dev/stdout), wherever that has been redirected to.
 bool is_stream(const std::filesystem::path& path);
 
-/// Deletes the temporary files of all uncommitted `AtomicFile`s of the process. Async-signal-safe: for a handler of
+/// Deletes the temporary files of all uncommitted `AtomicFile`s of the process, whatever its other threads do: one that
+/// wants another `AtomicFile` from now on, or misses its own, waits for the end. Async-signal-safe: for a handler of
 /// SIGINT, SIGTERM or SIGHUP that ends the process afterwards.
 void remove_unfinished_files() noexcept;
 
