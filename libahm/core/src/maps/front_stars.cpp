@@ -24,6 +24,8 @@ constexpr std::size_t most_neighbors = 200;
 /// By less than this share of the longest side do the sides of a triangle without area miss the triangle inequality.
 constexpr double degenerate = 1e-9;
 
+/// Opposite angles of a quadrilateral on a circle sum to pi, but for rounding.
+constexpr double same_circle = 1e-6;
 /// Angles around a vertex whose edges are in this proportion to each other, or more, may miss the full turn by it: rounding of
 /// the coordinates turns the short ones.
 constexpr double least_turn = 1e-12;
@@ -323,13 +325,35 @@ double UnfoldingFront::agreement(const TangentGraph& graph, std::span<const Vert
   const auto next = [](const std::vector<Corner>& around, std::size_t k) {
     return around[k + 1 < around.size() ? k + 1 : 0].neighbor;
   };
-  // Whether a vertex sees a triangle with these two, on either side.
-  const auto sees = [&](Index vertex, Index a, Index b) {
+  // What a vertex sees beside one of its neighbours, on either side, and the angle between.
+  struct Seen {
+    Index neighbor = -1;
+    double angle = 0;
+  };
+  const auto beside = [&](Index vertex, Index neighbor) {
+    std::array<Seen, 2> found;
     others.clear();
     Stars::append_corners(graph, vertex, neighbors, others);
     for (std::size_t k = 0; k < others.size(); ++k) {
-      const Index right = others[k].neighbor, left = next(others, k);
-      if (!std::isnan(others[k].cosine) && ((right == a && left == b) || (right == b && left == a))) return true;
+      if (std::isnan(others[k].cosine)) continue;
+      const double angle = std::atan2(others[k].sine, others[k].cosine);
+      if (others[k].neighbor == neighbor) found[0] = {next(others, k), angle};
+      if (next(others, k) == neighbor) found[1] = {others[k].neighbor, angle};
+    }
+    return found;
+  };
+  const auto find = [](const std::array<Seen, 2>& seen, Index neighbor) -> const Seen* {
+    return seen[0].neighbor == neighbor ? &seen[0] : seen[1].neighbor == neighbor ? &seen[1] : nullptr;
+  };
+  // Whether the corner of three is one of a triangle, or of a square without diagonals: its corners lie on a circle.
+  const auto agree = [&](Index vertex, Index right, Index left, double angle) {
+    const std::array<Seen, 2> of_right = beside(right, vertex), of_left = beside(left, vertex);
+    if (find(of_right, left) && find(of_left, right)) return true;
+    for (const auto& [across, unused] : of_right) {
+      if (across < 0 || across == vertex || !find(of_left, across)) continue;
+      const std::array<Seen, 2> of_across = beside(across, right);
+      const Seen* const opposite = find(of_across, left);
+      if (opposite && std::abs(angle + opposite->angle - std::numbers::pi) < same_circle) return true;
     }
     return false;
   };
@@ -344,7 +368,7 @@ double UnfoldingFront::agreement(const TangentGraph& graph, std::span<const Vert
       const Index right = corners[k].neighbor, left = next(corners, k);
       if (!is_asked(right) || !is_asked(left)) continue;
       ++seen;
-      agreed += sees(right, left, vertex.index) && sees(left, vertex.index, right);
+      agreed += agree(vertex.index, right, left, std::atan2(corners[k].sine, corners[k].cosine));
     }
   }
   return seen > 0 ? static_cast<double>(agreed) / static_cast<double>(seen) : 0;
