@@ -6,9 +6,7 @@
 #include <numbers>
 #include <vector>
 
-#include "ahm/maps/unfolding_front.hpp"
 #include "ahm/testing/vectors.hpp"
-#include "noisy_clouds.hpp"
 #include "solved_cloud.hpp"
 
 namespace ahm::test {
@@ -91,20 +89,6 @@ TEST(SphereCloud, IsPositivelyOrientedOutwardsWithoutNormals) {
     const Frame frame = *graph.graph().frame(i);
     EXPECT_GT(dot(frame.normal, frame.origin), 0.9);
   }
-}
-
-// Noise opens a star here and there, and the ways through it may bend; but a sphere has no boundary.
-TEST(SphereCloud, HasHardlyAnyWayThatBendsAtABoundary) {
-  const auto cloud = pointcloud::PointCloudSurface::build(with_noise(random_sphere(4000), 0.015).points);
-  const Index n = cloud.graph().size();
-  Index bent = 0, sources = 0;
-  for (Index source = n / 11; source < n; source += n / 5, ++sources) {
-    UnfoldingFront front(cloud.graph(), nullptr, true);
-    front.add(Source::at_vertex(Vertex(source)));
-    front.run();
-    for (Index i = 0; i < n; ++i) bent += front.is_bent(Vertex(i));
-  }
-  EXPECT_LT(bent, sources * n / 10);
 }
 
 TEST(SphereCloud, CoversItsArea) {

@@ -352,8 +352,7 @@ void UnfoldingFront::spread(Index from, Index point, double distance) {
       if (!directions_) return;
       found.way.direction = direction_across(across, base_length, cx, cy, own.direction, other.way.direction,
                                              own.mirrored ? -side : side);
-      // Only at a boundary is a star of a triangulation open; elsewhere others are, too, and would bend all that lies behind.
-      found.way.bent = is_curved_ ? own.bent || other.way.bent : across.share < 0.5 ? own.bent : other.way.bent;
+      found.way.bent = own.bent || other.way.bent;
     };
     unfold(k, right.length, next, left.length, 1);
     unfold(next, left.length, k, right.length, -1);
