@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "ahm/maps/log_map_solver.hpp"
+#include "ahm/pointcloud/point_cloud_surface.hpp"
 #include "ahm/trimesh/triangle_mesh_surface.hpp"
 #include "scaling/sizes.hpp"
 #include "shapes.hpp"
@@ -15,21 +16,29 @@
 namespace ahm::bench {
 namespace {
 
-/// Largest difference to the maps of the whole graph, relative to the radius, over some sources.
-double difference(const TangentGraph& graph, double radius, double margin, Variant variant) {
+/// Largest differences to the maps of the whole graph, relative to the radius, over some sources.
+struct Difference {
+  double coordinates = 0, distances = 0;
+};
+
+Difference difference(const TangentGraph& graph, double radius, double margin, Variant variant) {
   const LogMapSolver solver(graph, {.strategy = Strategy::global});
   std::vector<Vertex> sources;
   for (Index s = 0; s < graph.size(); s += graph.size() / 40) sources.emplace_back(s);
   const LocalMaps maps =
       ahm::local_maps(graph, sources, {.radius = radius, .margin = margin, .heat = {.variant = variant}});
-  double worst = 0;
+  Difference worst;
   for (std::size_t s = 0; s < sources.size(); ++s) {
     const LogMap whole = solver.solve(Source::at_vertex(sources[s]), {.variant = variant});
-    for (Offset e = maps.indptr[s]; e < maps.indptr[s + 1]; ++e)
+    for (Offset e = maps.indptr[s]; e < maps.indptr[s + 1]; ++e) {
+      const Vertex there = maps.neighbors[e];
       for (int a = 0; a < 2; ++a)
-        worst = std::max(worst, std::abs(maps.logs[2 * e + a] - whole.coordinates(maps.neighbors[e])[a]));
+        worst.coordinates =
+            std::max(worst.coordinates, std::abs(maps.logs[2 * e + a] - whole.coordinates(there)[a]) / radius);
+      worst.distances = std::max(worst.distances, std::abs(maps.distances[e] - whole.distance(there)) / radius);
+    }
   }
-  return worst / radius;
+  return worst;
 }
 
 trimesh::TriangleMeshSurface torus_graph(Index n) {
@@ -40,15 +49,20 @@ trimesh::TriangleMeshSurface torus_graph(Index n) {
 }  // namespace
 
 Table margins(const Settings& settings) {
-  Table table({"vertices", "variant", "R / h", "margin", "difference / R"});
-  for (Index n : sizes(settings, 6000, {10000})) {
-    const auto surface = torus_graph(n);
-    const double h = surface.graph().mean_edge_length() * surface.graph().length_unit();
+  Table table({"vertices", "as", "variant", "R / h", "margin", "difference / R", "of distances"});
+  const auto add_rows = [&](const auto& surface, const char* as) {
+    const TangentGraph& graph = surface.graph();
+    const double h = graph.mean_edge_length() * graph.length_unit();
     for (Variant variant : all_variants)
       for (double radius : {4.0, 10.0})
-        for (double margin : {0.0, 1.0, 2.0, 3.0, 4.0, 6.0, 8.0})
-          table.add({surface.graph().size(), to_string(variant), radius, margin,
-                     difference(surface.graph(), radius * h, margin, variant)});
+        for (double margin : {0.0, 1.0, 2.0, 3.0, 4.0, 6.0, 8.0}) {
+          const Difference found = difference(graph, radius * h, margin, variant);
+          table.add({graph.size(), as, to_string(variant), radius, margin, found.coordinates, found.distances});
+        }
+  };
+  for (Index n : sizes(settings, 6000, {10000})) {
+    add_rows(torus_graph(n), "triangles");
+    add_rows(pointcloud::PointCloudSurface::build(torus(n).positions), "points");
   }
   table.seen = fmt::format("The boundary shows by at most {:.1g} of the radius with the default margin of 2.",
                            table.where("margin", "2").largest("difference / R"));

@@ -88,6 +88,7 @@ inline void add_map_options(CLI::App& app, MapArguments& a) {
 }
 
 inline void add_local_options(CLI::App& app, LocalArguments& a) {
+  a.options.maps.no_shorter_than_line = true;  // as the maps of ahm local-maps
   app.add_option("folder", a.folder, "of tiles")->required();
   app.add_option("-o,--output", a.output, "folder for the maps")->required();
   app.add_option("--radius", a.options.maps.radius, "how far each map goes")->required();

@@ -55,8 +55,8 @@ Region region_of(const TiledGraph& graph, std::size_t tile, const LocalMapOption
   return region;
 }
 
-/// Part of the graph with the scales of the whole.
-CsrGraph graph_of(const TiledGraph& graph, const Region& region) {
+/// Part of the graph with the scales of the whole, and with its frames where straight lines between vertices count.
+CsrGraph graph_of(const TiledGraph& graph, const Region& region, const LocalMapOptions& options) {
   CsrGraphData data = cut_out(
                           graph, region.vertices,
                           [&](Index vertex) {
@@ -68,6 +68,8 @@ CsrGraph graph_of(const TiledGraph& graph, const Region& region) {
                           [](std::size_t, const Star&, std::size_t) { return 0.0; })
                           .data();
   for (Index vertex : region.vertices) data.component_edge_lengths.push_back(graph.component_edge_length(vertex));
+  if (options.no_shorter_than_line)
+    for (Index vertex : region.vertices) data.frames.push_back(*graph.frame(vertex));
   return CsrGraph(std::move(data));
 }
 
@@ -77,7 +79,8 @@ std::vector<std::uint64_t> identity_of(const TiledGraph& graph, std::size_t tile
   std::vector<std::uint64_t> result = graph.manifest().identity(tile);
   const LocalMapOptions& o = options.maps;
   for (double x : {o.radius, o.margin, o.heat.t_coef}) result.push_back(std::bit_cast<std::uint64_t>(x));
-  for (auto x : {static_cast<int>(o.nearest), static_cast<int>(o.heat.variant)})
+  for (auto x :
+       {static_cast<int>(o.nearest), static_cast<int>(o.heat.variant), static_cast<int>(o.no_shorter_than_line)})
     result.push_back(static_cast<std::uint64_t>(x));
   for (const std::string& name : options.features)  // wherever a file is
     result.push_back(checksum(std::as_bytes(std::span(name.data(), std::min(name.size(), name.find(':'))))));
@@ -104,7 +107,7 @@ void write_maps(const std::filesystem::path& path, const std::vector<std::uint64
                 const Region& region, const LocalMapOptions& options) {
   LocalMaps maps;
   maps.indptr = {0};
-  if (region.begin < region.end) maps = maps_of(graph_of(graph, region), region.begin, region.end, options);
+  if (region.begin < region.end) maps = maps_of(graph_of(graph, region, options), region.begin, region.end, options);
   for (Vertex& vertex : maps.neighbors) vertex = Vertex(region.vertices[static_cast<std::size_t>(vertex.index)]);
   write_arrays(path, local_kind,
                {array("identity", identity), array("indptr", maps.indptr), array("neighbors", maps.neighbors),
@@ -116,7 +119,7 @@ void write_features(const std::filesystem::path& path, const std::vector<std::ui
                     const TiledGraph& graph, const Region& region, const LocalMapOptions& options,
                     const LocalFeatures& features) {
   for (const auto& feature : features) feature->enter(region.vertices);
-  const CsrGraph part = graph_of(graph, region);
+  const CsrGraph part = graph_of(graph, region, options);
   for (Index begin = region.begin; begin < region.end; begin += at_a_time) {
     const LocalMaps maps = maps_of(part, begin, std::min(begin + at_a_time, region.end), options);
     for (std::size_t s = 0; s + 1 < maps.indptr.size(); ++s) {

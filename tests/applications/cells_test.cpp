@@ -13,6 +13,7 @@
 #include "ahm/graph/csr_graph.hpp"
 #include "ahm/maps/unfolding_front.hpp"
 #include "ahm/pointcloud/point_cloud_surface.hpp"
+#include "ahm/testing/clouds.hpp"
 #include "ahm/testing/flat_graphs.hpp"
 #include "ahm/testing/graph_changes.hpp"
 #include "ahm/testing/triangle_meshes.hpp"
@@ -80,6 +81,29 @@ TEST(Cells, AreThoseOfDistanceOnCloudsWithASparseBoundary) {
     }
   // Points lie 1 and 4 apart; where the two meet, the stars of a cloud are not those of one triangulation.
   expect_cells_of_the_plane(pointcloud::PointCloudSurface::build(points), 12, 2e-2);
+}
+
+// As the distances of maps by row.
+TEST(Cells, AreNoNearerThanTheStraightLine) {
+  std::vector<Vec3> points = random_sphere(2000).points;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    for (double& x : points[i]) x *= i % 3 == 0 ? 1.04 : 1;
+  const auto cloud = pointcloud::PointCloudSurface::build(points);
+  const auto place = [&](Vertex v) { return cloud.graph().frame(v.index)->origin; };
+  const auto sources = farthest_points(cloud.graph(), Vertex(0), 10);
+  const VoronoiCells cells = voronoi_cells(cloud.graph(), sources);
+  UnfoldingFront front(cloud.graph());
+  for (Vertex source : sources) front.add(Source::at_vertex(source));
+  front.run();
+  Index raised = 0;
+  for (Index i = 0; i < cloud.graph().size(); ++i) {
+    const Vec3 here = place(Vertex(i)), there = place(sources[cells.labels[i]]);
+    const double line = std::hypot(here[0] - there[0], here[1] - there[1], here[2] - there[2]);
+    ASSERT_GE(cells.distances[i], line * (1 - 1e-11));
+    ASSERT_GE(cells.distances[i], front.distance(Vertex(i)));
+    raised += cells.distances[i] > front.distance(Vertex(i));
+  }
+  EXPECT_GT(raised, 50);
 }
 
 TEST(Cells, ContainTheirSourcesAndAreConnected) {

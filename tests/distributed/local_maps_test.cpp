@@ -21,7 +21,7 @@ void expect_same_maps(const TiledCloud& cloud, double radius, Variant variant, d
   const auto folder = cloud.folder.directory() / "local";
   std::filesystem::remove_all(folder);
   const TiledGraph graph(cloud.tiles, 1 << 30);
-  LocalMapOptions options{.radius = radius};
+  LocalMapOptions options{.radius = radius, .no_shorter_than_line = true};
   options.heat.variant = variant;
   const auto surface = pointcloud::PointCloudSurface::build(cloud.points, {}, {.parts_apart = false});
   const LocalMaps expected = local_maps(surface.graph(), options);

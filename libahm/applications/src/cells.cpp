@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 
 #include "ahm/error.hpp"
+#include "ahm/maps/place_in_space.hpp"
 #include "ahm/util/memory.hpp"
+#include "ahm/util/vec.hpp"
 #include "farthest.hpp"
 
 namespace ahm {
@@ -52,11 +55,18 @@ VoronoiCells voronoi_cells(UnfoldingFront& front, std::span<const Vertex> vertic
     for (Vertex vertex : vertices.subspan(static_cast<std::size_t>(front.points())))
       front.add(Source::at_vertex(vertex));
     front.run();
+    std::vector<std::optional<Frame>> starts;
+    for (const auto [vertex] : vertices) starts.push_back(graph.frame(vertex));
     VoronoiCells cells;
     for (Index i = 0; i < graph.size(); ++i) {
-      cells.labels.push_back(front.nearest(Vertex(i)));
-      cells.distances.push_back(cells.labels.back() < 0 ? std::numeric_limits<double>::quiet_NaN()
-                                                        : front.distance(Vertex(i)));
+      const Index label = cells.labels.emplace_back(front.nearest(Vertex(i)));
+      if (label < 0) {
+        cells.distances.push_back(std::numeric_limits<double>::quiet_NaN());
+        continue;
+      }
+      const auto start = starts[label], here = start ? graph.frame(i) : std::nullopt;
+      const double line = here ? distance(start->origin, here->origin) : 0;
+      cells.distances.push_back(no_shorter_than(line, front.distance(Vertex(i))));
     }
     return cells;
   });

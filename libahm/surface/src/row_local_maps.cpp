@@ -47,6 +47,7 @@ RowLocalMaps on_rows(const Surface& surface, std::span<const From> sources, cons
   const RowMap& rows = surface.rows();
   const bool all_on_rows = !has_virtual_vertices(rows);
   LocalMapOptions wanted = options;
+  wanted.no_shorter_than_line = true;
   if (!all_on_rows && options.radius > 0) wanted.nearest = 0;
   while (true) {
     LocalMaps all = local_maps(surface.graph(), sources, wanted);

@@ -35,10 +35,7 @@ struct Best {
 RowLogMap Surface::on_rows(const LogMap& map) const {
   check_map(map);
   // Distances that are not exact may be below the straight line, which no way on the surface is.
-  // (Where a source lies between the vertices of a mesh is known to the second order in space, its distances near by better.)
-  const bool at_vertex = map.source().vertices().size() == 1 && map.source().offsets().empty();
-  const bool may_be_short = map.method() == Method::heat && (at_vertex || !graph().is_delaunay());
-  const auto source = may_be_short ? place_in_space(graph(), map.source()) : std::nullopt;
+  const auto source = map.method() == Method::heat ? start_of_lines(graph(), map.source()) : std::nullopt;
   const auto n = static_cast<std::size_t>(rows().row_count());
   const std::vector<double> none(n, nan);
   RowLogMap result{none, none, none, none, none, {}, std::vector<Status>(n, Status::removed), {}};

@@ -9,12 +9,13 @@
 namespace ahm {
 namespace {
 
-/// A vertex at `distances` at three times; phi, along the first axis, agrees with them.
-double extrapolated(const std::array<double, 3>& distances, double c, double path) {
+/// A vertex at `distances` at three times; phi, along the first axis, agrees with them, and so do spreads unless given.
+double extrapolated(const std::array<double, 3>& distances, double c, double path, double last_spread = NAN) {
   std::array<std::array<double, 2>, 3> phi{};
   for (std::size_t k = 0; k < 3; ++k) phi[k][0] = distances[k];
   std::array<TimedRow, 3> rows{};
-  for (std::size_t k = 0; k < 3; ++k) rows[k] = {Status::ok, phi[k], distances[k], 0};
+  for (std::size_t k = 0; k < 3; ++k) rows[k] = {Status::ok, phi[k], distances[k], 0.1};
+  rows[2].spread = std::isnan(last_spread) ? 0.1 * std::pow(2 * c, 0.25) : last_spread;
   std::array<double, 2> out{};
   return extrapolate_row(rows, {1, c, 0.1}, {.unfolded = false, .of_curve = false}, path, INFINITY, out).distance;
 }
@@ -31,6 +32,12 @@ TEST(ExtrapolatedDistance, IsTheLimitWhereItIsSmooth) {
 
 TEST(ExtrapolatedDistance, IsThatOfTheShortestTimeWhereTheLimitIsFarAway) {
   for (double slope : {-0.3, 0.35}) EXPECT_EQ(extrapolated(smooth(3, slope, 1), 1, 3.2 + slope), 3 + slope);
+}
+
+TEST(ExtrapolatedDistance, IsThatOfTheShortestTimeWhereWaysSpreadOtherwiseThanOnSmoothSurfaces) {
+  for (double c : {1.0, 4.0})
+    for (double times : {0.8, 1.3})
+      EXPECT_EQ(extrapolated(smooth(3, 0.02, c), c, 3.2, times * 0.1 * std::pow(2 * c, 0.25)), 3.02);
 }
 
 TEST(ExtrapolatedDistance, IsThatOfTheShortestTimeWhereEdgesDoNotFollowTheWay) {

@@ -123,8 +123,9 @@ TEST(SecondMoment, MayBeLeftOut) {
   delaunay.is_delaunay = true;
   for (const CsrGraphData& data : {delaunay, tube(60, 9)}) {
     const CsrGraph graph(data);
-    const LogMapSolver solver(graph, {.strategy = Strategy::automatic});
-    for (Variant variant : all_variants) {
+    for (const auto& [order, variant] :
+         {std::pair(1, Variant::adaptive), std::pair(1, Variant::localized), std::pair(2, Variant::adaptive)}) {
+      const LogMapSolver solver(graph, {.order = order, .strategy = Strategy::automatic});
       const LogMap all = solver.solve(Source::at_vertex(Vertex{7}), {.variant = variant});
       const LogMap map = solver.solve(Source::at_vertex(Vertex{7}), {.variant = variant, .spread = false});
       ASSERT_EQ(map.strategy(), all.strategy());

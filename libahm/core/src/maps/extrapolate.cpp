@@ -49,21 +49,28 @@ constexpr double root_2_less_1 = std::numbers::sqrt2 - 1;
 /// 0 up to `low`, 1 from `high` on.
 double ramp(double x, double low, double high) { return std::clamp((x - low) / (high - low), 0.0, 1.0); }
 
-/// Distances of heat from one source at the times 1, c and 2 c.
+/// Distances of heat from one source at the times 1, c and 2 c, and how wide its ways spread at the first and the last.
 struct TimedDistance {
   double first, middle, last;
+  double first_spread, last_spread;
   /// At time 0; not below 0.
   double limit() const { return std::max(0.0, middle - (last - middle) / root_2_less_1); }
 };
 
+/// How far the variance of the ways of heat is from growing with sqrt(tau), as it does where the map is smooth in that.
+double doubt_by_spread(const TimedDistance& r, double c) {
+  const double expected = std::sqrt(2 * c) * r.first_spread * r.first_spread;
+  return expected > 0 ? std::abs(r.last_spread * r.last_spread / expected - 1) : 0.0;
+}
+
 /// How much of the shortest time's distance is kept, at least as much as of phi: all of it where the limit is farther away
-/// than on smooth surfaces, where edges do not follow the way, as between points that are much denser one way than the other,
-/// and where, with three times, the two limits disagree by as much as they correct.
+/// than on smooth surfaces, where heat spreads otherwise than on them, where edges do not follow the way, as between points that are much
+/// denser one way than the other, and where, with three times, the two limits disagree by as much as they correct.
 double share_of_first_distance(double share_of_phi, const TimedDistance& r, double c, double path) {
   if (!(r.first > 0)) return share_of_phi;
   const double correction = std::abs(r.limit() - r.first);
-  const double share =
-      std::max({share_of_phi, ramp(correction / r.first, 0.05, 0.1), ramp(path / r.first, 1.1, longest_way)});
+  const double share = std::max({share_of_phi, ramp(correction / r.first, 0.02, 0.04),
+                                 ramp(doubt_by_spread(r, c), 0.1, 0.25), ramp(path / r.first, 1.1, longest_way)});
   if (!(c > 1) || !(correction > 0)) return share;
   const double other = (std::sqrt(c) * r.first - r.middle) / (std::sqrt(c) - 1);
   return std::max(share, ramp(std::abs(r.limit() - other) / correction, 0.25, 0.5));
@@ -124,7 +131,7 @@ ExtrapolatedRow extrapolate_row(const std::array<TimedRow, 3>& rows, const Extra
   const double w = share_of_first(gap(last.phi, middle.phi) / step, c, disagreement / gap(limit, first.phi),
                                   last.spread / std::max(last.distance, scales.h));
   for (std::size_t a = 0; a < phi.size(); ++a) phi[a] = (1 - w) * limit[a] + w * first.phi[a];
-  const TimedDistance r{first.distance, middle.distance, last.distance};
+  const TimedDistance r{first.distance, middle.distance, last.distance, first.spread, last.spread};
   double distance = r.first;
   if (!kind.unfolded) {
     distance += (1 - share_of_first_distance(w, r, c, path)) * (r.limit() - r.first);
@@ -138,7 +145,7 @@ ExtrapolatedRow extrapolate_row(const std::array<TimedRow, 3>& rows, const Extra
 }
 
 LogMap extrapolate(const TangentGraph& graph, const ComponentScales& scales, double t_coef, const DiffusionTimes& times,
-                   const std::vector<const LogMap*>& maps, double radius) {
+                   const std::vector<const LogMap*>& maps, double radius, bool spread) {
   const std::array<const LogMap*, 3> of_times{maps.front(), maps[maps.size() - 2], maps.back()};
   const LogMap &first = *of_times[0], &middle = *of_times[1];
   const auto n = static_cast<std::size_t>(first.size()), d = static_cast<std::size_t>(first.dimension());
@@ -165,7 +172,7 @@ LogMap extrapolate(const TangentGraph& graph, const ComponentScales& scales, dou
       std::any_of(maps.begin(), maps.end(), [](auto* map) { return map->strategy() == Strategy::march; });
   MapExtras extras{first.march(),
                    std::move(distances),
-                   {first.spread().begin(), first.spread().end()},
+                   spread ? std::vector<double>(first.spread().begin(), first.spread().end()) : std::vector<double>(),
                    {first.directions().begin(), first.directions().end()},
                    {middle.frames().begin(), middle.frames().end()},
                    std::move(error)};

@@ -80,18 +80,21 @@ ExtrapolatedRow extrapolate_row(const std::array<TimedRow, 3>& rows, const Extra
 ///     b    = |phi* - phi*(1, c)| / |phi* - phi(1)|,   s = spread(2c) / max(d, h)
 ///     w    = max( clamp((a - 3)/2, 0, 1),  min( clamp((b - .4)/.4, 0, 1), clamp((s - .1)/.1, 0, 1) ) )
 ///     phi  = (1 - w) phi* + w phi(1)
-///     w_d  = max( w, clamp((e - .05)/.05, 0, 1), clamp((l/d(1) - 1.1)/.05, 0, 1), clamp((b_d - .25)/.25, 0, 1) )
+///     w_d  = max( w, clamp((e - .02)/.02, 0, 1), clamp((g - .1)/.15, 0, 1), clamp((l/d(1) - 1.1)/.05, 0, 1),
+///                 clamp((b_d - .25)/.25, 0, 1) )
 ///
-/// with e = |d* - d(1)| / d(1), l the shortest way along edges and b_d the b of distances (0 with two times).
+/// with e = |d* - d(1)| / d(1), g = |spread(2c)^2 / (sqrt(2c) spread(1)^2) - 1|, l the shortest way along edges and b_d the b
+/// of distances (0 with two times).
 ///
 /// No distance is made longer than the shortest way along edges, and phi no longer than its distance, if the shortest time
 /// did not make them so already: there phi is as near to phi* as it may be on the line to phi(1). (Not from curves, where
 /// |phi| is no distance.)
 ///
-/// a is about 1 where phi is smooth in sqrt(tau); where it is not (cut loci, and with three times beside them), the shortest
+/// a is about 1 where phi is smooth in sqrt(tau), and g small where the variance of the ways of heat is linear in it; where it is not (cut loci, and with three times beside them), the shortest
 /// time is kept. A vertex that
 /// lacks coordinates at any of the times keeps that status.
+/// @param spread  whether the result has it; distances of heat need that of the first and the last map all the same
 LogMap extrapolate(const TangentGraph& graph, const ComponentScales& scales, double t_coef, const DiffusionTimes& times,
-                   const std::vector<const LogMap*>& maps, double radius);
+                   const std::vector<const LogMap*>& maps, double radius, bool spread);
 
 }  // namespace ahm

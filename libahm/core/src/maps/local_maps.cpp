@@ -4,14 +4,17 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "ahm/error.hpp"
 #include "ahm/graph/validate.hpp"
 #include "ahm/maps/cost.hpp"
+#include "ahm/maps/place_in_space.hpp"
 #include "ahm/util/memory.hpp"
 #include "ahm/util/small_math.hpp"
 #include "ahm/util/text.hpp"
+#include "ahm/util/vec.hpp"
 #include "maps/ball.hpp"
 #include "maps/front_stars.hpp"
 #include "maps/heat_distance.hpp"
@@ -179,14 +182,25 @@ class Worker {
   Outcome collect(PatchMaps& patch, std::span<const Index> members, double wanted, std::vector<Entries>& result) {
     if (!graph_.is_delaunay()) patch.heat->solve_squares(), patch.heat->solve_lengths();
     for (std::size_t m = 0; m < members.size(); ++m) {
-      const Outcome outcome = collect(patch, m, wanted, radii_[members[m]], result[members[m]]);
+      const Outcome outcome = collect(patch, m, members[m], wanted, result[members[m]]);
       if (outcome != Outcome::complete) return outcome;
     }
     return Outcome::complete;
   }
 
+  /// The distances of a patch from one of its sources, to the straight line where they are below it.
+  void raise(const PatchMaps& patch, const Source& source, std::span<double> distances) const {
+    const std::optional<Vec3> start = start_of_lines(graph_, source);
+    if (!start) return;
+    for (std::size_t k = 0; k < distances.size(); ++k)
+      if (const auto frame = graph_.frame(patch.vertices[k]))
+        distances[k] = no_shorter_than(distance(frame->origin, *start), distances[k]);
+  }
+
   /// The vertices within the radius, nearest first.
-  Outcome collect(const PatchMaps& patch, std::size_t m, double wanted, double radius, Entries& entries) {
+  /// @param m  number in the patch of this source
+  Outcome collect(const PatchMaps& patch, std::size_t m, Index source, double wanted, Entries& entries) {
+    const double radius = radii_[source];
     const std::size_t n = patch.vertices.size();
     const AffineHeat& heat = *patch.heat;
     const std::span<double> distance = distances(m, n);
@@ -194,6 +208,7 @@ class Worker {
       for (std::size_t k = 0; k < n; ++k) distance[k] = heat.distance_at(m, static_cast<Index>(k));
       place_source(patch.sources[m], distance);
     }
+    if (options_.no_shorter_than_line) raise(patch, sources_[source], distance);
     phi_.resize(n * d_);
     order_.clear();
     // A patch without an edge is all there is.

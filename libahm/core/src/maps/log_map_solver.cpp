@@ -331,14 +331,15 @@ std::vector<LogMap> LogMapSolver::Impl::solve_block(std::span<const Source> sour
   std::vector<std::vector<LogMap>> at_times;
   for (std::size_t time = 0; time < times.size(); ++time) {
     wider.frames = map.frames && time + 2 == times.size();
-    wider.spread = map.spread || time + 1 == times.size();  // the last tells where not to extrapolate
+    // Those of the first and the last tell where not to extrapolate; of vectors the last does.
+    wider.spread = map.spread || time + 1 == times.size() || (time == 0 && !graph.is_delaunay());
     at_times.push_back(solve_block(time, sources, unfolded, wider, threads));
   }
   std::vector<LogMap> result;
   for (std::size_t s = 0; s < sources.size(); ++s) {
     std::vector<const LogMap*> maps;
     for (const auto& at_time : at_times) maps.push_back(&at_time[s]);
-    result.push_back(extrapolate(graph, scales, options.t_coef, diffusion_times, maps, map.radius));
+    result.push_back(extrapolate(graph, scales, options.t_coef, diffusion_times, maps, map.radius, map.spread));
   }
   return result;
 }

@@ -23,4 +23,9 @@ std::optional<Vec3> place_in_space(const TangentGraph& graph, const Source& sour
   return (1 / weights) * sum;
 }
 
+std::optional<Vec3> start_of_lines(const TangentGraph& graph, const Source& source) {
+  const bool at_vertex = source.vertices().size() == 1 && source.offsets().empty();
+  return at_vertex || !graph.is_delaunay() ? place_in_space(graph, source) : std::nullopt;
+}
+
 }  // namespace ahm

@@ -20,12 +20,13 @@ namespace ahm {
 struct VoronoiCells {
   /// Per vertex the position in `vertices` of the nearest source; -1 in components without one.
   std::vector<Index> labels;
-  /// Per vertex the distance from that source, world units; NaN in components without one.
+  /// Per vertex the distance from that source, world units, no shorter than the straight line in space where the graph has frames; NaN
+  /// in components without a source.
   std::vector<double> distances;
 };
 
 /// Cells by geodesic distance (`UnfoldingFront`), all in one pass whatever the number of sources. Exact to ties on flat
-/// Delaunay triangulations without holes.
+/// Delaunay triangulations of convex outline: around a corner of the boundary that points inwards ways come out a little too long.
 /// @throws InvalidArgument (empty, index, a vertex given twice), ResourceExhausted
 VoronoiCells voronoi_cells(const TangentGraph& graph, std::span<const Vertex> vertices);
 /// The same by a front that has come from the first of these vertices before, if from any: it goes on from the others, over what is

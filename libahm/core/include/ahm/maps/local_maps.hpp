@@ -30,6 +30,9 @@ struct LocalMapOptions {
   /// this is what the difference to the map of the whole graph depends on: about 1e-5 of the radius at 2, and ten times
   /// less for each further 1 (docs/local_maps.md).
   double margin = 2;
+  /// Distances no shorter than the straight line in space, as those by row are, where the graph has frames; which vertices are the nearest,
+  /// and which lie within the radius, goes by them.
+  bool no_shorter_than_line = false;
   /// t_coef, variant, check_graph, threads, progress; h is that of the whole graph.
   HeatOptions heat = {};
 };

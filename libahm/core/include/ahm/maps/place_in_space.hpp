@@ -14,6 +14,10 @@ namespace ahm {
 /// frames.
 std::optional<Vec3> place_in_space(const TangentGraph& graph, const Source& source);
 
+/// The place from which distances of heat may fall below the straight line; none where there is no telling, as above. (Where a source
+/// lies between the vertices of a mesh is known to the second order in space, its distances near by better.)
+std::optional<Vec3> start_of_lines(const TangentGraph& graph, const Source& source);
+
 /// A distance along a surface, no less than the straight line but for rounding. NaN stays.
 inline double no_shorter_than(double line, double distance) { return line > distance * (1 + 1e-12) ? line : distance; }
 
