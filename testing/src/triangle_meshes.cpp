@@ -215,6 +215,14 @@ Mesh moebius_mesh(Index around, Index across) {
   return mesh;
 }
 
+Mesh joined(Mesh mesh, const Mesh& other, const Vec3& shift) {
+  const Index offset = mesh.vertices();
+  for (const Vec3& p : other.positions) mesh.positions.push_back({p[0] + shift[0], p[1] + shift[1], p[2] + shift[2]});
+  for (const Triangle& f : other.faces) mesh.faces.push_back({f[0] + offset, f[1] + offset, f[2] + offset});
+  mesh.plane.clear();
+  return mesh;
+}
+
 Mesh torus(Index n) {
   const auto around = static_cast<Index>(std::sqrt(2.5 * n)), across = n / around;
   std::mt19937 random(1);

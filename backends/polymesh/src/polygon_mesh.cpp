@@ -19,8 +19,11 @@ PolygonMesh PolygonMesh::from_faces(std::span<const Vec3> positions, std::span<c
   mesh.collect_corners();
   if (!mesh.report().orientable) mesh.orient_vertices();
   mesh.input_.assign(positions.begin(), positions.end());
-  for (Index v : mesh.input_of_vertex()) mesh.position_.push_back(positions[v]);
-  mesh.length_unit_ = detail::normalize_positions(mesh.position_);
+  std::vector<Vec3> points;
+  for (Index v : mesh.input_of_vertex()) points.push_back(positions[v]);
+  auto normalized = detail::normalize_positions(std::move(points), mesh.topology_.parts());
+  mesh.position_ = std::move(normalized.points);
+  mesh.length_unit_ = normalized.unit;
   return mesh;
 }
 

@@ -20,15 +20,8 @@ namespace {
 /// Edges up to this many times the rounding of a coordinate: where they are longer, the angles about a flat vertex sum to 2 pi
 /// to 1e-8 in any plane, since that is the square of what rounding turns an edge by.
 constexpr double least_edge_in_space = 8192;
-/// Relative to the longest, edges given by their lengths alone.
+/// Relative to the longest of the component, edges given by their lengths alone.
 constexpr double least_edge_by_length = 1e-15;
-
-double largest_coordinate(std::span<const Vec3> points) {
-  double largest = 0;
-  for (const Vec3& p : points)
-    for (double x : p) largest = std::max(largest, std::abs(x));
-  return largest;
-}
 
 void check_lengths(std::span<const Triangle> faces, std::span<const std::array<double, 3>> lengths) {
   if (lengths.size() != faces.size())
@@ -65,29 +58,36 @@ TriangleMesh TriangleMesh::from_positions(std::span<const Vec3> positions, std::
   detail::check_positions(positions);
   TriangleMesh mesh(static_cast<Index>(positions.size()), faces, non_manifold, turned);
   mesh.input_.assign(positions.begin(), positions.end());
-  for (Index v : mesh.input_of_vertex()) mesh.position_.push_back(positions[v]);
-  const double as_given = largest_coordinate(mesh.position_);
-  mesh.length_unit_ = detail::normalize_positions(mesh.position_);
+  std::vector<Vec3> points;
+  for (Index v : mesh.input_of_vertex()) points.push_back(positions[v]);
+  auto normalized = detail::normalize_positions(std::move(points), mesh.topology_.parts());
+  mesh.position_ = std::move(normalized.points);
+  mesh.rounding_ = std::move(normalized.rounding);
+  mesh.length_unit_ = normalized.unit;
   const HalfEdges edges = mesh.topology_.half_edges();
-  std::vector<double> lengths(edges.tail.size());
-  for (Half h = 0; h < edges.size(); ++h)
-    lengths[h] = norm(mesh.position_[edges.head(h)] - mesh.position_[edges.tail[h]]);
-  mesh.rounding_ *= std::max(1.0, as_given / mesh.length_unit_);
-  mesh.contract(lengths, least_edge_in_space * mesh.rounding_);
+  std::vector<std::uint8_t> contracted(edges.tail.size());
+  for (Half h = 0; h < edges.size(); ++h) {
+    const double length = norm(mesh.position_[edges.head(h)] - mesh.position_[edges.tail[h]]);
+    contracted[h] = length <= least_edge_in_space * mesh.rounding_[edges.tail[h]];
+  }
+  mesh.contract(std::move(contracted));
   return mesh;
 }
 
-/// Contracts the edges up to a length.
-void TriangleMesh::contract(const std::vector<double>& lengths, double least) {
-  std::vector<std::uint8_t> contracted(lengths.size());
-  std::transform(lengths.begin(), lengths.end(), contracted.begin(), [&](double length) { return length <= least; });
+/// @param contracted  per half-edge
+void TriangleMesh::contract(std::vector<std::uint8_t> contracted) {
   if (std::find(contracted.begin(), contracted.end(), 1) == contracted.end()) return;
   const std::vector<Index> before(vertex_of_input().begin(), vertex_of_input().end());
   topology_.contract(std::move(contracted));
   if (position_.empty()) return;
-  std::vector<Vec3> kept;
-  for (Index input : input_of_vertex()) kept.push_back(position_[before[input]]);
-  position_ = std::move(kept);
+  std::vector<Vec3> positions;
+  std::vector<double> rounding;
+  for (Index input : input_of_vertex()) {
+    positions.push_back(position_[before[input]]);
+    rounding.push_back(rounding_[before[input]]);
+  }
+  position_ = std::move(positions);
+  rounding_ = std::move(rounding);
 }
 
 Half TriangleMesh::kept_corner(Index face, int corner) const {
@@ -120,7 +120,16 @@ TriangleMesh TriangleMesh::from_edge_lengths(Index vertices, std::span<const Tri
                             detail::number(std::scalbn(b, exponent)) + "; they must be equal");
     mesh.length_[t] = a;
   }
-  mesh.contract(mesh.length_, least_edge_by_length * 2);  // the longest is in [1, 2)
+  const std::span<const Index> part = mesh.topology_.parts();
+  std::vector<double> longest_of_part(part.size(), 0.0);
+  for (std::size_t h = 0; h < mesh.length_.size(); ++h) {
+    double& known = longest_of_part[part[mesh.tails()[h]]];
+    known = std::max(known, mesh.length_[h]);
+  }
+  std::vector<std::uint8_t> contracted(mesh.length_.size());
+  for (std::size_t h = 0; h < contracted.size(); ++h)
+    contracted[h] = mesh.length_[h] <= least_edge_by_length * longest_of_part[part[mesh.tails()[h]]];
+  mesh.contract(std::move(contracted));
   for (std::size_t h = 0; h < mesh.length_.size(); ++h)
     if (const Half t = mesh.twins()[h]; t > static_cast<Half>(h)) mesh.length_[t] = mesh.length_[h];
   return mesh;

@@ -162,7 +162,7 @@ Vec3 mean_normal(const SpatialFan& fan, double rounding) {
 /// space has them.
 Frame frame_in_space(const TriangleMesh& mesh, const HalfEdges& edges, Index v) {
   const SpatialFan fan(mesh, edges, v);
-  const Vec3 sum = mean_normal(fan, mesh.rounding());
+  const Vec3 sum = mean_normal(fan, mesh.rounding(Vertex(v)));
   Vec3 reference{0, 0, 0};
   double angle_sum = 0;
   const bool closed = fan.for_each_face([&](const Vec3& a, const Vec3& b) {
@@ -224,7 +224,7 @@ VertexFrames find_frames(const TriangleMesh& mesh, const IntrinsicTriangulation&
     const Fan fan(edges, triangulation, references[v].corner);
     std::vector<std::pair<Half, double>> mended;
     frames.start[v] = fan.start();
-    frames.scale[v] = fan.find_scale(mesh.rounding(), mended);
+    frames.scale[v] = fan.find_scale(mesh.rounding(Vertex(static_cast<Index>(v))), mended);
     if (mended.empty()) return;
     const std::scoped_lock lock(mending);
     frames.mended.insert(frames.mended.end(), mended.begin(), mended.end());

@@ -135,7 +135,7 @@ void GluedMesh::renumber_contracted() {
   for (const auto& [v, onto] : merged_) vertex_of_input_[v] = vertex_of_input_[onto];
 
   place_dropped_corners();
-  count_parts();
+  find_parts();
 }
 
 /// Gives the corners of dropped faces vertices, and faces that became points a stand-in.

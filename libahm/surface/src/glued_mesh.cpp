@@ -55,7 +55,7 @@ GluedMesh::GluedMesh(Index vertices, const FaceList& faces, NonManifold non_mani
   report_.faces = static_cast<Index>(faces.size());
   build_half_edges(faces, non_manifold, turned);
   number_vertices(non_manifold);
-  count_parts();
+  find_parts();
 }
 
 /// Half-edges of the oriented faces, tails still input vertices. Turning a face of m corners over, its first corner staying
@@ -123,7 +123,7 @@ void GluedMesh::number_vertices(NonManifold non_manifold) {
     if (fans.of_half[h] >= 0) tail_[h] = vertex_of_fan[fans.of_half[h]];
 }
 
-void GluedMesh::count_parts() {
+void GluedMesh::find_parts() {
   const HalfEdges edges = half_edges();
   DisjointSets parts(input_of_vertex_.size()), loops(input_of_vertex_.size());
   std::vector<std::uint8_t> on_boundary(input_of_vertex_.size(), 0);
@@ -139,8 +139,10 @@ void GluedMesh::count_parts() {
     on_boundary[a] = on_boundary[b] = 1;
     loops.join(a, b);
   }
+  part_.resize(input_of_vertex_.size());
   for (Index v = 0; v < vertex_count(); ++v) {
-    report_.components += parts.root(v) == v;
+    part_[v] = parts.root(v);
+    report_.components += part_[v] == v;
     report_.boundary_loops += on_boundary[v] && loops.root(v) == v;
   }
   report_.edges = (sides + report_.boundary_edges) / 2;

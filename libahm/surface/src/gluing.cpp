@@ -185,25 +185,28 @@ class Gluer {
   Gluing result_;
 };
 
+double largest_coordinate(const Vec3& p) { return std::max({std::abs(p[0]), std::abs(p[1]), std::abs(p[2])}); }
+
 /// Multiplies by the power of two that brings the largest coordinate into [1, 2); returns its exponent.
 int normalize_scale(std::vector<Vec3>& points) {
   double largest = 0;
-  for (const Vec3& p : points)
-    for (double x : p) largest = std::max(largest, std::abs(x));
+  for (const Vec3& p : points) largest = std::max(largest, largest_coordinate(p));
   const int exponent = largest > 0 ? std::ilogb(largest) : 0;
   for (Vec3& p : points)
     for (double& x : p) x = std::scalbn(x, -exponent);
   return exponent;
 }
 
-/// Moves the middle of the bounding box to the origin.
-void center(std::vector<Vec3>& points) {
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto [low, high] = std::minmax_element(points.begin(), points.end(),
-                                                 [axis](const Vec3& a, const Vec3& b) { return a[axis] < b[axis]; });
-    const double middle = 0.5 * ((*low)[axis] + (*high)[axis]);
-    for (Vec3& p : points) p[axis] -= middle;
-  }
+/// Moves the middle of the bounding box of each part to the origin.
+void center(std::vector<Vec3>& points, std::span<const Index> part) {
+  std::vector<Vec3> low(points), high(points);
+  for (std::size_t v = 0; v < points.size(); ++v)
+    for (int axis = 0; axis < 3; ++axis) {
+      low[part[v]][axis] = std::min(low[part[v]][axis], points[v][axis]);
+      high[part[v]][axis] = std::max(high[part[v]][axis], points[v][axis]);
+    }
+  for (std::size_t v = 0; v < points.size(); ++v)
+    for (int axis = 0; axis < 3; ++axis) points[v][axis] -= 0.5 * (low[part[v]][axis] + high[part[v]][axis]);
 }
 
 }  // namespace
@@ -268,11 +271,17 @@ void check_positions(std::span<const Vec3> points) {
                               "coordinates must be finite");
 }
 
-double normalize_positions(std::vector<Vec3>& points) {
-  int exponent = normalize_scale(points);
-  center(points);
-  exponent += normalize_scale(points);
-  return std::scalbn(1.0, exponent);
+NormalizedPositions normalize_positions(std::vector<Vec3> points, std::span<const Index> part) {
+  const int exponent = normalize_scale(points);
+  std::vector<double> largest(points.size(), 0.0);
+  for (std::size_t v = 0; v < points.size(); ++v)
+    largest[part[v]] = std::max(largest[part[v]], largest_coordinate(points[v]));
+  center(points, part);
+  const int exponent_about_middles = normalize_scale(points);
+  std::vector<double> rounding(points.size());
+  for (std::size_t v = 0; v < points.size(); ++v)
+    rounding[v] = std::scalbn(std::numeric_limits<double>::epsilon() * largest[part[v]], -exponent_about_middles);
+  return {std::move(points), std::move(rounding), std::scalbn(1.0, exponent + exponent_about_middles)};
 }
 
 }  // namespace ahm::detail

@@ -29,13 +29,6 @@ void expect_nan_exactly_where_not_ok(const RowLogMap& map) {
       ASSERT_EQ(std::isnan(x), map.status[i] != Status::ok);
 }
 
-Mesh joined(const Mesh& a, const Mesh& b, double shift) {
-  Mesh mesh = a;
-  for (const Vec3& p : b.positions) mesh.positions.push_back({p[0] + shift, p[1], p[2]});
-  for (const auto& t : b.faces) mesh.faces.push_back({t[0] + a.vertices(), t[1] + a.vertices(), t[2] + a.vertices()});
-  return mesh;
-}
-
 TEST(MeshFaults, NothingThere) {
   expect_error<InvalidGeometry>({}, "no vertices");
   expect_error<InvalidGeometry>({{{0, 0, 0}}, {}, {}}, "no faces");
@@ -87,7 +80,7 @@ TEST(MeshFaults, UnreferencedVerticesAreMasked) {
 }
 
 TEST(MeshFaults, OtherComponentsAreMasked) {
-  const Mesh one = icosphere(6), both = joined(one, icosphere(5), 5.0);
+  const Mesh one = icosphere(6), both = joined(one, icosphere(5), {5, 0, 0});
   const SolvedMesh alone(one), solved(both);
   EXPECT_EQ(solved.surface.details().topology.components, 2);
   const RowLogMap map = solved.map(solved.surface.source(Row(3)).source);
@@ -116,7 +109,7 @@ TEST(MeshFaults, EdgesOfThreeFaces) {
 }
 
 TEST(MeshFaults, BowTies) {
-  Mesh mesh = joined(holed_square(8), holed_square(9), 4.0);
+  Mesh mesh = joined(holed_square(8), holed_square(9), {4, 0, 0});
   const Index cut = holed_square(8).vertices();
   for (auto& t : mesh.faces)
     for (Index& v : t)

@@ -2,8 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numbers>
 #include <random>
+#include <vector>
 
 #include "support/solved_mesh.hpp"
 
@@ -106,6 +109,61 @@ TEST(MeshSymmetry, FarFromTheOriginIsAsGoodAsTheInputDigits) {
   for (Vec3& p : other.positions) p = {p[0] + 1e8, p[1] - 1e8, p[2] + 1e8};
   const RowLogMap b = solve(other, 100);
   for (std::size_t i = 0; i < a.u.size(); ++i) ASSERT_NEAR(a.distance[i], b.distance[i], 1e-5);
+}
+
+/// Expects that the first stars of two graphs are the same bits, lengths but for the unit.
+void expect_same_stars(const CsrGraph& a, const CsrGraph& b, Index count) {
+  for (Index v = 0; v < count; ++v) {
+    const Star one = a.star(v), other = b.star(v);
+    ASSERT_EQ(one.degree(), other.degree()) << v;
+    for (std::size_t e = 0; e < one.degree(); ++e) {
+      ASSERT_EQ(one.neighbors[e], other.neighbors[e]) << v;
+      ASSERT_EQ(one.weights[e], other.weights[e]) << v;
+      for (int c = 0; c < 2; ++c) ASSERT_EQ(one.log(e)[c] * a.length_unit(), other.log(e)[c] * b.length_unit()) << v;
+    }
+  }
+}
+
+// Its trapezoids are cut along either diagonal, by rounding alone.
+Mesh regular_torus(Index around, Index across) {
+  Mesh mesh;
+  for (Index i = 0; i < around; ++i)
+    for (Index j = 0; j < across; ++j) {
+      const double u = 2 * std::numbers::pi * i / around, v = 2 * std::numbers::pi * j / across;
+      mesh.positions.push_back(
+          {(2 + 0.7 * std::cos(v)) * std::cos(u), (2 + 0.7 * std::cos(v)) * std::sin(u), 0.7 * std::sin(v)});
+      const auto at = [&](Index x, Index y) { return x % around * across + y % across; };
+      mesh.faces.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
+      mesh.faces.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+    }
+  return mesh;
+}
+
+TEST(MeshSymmetry, AComponentIsTheSameBitsBesideLargerOrNearerOnes) {
+  Mesh part = regular_torus(30, 15);
+  for (Vec3& p : part.positions) p = {p[0] * 1e-3 + 9, p[1] * 1e-3 + 9, p[2] * 1e-3 + 9};
+  const auto alone = trimesh::TriangleMeshSurface::build(part.positions, part.faces);
+  for (const auto& [scale, shift] : {std::pair{30.0, 500.0}, {1e9, 0.0}, {1e-6, 9.1}}) {
+    Mesh other = icosphere(5);
+    for (Vec3& p : other.positions) p = {p[0] * scale + shift, p[1] * scale + shift, p[2] * scale + shift};
+    const Mesh both = joined(part, other);
+    const auto beside = trimesh::TriangleMeshSurface::build(both.positions, both.faces);
+    expect_same_stars(alone.graph(), beside.graph(), part.vertices());
+  }
+}
+
+// A sliver has sides of 1e-14 of its length; the part beside it is so large that they would be nothing.
+TEST(MeshSymmetry, AComponentOfLengthsIsTheSameBitsBesideLargerOnes) {
+  std::vector<Triangle> faces{{0, 1, 2}, {0, 2, 3}};
+  std::vector<std::array<double, 3>> lengths{{1e-14, 1, 1}, {1, 1, 1}};
+  const auto alone = trimesh::TriangleMesh::from_edge_lengths(4, faces, lengths);
+  faces.push_back({4, 5, 6});
+  lengths.push_back({1e9, 1e9, 1e9});
+  const auto beside = trimesh::TriangleMesh::from_edge_lengths(7, faces, lengths);
+  EXPECT_EQ(alone.vertex_count(), 4);
+  EXPECT_EQ(beside.vertex_count(), 7);
+  const auto one = trimesh::TriangleMeshSurface::build(alone), other = trimesh::TriangleMeshSurface::build(beside);
+  expect_same_stars(one.graph(), other.graph(), 4);
 }
 
 TEST(MeshSymmetry, RepeatsBitForBitOnAnyNumberOfThreads) {

@@ -18,13 +18,6 @@ Mesh stretched(Mesh mesh, double factor) {
   return mesh;
 }
 
-Mesh joined(Mesh a, const Mesh& b, double aside) {
-  const Index offset = a.vertices();
-  for (const Vec3& p : b.positions) a.positions.push_back({p[0], p[1] + aside, p[2]});
-  for (const Triangle& f : b.faces) a.faces.push_back({f[0] + offset, f[1] + offset, f[2] + offset});
-  return a;
-}
-
 /// The 95th percentile of the relative errors, from `points` together.
 double error_from(const SolvedMesh& mesh, std::initializer_list<SurfacePoint> points) {
   std::vector<double> errors;
@@ -85,7 +78,7 @@ TEST(UnfoldedDistance, IsOfSecondOrder) {
 
 TEST(UnfoldedDistance, OfACoarsePartIsThatOfThePartAlone) {
   const Mesh part = stretched(icosphere(8), 3);
-  const SolvedMesh alone(part), beside(joined(part, icosphere(34), 30));
+  const SolvedMesh alone(part), beside(joined(part, icosphere(34), {0, 30, 0}));
   ASSERT_GT(beside.surface.graph().size(), 10000);
   const LogMapSolver marching(beside.surface.graph(), {.strategy = Strategy::march});
   const Vec3 axis{0.3, 0.5, 0.7};

@@ -22,6 +22,9 @@ struct Mesh {
   double diameter() const;
 };
 
+/// One mesh, and beside it another one moved by `shift`, numbered on.
+Mesh joined(Mesh mesh, const Mesh& other, const Vec3& shift = {0, 0, 0});
+
 /// A tilted unit square, its points inserted one by one into random faces, never improved: needles and caps of every
 /// degree.
 Mesh sliver_square(Index n, unsigned seed = 1);

@@ -75,7 +75,7 @@ class PolygonMesh {
   /// Input vertex of each vertex.
   std::span<const Index> input_of_vertex() const noexcept { return topology_.input_of_vertex(); }
 
-  /// Position of a vertex in units of `length_unit()` about the middle of the bounding box.
+  /// Position of a vertex in units of `length_unit()` about the middle of the bounding box of its component.
   const Vec3& position(Vertex vertex) const { return position_[vertex.index]; }
   /// Position of a vertex as given.
   const Vec3& original_position(Vertex vertex) const { return input_[input_of_vertex()[vertex.index]]; }

@@ -30,8 +30,8 @@ using ahm::TopologyReport;
 /// without the unreferenced ones, in the order of the input; copies made by splitting come last.
 ///
 /// The ends of an edge without length are one vertex, and the faces on its sides are dropped: nothing turns into them
-/// (`is_dropped`). In space an edge counts as one up to 2e-12 of the largest coordinate, where rounding begins to decide how the
-/// faces lie; by lengths alone up to 1e-15 of the longest. Vertices in such faces alone are left out; a mesh of
+/// (`is_dropped`). In space an edge counts as one up to 2e-12 of the largest coordinate of its component, where rounding begins
+/// to decide how the faces lie; by lengths alone up to 1e-15 of the longest. Vertices in such faces alone are left out; a mesh of
 /// such faces alone keeps them.
 class TriangleMesh {
  public:
@@ -74,7 +74,7 @@ class TriangleMesh {
   std::span<const Index> input_of_vertex() const noexcept { return topology_.input_of_vertex(); }
 
   bool has_positions() const noexcept { return !position_.empty(); }
-  /// Position of a vertex in units of `length_unit()` about the middle of the bounding box.
+  /// Position of a vertex in units of `length_unit()` about the middle of the bounding box of its component.
   const Vec3& position(Vertex vertex) const { return position_[vertex.index]; }
   /// Position of a vertex as given.
   const Vec3& original_position(Vertex vertex) const { return input_[input_of_vertex()[vertex.index]]; }
@@ -82,8 +82,8 @@ class TriangleMesh {
   std::span<const Vec3> input_positions() const noexcept { return input_; }
   /// A power of two near the size of the mesh.
   double length_unit() const noexcept { return length_unit_; }
-  /// Rounding of the coordinates as given, in units of `length_unit()`.
-  double rounding() const noexcept { return rounding_; }
+  /// Rounding of the coordinates as given of the component of a vertex, in units of `length_unit()`.
+  double rounding(Vertex vertex) const noexcept { return rounding_.empty() ? 0x1p-52 : rounding_[vertex.index]; }
   /// The face laid out in the plane, counter-clockwise, side 0 along the x axis: its three sides as vectors, in units
   /// of `length_unit()`.
   std::array<Vec2, 3> layout(Index face) const;
@@ -99,13 +99,14 @@ class TriangleMesh {
  private:
   TriangleMesh(Index vertices, std::span<const Triangle> faces, NonManifold non_manifold,
                std::span<const std::uint8_t> turned = {});
-  void contract(const std::vector<double>& lengths, double least);
+  void contract(std::vector<std::uint8_t> contracted);
 
   detail::GluedMesh topology_;
-  std::vector<Vec3> position_;  ///< per vertex, or empty
-  std::vector<Vec3> input_;     ///< per input vertex, or empty
-  std::vector<double> length_;  ///< per half-edge, or empty
-  double length_unit_ = 1.0, rounding_ = 0x1p-52;
+  std::vector<Vec3> position_;    ///< per vertex, or empty
+  std::vector<Vec3> input_;       ///< per input vertex, or empty
+  std::vector<double> rounding_;  ///< per vertex, or empty
+  std::vector<double> length_;    ///< per half-edge, or empty
+  double length_unit_ = 1.0;
 };
 
 }  // namespace ahm::trimesh

@@ -45,6 +45,8 @@ class GluedMesh {
   std::span<const Index> vertex_of_input() const { return vertex_of_input_; }
   /// Input vertex of each vertex.
   std::span<const Index> input_of_vertex() const { return input_of_vertex_; }
+  /// The lowest vertex of the connected component of each vertex.
+  std::span<const Index> parts() const { return part_; }
   /// Input vertices at all corners of the faces as given.
   std::vector<Index> given_corners() const;
 
@@ -68,7 +70,7 @@ class GluedMesh {
  private:
   void build_half_edges(const FaceList& faces, NonManifold non_manifold, std::span<const std::uint8_t> turned);
   void number_vertices(NonManifold non_manifold);
-  void count_parts();
+  void find_parts();
   void renumber_contracted();
   void place_dropped_corners();
 
@@ -79,7 +81,7 @@ class GluedMesh {
   std::vector<Half> twin_;
   std::vector<std::uint8_t> mirrored_, reversed_;
   std::vector<Half> corner_;
-  std::vector<Index> vertex_of_input_, input_of_vertex_;
+  std::vector<Index> vertex_of_input_, input_of_vertex_, part_;
   // Empty without contracted edges:
   std::vector<Index> given_corners_;
   std::vector<std::uint8_t> dropped_;

@@ -59,9 +59,15 @@ Gluing glue(Index vertices, const FaceList& faces, NonManifold non_manifold, std
 /// @throws InvalidGeometry (more than 2^30 positions, a coordinate that is not finite)
 void check_positions(std::span<const Vec3> positions);
 
-/// Moves the middle of the points' bounding box to the origin and multiplies by the power of two that makes the largest
-/// coordinate of order one.
-/// @return what a length of 1 was before
-double normalize_positions(std::vector<Vec3>& points);
+/// Positions of the vertices of a mesh as numbers of order one.
+struct NormalizedPositions {
+  std::vector<Vec3> points;      ///< in units, about the middle of the bounding box of their part
+  std::vector<double> rounding;  ///< per point, of coordinates as given, in units: that of the largest of its part
+  double unit;                   ///< what a length of 1 was before: a power of two
+};
+
+/// A part has the same numbers, but for a power of two, whatever lies beside it.
+/// @param part  per point, the lowest one of its part
+NormalizedPositions normalize_positions(std::vector<Vec3> points, std::span<const Index> part);
 
 }  // namespace ahm::detail
