@@ -97,7 +97,7 @@ void map_from_source(const LogmapOptions& options, const Input& input, std::opti
   };
   detail::run_both(options.solve.threads != 1, solve, unfold);
   const LogMap& map = *solved;
-  RowLogMap rows = input.surface().on_rows(map);
+  RowLogMap rows = input.surface().on_rows(map, options.solve.threads);
   const std::vector<double> quality =
       on_rows(rows, front ? map_quality(input.graph(), map, *front, options.solve.threads)
                           : map_quality(input.graph(), map, options.solve.threads));
