@@ -121,7 +121,7 @@ struct CloudSteps {
   void find_neighbors() { neighborhoods = find_neighborhoods(cloud, *search, 30, options); }
   void find_planes() { planes = find_tangent_planes(cloud, {}, *search, neighborhoods, options); }
   void triangulate() { triangles = local_delaunay(cloud, neighborhoods, planes, false, noise, options, report); }
-  void weigh() { edges = tufted_laplacian(cloud, planes, triangles, *parts, report); }
+  void weigh() { edges = tufted_laplacian(cloud, planes, triangles, *parts, 1, report); }
   ahm::CsrGraphData join() { return tangent_edges(cloud, planes, edges, vertices, size(), true, noise, 1, report); }
   Index size() const { return static_cast<Index>(cloud.points.size()); }
 };

@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
+#include <cstdint>
+#include <functional>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -23,6 +26,21 @@ TEST(ParallelChunks, CoverEveryIndexOnceInTheSameChunksOnAnyNumberOfThreads) {
       EXPECT_EQ(uneven, 0);
       for (const auto& count : visits) ASSERT_EQ(count, 1) << "n " << n << ", threads " << threads;
     }
+}
+
+TEST(ParallelSort, OrdersAsOnOneThread) {
+  for (const std::size_t n : {0u, 1u, 65'536u, 65'537u, 200'000u, 524'289u}) {
+    std::vector<std::uint32_t> values(n);
+    std::uint32_t state = 7;
+    for (std::uint32_t& value : values) value = state = state * 1664525u + 1013904223u;  // a period of 2^32: none twice
+    std::vector<std::uint32_t> expected = values;
+    std::sort(expected.begin(), expected.end());
+    for (const unsigned threads : {1u, 2u, 5u}) {
+      std::vector<std::uint32_t> sorted = values;
+      detail::parallel_sort(sorted, threads, std::less<>());
+      ASSERT_EQ(sorted, expected) << "n " << n << ", threads " << threads;
+    }
+  }
 }
 
 TEST(ParallelChunks, PassOnTheFirstErrorAndStop) {

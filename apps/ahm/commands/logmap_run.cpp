@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <optional>
 #include <utility>
 
 #include "ahm/error.hpp"
 #include "ahm/io/formats.hpp"
 #include "ahm/maps/quality.hpp"
+#include "ahm/util/parallel.hpp"
 #include "ahm/util/vec.hpp"
 #include "cli/console.hpp"
 #include "cli/source_list.hpp"
@@ -87,9 +89,19 @@ void map_from_source(const LogmapOptions& options, const Input& input, std::opti
   const PlacedSource source = resolve(options.source, input, options.input.threads);
   comment_on_source(options.source.spec, input, source, journal);
   if (!maps) maps.emplace(options.solve, input, journal, static_cast<int>(count));
-  const LogMap map = maps->map(options.solve, input, options.source.spec, source, journal);
-  RowLogMap rows = input.surface().on_rows(map);
-  const std::vector<double> quality = on_rows(rows, map_quality(input.graph(), map, options.solve.threads));
+  std::optional<LogMap> solved;
+  std::optional<QualityFront> front;
+  const auto solve = [&] { solved = maps->map(options.solve, input, options.source.spec, source, journal); };
+  const auto unfold = [&] {
+    if (maps->solver) front.emplace(input.graph(), source.source, map_options(options.solve).radius);
+  };
+  detail::run_both(options.solve.threads != 1, solve, unfold);
+  const LogMap& map = *solved;
+  RowLogMap rows = input.surface().on_rows(map, options.solve.threads);
+  const std::vector<double> quality =
+      on_rows(rows, front ? map_quality(input.graph(), map, *front, options.solve.threads)
+                          : map_quality(input.graph(), map, options.solve.threads));
+  front.reset();
   if (options.input.around_source) settle_left_out(input, source, *options.solve.radius, rows);
   comment_on_statuses(rows.status, options.input.path, journal);
   comment_on_quality(quality, "keep to what is near with --radius, or start elsewhere", journal);

@@ -26,8 +26,8 @@ Index part_of(const Input& input, const PlacedSource& source) {
 
 }  // namespace
 
-std::vector<Vec3> Input::normals() const {
-  std::vector<Vec3> result = surface().normals();
+std::vector<Vec3> Input::normals(unsigned threads) const {
+  std::vector<Vec3> result = surface().normals(threads);
   if (!near || near->whole.reversed.empty()) return result;
   double size = 0;
   for (const Vec3& point : geometry.points)

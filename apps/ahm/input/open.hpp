@@ -26,7 +26,7 @@ struct Input {
   const TangentGraph& graph() const { return surface().graph(); }
   std::size_t rows() const { return geometry.points.size(); }
   /// Unit normals per row, NaN where there is none: the surface's, and with --local the mean over the faces that it lacks.
-  std::vector<Vec3> normals() const;
+  std::vector<Vec3> normals(unsigned threads = 0) const;
   /// World units.
   double mean_edge_length() const { return graph().mean_edge_length() * graph().length_unit(); }
 };

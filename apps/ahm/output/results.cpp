@@ -66,7 +66,7 @@ Results::Results(const OutputOptions& output, const Input& input, const InputOpt
       input_(input.geometry),
       title_(std::filesystem::path(options.path).filename().string()),
       threads_(options.threads),
-      normals_(input.normals()) {}
+      normals_(input.normals(options.threads)) {}
 
 Results::~Results() {
   std::error_code ignored;

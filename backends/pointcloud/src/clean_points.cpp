@@ -8,6 +8,7 @@
 #include <string>
 
 #include "ahm/error.hpp"
+#include "ahm/util/parallel.hpp"
 #include "ahm/util/text.hpp"
 #include "ahm/util/vec.hpp"
 
@@ -60,6 +61,39 @@ int highest_difference(double a, double b) {
   return std::max(e, 1) - std::countl_zero((x ^ y) << (64 - digits)) - 1;
 }
 
+/// Beginnings of places on the curve, as numbers: of two points that differ in them the lower one is `before_on_curve`.
+class CurvePlaces {
+ public:
+  explicit CurvePlaces(std::span<const Vec3> points) {
+    double most = 0;
+    for (const Vec3& p : points) most = std::max(most, largest(p));
+    to_digits_ = most > 0 ? std::scalbn(1.0, digits - 1 - std::ilogb(most)) : 1.0;
+  }
+  std::uint64_t operator()(const Vec3& p) const {
+    return spread(of_axis(p[2])) << 2 | spread(of_axis(p[1])) << 1 | spread(of_axis(p[0]));
+  }
+
+ private:
+  static constexpr int digits = 20;  ///< and a sign, of each axis
+
+  /// The first digits, ascending.
+  std::uint64_t of_axis(double x) const {
+    const auto first = static_cast<std::uint64_t>(std::abs(x) * to_digits_);
+    constexpr std::uint64_t sign = std::uint64_t{1} << digits;
+    return x < 0 ? sign - 1 - first : sign + first;
+  }
+  /// Two zeros between any two digits.
+  static std::uint64_t spread(std::uint64_t x) {
+    x = (x | x << 32) & 0x1f00000000ffff;
+    x = (x | x << 16) & 0x1f0000ff0000ff;
+    x = (x | x << 8) & 0x100f00f00f00f00f;
+    x = (x | x << 4) & 0x10c30c30c30c30c3;
+    return (x | x << 2) & 0x1249249249249249;
+  }
+
+  double to_digits_;
+};
+
 /// Copies the finite points; `kept` are their numbers.
 std::vector<Vec3> finite_points(std::span<const Vec3> input, const std::function<Index(std::size_t)>& row,
                                 const CloudOptions& options, std::vector<Index>& kept, CloudDetails& report) {
@@ -104,24 +138,32 @@ CleanPoints clean_points(std::span<const Vec3> input, const std::function<Index(
   std::vector<Index> kept;
   std::vector<Vec3> placed = finite_points(input, row, options, kept, report);
   const Placement placement = placement_of(placed);
-  for (Vec3& p : placed) p = placement.place(p);
+  detail::for_each_index(placed.size(), options.threads,
+                         [&](std::size_t i) { placed[i] = placement.place(placed[i]); });
   CleanPoints clean;
   clean.unit = placement.unit();
 
   struct Place {
-    Vec3 point;
+    std::uint64_t begin;
     Index position;
   };
+  const CurvePlaces begin_of(placed);
   std::vector<Place> order(placed.size());
-  for (std::size_t i = 0; i < order.size(); ++i) order[i] = {placed[i], static_cast<Index>(i)};
-  std::sort(order.begin(), order.end(), [](const Place& a, const Place& b) {
-    return a.point == b.point ? a.position < b.position : before_on_curve(a.point, b.point);
+  detail::for_each_index(order.size(), options.threads, [&](std::size_t i) {
+    order[i] = {begin_of(placed[i]), static_cast<Index>(i)};
+  });
+  detail::parallel_sort(order, options.threads, [&](const Place& a, const Place& b) {
+    if (a.begin != b.begin) return a.begin < b.begin;
+    const Vec3 &p = placed[a.position], &q = placed[b.position];
+    return p == q ? a.position < b.position : before_on_curve(p, q);
   });
 
   clean.clean_of_input.assign(input.size(), -1);
   clean.points.reserve(order.size());
   clean.input.reserve(order.size());
-  for (const auto& [p, position] : order) {
+  for (const Place& place : order) {
+    const Index position = place.position;
+    const Vec3& p = placed[position];
     if (clean.points.empty() || clean.points.back() != p) {
       clean.points.push_back(p);
       clean.input.push_back(kept[position]);

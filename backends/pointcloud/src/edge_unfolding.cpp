@@ -114,8 +114,13 @@ Vec3 unfolded_edge(const Vec3& tail, const Vec3& head, const Vec3& edge, double 
 }
 
 bool leaves_surface(const Vec3& tail, const Vec3& head, const Vec3& edge, double noise) {
+  // Normals less than a right angle apart add up to the root of two at least: this is twice the square of what the offset is at
+  // the most, and mostly tells that it is not steep.
+  const double sum = std::abs(dot(tail, edge)) + std::abs(dot(head, edge)), squared = dot(edge, edge);
+  constexpr double steepest_squared = steepest * steepest;
+  if (sum * sum * (1 + steepest_squared) < 1.99 * steepest_squared * squared) return false;
   const double offset = std::abs(dot(MeanPlane(tail, head).normal, edge));
-  const double flat = std::sqrt(std::max(0.0, dot(edge, edge) - offset * offset));
+  const double flat = std::sqrt(std::max(0.0, squared - offset * offset));
   return offset > sheet_reach * noise && offset > steepest * flat;
 }
 

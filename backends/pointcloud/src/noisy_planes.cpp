@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "ahm/util/parallel.hpp"
 #include "edge_unfolding.hpp"
 
 namespace ahm::pointcloud {
@@ -21,11 +22,18 @@ struct PartPlanes {
   double noise;
 };
 
-PartPlanes find_planes(const CleanPoints& cloud, std::span<const Vec3> normals, const NeighborSearch& search, Index k,
-                       const CloudOptions& options) {
+/// Without the noise.
+PartPlanes planes_and_neighborhoods(const CleanPoints& cloud, std::span<const Vec3> normals,
+                                    const NeighborSearch& search, Index k, const CloudOptions& options) {
   PartPlanes result;
   result.neighborhoods = find_neighborhoods(cloud, search, k, options);
   result.planes = find_tangent_planes(cloud, normals, search, result.neighborhoods, options);
+  return result;
+}
+
+PartPlanes find_planes(const CleanPoints& cloud, std::span<const Vec3> normals, const NeighborSearch& search, Index k,
+                       const CloudOptions& options) {
+  PartPlanes result = planes_and_neighborhoods(cloud, normals, search, k, options);
   result.noise = offset_noise(cloud, result.neighborhoods, result.planes, options.threads);
   return result;
 }
@@ -117,10 +125,16 @@ class NoisyParts {
 
 NoisyPlanes find_noisy_planes(const CleanPoints& cloud, std::span<const Vec3> normals, const NeighborSearch& search,
                               const CloudOptions& options) {
-  PartPlanes whole = find_planes(cloud, normals, search, options.k.value_or(default_neighbors), options);
+  PartPlanes whole = planes_and_neighborhoods(cloud, normals, search, options.k.value_or(default_neighbors), options);
   NoisyPlanes result;
-  result.parts = options.parts_apart ? std::make_unique<const CloudParts>(whole.neighborhoods)
-                                     : std::make_unique<const CloudParts>(static_cast<Index>(cloud.points.size()));
+  const auto find_noise = [&] {
+    whole.noise = offset_noise(cloud, whole.neighborhoods, whole.planes, options.threads);
+  };
+  const auto find_parts = [&] {
+    result.parts = options.parts_apart ? std::make_unique<const CloudParts>(whole.neighborhoods)
+                                       : std::make_unique<const CloudParts>(static_cast<Index>(cloud.points.size()));
+  };
+  detail::run_both(options.threads != 1, find_noise, find_parts);
   if (result.parts->count == 1) {
     if (!options.k) whole = widened(std::move(whole), cloud, normals, search, options);
     result.neighborhoods = std::move(whole.neighborhoods);

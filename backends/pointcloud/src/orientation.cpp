@@ -3,22 +3,55 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
+#include "ahm/util/parallel.hpp"
 #include "ahm/util/vec.hpp"
 
 namespace ahm::pointcloud {
 namespace {
 
-/// Edge numbers, flattest first.
-std::vector<std::uint32_t> flattest_first(const WeightedEdges& edges, const TangentPlanes& planes) {
-  std::vector<float> bends(edges.tails.size());
-  for (std::size_t e = 0; e < bends.size(); ++e)
-    bends[e] = bend(planes.normals[edges.tails[e]], planes.normals[edges.heads[e]]);
-  std::vector<std::uint32_t> order(bends.size());
-  std::iota(order.begin(), order.end(), 0u);
-  std::sort(order.begin(), order.end(),
-            [&](std::uint32_t a, std::uint32_t b) { return bends[a] != bends[b] ? bends[a] < bends[b] : a < b; });
-  return order;
+/// An edge between two trees, by their roots.
+struct Bridge {
+  Index root, other;
+  float bend;
+  signed char sign;  ///< of the one root's normal times that of the other
+};
+
+std::vector<Bridge> bridges(const WeightedEdges& edges, const TangentPlanes& planes, unsigned threads) {
+  std::vector<Bridge> result(edges.tails.size());
+  detail::for_each_index(result.size(), threads, [&](std::size_t e) {
+    const Index a = edges.tails[e], b = edges.heads[e];
+    const Vec3 &normal = planes.normals[a], &other = planes.normals[b];
+    result[e] = {a, b, bend(normal, other), static_cast<signed char>(dot(normal, other) < 0 ? -1 : 1)};
+  });
+  return result;
+}
+
+/// The spanning forest of the flattest edges, of equally flat ones the first, by Boruvka's algorithm: all trees at once take
+/// the flattest edge that leaves them, until none does.
+SignedForest flattest_forest(Index n, std::vector<Bridge> bridges) {
+  SignedForest forest(n);
+  constexpr auto none = static_cast<std::size_t>(-1);
+  std::vector<std::size_t> flattest(static_cast<std::size_t>(n), none);
+  while (!bridges.empty()) {
+    for (std::size_t e = 0; e < bridges.size(); ++e)
+      for (const Index root : {bridges[e].root, bridges[e].other})
+        if (std::size_t& best = flattest[root]; best == none || bridges[e].bend < bridges[best].bend) best = e;
+    for (const Bridge& bridge : bridges)
+      for (const Index root : {bridge.root, bridge.other})
+        if (const std::size_t best = std::exchange(flattest[root], none); best != none)
+          forest.join(bridges[best].root, bridges[best].other, bridges[best].sign);
+    std::size_t left = 0;
+    for (const Bridge& bridge : bridges) {
+      const auto [root, sign] = forest.find(bridge.root);
+      const auto [other, other_sign] = forest.find(bridge.other);
+      if (root != other)
+        bridges[left++] = {root, other, bridge.bend, static_cast<signed char>(sign * bridge.sign * other_sign)};
+    }
+    bridges.resize(left);
+  }
+  return forest;
 }
 
 }  // namespace
@@ -99,29 +132,33 @@ std::vector<char> have_thin_walls(const CleanPoints& cloud, const TangentPlanes&
 }
 
 std::vector<Index> orient_normals(const CleanPoints& cloud, const WeightedEdges& edges, bool signs_given,
-                                  const CloudParts& parts, const std::vector<char>& kept, TangentPlanes& planes) {
+                                  const CloudParts& parts, const std::vector<char>& kept, unsigned threads,
+                                  TangentPlanes& planes) {
   const auto n = static_cast<Index>(cloud.points.size());
-  SignedForest forest(n);
-  for (std::uint32_t e : flattest_first(edges, planes)) {
-    const Index a = edges.tails[e], b = edges.heads[e];
-    forest.join(a, b, dot(planes.normals[a], planes.normals[b]) < 0 ? -1 : 1);
+  SignedForest forest = flattest_forest(n, bridges(edges, planes, threads));
+  std::vector<Index> tree(static_cast<std::size_t>(n));  // of each point
+  std::vector<Evidence> evidence;
+  for (Index i = 0; i < n; ++i) {
+    const Index root = forest.find(i).vertex;  // the smallest of its tree
+    if (root == i) evidence.emplace_back();
+    tree[i] = root == i ? static_cast<Index>(evidence.size()) - 1 : tree[root];
+    evidence[tree[i]].count(cloud.points[i]);
   }
-  std::vector<Evidence> evidence(static_cast<std::size_t>(n));
-  for (Index i = 0; i < n; ++i) evidence[forest.find(i).vertex].count(cloud.points[i]);
   const auto is_kept = [&](Index i) { return kept[parts.of_point[i]] != 0; };
   for (Index i = 0; i < n; ++i) {
     if (is_kept(i)) continue;
-    const auto [root, sign] = forest.find(i);
+    const signed char sign = forest.find(i).sign;
     planes.normals[i] = static_cast<double>(sign) * planes.normals[i];
-    evidence[root].weigh(cloud.points[i], planes.normals[i], sign);
+    evidence[tree[i]].weigh(cloud.points[i], planes.normals[i], sign);
   }
+  std::vector<char> turned;
+  for (const Evidence& of_tree : evidence) turned.push_back(of_tree.sign(signs_given) < 0);
   std::vector<Index> against_majority(static_cast<std::size_t>(parts.count), 0);
   for (Index i = 0; i < n; ++i) {
     if (is_kept(i)) continue;
-    const auto [root, sign] = forest.find(i);
-    const bool turn = evidence[root].sign(signs_given) < 0;
+    const bool turn = turned[tree[i]] != 0;
     if (turn) planes.normals[i] = -1.0 * planes.normals[i];
-    against_majority[parts.of_point[i]] += (sign < 0) != turn;
+    against_majority[parts.of_point[i]] += (forest.find(i).sign < 0) != turn;
   }
   return against_majority;
 }

@@ -63,6 +63,7 @@ struct Evidence {
 /// @param kept  parts whose normals stay as they are
 /// @return of each part, the number of normals that are flipped against the majority of their component
 std::vector<Index> orient_normals(const CleanPoints& cloud, const WeightedEdges& edges, bool signs_given,
-                                  const CloudParts& parts, const std::vector<char>& kept, TangentPlanes& planes);
+                                  const CloudParts& parts, const std::vector<char>& kept, unsigned threads,
+                                  TangentPlanes& planes);
 
 }  // namespace ahm::pointcloud

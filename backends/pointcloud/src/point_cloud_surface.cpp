@@ -9,6 +9,7 @@
 #include "ahm/error.hpp"
 #include "ahm/graph/components.hpp"
 #include "ahm/surface/gluing.hpp"
+#include "ahm/util/parallel.hpp"
 #include "ahm/util/stopwatch.hpp"
 #include "ahm/util/text.hpp"
 #include "clean_points.hpp"
@@ -100,7 +101,7 @@ std::vector<char> orient(const CleanPoints& cloud, const WeightedEdges& edges, s
                          const CloudParts& parts, const std::vector<char>& cut, const CloudOptions& options,
                          TangentPlanes& planes, CloudDetails& report) {
   const bool signs_given = !given.empty() && options.normal_signs == NormalSigns::automatic;
-  const std::vector<Index> turned = orient_normals(cloud, edges, signs_given, parts, cut, planes);
+  const std::vector<Index> turned = orient_normals(cloud, edges, signs_given, parts, cut, options.threads, planes);
   std::vector<char> trusted = cut;
   report.turned = 0;
   for (std::size_t part = 0; part < turned.size() && signs_given; ++part) {
@@ -136,14 +137,16 @@ std::vector<Index> number_vertices(const CleanPoints& cloud, const WeightedEdges
 
 void fill_vertex_data(CsrGraphData& g, std::span<const Vec3> input, const CleanPoints& cloud,
                       const TangentPlanes& planes, const WeightedEdges& edges,
-                      const std::vector<Index>& vertex_of_clean) {
+                      const std::vector<Index>& vertex_of_clean, Index vertices, unsigned threads) {
   g.length_unit = cloud.unit;
-  for (std::size_t i = 0; i < cloud.points.size(); ++i) {
-    if (vertex_of_clean[i] < 0) continue;
+  g.masses.resize(static_cast<std::size_t>(vertices));
+  g.frames.resize(g.masses.size());
+  detail::for_each_index(cloud.points.size(), threads, [&](std::size_t i) {
+    if (vertex_of_clean[i] < 0) return;
     const PlaneAxes axes(planes.normals[i]);
-    g.masses.push_back(edges.masses[i]);
-    g.frames.push_back({input[cloud.input[i]], axes.x, axes.y, planes.normals[i]});
-  }
+    g.masses[vertex_of_clean[i]] = edges.masses[i];
+    g.frames[vertex_of_clean[i]] = {input[cloud.input[i]], axes.x, axes.y, planes.normals[i]};
+  });
 }
 
 }  // namespace
@@ -189,7 +192,7 @@ PointCloudSurface PointCloudSurface::build(std::span<const Vec3> input, std::spa
 
   const WeightedEdges edges = triangles.empty()
                                   ? WeightedEdges{{}, {}, {}, std::vector<double>(cloud.points.size(), 0.0)}
-                                  : tufted_laplacian(cloud, planes, triangles, *parts, details);
+                                  : tufted_laplacian(cloud, planes, triangles, *parts, options.threads, details);
   triangles = {};
   details.mollification *= cloud.unit;
   options.progress.step("laplacian", 1.0);
@@ -199,7 +202,7 @@ PointCloudSurface PointCloudSurface::build(std::span<const Vec3> input, std::spa
   const std::vector<char> trusted = orient(cloud, edges, normals, *parts, cut, options, planes, details);
   CsrGraphData data = tangent_edges(cloud, planes, edges, vertex_of_clean, details.vertices, per_part(*parts, trusted),
                                     noise, options.threads, details);
-  fill_vertex_data(data, points, cloud, planes, edges, vertex_of_clean);
+  fill_vertex_data(data, points, cloud, planes, edges, vertex_of_clean, details.vertices, options.threads);
   CsrGraph graph(std::move(data));
   details.components = connected_components(graph).count;
 

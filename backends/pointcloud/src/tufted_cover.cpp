@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include "ahm/surface/half_edges.hpp"
+#include "ahm/util/parallel.hpp"
 #include "ahm/util/vec.hpp"
+#include "points_per_task.hpp"
 
 namespace ahm::pointcloud {
 namespace {
@@ -34,18 +37,19 @@ double opposite_cotangent(double a, double b, double c) {
 /// and 2t + 1, corners (a, c, b).
 class TuftedCover {
  public:
-  TuftedCover(const CleanPoints& cloud, const TangentPlanes& planes, const std::vector<Triangle>& triangles)
-      : n_(static_cast<Index>(cloud.points.size())) {
+  TuftedCover(const CleanPoints& cloud, const TangentPlanes& planes, const std::vector<Triangle>& triangles,
+              unsigned threads)
+      : n_(static_cast<Index>(cloud.points.size())), threads_(threads) {
     const std::size_t halves = triangles.size() * 6;
     tail_.resize(halves);
     twin_.resize(halves);
     length_.resize(halves);
-    for (std::size_t t = 0; t < triangles.size(); ++t) {
+    detail::for_each_index(triangles.size(), threads_, [&](std::size_t t) {
       const auto [a, b, c] = triangles[t];
       std::copy_n(std::array{a, b, c, a, c, b}.begin(), 6, tail_.begin() + 6 * static_cast<std::ptrdiff_t>(t));
-    }
-    for (std::size_t h = 0; h < halves; ++h)
-      length_[h] = norm(cloud.points[tail_[next(static_cast<Half>(h))]] - cloud.points[tail_[h]]);
+      for (std::size_t h = 6 * t; h < 6 * t + 6; ++h)
+        length_[h] = norm(cloud.points[tail_[next(static_cast<Half>(h))]] - cloud.points[tail_[h]]);
+    });
     glue(cloud, planes, triangles);
   }
 
@@ -66,7 +70,7 @@ class TuftedCover {
     return epsilon;
   }
   void mollify(const PerPart& epsilon) {
-    for (std::size_t h = 0; h < length_.size(); ++h) length_[h] += epsilon.at(tail_[h]);
+    detail::for_each_index(length_.size(), threads_, [&](std::size_t h) { length_[h] += epsilon.at(tail_[h]); });
   }
 
   /// Faces at points that lack triangles are tainted, and so are those that a flip joins with them.
@@ -84,21 +88,14 @@ class TuftedCover {
 
   /// Flips edges until all are Delaunay [BS07]. Returns the number of flips.
   Offset flip_to_delaunay() {
-    std::vector<Half> stack;
-    for (Half h = 0; h < static_cast<Half>(tail_.size()); ++h)
-      if (h < twin_[h] && !is_delaunay(h)) stack.push_back(h);
     Offset flips = 0;
     detail::flip_to_delaunay(
-        std::move(stack), 4 * tail_.size() + 1024, [&](Half h) { return twin_[h]; },
+        not_delaunay(), 4 * tail_.size() + 1024, [&](Half h) { return twin_[h]; },
         [&](Half h) { return is_delaunay(h); }, [&](Half h) { flip(h), ++flips; });
     return flips;
   }
 
-  bool is_delaunay() const {
-    for (Half h = 0; h < static_cast<Half>(tail_.size()); ++h)
-      if (h < twin_[h] && !is_delaunay(h)) return false;
-    return true;
-  }
+  bool is_delaunay() const { return not_delaunay().empty(); }
 
   WeightedEdges weighted_edges() const;
 
@@ -108,13 +105,42 @@ class TuftedCover {
   bool is_delaunay(Half h) const {
     const Half t = twin_[h];
     // Two sides of one face: folded onto itself, it cannot be flipped and is Delaunay.
-    return h / 3 == t / 3 || cotangent(h) + cotangent(t) >= -1e-10;
+    return h / 3 == t / 3 || (is_acute(h) && is_acute(t)) || cotangent(h) + cotangent(t) >= -1e-10;
+  }
+  /// Whether the opposite angle is at most a right one: the sign of its cotangent.
+  bool is_acute(Half h) const {
+    const double a = length_[h], b = length_[next(h)], c = length_[previous(h)];
+    return b * b + c * c - a * a >= 0;
+  }
+
+  /// Of each edge that is not, one half; ascending.
+  std::vector<Half> not_delaunay() const {
+    const auto halves = static_cast<Offset>(tail_.size());
+    std::vector<std::vector<Half>> parts(static_cast<std::size_t>((halves + halves_per_task - 1) / halves_per_task));
+    detail::parallel_chunks(halves, halves_per_task, threads_, [&](Offset begin, Offset end) {
+      for (Half h = begin; h < end; ++h)
+        if (h < twin_[h] && !is_delaunay(h)) parts[begin / halves_per_task].push_back(h);
+    });
+    std::vector<Half> result;
+    for (const auto& part : parts) result.insert(result.end(), part.begin(), part.end());
+    return result;
   }
 
   void flip(Half h);
+
+  /// A side of a triangle, seen from its smaller end.
+  struct Side {
+    Index head;
+    bool left;               ///< whether the triangle is left of it
+    Half forward, backward;  ///< in the copy whose front it is on, and in the other one
+  };
   void glue(const CleanPoints& cloud, const TangentPlanes& planes, const std::vector<Triangle>& triangles);
+  void glue_around(std::span<const Side> edge, std::vector<Side>& left, std::vector<Side>& right);
+
+  static constexpr Offset halves_per_task = 1 << 16;
 
   Index n_;
+  unsigned threads_;
   std::vector<Index> tail_;
   std::vector<Half> twin_;
   std::vector<double> length_;
@@ -153,11 +179,11 @@ void TuftedCover::flip(Half h) {
 /// left and right of the edge alternate, since local triangulations overlap and consecutive faces should continue each
 /// other.
 void TuftedCover::glue(const CleanPoints& cloud, const TangentPlanes& planes, const std::vector<Triangle>& triangles) {
-  struct Side {
-    Index head;
-    bool left;
-    Half forward, backward;
+  // Of triangle t the corners of the sides 3 t, ..., and their half-edges in the first copy and in the second, from 6 t on.
+  struct Corners {
+    int from, to, apex, forward, backward;
   };
+  constexpr Corners corners[] = {{0, 1, 2, 0, 5}, {1, 2, 0, 1, 4}, {0, 2, 1, 3, 2}};
   // Bucket the sides by their smaller end.
   std::vector<Offset> begin(static_cast<std::size_t>(n_) + 1, 0);
   for (const Triangle& t : triangles) {
@@ -165,79 +191,116 @@ void TuftedCover::glue(const CleanPoints& cloud, const TangentPlanes& planes, co
     ++begin[t[1] + 1];
   }
   for (Index i = 0; i < n_; ++i) begin[i + 1] += begin[i];
-  std::vector<Side> sides(triangles.size() * 3);
-  std::vector<Offset> fill(begin.begin(), begin.end() - 1);
-  for (std::size_t f = 0; f < triangles.size(); ++f) {
-    const auto [a, b, c] = triangles[f];
-    const Half front = static_cast<Half>(6 * f), back = front + 3;
-    auto add = [&](Index from, Index to, Index apex, Half forward, Half backward) {
-      const Vec3 &p = cloud.points[from], edge = cloud.points[to] - p, across = cloud.points[apex] - p;
-      const bool left = dot(cross(edge, across), planes.normals[from]) > 0;
-      sides[fill[from]++] = {to, left, forward, backward};
-    };
-    add(a, b, c, front, back + 2);
-    add(b, c, a, front + 1, back + 1);
-    add(a, c, b, back, front + 2);
-  }
-  std::vector<Side> ring, right;
-  for (Index i = 0; i < n_; ++i) {
-    const auto first = sides.begin() + begin[i], last = sides.begin() + begin[i + 1];
-    std::stable_sort(first, last, [](const Side& p, const Side& q) { return p.head < q.head; });
-    for (auto group = first; group != last;) {
-      const auto end = std::find_if(group, last, [&](const Side& s) { return s.head != group->head; });
-      // Relative to the first side, so that the signs of the normals do not matter.
-      const auto middle =
-          std::stable_partition(group, end, [left = group->left](const Side& s) { return s.left == left; });
-      ring.clear();
-      for (auto l = group, r = middle; l != middle || r != end;) {
-        if (l != middle) ring.push_back(*l++);
-        if (r != end) ring.push_back(*r++);
+  std::vector<Offset> bucketed(triangles.size() * 3), fill(begin.begin(), begin.end() - 1);
+  for (std::size_t t = 0; t < triangles.size(); ++t)
+    for (std::size_t s = 0; s < 3; ++s)
+      bucketed[fill[triangles[t][corners[s].from]]++] = static_cast<Offset>(3 * t + s);
+
+  const auto side_of = [&](Offset number) -> Side {
+    const Triangle& t = triangles[number / 3];
+    const Corners& of = corners[number % 3];
+    const Vec3 &p = cloud.points[t[of.from]], edge = cloud.points[t[of.to]] - p, across = cloud.points[t[of.apex]] - p;
+    const Half first = 6 * (number / 3);
+    return {t[of.to], dot(cross(edge, across), planes.normals[t[of.from]]) > 0, first + of.forward,
+            first + of.backward};
+  };
+  detail::parallel_chunks(n_, points_per_task, threads_, [&](Offset from, Offset to) {
+    std::vector<Side> sides, left, right;
+    for (Offset i = from; i < to; ++i) {
+      sides.clear();
+      for (Offset k = begin[i]; k < begin[i + 1]; ++k) sides.push_back(side_of(bucketed[k]));
+      // Those of one edge in the order of their triangles.
+      std::sort(sides.begin(), sides.end(), [](const Side& p, const Side& q) {
+        return p.head != q.head ? p.head < q.head : p.forward < q.forward;
+      });
+      for (auto group = sides.begin(); group != sides.end();) {
+        const auto end = std::find_if(group, sides.end(), [&](const Side& s) { return s.head != group->head; });
+        glue_around(std::span(group, end), left, right);
+        group = end;
       }
-      for (std::size_t s = 0; s < ring.size(); ++s) {
-        const Half forward = ring[s].forward, backward = ring[(s + 1) % ring.size()].backward;
-        twin_[forward] = backward;
-        twin_[backward] = forward;
-      }
-      group = end;
     }
+  });
+}
+
+/// @param left, right  workspace
+void TuftedCover::glue_around(std::span<const Side> edge, std::vector<Side>& left, std::vector<Side>& right) {
+  left.clear();
+  right.clear();
+  // Relative to the first side, so that the signs of the normals do not matter.
+  for (const Side& side : edge) (side.left == edge.front().left ? left : right).push_back(side);
+  const Side* last = nullptr;
+  const auto follow = [&](const Side& side) {
+    if (last) twin_[last->forward] = side.backward, twin_[side.backward] = last->forward;
+    last = &side;
+  };
+  for (std::size_t k = 0; k < std::max(left.size(), right.size()); ++k) {
+    if (k < left.size()) follow(left[k]);
+    if (k < right.size()) follow(right[k]);
   }
+  follow(left.front());
 }
 
 WeightedEdges TuftedCover::weighted_edges() const {
   WeightedEdges result;
-  result.masses.assign(static_cast<std::size_t>(n_), 0.0);
-  std::vector<Offset> begin(static_cast<std::size_t>(n_) + 1, 0);
-  for (std::size_t h = 0; h < tail_.size(); ++h) ++begin[std::min(tail_[h], tail_[next(static_cast<Half>(h))]) + 1];
-  for (Index i = 0; i < n_; ++i) begin[i + 1] += begin[i];
-  struct Entry {
-    Index head;
-    double weight;
+  // Bucket the half-edges by their smaller end.
+  std::vector<Offset> begin(static_cast<std::size_t>(n_) + 1, 0), bucketed(tail_.size());
+  const auto low = [&](Half h) { return std::min(tail_[h], tail_[next(h)]); };
+  const auto bucket = [&] {
+    for (Half h = 0; h < static_cast<Half>(tail_.size()); ++h) ++begin[low(h) + 1];
+    for (Index i = 0; i < n_; ++i) begin[i + 1] += begin[i];
+    std::vector<Offset> fill(begin.begin(), begin.end() - 1);
+    for (Half h = 0; h < static_cast<Half>(tail_.size()); ++h) bucketed[fill[low(h)]++] = h;
   };
-  std::vector<Entry> entries(tail_.size());
-  std::vector<Offset> fill(begin.begin(), begin.end() - 1);
-  for (Half h = 0; h < static_cast<Half>(tail_.size()); ++h) {
-    const auto [low, high] = std::minmax(tail_[h], tail_[next(h)]);
-    // Half the cotangent, and half of that for each of the two layers.
-    entries[fill[low]++] = {high, low == high ? 0.0 : 0.25 * cotangent(h)};
-    if (h % 3 == 0) {
+  const auto weigh_points = [&] {
+    result.masses.assign(static_cast<std::size_t>(n_), 0.0);
+    for (std::size_t h = 0; h < tail_.size(); h += 3) {
       const double third = triangle_area(length_[h], length_[h + 1], length_[h + 2]) / 6.0;
       for (int s = 0; s < 3; ++s) result.masses[tail_[h + s]] += third;
     }
-  }
-  for (Index i = 0; i < n_; ++i) {
-    const auto first = entries.begin() + begin[i], last = entries.begin() + begin[i + 1];
-    std::stable_sort(first, last, [](const Entry& a, const Entry& b) { return a.head < b.head; });
-    for (auto entry = first; entry != last;) {
-      const Index head = entry->head;
-      double weight = 0;
-      for (; entry != last && entry->head == head; ++entry) weight += entry->weight;
-      // Diagonals of cocircular quadrilaterals weigh nothing but rounding; they are no edges.
-      if (head == i || weight <= 1e-10) continue;
-      result.tails.push_back(i);
-      result.heads.push_back(head);
-      result.weights.push_back(weight);
+  };
+  detail::run_both(threads_ != 1, bucket, weigh_points);
+
+  std::vector<WeightedEdges> parts(static_cast<std::size_t>((n_ + points_per_task - 1) / points_per_task));
+  detail::parallel_chunks(n_, points_per_task, threads_, [&](Offset from, Offset to) {
+    struct Entry {
+      Index head;
+      Half half;
+      double weight;
+    };
+    std::vector<Entry> entries;
+    WeightedEdges& part = parts[from / points_per_task];
+    for (Offset i = from; i < to; ++i) {
+      entries.clear();
+      for (Offset k = begin[i]; k < begin[i + 1]; ++k) {
+        const Half h = bucketed[k];
+        const Index high = std::max(tail_[h], tail_[next(h)]);
+        // Half the cotangent, and half of that for each of the two layers. Loops are dropped.
+        if (high != i) entries.push_back({high, h, 0.25 * cotangent(h)});
+      }
+      std::sort(entries.begin(), entries.end(),
+                [](const Entry& a, const Entry& b) { return a.head != b.head ? a.head < b.head : a.half < b.half; });
+      for (auto entry = entries.begin(); entry != entries.end();) {
+        const Index head = entry->head;
+        double weight = 0;
+        for (; entry != entries.end() && entry->head == head; ++entry) weight += entry->weight;
+        // Diagonals of cocircular quadrilaterals weigh nothing but rounding; they are no edges.
+        if (weight <= 1e-10) continue;
+        part.tails.push_back(static_cast<Index>(i));
+        part.heads.push_back(head);
+        part.weights.push_back(weight);
+      }
     }
-  }
+  });
+  const auto join = [&](auto WeightedEdges::*array) {
+    std::size_t size = 0;
+    for (const WeightedEdges& part : parts) size += (part.*array).size();
+    (result.*array).reserve(size);
+    for (const WeightedEdges& part : parts)
+      (result.*array).insert((result.*array).end(), (part.*array).begin(), (part.*array).end());
+  };
+  join(&WeightedEdges::tails);
+  join(&WeightedEdges::heads);
+  join(&WeightedEdges::weights);
   return result;
 }
 
@@ -249,8 +312,9 @@ double mollification_of(double a, double b, double c, double mean_length) {
 }
 
 WeightedEdges tufted_laplacian(const CleanPoints& cloud, const TangentPlanes& planes,
-                               const std::vector<Triangle>& triangles, const CloudParts& parts, CloudDetails& report) {
-  TuftedCover cover(cloud, planes, triangles);
+                               const std::vector<Triangle>& triangles, const CloudParts& parts, unsigned threads,
+                               CloudDetails& report) {
+  TuftedCover cover(cloud, planes, triangles, threads);
   std::vector<double> epsilon = cover.least_mollification(parts);
   report.mollification = *std::max_element(epsilon.begin(), epsilon.end());
   cover.mollify(PerPart(parts.of_point, std::move(epsilon)));
@@ -261,7 +325,7 @@ WeightedEdges tufted_laplacian(const CleanPoints& cloud, const TangentPlanes& pl
 
 WeightedEdges tufted_laplacian(const CleanPoints& cloud, const TangentPlanes& planes,
                                const std::vector<Triangle>& triangles, CoverPart& part, CloudDetails& report) {
-  TuftedCover cover(cloud, planes, triangles);
+  TuftedCover cover(cloud, planes, triangles, 1);
   cover.mollify(part.mollification);
   cover.taint(part.complete);
   report.flips = cover.flip_to_delaunay();

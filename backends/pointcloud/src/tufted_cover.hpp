@@ -19,7 +19,8 @@ struct WeightedEdges {
 /// intrinsic Delaunay triangulation and sums its cotangent weights over the two layers. Parallel edges are summed,
 /// loops dropped. Fills `flips` and `mollification` (in units of the clean points, the largest of the parts) of the report.
 WeightedEdges tufted_laplacian(const CleanPoints& cloud, const TangentPlanes& planes,
-                               const std::vector<Triangle>& triangles, const CloudParts& parts, CloudDetails& report);
+                               const std::vector<Triangle>& triangles, const CloudParts& parts, unsigned threads,
+                               CloudDetails& report);
 
 /// How far the least mollification of a triangle with these side lengths is from none, given the mean length of all sides of
 /// its part of the cloud: the largest of these over all triangles there, if positive, is added to every edge.

@@ -11,6 +11,7 @@
 #include "ahm/surface/directions.hpp"
 #include "ahm/surface/exact/flat_triangles.hpp"
 #include "ahm/surface/face_tree.hpp"
+#include "ahm/util/parallel.hpp"
 #include "ahm/util/text.hpp"
 #include "ahm/util/vec.hpp"
 #include "row_tree.hpp"
@@ -30,13 +31,14 @@ Surface::~Surface() = default;
 Surface::Surface(Surface&&) noexcept = default;
 Surface& Surface::operator=(Surface&&) noexcept = default;
 
-std::vector<Vec3> Surface::normals() const {
+std::vector<Vec3> Surface::normals(unsigned threads) const {
   Vec3 none;
   none.fill(std::numeric_limits<double>::quiet_NaN());
   std::vector<Vec3> result(rows().row_count(), none);
-  for (std::size_t r = 0; r < result.size(); ++r)
+  detail::for_each_index(result.size(), threads, [&](std::size_t r) {
     if (const auto vertex = rows().vertex(Row(static_cast<Index>(r))))
       if (const auto frame = graph().frame(vertex->index)) result[r] = frame->normal;
+  });
   return result;
 }
 

@@ -8,6 +8,7 @@
 #include "ahm/fields/distance.hpp"
 #include "ahm/maps/place_in_space.hpp"
 #include "ahm/surface/surface.hpp"
+#include "ahm/util/parallel.hpp"
 #include "ahm/util/vec.hpp"
 #include "visit_point.hpp"
 
@@ -32,7 +33,7 @@ struct Best {
 
 }  // namespace
 
-RowLogMap Surface::on_rows(const LogMap& map) const {
+RowLogMap Surface::on_rows(const LogMap& map, unsigned threads) const {
   check_map(map);
   // Distances that are not exact may be below the straight line, which no way on the surface is.
   const auto source = map.method() == Method::heat ? start_of_lines(graph(), map.source()) : std::nullopt;
@@ -42,15 +43,15 @@ RowLogMap Surface::on_rows(const LogMap& map) const {
   result.vertex.resize(n);
   const std::span<const double> error = map.error_estimate();
   if (!error.empty()) result.error_estimate = none;
-  for (std::size_t r = 0; r < n; ++r) {
+  detail::for_each_index(n, threads, [&](std::size_t r) {
     const Best best(map, rows(), Row(static_cast<Index>(r)));
     result.status[r] = best.status;
-    if (!best.vertex) continue;
+    if (!best.vertex) return;
     const Vertex v = *best.vertex;
     const double away = no_shorter_than(source ? distance(positions()[r], *source) : 0, map.distance(v));
     if (away > map.radius()) {
       result.status[r] = Status::beyond_radius;
-      continue;
+      return;
     }
     const auto phi = map.coordinates(v);
     result.u[r] = phi[0];
@@ -60,7 +61,7 @@ RowLogMap Surface::on_rows(const LogMap& map) const {
     result.angle[r] = std::atan2(phi[1], phi[0]);
     if (!error.empty()) result.error_estimate[r] = error[v.index];
     result.vertex[r] = best.vertex;
-  }
+  });
   return result;
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "ahm/error.hpp"
 #include "ahm/fields/vector_heat.hpp"
@@ -69,6 +70,23 @@ TEST(MapQuality, FindsTheCutLocus) {
     EXPECT_GT(quality[r * around + around / 4], 0.99) << "ring " << r;
     EXPECT_GT(quality[r * around], 0.99) << "ring " << r;
   }
+}
+
+TEST(MapQuality, IsTheSameBesideAFrontMadeWithoutTheMap) {
+  CsrGraphData data = tube(61, 60);
+  data.is_delaunay = false;
+  const CsrGraph graph(data);
+  const Source source = Source::at_vertex(Vertex(30 * 60));
+  for (const double radius : {std::numeric_limits<double>::infinity(), 10 * graph.mean_edge_length()}) {
+    const LogMap map = LogMapSolver(graph).solve(source, {.radius = radius});
+    const QualityFront front(graph, source, radius);
+    ASSERT_NE(front.get(), nullptr);
+    const std::vector<double> expected = map_quality(graph, map), quality = map_quality(graph, map, front, 2);
+    for (Index i = 0; i < graph.size(); ++i)
+      ASSERT_TRUE(quality[i] == expected[i] || (std::isnan(quality[i]) && std::isnan(expected[i]))) << "vertex " << i;
+  }
+  data.is_delaunay = true;
+  EXPECT_EQ(QualityFront(CsrGraph(data), source).get(), nullptr);
 }
 
 TEST(MapQuality, IsNanWhereTheMapIs) {

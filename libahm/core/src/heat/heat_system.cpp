@@ -43,8 +43,9 @@ class SystemOf final : public HeatSystem {
   void solve_B(std::span<double> X, Offset columns) const override { B->solve(X, columns); }
 
   FactorStatistics& statistics_to_fill() { return statistics_; }
-  void finish(const TangentGraph& graph) {
-    check_lost_heat(lost_heat(*this, graph, graph.size()));
+  /// @param lost  heat, by A
+  void finish(double lost) {
+    check_lost_heat(lost);
     statistics_.bytes = A->bytes() + B->bytes();
     statistics_.nonzeros_A = A->nonzeros();
     statistics_.nonzeros_B = B->nonzeros();
@@ -119,13 +120,17 @@ std::unique_ptr<const HeatSystem> factored_system(const TangentGraph& graph, std
   system->statistics_to_fill().analyze_seconds = stopwatch.lap();
   options.progress.step("factor", 0.0);
 
+  double lost = 0;
   detail::run_both(
       options.threads != 1,
       [&] { without_openmp_regions([&] { system->B.emplace(matrices.B, blocks ? *blocks : scalar, name_B); }); },
-      [&] { without_openmp_regions([&] { system->A.emplace(matrices.A, scalar, name_A); }); });
+      [&] {
+        without_openmp_regions([&] { system->A.emplace(matrices.A, scalar, name_A); });
+        lost = lost_heat(*system, graph, graph.size());
+      });
   system->statistics_to_fill().factor_seconds = stopwatch.lap();
   options.progress.step("factor", 1.0);
-  system->finish(graph);
+  system->finish(lost);
   return system;
 }
 
@@ -134,7 +139,7 @@ std::unique_ptr<const HeatSystem> iterative_system(const TangentGraph& graph, st
   auto [system, matrices] = begin<ConjugateGradient>(graph, std::move(tau), options);
   system->A.emplace(matrices.A, name_A);
   system->B.emplace(matrices.B, name_B);
-  system->finish(graph);
+  system->finish(lost_heat(*system, graph, graph.size()));
   return std::move(system);
 }
 

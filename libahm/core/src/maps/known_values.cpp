@@ -49,11 +49,11 @@ double KnownValues::level(Index number) const {
 
 void KnownValues::axes(Index number, double* out) const {
   // One vertex is a field of its own, a column after the other.
-  std::vector<double> columns(width_);
+  Scratch columns(width_);
   const int d = layout_.dimension;
   for (int a = 0; a < layout_.columns(); ++a)
-    for (int c = 0; c < d; ++c) columns[a * d + c] = frame(number)[layout_.place(c, a)];
-  FrameField(1, layout_, columns).axes(0, out);
+    for (int c = 0; c < d; ++c) columns.data()[a * d + c] = frame(number)[layout_.place(c, a)];
+  FrameField(1, layout_, columns.span()).axes(0, out);
 }
 
 HeatExponents KnownValues::exponents_for(std::span<const Index> numbers) const {

@@ -283,10 +283,10 @@ std::vector<LogMap> LogMapSolver::Impl::solve_block(std::size_t time, std::span<
       for (const Source& source : sources) unfolded.push_back(unfolded_from(graph, stars(), source, map));
   };
   if (strategy == Strategy::march) {
-    unfold();
     for (std::size_t s = 0; s < sources.size(); ++s) {
       March on = front(time, map, threads);
-      on.run(sources[s]);
+      detail::run_both(
+          threads > 1, [&] { on.run(sources[s]); }, unfold);
       maps.push_back(marched(on, sources[s], unfolded[s], map, threads));
     }
     return maps;

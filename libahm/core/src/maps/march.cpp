@@ -214,7 +214,7 @@ std::vector<Index> March::search(const Source* source) {
     const Star star = graph_.star(from);
     ahead.clear();  // a copy: the star's life may end when another one is asked for
     for (std::size_t e = 0; e < star.degree(); ++e)
-      if (star.weights[e] != 0 && !accepted(star.neighbors[e]))
+      if (star.weights[e] != 0 && may_be_nearer(star.neighbors[e], distance))
         ahead.push_back({star.neighbors[e], star.weights[e], length(star.log(e))});
     for (const Ahead& edge : ahead)
       if (team_.owns(edge.vertex))
@@ -255,6 +255,13 @@ std::vector<Index> March::search(const Source* source) {
   while (cross());
   for (Index vertex : touched) way(vertex).tentative = far_away;
   return found;
+}
+
+/// Whether a vertex is ahead, unless the search knows a way to it that is no longer than this.
+bool March::may_be_nearer(Index vertex, double distance) const {
+  const Index number = numbers_.find(vertex);
+  if (number < 0) return number != ReachedNumbers::forgotten;
+  return !ways_[number]->accepted && !(ways_[number]->tentative <= distance);
 }
 
 /// How much of the decay of heat an edge brings.

@@ -13,6 +13,7 @@
 #include "ahm/util/small_math.hpp"
 #include "ahm/util/vec.hpp"
 #include "heat/component_scales.hpp"
+#include "maps/run_front.hpp"
 
 namespace ahm {
 namespace {
@@ -37,9 +38,7 @@ double difference(std::span<const double> phi, double d, std::span<const double>
 /// The vectors of a front over edges that are no triangulation, beside those of a map.
 class Comparison {
  public:
-  Comparison(const TangentGraph& graph, const LogMap& map) : map_(map), front_(graph, nullptr, true) {
-    front_.add(map.source());
-    front_.run(reach * map.radius());
+  Comparison(const TangentGraph& graph, const LogMap& map, const UnfoldingFront& front) : map_(map), front_(front) {
     std::vector<Vertex> reached, some;
     for (Index i = 0; i < graph.size(); ++i)
       if (map.status()[i] == Status::ok) reached.emplace_back(i);
@@ -59,13 +58,11 @@ class Comparison {
 
  private:
   const LogMap& map_;
-  UnfoldingFront front_;
+  const UnfoldingFront& front_;
   double belief_;  ///< in what the front says
 };
 
-}  // namespace
-
-std::vector<double> map_quality(const TangentGraph& graph, const LogMap& map, unsigned threads) {
+void check_map(const TangentGraph& graph, const LogMap& map) {
   if (map.size() != graph.size() || map.dimension() != graph.dimension())
     throw InvalidArgument("map_quality: the map has " + std::to_string(map.size()) + " vertices, the graph " +
                           std::to_string(graph.size()));
@@ -73,13 +70,17 @@ std::vector<double> map_quality(const TangentGraph& graph, const LogMap& map, un
     throw InvalidArgument("a map from a curve has no quality: its coordinates are no vectors to it");
   if (map.spread().empty())
     throw InvalidArgument("map_without_spread", "the map has no spread", "solve with MapOptions::spread");
+}
+
+std::vector<double> quality_beside(const TangentGraph& graph, const LogMap& map, const UnfoldingFront* front,
+                                   unsigned threads) {
   std::vector<double> quality(static_cast<std::size_t>(graph.size()), std::numeric_limits<double>::quiet_NaN());
   const ComponentScales scales(graph);
   // Distances of heat may be below the straight line; unfolded ones hardly are.
   const bool may_be_short = map.method() == Method::heat && !graph.is_delaunay();
   const std::optional<Vec3> source = may_be_short ? place_in_space(graph, map.source()) : std::nullopt;
   std::optional<Comparison> comparison;
-  if (may_be_short && graph.dimension() == 2) comparison.emplace(graph, map);
+  if (front) comparison.emplace(graph, map, *front);
   detail::for_each_index(quality.size(), threads, [&](std::size_t i) {
     if (map.status()[i] != Status::ok) return;
     const Vertex vertex(static_cast<Index>(i));
@@ -97,6 +98,28 @@ std::vector<double> map_quality(const TangentGraph& graph, const LogMap& map, un
     quality[i] = 1 / (1 + doubt * doubt);
   });
   return quality;
+}
+
+}  // namespace
+
+QualityFront::QualityFront(const TangentGraph& graph, const Source& source, double radius,
+                           const std::stop_token& stop) {
+  if (graph.is_delaunay() || graph.dimension() != 2 || source.is_curve()) return;
+  front_.emplace(graph, nullptr, true);
+  front_->add(source);
+  run_front(*front_, graph, reach * radius, stop);
+}
+
+std::vector<double> map_quality(const TangentGraph& graph, const LogMap& map, const QualityFront& front,
+                                unsigned threads) {
+  check_map(graph, map);
+  return quality_beside(graph, map, map.method() == Method::heat ? front.get() : nullptr, threads);
+}
+
+std::vector<double> map_quality(const TangentGraph& graph, const LogMap& map, unsigned threads) {
+  check_map(graph, map);
+  if (map.method() != Method::heat) return quality_beside(graph, map, nullptr, threads);
+  return map_quality(graph, map, QualityFront(graph, map.source(), map.radius()), threads);
 }
 
 }  // namespace ahm

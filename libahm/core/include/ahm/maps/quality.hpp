@@ -8,10 +8,14 @@
 /// \endcode
 #pragma once
 
+#include <limits>
+#include <optional>
+#include <stop_token>
 #include <vector>
 
 #include "ahm/graph/tangent_graph.hpp"
 #include "ahm/maps/log_map.hpp"
+#include "ahm/maps/unfolding_front.hpp"
 
 namespace ahm {
 
@@ -37,5 +41,23 @@ inline constexpr double trusted_quality = 0.5;
 /// @return n numbers in (0, 1]; NaN where the map is not ok
 /// @throws InvalidArgument when the map is from a curve, belongs to another graph or was made without its spread
 std::vector<double> map_quality(const TangentGraph& graph, const LogMap& map, unsigned threads = 0);
+
+/// The front that `map_quality` compares a map of heat with, where the edges are no Delaunay triangulation: most of its work, and
+/// nothing that it must know the map for, so that it can be done on a core that the map leaves idle.
+class QualityFront {
+ public:
+  /// @param radius  of the map
+  /// @throws Cancelled
+  QualityFront(const TangentGraph& graph, const Source& source, double radius = std::numeric_limits<double>::infinity(),
+               const std::stop_token& stop = {});
+  /// Null on Delaunay triangulations, whose maps have a front of their own, in other dimensions than 2, and from curves.
+  const UnfoldingFront* get() const noexcept { return front_ ? &*front_ : nullptr; }
+
+ private:
+  std::optional<UnfoldingFront> front_;
+};
+/// The same quality. @param front  from the source of the map, with its radius
+std::vector<double> map_quality(const TangentGraph& graph, const LogMap& map, const QualityFront& front,
+                                unsigned threads = 0);
 
 }  // namespace ahm

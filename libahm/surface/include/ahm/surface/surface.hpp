@@ -59,7 +59,8 @@ class Surface {
   /// One per row, as given, world units; empty for a surface given by lengths alone.
   virtual std::span<const Vec3> positions() const = 0;
   /// Unit normal per row, as the graph uses it (orientation included); NaN where there is none.
-  std::vector<Vec3> normals() const;
+  /// @param threads  0: one per core
+  std::vector<Vec3> normals(unsigned threads = 0) const;
   /// Faces of the input, as given, of rows; empty for clouds.
   virtual FaceList faces() const { return {}; }
   /// The vertex at every corner of `faces()`, faces turned over (but in their place, the first corner staying first) so
@@ -94,8 +95,9 @@ class Surface {
   exact::MeshPoint flat_point(const EdgePoint& point) const;
 
   /// A map on the rows: of several vertices of a row the one nearest to the source counts.
+  /// @param threads  0: one per core
   /// @throws InvalidArgument (another graph's map)
-  RowLogMap on_rows(const LogMap& map) const;
+  RowLogMap on_rows(const LogMap& map, unsigned threads = 0) const;
   /// (u, v) at every corner of `faces()`, as given; NaN where the map is not ok. Here, of the corner's vertex; meshes cut
   /// the map open along its cut locus. @throws InvalidArgument (another graph's map)
   virtual std::vector<Vec2> on_corners(const LogMap& map) const;

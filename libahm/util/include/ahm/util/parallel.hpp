@@ -57,6 +57,19 @@ void for_each_index(std::size_t n, unsigned threads, const Body& body) {
   });
 }
 
+/// Sorts by a strict total order, of which no two values are equal.
+template <class T, class Less>
+void parallel_sort(std::vector<T>& values, unsigned threads, const Less& less) {
+  const auto n = static_cast<Offset>(values.size());
+  Offset sorted = 1 << 16;
+  const auto at = [&](Offset k) { return values.begin() + std::min(k, n); };
+  parallel_chunks(n, sorted, threads, [&](Offset begin, Offset end) { std::sort(at(begin), at(end), less); });
+  for (; sorted < n; sorted *= 2)
+    parallel_chunks(n, 2 * sorted, threads, [&](Offset begin, Offset end) {
+      std::inplace_merge(at(begin), at(begin + sorted), at(end), less);
+    });
+}
+
 /// Runs two tasks at once when `concurrently`, else one after the other; the first exception is rethrown when both
 /// ended.
 template <class First, class Second>
