@@ -12,6 +12,7 @@
 #include "ahm/maps/log_map_solver.hpp"
 #include "ahm/pointcloud/point_cloud_surface.hpp"
 #include "ahm/polymesh/polygon_mesh_surface.hpp"
+#include "ahm/surface/exact/exact_geodesics.hpp"
 #include "ahm/testing/clouds.hpp"
 #include "ahm/testing/triangle_meshes.hpp"
 #include "ahm/testing/vectors.hpp"
@@ -100,7 +101,7 @@ TEST(SurfaceCurve, FollowsTheFacesBetweenFewPoints) {
   EXPECT_LT(curve.jump, 0.5 * edge + 1e-12);
   ASSERT_EQ(curve.samples.size(), curve.points.size());
   // The samples are the sources of an exact map: u = 0 .. length along the curve.
-  const auto [map, labels] = ExactGeodesics(mesh).log_map(curve.samples);
+  const auto [map, labels] = ExactGeodesics(mesh).log_map(curve.samples).map;
   EXPECT_NEAR(map.coordinates(mesh.vertex(Row(3)))[0], 0, 1e-9);
   EXPECT_NEAR(map.coordinates(mesh.vertex(Row(200)))[0], curve.length, 1e-9);
   for (Index r : {3, 200}) EXPECT_NEAR(map.coordinates(mesh.vertex(Row(r)))[1], 0, 1e-9);
@@ -150,6 +151,27 @@ TEST(SurfaceCurve, TellsWhichLinesAreNoPaths) {
       std::vector{at(0), at(11)});
   EXPECT_EQ(twisted.straight, 1);
   EXPECT_NE(twisted.straight_reason, "");
+}
+
+// Behind cut loci coordinates are those of no way: |v| is nearly nothing where the curve is far.
+TEST(SurfaceCurve, ItsRowsAreAsFarAsTheSurfaceIsLong) {
+  const Mesh mesh = torus(2000);
+  const auto surface = trimesh::TriangleMeshSurface::build(mesh.positions, mesh.faces);
+  const LogMapSolver solver(surface.graph());
+  const double edge = surface.graph().mean_edge_length() * surface.graph().length_unit();
+  for (const StrokeOptions& shape : {StrokeOptions{}, StrokeOptions{.closed = true}}) {
+    const CurvePoint given[] = {Row(100), Row(120), Row(400)};
+    const SurfaceCurve curve = draw_curve(surface, given, shape);
+    const RowLogMap rows = rows_from_curve(surface, solver.solve(curve.source), curve);
+    const LogMap exact = ExactGeodesics(surface).log_map(curve.samples).map;
+    double most = 0;
+    for (Index i = 0; i < mesh.vertices(); ++i) {
+      const double d = exact.distance(surface.vertex(Row(i)));
+      EXPECT_NEAR(rows.distance[i], d, 0.25 * edge + 0.02 * d) << i;
+      most = std::max(most, d - std::abs(rows.v[i]));
+    }
+    EXPECT_GT(most, 5 * edge);  // there are such rows
+  }
 }
 
 TEST(SurfaceCurve, SaysWhatIsWrongWithACurve) {

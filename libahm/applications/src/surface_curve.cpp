@@ -271,8 +271,18 @@ double reach_from_curve(const TangentGraph& graph, double radius) {
 
 RowLogMap rows_from_curve(const Surface& surface, const LogMap& map, const SurfaceCurve& curve, double radius) {
   RowLogMap rows = surface.on_rows(map);
+  const TangentGraph& graph = surface.graph();
+  const bool unfolded = graph.is_delaunay() || map.method() == Method::exact;
+  const double slack = unfolded ? 0 : graph.mean_edge_length() * graph.length_unit();
   for (std::size_t i = 0; i < rows.u.size(); ++i) {
-    if (curve.shape) rows.distance[i] = distance_from_curve(rows.u[i], rows.v[i], curve.length, *curve.shape);
+    if (curve.shape) {
+      // Between samples the curve is nearer by no more than half a piece makes it, in the plane.
+      const double from_samples = rows.distance[i], share = std::min(1.0, curve.jump / 2 / from_samples);
+      const double least = from_samples * std::sqrt(1 - share * share);
+      const double in_plane = distance_from_curve(rows.u[i], rows.v[i], curve.length, *curve.shape);
+      if (!std::isnan(from_samples))
+        rows.distance[i] = std::clamp(in_plane, std::max(0.0, least - slack), from_samples + slack);
+    }
     if (!(rows.distance[i] > radius)) continue;
     rows.u[i] = rows.v[i] = rows.angle[i] = rows.distance[i] = NAN;
     for (std::vector<double>* more : {&rows.spread, &rows.error_estimate})
