@@ -179,6 +179,7 @@ TEST_F(MpiMap, LocalMapsAreThoseOfOneProcess) {
   const auto alone = cloud.folder.directory() / "alone", together = cloud.folder.directory() / "together";
   distributed::TiledLocalMapOptions options;
   options.maps.radius = 4;
+  options.maps.no_shorter_than_line = true;
   options.features = {"count", "curvature"};
   for (std::size_t t = 0; t < graph.tiles(); ++t) write_local_maps(graph, t, alone, options);
   run(cloud, 3, {"local-maps", cloud.tiles, "-o", together, "--radius", "4", "--feature", "count", "curvature"});

@@ -272,8 +272,8 @@ double reach_from_curve(const TangentGraph& graph, double radius) {
 RowLogMap rows_from_curve(const Surface& surface, const LogMap& map, const SurfaceCurve& curve, double radius) {
   RowLogMap rows = surface.on_rows(map);
   const TangentGraph& graph = surface.graph();
-  const bool unfolded = graph.is_delaunay() || map.method() == Method::exact;
-  const double slack = unfolded ? 0 : graph.mean_edge_length() * graph.length_unit();
+  const double edges = map.method() == Method::exact ? 0 : graph.is_delaunay() ? 0.25 : 1;
+  const double slack = edges * graph.mean_edge_length() * graph.length_unit();
   for (std::size_t i = 0; i < rows.u.size(); ++i) {
     if (curve.shape) {
       // Between samples the curve is nearer by no more than half a piece makes it, in the plane.

@@ -7,6 +7,7 @@
 #include "ahm/fields/vector_heat.hpp"
 #include "ahm/graph/components.hpp"
 #include "ahm/grid/grid_graph.hpp"
+#include "ahm/maps/quality.hpp"
 
 namespace ahm::test {
 namespace {
@@ -97,6 +98,22 @@ TEST(GridObstacles, AreGoneRoundByHeat) {
                here = grid.vertex(std::array<Index, 2>{2, 14});
   const auto field = extend_scalar(solver, std::array{below, above}, std::array{0.0, 1.0});
   EXPECT_GT(field.values[here.index], 0.99);
+}
+
+TEST(GridObstacles, AreSeenByTheQuality) {
+  for (const double height : {1.0, 2.5}) {
+    Grid rooms{.shape = {41, 22}, .spacing = {1, height}};
+    rooms.blocked.assign(40 * 21, 0);
+    for (std::size_t x = 0; x < 37; ++x) rooms.blocked[10 * 40 + x] = 1;
+    const GridGraph grid(rooms);
+    const auto at = [&](Index x, Index y) { return static_cast<std::size_t>(grid.vertex(std::array{x, y}).index); };
+    const auto quality =
+        map_quality(grid, LogMapSolver(grid).solve(Source::at_vertex(grid.vertex(std::array<Index, 2>{2, 5}))));
+    for (Index y = 0; y <= 10; ++y)
+      for (Index x = 0; x <= 40; ++x) EXPECT_NEAR(quality[at(x, y)], 1, 1e-9) << x << " " << y;
+    for (Index y = 11; y <= 21; ++y)
+      for (Index x = 0; x <= 15; ++x) EXPECT_LT(quality[at(x, y)], trusted_quality) << x << " " << y;
+  }
 }
 
 TEST(GridObstacles, EqualASmallerGridWhereTheyFillTheRest) {

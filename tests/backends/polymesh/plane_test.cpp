@@ -1,8 +1,11 @@
 // On planar meshes the map is the identity, whatever the polygons.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
+#include "ahm/maps/quality.hpp"
 #include "polygon_graphs.hpp"
 
 namespace ahm::test {
@@ -91,6 +94,36 @@ TEST(PolygonPlane, DoesNotDependOnTheOrderOfCorners) {
     const auto map = surface.on_rows(solver.solve(surface.source(FacePoint{face, weights}).source));
     EXPECT_LT(plane_error(mesh, map, origin, {(q[0] - p[0]) / length, (q[1] - p[1]) / length}), 1e-11);
   }
+}
+
+TEST(PolygonPlane, QualitySeesASlot) {
+  const Polygons whole = quad_grid(20);
+  Polygons mesh{whole.positions, {0}, {}, whole.plane};
+  for (Index f = 0; f < whole.faces(); ++f) {
+    Vec2 middle{0, 0};
+    for (Index v : whole.face(f)) middle = {middle[0] + whole.plane[v][0] / 4, middle[1] + whole.plane[v][1] / 4};
+    if (!(std::abs(middle[0] - 0.5) < 0.06 && middle[1] < 0.8)) mesh.add(whole.face(f));
+  }
+  const auto surface = build(mesh);
+  const LogMap map = LogMapSolver(surface.graph()).solve(surface.source(Row(0)).source);
+  const std::vector<double> quality = map_quality(surface.graph(), map);
+  Index before = 0, behind = 0;
+  for (Index i = 0; i < mesh.vertices(); ++i) {
+    if (std::find(mesh.corners.begin(), mesh.corners.end(), i) == mesh.corners.end()) continue;
+    const double q = quality[surface.vertex(Row(i)).index];
+    const Vec2& p = mesh.plane[i];
+    const double around = std::hypot(0.45, 0.75) + std::hypot(p[0] - 0.45, p[1] - 0.75);
+    if (p[0] < 0.4) {
+      EXPECT_NEAR(q, 1, 1e-9) << i;
+      ++before;
+    }
+    if (p[0] > 0.6 && around > 1.3 * std::hypot(p[0], p[1])) {
+      EXPECT_LT(q, trusted_quality) << i;
+      ++behind;
+    }
+  }
+  EXPECT_GT(before, 50);
+  EXPECT_GT(behind, 50);
 }
 
 }  // namespace

@@ -59,8 +59,8 @@ struct TimedDistance {
 
 /// How far the variance of the ways of heat is from growing with sqrt(tau), as it does where the map is smooth in that.
 double doubt_by_spread(const TimedDistance& r, double c) {
-  const double expected = std::sqrt(2 * c) * r.first_spread * r.first_spread;
-  return expected > 0 ? std::abs(r.last_spread * r.last_spread / expected - 1) : 0.0;
+  const double ratio = r.last_spread / r.first_spread;  // not the squares, which numbers may not hold
+  return r.first_spread > 0 ? std::abs(ratio * ratio / std::sqrt(2 * c) - 1) : 0.0;
 }
 
 /// How much of the shortest time's distance is kept, at least as much as of phi: all of it where the limit is farther away

@@ -24,6 +24,8 @@ constexpr std::size_t most_neighbors = 200;
 /// By less than this share of the longest side do the sides of a triangle without area miss the triangle inequality.
 constexpr double degenerate = 1e-9;
 
+/// The third side of a triangle and the edge there differ by no more than this share, where stars agree on the triangle.
+constexpr double same_side = 0.01;
 /// Opposite angles of a quadrilateral on a circle sum to pi, but for rounding.
 constexpr double same_circle = 1e-6;
 /// Angles around a vertex whose edges are in this proportion to each other, or more, may miss the full turn by it: rounding of
@@ -345,14 +347,20 @@ double UnfoldingFront::agreement(const TangentGraph& graph, std::span<const Vert
   const auto find = [](const std::array<Seen, 2>& seen, Index neighbor) -> const Seen* {
     return seen[0].neighbor == neighbor ? &seen[0] : seen[1].neighbor == neighbor ? &seen[1] : nullptr;
   };
-  // Whether the corner of three is one of a triangle, or of a square without diagonals: its corners lie on a circle.
-  const auto agree = [&](Index vertex, Index right, Index left, double angle) {
-    const std::array<Seen, 2> of_right = beside(right, vertex), of_left = beside(left, vertex);
-    if (find(of_right, left) && find(of_left, right)) return true;
+  // Whether the corner of three is one of a triangle, also one that others cross, as those of a polygon do, or of a square
+  // without diagonals: its corners lie on a circle.
+  const auto agree = [&](Index vertex, const Corner& right, const Corner& left) {
+    const std::array<Seen, 2> of_right = beside(right.neighbor, vertex);
+    const double angle = std::atan2(right.sine, right.cosine),
+                 third = std::hypot(right.length * right.cosine - left.length, right.length * right.sine);
+    for (const Corner& side : others)
+      if (side.neighbor == left.neighbor && std::abs(side.length - third) <= same_side * third) return true;
+    const std::array<Seen, 2> of_left = beside(left.neighbor, vertex);
+    if (find(of_right, left.neighbor) && find(of_left, right.neighbor)) return true;
     for (const auto& [across, unused] : of_right) {
       if (across < 0 || across == vertex || !find(of_left, across)) continue;
-      const std::array<Seen, 2> of_across = beside(across, right);
-      const Seen* const opposite = find(of_across, left);
+      const std::array<Seen, 2> of_across = beside(across, right.neighbor);
+      const Seen* const opposite = find(of_across, left.neighbor);
       if (opposite && std::abs(angle + opposite->angle - std::numbers::pi) < same_circle) return true;
     }
     return false;
@@ -365,10 +373,10 @@ double UnfoldingFront::agreement(const TangentGraph& graph, std::span<const Vert
     Stars::append_corners(graph, vertex.index, neighbors, corners);
     for (std::size_t k = 0; k < corners.size(); ++k) {
       if (std::isnan(corners[k].cosine)) continue;
-      const Index right = corners[k].neighbor, left = next(corners, k);
-      if (!is_asked(right) || !is_asked(left)) continue;
+      const Corner &right = corners[k], &left = corners[k + 1 < corners.size() ? k + 1 : 0];
+      if (!is_asked(right.neighbor) || !is_asked(left.neighbor)) continue;
       ++seen;
-      agreed += agree(vertex.index, right, left, std::atan2(corners[k].sine, corners[k].cosine));
+      agreed += agree(vertex.index, right, left);
     }
   }
   return seen > 0 ? static_cast<double>(agreed) / static_cast<double>(seen) : 0;

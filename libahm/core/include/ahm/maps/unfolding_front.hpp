@@ -44,7 +44,8 @@ class UnfoldingFront {
 
   /// Of the triangles that these vertices see between their neighbours, the share that the other two corners see, too: 1 of a
   /// triangulation, less of a cloud with noise, where stars contradict each other. So do the corners of squares without
-  /// diagonals, as in grids. d = 2; 0 where there are no triangles.
+  /// diagonals, as in grids, and those with an edge of the right length opposite, as where diagonals of polygons cross. d = 2;
+  /// 0 where there are no triangles.
   static double agreement(const TangentGraph& graph, std::span<const Vertex> vertices);
 
   /// @param graph       must outlive the front
