@@ -18,7 +18,8 @@ namespace ahm {
 using RowLocalMaps = LocalMapsOf<Row>;
 
 /// `local_maps` with rows for neighbours (the first ones of their vertices). Vertices that the input does not have, as inside
-/// refined polygons, are left out; `LocalMapOptions::nearest` counts those that are left. Distances are no shorter than the straight line, as in `RowLogMap`.
+/// refined polygons, are left out; `LocalMapOptions::nearest` counts those that are left. Distances are no shorter than the
+/// straight line, as in `RowLogMap`.
 /// @throws as `local_maps`
 RowLocalMaps local_maps_on_rows(const Surface& surface, std::span<const Vertex> sources,
                                 const LocalMapOptions& options);
