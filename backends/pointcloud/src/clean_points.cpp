@@ -67,7 +67,8 @@ class CurvePlaces {
   explicit CurvePlaces(std::span<const Vec3> points) {
     double most = 0;
     for (const Vec3& p : points) most = std::max(most, largest(p));
-    to_digits_ = most > 0 ? std::scalbn(1.0, digits - 1 - std::ilogb(most)) : 1.0;
+    most = std::min(most, std::numeric_limits<double>::max());  // far outliers may be beyond numbers
+    to_digits_ = most > 0 ? digits - 1 - std::ilogb(most) : 0;
   }
   std::uint64_t operator()(const Vec3& p) const {
     return spread(of_axis(p[2])) << 2 | spread(of_axis(p[1])) << 1 | spread(of_axis(p[0]));
@@ -78,8 +79,9 @@ class CurvePlaces {
 
   /// The first digits, ascending.
   std::uint64_t of_axis(double x) const {
-    const auto first = static_cast<std::uint64_t>(std::abs(x) * to_digits_);
     constexpr std::uint64_t sign = std::uint64_t{1} << digits;
+    const double scaled = std::min(std::scalbn(std::abs(x), to_digits_), static_cast<double>(sign - 1));
+    const auto first = static_cast<std::uint64_t>(scaled);
     return x < 0 ? sign - 1 - first : sign + first;
   }
   /// Two zeros between any two digits.
@@ -91,7 +93,7 @@ class CurvePlaces {
     return (x | x << 2) & 0x1249249249249249;
   }
 
-  double to_digits_;
+  int to_digits_;  ///< exponent of two, whose power numbers may not hold
 };
 
 /// Copies the finite points; `kept` are their numbers.
