@@ -41,21 +41,30 @@ void wait_if_ending() {
   while (is_ending) ::pause();
 }
 
-/// Holds back the signals of this thread while it lives.
-class NoSignals {
+sigset_t all_signals() {
+  sigset_t all;
+  ::sigfillset(&all);
+  return all;
+}
+
+sigset_t pipe_signal() {
+  sigset_t pipe;
+  ::sigemptyset(&pipe);
+  ::sigaddset(&pipe, SIGPIPE);
+  return pipe;
+}
+
+/// Holds back signals of this thread while it lives.
+class BlockedSignals {
  public:
-  NoSignals() {
-    sigset_t all;
-    ::sigfillset(&all);
-    ::pthread_sigmask(SIG_SETMASK, &all, &before_);
-  }
-  ~NoSignals() {
+  explicit BlockedSignals(const sigset_t& signals) { ::pthread_sigmask(SIG_BLOCK, &signals, &before_); }
+  ~BlockedSignals() {
     const int error = errno;
     ::pthread_sigmask(SIG_SETMASK, &before_, nullptr);
     errno = error;
   }
-  NoSignals(const NoSignals&) = delete;
-  NoSignals& operator=(const NoSignals&) = delete;
+  BlockedSignals(const BlockedSignals&) = delete;
+  BlockedSignals& operator=(const BlockedSignals&) = delete;
 
  private:
   sigset_t before_{};
@@ -82,7 +91,7 @@ void forget(int& slot) noexcept {
 /// at the same time: it waits while a slot is being filled, so that this thread must not be interrupted by another handler
 /// then; and what begins after it waits here for the end of the process.
 int create(const std::filesystem::path& path, int& slot) {
-  const NoSignals undisturbed;
+  const BlockedSignals undisturbed(all_signals());
   slot = fill_slot(path);
   if (is_ending) forget(slot);
   wait_if_ending();
@@ -96,27 +105,23 @@ int create(const std::filesystem::path& path, int& slot) {
 class NoPipeSignal {
  public:
   NoPipeSignal() {
-    ::sigemptyset(&pipe_);
-    ::sigaddset(&pipe_, SIGPIPE);
     sigset_t pending;
     ::sigpending(&pending);
     was_pending_ = ::sigismember(&pending, SIGPIPE) == 1;
-    ::pthread_sigmask(SIG_BLOCK, &pipe_, &before_);
   }
   ~NoPipeSignal() {
     const int error = errno;
     const timespec now{};
-    while (!was_pending_ && ::sigtimedwait(&pipe_, nullptr, &now) == -1 && errno == EINTR) {
+    const sigset_t pipe = pipe_signal();
+    while (!was_pending_ && ::sigtimedwait(&pipe, nullptr, &now) == -1 && errno == EINTR) {
     }
-    ::pthread_sigmask(SIG_SETMASK, &before_, nullptr);
     errno = error;
   }
   NoPipeSignal(const NoPipeSignal&) = delete;
   NoPipeSignal& operator=(const NoPipeSignal&) = delete;
 
  private:
-  sigset_t pipe_{};
-  sigset_t before_{};
+  BlockedSignals blocked_{pipe_signal()};  // until after the destructor's wait
   bool was_pending_ = false;
 };
 

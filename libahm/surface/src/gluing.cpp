@@ -6,6 +6,7 @@
 
 #include "ahm/error.hpp"
 #include "ahm/util/text.hpp"
+#include "ahm/util/vec.hpp"
 
 namespace ahm::detail {
 namespace {
@@ -185,13 +186,11 @@ class Gluer {
   Gluing result_;
 };
 
-double largest_coordinate(const Vec3& p) { return std::max({std::abs(p[0]), std::abs(p[1]), std::abs(p[2])}); }
-
 /// Multiplies by the power of two that brings the largest coordinate into [1, 2); returns its exponent.
 int normalize_scale(std::vector<Vec3>& points) {
-  double largest = 0;
-  for (const Vec3& p : points) largest = std::max(largest, largest_coordinate(p));
-  const int exponent = largest > 0 ? std::ilogb(largest) : 0;
+  double most = 0;
+  for (const Vec3& p : points) most = std::max(most, largest(p));
+  const int exponent = most > 0 ? std::ilogb(most) : 0;
   for (Vec3& p : points)
     for (double& x : p) x = std::scalbn(x, -exponent);
   return exponent;
@@ -273,14 +272,13 @@ void check_positions(std::span<const Vec3> points) {
 
 NormalizedPositions normalize_positions(std::vector<Vec3> points, std::span<const Index> part) {
   const int exponent = normalize_scale(points);
-  std::vector<double> largest(points.size(), 0.0);
-  for (std::size_t v = 0; v < points.size(); ++v)
-    largest[part[v]] = std::max(largest[part[v]], largest_coordinate(points[v]));
+  std::vector<double> most(points.size(), 0.0);
+  for (std::size_t v = 0; v < points.size(); ++v) most[part[v]] = std::max(most[part[v]], largest(points[v]));
   center(points, part);
   const int exponent_about_middles = normalize_scale(points);
   std::vector<double> rounding(points.size());
   for (std::size_t v = 0; v < points.size(); ++v)
-    rounding[v] = std::scalbn(std::numeric_limits<double>::epsilon() * largest[part[v]], -exponent_about_middles);
+    rounding[v] = std::scalbn(std::numeric_limits<double>::epsilon() * most[part[v]], -exponent_about_middles);
   return {std::move(points), std::move(rounding), std::scalbn(1.0, exponent + exponent_about_middles)};
 }
 

@@ -64,8 +64,9 @@ double doubt_by_spread(const TimedDistance& r, double c) {
 }
 
 /// How much of the shortest time's distance is kept, at least as much as of phi: all of it where the limit is farther away
-/// than on smooth surfaces, where heat spreads otherwise than on them, where edges do not follow the way, as between points that are much
-/// denser one way than the other, and where, with three times, the two limits disagree by as much as they correct.
+/// than on smooth surfaces, where heat spreads otherwise than on them, where edges do not follow the way, as between points
+/// that are much denser one way than the other, and where, with three times, the two limits disagree by as much as they
+/// correct.
 double share_of_first_distance(double share_of_phi, const TimedDistance& r, double c, double path) {
   if (!(r.first > 0)) return share_of_phi;
   const double correction = std::abs(r.limit() - r.first);

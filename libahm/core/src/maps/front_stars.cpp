@@ -324,23 +324,27 @@ std::optional<UnfoldingFront::Stars::HalfSide> UnfoldingFront::Stars::midpoint(I
 double UnfoldingFront::agreement(const TangentGraph& graph, std::span<const Vertex> vertices) {
   std::vector<Neighbor> neighbors;
   std::vector<Corner> corners, others;
-  const auto next = [](const std::vector<Corner>& around, std::size_t k) {
-    return around[k + 1 < around.size() ? k + 1 : 0].neighbor;
+  const auto next = [](const std::vector<Corner>& around, std::size_t k) -> const Corner& {
+    return around[k + 1 < around.size() ? k + 1 : 0];
   };
-  // What a vertex sees beside one of its neighbours, on either side, and the angle between.
+  // The corners around another vertex, until the next one is asked for.
+  const auto around = [&](Index vertex) -> const std::vector<Corner>& {
+    others.clear();
+    Stars::append_corners(graph, vertex, neighbors, others);
+    return others;
+  };
+  // What stands beside a neighbour, on either side, and the angle between.
   struct Seen {
     Index neighbor = -1;
     double angle = 0;
   };
-  const auto beside = [&](Index vertex, Index neighbor) {
+  const auto beside = [&](const std::vector<Corner>& star, Index neighbor) {
     std::array<Seen, 2> found;
-    others.clear();
-    Stars::append_corners(graph, vertex, neighbors, others);
-    for (std::size_t k = 0; k < others.size(); ++k) {
-      if (std::isnan(others[k].cosine)) continue;
-      const double angle = std::atan2(others[k].sine, others[k].cosine);
-      if (others[k].neighbor == neighbor) found[0] = {next(others, k), angle};
-      if (next(others, k) == neighbor) found[1] = {others[k].neighbor, angle};
+    for (std::size_t k = 0; k < star.size(); ++k) {
+      if (std::isnan(star[k].cosine)) continue;
+      const double angle = std::atan2(star[k].sine, star[k].cosine);
+      if (star[k].neighbor == neighbor) found[0] = {next(star, k).neighbor, angle};
+      if (next(star, k).neighbor == neighbor) found[1] = {star[k].neighbor, angle};
     }
     return found;
   };
@@ -350,16 +354,16 @@ double UnfoldingFront::agreement(const TangentGraph& graph, std::span<const Vert
   // Whether the corner of three is one of a triangle, also one that others cross, as those of a polygon do, or of a square
   // without diagonals: its corners lie on a circle.
   const auto agree = [&](Index vertex, const Corner& right, const Corner& left) {
-    const std::array<Seen, 2> of_right = beside(right.neighbor, vertex);
     const double angle = std::atan2(right.sine, right.cosine),
                  third = std::hypot(right.length * right.cosine - left.length, right.length * right.sine);
-    for (const Corner& side : others)
+    const std::vector<Corner>& star = around(right.neighbor);
+    for (const Corner& side : star)
       if (side.neighbor == left.neighbor && std::abs(side.length - third) <= same_side * third) return true;
-    const std::array<Seen, 2> of_left = beside(left.neighbor, vertex);
+    const std::array<Seen, 2> of_right = beside(star, vertex), of_left = beside(around(left.neighbor), vertex);
     if (find(of_right, left.neighbor) && find(of_left, right.neighbor)) return true;
-    for (const auto& [across, unused] : of_right) {
-      if (across < 0 || across == vertex || !find(of_left, across)) continue;
-      const std::array<Seen, 2> of_across = beside(across, right.neighbor);
+    for (const Seen& across : of_right) {
+      if (across.neighbor < 0 || across.neighbor == vertex || !find(of_left, across.neighbor)) continue;
+      const std::array<Seen, 2> of_across = beside(around(across.neighbor), right.neighbor);
       const Seen* const opposite = find(of_across, left.neighbor);
       if (opposite && std::abs(angle + opposite->angle - std::numbers::pi) < same_circle) return true;
     }
@@ -373,7 +377,7 @@ double UnfoldingFront::agreement(const TangentGraph& graph, std::span<const Vert
     Stars::append_corners(graph, vertex.index, neighbors, corners);
     for (std::size_t k = 0; k < corners.size(); ++k) {
       if (std::isnan(corners[k].cosine)) continue;
-      const Corner &right = corners[k], &left = corners[k + 1 < corners.size() ? k + 1 : 0];
+      const Corner &right = corners[k], &left = next(corners, k);
       if (!is_asked(right.neighbor) || !is_asked(left.neighbor)) continue;
       ++seen;
       agreed += agree(vertex.index, right, left);
