@@ -1,6 +1,7 @@
 #include "heat/heat_system.hpp"
 
 #include <cmath>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <tuple>
@@ -33,8 +34,51 @@ double mean_mass(const TangentGraph& graph) {
 /// Heat may be lost as if masses were greater by this share, which bends distances by half of it and flat graphs not at all.
 constexpr double most_loss = 1e-6;
 
-/// A and B as two objects of one kind that solve: CholeskyFactor or ConjugateGradient.
-template <class Solver>
+/// A pattern's analysis for A and for B, which have the same one where B is complex.
+class Analysis {
+ public:
+  Analysis(const AssembledOperators& matrices, const HeatOptions& options)
+      : scalar_(matrices.A, options.ordering, options.supernodal) {}
+
+  const SymbolicCholesky& of_A() const { return scalar_; }
+  /// @param dimension  of the graph
+  const SymbolicCholesky& of_B(const SparseUpper& B, int dimension) {
+    if (!B.is_complex && !blocks_) blocks_.emplace(B, scalar_, dimension);
+    return blocks_ ? *blocks_ : scalar_;
+  }
+
+ private:
+  SymbolicCholesky scalar_;
+  std::optional<SymbolicCholesky> blocks_;
+};
+
+/// B's factor, made when it is first solved with.
+class LateFactor {
+ public:
+  LateFactor(SparseUpper B, Analysis analysis, int dimension)
+      : B_(std::move(B)), analysis_(std::move(analysis)), dimension_(dimension) {}
+
+  void solve(std::span<double> X, Offset columns) const {
+    std::call_once(once_, [&] {
+      without_openmp_regions([&] { factor_.emplace(B_, analysis_->of_B(B_, dimension_), name_B); });
+      B_ = {};
+      analysis_.reset();
+    });
+    factor_->solve(X, columns);
+  }
+  static Offset nonzeros() { return 0; }
+  static std::size_t bytes() { return 0; }
+
+ private:
+  mutable std::once_flag once_;
+  mutable SparseUpper B_;
+  mutable std::optional<Analysis> analysis_;
+  mutable std::optional<CholeskyFactor> factor_;
+  int dimension_;
+};
+
+/// A and B as two objects that solve: CholeskyFactor, LateFactor or ConjugateGradient.
+template <class Solver, class SolverOfB = Solver>
 class SystemOf final : public HeatSystem {
  public:
   SystemOf(std::vector<double> tau, double scaling) : HeatSystem(std::move(tau), scaling) {}
@@ -51,15 +95,15 @@ class SystemOf final : public HeatSystem {
     statistics_.nonzeros_B = B->nonzeros();
   }
 
-  std::optional<Solver> A, B;
+  std::optional<Solver> A;
+  std::optional<SolverOfB> B;
 };
 
 /// The checks and the assembly that every system begins with.
-template <class Solver>
-std::pair<std::unique_ptr<SystemOf<Solver>>, AssembledOperators> begin(const TangentGraph& graph,
-                                                                       std::vector<double> tau,
-                                                                       const HeatOptions& options) {
-  auto system = std::make_unique<SystemOf<Solver>>(std::move(tau), mass_scaling(mean_mass(graph)));
+template <class System>
+std::pair<std::unique_ptr<System>, AssembledOperators> begin(const TangentGraph& graph, std::vector<double> tau,
+                                                             const HeatOptions& options) {
+  auto system = std::make_unique<System>(std::move(tau), mass_scaling(mean_mass(graph)));
   options.progress.step("assemble", 0.0);
   detail::Stopwatch stopwatch;
   AssembledOperators matrices = assemble(graph, system->tau(), system->scaling());
@@ -110,22 +154,20 @@ std::unique_ptr<const HeatSystem> factored_system(const TangentGraph& graph, std
                                                   const HeatOptions& options) {
   std::unique_ptr<SystemOf<CholeskyFactor>> system;
   AssembledOperators matrices;
-  std::tie(system, matrices) = begin<CholeskyFactor>(graph, std::move(tau), options);
+  std::tie(system, matrices) = begin<SystemOf<CholeskyFactor>>(graph, std::move(tau), options);
   detail::Stopwatch stopwatch;
   options.progress.step("analyze", 0.0);
 
-  const SymbolicCholesky scalar(matrices.A, options.ordering, options.supernodal);
-  std::optional<SymbolicCholesky> blocks;
-  if (!matrices.B.is_complex) blocks.emplace(matrices.B, scalar, graph.dimension());
+  Analysis analysis(matrices, options);
+  const SymbolicCholesky& of_B = analysis.of_B(matrices.B, graph.dimension());
   system->statistics_to_fill().analyze_seconds = stopwatch.lap();
   options.progress.step("factor", 0.0);
 
   double lost = 0;
   detail::run_both(
-      options.threads != 1,
-      [&] { without_openmp_regions([&] { system->B.emplace(matrices.B, blocks ? *blocks : scalar, name_B); }); },
+      options.threads != 1, [&] { without_openmp_regions([&] { system->B.emplace(matrices.B, of_B, name_B); }); },
       [&] {
-        without_openmp_regions([&] { system->A.emplace(matrices.A, scalar, name_A); });
+        without_openmp_regions([&] { system->A.emplace(matrices.A, analysis.of_A(), name_A); });
         lost = lost_heat(*system, graph, graph.size());
       });
   system->statistics_to_fill().factor_seconds = stopwatch.lap();
@@ -134,9 +176,19 @@ std::unique_ptr<const HeatSystem> factored_system(const TangentGraph& graph, std
   return system;
 }
 
+std::unique_ptr<const HeatSystem> heat_first_system(const TangentGraph& graph, std::vector<double> tau,
+                                                    const HeatOptions& options) {
+  auto [system, matrices] = begin<SystemOf<CholeskyFactor, LateFactor>>(graph, std::move(tau), options);
+  Analysis analysis(matrices, options);
+  without_openmp_regions([&] { system->A.emplace(matrices.A, analysis.of_A(), name_A); });
+  system->B.emplace(std::move(matrices.B), std::move(analysis), graph.dimension());
+  system->finish(lost_heat(*system, graph, graph.size()));
+  return std::move(system);
+}
+
 std::unique_ptr<const HeatSystem> iterative_system(const TangentGraph& graph, std::vector<double> tau,
                                                    const HeatOptions& options) {
-  auto [system, matrices] = begin<ConjugateGradient>(graph, std::move(tau), options);
+  auto [system, matrices] = begin<SystemOf<ConjugateGradient>>(graph, std::move(tau), options);
   system->A.emplace(matrices.A, name_A);
   system->B.emplace(matrices.B, name_B);
   system->finish(lost_heat(*system, graph, graph.size()));

@@ -50,6 +50,11 @@ void check_lost_heat(double lost);
 std::unique_ptr<const HeatSystem> factored_system(const TangentGraph& graph, std::vector<double> tau,
                                                   const HeatOptions& options);
 
+/// The same, but B is factored when it is first solved with; statistics are those of A.
+/// @throws as `HeatOperators`; and so does the first `solve_B`
+std::unique_ptr<const HeatSystem> heat_first_system(const TangentGraph& graph, std::vector<double> tau,
+                                                    const HeatOptions& options);
+
 /// By conjugate gradients; block graphs only. Errors are relative to the largest value of a solution, which is enough for
 /// the thin bands of a march.
 /// @throws as `HeatOperators`

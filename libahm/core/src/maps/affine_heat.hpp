@@ -49,6 +49,10 @@ class AffineHeat {
   void diffuse();
   /// Solves for lambda alone: enough for variants that put no frames into their system, but for `frames` and `coordinates_at`.
   void diffuse_heat();
+  /// Solves for the frames alone.
+  void diffuse_frames();
+  /// Of one source: all but vertices and heat may be given after `diffuse_heat`.
+  RightHandSide& right_hand_side(std::size_t source) { return rhs_[source]; }
 
   /// Solves for the variant's unknown, in units of `solution_unit(graph)`.
   void solve();
@@ -93,7 +97,6 @@ class AffineHeat {
   FrameField frames(std::size_t source) const;
 
  private:
-  void diffuse_frames();
   std::vector<double> translations() const;
   double distance_by(std::size_t source, Index vertex, double second_moment) const;
   std::size_t frame_size() const { return static_cast<std::size_t>(layout_.columns()) * n_ * d_; }

@@ -9,6 +9,8 @@
 
 namespace ahm {
 
+constexpr std::int32_t no_exponent = std::numeric_limits<std::int32_t>::min() / 2;
+
 KnownValues::KnownValues(const TangentGraph& graph, const VariantSystem& system, bool with_frames)
     : system_(system),
       layout_(graph.transport_layout()),
@@ -18,11 +20,16 @@ KnownValues::KnownValues(const TangentGraph& graph, const VariantSystem& system,
       rows_(row_width()),
       exponents_(1) {}
 
-void KnownValues::take(Index number, Index place, const AffineHeat& heat, std::size_t source, HeatExponents exponents) {
+void KnownValues::take_heat(Index number, double lambda, std::int32_t exponent) {
   rows_.grow_to(number + 1);
   exponents_.grow_to(number + 1);
+  *rows_[number] = lambda;
+  exponents_[number]->heat = exponent;
+}
+
+void KnownValues::take_values(Index number, Index place, const AffineHeat& heat, std::size_t source,
+                              std::int32_t frame_exponent) {
   double* row = rows_[number];
-  row[0] = heat.lambda(source)[place];
   row[1] = heat.square_at(source, place);
   heat.unknown_at(source, place, row + 3);
   if (heat.has_lengths()) {
@@ -33,7 +40,7 @@ void KnownValues::take(Index number, Index place, const AffineHeat& heat, std::s
     std::fill_n(row + 3 + d_, d_, 0.0);
   }
   if (width_ > 0) heat.frames(source).raw(place, row + 3 + 2 * d_);
-  *exponents_[number] = exponents;
+  exponents_[number]->frame = frame_exponent;
 }
 
 void KnownValues::put(Index number, std::span<const double> row, HeatExponents exponents) {
@@ -56,15 +63,23 @@ void KnownValues::axes(Index number, double* out) const {
   FrameField(1, layout_, columns.span()).axes(0, out);
 }
 
-HeatExponents KnownValues::exponents_for(std::span<const Index> numbers) const {
-  constexpr std::int32_t none = std::numeric_limits<std::int32_t>::min() / 2;
-  HeatExponents largest{none, none};
-  for (Index j : numbers) {
-    if (heat(j) != 0) largest.heat = std::max(largest.heat, exponents_[j]->heat + std::ilogb(heat(j)));
+std::int32_t KnownValues::heat_exponent_for(std::span<const Index> numbers) const {
+  std::int32_t largest = no_exponent;
+  for (Index j : numbers)
+    if (heat(j) != 0) largest = std::max(largest, exponents_[j]->heat + std::ilogb(heat(j)));
+  return largest - std::ilogb(heat_scale);
+}
+
+std::int32_t KnownValues::frame_exponent_for(std::span<const Index> numbers) const {
+  std::int32_t largest = no_exponent;
+  for (Index j : numbers)
     for (double u : frame(j))
-      if (u != 0) largest.frame = std::max(largest.frame, exponents_[j]->frame + std::ilogb(u));
-  }
-  return {largest.heat - std::ilogb(heat_scale), largest.frame - std::ilogb(heat_scale)};
+      if (u != 0) largest = std::max(largest, exponents_[j]->frame + std::ilogb(u));
+  return largest - std::ilogb(heat_scale);
+}
+
+double KnownValues::heat_along(Index number, double conductance, std::int32_t exponent) const {
+  return std::ldexp(conductance, exponents_[number]->heat - exponent) * heat(number);
 }
 
 void KnownValues::add_to(RightHandSide& in, const Star& star, std::size_t edge, Index number, double conductance,
@@ -73,7 +88,6 @@ void KnownValues::add_to(RightHandSide& in, const Star& star, std::size_t edge, 
   const double heat = std::ldexp(conductance, exponents_[number]->heat - exponents.heat);
   const double pair_factor[] = {-2 * heat * to_units_};
   const double lambda = this->heat(number);
-  in.heat.back() += heat * lambda;
   Scratch e(d_), seen(d_);
   double* translation = in.translations.data() + in.translations.size() - d_;
   for (std::size_t a = 0; a < d_; ++a) {

@@ -24,8 +24,10 @@ class KnownValues {
   /// @param with_frames  else of solves without frames
   KnownValues(const TangentGraph& graph, const VariantSystem& system, bool with_frames);
 
-  /// Takes over what vertex `place` of a solve found.
-  void take(Index number, Index place, const AffineHeat& heat, std::size_t source, HeatExponents exponents);
+  /// Takes over the heat that a solve found at a vertex.
+  void take_heat(Index number, double lambda, std::int32_t exponent);
+  /// Takes over all else that vertex `place` of a solve found. Others may ask for heat meanwhile.
+  void take_values(Index number, Index place, const AffineHeat& heat, std::size_t source, std::int32_t frame_exponent);
 
   /// All that is known of a vertex but its exponents.
   std::span<const double> row(Index number) const { return {rows_[number], row_width()}; }
@@ -41,9 +43,12 @@ class KnownValues {
   void axes(Index number, double* out) const;
 
   /// The exponents that bring the largest of these values to `heat_scale`; of none, less than any other.
-  HeatExponents exponents_for(std::span<const Index> numbers) const;
-  /// Adds to the last entry of `in` what vertex j = star.neighbors[edge], of this number, gives to the right-hand sides of
-  /// the star's own vertex: A gets tau w_ij lambda_j, B gets tau w_ij R_ji U~_j, and so on for the other systems.
+  std::int32_t heat_exponent_for(std::span<const Index> numbers) const;
+  std::int32_t frame_exponent_for(std::span<const Index> numbers) const;
+  /// What a vertex gives to the right-hand side of A at a neighbour: tau w_ij lambda_j.
+  double heat_along(Index number, double conductance, std::int32_t exponent) const;
+  /// Adds to the last entry of `in` all else that vertex j = star.neighbors[edge], of this number, gives to the right-hand
+  /// sides of the star's own vertex: B gets tau w_ij R_ji U~_j, and so on for the other systems.
   void add_to(RightHandSide& in, const Star& star, std::size_t edge, Index number, double conductance,
               HeatExponents exponents) const;
 

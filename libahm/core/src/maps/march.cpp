@@ -4,9 +4,11 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
 
 #include "ahm/error.hpp"
 #include "ahm/maps/place_in_space.hpp"
+#include "ahm/util/parallel.hpp"
 #include "ahm/util/shortest_paths.hpp"
 #include "ahm/util/small_math.hpp"
 #include "graph/patch.hpp"
@@ -46,7 +48,8 @@ March::March(const TangentGraph& graph, const HeatOptions& options, const MarchS
       scales_(scales),
       sink_(sink),
       goal_(goal),
-      alone_(team ? nullptr : std::make_unique<Alone>(graph.dimension())),
+      looks_ahead_(!sink && threads > 1 && std::isinf(reach.radius)),
+      alone_(team ? nullptr : std::make_unique<Alone>(graph.dimension(), looks_ahead_)),
       team_(team ? *team : *alone_),
       // What lies ahead by x influences what lies behind by exp(-2 x).
       margin_(1.6 - 0.5 * std::log(options.accuracy)),
@@ -78,19 +81,59 @@ void March::run_on(const AffineHeat& heat, std::size_t s, const Source& source) 
   std::vector<Index> reached;
   for (Index i = 0; i < graph_.size(); ++i)
     if (heat.reached(s, i)) reached.push_back(i);
-  for (Index i : reached) accept(i, i, heat, s, {});
-  update_front(reached);
+  for (Index i : reached) take_values(i, accept(i, heat.lambda(s)[i], 0), i, heat, s, 0);
+  pass_front(reached);
+  keep_to_reach();
   march(nullptr);
 }
+
+/// A band on its way. Its heat says what of it is accepted and where the next band lies; the rest is found after that.
+struct March::Solve {
+  bool is_first;  ///< its right-hand side is that of the source
+  Band band;
+  std::int64_t size;  ///< of all members' bands
+  std::vector<Link> links;
+  CsrGraph patch;
+  std::optional<HeatOperators> operators;
+  std::optional<AffineHeat> heat;
+  HeatExponents exponents;
+  std::vector<Index> near;     ///< places of what is accepted
+  std::vector<Index> numbers;  ///< of these
+
+  std::vector<Index> accepted() const {
+    std::vector<Index> vertices;
+    for (const Index k : near) vertices.push_back(band.vertices[k]);
+    return vertices;
+  }
+};
 
 void March::march(const Source* source) {
   OneBlasThread one_thread;
   without_openmp_regions([&] {
-    while (source || team_.sum(static_cast<std::int64_t>(front_.size())) > 0) {
+    std::unique_ptr<Solve> last;  // accepted by its heat; its values are still to be found
+    while (last || source || team_.sum(static_cast<std::int64_t>(front_.size())) > 0) {
       progress_.step("solve", static_cast<double>(accepted_count_) / graph_.size());
-      if (!advance(source)) {
+      std::unique_ptr<Solve> next;
+      detail::run_both(
+          last != nullptr,
+          [&] {
+            if (last) without_openmp_regions([&] { solve_values(*last); });
+          },
+          [&] { next = solve_heat(source); });
+      if (std::exchange(last, nullptr) && keep_to_reach())
+        continue;  // `next` comes from what is no longer in the front
+      if (!next) {
+        front_.clear();
+      } else if (!accept_near(*next)) {
         depth_ *= 1.4;  // and stays so: where one band was too thin, the next ones would be
         continue;
+      } else if (looks_ahead_) {
+        pass_front(next->accepted());
+        last = std::move(next);
+      } else {
+        solve_values(*next);
+        pass_front(next->accepted());
+        keep_to_reach();
       }
       source = nullptr;
       if (keeper_) keeper_->end_band(*this);
@@ -98,21 +141,15 @@ void March::march(const Source* source) {
   });
 }
 
-/// Solves one band and accepts its near part. Returns false when the band was too thin for anything to be accepted.
-bool March::advance(const Source* source) {
-  const Band band = find_band(source);
+/// Finds the next band and its heat, and changes nothing. Null where nothing is ahead.
+std::unique_ptr<March::Solve> March::solve_heat(const Source* source) {
+  Band band = find_band(source);
   const std::int64_t size = team_.sum(static_cast<std::int64_t>(band.own));
-  if (size == 0) {
-    front_.clear();
-    return true;
-  }
-  ++statistics_.bands;
-  statistics_.solved += size;
-  statistics_.largest_band = std::max(statistics_.largest_band, static_cast<Index>(size));
+  if (size == 0) return nullptr;
 
   // A Dirichlet neighbour behind the front adds tau w to the diagonal and (below) to the right-hand sides.
   std::vector<Link> links;
-  const CsrGraph patch = cut_out(
+  CsrGraph patch = cut_out(
       graph_, std::span(band.vertices).first(band.own), [&](Index j) { return place(j); },
       [&](std::size_t k, const Star& star, std::size_t e) {
         if (!accepted(star.neighbors[e])) return 0.0;
@@ -126,38 +163,53 @@ bool March::advance(const Source* source) {
     for (const Index j : patch.star(static_cast<Index>(k)).neighbors)
       if (static_cast<std::size_t>(j) >= band.own) times[j] = times[k];
   }
-  const HeatOperators operators(team_.system({patch, band.halo, std::move(times)}, options_), patch, {});
+  auto solve = std::make_unique<Solve>(
+      Solve{source != nullptr, std::move(band), size, std::move(links), std::move(patch), {}, {}, {}, {}, {}});
+  solve->operators.emplace(team_.system({solve->patch, solve->band.halo, std::move(times)}, options_), solve->patch,
+                           Components{});
 
-  HeatExponents exponents;
   RightHandSide right_hand_side;
   if (source) {
-    right_hand_side =
-        right_hand_side_of(*source, graph_, operators, variant_, [&](Index vertex) { return team_.owns(vertex); });
+    right_hand_side = right_hand_side_of(*source, graph_, *solve->operators, variant_,
+                                         [&](Index vertex) { return team_.owns(vertex); });
     for (Index& vertex : right_hand_side.vertices) vertex = place(vertex);
   } else {
-    exponents = exponents_behind(links);
-    right_hand_side = right_hand_side_behind(band, links, operators.scaling(), exponents);
+    solve->exponents.heat = static_cast<std::int32_t>(team_.greatest(known_.heat_exponent_for(numbers_behind(*solve))));
+    right_hand_side = heat_behind(*solve);
   }
-  for (Index vertex : band.vertices) way(vertex).place = -1;
+  for (Index vertex : solve->band.vertices) way(vertex).place = -1;
 
-  AffineHeat heat(patch, operators, variant_, {std::move(right_hand_side)}, threads_);
-  if (goal_ == MarchGoal::map)
-    heat.diffuse();
-  else
-    heat.diffuse_heat();
+  solve->heat.emplace(solve->patch, *solve->operators, variant_, std::vector{std::move(right_hand_side)}, threads_);
+  solve->heat->diffuse_heat();
+  return solve;
+}
+
+/// Accepts the near part of a band, by its heat. Returns false when the band was too thin for anything to be accepted.
+bool March::accept_near(Solve& solve) {
+  ++statistics_.bands;
+  statistics_.solved += solve.size;
+  statistics_.largest_band = std::max(statistics_.largest_band, static_cast<Index>(solve.size));
+  auto near = near_part(solve.band, solve.size, solve.heat->lambda(0));
+  if (!near) return false;
+  solve.near = std::move(*near);
+  for (const Index k : solve.near)
+    solve.numbers.push_back(accept(solve.band.vertices[k], solve.heat->lambda(0)[k], solve.exponents.heat));
+  return true;
+}
+
+/// Finds all but the heat of what was accepted. The next band's heat may be solved for meanwhile.
+void March::solve_values(Solve& solve) {
+  AffineHeat& heat = *solve.heat;
+  if (!solve.is_first) {
+    solve.exponents.frame = static_cast<std::int32_t>(team_.greatest(known_.frame_exponent_for(numbers_behind(solve))));
+    add_values_behind(solve, heat.right_hand_side(0));
+  }
+  if (goal_ == MarchGoal::map) heat.diffuse_frames();
   heat.solve();
   heat.solve_squares();
   if (!graph_.is_delaunay()) heat.solve_lengths();
-
-  const auto near = near_part(band, size, heat.lambda(0));
-  if (!near) return false;
-  std::vector<Index> added;
-  for (Index k : *near) {
-    added.push_back(band.vertices[k]);
-    accept(added.back(), k, heat, 0, exponents);
-  }
-  update_front(added);
-  return true;
+  for (std::size_t k = 0; k < solve.near.size(); ++k)
+    take_values(solve.band.vertices[solve.near[k]], solve.numbers[k], solve.near[k], heat, 0, solve.exponents.frame);
 }
 
 /// Places in the band that are farther than the margin from all that was left out, by the heat just found there; none
@@ -286,22 +338,31 @@ void March::find_edge(Band& band) {
   }
 }
 
-HeatExponents March::exponents_behind(std::span<const Link> links) const {
+std::vector<Index> March::numbers_behind(const Solve& solve) {
   std::vector<Index> behind;
-  for (const Link& link : links) behind.push_back(link.number);
-  const HeatExponents own = known_.exponents_for(behind);
-  return {static_cast<std::int32_t>(team_.greatest(own.heat)), static_cast<std::int32_t>(team_.greatest(own.frame))};
+  for (const Link& link : solve.links) behind.push_back(link.number);
+  return behind;
 }
 
-/// Dirichlet data: what the accepted neighbours give to the band's right-hand sides.
-RightHandSide March::right_hand_side_behind(const Band& band, std::span<const Link> links, double scaling,
-                                            HeatExponents exponents) const {
-  const std::size_t width = graph_.transport_layout().width();
+/// Dirichlet data: what the accepted neighbours give to the band's right-hand side of A.
+RightHandSide March::heat_behind(const Solve& solve) const {
   RightHandSide in;
-  for (const Link& link : links) {
+  for (const Link& link : solve.links) {
     if (in.vertices.empty() || in.vertices.back() != link.place) {
       in.vertices.push_back(link.place);
       in.heat.push_back(0);
+    }
+    in.heat.back() += known_.heat_along(link.number, conductance(solve, link), solve.exponents.heat);
+  }
+  return in;
+}
+
+/// Dirichlet data: what they give to the other right-hand sides.
+void March::add_values_behind(const Solve& solve, RightHandSide& in) const {
+  const std::size_t width = graph_.transport_layout().width();
+  Index place = -1;
+  for (const Link& link : solve.links) {
+    if (std::exchange(place, link.place) != link.place) {
       in.frames.resize(in.frames.size() + width);
       in.values.resize(in.values.size() + d_);
       in.translations.resize(in.translations.size() + d_);
@@ -309,20 +370,30 @@ RightHandSide March::right_hand_side_behind(const Band& band, std::span<const Li
       in.pairs.resize(in.pairs.size() + d_ * d_);
       in.lengths.push_back(0);
     }
-    const Star star = graph_.star(band.vertices[link.place]);
-    known_.add_to(in, star, link.edge, link.number, scaling * tau(band.vertices[link.place]) * star.weights[link.edge],
-                  exponents);
+    const double through = conductance(solve, link);
+    known_.add_to(in, graph_.star(solve.band.vertices[link.place]), link.edge, link.number, through, solve.exponents);
   }
-  return in;
 }
 
-void March::accept(Index vertex, Index place, const AffineHeat& heat, std::size_t s, HeatExponents exponents) {
-  const bool own = team_.owns(vertex);
+double March::conductance(const Solve& solve, const Link& link) const {
+  const Index vertex = solve.band.vertices[link.place];
+  return solve.operators->scaling() * tau(vertex) * graph_.star(vertex).weights[link.edge];
+}
+
+/// @return the vertex' number
+Index March::accept(Index vertex, double lambda, std::int32_t exponent) {
   way(vertex).accepted = true;
-  accepted_count_ += own ? 1 : 0;
+  accepted_count_ += team_.owns(vertex) ? 1 : 0;
   const Index number = numbers_.find(vertex);
-  known_.take(number, place, heat, s, exponents);
+  known_.take_heat(number, lambda, exponent);
   found_.grow_to(number + 1);
+  return number;
+}
+
+/// Of an accepted vertex.
+void March::take_values(Index vertex, Index number, Index place, const AffineHeat& heat, std::size_t s,
+                        std::int32_t frame_exponent) {
+  known_.take_values(number, place, heat, s, frame_exponent);
   const std::span phi(found_[number], d_);
   const bool has_frames = goal_ == MarchGoal::map;
   if (has_frames)
@@ -333,21 +404,26 @@ void March::accept(Index vertex, Index place, const AffineHeat& heat, std::size_
   found_[number][d_ + 1] = heat.distance_at(s, place);
   const bool good = known_.heat(number) > 0 && (!has_frames || heat.frames(s).heat(place) > 0) && all_finite(phi);
   if (!good) std::fill(phi.begin(), phi.end(), NAN);
-  if (sink_ && own) sink_->accept(vertex, {phi, found_[number][d_], found_[number][d_ + 1]});
+  if (sink_ && team_.owns(vertex)) sink_->accept(vertex, {phi, found_[number][d_], found_[number][d_ + 1]});
 }
 
-/// The accepted vertices from which the march goes on: those with neighbours ahead, sound values, and within reach.
-void March::update_front(std::span<const Index> added) {
+/// Adds what was accepted to the front, and takes out of it what has no neighbours ahead.
+void March::pass_front(std::span<const Index> added) {
   for (Index vertex : added)
     if (team_.owns(vertex)) front_.push_back(vertex);
   std::vector<Index> passed;
   std::erase_if(front_, [&](Index vertex) {
-    const bool is_passed = !has_neighbors_ahead(vertex), stays = !is_passed && is_within_reach(vertex);
+    const bool is_passed = !has_neighbors_ahead(vertex);
     if (is_passed && sink_) passed.push_back(vertex);
-    return !stays;
+    return is_passed;
   });
   for (const HaloVertex& next : team_.share(passed)) forget(next.vertex);
   for (Index vertex : passed) forget(vertex);
+}
+
+/// Takes out of the front what has no sound values or is out of reach. @return whether there was any
+bool March::keep_to_reach() {
+  return std::erase_if(front_, [&](Index vertex) { return !is_within_reach(vertex); }) > 0;
 }
 
 /// What all neighbours have taken into account is not asked for again.

@@ -146,7 +146,10 @@ class March {
 
   void march(const Source* source);
   void restore(const MarchState& state);
-  bool advance(const Source* source);
+  struct Solve;
+  std::unique_ptr<Solve> solve_heat(const Source* source);
+  bool accept_near(Solve& solve);
+  void solve_values(Solve& solve);
   Band find_band(const Source* source);
   std::vector<Index> search(const Source* source);
   void find_edge(Band& band);
@@ -154,11 +157,15 @@ class March {
   double heat_distance_along(const Ahead& edge) const;
   std::optional<std::vector<Index>> near_part(const Band& band, std::int64_t size,
                                               std::span<const double> lambda) const;
-  HeatExponents exponents_behind(std::span<const Link> links) const;
-  RightHandSide right_hand_side_behind(const Band& band, std::span<const Link> links, double scaling,
-                                       HeatExponents exponents) const;
-  void accept(Index vertex, Index place, const AffineHeat& heat, std::size_t s, HeatExponents exponents);
-  void update_front(std::span<const Index> added);
+  static std::vector<Index> numbers_behind(const Solve& solve);
+  RightHandSide heat_behind(const Solve& solve) const;
+  void add_values_behind(const Solve& solve, RightHandSide& in) const;
+  double conductance(const Solve& solve, const Link& link) const;
+  Index accept(Index vertex, double lambda, std::int32_t exponent);
+  void take_values(Index vertex, Index number, Index place, const AffineHeat& heat, std::size_t s,
+                   std::int32_t frame_exponent);
+  void pass_front(std::span<const Index> added);
+  bool keep_to_reach();
   Way& way(Index vertex);
   Index place(Index vertex) const;
   bool has_neighbors_ahead(Index vertex) const;
@@ -175,6 +182,7 @@ class March {
   MarchSink* sink_;
   MarchGoal goal_;
   MarchKeeper* keeper_ = nullptr;
+  bool looks_ahead_;  ///< to the next band's heat, before the rest of this one is found
   std::unique_ptr<MarchTeam> alone_;
   MarchTeam& team_;
   double margin_, step_;

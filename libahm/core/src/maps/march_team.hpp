@@ -68,7 +68,8 @@ class MarchTeam {
 /// would fill the memory.
 class Alone final : public MarchTeam {
  public:
-  explicit Alone(int dimension) : iterative_(dimension > 2) {}
+  /// @param heat_first  whether B is wanted later than A, while the next band's A is under way
+  explicit Alone(int dimension, bool heat_first = false) : iterative_(dimension > 2), heat_first_(heat_first) {}
   bool owns(Index) const override { return true; }
   double least(double value) override { return value; }
   double greatest(double value) override { return value; }
@@ -78,11 +79,13 @@ class Alone final : public MarchTeam {
   /// Measured: the cost of a vertex does not grow with a band's depth, but what has decayed further loses digits.
   double reach() const override { return iterative_ ? 8 : std::numeric_limits<double>::infinity(); }
   std::unique_ptr<const HeatSystem> system(BandPart part, const HeatOptions& options) override {
-    return (iterative_ ? iterative_system : factored_system)(part.graph, std::move(part.tau), options);
+    return (iterative_    ? iterative_system
+            : heat_first_ ? heat_first_system
+                          : factored_system)(part.graph, std::move(part.tau), options);
   }
 
  private:
-  bool iterative_;
+  bool iterative_, heat_first_;
 };
 
 }  // namespace ahm
