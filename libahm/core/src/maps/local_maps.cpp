@@ -12,6 +12,7 @@
 #include "ahm/maps/cost.hpp"
 #include "ahm/maps/place_in_space.hpp"
 #include "ahm/util/memory.hpp"
+#include "ahm/util/parallel.hpp"
 #include "ahm/util/small_math.hpp"
 #include "ahm/util/text.hpp"
 #include "ahm/util/vec.hpp"
@@ -92,7 +93,7 @@ void check_memory(const TangentGraph& graph, std::span<const Source> sources, st
 
 /// One source's part of the result.
 struct Entries {
-  std::vector<Index> vertices;
+  std::vector<Vertex> vertices;
   std::vector<double> logs, distances, transports;
 };
 
@@ -239,7 +240,7 @@ class Worker {
     const FrameField frames = heat.frames(m);
     std::vector<double> U(graph_.transport_layout().width());
     for (const auto& [from_source, k] : order_) {
-      entries.vertices.push_back(patch.vertices[k]);
+      entries.vertices.emplace_back(patch.vertices[k]);
       entries.distances.push_back(from_source);
       entries.logs.insert(entries.logs.end(), phi_.begin() + static_cast<std::ptrdiff_t>(k * d_),
                           phi_.begin() + static_cast<std::ptrdiff_t>((k + 1) * d_));
@@ -260,26 +261,35 @@ class Worker {
   std::vector<std::pair<double, Index>> order_;  ///< those within the radius, nearest first
 };
 
-LocalMaps joined(const TangentGraph& graph, std::vector<Entries>& entries) {
+/// Puts a column of all entries together; these are given up one by one, so that the peak is little more than the result.
+template <class T>
+void join(std::vector<Entries>& entries, std::vector<T> Entries::*column, std::size_t total, std::vector<T>& out) {
+  out.reserve(total);
+  for (Entries& e : entries) {
+    out.insert(out.end(), (e.*column).begin(), (e.*column).end());
+    e.*column = {};
+  }
+}
+
+LocalMaps joined(const TangentGraph& graph, std::vector<Entries>& entries, unsigned threads) {
   LocalMaps maps;
   maps.dimension = graph.dimension();
   maps.kind = graph.transport_kind();
   maps.indptr.push_back(0);
   for (const Entries& e : entries) maps.indptr.push_back(maps.indptr.back() + static_cast<Offset>(e.vertices.size()));
   const auto total = static_cast<std::size_t>(maps.indptr.back());
-  maps.neighbors.reserve(total);
-  maps.logs.reserve(total * static_cast<std::size_t>(graph.dimension()));
-  maps.distances.reserve(total);
-  maps.transports.reserve(total * maps.transport_width());
-  maps.weights.reserve(total);
-  for (Entries& e : entries) {
-    for (const Index vertex : e.vertices) maps.neighbors.emplace_back(vertex);
-    maps.logs.insert(maps.logs.end(), e.logs.begin(), e.logs.end());
-    maps.distances.insert(maps.distances.end(), e.distances.begin(), e.distances.end());
-    maps.transports.insert(maps.transports.end(), e.transports.begin(), e.transports.end());
-    e = {};  // so that the peak is little more than the result
-  }
-  for (const Vertex j : maps.neighbors) maps.weights.push_back(world_mass(graph, graph.mass(j.index)));
+  const auto join_vertices = [&] {
+    maps.weights.reserve(total);
+    for (const Entries& e : entries)
+      for (const Vertex j : e.vertices) maps.weights.push_back(world_mass(graph, graph.mass(j.index)));
+    join(entries, &Entries::vertices, total, maps.neighbors);
+  };
+  const auto join_numbers = [&] {
+    join(entries, &Entries::distances, total, maps.distances);
+    join(entries, &Entries::transports, total * maps.transport_width(), maps.transports);
+    join(entries, &Entries::logs, total * static_cast<std::size_t>(graph.dimension()), maps.logs);
+  };
+  detail::run_both(detail::thread_count(threads) > 1, join_numbers, join_vertices);
   return maps;
 }
 
@@ -299,7 +309,7 @@ LocalMaps local_maps(const TangentGraph& graph, std::span<const Source> sources,
         groups, options.heat.threads, options.heat.progress,
         [&] { return std::make_unique<Worker>(graph, scales, sources, radii, options); },
         [&](Worker& worker, const std::vector<Index>& group) { worker.solve(group, entries); });
-    return joined(graph, entries);
+    return joined(graph, entries, options.heat.threads);
   });
 }
 

@@ -31,6 +31,8 @@ constexpr double shortest_side = 1e-6, shortest_side_far_away = 1e-13;
 constexpr double missed = 1e-9, missed_between = 1e-3;
 /// Stars that are kept until others take their place: those ahead of the front are asked for several times.
 constexpr std::size_t most_seen = 2048;
+/// Sums of products may be off by less than this share of the largest, unless they are below `least_cube`.
+constexpr double rounding = 1e-12, least_cube = 1e-280;
 /// Of a ray shorter than this share of a side nobody knows the direction.
 constexpr double least_ray = 1e-6;
 
@@ -61,6 +63,15 @@ struct Across {
 Vec2 turned(const Vec2& v, const Vec2& from, const Vec2& to, double side) {
   const double along = dot(from, to), across = side * cross(from, to), by = std::hypot(along, across);
   return {(v[0] * along - v[1] * across) / by, (v[1] * along + v[0] * across) / by};
+}
+
+/// Whether c is certainly no nearer to that point than the root of `limit`: `along` of `across_side`, without its division. So it
+/// is of most vertices that the front has passed.
+bool is_beyond(double from_a, double from_b, double ab, double cx, double cy, double limit) {
+  const double twice_x_ab = ab * ab + (from_a - from_b) * (from_a + from_b),
+               squared = cx * cx + cy * cy + from_a * from_a;
+  const double least = squared - limit - rounding * (squared + from_a * from_a + limit + ab * ab);
+  return (least * ab > cx * twice_x_ab + least_cube) & (std::abs(twice_x_ab) <= 2.1 * ab * from_a);
 }
 
 /// The direction at the point of the ray to c, from those of the rays to a and b: what both say, by how near it crosses the
@@ -331,6 +342,7 @@ void UnfoldingFront::spread(Index from, Index point, double distance) {
       const double most = found.distance + (!is_curved_ ? 0 : most_beyond_circle * base_length);
       const double limit = most * most;
       const double cx = target_length * right.cosine, cy = target_length * right.sine;
+      if (found.distance <= distance && is_beyond(distance, other.distance, base_length, cx, cy, limit)) return;
       const Across across = across_side(distance, other.distance, base_length, cx, cy, limit, missed_);
       if (!across.found) return;
       double length = std::sqrt(across.squared), bent_by = 0;
