@@ -11,28 +11,15 @@
 #include "graph/patch.hpp"
 #include "heat/blas_control.hpp"
 #include "heat/heat_system.hpp"
+#include "maps/march_depth.hpp"
 
 namespace ahm {
 namespace {
-
-/// Heat distance accepted per band, where the front is as regular as the graph's edges. Measured: deeper bands cost more
-/// fill per vertex, thinner ones solve each vertex more often.
-constexpr double default_step = 24;
 
 constexpr float far_away = std::numeric_limits<float>::infinity();
 
 /// Heat distances end here: what lies farther ahead has no order among itself, and is still reached.
 constexpr double farthest = 1e30;
-
-/// How much of the decay exp(-x) of heat an edge brings: its length over sqrt(tau), or what the one edge lets through at
-/// the least, where it is far longer than sqrt(tau). An upper bound, for ordering vertices.
-/// @param diagonal  called for the diagonal entry m + tau sum w of A at the edge's end, if it is needed
-template <class Diagonal>
-double heat_distance(double length, double weight, double tau, const Diagonal& diagonal) {
-  const double by_length = length / std::sqrt(tau);
-  if (by_length <= 3 || !(weight > 0)) return by_length;
-  return std::min(by_length, std::log(diagonal() / (tau * weight)));
-}
 
 }  // namespace
 
@@ -46,9 +33,8 @@ March::March(const TangentGraph& graph, const HeatOptions& options, const MarchS
       goal_(goal),
       alone_(team ? nullptr : std::make_unique<Alone>(graph.dimension())),
       team_(team ? *team : *alone_),
-      // What lies ahead by x influences what lies behind by exp(-2 x).
-      margin_(1.6 - 0.5 * std::log(options.accuracy)),
-      step_(std::min(default_step, team_.reach())),
+      margin_(march_margin(options.accuracy)),
+      step_(std::min(march_step, team_.reach())),
       radius_(radius),
       depth_(step_ + margin_),
       progress_(std::move(progress)),
@@ -266,7 +252,7 @@ bool March::may_be_nearer(Index vertex, double distance) const {
 
 /// How much of the decay of heat an edge brings.
 double March::heat_distance_along(const Ahead& edge) const {
-  return heat_distance(edge.length, edge.weight, tau(edge.vertex), [&] { return diagonal(edge.vertex); });
+  return edge_heat_distance(edge.length, edge.weight, tau(edge.vertex), [&] { return diagonal(edge.vertex); });
 }
 
 /// The places in the band next to vertices that are neither behind the front nor in the band.
