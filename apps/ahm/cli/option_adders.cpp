@@ -84,7 +84,8 @@ CLI::Option* add_u_axis(CLI::App& app, SourceOptions& o) {
         return text == "curvature" ? UAxis{true, {}} : UAxis{false, parse_direction(text)};
       },
       "X,Y,Z|curvature",
-      "Direction of the u axis, projected to the surface (default: chosen by the backend), or\n"
+      "Direction of the u axis, projected to the surface (default: chosen by the backend): at least a\n"
+      "degree from the normal, 5 where normals are estimated. Or\n"
       "curvature: where the surface bends most, which planes and spheres do nowhere");
 }
 
