@@ -150,7 +150,8 @@ void add_local(CLI::App& app, InputOptions& o, const std::string& radius) {
   app.add_flag("--local", o.around_source,
                radius +
                    ": build the graph of the surroundings of the source only, fast on huge\n"
-                   "scans and meshes; the diffusion time is then that of the surroundings");
+                   "scans and meshes; the diffusion time is then that of the surroundings, and the noise\n"
+                   "of a cloud, which decides what is connected");
 }
 
 void add_mesh_options(CLI::App& app, InputOptions& o) {
