@@ -144,7 +144,11 @@ class Making {
     TiledMapSummary s;
     const std::int64_t releases = graph_.releases();
     s.march = ahm::team_log_map(graph_, source_, heat, {.radius = radius}, writer, team_,
-                                {.goal = goal, .keeper = &checkpoint, .scales = scales, .distances = distances});
+                                {.goal = goal,
+                                 .keeper = &checkpoint,
+                                 .scales = scales,
+                                 .distances = distances,
+                                 .tells_beyond = options_.heat.order == 2});
     writer.finish(source_, radius);
     s.begun_at = checkpoint.begun_at();
     s.ok = team_.sum(writer.ok());

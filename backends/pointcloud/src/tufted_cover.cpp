@@ -300,8 +300,9 @@ WeightedEdges TuftedCover::weighted_edges() const {
         const Index head = entry->head;
         double weight = 0;
         for (; entry != entries.end() && entry->head == head; ++entry) weight += entry->weight;
-        // Diagonals of cocircular quadrilaterals weigh nothing but rounding; they are no edges.
-        if (weight <= 1e-10) continue;
+        // Diagonals of cocircular quadrilaterals weigh nothing but rounding; they are no edges. Points whose area is below
+        // all numbers beside larger parts are no vertices.
+        if (weight <= 1e-10 || !(result.masses[i] > 0) || !(result.masses[head] > 0)) continue;
         part.tails.push_back(static_cast<Index>(i));
         part.heads.push_back(head);
         part.weights.push_back(weight);

@@ -77,14 +77,23 @@ TriangleMesh TriangleMesh::from_positions(std::span<const Vec3> positions, std::
 /// @param contracted  per half-edge
 void TriangleMesh::contract(std::vector<std::uint8_t> contracted) {
   if (std::find(contracted.begin(), contracted.end(), 1) == contracted.end()) return;
-  const std::vector<Index> before(vertex_of_input().begin(), vertex_of_input().end());
+  const std::vector<Index> tails_before(tails().begin(), tails().end()),
+      input_before(input_of_vertex().begin(), input_of_vertex().end());
   topology_.contract(std::move(contracted));
   if (position_.empty()) return;
+  // Copies of a vertex that was split have positions of their own, each about the middle of its component.
+  std::vector<Index> before(input_of_vertex().size(), -1);
+  for (std::size_t h = 0; h < tails().size(); ++h) {
+    if (is_dropped(static_cast<Index>(h / 3))) continue;
+    const Index vertex = tails()[h];
+    if (before[vertex] < 0 || input_before[tails_before[h]] == input_of_vertex()[vertex])
+      before[vertex] = tails_before[h];
+  }
   std::vector<Vec3> positions;
   std::vector<double> rounding;
-  for (Index input : input_of_vertex()) {
-    positions.push_back(position_[before[input]]);
-    rounding.push_back(rounding_[before[input]]);
+  for (const Index vertex : before) {
+    positions.push_back(position_[vertex]);
+    rounding.push_back(rounding_[vertex]);
   }
   position_ = std::move(positions);
   rounding_ = std::move(rounding);

@@ -8,6 +8,8 @@
 #include "ahm/graph/components.hpp"
 #include "ahm/grid/grid_graph.hpp"
 #include "ahm/maps/quality.hpp"
+#include "ahm/maps/unfolding_front.hpp"
+#include "ahm/util/vec.hpp"
 
 namespace ahm::test {
 namespace {
@@ -114,6 +116,78 @@ TEST(GridObstacles, AreSeenByTheQuality) {
     for (Index y = 11; y <= 21; ++y)
       for (Index x = 0; x <= 15; ++x) EXPECT_LT(quality[at(x, y)], trusted_quality) << x << " " << y;
   }
+}
+
+/// A box of edge 1 with a wall through its middle, open above three quarters of its height.
+struct Wall {
+  explicit Wall(Index n, double depth = 1)
+      : h(1.0 / n), middle(n / 2 * h), top(3 * n / 4 * h), graph([&] {
+          Grid box{.shape = {n + 1, n + 1, n / 2 + 1}, .spacing = {h, h, 2 * h * depth}};
+          for (Index z = 0; z < n / 2; ++z)
+            for (Index y = 0; y < n; ++y)
+              for (Index x = 0; x < n; ++x) box.blocked.push_back(x == n / 2 && y < 3 * n / 4);
+          return box;
+        }()) {}
+  /// Over the two edges at the top of the wall, or straight.
+  double shortest(const Vec3& a, const Vec3& b) const {
+    const double far = middle + h;
+    double in_plane = std::hypot(b[0] - a[0], b[1] - a[1]);
+    if (b[0] > middle) {
+      const auto height_at = [&](double x) { return a[1] + (x - a[0]) / (b[0] - a[0]) * (b[1] - a[1]); };
+      const double up = std::hypot(middle - a[0], top - a[1]);
+      const bool sees_near_edge =
+          b[0] <= far ? b[1] >= top : height_at(far) >= top || (b[1] - top) * (far - middle) >= 0;
+      const bool is_free =
+          b[0] <= far ? height_at(middle) >= top && b[1] >= top : height_at(middle) >= top && height_at(far) >= top;
+      if (!is_free)
+        in_plane = up + (sees_near_edge && b[1] >= top ? std::hypot(b[0] - middle, b[1] - top)
+                                                       : far - middle + std::hypot(b[0] - far, b[1] - top));
+    }
+    return std::hypot(in_plane, b[2] - a[2]);
+  }
+  double h, middle, top;
+  GridGraph graph;
+};
+
+TEST(GridObstacles, AreGoneRoundInSpace) {
+  std::vector<double> errors;
+  for (const Index n : {12, 24, 48}) {
+    const Wall wall(n);
+    const Vertex source = wall.graph.vertex(std::array<Index, 3>{n / 4, n / 4, n / 4});
+    UnfoldingFront front(wall.graph);
+    front.add(Source::at_vertex(source));
+    front.run();
+    double most = 0;
+    for (Index i = 0; i < wall.graph.size(); ++i) {
+      if (wall.graph.star(i).degree() == 0) continue;
+      const Vec3 at = wall.graph.position(Vertex(i));
+      const double exact = wall.shortest(wall.graph.position(source), at);
+      most = std::max(most, std::abs(front.distance(Vertex(i)) - exact));
+      if (at[0] <= wall.middle) ASSERT_NEAR(front.distance(Vertex(i)), exact, 1e-12) << i;
+    }
+    errors.push_back(most);
+  }
+  // First order but for the logarithm of an edge that bends all ways.
+  EXPECT_LT(errors[0], 2.0 / 12);
+  EXPECT_LT(errors[1], 0.65 * errors[0]);
+  EXPECT_LT(errors[2], 0.65 * errors[1]);
+}
+
+TEST(GridObstacles, AreSeenInSpaceByTheQuality) {
+  const Wall wall(16, 0.7);
+  const Vertex source = wall.graph.vertex(std::array<Index, 3>{4, 4, 4});
+  const auto quality = map_quality(wall.graph, LogMapSolver(wall.graph).solve(Source::at_vertex(source)));
+  int behind = 0;
+  for (Index i = 0; i < wall.graph.size(); ++i) {
+    if (wall.graph.star(i).degree() == 0) continue;
+    const Vec3 a = wall.graph.position(source), b = wall.graph.position(Vertex(i));
+    const double straight = distance(a, b), exact = wall.shortest(a, b);
+    if (b[0] <= wall.middle) EXPECT_NEAR(quality[i], 1, 1e-9) << i;
+    if (exact < 1.2 * straight + 2 * wall.h) continue;
+    ++behind;
+    EXPECT_LT(quality[i], trusted_quality) << i;
+  }
+  EXPECT_GT(behind, 400);
 }
 
 TEST(GridObstacles, EqualASmallerGridWhereTheyFillTheRest) {

@@ -1,10 +1,12 @@
 // What a bad cloud gets: an error that names the culprit, or a result with a status per point.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
 #include "ahm/error.hpp"
+#include "ahm/util/vec.hpp"
 #include "solved_cloud.hpp"
 #include "support/expect_error.hpp"
 
@@ -231,6 +233,16 @@ TEST(CloudFaults, ArgumentsOutOfRange) {
   EXPECT_THROW(graph.source(Row(3), Vec3{0, 0, 0}), InvalidArgument);
   EXPECT_THROW(graph.source(Row(3), graph.graph().frame(graph.vertex(Row(3)).index)->normal), InvalidArgument);
   EXPECT_EQ(graph.nearest_row(points[17]).index, 17);
+}
+
+// Beside another part its triangles are smaller than any number.
+TEST(CloudFaults, PartsWithoutAreaBesideOthersAreRemoved) {
+  std::vector<Vec3> points = flat_cloud(100).points;
+  for (std::size_t i = 0; i < 100; ++i) points.push_back(0x1p-700 * points[i]);
+  const auto surface = PointCloudSurface::build(points);
+  const RowLogMap map = surface.on_rows(LogMapSolver(surface.graph()).solve(surface.source(Row(7)).source));
+  for (std::size_t i = 0; i < 100; ++i) EXPECT_EQ(map.status[i], Status::ok) << i;
+  EXPECT_GT(std::count(map.status.begin(), map.status.end(), Status::removed), 90);
 }
 
 TEST(CloudFaults, CancellationStopsTheBuild) {

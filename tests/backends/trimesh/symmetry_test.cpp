@@ -8,6 +8,8 @@
 #include <random>
 #include <vector>
 
+#include "ahm/surface/exact/exact_geodesics.hpp"
+#include "ahm/util/vec.hpp"
 #include "support/solved_mesh.hpp"
 
 namespace ahm::test {
@@ -149,6 +151,40 @@ TEST(MeshSymmetry, AComponentIsTheSameBitsBesideLargerOrNearerOnes) {
     const Mesh both = joined(part, other);
     const auto beside = trimesh::TriangleMeshSurface::build(both.positions, both.faces);
     expect_same_stars(alone.graph(), beside.graph(), part.vertices());
+  }
+}
+
+TEST(MeshSymmetry, AComponentIsTheSameWhereItTouchesAnotherOneAndVerticesCoincide) {
+  Mesh part = regular_torus(30, 15);
+  part.positions[7] = part.positions[22];  // neighbours
+  const auto alone = trimesh::TriangleMeshSurface::build(part.positions, part.faces);
+  Mesh other = icosphere(2);
+  const Vec3 away = part.positions[100] - other.positions[3];
+  for (Vec3& p : other.positions) p = p + away;
+  // Either one first, and so the one whose copy the vertex is that they share.
+  for (const bool is_first : {true, false}) {
+    const Index shift = is_first ? 0 : other.vertices(), beyond = is_first ? part.vertices() : 0;
+    Mesh both = is_first ? joined(part, other) : joined(other, part);
+    for (Triangle& face : both.faces)
+      for (Index& v : face)
+        if (v == beyond + 3) v = shift + 100;
+    const auto surface =
+        trimesh::TriangleMeshSurface::build(both.positions, both.faces, {.non_manifold = NonManifold::split});
+    const auto row = [&](Index v) { return Row(shift + v); };
+    const auto map_of = [](const trimesh::TriangleMeshSurface& surface, Row source) {
+      return surface.on_rows(LogMapSolver(surface.graph()).solve(surface.source(source).source));
+    };
+    const RowLogMap expected = map_of(alone, Row(40)), found = map_of(surface, row(40));
+    for (Index v = 0; v < part.vertices(); ++v) {
+      if (found.status[row(v).index] == Status::disconnected) continue;  // the row of the other one's copy
+      ASSERT_NEAR(found.u[row(v).index], expected.u[v], 1e-9) << v;
+      ASSERT_NEAR(found.v[row(v).index], expected.v[v], 1e-9) << v;
+      ASSERT_NEAR(found.distance[row(v).index], expected.distance[v], 1e-9) << v;
+    }
+    const ExactGeodesics exact(surface);
+    const auto end = exact.path(std::array<SurfacePoint, 2>{row(115), row(101)});
+    const auto end_alone = ExactGeodesics(alone).path(std::array<SurfacePoint, 2>{Row(115), Row(101)});
+    EXPECT_NEAR(end.length, end_alone.length, 1e-12);
   }
 }
 

@@ -232,7 +232,7 @@ TEST(StreamedLogMap, ForgetsWhatTheFrontHasPassed) {
     const std::vector<double> tau{1.0};
     const ComponentTimes times(scales, tau);
     Count count;
-    March march(graph, {}, times, Variant::adaptive, INFINITY, 1, {}, &count);
+    March march(graph, {}, times, Variant::adaptive, {}, 1, {}, &count);
     march.run(Source::at_vertex(Vertex{0}));
     EXPECT_EQ(count.vertices, graph.size());
     return static_cast<double>(march.bytes());

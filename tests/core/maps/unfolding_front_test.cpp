@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "ahm/error.hpp"
+#include "ahm/grid/grid_graph.hpp"
 #include "ahm/testing/curved_graphs.hpp"
 #include "ahm/testing/flat_graphs.hpp"
 #include "ahm/testing/graph_changes.hpp"
@@ -110,7 +111,9 @@ TEST(UnfoldingFront, AgreesWithItselfWhereEdgesAreATriangulation) {
   std::vector<Vertex> all;
   for (Index i = 0; i < 280; ++i) all.emplace_back(i);
   EXPECT_GT(UnfoldingFront::agreement(graph, all), 0.95);
-  EXPECT_EQ(UnfoldingFront::agreement(CsrGraph(line_graph(300).data), all), 0);
+  EXPECT_EQ(UnfoldingFront::agreement(CsrGraph(line_graph(300).data), all), 1);
+  EXPECT_EQ(UnfoldingFront::agreement(grid::GridGraph({.shape = {7, 8, 9}, .spacing = {1, 2, 0.3}}), all), 1);
+  EXPECT_EQ(UnfoldingFront::agreement(CsrGraph(lattice3(7).data), all), 0);
 }
 
 TEST(UnfoldingFront, TellsTheNearestOfManyAndGoesOnFromThere) {

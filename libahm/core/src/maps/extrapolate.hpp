@@ -25,7 +25,7 @@ class DiffusionTimes {
   /// Time number k of a component.
   double factor(std::size_t k, Index component) const;
   double middle(Index component) const { return middle_[component]; }
-  /// How far the map of each time goes, world units, where the extrapolated one goes as far as `radius`: maps of different times
+  /// How far the march of each time goes, world units, where the extrapolated map goes as far as `radius`: maps of different times
   /// differ a little there.
   /// @param edge_lengths  mean ones of all components, in units of `unit`
   double radius_of_each(double radius, std::span<const double> edge_lengths, double unit) const;

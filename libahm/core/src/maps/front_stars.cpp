@@ -11,6 +11,7 @@
 #include "ahm/graph/components.hpp"
 #include "ahm/util/small_math.hpp"
 #include "ahm/util/vec.hpp"
+#include "maps/eikonal.hpp"
 
 namespace ahm {
 namespace {
@@ -322,6 +323,12 @@ std::optional<UnfoldingFront::Stars::HalfSide> UnfoldingFront::Stars::midpoint(I
 }
 
 double UnfoldingFront::agreement(const TangentGraph& graph, std::span<const Vertex> vertices) {
+  if (graph.dimension() != 2) {
+    std::vector<std::size_t> axis;
+    const auto lies_along_axes = [&](Vertex vertex) { return find_axes(graph.star(vertex.index), axis); };
+    return vertices.empty() ? 0
+                            : std::ranges::count_if(vertices, lies_along_axes) / static_cast<double>(vertices.size());
+  }
   std::vector<Neighbor> neighbors;
   std::vector<Corner> corners, others;
   const auto next = [](const std::vector<Corner>& around, std::size_t k) -> const Corner& {

@@ -41,6 +41,7 @@ struct MapSettings {
   double radius;
   bool frames, spread;
   Progress progress;
+  bool tells_beyond = false;  ///< the radius, where a solve came farther
 };
 
 MapSettings settings_of(const MapOptions& map, const HeatOptions& options) {
@@ -58,8 +59,10 @@ struct Found {
 };
 
 /// What a front found; empty: distances are measured by heat.
-struct Unfolded {
+struct Unfolded final : KnownDistances {
   std::vector<double> distances, directions;
+
+  double of(Index vertex) const override { return distances[vertex]; }
 };
 
 Unfolded unfolded_from(const TangentGraph& graph, const std::shared_ptr<const UnfoldingFront::Stars>& stars,
@@ -69,7 +72,9 @@ Unfolded unfolded_from(const TangentGraph& graph, const std::shared_ptr<const Un
   front.add(source);
   run_front(front, graph, map.radius, map.progress.stop);
   const auto n = static_cast<std::size_t>(graph.size());
-  Unfolded found{std::vector<double>(n), std::vector<double>(front.has_directions() ? 2 * n : 0)};
+  Unfolded found;
+  found.distances.resize(n);
+  found.directions.resize(front.has_directions() ? 2 * n : 0);
   for (std::size_t i = 0; i < n; ++i) {
     found.distances[i] = front.distance(Vertex(i));
     if (found.directions.empty()) continue;
@@ -120,8 +125,9 @@ struct LogMapSolver::Impl {
     return kept_stars;
   }
 
-  March front(std::size_t time, const MapSettings& map, unsigned threads) const {
-    return March(graph, options, *times[time].of_vertices, map.variant, map.radius, threads, map.progress);
+  March front(std::size_t time, const MapSettings& map, const Unfolded* unfolded, unsigned threads) const {
+    const KnownDistances* known = unfolded && !unfolded->distances.empty() ? unfolded : nullptr;
+    return March(graph, options, *times[time].of_vertices, map.variant, {map.radius, known}, threads, map.progress);
   }
   template <class Values>
   LogMap map_of(const Values& values, Strategy how, const MarchStatistics& march, const Source& source,
@@ -244,7 +250,8 @@ LogMap LogMapSolver::Impl::map_of(const Values& values, Strategy how, const Marc
     if (!extras.spread.empty()) extras.spread[vertex] = 0;
   }
   for (std::size_t i = 0; i < n; ++i) {
-    if (status[i] == Status::ok && extras.distances[i] > map.radius) status[i] = Status::beyond_radius;
+    if (status[i] == Status::ok && extras.distances[i] > map.radius && !map.tells_beyond)
+      status[i] = Status::beyond_radius;
     if (status[i] == Status::ok) continue;
     std::fill_n(coordinates.begin() + static_cast<std::ptrdiff_t>(i * d), d, NAN);
     extras.distances[i] = NAN;
@@ -267,8 +274,8 @@ LogMap LogMapSolver::Impl::finished(AffineHeat& heat, std::size_t time, std::siz
   if (options.strategy != Strategy::automatic || result.count(Status::unreached) == 0) return result;
   if (!heat.has_squares()) heat.solve_squares();
   if (!heat.has_lengths() && !graph.is_delaunay()) heat.solve_lengths();
-  March on = front(time, map, threads);
-  on.run_on(heat, s);
+  March on = front(time, map, &unfolded, threads);
+  on.run_on(heat, s, source);
   return marched(on, source, unfolded, map, threads);
 }
 
@@ -283,8 +290,10 @@ std::vector<LogMap> LogMapSolver::Impl::solve_block(std::size_t time, std::span<
       for (const Source& source : sources) unfolded.push_back(unfolded_from(graph, stars(), source, map));
   };
   if (strategy == Strategy::march) {
+    const bool ends = std::isfinite(map.radius);  // where distances say, so that they come first
+    if (ends) unfold();
     for (std::size_t s = 0; s < sources.size(); ++s) {
-      March on = front(time, map, threads);
+      March on = front(time, map, ends ? &unfolded[s] : nullptr, threads);
       detail::run_both(
           threads > 1, [&] { on.run(sources[s]); }, unfold);
       maps.push_back(marched(on, sources[s], unfolded[s], map, threads));
@@ -325,6 +334,7 @@ void LogMapSolver::Impl::check_memory() const {
 std::vector<LogMap> LogMapSolver::Impl::solve_block(std::span<const Source> sources, const MapSettings& map,
                                                     unsigned threads) const {
   MapSettings wider = map;
+  wider.tells_beyond = true;
   wider.radius = diffusion_times.radius_of_each(map.radius, scales.edge_length, graph.length_unit());
   std::vector<Unfolded> unfolded;
   if (times.size() == 1) return solve_block(0, sources, unfolded, map, threads);

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "ahm/error.hpp"
+#include "ahm/maps/place_in_space.hpp"
 #include "ahm/util/shortest_paths.hpp"
 #include "ahm/util/small_math.hpp"
 #include "graph/patch.hpp"
@@ -24,7 +25,8 @@ constexpr double farthest = 1e30;
 }  // namespace
 
 March::March(const TangentGraph& graph, const HeatOptions& options, const MarchScales& scales, Variant variant,
-             double radius, unsigned threads, Progress progress, MarchSink* sink, MarchTeam* team, MarchGoal goal)
+             const MarchReach& reach, unsigned threads, Progress progress, MarchSink* sink, MarchTeam* team,
+             MarchGoal goal)
     : graph_(graph),
       options_(options),
       variant_(variant),
@@ -35,7 +37,7 @@ March::March(const TangentGraph& graph, const HeatOptions& options, const MarchS
       team_(team ? *team : *alone_),
       margin_(march_margin(options.accuracy)),
       step_(std::min(march_step, team_.reach())),
-      radius_(radius),
+      reach_(reach),
       depth_(step_ + margin_),
       progress_(std::move(progress)),
       threads_(threads),
@@ -51,12 +53,14 @@ March::March(const TangentGraph& graph, const HeatOptions& options, const MarchS
 
 void March::run(const Source& source, MarchKeeper* keeper) {
   keeper_ = keeper;
+  start_ = place_in_space(graph_, source);
   const std::optional<MarchState> begun = keeper ? keeper->begin() : std::nullopt;
   if (begun) restore(*begun);
   march(begun ? nullptr : &source);
 }
 
-void March::run_on(const AffineHeat& heat, std::size_t s) {
+void March::run_on(const AffineHeat& heat, std::size_t s, const Source& source) {
+  start_ = place_in_space(graph_, source);
   std::vector<Index> reached;
   for (Index i = 0; i < graph_.size(); ++i)
     if (heat.reached(s, i)) reached.push_back(i);
@@ -318,14 +322,13 @@ void March::accept(Index vertex, Index place, const AffineHeat& heat, std::size_
   if (sink_ && own) sink_->accept(vertex, {phi, found_[number][d_], found_[number][d_ + 1]});
 }
 
-/// The accepted vertices from which the march goes on: those with neighbours ahead, sound values, and not beyond the
-/// radius.
+/// The accepted vertices from which the march goes on: those with neighbours ahead, sound values, and within reach.
 void March::update_front(std::span<const Index> added) {
   for (Index vertex : added)
     if (team_.owns(vertex)) front_.push_back(vertex);
   std::vector<Index> passed;
   std::erase_if(front_, [&](Index vertex) {
-    const bool is_passed = !has_neighbors_ahead(vertex), stays = !is_passed && is_within_radius(vertex);
+    const bool is_passed = !has_neighbors_ahead(vertex), stays = !is_passed && is_within_reach(vertex);
     if (is_passed && sink_) passed.push_back(vertex);
     return !stays;
   });
@@ -365,9 +368,15 @@ void March::axes(Index vertex, double* out) const {
     for (std::size_t c = 0; c < d_; ++c) out[a * d_ + c] = a == c;
 }
 
-/// A little beyond the radius, since coordinates are not monotone from vertex to vertex.
-bool March::is_within_radius(Index vertex) const {
-  return length(coordinates(vertex)) <= radius_ + 4 * scales_.h(vertex) * graph_.length_unit();
+/// A little beyond the radius, since numbers are not monotone from vertex to vertex.
+bool March::is_within_reach(Index vertex) const {
+  const double far = reach_.radius + 4 * scales_.h(vertex) * graph_.length_unit(),
+               by_heat = length(coordinates(vertex));
+  if (std::isnan(by_heat) || std::isinf(reach_.radius)) return !std::isnan(by_heat);
+  if (reach_.distances) return reach_.distances->of(vertex) <= far;
+  if (by_heat <= far) return true;
+  const std::optional<Frame> frame = start_ ? graph_.frame(vertex) : std::nullopt;
+  return frame && ahm::distance(frame->origin, *start_) <= far;
 }
 
 bool March::has_neighbors_ahead(Index vertex) const {

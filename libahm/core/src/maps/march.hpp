@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "ahm/maps/log_map_solver.hpp"
+#include "ahm/util/vec.hpp"
 #include "heat/component_scales.hpp"
 #include "maps/affine_heat.hpp"
 #include "maps/known_values.hpp"
@@ -55,6 +56,22 @@ class MarchSink {
   virtual void accept(Index vertex, const HeatRow& found) = 0;
 };
 
+/// Distances that are known before the march.
+class KnownDistances {
+ public:
+  virtual ~KnownDistances() = default;
+  /// Of a vertex that the march has come to, world units.
+  virtual double of(Index vertex) const = 0;
+};
+
+/// How far a march goes.
+struct MarchReach {
+  double radius = INFINITY;  ///< world units
+  /// By which it ends. Null: those of heat, which ways that leave the radius may shorten, so that it ends where the straight
+  /// line in space is longer as well, if the source has a place there.
+  const KnownDistances* distances = nullptr;
+};
+
 /// What a march looks for.
 enum class MarchGoal {
   map,
@@ -69,8 +86,8 @@ class March {
   ///                 has passed the vertex, so that memory grows with the front
   /// @param team     null: alone. Else one of those who march together, which takes a sink; it is told of own vertices
   March(const TangentGraph& graph, const HeatOptions& options, const MarchScales& scales, Variant variant,
-        double radius, unsigned threads, Progress progress, MarchSink* sink = nullptr, MarchTeam* team = nullptr,
-        MarchGoal goal = MarchGoal::map);
+        const MarchReach& reach, unsigned threads, Progress progress, MarchSink* sink = nullptr,
+        MarchTeam* team = nullptr, MarchGoal goal = MarchGoal::map);
 
   /// Marches from a checked source.
   /// @param keeper  null: nothing is kept. Else the march, which has a sink, goes on from where it says
@@ -78,7 +95,7 @@ class March {
   /// At the end of a band.
   MarchState state() const;
   /// Marches on from where a solve on the whole graph ended, source number `s` of `heat`.
-  void run_on(const AffineHeat& heat, std::size_t s);
+  void run_on(const AffineHeat& heat, std::size_t s, const Source& source);
 
   /// phi_i in world units; NaN where `accepted` is false or too little heat arrived.
   std::span<const double> coordinates(Index vertex) const {
@@ -145,7 +162,7 @@ class March {
   Way& way(Index vertex);
   Index place(Index vertex) const;
   bool has_neighbors_ahead(Index vertex) const;
-  bool is_within_radius(Index vertex) const;
+  bool is_within_reach(Index vertex) const;
   void forget(Index vertex);
   Index known_number(Index vertex) const;
   double diagonal(Index vertex) const;
@@ -160,8 +177,10 @@ class March {
   MarchKeeper* keeper_ = nullptr;
   std::unique_ptr<MarchTeam> alone_;
   MarchTeam& team_;
-  double margin_, step_, radius_;
-  double depth_;  ///< of bands
+  double margin_, step_;
+  MarchReach reach_;
+  std::optional<Vec3> start_;  ///< of straight lines
+  double depth_;               ///< of bands
   Progress progress_;
   unsigned threads_;
   std::size_t d_;

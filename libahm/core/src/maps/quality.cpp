@@ -52,7 +52,8 @@ class Comparison {
     const std::span<const double> phi = map_.coordinates(vertex);
     const double d = std::min(front_.distance(vertex), reach * map_.radius());
     double off = d - length(phi);
-    if (d > 0 && !front_.is_bent(vertex)) off = std::max(off, difference(phi, d, front_.direction(vertex)));
+    if (d > 0 && front_.has_directions() && !front_.is_bent(vertex))
+      off = std::max(off, difference(phi, d, front_.direction(vertex)));
     return belief_ * off - forgiven * h;
   }
 
@@ -104,7 +105,7 @@ std::vector<double> quality_beside(const TangentGraph& graph, const LogMap& map,
 
 QualityFront::QualityFront(const TangentGraph& graph, const Source& source, double radius,
                            const std::stop_token& stop) {
-  if (graph.is_delaunay() || graph.dimension() != 2 || source.is_curve()) return;
+  if (graph.is_delaunay() || source.is_curve()) return;
   front_.emplace(graph, nullptr, true);
   front_->add(source);
   run_front(*front_, graph, reach * radius, stop);

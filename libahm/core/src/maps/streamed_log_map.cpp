@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -35,12 +36,12 @@ class GraphScales final : public MarchScales {
   double t_coef_;
 };
 
-/// Makes rows of what the march finds.
-class Rows final : public MarchSink {
+/// Makes rows of what the march finds, which goes as far as the distances that it is told.
+class Rows final : public MarchSink, public KnownDistances {
  public:
   Rows(const TangentGraph& graph, const Source& source, double radius, const TeamMarch& how, const Progress& progress,
        MapSink& sink)
-      : radius_(radius),
+      : radius_(how.tells_beyond ? std::numeric_limits<double>::infinity() : radius),
         sink_(sink),
         phi_(how.goal == MarchGoal::map ? static_cast<std::size_t>(graph.dimension()) : 0),
         distances_(how.distances),
@@ -54,14 +55,16 @@ class Rows final : public MarchSink {
     }
   }
 
+  /// Null: they are those of heat.
+  const KnownDistances* distances() const { return distances_ ? distances_ : front_ ? this : nullptr; }
+  double of(Index vertex) const override { return front_->distance(Vertex(vertex)); }
+
   void accept(Index vertex, const HeatRow& found) override {
     std::copy_n(found.phi.begin(), phi_.size(), phi_.begin());
     VertexRow row = vertex_row(found);
     const auto* known = own_.find(vertex);
-    if (distances_)
-      row.distance = distances_->of(vertex);
-    else if (front_)
-      row.distance = front_->distance(Vertex(vertex));
+    if (distances())
+      row.distance = distances()->of(vertex);
     else if (known)
       row.distance = known->distance;
     if (known) {
@@ -126,8 +129,8 @@ MarchStatistics team_log_map(const TangentGraph& graph, const Source& source, co
   Rows rows(graph, source, map.radius, how, progress, sink);
   const Variant variant = how.goal == MarchGoal::map ? map.variant.value_or(options.variant) : Variant::localized;
   const unsigned threads = detail::thread_count(map.threads.value_or(options.threads));
-  March march(graph, options, how.scales ? *how.scales : scales, variant, map.radius, threads, progress, &rows, &team,
-              how.goal);
+  March march(graph, options, how.scales ? *how.scales : scales, variant, {map.radius, rows.distances()}, threads,
+              progress, &rows, &team, how.goal);
   march.run(source, how.keeper);
   return march.statistics();
 }

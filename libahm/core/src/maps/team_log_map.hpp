@@ -8,14 +8,6 @@
 
 namespace ahm {
 
-/// Distances that are known before the march.
-class KnownDistances {
- public:
-  virtual ~KnownDistances() = default;
-  /// Of a vertex that the march has come to, world units.
-  virtual double of(Index vertex) const = 0;
-};
-
 /// How a team makes a map.
 struct TeamMarch {
   MarchGoal goal = MarchGoal::map;
@@ -26,6 +18,8 @@ struct TeamMarch {
   const MarchScales* scales = nullptr;
   /// Null: those of heat, or unfolded by each member for itself.
   const KnownDistances* distances = nullptr;
+  /// Whether rows beyond the radius that the march came to are told as well, for those who cut them off later.
+  bool tells_beyond = false;
 };
 
 /// What `team_log_map` asks of its arguments. @throws InvalidArgument

@@ -29,7 +29,7 @@ inline constexpr double trusted_quality = 0.5;
 ///
 /// with d the distance, no less than the straight line in space where the graph has frames, and h the mean edge length of the
 /// vertex's component. |phi - psi| is no less than ||phi| - d|, and that alone where the way bends at the boundary, around a hole or in
-/// a notch of the sampling, and in other dimensions than 2; of a map by `Method::exact` there is the spread alone. Where the edges
+/// a notch of the sampling, and in other dimensions than 2, where fronts see holes if edges lie along orthogonal axes; of a map by `Method::exact` there is the spread alone. Where the edges
 /// are no Delaunay triangulation a front is less exact: h is forgiven, and it counts only where stars agree on their
 /// triangles, which noise undoes (`UnfoldingFront::agreement`); elsewhere there is ||phi| - d| with the distance of heat, which
 /// sees no holes.
@@ -50,7 +50,7 @@ class QualityFront {
   /// @throws Cancelled
   QualityFront(const TangentGraph& graph, const Source& source, double radius = std::numeric_limits<double>::infinity(),
                const std::stop_token& stop = {});
-  /// Null on Delaunay triangulations, whose maps have a front of their own, in other dimensions than 2, and from curves.
+  /// Null on Delaunay triangulations, whose maps have a front of their own, and from curves.
   const UnfoldingFront* get() const noexcept { return front_ ? &*front_ : nullptr; }
 
  private:

@@ -35,7 +35,11 @@ namespace ahm {
 /// order on other graphs. Coarse and sharp ones (connected components of up to 10,000 vertices, some of them bent) it crosses by
 /// the midpoints of the edges, too, which halves the error; unlike heat it knows the way
 /// around a hole and along both sides of a cut locus. Where a graph's lengths are noisy it takes the shortest of many
-/// uncertain ways and is too short. In other dimensions than 2 the displacement from the point is carried along the edges.
+/// uncertain ways and is too short.
+///
+/// In other dimensions than 2 the displacement from the point is carried along the edges. Where edges lie along orthogonal axes
+/// (grids in space) the front solves the eikonal equation beside it [FLZ09] (maps/eikonal.hpp): exact where the straight line is
+/// free, of first order behind obstacles. Elsewhere distances are those of the straight line.
 class UnfoldingFront {
  public:
   /// The triangles around every vertex, made once for many fronts: about 200 bytes a vertex.
@@ -44,8 +48,8 @@ class UnfoldingFront {
 
   /// Of the triangles that these vertices see between their neighbours, the share that the other two corners see, too: 1 of a
   /// triangulation, less of a cloud with noise, where stars contradict each other. So do the corners of squares without
-  /// diagonals, as in grids, and those with an edge of the right length opposite, as where diagonals of polygons cross. d = 2;
-  /// 0 where there are no triangles.
+  /// diagonals, as in grids, and those with an edge of the right length opposite, as where diagonals of polygons cross; 0 where
+  /// there are no triangles. In other dimensions than 2 the share of vertices whose edges lie along orthogonal axes.
   static double agreement(const TangentGraph& graph, std::span<const Vertex> vertices);
 
   /// @param graph       must outlive the front
@@ -120,6 +124,10 @@ class UnfoldingFront {
     bool is_new;
     Way way;
   };
+  /// A neighbour from which the front comes along an axis (maps/eikonal.hpp).
+  struct Upwind {
+    double length, cosine, factor;
+  };
   struct Waiting {
     double distance;
     Index vertex, point;
@@ -143,7 +151,11 @@ class UnfoldingFront {
              const Way& way, double focusing = 0);
   Index replace_farthest(Index vertex, Index point, double distance);
   void spread(Index from, Index point, double distance);
-  void carry(Index from, Index point);
+  void carry(Index from, Index point, double distance);
+  double factor_at(Index vertex, Index point, std::span<const double> displacement, double distance);
+  std::span<const double> displacement(const Entry& entry) const {
+    return std::span(displacements_).subspan(static_cast<std::size_t>(&entry - entries_.data()) * d_, d_);
+  }
   std::span<const Corner> around(Index vertex);
   static bool is_open(std::span<const Corner> corners);
   double curvature(Index vertex);
@@ -165,6 +177,9 @@ class UnfoldingFront {
   std::vector<Corner> around_;  ///< of the vertex at hand
   std::vector<Neighbor> neighbors_;
   std::vector<Known> known_;  ///< of its neighbours
+  std::vector<std::size_t> axis_;
+  std::vector<const Entry*> nearest_;
+  std::vector<Upwind> upwind_;
   Index points_ = 0;
 };
 
