@@ -103,6 +103,7 @@ void estimate_from_graph(const LogmapOptions& options) {
          constexpr double everywhere = std::numeric_limits<double>::infinity();
          if (strategy == Strategy::global || !options.solve.radius) return told(within(strategy, everywhere));
          Told one = told(within(strategy, *options.solve.radius));
+         if (graph.is_delaunay()) return one;
          const Told most = told(within(strategy, everywhere));
          one.text += "; at most " + most.text.substr(std::string_view("about ").size());
          one.json["at_most"] = most.json;

@@ -181,7 +181,8 @@ void offer(CLI::App& app, LogmapCommand& command) {
   auto* estimate = app.add_flag(
       "--estimate", o.estimate,
       "Tell what time and memory a map would take, and end: from the size of INPUT (evenly sampled, no radius), or "
-      "with --source from its graph, which is built for it, to a third. How far a march goes on beyond --radius is not "
+      "with --source from its graph, which is built for it, to a third. How far a march on a cloud goes on beyond "
+      "--radius is not "
       "known before: without a radius it takes at most that");
   app.callback([=, &command] {
     if (estimate->count() > 0) return;

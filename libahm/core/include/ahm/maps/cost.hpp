@@ -39,9 +39,9 @@ Cost estimate_cost(const GraphSize& size, Strategy strategy, int order = 1);
 /// From the graph: by the symbolic analysis of what is factored, which is the graph or the bands of a march; these are cut where
 /// the ways along edges from the source say. Good to a third on surfaces (docs/march.md), in a tenth of a map's time.
 ///
-/// What a march within a radius takes cannot be known before: it goes on wherever vectors of heat are shorter than the radius, and
-/// they are too short behind cut loci and in noise. This tells what it takes where they are not; it takes at most what it takes
-/// without a radius.
+/// What a march within a radius takes where distances are not unfolded (clouds) cannot be known before: it goes on wherever vectors
+/// of heat are shorter than the radius, and in noise they are too short. This tells what it takes where they are not; it takes at
+/// most what it takes without a radius.
 /// @param options  order, t_coef, accuracy, ordering, kind of factorization
 /// @param radius   of a march, world units; > 0
 /// @throws InvalidArgument (automatic; d is not 2; a source that does not fit the graph; radius, t_coef, order, accuracy)
