@@ -180,10 +180,9 @@ void offer(CLI::App& app, LogmapCommand& command) {
   add_parsed(app, "--corners", o.corners, non_empty, "CORNERS", "Mesh to write, with u,v at the corners of its faces");
   auto* estimate = app.add_flag(
       "--estimate", o.estimate,
-      "Tell what time and memory a map would take, and end: from the size of INPUT (evenly sampled, no radius), or "
-      "with --source from its graph, which is built for it, to a third. How far a march on a cloud goes on beyond "
-      "--radius is not "
-      "known before: without a radius it takes at most that");
+      "Tell what time and memory a map would take, and end: from the size of INPUT (evenly sampled, no radius), or\n"
+      "with --source from its graph, which is built for it, to a third. How far a march on a cloud goes on beyond\n"
+      "--radius is not known before: it takes at most what it takes without");
   app.callback([=, &command] {
     if (estimate->count() > 0) return;
     if (command.sources.empty()) throw CLI::RequiredError("--source");
