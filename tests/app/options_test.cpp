@@ -152,6 +152,25 @@ TEST(Options, SecondOrderIsMoreAccurateAndSaysHowMuch) {
   EXPECT_EQ(run({"logmap", input, "-s", "0", "-o", folder / "map.csv", "--order", "3"}).status, 2);
 }
 
+TEST(Options, EstimateOfASourceLooksAtItsGraph) {
+  Folder folder;
+  // Two spheres of different size: a march from one does not come to the other.
+  std::string points = xyz(sphere(9000));
+  for (const Vec3& p : sphere(300))
+    points += std::to_string(10 + p[0]) + " " + std::to_string(p[1]) + " " + std::to_string(p[2]) + "\n";
+  const auto input = folder.write("spheres.xyz", points);
+  const auto march = [&](std::vector<std::string> words) {
+    words.insert(words.begin(), {"logmap", input, "--estimate", "--json", "-"});
+    const auto outcome = run(words);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return nlohmann::json::parse(outcome.out).at("march").at("peak_bytes").get<double>();
+  };
+  EXPECT_LT(march({"--source", "9100"}), march({"--source", "100"}) - 1e6);
+  EXPECT_LT(march({"--source", "100", "--radius", "0.2"}), march({"--source", "100"}) - 1e6);
+  EXPECT_EQ(run({"logmap", input, "--estimate", "--source", "10000"}).status, 1);
+  EXPECT_EQ(folder.files(), std::vector<std::string>{"spheres.xyz"});
+}
+
 TEST(Options, EstimateRunsNothing) {
   Folder folder;
   const auto input = folder.write("sphere.xyz", xyz(sphere(500)));
@@ -182,6 +201,20 @@ TEST(Options, EstimateKnowsTheMemoryOfSmallInputs) {
     const double told = json({"--estimate"}).at("global").at("peak_bytes"),
                  taken = json({"--source", "0", "--strategy", "global", "-o", folder / "map.csv"}).at("peak_rss_bytes");
     EXPECT_LT(std::abs(told / taken - 1), 1.0 / 3) << n << " points: " << told << " told, " << taken << " taken";
+    for (const std::string strategy : {"global", "march"})
+      for (const char* order : {"1", "2"})
+        for (const char* radius : {"0.4", "3"}) {
+          const std::vector<std::string> words{"--source", "0",   "--strategy", strategy,
+                                               "--order",  order, "--radius",   radius};
+          auto with = [&](std::vector<std::string> more) {
+            more.insert(more.begin(), words.begin(), words.end());
+            return json(more);
+          };
+          const nlohmann::json estimate = with({"--estimate"}).at(strategy);
+          const double near = estimate.at("peak_bytes"), used = with({"-o", folder / "map.csv"}).at("peak_rss_bytes");
+          EXPECT_LT(std::abs(near / used - 1), 1.0 / 3) << n << " points: " << near << " told, " << used << " taken";
+          EXPECT_EQ(estimate.contains("at_most"), strategy == "march");
+        }
   }
 }
 

@@ -5,12 +5,14 @@
 
 #include <cmath>
 #include <functional>
+#include <numbers>
 #include <random>
 
 #include "ahm/error.hpp"
 #include "ahm/maps/log_map_solver.hpp"
 #include "ahm/pointcloud/point_cloud_surface.hpp"
 #include "ahm/polymesh/polygon_mesh_surface.hpp"
+#include "ahm/testing/clouds.hpp"
 #include "ahm/testing/triangle_meshes.hpp"
 #include "ahm/trimesh/triangle_mesh_surface.hpp"
 
@@ -293,6 +295,48 @@ TEST(Surface, NamesWhatIsWrongWithAPoint) {
   EXPECT_THROW(surface.closest_point({NAN, 0, 0}), InvalidArgument);
   EXPECT_THROW(surface.nearest_row({0, 0, INFINITY}), InvalidArgument);
   EXPECT_NE(surface.nearest_row({5, 5, 4.9}), Row(mesh.vertices() - 1));  // it has no vertex
+}
+
+/// A vector so many degrees from a point of the unit sphere, of any length.
+Vec3 tilted(const Vec3& p, double degrees, double scale = 1) {
+  const double t = std::tan(degrees * std::numbers::pi / 180) / std::hypot(p[0], p[1]);
+  return {scale * (p[0] - t * p[1]), scale * (p[1] + t * p[0]), scale * p[2]};
+}
+
+/// Of all rows those at which a surface takes an axis that is tilted from the normal of the unit sphere.
+std::size_t taken(const Surface& sphere, double degrees, double scale = 1) {
+  std::size_t count = 0;
+  for (std::size_t r = 0; r < sphere.positions().size(); ++r) {
+    const Vec3& p = sphere.positions()[r];
+    if (std::hypot(p[0], p[1]) < 0.1) continue;
+    try {
+      sphere.source(Row(static_cast<Index>(r)), tilted(p, degrees, scale));
+      ++count;
+    } catch (const InvalidArgument& e) {
+      EXPECT_EQ(e.fault(), "axis_along_normal");
+      EXPECT_NE(e.problem().find("degrees from the normal at row"), std::string::npos);
+    }
+  }
+  return count;
+}
+
+TEST(Surface, TakesNoAxisThatTheNormalsErrorWouldTurn) {
+  const Mesh ball = icosphere(8);
+  const auto mesh = TriangleMeshSurface::build(ball.positions, ball.faces);
+  const Cloud points = random_sphere(1500, 3);
+  const auto estimated = pointcloud::PointCloudSurface::build(points.points),
+             given = pointcloud::PointCloudSurface::build(points.points, points.normals);
+  for (double scale : {1e-300, 1.0, 1e300})
+    for (double degrees : {0.0, 0.5}) {
+      EXPECT_EQ(taken(mesh, degrees, scale), 0U);
+      EXPECT_EQ(taken(given, degrees, scale), 0U);
+      EXPECT_LE(taken(estimated, degrees, scale), 3U);  // whose normals are farther off than 95 % of such
+    }
+  const std::size_t most = taken(estimated, 30);
+  EXPECT_GT(most, 1400U);
+  EXPECT_EQ(taken(given, 1.5), most);
+  EXPECT_LT(taken(estimated, 2), most / 50);
+  EXPECT_GT(taken(mesh, 2), 600U);
 }
 
 }  // namespace

@@ -84,7 +84,8 @@ CLI::Option* add_u_axis(CLI::App& app, SourceOptions& o) {
         return text == "curvature" ? UAxis{true, {}} : UAxis{false, parse_direction(text)};
       },
       "X,Y,Z|curvature",
-      "Direction of the u axis, projected to the surface (default: chosen by the backend), or\n"
+      "Direction of the u axis, projected to the surface (default: chosen by the backend): at least a\n"
+      "degree from the normal, 5 where normals are estimated. Or\n"
       "curvature: where the surface bends most, which planes and spheres do nowhere");
 }
 
@@ -149,7 +150,8 @@ void add_local(CLI::App& app, InputOptions& o, const std::string& radius) {
   app.add_flag("--local", o.around_source,
                radius +
                    ": build the graph of the surroundings of the source only, fast on huge\n"
-                   "scans and meshes; the diffusion time is then that of the surroundings");
+                   "scans and meshes; the diffusion time is then that of the surroundings, and the noise\n"
+                   "of a cloud, which decides what is connected");
 }
 
 void add_mesh_options(CLI::App& app, InputOptions& o) {

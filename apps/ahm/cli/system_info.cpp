@@ -17,6 +17,13 @@ std::int64_t peak_rss_bytes() {
   return static_cast<std::int64_t>(usage.ru_maxrss) * 1024;  // Linux counts in kibibytes
 }
 
+double processor_seconds() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  const auto seconds = [](const timeval& time) { return static_cast<double>(time.tv_sec) + 1e-6 * time.tv_usec; };
+  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
 std::string bytes_as_text(std::int64_t bytes) {
   const auto x = static_cast<double>(bytes);
   if (x >= 1e9) return fmt::format("{:.2f} GB", x / 1e9);

@@ -11,6 +11,9 @@ namespace ahm::app {
 /// Largest resident memory of the process so far.
 std::int64_t peak_rss_bytes();
 
+/// Processor time of the process so far, all threads.
+double processor_seconds();
+
 /// "1.23 GB", "45 MB", "6 kB": powers of 1000.
 std::string bytes_as_text(std::int64_t bytes);
 

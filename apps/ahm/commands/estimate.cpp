@@ -2,11 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <array>
+#include <functional>
+#include <limits>
 #include <nlohmann/json.hpp>
+#include <string_view>
 
 #include "ahm/maps/cost.hpp"
 #include "cli/console.hpp"
+#include "cli/journal.hpp"
 #include "cli/system_info.hpp"
 #include "input/open.hpp"
 #include "output/output_paths.hpp"
@@ -35,32 +38,84 @@ Index vertices_of(const io::Geometry& input, const Backend& backend, const Input
   return static_cast<Index>(input.points.size() + (backend.more_vertices ? backend.more_vertices(input, options) : 0));
 }
 
-}  // namespace
+HeatOptions heat_options(const SolveOptions& solve) {
+  HeatOptions heat = solve;
+  heat.expected_maps = 1;
+  return heat;
+}
 
-void run_estimate(const InputOptions& options, const SolveOptions& solve, const std::string& json) {
-  check_outputs({options.path}, {{"--json", json}}, false);
-  const io::Geometry input = read_input(options);
-  const Backend& backend = choose_backend(input, options.backend);
-  const GraphSize size{vertices_of(input, backend, options)};
-  const HeatOptions solver{.order = solve.order, .strategy = solve.strategy, .expected_maps = 1};
-  const Strategy chosen = choose_strategy(size, solver);
+/// What is told of one strategy.
+struct Told {
+  std::string text;
+  nlohmann::ordered_json json;
+};
 
+Told told(Estimate e) {
+  return {fmt::format("about {:.2g} s, {}", e.seconds, bytes_as_text(static_cast<std::int64_t>(e.bytes))),
+          {{"seconds", e.seconds}, {"peak_bytes", e.bytes}}};
+}
+
+void tell(const GraphSize& size, const std::string& backend, Strategy chosen, const std::string& json,
+          const std::function<Told(Strategy)>& of_strategy) {
   nlohmann::ordered_json j{{"program", "ahm logmap --estimate"},
                            {"n", size.vertices},
-                           {"backend", backend.name},
+                           {"backend", backend},
                            {"strategy", to_string(chosen)}};
-  std::string text = fmt::format("{} vertices, backend {}\n", size.vertices, backend.name);
+  std::string text = fmt::format("{} vertices, backend {}\n", size.vertices, backend);
   for (Strategy strategy : {Strategy::global, Strategy::march}) {
-    const Estimate e = estimate(size, strategy, backend, solve.order);
-    j[std::string(to_string(strategy))] = {{"seconds", e.seconds}, {"peak_bytes", e.bytes}};
-    text += fmt::format("{:<7} about {:.2g} s, {}{}\n", to_string(strategy), e.seconds,
-                        bytes_as_text(static_cast<std::int64_t>(e.bytes)), strategy == chosen ? "  (chosen)" : "");
+    const Told one = of_strategy(strategy);
+    j[std::string(to_string(strategy))] = one.json;
+    text += fmt::format("{:<7} {}{}\n", to_string(strategy), one.text, strategy == chosen ? "  (chosen)" : "");
   }
   const double memory = machine_memory();
   j["machine_bytes"] = memory;
   text += fmt::format("this machine lets it take {}\n", bytes_as_text(static_cast<std::int64_t>(memory)));
   write_json(json, j);
   if (json != "-") print(text);
+}
+
+void estimate_from_size(const LogmapOptions& options) {
+  const io::Geometry input = read_input(options.input);
+  const Backend& backend = choose_backend(input, options.input.backend);
+  const GraphSize size{vertices_of(input, backend, options.input)};
+  const HeatOptions heat = heat_options(options.solve);
+  tell(size, std::string(backend.name), choose_strategy(size, heat), options.output.json,
+       [&](Strategy strategy) { return told(estimate(size, strategy, backend, heat.order)); });
+}
+
+/// Of the graph that the map would be made on; what it took until then is known.
+void estimate_from_graph(const LogmapOptions& options) {
+  Journal journal(Verbosity::quiet);
+  const Input input = options.input.around_source
+                          ? open_around(options.input, options.solve.radius, journal, options.source.spec)
+                          : open_input(options.input, journal, options.source.spec);
+  const Source source = resolve(options.source, input, options.solve.threads).source;
+  const Estimate so_far{{}, static_cast<double>(peak_rss_bytes()), processor_seconds()};
+  const TangentGraph& graph = input.graph();
+  const GraphSize size{graph.size(), graph.dimension(), graph.transport_kind()};
+  const HeatOptions heat = heat_options(options.solve);
+  const auto within = [&](Strategy strategy, double radius) {
+    const Cost cost = estimate_cost(graph, source, strategy, heat, radius);
+    return Estimate{strategy, so_far.bytes + cost.bytes, so_far.seconds + cost.first_map_seconds};
+  };
+  tell(size, std::string(input.backend->name), choose_strategy(size, heat), options.output.json,
+       [&](Strategy strategy) {
+         constexpr double everywhere = std::numeric_limits<double>::infinity();
+         if (strategy == Strategy::global || !options.solve.radius) return told(within(strategy, everywhere));
+         Told one = told(within(strategy, *options.solve.radius));
+         if (graph.is_delaunay()) return one;
+         const Told most = told(within(strategy, everywhere));
+         one.text += "; at most " + most.text.substr(std::string_view("about ").size());
+         one.json["at_most"] = most.json;
+         return one;
+       });
+}
+
+}  // namespace
+
+void run_estimate(const LogmapOptions& options, bool has_source) {
+  check_outputs({options.input.path}, {{"--json", options.output.json}}, false);
+  has_source ? estimate_from_graph(options) : estimate_from_size(options);
 }
 
 }  // namespace ahm::app

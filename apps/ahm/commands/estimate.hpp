@@ -2,14 +2,12 @@
 /// `ahm logmap --estimate`
 #pragma once
 
-#include <string>
-
-#include "cli/options.hpp"
+#include "commands/logmap_options.hpp"
 
 namespace ahm::app {
 
-/// Tells what time and memory a map would take by either strategy, and runs nothing but the reader.
-/// @param json  as --json
-void run_estimate(const InputOptions& input, const SolveOptions& solve, const std::string& json);
+/// Tells what time and memory a map would take by either strategy. Without a source from the size of the input, for which nothing
+/// but the reader runs; with one from the graph, which is built.
+void run_estimate(const LogmapOptions& options, bool has_source);
 
 }  // namespace ahm::app

@@ -118,9 +118,10 @@ std::vector<std::vector<LogmapOptions>> planned(const LogmapCommand& command) {
 void run(const LogmapCommand& command) {
   if (command.map.estimate) {
     if (command.inputs.size() > 1) throw InvalidArgument("--estimate: takes one INPUT");
-    InputOptions input = command.map.input;
-    input.path = command.inputs.front();
-    return run_estimate(input, command.map.solve, command.map.output.json);
+    LogmapOptions map = command.map;
+    map.input.path = command.inputs.front();
+    if (!command.sources.empty()) map.source.spec = command.sources.front();
+    return run_estimate(map, !command.sources.empty());
   }
   const auto files = planned(command);
   const std::size_t count = command.inputs.size() * command.sources.size();
@@ -177,7 +178,11 @@ void offer(CLI::App& app, LogmapCommand& command) {
   add_sources(app, command.sources);
   auto* output = add_table_output(app, o.output);
   add_parsed(app, "--corners", o.corners, non_empty, "CORNERS", "Mesh to write, with u,v at the corners of its faces");
-  auto* estimate = app.add_flag("--estimate", o.estimate, "Tell what time and memory the run would take, and end");
+  auto* estimate = app.add_flag(
+      "--estimate", o.estimate,
+      "Tell what time and memory a map would take, and end: from the size of INPUT (evenly sampled, no radius), or\n"
+      "with --source from its graph, which is built for it, to a third. How far a march on a cloud goes on beyond\n"
+      "--radius is not known before: it takes at most what it takes without");
   app.callback([=, &command] {
     if (estimate->count() > 0) return;
     if (command.sources.empty()) throw CLI::RequiredError("--source");

@@ -58,9 +58,8 @@ FoundLine trace(const LineFinder& finder, const SurfacePoint& from, const Wanted
     return finder.trace(from, line.direction, line.length);
   } catch (const InvalidArgument& e) {
     if (e.fault() != "axis_along_normal") throw;
-    throw InvalidArgument(fmt::format("{} {},{},{}: is perpendicular to the surface at the source {}", option,
-                                      line.direction[0], line.direction[1], line.direction[2],
-                                      to_string(*line.source)));
+    throw InvalidArgument(fmt::format("{} {},{},{}: at the source {} {}", option, line.direction[0], line.direction[1],
+                                      line.direction[2], to_string(*line.source), e.problem()));
   }
 }
 
@@ -114,8 +113,9 @@ void offer(CLI::App& app, TraceCommandOptions& o) {
   auto* source = add_parsed(
       app, "-s,--source", o.line.source, [](const std::string& text) { return parse_source(text); }, "SPEC",
       "Where the line starts, see below");
-  auto* direction =
-      add_parsed(app, "--direction", o.line.direction, parse_direction, "X,Y,Z", "Where to, projected to the surface");
+  auto* direction = add_parsed(
+      app, "--direction", o.line.direction, parse_direction, "X,Y,Z",
+      "Where to, projected to the surface; not within a degree of the normal, 5 where normals are estimated");
   auto* length = add_parsed(app, "--length", o.line.length, parse_positive, "L", "How far, along the surface");
   auto* lines = add_parsed(app, "--lines", o.lines, read_lines, "LINES", "Many lines instead, see below");
   source->excludes(lines);

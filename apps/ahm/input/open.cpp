@@ -135,8 +135,8 @@ PlacedSource place(const Input& input, const SourceSpec& spec, const std::option
   return input.surface().source(point_of(input, spec), u_axis);
 } catch (const InvalidArgument& e) {
   if (u_axis && e.fault() == "axis_along_normal")
-    throw InvalidArgument(fmt::format("--u-axis {},{},{}: is perpendicular to the surface at the source {}",
-                                      (*u_axis)[0], (*u_axis)[1], (*u_axis)[2], to_string(spec)));
+    throw InvalidArgument(fmt::format("--u-axis {},{},{}: at the source {} {}", (*u_axis)[0], (*u_axis)[1],
+                                      (*u_axis)[2], to_string(spec), e.problem()));
   throw InvalidArgument(fmt::format("{} {}: {}", option, to_string(spec), worded(e)));
 }
 

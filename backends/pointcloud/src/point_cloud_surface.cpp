@@ -8,6 +8,7 @@
 
 #include "ahm/error.hpp"
 #include "ahm/graph/components.hpp"
+#include "ahm/surface/directions.hpp"
 #include "ahm/surface/gluing.hpp"
 #include "ahm/util/parallel.hpp"
 #include "ahm/util/stopwatch.hpp"
@@ -224,6 +225,11 @@ Surface::Reason PointCloudSurface::why_without_vertex(Row row) const {
     return {"row_left_out", "was left out", "it is not among CloudOptions::rows"};
   return {"row_removed", "was removed: it is not finite, or has no tangent plane or no neighbours",
           "choose another one"};
+}
+
+double PointCloudSurface::error_of_normals() const {
+  const bool as_given = details_.normals_given && details_.estimated == 0 && details_.contradicted == 0;
+  return as_given ? normal_error : estimated_normal_error;
 }
 
 Report PointCloudSurface::report() const {

@@ -131,8 +131,10 @@ class TuftedCover {
   /// A side of a triangle, seen from its smaller end.
   struct Side {
     Index head;
-    bool left;               ///< whether the triangle is left of it
-    Half forward, backward;  ///< in the copy whose front it is on, and in the other one
+    bool left, left_of_head;  ///< whether the triangle is left of it, by the normals of both ends
+    bool near_head;           ///< whether the apex is nearer to the head
+    float reach;              ///< how far it is from both, beside the length of the side
+    Half forward, backward;   ///< in the copy whose front it is on, and in the other one
   };
   void glue(const CleanPoints& cloud, const TangentPlanes& planes, const std::vector<Triangle>& triangles);
   void glue_around(std::span<const Side> edge, std::vector<Side>& left, std::vector<Side>& right);
@@ -201,7 +203,15 @@ void TuftedCover::glue(const CleanPoints& cloud, const TangentPlanes& planes, co
     const Corners& of = corners[number % 3];
     const Vec3 &p = cloud.points[t[of.from]], edge = cloud.points[t[of.to]] - p, across = cloud.points[t[of.apex]] - p;
     const Half first = 6 * (number / 3);
-    return {t[of.to], dot(cross(edge, across), planes.normals[t[of.from]]) > 0, first + of.forward,
+    const Vec3 opposite = across - edge;
+    const Vec3 normal = cross(edge, across);
+    const double unit = dot(edge, edge), tail = dot(across, across) / unit, head = dot(opposite, opposite) / unit;
+    return {t[of.to],
+            dot(normal, planes.normals[t[of.from]]) > 0,
+            dot(normal, planes.normals[t[of.to]]) > 0,
+            static_cast<float>(head) < static_cast<float>(tail),
+            static_cast<float>(tail + head),
+            first + of.forward,
             first + of.backward};
   };
   detail::parallel_chunks(n_, points_per_task, threads_, [&](Offset from, Offset to) {
@@ -209,9 +219,11 @@ void TuftedCover::glue(const CleanPoints& cloud, const TangentPlanes& planes, co
     for (Offset i = from; i < to; ++i) {
       sides.clear();
       for (Offset k = begin[i]; k < begin[i + 1]; ++k) sides.push_back(side_of(bucketed[k]));
-      // Those of one edge in the order of their triangles.
+      // Those of one edge by the shape of their triangles, which neither scale nor place nor rotation changes. In single
+      // precision: of equal ones, as on lattices, the order of triangles decides, and not rounding.
       std::sort(sides.begin(), sides.end(), [](const Side& p, const Side& q) {
-        return p.head != q.head ? p.head < q.head : p.forward < q.forward;
+        if (p.head != q.head) return p.head < q.head;
+        return p.reach != q.reach ? p.reach < q.reach : p.forward < q.forward;
       });
       for (auto group = sides.begin(); group != sides.end();) {
         const auto end = std::find_if(group, sides.end(), [&](const Side& s) { return s.head != group->head; });
@@ -226,11 +238,16 @@ void TuftedCover::glue(const CleanPoints& cloud, const TangentPlanes& planes, co
 void TuftedCover::glue_around(std::span<const Side> edge, std::vector<Side>& left, std::vector<Side>& right) {
   left.clear();
   right.clear();
-  // Relative to the first side, so that the signs of the normals do not matter.
-  for (const Side& side : edge) (side.left == edge.front().left ? left : right).push_back(side);
+  // Relative to the first side, so that the signs of the normals do not matter, and seen from the end that is nearer to its
+  // apex, so that the points' numbers do not.
+  const bool from_head = edge.front().near_head;
+  const auto is_left = [&](const Side& side) { return from_head ? side.left_of_head : side.left; };
+  for (const Side& side : edge) (is_left(side) == is_left(edge.front()) ? left : right).push_back(side);
   const Side* last = nullptr;
+  const auto glue_halves = [&](Half front, Half back) { twin_[front] = back, twin_[back] = front; };
   const auto follow = [&](const Side& side) {
-    if (last) twin_[last->forward] = side.backward, twin_[side.backward] = last->forward;
+    if (last && from_head) glue_halves(last->backward, side.forward);
+    if (last && !from_head) glue_halves(last->forward, side.backward);
     last = &side;
   };
   for (std::size_t k = 0; k < std::max(left.size(), right.size()); ++k) {

@@ -176,6 +176,11 @@ Vec3 tangent(const std::vector<CurveSample>& samples, std::size_t k, bool closed
   return sum;
 }
 
+/// Without what is along the normal: a curve may run as steep as noise lets it.
+Vec3 flattened(const Vec3& along, const std::optional<Frame>& frame) {
+  return frame ? dot(along, frame->x) * frame->x + dot(along, frame->y) * frame->y : along;
+}
+
 /// The source seen from the other side of the surface.
 Source mirrored(const Source& source) {
   Source result(2);
@@ -211,7 +216,7 @@ SurfaceCurve draw(const Surface& surface, std::span<const CurvePoint> given, boo
     if (frame) normal = frame->normal;
   };
   for (std::size_t k = 0; k < n; ++k) {
-    const Vec3 along = tangent(samples, k, closed);
+    const Vec3 along = flattened(tangent(samples, k, closed), surface.source(samples[k].point).frame);
     const PlacedSource point = surface.source(samples[k].point, along);
     if (k == 0) curve.first = point.frame;
     turn_over(point.frame);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <numbers>
 #include <string>
 
 #include "ahm/error.hpp"
@@ -91,6 +92,18 @@ Vec2 projected(const Vec3& x, const Vec3& y, const Vec3& vector, const std::stri
   return result;
 }
 
+void check_off_normal(const Vec3& direction, const Vec3& normal, double error, const std::string& where) {
+  if (!(largest(direction) > 0) || !is_finite(direction))
+    throw InvalidArgument("a direction " + where + " must be finite and not zero");
+  const Vec3 scaled = 1 / power_of_two_below(largest(direction)) * direction;
+  const double off = std::atan2(length(cross(scaled, normal)), std::abs(dot(scaled, normal))) * 180 / std::numbers::pi;
+  if (!(off >= error))
+    throw InvalidArgument("axis_along_normal",
+                          "the direction is " + shortly("%.2g", off) + " degrees from the normal " + where +
+                              ", which is known to " + shortly("%.2g", error),
+                          "choose another one");
+}
+
 Vec2 projected(const TangentGraph& graph, Vertex vertex, const Vec3& vector) {
   const char* name = "direction_in_frame";
   check_dimension(graph, name);
@@ -103,6 +116,8 @@ Vec2 projected(const TangentGraph& graph, Vertex vertex, const Vec3& vector) {
 
 Vec2 direction_in_frame(const TangentGraph& graph, Vertex vertex, const Vec3& vector) {
   const Vec2 p = projected(graph, vertex, vector);
+  check_off_normal(vector, frame_of(graph, vertex.index, "direction_in_frame").normal, normal_error,
+                   "at vertex " + std::to_string(vertex.index));
   const double r = length(p);
   return {p[0] / r, p[1] / r};
 }

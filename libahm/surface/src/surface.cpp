@@ -115,7 +115,21 @@ Vec3 Surface::position(const SurfacePoint& point) const {
   return std::visit(visit, point);
 }
 
+double Surface::error_of_normals() const { return normal_error; }
+
 PlacedSource Surface::source(const SurfacePoint& point, const std::optional<Vec3>& u_axis) const {
+  if (!u_axis) return placed(point, u_axis);
+  const auto where =
+      Overloaded{[](Row row) { return "at row " + std::to_string(row.index); },
+                 [](const EdgePoint& edge) { return "on the edge from row " + std::to_string(edge.from.index); },
+                 [](const FacePoint& inside) { return "in face " + std::to_string(inside.face); },
+                 [](const TangentPoint& near) { return "near row " + std::to_string(near.row.index); }};
+  if (const std::optional<Frame> frame = placed(point, {}).frame)
+    check_off_normal(*u_axis, frame->normal, error_of_normals(), std::visit(where, point));
+  return placed(point, u_axis);
+}
+
+PlacedSource Surface::placed(const SurfacePoint& point, const std::optional<Vec3>& u_axis) const {
   const auto visit = Overloaded{[&](Row row) { return source_at_row(row, u_axis); },
                                 [&](const EdgePoint& edge) {
                                   check(edge);

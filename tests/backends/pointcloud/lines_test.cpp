@@ -6,6 +6,7 @@
 
 #include "ahm/maps/tangent_lines.hpp"
 #include "ahm/pointcloud/point_cloud_surface.hpp"
+#include "ahm/surface/surface_lines.hpp"
 #include "ahm/testing/clouds.hpp"
 #include "ahm/testing/vectors.hpp"
 #include "backends/great_circles.hpp"
@@ -87,6 +88,36 @@ TEST(LinesOnClouds, AreTheSameReversed) {
       EXPECT_EQ(there.places[p].offset, back.places[back.places.size() - 1 - p].offset);
     EXPECT_EQ(there.departure[0], -back.arrival[0]);
     EXPECT_GE(there.length, norm(minus(*position(graph, a), *position(graph, b))) - h);
+  }
+}
+
+/// A cloud in which some points have a twin, much nearer than all other neighbours.
+std::vector<Vec3> sphere_with_twins(double scale) {
+  std::vector<Vec3> points = random_sphere(900, 3).points;
+  for (std::size_t k = 0; k < 900; k += 20)
+    points.push_back({points[k][0] + 1e-3 * points[k][1], points[k][1] - 1e-3 * points[k][0], points[k][2]});
+  for (Vec3& p : points)
+    for (double& x : p) x *= scale;
+  return points;
+}
+
+TEST(LinesOnClouds, AreTheSameBitsAtEveryPowerOfTwo) {
+  const auto lines = [](int exponent) {
+    const auto surface = PointCloudSurface::build(sphere_with_twins(std::ldexp(1.0, exponent)));
+    std::vector<SurfaceLine> found;
+    for (Index k = 0; k < 8; ++k) found.push_back(shortest_line(surface, Row(20 * k), Row(889 - 41 * k)));
+    return found;
+  };
+  const auto at_one = lines(0);
+  for (int exponent : {-1000, -850, -700, -540, 540, 1000}) {
+    const auto scaled = lines(exponent);
+    for (std::size_t k = 0; k < at_one.size(); ++k) {
+      ASSERT_EQ(at_one[k].points.size(), scaled[k].points.size()) << exponent;
+      EXPECT_EQ(at_one[k].length, std::ldexp(scaled[k].length, -exponent)) << exponent;
+      for (std::size_t p = 0; p < at_one[k].points.size(); ++p)
+        for (std::size_t a = 0; a < 3; ++a)
+          ASSERT_EQ(at_one[k].points[p][a], std::ldexp(scaled[k].points[p][a], -exponent)) << exponent;
+    }
   }
 }
 

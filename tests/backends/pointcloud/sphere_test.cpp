@@ -99,5 +99,45 @@ TEST(SphereCloud, CoversItsArea) {
   EXPECT_NEAR(area, 4 * 3.14159265, 0.05);
 }
 
+/// A sphere with bumps, sampled at random, moved, turned and scaled, its rows in this order or the other way round.
+std::vector<Vec3> bumpy(double scale, const Vec3& shift, double angle, bool reversed) {
+  std::vector<Vec3> points = random_sphere(2500, 3).points;
+  const double c = std::cos(angle), s = std::sin(angle);
+  for (Vec3& p : points) {
+    const double r = scale * (1 + 0.01 * std::sin(40 * p[0]) * std::cos(37 * p[1] + 11 * p[2]));
+    p = {r * (c * p[0] - s * p[1]), r * (0.6 * (s * p[0] + c * p[1]) - 0.8 * p[2]),
+         r * (0.8 * (s * p[0] + c * p[1]) + 0.6 * p[2])};
+    for (std::size_t a = 0; a < 3; ++a) p[a] += shift[a];
+  }
+  if (reversed) std::reverse(points.begin(), points.end());
+  return points;
+}
+
+// Nothing but ties in truth may be decided by where the points lie, how large they are, and how they are numbered.
+TEST(SphereCloud, HasTheSameMapMovedTurnedAndScaled) {
+  const auto map_of = [](const std::vector<Vec3>& points, Index source, Index towards) {
+    const auto surface = pointcloud::PointCloudSurface::build(points);
+    const LogMapSolver solver(surface.graph());
+    const Vec3 axis = minus(points[towards], points[source]);
+    return surface.on_rows(solver.solve(surface.source(Row(source), axis).source));
+  };
+  const Index last = 2499;
+  const RowLogMap expected = map_of(bumpy(1, {0, 0, 0}, 0, false), 7, 90);
+  for (double scale : {1.0, 1.1, 1.7, 300.0})
+    for (double angle : {0.0, 0.7})
+      for (bool reversed : {false, true}) {
+        const RowLogMap found = map_of(bumpy(scale, {0.3 * scale, -2 * scale, scale}, angle, reversed),
+                                       reversed ? last - 7 : 7, reversed ? last - 90 : 90);
+        double worst = 0;
+        for (Index i = 0; i <= last; ++i) {
+          const Index k = reversed ? last - i : i;
+          worst = std::max({worst, std::abs(found.u[k] / scale - expected.u[i]),
+                            std::abs(found.v[k] / scale - expected.v[i]),
+                            std::abs(found.distance[k] / scale - expected.distance[i])});
+        }
+        EXPECT_LT(worst, 1e-9) << scale << ' ' << angle << ' ' << reversed;
+      }
+}
+
 }  // namespace
 }  // namespace ahm::test

@@ -3,8 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "ahm/error.hpp"
 #include "ahm/testing/curved_graphs.hpp"
+#include "maps/map_work.hpp"
 
 namespace ahm::test {
 namespace {
@@ -59,6 +62,81 @@ TEST(Cost, OfOrderTwoCountsForTheChoice) {
   const auto memory = static_cast<std::size_t>(1.5 * estimate_cost(size, Strategy::global).bytes);
   EXPECT_EQ(choose_strategy(size, {.order = 1, .memory = memory}), Strategy::global);
   EXPECT_EQ(choose_strategy(size, {.order = 2, .memory = memory}), Strategy::march);
+}
+
+CsrGraph sphere(Index n) { return CsrGraph(sphere_graph(n)); }
+
+TEST(CostOfGraph, CountsFactorsExactly) {
+  const CsrGraph graph = sphere(3000);
+  for (Ordering ordering : {Ordering::amd, Ordering::nested_dissection}) {
+    const HeatOptions options{.ordering = ordering};
+    const SystemSize size = system_size(graph, options);
+    EXPECT_EQ(size.nonzeros, static_cast<double>(HeatOperators(graph, options).statistics().nonzeros_A));
+    EXPECT_EQ(size.vertices, graph.size());
+    EXPECT_EQ(size.edges, static_cast<double>(graph.edge_count()));
+    EXPECT_GT(size.operations, 2 * size.nonzeros);
+  }
+}
+
+TEST(CostOfGraph, KnowsTheBandsOfAMarch) {
+  for (Index n : {4000, 40000}) {
+    const CsrGraph graph = sphere(n);
+    const Source source = Source::at_vertex(Vertex(7));
+    const ComponentScales scales(graph);
+    for (double t_coef : {1.0, 4.0}) {
+      const HeatOptions options{.t_coef = t_coef, .strategy = Strategy::march};
+      const std::vector<double> tau{diffusion_time(t_coef, scales.edge_length[0])};
+      const MarchWork work = march_work(graph, source, ComponentTimes(scales, tau), INFINITY, options);
+      const MarchStatistics found = LogMapSolver(graph, options).solve(source).march();
+      EXPECT_NEAR(work.largest.vertices / found.largest_band, 1, 0.1) << n;
+      EXPECT_NEAR(work.solved / static_cast<double>(found.solved), 1, 0.2) << n;
+      EXPECT_EQ(work.reached, n);
+    }
+  }
+}
+
+TEST(CostOfGraph, GrowsWithTheRadiusUpToTheWholeGraph) {
+  const CsrGraph graph = sphere(30000);
+  const Source source = Source::at_vertex(Vertex(7));
+  for (int order : {1, 2}) {
+    const HeatOptions options{.order = order};
+    Cost last;
+    for (double radius : {0.2, 0.6, 1.2, 2.0}) {
+      const Cost cost = estimate_cost(graph, source, Strategy::march, options, radius);
+      EXPECT_GE(cost.bytes, last.bytes);
+      EXPECT_GT(cost.first_map_seconds, last.first_map_seconds);
+      last = cost;
+    }
+    const Cost whole = estimate_cost(graph, source, Strategy::march, options);
+    EXPECT_LE(last.bytes, whole.bytes);
+    EXPECT_LT(last.first_map_seconds, whole.first_map_seconds);
+    if (order == 1)  // bands of longer times are deeper than that
+      EXPECT_LT(estimate_cost(graph, source, Strategy::march, options, 0.2).bytes, 0.7 * whole.bytes);
+    EXPECT_EQ(estimate_cost(graph, source, Strategy::global, options, 0.2).bytes,
+              estimate_cost(graph, source, Strategy::global, options).bytes);
+  }
+}
+
+TEST(CostOfGraph, IsThatOfTheSizeWhereASurfaceIsEven) {
+  for (Index n : {3000, 30000}) {
+    const CsrGraph graph = sphere(n);
+    for (Strategy strategy : {Strategy::global, Strategy::march})
+      for (int order : {1, 2}) {
+        const Cost by_size = estimate_cost({n, 2, graph.transport_kind()}, strategy, order),
+                   by_graph = estimate_cost(graph, Source::at_vertex(Vertex(0)), strategy, {.order = order});
+        EXPECT_NEAR(by_size.bytes / by_graph.bytes, 1, 0.5) << n << " " << to_string(strategy) << order;
+      }
+  }
+}
+
+TEST(CostOfGraph, RefusesWhatCannotBeSolved) {
+  const CsrGraph graph = sphere(100);
+  const Source source = Source::at_vertex(Vertex(7));
+  EXPECT_THROW(estimate_cost(graph, source, Strategy::automatic), InvalidArgument);
+  EXPECT_THROW(estimate_cost(graph, source, Strategy::march, {}, 0), InvalidArgument);
+  EXPECT_THROW(estimate_cost(graph, source, Strategy::march, {.order = 3}), InvalidArgument);
+  EXPECT_THROW(estimate_cost(graph, source, Strategy::march, {.t_coef = 0}), InvalidArgument);
+  EXPECT_THROW(estimate_cost(graph, Source::at_vertex(Vertex(100)), Strategy::global), InvalidArgument);
 }
 
 }  // namespace

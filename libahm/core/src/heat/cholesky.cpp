@@ -174,6 +174,13 @@ constexpr const char* solving = "triangular solve";
 struct SymbolicCholesky::Impl {
   FactorPointer L;
   bool supernodal;
+  Offset nonzeros = 0;
+  double operations = 0;
+
+  void count(const cholmod_common& common) {
+    nonzeros = static_cast<Offset>(L->is_super ? static_cast<double>(L->xsize) : common.lnz);
+    operations = common.fl;
+  }
 };
 
 SymbolicCholesky::SymbolicCholesky(const SparseUpper& pattern, Ordering ordering, bool supernodal)
@@ -185,6 +192,7 @@ SymbolicCholesky::SymbolicCholesky(const SparseUpper& pattern, Ordering ordering
   cholmod_sparse matrix = view(pattern, false);
   impl_->supernodal = supernodal;
   impl_->L.reset(common.check(cholmod_l_analyze(&matrix, common.get()), "symbolic analysis"));
+  impl_->count(*common.get());
 }
 
 SymbolicCholesky::SymbolicCholesky(const SparseUpper& blocks, const SymbolicCholesky& scalar, int width)
@@ -203,10 +211,14 @@ SymbolicCholesky::SymbolicCholesky(const SparseUpper& blocks, const SymbolicChol
   cholmod_sparse matrix = view(blocks, false);
   impl_->L.reset(
       common.check(cholmod_l_analyze_p(&matrix, order.data(), nullptr, 0, common.get()), "symbolic analysis"));
+  impl_->count(*common.get());
 }
 
 SymbolicCholesky::~SymbolicCholesky() = default;
 SymbolicCholesky::SymbolicCholesky(SymbolicCholesky&&) noexcept = default;
+
+Offset SymbolicCholesky::nonzeros() const noexcept { return impl_->nonzeros; }
+double SymbolicCholesky::operations() const noexcept { return impl_->operations; }
 
 struct CholeskyFactor::Impl {
   FactorPointer L;

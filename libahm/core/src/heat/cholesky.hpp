@@ -33,6 +33,11 @@ class SymbolicCholesky {
   ~SymbolicCholesky();
   SymbolicCholesky(SymbolicCholesky&&) noexcept;
 
+  /// Numbers that the factor will hold.
+  Offset nonzeros() const noexcept;
+  /// Floating-point operations that its making takes, of real numbers.
+  double operations() const noexcept;
+
  private:
   friend class CholeskyFactor;
   struct Impl;

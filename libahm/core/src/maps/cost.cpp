@@ -4,9 +4,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "ahm/error.hpp"
+#include "ahm/util/text.hpp"
+#include "heat/check_options.hpp"
+#include "heat/component_scales.hpp"
 #include "heat/memory_limits.hpp"
+#include "maps/extrapolate.hpp"
+#include "maps/front_stars.hpp"
+#include "maps/map_work.hpp"
+#include "maps/right_hand_side.hpp"
 
 namespace ahm {
 namespace {
@@ -45,7 +54,96 @@ Cost march(double n, int d, double numbers, const Times& times) {
   return {8 * (numbers + 4 * d + 5) * n + (d > 2 ? 0 : 180 * n) + band, seconds, seconds};
 }
 
+/// What follows from counts of one graph. Bytes are those of what is allocated; the rest of bytes and all seconds are fits to half
+/// of 32 real files, tried on the other half.
+class CostOf {
+ public:
+  explicit CostOf(const TangentGraph& graph)
+      : is_complex_(graph.transport_kind() == TransportKind::rotation2),
+        is_delaunay_(graph.is_delaunay()),
+        d_(graph.dimension()),
+        width_(static_cast<double>(graph.transport_layout().width())) {}
+
+  double factor_bytes(const SystemSize& s) const { return 8 * numbers() * s.nonzeros; }
+  /// Matrices and their permuted copies, the analysis, vectors.
+  double workspace_bytes(const SystemSize& s) const {
+    // 64-bit row numbers and values of A and B; B of blocks has a row number for each value.
+    const double entry = 16 + (is_complex_ ? 24 : 16 * width_);
+    return 1.4 * entry * entries(s) + 600 * s.vertices;
+  }
+  /// Of a band that is cut out.
+  double patch_bytes(const SystemSize& s) const { return (12 + 8 * (d_ + width_)) * s.edges; }
+  double system_seconds(const SystemSize& s) const {
+    // Complex operations are four real ones.
+    const double operations = 1 + (is_complex_ ? 4 : std::pow(d_, 3));
+    return 3.1e-7 * numbers() * entries(s) + 4e-11 * operations * s.operations + (is_delaunay_ ? 0 : 1e-6 * s.vertices);
+  }
+  double solve_seconds(const SystemSize& s) const { return 1e-8 * numbers() * s.nonzeros; }
+  /// The front that unfolds distances, four times the work where triangles are halved.
+  double front_bytes(double halved) const { return is_delaunay_ ? 1450 * halved : 0; }
+  double front_seconds(double reached, double halved) const {
+    return is_delaunay_ ? 2e-6 * reached + 3e-6 * std::min(halved, reached) : 0;
+  }
+
+ private:
+  /// Real ones per entry of the scalar factor, of both.
+  double numbers() const { return 1 + width_; }
+  double entries(const SystemSize& s) const { return s.edges / 2 + s.vertices; }
+
+  bool is_complex_, is_delaunay_;
+  int d_;
+  double width_;
+};
+
+/// Of the vertices that have a row in the map, and of the program's own columns.
+constexpr double row_seconds = 1.2e-6;
+
 }  // namespace
+
+Cost estimate_cost(const TangentGraph& graph, const Source& source, Strategy strategy, const HeatOptions& options,
+                   double radius) {
+  if (strategy == Strategy::automatic) throw InvalidArgument("estimate_cost: strategy must be global or march");
+  if (graph.dimension() != 2)
+    throw InvalidArgument("estimate_cost: the graph has dimension " + std::to_string(graph.dimension()) +
+                          ", not 2; ask by its size");
+  if (!(radius > 0)) throw InvalidArgument("radius is " + detail::number(radius) + "; it must be > 0");
+  HeatOptions unchecked = options;
+  unchecked.check_graph = false;
+  check_heat_options(graph, unchecked);
+  check_source(source, graph);
+  const ComponentScales scales(graph);
+  const DiffusionTimes times(options.order, graph.dimension(), scales.sizes);
+  const auto count = static_cast<double>(times.count());
+  const CostOf cost(graph);
+  const double n = graph.size();
+  double halved = 0;
+  for (Index size : scales.sizes) halved += size <= most_halved ? size : 0;
+
+  if (strategy == Strategy::global) {
+    const SystemSize s = system_size(graph, options);
+    const double next = count * cost.solve_seconds(s) + cost.front_seconds(n, halved) + row_seconds * n;
+    return {count * (cost.factor_bytes(s) + 140 * n) + cost.workspace_bytes(s) + cost.front_bytes(halved),
+            count * cost.system_seconds(s) + cost.front_seconds(n, halved) + row_seconds * n, next};
+  }
+  Cost result;
+  double reached = 0;
+  for (std::size_t k = 0; k < times.count(); ++k) {
+    std::vector<double> tau;
+    for (Index c = 0; c < scales.components.count; ++c)
+      tau.push_back(diffusion_time(options.t_coef * times.factor(k, c), scales.edge_length[c]));
+    const double within = times.radius_of_each(radius, scales.edge_length, graph.length_unit());
+    const MarchWork work = march_work(graph, source, ComponentTimes(scales, tau), within, options);
+    const SystemSize& band = work.largest;
+    result.bytes = std::max(result.bytes, cost.factor_bytes(band) + cost.workspace_bytes(band) +
+                                              cost.patch_bytes(band) + 210 * work.reached);
+    result.first_map_seconds += cost.system_seconds(band) * work.solved / band.vertices;
+    reached = std::max(reached, work.reached);
+  }
+  result.bytes += count * 35 * n + cost.front_bytes(halved);
+  result.first_map_seconds += cost.front_seconds(reached, halved) + row_seconds * n;
+  result.next_map_seconds = result.first_map_seconds;
+  return result;
+}
 
 Cost estimate_cost(const GraphSize& size, Strategy strategy, int order) {
   if (strategy == Strategy::automatic) throw InvalidArgument("estimate_cost: strategy must be global or march");

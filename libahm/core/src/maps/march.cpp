@@ -13,16 +13,9 @@
 #include "graph/patch.hpp"
 #include "heat/blas_control.hpp"
 #include "heat/heat_system.hpp"
+#include "maps/march_depth.hpp"
 
 namespace ahm {
-namespace {
-
-/// Heat distance accepted per band, where the front is as regular as the graph's edges. Measured: deeper bands cost more
-/// fill per vertex, thinner ones solve each vertex more often.
-constexpr double default_step = 24;
-
-}  // namespace
-
 March::March(const TangentGraph& graph, const HeatOptions& options, const MarchScales& scales, Variant variant,
              const MarchReach& reach, unsigned threads, Progress progress, MarchSink* sink, MarchTeam* team,
              MarchGoal goal)
@@ -35,9 +28,8 @@ March::March(const TangentGraph& graph, const HeatOptions& options, const MarchS
       looks_ahead_(!sink && threads > 1 && std::isinf(reach.radius)),
       alone_(team ? nullptr : std::make_unique<Alone>(graph.dimension(), looks_ahead_)),
       team_(team ? *team : *alone_),
-      // What lies ahead by x influences what lies behind by exp(-2 x).
-      margin_(1.6 - 0.5 * std::log(options.accuracy)),
-      step_(std::min(default_step, team_.reach())),
+      margin_(march_margin(options.accuracy)),
+      step_(std::min(march_step, team_.reach())),
       reach_(reach),
       depth_(step_ + margin_),
       progress_(std::move(progress)),

@@ -5,6 +5,7 @@
 #include "ahm/util/shortest_paths.hpp"
 #include "ahm/util/small_math.hpp"
 #include "maps/march.hpp"
+#include "maps/march_depth.hpp"
 
 namespace ahm {
 namespace {
@@ -13,16 +14,6 @@ constexpr float far_away = std::numeric_limits<float>::infinity();
 
 /// Heat distances end here: what lies farther ahead has no order among itself, and is still reached.
 constexpr double farthest = 1e30;
-
-/// How much of the decay exp(-x) of heat an edge brings: its length over sqrt(tau), or what the one edge lets through at
-/// the least, where it is far longer than sqrt(tau). An upper bound, for ordering vertices.
-/// @param diagonal  called for the diagonal entry m + tau sum w of A at the edge's end, if it is needed
-template <class Diagonal>
-double heat_distance(double length, double weight, double tau, const Diagonal& diagonal) {
-  const double by_length = length / std::sqrt(tau);
-  if (by_length <= 3 || !(weight > 0)) return by_length;
-  return std::min(by_length, std::log(diagonal() / (tau * weight)));
-}
 
 }  // namespace
 
@@ -111,7 +102,7 @@ bool March::may_be_nearer(Index vertex, double distance) const {
 
 /// How much of the decay of heat an edge brings.
 double March::heat_distance_along(const Ahead& edge) const {
-  return heat_distance(edge.length, edge.weight, tau(edge.vertex), [&] { return diagonal(edge.vertex); });
+  return edge_heat_distance(edge.length, edge.weight, tau(edge.vertex), [&] { return diagonal(edge.vertex); });
 }
 
 /// The places in the band next to vertices that are neither behind the front nor in the band.

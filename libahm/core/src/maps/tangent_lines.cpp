@@ -314,27 +314,32 @@ std::optional<Vec3> position(const TangentGraph& graph, const TangentPlace& plac
 }
 
 std::optional<Vec3> smooth_position(const TangentGraph& graph, const TangentPlace& place) {
-  std::optional<Vec3> sum = position(graph, place);
-  if (!sum) return std::nullopt;
+  std::optional<Vec3> own = position(graph, place);
+  if (!own) return std::nullopt;
   const double world = graph.length_unit();
   const Star star = graph.star(place.vertex.index);
   double nearest = infinity;  // neighbour
   for (std::size_t e = 0; e < star.degree(); ++e) nearest = std::min(nearest, length(star.log(e)));
-  const auto weight = [&](const Vec2& from_vertex) {
-    return std::exp(-2 * dot(from_vertex, from_vertex) / (nearest * nearest));
+  const auto exponent = [&](const Vec2& from_vertex) {
+    return -2 * dot(from_vertex, from_vertex) / (nearest * nearest);
   };
   const Vec2 at = 1 / world * place.offset;
-  double weights = weight(at);
-  *sum = weights * *sum;
-  std::vector<std::pair<TangentPlace, double>> others;  // a frame may need the star's memory
+  std::vector<std::pair<TangentPlace, double>> seen{{place, exponent(at)}};  // a frame may need the star's memory
   for (std::size_t e = 0; e < star.degree(); ++e) {
     const Vec2 from_vertex = at - log_of(star, e);
     Vec2 offset{};
     star.transport(e).apply_inverse(from_vertex.data(), offset.data());
-    others.push_back({{Vertex(star.neighbors[e]), world * offset}, weight(from_vertex)});
+    seen.push_back({{Vertex(star.neighbors[e]), world * offset}, exponent(from_vertex)});
   }
-  for (const auto& [other, share] : others) *sum = *sum + share * *position(graph, other), weights += share;
-  return 1 / weights * *sum;
+  // The largest weight is 1: none underflows that counts, however near the nearest neighbour is.
+  const double largest = std::ranges::max_element(seen, {}, [](const auto& one) { return one.second; })->second;
+  Vec3 sum{};
+  double weights = 0;
+  for (const auto& [from, power] : seen) {
+    const double weight = std::exp(power - largest);
+    sum = sum + weight * *position(graph, from), weights += weight;
+  }
+  return 1 / weights * sum;
 }
 
 }  // namespace ahm

@@ -118,6 +118,7 @@ class PointCloudSurface final : public Surface {
 
  protected:
   Reason why_without_vertex(Row row) const override;
+  double error_of_normals() const override;
 
  private:
   PointCloudSurface(CsrGraph graph, CloudDetails details, RowMap rows, std::span<const Vec3> points,

@@ -6,8 +6,11 @@
 /// ahm::Strategy strategy = ahm::choose_strategy(size, {.expected_maps = 1});
 /// ahm::Cost cost = ahm::estimate_cost(size, strategy);
 /// std::cout << cost.bytes / 1e9 << " GB, " << cost.first_map_seconds << " s\n";
+/// cost = ahm::estimate_cost(graph, ahm::Source::at_vertex(ahm::Vertex{42}), strategy);   // nearer, once there is a graph
 /// \endcode
 #pragma once
+
+#include <limits>
 
 #include "ahm/maps/log_map_solver.hpp"
 
@@ -19,19 +22,31 @@ struct GraphSize {
   TransportKind kind = TransportKind::rotation2;
 };
 
-/// Bytes at the peak besides the graph itself, and seconds.
+/// Bytes at the peak besides the graph itself, and seconds of processor time, on a machine of 3 GHz with an optimized BLAS.
 struct Cost {
   double bytes = 0;
   double first_map_seconds = 0;  ///< factorization included
   double next_map_seconds = 0;   ///< for each further source
 };
 
-/// From the size alone: fits to measurements on surfaces (good to a third, docs/march.md) and regular volumes (to a factor of
-/// two), on one core of a 3 GHz machine with an optimized BLAS.
+/// From the size alone: of surfaces that are sampled evenly and as wide as long (good to a third, docs/march.md) and of regular
+/// volumes (to a factor of two). Scans whose density varies may take twice that by march, long tubes half.
 /// @param strategy  global or march
 /// @param order     of the maps, 1 or 2: two times a map's diffusion times of order 1 and more (`HeatOptions::order`)
 /// @throws InvalidArgument (automatic)
 Cost estimate_cost(const GraphSize& size, Strategy strategy, int order = 1);
+
+/// From the graph: by the symbolic analysis of what is factored, which is the graph or the bands of a march; these are cut where
+/// the ways along edges from the source say. Good to a third on surfaces (docs/march.md), in a tenth of a map's time.
+///
+/// What a march within a radius takes where distances are not unfolded (clouds) cannot be known before: it goes on wherever vectors
+/// of heat are shorter than the radius, and in noise they are too short. This tells what it takes where they are not; it takes at
+/// most what it takes without a radius.
+/// @param options  order, t_coef, accuracy, ordering, kind of factorization
+/// @param radius   of a march, world units; > 0
+/// @throws InvalidArgument (automatic; d is not 2; a source that does not fit the graph; radius, t_coef, order, accuracy)
+Cost estimate_cost(const TangentGraph& graph, const Source& source, Strategy strategy, const HeatOptions& options = {},
+                   double radius = std::numeric_limits<double>::infinity());
 
 /// The strategy itself, or for `automatic`: `march` for a single map of a large graph, and wherever the factors would
 /// need more than the allowed memory; else `global`.

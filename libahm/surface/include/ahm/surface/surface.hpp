@@ -84,7 +84,7 @@ class Surface {
   /// A source at a point. Its u axis lies along a vector of space projected to the surface, or else: at rows along the x
   /// axis of the vertex's frame, on edges from `from` to `to`, in faces along the first side.
   /// @throws InvalidArgument (a point that this surface does not have, faults as `vertex`; an axis that is not finite, zero
-  /// or along the normal: fault "axis_along_normal")
+  /// or so near to the normal, `normal_error`, that the normal's error decides where it points: fault "axis_along_normal")
   PlacedSource source(const SurfacePoint& point, const std::optional<Vec3>& u_axis = {}) const;
 
   /// The faces as flat triangles, for exact geodesics (`ExactGeodesics`).
@@ -111,6 +111,8 @@ class Surface {
 
  protected:
   Surface();
+  /// How far normals may be off, degrees.
+  virtual double error_of_normals() const;
   /// Why a row has no vertex: the end of a sentence that begins with "row 7", and what to do.
   struct Reason {
     std::string_view fault, text, remedy;
@@ -136,6 +138,7 @@ class Surface {
   void check(const FacePoint& point) const;
 
  private:
+  PlacedSource placed(const SurfacePoint& point, const std::optional<Vec3>& u_axis) const;
   PlacedSource source_at_row(Row row, const std::optional<Vec3>& u_axis) const;
   PlacedSource source_near_row(const TangentPoint& point, const std::optional<Vec3>& u_axis) const;
   void check(const EdgePoint& point) const;
