@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <tuple>
 
 #include "ahm/util/scratch.hpp"
@@ -36,6 +37,9 @@ constexpr std::size_t most_seen = 2048;
 constexpr double rounding = 1e-12, least_cube = 1e-280;
 /// Of a ray shorter than this share of a side nobody knows the direction.
 constexpr double least_ray = 1e-6;
+/// A way that bends at the boundary by no more than this angle, all in all, goes straight on: boundaries of surfaces are not
+/// straight to the last bit.
+constexpr float straight_on = 0.5F;
 
 /// Where a point lies in the layout of a triangle with a at 0, b at (ab, 0) and c at (cx, cy) above: at (x, -depth); the square of
 /// its distance from c, and where the line to c crosses the side, if `found`.
@@ -199,7 +203,7 @@ Vec2 UnfoldingFront::direction(Vertex vertex) const {
 
 bool UnfoldingFront::is_bent(Vertex vertex) const {
   const Index head = head_[vertex.index];
-  return head != none && directions_ && ways_[head].bent;
+  return head != none && directions_ && ways_[head].turned > straight_on;
 }
 
 Index UnfoldingFront::nearest(Vertex vertex) const {
@@ -283,9 +287,13 @@ std::span<const UnfoldingFront::Corner> UnfoldingFront::around(Index vertex) {
   return seen.corners;
 }
 
-/// Whether a star has a gap, at a boundary.
-bool UnfoldingFront::is_open(std::span<const Corner> corners) {
-  return std::any_of(corners.begin(), corners.end(), [](const Corner& c) { return std::isnan(c.cosine); });
+/// By how much the angle of a star with a gap, at a boundary, exceeds a straight one: no way along the boundary bends by more.
+double UnfoldingFront::reflex_angle(std::span<const Corner> corners) {
+  if (std::ranges::none_of(corners, [](const Corner& c) { return std::isnan(c.cosine); })) return 0;
+  double angle = 0;
+  for (const Corner& c : corners)
+    if (!std::isnan(c.cosine)) angle += std::atan2(c.sine, c.cosine);
+  return std::max(0.0, angle - std::numbers::pi);
 }
 
 /// Gaussian curvature; 0 where it does not count.
@@ -314,7 +322,7 @@ void UnfoldingFront::spread(Index from, Index point, double distance) {
   const Entry* const here = find(from, point);
   const Way own = directions_ ? way_of(here) : Way{};
   const double focusing = here->focusing, curvature_here = distance > 0 ? curvature(from) : 0;
-  const bool bends = own.bent || (directions_ && distance > 0 && is_open(corners));
+  const auto turned = directions_ && distance > 0 ? static_cast<float>(own.turned + reflex_angle(corners)) : 0.0F;
   const auto focusing_along = [&](const Corner& edge, double along) {
     if (!is_curved_) return 0.0;
     return focusing_after(focusing, distance, along, 0.5 * (curvature_here + curvature(edge.neighbor)));
@@ -328,7 +336,7 @@ void UnfoldingFront::spread(Index from, Index point, double distance) {
     known.distance = known.is_new ? along : before;
     known.along = along;
     known.focusing = known.is_new ? focusing_along(corners[k], along) : entry->focusing;
-    if (directions_) known.way = known.is_new ? Way{own.direction, false, bends} : way_of(entry);
+    if (directions_) known.way = known.is_new ? Way{own.direction, false, turned} : way_of(entry);
     longest = std::max(longest, corners[k].length);
   }
   for (std::size_t k = 0; k < degree; ++k) {
@@ -365,7 +373,7 @@ void UnfoldingFront::spread(Index from, Index point, double distance) {
       if (!directions_) return;
       found.way.direction = direction_across(across, base_length, cx, cy, own.direction, other.way.direction,
                                              own.mirrored ? -side : side);
-      found.way.bent = own.bent || other.way.bent;
+      found.way.turned = std::max(own.turned, other.way.turned);
     };
     unfold(k, right.length, next, left.length, 1);
     unfold(next, left.length, k, right.length, -1);

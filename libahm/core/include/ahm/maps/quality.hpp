@@ -25,14 +25,18 @@ inline constexpr double trusted_quality = 0.5;
 /// How far the vector phi can be trusted: by the spread of the ways that heat took, and by how well it agrees with the vector
 /// psi of geodesic polar coordinates, distance and direction of an `UnfoldingFront`.
 ///
-///     s_i = | (spread_i / 0.3, |phi_i - psi_i| / 0.1) | / max(d_i, h),   q_i = 1 / (1 + s_i^2)
+///     s_i = | (spread_i / 0.3, |phi_i - psi_i| / 0.1) | / max(d_i, h)
+///     c_i^2 = sum_j |(phi_j - phi_i) - (psi_j - psi_i)|^2 / sum_j max(|e_ij|, |psi_j - psi_i|)^2
+///     q_i = 1 / (1 + s_i^2 + (c_i / 0.5)^2)
 ///
 /// with d the distance, no less than the straight line in space where the graph has frames, and h the mean edge length of the
-/// vertex's component. |phi - psi| is no less than ||phi| - d|, and that alone where the way bends at the boundary, around a hole or in
-/// a notch of the sampling, and in other dimensions than 2, where fronts see holes if edges lie along orthogonal axes; of a map by `Method::exact` there is the spread alone. Where the edges
-/// are no Delaunay triangulation a front is less exact: h is forgiven, and it counts only where stars agree on their
-/// triangles, which noise undoes (`UnfoldingFront::agreement`); elsewhere there is ||phi| - d| with the distance of heat, which
-/// sees no holes.
+/// vertex's component. |phi - psi| is no less than ||phi| - d|, and that alone where the way bends at the boundary by half a
+/// radian and more, around a hole or in a notch of the sampling, and in other dimensions than 2, where fronts see holes if edges
+/// lie along orthogonal axes. c, on Delaunay triangulations alone, is how unlike phi and psi change along the edges: far away on
+/// a tube |phi - psi| is small beside d, but what lies around the tube has come to lie on a line. Of a map by `Method::exact`
+/// there is the spread alone. Where the edges are no Delaunay triangulation a front is less exact: h is forgiven, and it counts
+/// only where stars agree on their triangles, which noise undoes (`UnfoldingFront::agreement`); elsewhere there is ||phi| - d|
+/// with the distance of heat, which sees no holes.
 ///
 /// It is 1 on flat convex geometry, falls with h on smooth surfaces, and is low across a cut locus, where bumps turn directions,
 /// where features are coarser than edges, and behind holes where the way around is longer by a tenth and more: heat knows the

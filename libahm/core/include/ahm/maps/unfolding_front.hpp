@@ -80,7 +80,8 @@ class UnfoldingFront {
   /// geodesic polar coordinates [MR12]. NaN where the front did not come, and at the point itself.
   Vec2 direction(Vertex vertex) const;
   bool has_directions() const noexcept { return directions_; }
-  /// Whether the way bends at the boundary somewhere, around a hole or in a notch. Known with directions.
+  /// Whether the way bends at the boundary, around a hole or in a notch, by more than half a radian in all. Known with
+  /// directions.
   bool is_bent(Vertex vertex) const;
   /// The number of the nearest point; -1 where the front did not come. Of equally near ones any.
   Index nearest(Vertex vertex) const;
@@ -95,7 +96,7 @@ class UnfoldingFront {
   struct Way {
     Vec2 direction;
     bool mirrored = false;  ///< whether the frame of the vertex is turned over against it
-    bool bent = false;      ///< at the boundary
+    float turned = 0;       ///< angle by which it bends at the boundary, all in all
   };
   /// A neighbour of a vertex, and the angle from it to the next one counterclockwise.
   struct Corner {
@@ -157,7 +158,7 @@ class UnfoldingFront {
     return std::span(displacements_).subspan(static_cast<std::size_t>(&entry - entries_.data()) * d_, d_);
   }
   std::span<const Corner> around(Index vertex);
-  static bool is_open(std::span<const Corner> corners);
+  static double reflex_angle(std::span<const Corner> corners);
   double curvature(Index vertex);
 
   const TangentGraph& graph_;
