@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "ahm/error.hpp"
 #include "ahm/fields/vector_heat.hpp"
@@ -14,6 +15,8 @@
 #include "ahm/testing/curved_graphs.hpp"
 #include "ahm/testing/flat_graphs.hpp"
 #include "ahm/testing/graph_changes.hpp"
+#include "ahm/testing/triangle_meshes.hpp"
+#include "ahm/trimesh/triangle_mesh_surface.hpp"
 
 namespace ahm::test {
 namespace {
@@ -69,6 +72,41 @@ TEST(MapQuality, FindsTheCutLocus) {
     }
     EXPECT_GT(quality[r * around + around / 4], 0.99) << "ring " << r;
     EXPECT_GT(quality[r * around], 0.99) << "ring " << r;
+  }
+}
+
+// Beside its distance a vector is hardly off where all that lies around a tube has come to lie on a line.
+TEST(MapQuality, SeesThatATubeIsMappedToALine) {
+  const Index around = 24, rings = 160;
+  Mesh mesh;
+  for (Index k = 0; k < rings; ++k)
+    for (Index i = 0; i < around; ++i) {
+      const double angle = 2 * std::numbers::pi * i / around;
+      mesh.positions.push_back({std::cos(angle), std::sin(angle), 2 * std::numbers::pi / around * k});
+    }
+  for (Index k = 0; k + 1 < rings; ++k)
+    for (Index i = 0; i < around; ++i) {
+      const Index a = k * around + i, b = k * around + (i + 1) % around;
+      mesh.faces.push_back({a, b, b + around});
+      mesh.faces.push_back({a, b + around, a + around});
+    }
+  for (const double scale : {1.0, 0x1p-990, 0x1p900}) {
+    std::vector<Vec3> positions;
+    for (const Vec3& p : mesh.positions) positions.push_back({scale * p[0], scale * p[1], scale * p[2]});
+    const auto surface = trimesh::TriangleMeshSurface::build(positions, mesh.faces);
+    const LogMap map = LogMapSolver(surface.graph()).solve(surface.source(Row(5)).source);
+    const std::vector<double> quality = map_quality(surface.graph(), map);
+    int near = 0, trusted_near = 0, far = 0, trusted_far = 0;
+    for (Index v = 0; v < around * rings; ++v) {
+      const double along = 2 * std::numbers::pi / around * (v / around);
+      const bool trusted = quality[surface.vertex(Row(v)).index] >= trusted_quality;
+      if (map.distance(surface.vertex(Row(v))) < 2 * scale) ++near, trusted_near += trusted;
+      if (along > 25) ++far, trusted_far += trusted;
+    }
+    EXPECT_GT(near, 80);
+    EXPECT_GT(trusted_near, 0.95 * near);
+    EXPECT_GT(far, 1000);
+    EXPECT_LT(trusted_far, 0.2 * far);
   }
 }
 

@@ -12,6 +12,7 @@
 #include "ahm/testing/curved_graphs.hpp"
 #include "ahm/testing/flat_graphs.hpp"
 #include "ahm/testing/graph_changes.hpp"
+#include "ahm/trimesh/triangle_mesh_surface.hpp"
 
 namespace ahm::test {
 namespace {
@@ -104,6 +105,30 @@ TEST(UnfoldingFront, KnowsTheDirectionsOnBothSidesOfACutLocus) {
       ASSERT_NEAR(found[2 * (r * around + k)], r - 30, 1e-9) << r << ", " << k;
       ASSERT_NEAR(found[2 * (r * around + k) + 1], 2 * k < around ? k : k - around, 1e-9) << r << ", " << k;
     }
+}
+
+// Along the sides of a square ways go straight on; around a hole they do not.
+TEST(UnfoldingFront, BendsAtTheBoundaryByItsAnglesOnly) {
+  const Index side = 41;
+  for (const double hole : {0.0, 8.0}) {
+    std::vector<Vec3> positions;
+    std::vector<Triangle> faces;
+    for (Index i = 0; i < side * side; ++i) positions.push_back({1.0 * (i % side), 1.0 * (i / side), 0});
+    for (Index y = 0; y + 1 < side; ++y)
+      for (Index x = 0; x + 1 < side; ++x) {
+        const Index i = y * side + x;
+        if (std::hypot(x + 0.5 - side / 2, y + 0.5 - side / 2) < hole) continue;
+        faces.push_back({i, i + 1, i + side + 1});
+        faces.push_back({i, i + side + 1, i + side});
+      }
+    const auto surface = trimesh::TriangleMeshSurface::build(positions, faces);
+    UnfoldingFront front(surface.graph(), nullptr, true);
+    front.add(surface.source(Row(side / 2)).source);
+    front.run();
+    int bent = 0;
+    for (Index i = 0; i < surface.graph().size(); ++i) bent += front.is_bent(Vertex(i));
+    EXPECT_TRUE(hole > 0 ? bent > 50 : bent == 0) << bent;
+  }
 }
 
 TEST(UnfoldingFront, AgreesWithItselfWhereEdgesAreATriangulation) {

@@ -57,9 +57,19 @@ class AngleSum {
   int turns_ = 0;
 };
 
-/// The third side of the corner between two neighbours; NaN where the star is open between them.
+/// Whether two vertices have a neighbour in common besides the one at hand: as in a square without its diagonal, whose fourth
+/// corner it is, and not across a notch of the boundary.
+bool have_common_neighbor(const TangentGraph& graph, Index a, Index b, Index except) {
+  const auto of_a = graph.star(a).neighbors;
+  const std::vector<Index> beside_a(of_a.begin(), of_a.end());  // a star lives until the next one
+  const auto of_b = graph.star(b).neighbors;
+  return std::ranges::any_of(of_b,
+                             [&](Index j) { return j != except && std::ranges::find(beside_a, j) != beside_a.end(); });
+}
+
+/// The third side of the corner between two neighbours of a vertex; NaN where the star is open between them.
 template <class Neighbor>
-double third_side(const TangentGraph& graph, const Neighbor& right, const Neighbor& left) {
+double third_side(const TangentGraph& graph, Index vertex, const Neighbor& right, const Neighbor& left) {
   const double open = std::numeric_limits<double>::quiet_NaN();
   const Vec2 &u = right.log, &v = left.log;
   if (right.vertex == left.vertex || cross(u, v) <= 0) return open;
@@ -75,7 +85,7 @@ double third_side(const TangentGraph& graph, const Neighbor& right, const Neighb
   if (!std::isnan(third)) return third;
   // Not joined: a corner of a grid or a square if it is narrow, else a gap.
   if (u[0] * v[0] + u[1] * v[1] < -0.5 * right.length * left.length) return open;
-  return apart;
+  return graph.is_delaunay() && !have_common_neighbor(graph, right.vertex, left.vertex, vertex) ? open : apart;
 }
 
 /// Cosine and sine of the corner between two sides of a triangle, by its lengths [Kah14]; NaN where there is no corner.
@@ -123,7 +133,7 @@ void UnfoldingFront::Stars::append_corners(const TangentGraph& graph, Index vert
   find_neighbors(graph, vertex, neighbors);
   for (std::size_t k = 0; k < neighbors.size(); ++k) {
     const Neighbor &right = neighbors[k], &left = neighbors[k + 1 < neighbors.size() ? k + 1 : 0];
-    const Vec2 angle = corner(right.length, left.length, third_side(graph, right, left));
+    const Vec2 angle = corner(right.length, left.length, third_side(graph, vertex, right, left));
     corners.push_back({right.vertex, right.reflects, right.length, angle[0], angle[1]});
   }
 }

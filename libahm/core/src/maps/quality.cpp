@@ -20,8 +20,8 @@ namespace {
 
 /// What a spread and a difference come to, relative to the distance, where no more than every second vector is right.
 constexpr double doubtful_spread = 0.3, doubtful_difference = 0.1;
-/// As much of the lengths of edges is lost or added where a map is no longer one of its neighbourhood.
-constexpr double doubtful_change = 0.5;
+/// Where as much of the lengths of edges is lost a map is no longer one of the neighbourhood.
+constexpr double doubtful_loss = 0.5;
 /// In mean edge lengths, by which fronts over edges that are no triangulation may be off.
 constexpr double forgiven = 1;
 /// Of the triangles that vertices see around them, the shares that the others must see, too, for a front to count at all
@@ -71,26 +71,30 @@ Vec2 polar_coordinates(const LogMap& map, Index vertex) {
   return {d * map.directions()[2 * vertex], d * map.directions()[2 * vertex + 1]};
 }
 
-/// How unlike the vectors of a map and geodesic polar coordinates change along the edges of a vertex: the root mean square of
-/// the difference over that of the edges, as long as they are in these at the least; 0 where nothing is known.
-double change_off(const TangentGraph& graph, const LogMap& map, Index vertex) {
+/// How much of the edges of a vertex a map loses that geodesic polar coordinates keep: root mean squares over that of the edges,
+/// the lesser one of what is lost of their lengths and of how unlike both change along them; 0 where nothing is known.
+double lost_along_edges(const TangentGraph& graph, const LogMap& map, Index vertex) {
   const Star star = graph.star(vertex);
   const Vec2 psi = polar_coordinates(map, vertex);
   const std::span<const double> phi = map.coordinates(Vertex(vertex));
   const double unit = graph.length_unit();
-  double off = 0, all = 0;
+  double off = 0, all = 0, kept = 0, edges = 0;
   for (std::size_t e = 0; e < star.degree(); ++e) {
     const Index j = star.neighbors[e];
     const Vec2 psi_j = polar_coordinates(map, j);
     if (map.status()[j] != Status::ok || std::isnan(psi_j[0])) continue;
     const std::span<const double> phi_j = map.coordinates(Vertex(j));
     const Vec2 by_psi{psi_j[0] - psi[0], psi_j[1] - psi[1]};
-    const double difference = std::hypot(phi_j[0] - phi[0] - by_psi[0], phi_j[1] - phi[1] - by_psi[1]) / unit;
-    const double edge = std::max(length(star.log(e)), length(by_psi) / unit);
+    const Vec2 by_phi{phi_j[0] - phi[0], phi_j[1] - phi[1]};
+    const double edge = length(star.log(e)), longest = std::max(edge, length(by_psi) / unit),
+                 difference = std::hypot(by_phi[0] - by_psi[0], by_phi[1] - by_psi[1]) / unit,
+                 by_map = length(by_phi) / unit;
     off += difference * difference;
-    all += edge * edge;
+    all += longest * longest;
+    kept += by_map * by_map;
+    edges += edge * edge;
   }
-  return all > 0 ? std::sqrt(off / all) : 0;
+  return all > 0 ? std::sqrt(std::clamp(1 - kept / edges, 0.0, off / all)) : 0;
 }
 
 void check_map(const TangentGraph& graph, const LogMap& map) {
@@ -120,15 +124,15 @@ std::vector<double> quality_beside(const TangentGraph& graph, const LogMap& map,
     double d = map.distances()[i];
     if (const auto frame = source ? graph.frame(vertex.index) : std::nullopt)
       d = std::max(d, distance(frame->origin, *source));
-    double off = std::abs(length(phi) - d), change = 0;
+    double off = std::abs(length(phi) - d), lost = 0;
     if (!map.directions().empty() && !std::isnan(map.directions()[2 * i])) {
       off = difference(phi, map.distances()[i], map.directions().subspan(2 * i, 2));
-      change = change_off(graph, map, vertex.index);
+      lost = lost_along_edges(graph, map, vertex.index);
     }
     if (comparison) off = std::max(off, comparison->off(vertex, h));
     const double away = std::max(d, h);
-    const double doubt = std::hypot(map.spread()[i] / away / doubtful_spread, off / away / doubtful_difference,
-                                    change / doubtful_change);
+    const double doubt =
+        std::hypot(map.spread()[i] / away / doubtful_spread, off / away / doubtful_difference, lost / doubtful_loss);
     quality[i] = 1 / (1 + doubt * doubt);
   });
   return quality;

@@ -26,13 +26,14 @@ inline constexpr double trusted_quality = 0.5;
 /// psi of geodesic polar coordinates, distance and direction of an `UnfoldingFront`.
 ///
 ///     s_i = | (spread_i / 0.3, |phi_i - psi_i| / 0.1) | / max(d_i, h)
-///     c_i^2 = sum_j |(phi_j - phi_i) - (psi_j - psi_i)|^2 / sum_j max(|e_ij|, |psi_j - psi_i|)^2
+///     c_i^2 = min(1 - sum_j |phi_j - phi_i|^2 / sum_j |e_ij|^2,
+///                 sum_j |(phi_j - phi_i) - (psi_j - psi_i)|^2 / sum_j max(|e_ij|, |psi_j - psi_i|)^2),  at least 0
 ///     q_i = 1 / (1 + s_i^2 + (c_i / 0.5)^2)
 ///
 /// with d the distance, no less than the straight line in space where the graph has frames, and h the mean edge length of the
 /// vertex's component. |phi - psi| is no less than ||phi| - d|, and that alone where the way bends at the boundary by half a
 /// radian and more, around a hole or in a notch of the sampling, and in other dimensions than 2, where fronts see holes if edges
-/// lie along orthogonal axes. c, on Delaunay triangulations alone, is how unlike phi and psi change along the edges: far away on
+/// lie along orthogonal axes. c, on Delaunay triangulations alone, is how much of the edges phi loses that psi keeps: far away on
 /// a tube |phi - psi| is small beside d, but what lies around the tube has come to lie on a line. Of a map by `Method::exact`
 /// there is the spread alone. Where the edges are no Delaunay triangulation a front is less exact: h is forgiven, and it counts
 /// only where stars agree on their triangles, which noise undoes (`UnfoldingFront::agreement`); elsewhere there is ||phi| - d|
