@@ -178,7 +178,10 @@ std::unique_ptr<const HeatSystem> factored_system(const TangentGraph& graph, std
 
 std::unique_ptr<const HeatSystem> heat_first_system(const TangentGraph& graph, std::vector<double> tau,
                                                     const HeatOptions& options) {
-  auto [system, matrices] = begin<SystemOf<CholeskyFactor, LateFactor>>(graph, std::move(tau), options);
+  using System = SystemOf<CholeskyFactor, LateFactor>;
+  std::pair<std::unique_ptr<System>, AssembledOperators> begun = begin<System>(graph, std::move(tau), options);
+  std::unique_ptr<System>& system = begun.first;
+  AssembledOperators& matrices = begun.second;
   Analysis analysis(matrices, options);
   without_openmp_regions([&] { system->A.emplace(matrices.A, analysis.of_A(), name_A); });
   system->B.emplace(std::move(matrices.B), std::move(analysis), graph.dimension());

@@ -54,8 +54,8 @@ Cost march(double n, int d, double numbers, const Times& times) {
   return {8 * (numbers + 4 * d + 5) * n + (d > 2 ? 0 : 180 * n) + band, seconds, seconds};
 }
 
-/// What follows from counts of one graph. Bytes are those of what is allocated; the rest of bytes and all seconds are fits to half
-/// of 32 real files, tried on the other half.
+/// What follows from counts of one graph. Bytes are those of what is allocated; the rest of bytes is fitted to half of 32 real files
+/// and tried on the other half, seconds are fitted to all of them.
 class CostOf {
  public:
   explicit CostOf(const TangentGraph& graph)
