@@ -206,11 +206,12 @@ void TuftedCover::glue(const CleanPoints& cloud, const TangentPlanes& planes, co
     const Vec3 opposite = across - edge;
     const Vec3 normal = cross(edge, across);
     const double unit = dot(edge, edge), tail = dot(across, across) / unit, head = dot(opposite, opposite) / unit;
+    const auto reach = static_cast<float>(tail + head);  // no number where the side is too short to have a square
     return {t[of.to],
             dot(normal, planes.normals[t[of.from]]) > 0,
             dot(normal, planes.normals[t[of.to]]) > 0,
             static_cast<float>(head) < static_cast<float>(tail),
-            static_cast<float>(tail + head),
+            std::isnan(reach) ? 0 : reach,
             first + of.forward,
             first + of.backward};
   };

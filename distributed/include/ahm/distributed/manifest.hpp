@@ -35,7 +35,7 @@ struct TileFacts {
 };
 
 /// The version of manifest.json of clouds, and of surfaces that were built in memory; others are refused.
-inline constexpr std::uint32_t cloud_version = 3, surface_version = 4;
+inline constexpr std::uint32_t cloud_version = 5, surface_version = 4;
 
 /// The file manifest.json of a folder.
 struct Manifest {
