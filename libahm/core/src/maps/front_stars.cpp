@@ -11,7 +11,6 @@
 #include "ahm/graph/components.hpp"
 #include "ahm/util/small_math.hpp"
 #include "ahm/util/vec.hpp"
-#include "maps/eikonal.hpp"
 
 namespace ahm {
 namespace {
@@ -20,15 +19,8 @@ namespace {
 constexpr double same_length = 1e-9;
 /// Angles around a vertex that miss 2 pi by no more are those of a flat or finely sampled surface.
 constexpr double least_bend = 0.01;
-/// Hubs of more neighbours are not asked for their triangles: it would take as long for each of them.
-constexpr std::size_t most_neighbors = 200;
 /// By less than this share of the longest side do the sides of a triangle without area miss the triangle inequality.
 constexpr double degenerate = 1e-9;
-
-/// The third side of a triangle and the edge there differ by no more than this share, where stars agree on the triangle.
-constexpr double same_side = 0.01;
-/// Opposite angles of a quadrilateral on a circle sum to pi, but for rounding.
-constexpr double same_circle = 1e-6;
 /// Angles around a vertex whose edges are in this proportion to each other, or more, may miss the full turn by it: rounding of
 /// the coordinates turns the short ones.
 constexpr double least_turn = 1e-12;
@@ -330,77 +322,6 @@ std::optional<UnfoldingFront::Stars::HalfSide> UnfoldingFront::Stars::midpoint(I
     found = {half.neighbor, half.length};
   }
   return found;
-}
-
-double UnfoldingFront::agreement(const TangentGraph& graph, std::span<const Vertex> vertices) {
-  if (graph.dimension() != 2) {
-    std::vector<std::size_t> axis;
-    const auto lies_along_axes = [&](Vertex vertex) { return find_axes(graph.star(vertex.index), axis); };
-    return vertices.empty() ? 0
-                            : std::ranges::count_if(vertices, lies_along_axes) / static_cast<double>(vertices.size());
-  }
-  std::vector<Neighbor> neighbors;
-  std::vector<Corner> corners, others;
-  const auto next = [](const std::vector<Corner>& around, std::size_t k) -> const Corner& {
-    return around[k + 1 < around.size() ? k + 1 : 0];
-  };
-  // The corners around another vertex, until the next one is asked for.
-  const auto around = [&](Index vertex) -> const std::vector<Corner>& {
-    others.clear();
-    Stars::append_corners(graph, vertex, neighbors, others);
-    return others;
-  };
-  // What stands beside a neighbour, on either side, and the angle between.
-  struct Seen {
-    Index neighbor = -1;
-    double angle = 0;
-  };
-  const auto beside = [&](const std::vector<Corner>& star, Index neighbor) {
-    std::array<Seen, 2> found;
-    for (std::size_t k = 0; k < star.size(); ++k) {
-      if (std::isnan(star[k].cosine)) continue;
-      const double angle = std::atan2(star[k].sine, star[k].cosine);
-      if (star[k].neighbor == neighbor) found[0] = {next(star, k).neighbor, angle};
-      if (next(star, k).neighbor == neighbor) found[1] = {star[k].neighbor, angle};
-    }
-    return found;
-  };
-  const auto find = [](const std::array<Seen, 2>& seen, Index neighbor) -> const Seen* {
-    return seen[0].neighbor == neighbor ? &seen[0] : seen[1].neighbor == neighbor ? &seen[1] : nullptr;
-  };
-  // Whether the corner of three is one of a triangle, also one that others cross, as those of a polygon do, or of a square
-  // without diagonals: its corners lie on a circle.
-  const auto agree = [&](Index vertex, const Corner& right, const Corner& left) {
-    const double angle = std::atan2(right.sine, right.cosine),
-                 third = std::hypot(right.length * right.cosine - left.length, right.length * right.sine);
-    const std::vector<Corner>& star = around(right.neighbor);
-    for (const Corner& side : star)
-      if (side.neighbor == left.neighbor && std::abs(side.length - third) <= same_side * third) return true;
-    const std::array<Seen, 2> of_right = beside(star, vertex), of_left = beside(around(left.neighbor), vertex);
-    if (find(of_right, left.neighbor) && find(of_left, right.neighbor)) return true;
-    for (const Seen& across : of_right) {
-      if (across.neighbor < 0 || across.neighbor == vertex || !find(of_left, across.neighbor)) continue;
-      const std::array<Seen, 2> of_across = beside(around(across.neighbor), right.neighbor);
-      const Seen* const opposite = find(of_across, left.neighbor);
-      if (opposite && std::abs(angle + opposite->angle - std::numbers::pi) < same_circle) return true;
-    }
-    return false;
-  };
-  const auto is_asked = [&](Index vertex) { return graph.star(vertex).degree() <= most_neighbors; };
-  Offset seen = 0, agreed = 0;
-  for (const Vertex vertex : vertices) {
-    if (!is_asked(vertex.index)) continue;
-    corners.clear();
-    Stars::append_corners(graph, vertex.index, neighbors, corners);
-    for (std::size_t k = 0; k < corners.size(); ++k) {
-      if (std::isnan(corners[k].cosine)) continue;
-      const Corner &right = corners[k], &left = next(corners, k);
-      if (!is_asked(right.neighbor) || !is_asked(left.neighbor)) continue;
-      ++seen;
-      agreed += agree(vertex.index, right, left);
-    }
-  }
-  return seen > 0 ? static_cast<double>(agreed) / static_cast<double>(seen) : 0;
 }
 
 std::shared_ptr<const UnfoldingFront::Stars> UnfoldingFront::stars(const TangentGraph& graph) {

@@ -172,7 +172,6 @@ class March {
   bool is_within_reach(Index vertex) const;
   void forget(Index vertex);
   Index known_number(Index vertex) const;
-  double diagonal(Index vertex) const;
   double tau(Index vertex) const { return scales_.tau(vertex); }
 
   const TangentGraph& graph_;

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ahm/graph/tangent_graph.hpp"
+
 namespace ahm {
 
 /// Heat distance accepted per band, where the front is as regular as the graph's edges. Measured: deeper bands cost more
@@ -22,6 +24,13 @@ double edge_heat_distance(double length, double weight, double tau, const Diagon
   const double by_length = length / std::sqrt(tau);
   if (by_length <= 3 || !(weight > 0)) return by_length;
   return std::min(by_length, std::log(diagonal() / (tau * weight)));
+}
+
+/// m + tau sum w: the diagonal entry of A.
+inline double heat_diagonal(const TangentGraph& graph, Index vertex, double tau) {
+  double sum = graph.mass(vertex);
+  for (const double w : graph.star(vertex).weights) sum += tau * w;
+  return sum;
 }
 
 }  // namespace ahm

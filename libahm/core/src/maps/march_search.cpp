@@ -102,7 +102,8 @@ bool March::may_be_nearer(Index vertex, double distance) const {
 
 /// How much of the decay of heat an edge brings.
 double March::heat_distance_along(const Ahead& edge) const {
-  return edge_heat_distance(edge.length, edge.weight, tau(edge.vertex), [&] { return diagonal(edge.vertex); });
+  return edge_heat_distance(edge.length, edge.weight, tau(edge.vertex),
+                            [&] { return heat_diagonal(graph_, edge.vertex, tau(edge.vertex)); });
 }
 
 /// The places in the band next to vertices that are neither behind the front nor in the band.
@@ -116,13 +117,6 @@ void March::find_edge(Band& band) {
       break;
     }
   }
-}
-
-/// m + tau sum w: the diagonal of A.
-double March::diagonal(Index vertex) const {
-  double sum = graph_.mass(vertex);
-  for (double w : graph_.star(vertex).weights) sum += tau(vertex) * w;
-  return sum;
 }
 
 }  // namespace ahm

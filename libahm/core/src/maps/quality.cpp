@@ -65,17 +65,18 @@ class Comparison {
   double belief_;  ///< in what the front says
 };
 
-/// Geodesic polar coordinates as a map on a Delaunay triangulation has them; NaN where the way bends at the boundary.
+/// Geodesic polar coordinates as a map on a Delaunay triangulation has them; NaN on other graphs, and where the way bends at the
+/// boundary.
 Vec2 polar_coordinates(const LogMap& map, Index vertex) {
+  if (map.directions().empty()) return {NAN, NAN};
   const double d = map.distances()[vertex];
   return {d * map.directions()[2 * vertex], d * map.directions()[2 * vertex + 1]};
 }
 
 /// How much of the edges of a vertex a map loses that geodesic polar coordinates keep: root mean squares over that of the edges,
 /// the lesser one of what is lost of their lengths and of how unlike both change along them; 0 where nothing is known.
-double lost_along_edges(const TangentGraph& graph, const LogMap& map, Index vertex) {
+double lost_along_edges(const TangentGraph& graph, const LogMap& map, Index vertex, const Vec2& psi) {
   const Star star = graph.star(vertex);
-  const Vec2 psi = polar_coordinates(map, vertex);
   const std::span<const double> phi = map.coordinates(Vertex(vertex));
   const double unit = graph.length_unit();
   double off = 0, all = 0, kept = 0, edges = 0;
@@ -125,9 +126,9 @@ std::vector<double> quality_beside(const TangentGraph& graph, const LogMap& map,
     if (const auto frame = source ? graph.frame(vertex.index) : std::nullopt)
       d = std::max(d, distance(frame->origin, *source));
     double off = std::abs(length(phi) - d), lost = 0;
-    if (!map.directions().empty() && !std::isnan(map.directions()[2 * i])) {
-      off = difference(phi, map.distances()[i], map.directions().subspan(2 * i, 2));
-      lost = lost_along_edges(graph, map, vertex.index);
+    if (const Vec2 psi = polar_coordinates(map, vertex.index); !std::isnan(psi[0])) {
+      off = std::hypot(phi[0] - psi[0], phi[1] - psi[1]);
+      lost = lost_along_edges(graph, map, vertex.index, psi);
     }
     if (comparison) off = std::max(off, comparison->off(vertex, h));
     const double away = std::max(d, h);
