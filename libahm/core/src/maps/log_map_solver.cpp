@@ -78,8 +78,7 @@ Unfolded unfolded_from(const TangentGraph& graph, const std::shared_ptr<const Un
   for (std::size_t i = 0; i < n; ++i) {
     found.distances[i] = front.distance(Vertex(i));
     if (found.directions.empty()) continue;
-    const Vec2 direction = front.is_bent(Vertex(i)) ? Vec2{NAN, NAN} : front.direction(Vertex(i));
-    std::ranges::copy(direction, found.directions.begin() + 2 * i);
+    std::ranges::copy(front.direction(Vertex(i)), found.directions.begin() + 2 * i);
   }
   return found;
 }

@@ -20,6 +20,9 @@ namespace {
 
 /// What a spread and a difference come to, relative to the distance, where no more than every second vector is right.
 constexpr double doubtful_spread = 0.3, doubtful_difference = 0.1;
+/// Where ways of heat spread by less than this share of the distance they come along lines, and phi is the unrolling of what
+/// they pass: a plane behind its holes. There its length is asked for and its direction is not.
+constexpr double unrolled_spread = 0.01;
 /// Where as much of the lengths of edges is lost a map is no longer one of the neighbourhood.
 constexpr double doubtful_loss = 0.5;
 /// In mean edge lengths, by which fronts over edges that are no triangulation may be off.
@@ -65,8 +68,7 @@ class Comparison {
   double belief_;  ///< in what the front says
 };
 
-/// Geodesic polar coordinates as a map on a Delaunay triangulation has them; NaN on other graphs, and where the way bends at the
-/// boundary.
+/// Geodesic polar coordinates as a map on a Delaunay triangulation has them; NaN on other graphs.
 Vec2 polar_coordinates(const LogMap& map, Index vertex) {
   if (map.directions().empty()) return {NAN, NAN};
   const double d = map.distances()[vertex];
@@ -125,15 +127,15 @@ std::vector<double> quality_beside(const TangentGraph& graph, const LogMap& map,
     double d = map.distances()[i];
     if (const auto frame = source ? graph.frame(vertex.index) : std::nullopt)
       d = std::max(d, distance(frame->origin, *source));
+    const double away = std::max(d, h), spread = map.spread()[i] / away;
     double off = std::abs(length(phi) - d), lost = 0;
     if (const Vec2 psi = polar_coordinates(map, vertex.index); !std::isnan(psi[0])) {
-      off = std::hypot(phi[0] - psi[0], phi[1] - psi[1]);
+      const double by_direction = std::hypot(phi[0] - psi[0], phi[1] - psi[1]);
+      off += std::min(spread / unrolled_spread, 1.0) * (by_direction - off);
       lost = lost_along_edges(graph, map, vertex.index, psi);
     }
     if (comparison) off = std::max(off, comparison->off(vertex, h));
-    const double away = std::max(d, h);
-    const double doubt =
-        std::hypot(map.spread()[i] / away / doubtful_spread, off / away / doubtful_difference, lost / doubtful_loss);
+    const double doubt = std::hypot(spread / doubtful_spread, off / away / doubtful_difference, lost / doubtful_loss);
     quality[i] = 1 / (1 + doubt * doubt);
   });
   return quality;

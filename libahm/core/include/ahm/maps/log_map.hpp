@@ -112,8 +112,8 @@ class LogMap {
   /// of the longest jump to a neighbour, beyond the length of the side; empty from a curve and without MapOptions::spread.
   std::span<const double> spread() const noexcept { return extras_.spread; }
   /// Where distances are unfolded, the unit vectors in which the ways to the vertices leave the source (`UnfoldingFront`), n x 2 in
-  /// its frame: beside phi, which `map_quality` compares with them. NaN at the source itself and where the way bends at the boundary.
-  /// Empty elsewhere, from a curve and without MapOptions::spread.
+  /// its frame: beside phi, which `map_quality` compares with them. NaN at the source itself. Empty elsewhere, from a curve and
+  /// without MapOptions::spread.
   std::span<const double> directions() const noexcept { return extras_.directions; }
   /// Number of vertices with this status.
   Index count(Status status) const noexcept;

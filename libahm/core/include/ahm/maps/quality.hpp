@@ -31,17 +31,18 @@ inline constexpr double trusted_quality = 0.5;
 ///     q_i = 1 / (1 + s_i^2 + (c_i / 0.5)^2)
 ///
 /// with d the distance, no less than the straight line in space where the graph has frames, and h the mean edge length of the
-/// vertex's component. |phi - psi| is no less than ||phi| - d|, and that alone where the way bends at the boundary by half a
-/// radian and more, around a hole or in a notch of the sampling, and in other dimensions than 2, where fronts see holes if edges
-/// lie along orthogonal axes. c, on Delaunay triangulations alone, is how much of the edges phi loses that psi keeps: far away on
+/// vertex's component. |phi - psi| is no less than ||phi| - d|, and comes to that alone as spread_i / d_i goes from 0.01 to 0 on
+/// Delaunay triangulations: there phi is the unrolling of what lies between, as of a plane behind its holes. It is that alone,
+/// too, in other dimensions than 2, where fronts see holes if edges lie along orthogonal axes. c, on Delaunay triangulations alone, is how much of the edges phi loses that psi keeps: far away on
 /// a tube |phi - psi| is small beside d, but what lies around the tube has come to lie on a line. Of a map by `Method::exact`
-/// there is the spread alone. Where the edges are no Delaunay triangulation a front is less exact: h is forgiven, and it counts
-/// only where stars agree on their triangles, which noise undoes (`UnfoldingFront::agreement`); elsewhere there is ||phi| - d|
-/// with the distance of heat, which sees no holes.
+/// there is the spread alone. Where the edges are no Delaunay triangulation a front is less exact: h is forgiven, directions are
+/// not asked for where the way bends at the boundary by half a radian and more, around a hole or in a notch of the sampling, and
+/// it counts only where stars agree on their triangles, which noise undoes (`UnfoldingFront::agreement`); elsewhere there is
+/// ||phi| - d| with the distance of heat, which sees no holes.
 ///
 /// It is 1 on flat convex geometry, falls with h on smooth surfaces, and is low across a cut locus, where bumps turn directions,
-/// where features are coarser than edges, and behind holes where the way around is longer by a tenth and more: heat knows the
-/// straight line only. Against exact vectors in docs/accuracy.md.
+/// where features are coarser than edges, and behind holes: where the surface is curved, and where the way around is longer by a
+/// tenth and more; heat knows the straight line only. Against exact vectors in docs/accuracy.md.
 /// @param threads  0: one per core
 /// @return n numbers in (0, 1]; NaN where the map is not ok
 /// @throws InvalidArgument when the map is from a curve, belongs to another graph or was made without its spread
