@@ -152,6 +152,7 @@ class Worker {
     if (graph_.is_delaunay())
       stars = std::make_shared<const UnfoldingFront::Stars>(patch.graph, std::vector<std::uint8_t>(), true);
     distances_.resize(members.size() * n);
+    find_rim(patch);
     for (std::size_t k = 0; k < members.size(); ++k) {
       // The last members of a group lie at its rim, where a patch that is too small shows first.
       const std::size_t m = options_.radius > 0 ? members.size() - 1 - k : k;
@@ -159,13 +160,28 @@ class Worker {
       const double radius = radii_[members[m]];
       UnfoldingFront front(patch.graph, stars);
       front.add(patch.sources[m]);
-      front.run(std::max(wanted, radius));
+      front.run(is_within(patch, sources_[members[m]], wanted) ? radius : std::max(wanted, radius));
       const std::span<double> distance = distances(m, n);
       for (std::size_t i = 0; i < n; ++i) distance[i] = front.distance(Vertex(i));
       const Outcome outcome = judge(patch, distance, wanted, radius);
       if (outcome != Outcome::complete) return outcome;
     }
     return Outcome::complete;
+  }
+
+  /// Where the edge of a patch lies in space; nowhere if the graph knows no frames.
+  void find_rim(const Patch& patch) {
+    rim_.clear();
+    for (const Index k : patch.edge)
+      if (const auto frame = graph_.frame(patch.vertices[k])) rim_.push_back(frame->origin);
+  }
+
+  /// Whether the patch holds all within `wanted` of a source by straight lines already, which no way is shorter than: then
+  /// nobody asks for distances beyond the radius.
+  bool is_within(const Patch& patch, const Source& source, double wanted) const {
+    const std::optional<Vec3> start = place_in_space(graph_, source);
+    return start && !rim_.empty() && rim_.size() == patch.edge.size() &&
+           std::ranges::all_of(rim_, [&](const Vec3& end) { return distance(end, *start) >= wanted; });
   }
 
   /// Whether that is far enough, given the distances of the patch from a source.
@@ -257,6 +273,7 @@ class Worker {
   PatchSolver patches_;
   std::size_t d_;
   std::vector<double> distances_;  ///< of the patch at hand from each of its sources, n each
+  std::vector<Vec3> rim_;          ///< places of its edge
   std::vector<double> phi_;
   std::vector<std::pair<double, Index>> order_;  ///< those within the radius, nearest first
 };

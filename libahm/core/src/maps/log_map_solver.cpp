@@ -301,12 +301,12 @@ std::vector<LogMap> LogMapSolver::Impl::solve_block(std::size_t time, std::span<
   }
   AffineHeat heat(graph, operators(time), map.variant, right_hand_side_of(sources, graph, operators(time), map.variant),
                   threads);
-  heat.diffuse();
-  if (map.progress.stop.stop_requested()) throw Cancelled("cancelled during solve");
   const bool lengths = std::any_of(sources.begin(), sources.end(), [&](auto& one) { return !unfolds(graph, one); });
   const bool squares =
       lengths || (map.spread && std::any_of(sources.begin(), sources.end(), [](auto& one) { return !one.is_curve(); }));
   const auto solve = [&] {
+    heat.diffuse();
+    if (map.progress.stop.stop_requested()) throw Cancelled("cancelled during solve");
     heat.solve();
     if (squares) heat.solve_squares();
     if (lengths) heat.solve_lengths();
