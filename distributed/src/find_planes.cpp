@@ -55,9 +55,9 @@ void write(const TileFolder& folder, std::size_t tile, const Surroundings& aroun
       neighbor_offsets(around.cloud, near, planes, around.begin, around.end, folder.options().threads);
   const std::vector<Index> k{near.k};
   folder.write(kind::noise, tile, {array("offsets", offsets), array("spacings", spacings)});
-  folder.write(
-      kind::neighbors, tile,
-      {array("begin", near.begin), array("indices", near.indices), array("radius", near.radius), array("k", k)});
+  folder.write(kind::neighbors, tile,
+               {array("begin", near.begin), array("indices", std::span<const Index>(near.indices)),
+                array("radius", near.radius), array("k", k)});
   AroundFile::write(folder, tile, around, planes, complete);
 }
 

@@ -14,7 +14,7 @@ namespace {
 pointcloud::Neighborhoods read_neighborhoods(const TileFolder& folder, std::size_t tile) {
   const ArrayFile file = folder.open(kind::neighbors, tile);
   pointcloud::Neighborhoods near;
-  const auto take = [&]<class T>(std::vector<T>& into, std::string_view name) {
+  const auto take = [&]<class T, class Allocator>(std::vector<T, Allocator>& into, std::string_view name) {
     const auto values = file.get<T>(name);
     into.assign(values.begin(), values.end());
   };

@@ -4,7 +4,9 @@
 #include <atomic>
 #include <cmath>
 
+#include "ahm/util/buckets.hpp"
 #include "ahm/util/parallel.hpp"
+#include "ahm/util/unset_vector.hpp"
 #include "edge_unfolding.hpp"
 #include "plane_axes.hpp"
 #include "points_per_task.hpp"
@@ -106,13 +108,18 @@ class StarTriangulator {
 /// Sorts and removes repetitions, first by counting the smallest corner.
 std::vector<Triangle> unique_triangles(const std::vector<std::vector<Triangle>>& parts, Index n, unsigned threads) {
   std::vector<Offset> begin(static_cast<std::size_t>(n) + 1, 0);
-  for (const auto& part : parts)
-    for (const Triangle& t : part) ++begin[t[0] + 1];
-  for (Index i = 0; i < n; ++i) begin[i + 1] += begin[i];
-  std::vector<std::array<Index, 2>> rest(static_cast<std::size_t>(begin[n]));
+  const auto for_each_triangle = [&](const auto& body) {
+    detail::for_key_ranges(n, threads, [&](Offset from, Offset to) {
+      for (const auto& part : parts)
+        for (const Triangle& t : part)
+          if (from <= t[0] && t[0] < to) body(t);
+    });
+  };
+  for_each_triangle([&](const Triangle& t) { ++begin[t[0] + 1]; });
+  begin = detail::starts_of(std::move(begin));
+  detail::UnsetVector<std::array<Index, 2>> rest(static_cast<std::size_t>(begin[n]));
   std::vector<Offset> fill(begin.begin(), begin.end() - 1);
-  for (const auto& part : parts)
-    for (const Triangle& t : part) rest[fill[t[0]]++] = {t[1], t[2]};
+  for_each_triangle([&](const Triangle& t) { rest[fill[t[0]]++] = {t[1], t[2]}; });
   detail::parallel_chunks(n, points_per_task, threads, [&](Offset first, Offset last) {
     for (Offset i = first; i < last; ++i) {
       const auto bucket = rest.begin() + begin[i];

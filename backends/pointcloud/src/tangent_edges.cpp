@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "ahm/util/parallel.hpp"
+#include "ahm/util/unset_vector.hpp"
 #include "edge_unfolding.hpp"
 #include "plane_axes.hpp"
 
@@ -66,14 +67,14 @@ CsrGraphData tangent_edges(const CleanPoints& cloud, const TangentPlanes& planes
   g.kind = kind.value_or(report.reflections > 0 ? TransportKind::block : TransportKind::rotation2);
   const std::size_t width = g.kind == TransportKind::block ? 4 : 2;
   g.row_begin = row_starts(edges, vertex_of_clean, vertices);
-  g.neighbors.resize(2 * edges.tails.size());
-  g.weights.resize(g.neighbors.size());
-  g.logs.resize(2 * g.neighbors.size());
-  g.transports.resize(width * g.neighbors.size());
+  const std::size_t directed = 2 * edges.tails.size();
+  detail::run_both(
+      threads != 1, [&] { g.transports.resize(width * directed); },
+      [&] { g.neighbors.resize(directed), g.weights.resize(directed), g.logs.resize(2 * directed); });
   // Edges come in lexicographic order, so every row fills up with ascending neighbours once the smaller ones went
   // first.
-  std::vector<Offset> fill(g.row_begin.begin(), g.row_begin.end() - 1), position_in_head(edges.tails.size()),
-      position_in_tail(edges.tails.size());
+  std::vector<Offset> fill(g.row_begin.begin(), g.row_begin.end() - 1);
+  detail::UnsetVector<Offset> position_in_head(edges.tails.size()), position_in_tail(edges.tails.size());
   for (std::size_t e = 0; e < edges.tails.size(); ++e) position_in_head[e] = fill[vertex_of_clean[edges.heads[e]]]++;
   for (std::size_t e = 0; e < edges.tails.size(); ++e) position_in_tail[e] = fill[vertex_of_clean[edges.tails[e]]]++;
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "ahm/pointcloud/point_cloud_surface.hpp"
+#include "ahm/util/unset_vector.hpp"
 #include "clean_points.hpp"
 
 namespace ahm::pointcloud {
@@ -14,11 +15,11 @@ namespace ahm::pointcloud {
 inline constexpr int reach_rounds = 3;
 
 struct Neighborhoods {
-  Index k = 0;                 ///< neighbours per point, but for points that needed more or reach fewer
-  std::vector<Offset> begin;   ///< n + 1
-  std::vector<Index> indices;  ///< of each point: nearest first, the point itself left out
-  std::vector<double> radius;  ///< distance to the last of them
-  Offset unreachable = 0;      ///< neighbours found but left out, too far away to be joined
+  Index k = 0;                         ///< neighbours per point, but for points that needed more or reach fewer
+  std::vector<Offset> begin;           ///< n + 1
+  detail::UnsetVector<Index> indices;  ///< of each point: nearest first, the point itself left out
+  std::vector<double> radius;          ///< distance to the last of them
+  Offset unreachable = 0;              ///< neighbours found but left out, too far away to be joined
   std::span<const Index> of(Index i) const {
     return std::span(indices).subspan(static_cast<std::size_t>(begin[i]),
                                       static_cast<std::size_t>(begin[i + 1] - begin[i]));

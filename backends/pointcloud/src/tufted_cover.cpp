@@ -6,7 +6,9 @@
 #include <utility>
 
 #include "ahm/surface/half_edges.hpp"
+#include "ahm/util/buckets.hpp"
 #include "ahm/util/parallel.hpp"
+#include "ahm/util/unset_vector.hpp"
 #include "ahm/util/vec.hpp"
 #include "points_per_task.hpp"
 
@@ -143,9 +145,9 @@ class TuftedCover {
 
   Index n_;
   unsigned threads_;
-  std::vector<Index> tail_;
-  std::vector<Half> twin_;
-  std::vector<double> length_;
+  detail::UnsetVector<Index> tail_;
+  detail::UnsetVector<Half> twin_;
+  detail::UnsetVector<double> length_;
   std::vector<char> tainted_;  ///< of each face; empty: none
 };
 
@@ -186,17 +188,9 @@ void TuftedCover::glue(const CleanPoints& cloud, const TangentPlanes& planes, co
     int from, to, apex, forward, backward;
   };
   constexpr Corners corners[] = {{0, 1, 2, 0, 5}, {1, 2, 0, 1, 4}, {0, 2, 1, 3, 2}};
-  // Bucket the sides by their smaller end.
-  std::vector<Offset> begin(static_cast<std::size_t>(n_) + 1, 0);
-  for (const Triangle& t : triangles) {
-    begin[t[0] + 1] += 2;
-    ++begin[t[1] + 1];
-  }
-  for (Index i = 0; i < n_; ++i) begin[i + 1] += begin[i];
-  std::vector<Offset> bucketed(triangles.size() * 3), fill(begin.begin(), begin.end() - 1);
-  for (std::size_t t = 0; t < triangles.size(); ++t)
-    for (std::size_t s = 0; s < 3; ++s)
-      bucketed[fill[triangles[t][corners[s].from]]++] = static_cast<Offset>(3 * t + s);
+  const detail::Buckets by_smaller_end =
+      detail::buckets_of(static_cast<Offset>(triangles.size() * 3), n_, threads_,
+                         [&](Offset side) { return triangles[side / 3][corners[side % 3].from]; });
 
   const auto side_of = [&](Offset number) -> Side {
     const Triangle& t = triangles[number / 3];
@@ -219,7 +213,7 @@ void TuftedCover::glue(const CleanPoints& cloud, const TangentPlanes& planes, co
     std::vector<Side> sides, left, right;
     for (Offset i = from; i < to; ++i) {
       sides.clear();
-      for (Offset k = begin[i]; k < begin[i + 1]; ++k) sides.push_back(side_of(bucketed[k]));
+      for (const Offset side : by_smaller_end.of(static_cast<Index>(i))) sides.push_back(side_of(side));
       // Those of one edge by the shape of their triangles, which neither scale nor place nor rotation changes. In single
       // precision: of equal ones, as on lattices, the order of triangles decides, and not rounding.
       std::sort(sides.begin(), sides.end(), [](const Side& p, const Side& q) {
@@ -260,14 +254,10 @@ void TuftedCover::glue_around(std::span<const Side> edge, std::vector<Side>& lef
 
 WeightedEdges TuftedCover::weighted_edges() const {
   WeightedEdges result;
-  // Bucket the half-edges by their smaller end.
-  std::vector<Offset> begin(static_cast<std::size_t>(n_) + 1, 0), bucketed(tail_.size());
-  const auto low = [&](Half h) { return std::min(tail_[h], tail_[next(h)]); };
+  detail::Buckets by_smaller_end;
   const auto bucket = [&] {
-    for (Half h = 0; h < static_cast<Half>(tail_.size()); ++h) ++begin[low(h) + 1];
-    for (Index i = 0; i < n_; ++i) begin[i + 1] += begin[i];
-    std::vector<Offset> fill(begin.begin(), begin.end() - 1);
-    for (Half h = 0; h < static_cast<Half>(tail_.size()); ++h) bucketed[fill[low(h)]++] = h;
+    by_smaller_end = detail::buckets_of(static_cast<Offset>(tail_.size()), n_, threads_,
+                                        [&](Half h) { return std::min(tail_[h], tail_[next(h)]); });
   };
   const auto weigh_points = [&] {
     result.masses.assign(static_cast<std::size_t>(n_), 0.0);
@@ -289,8 +279,7 @@ WeightedEdges TuftedCover::weighted_edges() const {
     WeightedEdges& part = parts[from / points_per_task];
     for (Offset i = from; i < to; ++i) {
       entries.clear();
-      for (Offset k = begin[i]; k < begin[i + 1]; ++k) {
-        const Half h = bucketed[k];
+      for (const Half h : by_smaller_end.of(static_cast<Index>(i))) {
         const Index high = std::max(tail_[h], tail_[next(h)]);
         // Half the cotangent, and half of that for each of the two layers. Loops are dropped.
         if (high != i) entries.push_back({high, h, 0.25 * cotangent(h)});

@@ -121,8 +121,8 @@ bool flip_to_delaunay(std::vector<H> stack, std::size_t cap, const Twin& twin, c
 /// Moves the four outer sides of two faces to other half-edges. A side may be glued to another one of the four.
 /// @param mirrored  as of `HalfEdges`; may be empty
 template <class H>
-void relink(const std::array<H, 4>& from, const std::array<H, 4>& to, std::vector<H>& twin,
-            std::vector<std::uint8_t>& mirrored) {
+void relink(const std::array<H, 4>& from, const std::array<H, 4>& to, std::span<H> twin,
+            std::span<std::uint8_t> mirrored) {
   H outer[4];
   std::uint8_t mirrors[4] = {};
   for (int s = 0; s < 4; ++s) {
