@@ -46,6 +46,8 @@ class Body {
   const Surface& surface_for(const char* what) const;
   const grid::GridGraph* grid() const { return grid_; }
   Index rows() const { return surface_ ? surface_->rows().row_count() : graph_->size(); }
+  /// The vertex of the first row that has one.
+  Vertex first() const { return surface_ ? first_vertex(surface_->rows()) : Vertex(0); }
 
   /// The vertex of a row. @throws InvalidArgument
   Vertex vertex(Row row) const { return surface_ ? surface_->vertex(row) : Vertex(row.index); }

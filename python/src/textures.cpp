@@ -168,7 +168,8 @@ py::tuple atlas(const py::object& maker, const py::object& sources, Index charts
   AtlasAndFaces made = compute(report, py::none(), [=](const Progress& progress) {
     const TangentGraph& graph = by.body()->graph();
     const std::vector<Vertex> from =
-        at ? charted(*by.body(), *at) : farthest_points(graph, Vertex(0), std::min(charts, graph.size()), progress);
+        at ? charted(*by.body(), *at)
+           : farthest_points(graph, by.body()->first(), std::min(charts, graph.size()), progress);
     return in_one_step(progress, "charts", [&] { return make(by, from, refined ? &refine : nullptr, pack_options); });
   });
   using namespace py::literals;

@@ -50,6 +50,12 @@ TEST(RowMap, TheLeastVertexOfARowIsTheFirstOfEqualOnesAndNeverNaN) {
   EXPECT_EQ(least(Row(1), {0, 0, 0, 0}), std::nullopt);
 }
 
+TEST(RowMap, BeginsWithTheFirstRowThatHasAVertex) {
+  const RowVertex pairs[] = {{Row(2), Vertex(0)}, {Row(1), Vertex(3)}, {Row(3), Vertex(1)}};
+  EXPECT_EQ(first_vertex(RowMap(4, 4, pairs)), Vertex(3));
+  EXPECT_THROW(first_vertex(RowMap(4, 4, {})), InvalidArgument);
+}
+
 TEST(RowMap, RefusesNumbersOutOfRange) {
   const RowMap map = example();
   EXPECT_THROW(map.vertices(Row(4)), InvalidArgument);

@@ -190,6 +190,26 @@ TEST(Surface, TheClosestPointIsTheNearestOfManyInAllFaces) {
   }
 }
 
+TEST(Surface, TheClosestPointOnAnEdgeIsOfTheFirstOfItsFacesHoweverRoundingFalls) {
+  const Mesh mesh = icosphere(4);
+  for (double scale : {1.0, 1.1, 3.0, 7.0, 0.3, 1.0000000001}) {
+    std::vector<Vec3> positions = mesh.positions;
+    for (Vec3& p : positions) p = {scale * p[0], scale * p[1], scale * p[2]};
+    const auto surface = TriangleMeshSurface::build(positions, mesh.faces);
+    for (std::size_t f = 0; f < mesh.faces.size(); ++f)
+      for (int side = 0; side < 3; ++side) {
+        const Index i = mesh.faces[f][side], j = mesh.faces[f][(side + 1) % 3];
+        Vec3 p;
+        for (std::size_t a = 0; a < 3; ++a) p[a] = 0.7 * positions[i][a] + 0.3 * positions[j][a];
+        const auto found = std::get<FacePoint>(surface.closest_point(p).point);
+        const auto beside = std::ranges::find_if(
+            mesh.faces, [&](const Triangle& t) { return std::ranges::count(t, i) + std::ranges::count(t, j) == 2; });
+        ASSERT_EQ(found.face, beside - mesh.faces.begin()) << scale;
+        ASSERT_EQ(std::ranges::count(found.barycentric, 0.0), 1) << scale;
+      }
+  }
+}
+
 TEST(Surface, ATangentPointOfACloudCarriesItsOffset) {
   std::vector<Vec3> points;
   for (int x = 0; x < 20; ++x)

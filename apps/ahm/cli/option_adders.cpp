@@ -140,10 +140,13 @@ void add_cloud_options(CLI::App& app, InputOptions& o) {
   add_parsed(app, "--knn", o.knn, choice({"nanoflann", "flann", "pcl"}), "NAME",
              "Neighbour search: nanoflann (default), flann or pcl")
       ->group(group);
-  add_parsed(app, "--normals", o.normals, choice({"auto", "oriented", "unoriented", "estimate"}), "HOW",
-             "Normals of INPUT: auto (default) judges their signs, oriented trusts them, unoriented\n"
-             "ignores the signs, estimate ignores the normals")
-      ->group(group);
+  add_normals(app, o)->group(group);
+}
+
+CLI::Option* add_normals(CLI::App& app, InputOptions& o) {
+  return add_parsed(app, "--normals", o.normals, choice({"auto", "oriented", "unoriented", "estimate"}), "HOW",
+                    "Normals of INPUT: auto (default) judges their signs, oriented trusts them, unoriented\n"
+                    "ignores the signs, estimate ignores the normals");
 }
 
 void add_local(CLI::App& app, InputOptions& o, const std::string& radius) {

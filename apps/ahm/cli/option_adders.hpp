@@ -84,6 +84,7 @@ CLI::Option* add_drop_nan(CLI::App& app, InputOptions& o);
 CLI::Option* add_non_manifold(CLI::App& app, InputOptions& o);
 /// How points become a graph: --voxel, --outliers, --drop-nan, --k, --knn, --normals.
 void add_cloud_options(CLI::App& app, InputOptions& o);
+CLI::Option* add_normals(CLI::App& app, InputOptions& o);
 /// --local. @param radius  how far they reach, at the beginning of the help: "With --radius"
 void add_local(CLI::App& app, InputOptions& o, const std::string& radius);
 /// --repair, --weld, --drop-degenerate, --drop-duplicates, --orient

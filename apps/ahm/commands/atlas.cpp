@@ -50,7 +50,8 @@ struct AtlasCommandOptions {
 
 std::vector<Vertex> choose_sources(const AtlasCommandOptions& options, const Input& input) {
   if (options.sources.empty())
-    return farthest_points(input.graph(), Vertex{0}, std::min(options.charts, input.graph().size()));
+    return farthest_points(input.graph(), first_vertex(input.surface().rows()),
+                           std::min(options.charts, input.graph().size()));
   return vertices_at(input, options.sources, "--sources");
 }
 

@@ -87,7 +87,8 @@ std::vector<Vertex> spread(const CellsOptions& options, const Input& input,
   journal.start("spread");
   if (const Index size = input.graph().size(); options.count > size)
     throw InvalidArgument(fmt::format("--count {}: the graph has {} vertices only", options.count, size));
-  const Vertex first = options.start ? vertex_at(input, *options.start, "--start") : Vertex{0};
+  const Vertex first =
+      options.start ? vertex_at(input, *options.start, "--start") : first_vertex(input.surface().rows());
   std::vector<Vertex> result =
       geodesics ? farthest_points(*geodesics, first, options.count, exact_options(options.solve, journal))
                 : farthest_points(input.graph(), first, options.count, journal.progress());
@@ -211,7 +212,8 @@ void offer(CLI::App& app, CellsOptions& o) {
   auto* sources = add_parsed(app, "--sources", o.sources, parse_sources, "SOURCES", "List or file, see below");
   auto* count = add_parsed(app, "--count", o.count, integer_parser(1), "K",
                            "Spread K sources instead, each the farthest from those before");
-  add_parsed(app, "--start", o.start, parse_source, "SPEC", "With --count: the first one (default: any)")->needs(count);
+  add_parsed(app, "--start", o.start, parse_source, "SPEC", "With --count: the first one (default: the first row)")
+      ->needs(count);
   app.callback([=] {
     if ((sources->count() > 0) == (count->count() > 0))
       throw CLI::ValidationError("--sources", "give either --sources or --count");

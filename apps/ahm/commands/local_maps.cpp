@@ -177,8 +177,8 @@ void offer(CLI::App& app, LocalMapsOptions& o) {
   add_backend(app, o.input);
   add_t_coef(app, o.solve);
   add_drop_nan(app, o.input);
-  add_non_manifold(app, o.input);
-  add_repair_options(app, o.input);
+  add_normals(app, o.input);
+  add_mesh_options(app, o.input);
   add_threads(app, o.input, &o.solve);
   add_json(app, o.output);
   add_verbosity(app, o.output.verbosity);

@@ -14,12 +14,16 @@ namespace {
 
 constexpr std::size_t leaf = 8;  // triangles
 constexpr double infinity = std::numeric_limits<double>::infinity();
+/// What is nearer to an edge or a corner than this share of a side lies there, and of faces whose distances differ by less, relative
+/// to coordinates, the first is the nearest: a curve that crosses an edge is the same one however it is scaled and turned.
+constexpr double rounding = 1e-12;
 
 /// Where on the segment from a to b the point nearest to p lies, in [0, 1].
 double along(const Vec3& p, const Vec3& a, const Vec3& b) {
   const Vec3 d = b - a;
   const double squared = dot(d, d);
-  return squared > 0 ? std::clamp(dot(p - a, d) / squared, 0.0, 1.0) : 0.0;
+  const double t = squared > 0 ? dot(p - a, d) / squared : 0.0;
+  return t < rounding ? 0 : t > 1 - rounding ? 1 : t;
 }
 
 Vec3 combined(const std::array<Vec3, 3>& t, const std::array<double, 3>& weights) {
@@ -34,7 +38,8 @@ std::array<double, 3> nearest_in(const std::array<Vec3, 3>& t, const Vec3& p) {
   const Vec3 u = t[1] - t[0], v = t[2] - t[0], w = p - t[0];
   const double uu = dot(u, u), uv = dot(u, v), vv = dot(v, v), area = uu * vv - uv * uv;
   const double second = (vv * dot(w, u) - uv * dot(w, v)) / area, third = (uu * dot(w, v) - uv * dot(w, u)) / area;
-  if (second >= 0 && third >= 0 && second + third <= 1) return {1 - second - third, second, third};
+  if (second >= rounding && third >= rounding && second + third <= 1 - rounding)
+    return {1 - second - third, second, third};
   std::array<double, 3> best{};
   double least = infinity;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -120,8 +125,8 @@ void FaceTree::search(std::size_t number, const Query& query, Hit& best) const {
   };
   std::size_t near = number + 1, far = box.second;
   if (away(far) < away(near)) std::swap(near, far);
-  if (away(near) < best.distance) search(near, query, best);
-  if (away(far) < best.distance) search(far, query, best);
+  if (away(near) <= best.distance + rounding) search(near, query, best);
+  if (away(far) <= best.distance + rounding) search(far, query, best);
 }
 
 void FaceTree::look_at(const Piece& piece, const Query& query, Hit& best) const {
@@ -130,7 +135,8 @@ void FaceTree::look_at(const Piece& piece, const Query& query, Hit& best) const 
   const std::array<double, 3> weights = nearest_in(t, query.position);
   const Vec3 found = combined(t, weights);
   const double distance = norm(found - query.position);
-  if (!(distance < best.distance)) return;
+  const bool is_first = piece.face < best.point.face && distance <= best.distance + rounding;
+  if (!(distance < best.distance - rounding || is_first)) return;
   std::vector<double> of_corners(faces_[piece.face].size(), 0.0);
   of_corners[0] = weights[0];
   of_corners[piece.corner] = weights[1];

@@ -52,4 +52,10 @@ std::optional<Row> RowMap::row(Vertex vertex) const {
   return row < 0 ? std::nullopt : std::optional(Row(row));
 }
 
+Vertex first_vertex(const RowMap& rows) {
+  for (Row row(0); row.index < rows.row_count(); ++row.index)
+    if (const auto vertex = rows.vertex(row)) return *vertex;
+  throw InvalidArgument("no row has a vertex");
+}
+
 }  // namespace ahm

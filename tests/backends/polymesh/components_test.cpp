@@ -27,7 +27,7 @@ TEST(Components, HaveTheSameNumbersAloneAndBesideOthers) {
   for (Discretization how : {Discretization::polygons, Discretization::refined})
     for (int order : {1, 2})
       for (const auto& [a, b] : {std::pair{quads, cells}, {cells, quads}, {cells, triangles}, {triangles, cells}})
-        for (double scale : {0.03, 30.0}) {
+        for (double scale : {0.03, 30.0, 1e6}) {
           const Polygons both = beside(a, b, scale);
           auto mapped = [&](const Polygons& mesh) {
             const auto surface =

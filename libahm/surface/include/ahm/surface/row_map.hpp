@@ -56,4 +56,8 @@ class RowMap {
   std::vector<Index> row_of_vertex_;  ///< -1: none
 };
 
+/// The vertex of the first row that has one: where to begin, whatever order a surface has put its vertices in.
+/// @throws InvalidArgument (none has)
+Vertex first_vertex(const RowMap& rows);
+
 }  // namespace ahm
