@@ -84,6 +84,9 @@ Cell known(double number);
 /// The value below which a share q of the values lie; values are not empty.
 double quantile(std::vector<double> values, double q);
 
+/// The mean; values are not empty.
+double mean(std::span<const double> values);
+
 /// Lengths of n vectors of the plane.
 std::vector<double> lengths(std::span<const double> coordinates);
 

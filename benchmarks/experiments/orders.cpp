@@ -83,7 +83,12 @@ Table orders(const Settings& settings) {
   Table table({"mesh", "vertices", "variant", "error", "order 2 / 1", "trusted error", "trusted order 2 / 1"});
   for (double degrees : {150.0, 250.0, 320.0})
     for (int rings : settings.toy ? std::vector{20} : std::vector{50, 100})
-      measure(Surface(fmt::format("cone {:.0f}", degrees), cone(degrees * std::numbers::pi / 180, rings)), table);
+      for (bool closed : {false, true}) {
+        const double angle = degrees * std::numbers::pi / 180;
+        measure(Surface(fmt::format("{}cone {:.0f}", closed ? "closed " : "", degrees),
+                        closed ? closed_cone(angle, rings) : cone(angle, rings)),
+                table);
+      }
   measure(Surface("graded saddle", graded(settings.toy ? 25 : 120)), table);
   for (Index n : settings.toy ? std::vector<Index>{640} : std::vector<Index>{2500, 10000, 40000})
     measure(Surface("sphere", test::split_icosphere(n)), table);

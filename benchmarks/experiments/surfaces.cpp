@@ -170,6 +170,20 @@ Mesh cone(double angle, int rings) {
   return mesh;
 }
 
+Mesh closed_cone(double angle, int rings) {
+  Mesh mesh = cone(angle, rings);
+  const Mesh upper = mesh;
+  const double rim = upper.positions.back()[2];
+  std::vector<Index> mirrored;  // of the vertices of the upper one; those of the rim are shared
+  for (Index i = 0; i < static_cast<Index>(upper.positions.size()); ++i) {
+    const Vec3& p = upper.positions[i];
+    mirrored.push_back(p[2] == rim ? i : static_cast<Index>(mesh.positions.size()));
+    if (mirrored.back() != i) mesh.positions.push_back({p[0], p[1], 2 * rim - p[2]});
+  }
+  for (const auto& [a, b, c] : upper.faces) mesh.faces.push_back({mirrored[a], mirrored[c], mirrored[b]});
+  return mesh;
+}
+
 Mesh tube(int around, double radius) {
   Mesh mesh;
   const int rings = 1 + static_cast<int>(std::lround(around / (pi * radius)));

@@ -38,6 +38,8 @@ Mesh ellipsoid(Index n);
 Mesh bumpy_sphere(Index n);
 /// Open cone of the given total angle and slant 1, its apex inside, in jittered rings.
 Mesh cone(double angle, int rings);
+/// Two of them, rim to rim: closed, with a sharp edge around.
+Mesh closed_cone(double angle, int rings);
 /// Open tube of the given radius about the x axis and length 2, its quads as square as can be.
 Mesh tube(int around, double radius);
 

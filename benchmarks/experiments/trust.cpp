@@ -112,10 +112,6 @@ std::optional<Curve> curve_of(std::span<const double> quality, const Found& foun
   return curve;
 }
 
-double mean(const std::vector<double>& values) {
-  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-}
-
 void measure(const Surface& surface, const View& view, Table& table) {
   const exact::PolyhedralSurface polyhedral = surface.polyhedron();
   for (Variant variant : all_variants) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "ahm/error.hpp"
+#include "ahm/util/parallel.hpp"
 #include "ahm/util/text.hpp"
 #include "heat/check_options.hpp"
 #include "heat/component_scales.hpp"
@@ -71,6 +72,10 @@ class CostOf {
     const double entry = 16 + (is_complex_ ? 24 : 16 * width_);
     return 1.4 * entry * entries(s) + 600 * s.vertices;
   }
+  /// Of the next band, whose heat is found beside the rest of one: the factor of A, matrices, the graph.
+  double next_band_bytes(const SystemSize& s) const {
+    return factor_bytes(s) / numbers() + 0.5 * workspace_bytes(s) + patch_bytes(s);
+  }
   /// Of a band that is cut out.
   double patch_bytes(const SystemSize& s) const { return (12 + 8 * (d_ + width_)) * s.edges; }
   double system_seconds(const SystemSize& s) const {
@@ -127,6 +132,7 @@ Cost estimate_cost(const TangentGraph& graph, const Source& source, Strategy str
   }
   Cost result;
   double reached = 0;
+  const bool looks_ahead = detail::thread_count(options.threads) > 1 && std::isinf(radius);
   for (std::size_t k = 0; k < times.count(); ++k) {
     std::vector<double> tau;
     for (Index c = 0; c < scales.components.count; ++c)
@@ -134,8 +140,9 @@ Cost estimate_cost(const TangentGraph& graph, const Source& source, Strategy str
     const double within = times.radius_of_each(radius, scales.edge_length, graph.length_unit());
     const MarchWork work = march_work(graph, source, ComponentTimes(scales, tau), within, options);
     const SystemSize& band = work.largest;
+    const double ahead = looks_ahead ? cost.next_band_bytes(band) : 0;
     result.bytes = std::max(result.bytes, cost.factor_bytes(band) + cost.workspace_bytes(band) +
-                                              cost.patch_bytes(band) + 210 * work.reached);
+                                              cost.patch_bytes(band) + ahead + 210 * work.reached);
     result.first_map_seconds += cost.system_seconds(band) * work.solved / band.vertices;
     reached = std::max(reached, work.reached);
   }
