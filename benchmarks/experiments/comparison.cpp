@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <limits>
+#include <numeric>
 
 #include "ahm/error.hpp"
 #include "ahm/testing/closed_forms.hpp"

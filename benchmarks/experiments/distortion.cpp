@@ -18,8 +18,8 @@ void add(const Surface& surface, std::span<const int> ring_of, std::string_view 
   for (std::size_t f = 0; f < all.size(); ++f)
     if (const int ring = ring_of[surface.faces()[f][0]]; ring >= 0) by_ring[ring].push_back(all[f]);
   auto row = [&](Cell ring, const DistortionSummary& s) {
-    table.add({surface.name(), surface.size(), method, std::move(ring), known(s.median), known(s.mean), known(s.percentile_95), known(s.largest),
-               known(s.flipped_area), s.unmeasured});
+    table.add({surface.name(), surface.size(), method, std::move(ring), known(s.median), known(s.mean),
+               known(s.percentile_95), known(s.largest), known(s.flipped_area), s.unmeasured});
   };
   for (int r = 0; r < ring_count; ++r) row((r + 0.5) / ring_count, summary(by_ring[r]));
   row("all", summary(all));
@@ -36,7 +36,8 @@ void measure(const Surface& surface, Table& table) {
 }  // namespace
 
 Table distortion(const Settings& settings) {
-  Table table({"shape", "vertices", "method", "distance / longest", "median D", "mean D", "95% D", "largest D", "flipped area", "unmeasured"});
+  Table table({"shape", "vertices", "method", "distance / longest", "median D", "mean D", "95% D", "largest D",
+               "flipped area", "unmeasured"});
   const Index n = settings.toy ? 600 : 20000;
   measure(Surface("flat grid", test::flat_square(settings.toy ? 25 : 141, 0.0)), table);
   measure(Surface("sphere", split_icosphere(n)), table);

@@ -34,8 +34,8 @@ void measure(const Surface& surface, Table& table) {
       if (quality[k] >= trusted_quality) trusted.push_back(all.back());
     }
     if (all.empty()) continue;
-    table.add({surface.name(), surface.size(), (ring + 0.5) / ring_count, quantile(all, 0.5), mean(all), quantile(all, 0.95), quantile(all, 1),
-               trusted.empty() ? Cell() : Cell(quantile(trusted, 0.5)),
+    table.add({surface.name(), surface.size(), (ring + 0.5) / ring_count, quantile(all, 0.5), mean(all),
+               quantile(all, 0.95), quantile(all, 1), trusted.empty() ? Cell() : Cell(quantile(trusted, 0.5)),
                static_cast<double>(trusted.size()) / static_cast<double>(all.size())});
   }
 }
@@ -43,8 +43,8 @@ void measure(const Surface& surface, Table& table) {
 }  // namespace
 
 Table variants(const Settings& settings) {
-  Table table({"shape", "vertices", "distance / longest", "median difference", "mean difference", "95% difference", "largest difference",
-               "median difference, trusted", "trusted share"});
+  Table table({"shape", "vertices", "distance / longest", "median difference", "mean difference", "95% difference",
+               "largest difference", "median difference, trusted", "trusted share"});
   const Index n = settings.toy ? 600 : 40000;
   measure(Surface("sphere", split_icosphere(n)), table);
   measure(Surface("ellipsoid", ellipsoid(n)), table);
