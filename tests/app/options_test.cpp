@@ -1,6 +1,5 @@
 // Options whose effect shows in the result.
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
 #include <algorithm>
 #include <cmath>
@@ -187,9 +186,6 @@ TEST(Options, EstimateKnowsTheMemoryOfSmallInputs) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
   GTEST_SKIP() << "a sanitizer takes memory of its own";
 #endif
-  rusage own{};
-  getrusage(RUSAGE_SELF, &own);
-  if (own.ru_maxrss > 18'000) GTEST_SKIP() << "a program's peak begins with that of the one that starts it: run alone";
   Folder folder;
   for (const Index n : {1000, 10000}) {
     const auto input = folder.write("sphere.xyz", xyz(sphere(n)));

@@ -135,6 +135,12 @@ TEST(Scales, DoNotMatterToMaps) {
   });
 }
 
+TEST(Scales, DoNotMatterToWhatIsBuiltOfTheSurroundings) {
+  expect_same_at_all_scales({"logmap", "--local", "--source", "40"}, [](double s) {
+    return Words{"--radius", words(s, {0.3})};
+  });
+}
+
 TEST(Scales, DoNotMatterToSourcesInFaces) {
   expect_same_at_all_scales({"logmap", "--source", "face:70:.5,.3,.2"}, [](double) { return Words{}; }, {0});
   expect_same_at_all_scales({"logmap", "--source", "face:70:.4,.3,.2,.1"}, [](double) { return Words{}; }, {1});

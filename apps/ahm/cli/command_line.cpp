@@ -27,7 +27,8 @@ constexpr const char* main_footer =
     "  ahm logmap scan.ply --source 0 -o map.ply --view map.png\n"
     "\n"
     "A logarithmic map flattens a surface around a source point: each point gets the direction and the length\n"
-    "of the shortest path that leads to it from the source.\n"
+    "of the shortest path that leads to it from the source. By heat, the default, coordinates behind holes\n"
+    "go straight on, as in the plane; --method exact takes the way around.\n"
     "\n"
     "Exit status: 0 success, 1 the work failed, 2 the command line is wrong, 129, 130 or 143 interrupted.";
 

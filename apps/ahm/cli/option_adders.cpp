@@ -209,7 +209,7 @@ CLI::Option* add_method(CLI::App& app, SolveOptions& o) {
   return add_parsed(app, "--method", o.method, choice_of<Method>({{"heat", Method::heat}, {"exact", Method::exact}}),
                     "NAME",
                     "heat (default), or exact: straight lines over the faces of a mesh, best on coarse and\n"
-                    "sharp-edged ones");
+                    "sharp-edged ones, and around holes");
 }
 
 CLI::Option* add_tolerance(CLI::App& app, SolveOptions& o) {

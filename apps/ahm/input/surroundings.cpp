@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <span>
 #include <utility>
@@ -31,7 +32,7 @@ double distance_to_box(const Vec3& p, std::span<const Index> face, const std::ve
     for (const Index vertex : face) low = std::min(low, points[vertex][c]), high = std::max(high, points[vertex][c]);
     away[c] = std::max({low - p[c], p[c] - high, 0.0});
   }
-  return norm(away);
+  return std::hypot(away[0], away[1], away[2]);
 }
 
 void keep_faces(std::vector<Offset>& begin, std::vector<Index>& vertices, const std::vector<Index>& kept) {

@@ -48,7 +48,9 @@ RowLogMap Surface::on_rows(const LogMap& map, unsigned threads) const {
     result.status[r] = best.status;
     if (!best.vertex) return;
     const Vertex v = *best.vertex;
-    const double away = no_shorter_than(source ? distance(positions()[r], *source) : 0, map.distance(v));
+    // A row that was joined with the source is there, too.
+    const bool is_away = source && map.distance(v) > 0;
+    const double away = no_shorter_than(is_away ? distance(positions()[r], *source) : 0, map.distance(v));
     if (away > map.radius()) {
       result.status[r] = Status::beyond_radius;
       return;

@@ -236,6 +236,22 @@ TEST(CoincidentVertices, NeedNoPositions) {
   for (Index i = 0; i < clean.vertices(); ++i) ASSERT_NEAR(other.distance[i], map.distance[i], 1e-10);
 }
 
+TEST(CoincidentVertices, AreWhereTheSourceIs) {
+  for (const double apart : {0.0, 1e-14, 1e-13, 1e-12}) {
+    Mesh mesh = flat_square(11);
+    const Triangle t = mesh.faces[103];
+    const Vec3 at = mesh.positions[t[0]];
+    mesh.positions[t[1]] = {at[0] + apart, at[1], at[2]};
+    const auto surface = TriangleMeshSurface::build(mesh.positions, mesh.faces);
+    const LogMapSolver solver(surface.graph());
+    for (const Index source : {t[0], t[1]}) {
+      const RowLogMap map = surface.on_rows(solver.solve(surface.source(Row(source)).source));
+      EXPECT_EQ(map.distance[source], 0) << apart;
+      EXPECT_NEAR(map.distance[t[0] + t[1] - source], apart, 2e-12);
+    }
+  }
+}
+
 TEST(CoincidentVertices, AllOfAFaceAreOne) {
   // A face that shrank to a point, and its neighbours to lines.
   Mesh mesh = flat_square(11);
