@@ -5,6 +5,7 @@
 #include <memory>
 #include <new>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace ahm::detail {
@@ -15,7 +16,7 @@ template <class T>
 struct LeaveUnset : std::allocator<T> {
   static_assert(std::is_trivially_destructible_v<T>);
   template <class U>
-  struct rebind {
+  struct rebind {  // NOLINT(readability-identifier-naming): the name of the standard
     using other = LeaveUnset<U>;
   };
   LeaveUnset() = default;
