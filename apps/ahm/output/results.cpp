@@ -117,7 +117,11 @@ void add_stroke(io::Table& table, const RowLogMap& rows) {
   table.add("status", rows.status);
 }
 
-io::Table Results::table() const { return table_of(input_, normals_, input_.colors); }
+io::Table Results::table() const {
+  io::Table table = table_of(input_, normals_, input_.colors);
+  table.threads = threads_;
+  return table;
+}
 
 view::Scene Results::scene() const {
   view::Scene scene;
