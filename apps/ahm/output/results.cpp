@@ -61,12 +61,22 @@ void comment_on_quality(const std::vector<double>& quality, std::string_view adv
       100.0 * static_cast<double>(poor) / static_cast<double>(mapped), trusted_quality, advice));
 }
 
+namespace {
+
+/// Lines of numbers have no normals, which take their time on large surfaces.
+bool shows_normals(const OutputOptions& output) {
+  const std::string ending = output.format.empty() ? io::lower_extension(output.output) : output.format;
+  return !output.view.empty() || (ending != ".csv" && ending != ".jsonl");
+}
+
+}  // namespace
+
 Results::Results(const OutputOptions& output, const Input& input, const InputOptions& options)
     : output_(output),
       input_(input.geometry),
       title_(std::filesystem::path(options.path).filename().string()),
       threads_(options.threads),
-      normals_(input.normals(options.threads)) {}
+      normals_(shows_normals(output) ? input.normals(options.threads) : std::vector<Vec3>()) {}
 
 Results::~Results() {
   std::error_code ignored;
@@ -117,7 +127,11 @@ void add_stroke(io::Table& table, const RowLogMap& rows) {
   table.add("status", rows.status);
 }
 
-io::Table Results::table() const { return table_of(input_, normals_, input_.colors); }
+io::Table Results::table() const {
+  io::Table table = table_of(input_, normals_, input_.colors);
+  table.threads = threads_;
+  return table;
+}
 
 view::Scene Results::scene() const {
   view::Scene scene;

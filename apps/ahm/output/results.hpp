@@ -68,7 +68,7 @@ class Results {
   const io::Geometry& input_;
   std::string title_;
   unsigned threads_;
-  std::vector<Vec3> normals_;
+  std::vector<Vec3> normals_;  ///< empty where nothing shows them
   std::vector<std::string> written_;
 };
 

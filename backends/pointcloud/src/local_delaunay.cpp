@@ -1,8 +1,10 @@
 #include "local_delaunay.hpp"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
+#include <limits>
 
 #include "ahm/util/buckets.hpp"
 #include "ahm/util/parallel.hpp"
@@ -45,6 +47,36 @@ void convex_hull(std::vector<Inverted>& points, std::vector<Inverted>& hull) {
   hull.pop_back();
 }
 
+/// Leaves out points near the origin that a polygon of some of the first ones goes around. These are no corners of the hull,
+/// and most are of that kind where the first ones are the farthest and lie all around.
+/// @return whether there is such a polygon; the origin is no corner then, either
+bool drop_inner(std::vector<Inverted>& points) {
+  constexpr std::size_t looked_at = 12, directions = 8;
+  // Of each direction, counter-clockwise, the farthest point: corners of a convex polygon, some of them the same.
+  std::array<double, directions> farthest{};
+  std::array<const Inverted*, directions> corners{};
+  for (std::size_t k = 0; k < std::min(points.size(), looked_at); ++k) {
+    const double x = points[k].x, y = points[k].y;
+    const std::array<double, directions> along{x, x + y, y, y - x, -x, -x - y, -y, x - y};
+    for (std::size_t c = 0; c < directions; ++c)
+      if (along[c] > farthest[c]) farthest[c] = along[c], corners[c] = &points[k];
+  }
+  double squared_radius = std::numeric_limits<double>::infinity();
+  for (std::size_t c = 0; c < directions; ++c) {
+    const Inverted *a = corners[c], *b = corners[(c + 1) % directions];
+    if (!a || !b) return false;
+    if (a == b) continue;
+    const double area = a->x * b->y - a->y * b->x, x = b->x - a->x, y = b->y - a->y;
+    if (!(area > 0)) return false;
+    squared_radius = std::min(squared_radius, area * area / (x * x + y * y));
+  }
+  if (!std::isfinite(squared_radius)) return false;
+  // Where rounding could tell is left to the hull.
+  squared_radius *= 1 - 1e-6;
+  std::erase_if(points, [&](const Inverted& p) { return p.x * p.x + p.y * p.y < squared_radius; });
+  return true;
+}
+
 /// The Delaunay triangles at one point. Under inversion about the point, circles through it become lines: a circle
 /// through the point and two neighbours is empty exactly when the line through their images has all other images, and
 /// the origin, on one side. So the triangles are the edges of the convex hull of the images and the origin that do not
@@ -76,7 +108,7 @@ class StarTriangulator {
         images_.push_back({x / squared, y / squared, j});
     }
     if (images_.size() < 2) return;
-    images_.push_back({0, 0, -1});
+    if (!drop_inner(images_)) images_.push_back({0, 0, -1});
     convex_hull(images_, hull_);
     for (std::size_t a = 0; a < hull_.size() && hull_.size() > 2; ++a) {
       const Index j = hull_[a].vertex, l = hull_[(a + 1) % hull_.size()].vertex;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 #include "ahm/util/parallel.hpp"
@@ -18,12 +19,17 @@ struct Bridge {
   signed char sign;  ///< of the one root's normal times that of the other
 };
 
+/// Of a normal relative to another one.
+signed char relative_sign(const Vec3& normal, const Vec3& other) {
+  return static_cast<signed char>(dot(normal, other) < 0 ? -1 : 1);
+}
+
 std::vector<Bridge> bridges(const WeightedEdges& edges, const TangentPlanes& planes, unsigned threads) {
   std::vector<Bridge> result(edges.tails.size());
   detail::for_each_index(result.size(), threads, [&](std::size_t e) {
     const Index a = edges.tails[e], b = edges.heads[e];
     const Vec3 &normal = planes.normals[a], &other = planes.normals[b];
-    result[e] = {a, b, bend(normal, other), static_cast<signed char>(dot(normal, other) < 0 ? -1 : 1)};
+    result[e] = {a, b, bend(normal, other), relative_sign(normal, other)};
   });
   return result;
 }
@@ -50,6 +56,18 @@ SignedForest flattest_forest(Index n, std::vector<Bridge> bridges) {
         bridges[left++] = {root, other, bridge.bend, static_cast<signed char>(sign * bridge.sign * other_sign)};
     }
     bridges.resize(left);
+  }
+  return forest;
+}
+
+/// Any spanning forest, where no loop of edges disagrees with itself: the signs relative to the roots are those of all spanning
+/// forests then. Nothing where one does.
+std::optional<SignedForest> undisputed_forest(Index n, const WeightedEdges& edges, const TangentPlanes& planes) {
+  SignedForest forest(n);
+  for (std::size_t e = 0; e < edges.tails.size(); ++e) {
+    const Index a = edges.tails[e], b = edges.heads[e];
+    const signed char sign = relative_sign(planes.normals[a], planes.normals[b]);
+    if (!forest.join(a, b, sign) && forest.find(a).sign * forest.find(b).sign != sign) return std::nullopt;
   }
   return forest;
 }
@@ -135,7 +153,8 @@ std::vector<Index> orient_normals(const CleanPoints& cloud, const WeightedEdges&
                                   const CloudParts& parts, const std::vector<char>& kept, unsigned threads,
                                   TangentPlanes& planes) {
   const auto n = static_cast<Index>(cloud.points.size());
-  SignedForest forest = flattest_forest(n, bridges(edges, planes, threads));
+  std::optional<SignedForest> undisputed = undisputed_forest(n, edges, planes);
+  SignedForest forest = undisputed ? *std::move(undisputed) : flattest_forest(n, bridges(edges, planes, threads));
   std::vector<Index> tree(static_cast<std::size_t>(n));  // of each point
   std::vector<Evidence> evidence;
   for (Index i = 0; i < n; ++i) {

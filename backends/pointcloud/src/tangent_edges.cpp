@@ -2,8 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
+#include <cstdint>
+#include <utility>
 
+#include "ahm/util/buckets.hpp"
 #include "ahm/util/parallel.hpp"
 #include "ahm/util/unset_vector.hpp"
 #include "edge_unfolding.hpp"
@@ -11,6 +15,8 @@
 
 namespace ahm::pointcloud {
 namespace {
+
+constexpr Offset edges_per_task = 1 << 15;
 
 /// The tangent plane of one point: axes x, y and normal.
 struct Plane {
@@ -39,16 +45,37 @@ Matrix2 smallest_rotation(const Plane& from, const Plane& to, bool reflect) {
   return reflect ? Matrix2{c, s, s, -c} : Matrix2{c, -s, s, c};
 }
 
-/// Row starts of the symmetric graph of the given undirected edges.
-std::vector<Offset> row_starts(const WeightedEdges& edges, const std::vector<Index>& vertex_of_clean, Index vertices) {
-  std::vector<Offset> begin(static_cast<std::size_t>(vertices) + 1, 0);
-  for (std::size_t e = 0; e < edges.tails.size(); ++e) {
-    ++begin[vertex_of_clean[edges.tails[e]] + 1];
-    ++begin[vertex_of_clean[edges.heads[e]] + 1];
+/// Where edges lie in the rows of the symmetric graph. They come in lexicographic order: a row has first the edges that it is the
+/// head of, then those that it is the tail of, each in their order, and its neighbours ascend.
+struct RowPlaces {
+  std::vector<Offset> begin;                    ///< of the rows; vertices + 1
+  std::vector<Offset> tails_begin;              ///< where the edges begin that the row is the tail of ...
+  std::vector<Offset> first;                    ///< ... and the first of these
+  detail::UnsetVector<std::int32_t> from_head;  ///< of each edge: so many places behind the begin of its head's row
+
+  RowPlaces(const WeightedEdges& edges, const std::vector<Index>& vertex_of_clean, Index vertices, unsigned threads)
+      : tails_begin(static_cast<std::size_t>(vertices), 0),
+        first(static_cast<std::size_t>(vertices), 0),
+        from_head(edges.heads.size()) {
+    const auto count = static_cast<Offset>(edges.heads.size());
+    std::vector<std::int32_t> as_tail(static_cast<std::size_t>(vertices), 0), as_head = as_tail;
+    detail::for_key_ranges(vertices, threads, [&](Offset from, Offset to) {
+      for (Offset e = 0; e < count; ++e) {
+        const Index tail = vertex_of_clean[edges.tails[e]], head = vertex_of_clean[edges.heads[e]];
+        if (from <= head && head < to) from_head[e] = as_head[head]++;
+        if (from <= tail && tail < to && as_tail[tail]++ == 0) first[tail] = e;
+      }
+    });
+    begin.reserve(static_cast<std::size_t>(vertices) + 1);
+    begin.push_back(0);
+    for (Index i = 0; i < vertices; ++i) {
+      tails_begin[i] = begin.back() + as_head[i];
+      begin.push_back(tails_begin[i] + as_tail[i]);
+    }
   }
-  for (Index i = 0; i < vertices; ++i) begin[i + 1] += begin[i];
-  return begin;
-}
+  Offset in_head(Offset edge, Index head) const { return begin[head] + from_head[edge]; }
+  Offset in_tail(Offset edge, Index tail) const { return tails_begin[tail] + (edge - first[tail]); }
+};
 
 }  // namespace
 
@@ -60,25 +87,23 @@ CsrGraphData tangent_edges(const CleanPoints& cloud, const TangentPlanes& planes
   auto is_reflection = [&](std::size_t e) {
     return trusted.at(edges.tails[e]) == 0 && dot(planes.normals[edges.tails[e]], planes.normals[edges.heads[e]]) < 0;
   };
-  report.reflections = 0;
-  for (std::size_t e = 0; e < edges.tails.size(); ++e) report.reflections += is_reflection(e);
+  std::atomic<Offset> reflections{0};
+  detail::parallel_chunks(count, edges_per_task, threads, [&](Offset begin, Offset end) {
+    Offset here = 0;
+    for (Offset e = begin; e < end; ++e) here += is_reflection(static_cast<std::size_t>(e));
+    reflections += here;
+  });
+  report.reflections = reflections;
 
   CsrGraphData g;
   g.kind = kind.value_or(report.reflections > 0 ? TransportKind::block : TransportKind::rotation2);
   const std::size_t width = g.kind == TransportKind::block ? 4 : 2;
-  g.row_begin = row_starts(edges, vertex_of_clean, vertices);
+  RowPlaces places(edges, vertex_of_clean, vertices, threads);
   const std::size_t directed = 2 * edges.tails.size();
   detail::run_both(
       threads != 1, [&] { g.transports.resize(width * directed); },
       [&] { g.neighbors.resize(directed), g.weights.resize(directed), g.logs.resize(2 * directed); });
-  // Edges come in lexicographic order, so every row fills up with ascending neighbours once the smaller ones went
-  // first.
-  std::vector<Offset> fill(g.row_begin.begin(), g.row_begin.end() - 1);
-  detail::UnsetVector<Offset> position_in_head(edges.tails.size()), position_in_tail(edges.tails.size());
-  for (std::size_t e = 0; e < edges.tails.size(); ++e) position_in_head[e] = fill[vertex_of_clean[edges.heads[e]]]++;
-  for (std::size_t e = 0; e < edges.tails.size(); ++e) position_in_tail[e] = fill[vertex_of_clean[edges.tails[e]]]++;
-
-  detail::parallel_chunks(count, 1 << 15, threads, [&](Offset begin, Offset end) {
+  detail::parallel_chunks(count, edges_per_task, threads, [&](Offset begin, Offset end) {
     for (Offset e = begin; e < end; ++e) {
       const Index a = edges.tails[e], b = edges.heads[e];
       const Plane plane_a(planes.normals[a]), plane_b(planes.normals[b]);
@@ -96,11 +121,13 @@ CsrGraphData tangent_edges(const CleanPoints& cloud, const TangentPlanes& planes
         transport[1] = width == 2 ? R[2] : R[1];
         if (width == 4) transport[2] = R[2], transport[3] = R[3];
       };
-      store(position_in_tail[e], b, plane_a, unfolded_edge(plane_a.normal, plane_b.normal, offset, noise.at(a)), R_ba);
-      store(position_in_head[e], a, plane_b, unfolded_edge(plane_b.normal, plane_a.normal, -1.0 * offset, noise.at(a)),
-            R_ab);
+      store(places.in_tail(e, vertex_of_clean[a]), b, plane_a,
+            unfolded_edge(plane_a.normal, plane_b.normal, offset, noise.at(a)), R_ba);
+      store(places.in_head(e, vertex_of_clean[b]), a, plane_b,
+            unfolded_edge(plane_b.normal, plane_a.normal, -1.0 * offset, noise.at(a)), R_ab);
     }
   });
+  g.row_begin = std::move(places.begin);
   return g;
 }
 

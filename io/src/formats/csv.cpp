@@ -27,13 +27,12 @@ void write(AtomicFile& file, const Table& table) {
     for (const std::string& name : column.names)
       if (column.in_csv) text += "," + name;
   file.write(text + "\n");
-  for (std::size_t row = 0; row < table.rows(); ++row) {
-    text = std::to_string(row);
+  write_lines(file, table, [&](std::string& line, std::size_t row) {
+    line += std::to_string(row);
     for (const Column& column : table.columns)
-      if (column.in_csv) append_row(text, column, row);
-    text += '\n';
-    file.write(text);
-  }
+      if (column.in_csv) append_row(line, column, row);
+    line += '\n';
+  });
 }
 
 constexpr ColumnDialect dialect{.format = "CSV text", .tabs_separate = true};

@@ -34,12 +34,12 @@ void append_row(std::string& text, const Column& column, std::size_t row) {
 }
 
 void write(AtomicFile& file, const Table& table) {
-  for (std::size_t row = 0; row < table.rows(); ++row) {
-    std::string text = "{\"index\":" + std::to_string(row);
+  write_lines(file, table, [&](std::string& text, std::size_t row) {
+    text += "{\"index\":" + std::to_string(row);
     for (const Column& column : table.columns)
       if (column.in_csv) append_row(text, column, row);
-    file.write(text + "}\n");
-  }
+    text += "}\n";
+  });
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 /// What the writers share.
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "ahm/io/atomic_file.hpp"
 #include "ahm/io/textured_mesh.hpp"
 #include "ahm/io/write.hpp"
+#include "ahm/util/parallel.hpp"
 
 namespace ahm::io {
 
@@ -36,6 +38,23 @@ void visit_row(const Column& column, std::size_t row, const Visit& visit) {
         }
       },
       column.values);
+}
+
+/// Writes lines made by `append(text, row)`, some at a time by all threads: numbers take longer to spell than to write.
+template <class Append>
+void write_lines(AtomicFile& file, const Table& table, const Append& append) {
+  constexpr Offset lines_per_task = 4096, tasks_at_once = 16;
+  const auto rows = static_cast<Offset>(table.rows());
+  std::vector<std::string> texts(tasks_at_once);
+  for (Offset first = 0; first < rows; first += tasks_at_once * lines_per_task) {
+    const Offset count = std::min(rows - first, tasks_at_once * lines_per_task);
+    detail::parallel_chunks(count, lines_per_task, table.threads, [&](Offset begin, Offset end) {
+      std::string& text = texts[begin / lines_per_task];
+      text.clear();
+      for (Offset row = first + begin; row < first + end; ++row) append(text, static_cast<std::size_t>(row));
+    });
+    for (Offset begin = 0; begin < count; begin += lines_per_task) file.write(texts[begin / lines_per_task]);
+  }
 }
 
 }  // namespace ahm::io

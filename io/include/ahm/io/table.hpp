@@ -49,6 +49,7 @@ struct Table {
   std::vector<std::array<Index, 2>> edges = {};  ///< pairs of rows (.ply)
   bool text = false;                             ///< .ply as text
   std::optional<Acquisition> acquisition = {};   ///< of the rows (.pcd)
+  unsigned threads = 0;                          ///< that spell the lines of .csv and .jsonl; 0: one per core
 
   /// The length of the columns.
   std::size_t rows() const { return columns.empty() ? 0 : columns.front().rows(); }

@@ -140,24 +140,30 @@ std::pair<double, double> pivot_range(const cholmod_factor& L) {
   return {low, high};
 }
 
-/// y = K x for the full matrix whose upper triangle is given.
-std::vector<double> multiply(const SparseUpper& K, const std::vector<double>& x) {
-  std::vector<double> y(x.size(), 0.0);
-  const std::size_t width = K.is_complex ? 2 : 1;
+/// y += K x for the full matrix whose upper triangle is given, real (W = 1) or complex (W = 2).
+template <int W>
+void add_product(const SparseUpper& K, const double* x, double* y) {
+  const auto add = [](const double* a, double sign, const double* from, double* to) {
+    to[0] += a[0] * from[0];
+    if constexpr (W == 2) {
+      const double imaginary = sign * a[1];
+      to[0] -= imaginary * from[1];
+      to[1] += a[0] * from[1] + imaginary * from[0];
+    }
+  };
   for (Offset j = 0; j < K.size(); ++j)
     for (Offset p = K.column_begin[j]; p < K.column_begin[j + 1]; ++p) {
       const Offset i = K.rows[p];
-      const double* a = K.values.data() + p * width;
-      const double imaginary = K.is_complex ? a[1] : 0.0;
-      auto add = [&](Offset row, Offset column, double im) {
-        y[row * width] += a[0] * x[column * width];
-        if (!K.is_complex) return;
-        y[row * 2] -= im * x[column * 2 + 1];
-        y[row * 2 + 1] += a[0] * x[column * 2 + 1] + im * x[column * 2];
-      };
-      add(i, j, imaginary);
-      if (i != j) add(j, i, -imaginary);
+      const double* a = K.values.data() + p * W;
+      add(a, 1, x + j * W, y + i * W);
+      if (i != j) add(a, -1, x + i * W, y + j * W);
     }
+}
+
+/// K x
+std::vector<double> multiply(const SparseUpper& K, const std::vector<double>& x) {
+  std::vector<double> y(x.size(), 0.0);
+  (K.is_complex ? add_product<2> : add_product<1>)(K, x.data(), y.data());
   return y;
 }
 
