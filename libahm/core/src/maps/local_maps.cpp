@@ -149,10 +149,11 @@ class Worker {
   Outcome measure(const Patch& patch, std::span<const Index> members, double wanted) {
     const std::size_t n = patch.vertices.size();
     std::shared_ptr<const UnfoldingFront::Stars> stars;
-    if (graph_.is_delaunay())
+    if (graph_.is_delaunay()) {
       stars = std::make_shared<const UnfoldingFront::Stars>(patch.graph, std::vector<std::uint8_t>(), true);
+      find_rim(patch);
+    }
     distances_.resize(members.size() * n);
-    find_rim(patch);
     for (std::size_t k = 0; k < members.size(); ++k) {
       // The last members of a group lie at its rim, where a patch that is too small shows first.
       const std::size_t m = options_.radius > 0 ? members.size() - 1 - k : k;
