@@ -76,9 +76,9 @@ struct CloudDetails {
   Index thick = 0;             ///< points whose neighbours are as thick as wide: no surface there
   Index turned = 0;            ///< given normals that pointed to the other side than the majority around them
   bool oriented = false;       ///< given normals fix which side is up, everywhere
-  double noise = 0;          ///< standard deviation of neighbours' offsets across the surface, world units; of several
-                             ///< parts that of the largest which got k neighbours
-  double layer_gap = 0;      ///< of layers nearer than neighbours that nearly all points there lie in, world units; 0: none
+  double noise = 0;      ///< standard deviation of neighbours' offsets across the surface, world units; of several
+                         ///< parts that of the largest which got k neighbours
+  double layer_gap = 0;  ///< of layers nearer than neighbours that nearly all points there lie in, world units; 0: none
   double mollification = 0;  ///< length added to every edge of the tufted cover, world units; the largest of the parts
   double seconds_normals = 0;    ///< neighbours and tangent planes
   double seconds_delaunay = 0;   ///< local triangulations
