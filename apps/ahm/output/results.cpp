@@ -25,6 +25,10 @@ void check_view(const std::string& path) {
     throw InvalidArgument(fmt::format("--view {}: this build of ahm cannot write {} files", path, extension));
 }
 
+std::ptrdiff_t count_mapped(const std::vector<double>& quality) {
+  return std::count_if(quality.begin(), quality.end(), [](double q) { return std::isfinite(q); });
+}
+
 }  // namespace
 
 void check_results(const std::string& input, const OutputOptions& output, const std::vector<std::string>& endings) {
@@ -51,9 +55,18 @@ void comment_on_statuses(const std::vector<Status>& status, const std::string& i
                     unreached));
 }
 
+std::ptrdiff_t untrusted(const std::vector<double>& quality) {
+  return std::count_if(quality.begin(), quality.end(), [](double q) { return q < trusted_quality; });
+}
+
+std::string quality_as_text(const std::vector<double>& quality) {
+  const auto mapped = static_cast<double>(count_mapped(quality));
+  return fmt::format("quality above {} at {:.2f} % of the mapped vertices", trusted_quality,
+                     mapped > 0 ? 100 - 100 * static_cast<double>(untrusted(quality)) / mapped : 0.0);
+}
+
 void comment_on_quality(const std::vector<double>& quality, std::string_view advice, Journal& journal) {
-  const auto mapped = std::count_if(quality.begin(), quality.end(), [](double q) { return std::isfinite(q); });
-  const auto poor = std::count_if(quality.begin(), quality.end(), [](double q) { return q < trusted_quality; });
+  const std::ptrdiff_t mapped = count_mapped(quality), poor = untrusted(quality);
   if (5 * poor <= mapped) return;
   journal.add_warning(fmt::format(
       "at {:.0f} % of the mapped vertices the map is not to be trusted (quality below {}): they lie beyond a cut "
@@ -113,18 +126,11 @@ void add_map(io::Table& table, const RowLogMap& rows, const std::vector<double>&
   table.add("u", rows.u);
   table.add("v", rows.v);
   table.add("distance", rows.distance);
-  table.add("angle", rows.angle);
+  if (!rows.angle.empty()) table.add("angle", rows.angle);
   table.add("status", rows.status);
   table.add("quality", quality);
   table.add("spread", rows.spread);
   if (!rows.error_estimate.empty()) table.add("error_estimate", rows.error_estimate);
-}
-
-void add_stroke(io::Table& table, const RowLogMap& rows) {
-  table.add("u", rows.u);
-  table.add("v", rows.v);
-  table.add("distance", rows.distance);
-  table.add("status", rows.status);
 }
 
 io::Table Results::table() const {
