@@ -76,10 +76,9 @@ void comment_on_quality(const std::vector<double>& quality, std::string_view adv
 
 namespace {
 
-/// Lines of numbers have no normals, which take their time on large surfaces.
+/// Normals are for viewers, and take their time on large surfaces.
 bool shows_normals(const OutputOptions& output) {
-  const std::string ending = output.format.empty() ? io::lower_extension(output.output) : output.format;
-  return !output.view.empty() || (ending != ".csv" && ending != ".jsonl");
+  return !output.view.empty() || io::writes_for_viewers(output.output, output.format);
 }
 
 }  // namespace
@@ -114,8 +113,8 @@ io::Table table_of(const io::Geometry& input, const std::vector<Vec3>& normals,
                    const std::vector<std::array<std::uint8_t, 3>>& colors) {
   io::Table table{.title = "logarithmic map by libahm"};
   table.add({"x", "y", "z"}, input.points);
-  if (!normals.empty()) table.add({"nx", "ny", "nz"}, normals).in_csv = false;
-  if (!colors.empty()) table.add({"red", "green", "blue"}, colors).in_csv = false;
+  if (!normals.empty()) table.add({"nx", "ny", "nz"}, normals).for_viewers = true;
+  if (!colors.empty()) table.add({"red", "green", "blue"}, colors).for_viewers = true;
   for (const io::Property& property : input.properties) table.add(input_column(property.name), property.values);
   table.faces = input.faces();
   table.acquisition = input.acquisition;
