@@ -95,7 +95,7 @@ class LogMap:
     @property
     def spread(self) -> np.ndarray:
         """(n,) standard deviation of the coordinates over the ways by which heat arrives, world units: about the distance
-        on the cut locus. NaN of a map from a curve, or made with spread=False."""
+        on the cut locus. NaN of a map made with spread=False."""
         return self._map.spread()
 
     @property
@@ -118,7 +118,7 @@ class LogMap:
     def quality(self) -> np.ndarray:
         """(n,) in (0, 1]: below 0.5 a vector is, as a rule, wrong by more than a tenth of its length. Computed anew each time.
 
-        Raises InvalidArgument for a map from a curve.
+        Raises InvalidArgument for a map made with spread=False.
         """
         return self._map.quality()
 

@@ -200,6 +200,7 @@ def test_strokes_on_the_plane(flat_surfaces):
         expected = s.points[:, :2] - [0.5, 1.25]
         side = np.sign(found.map.source.axes[2, 2])
         np.testing.assert_allclose(found.map.uv[inside], (expected * [1, side])[inside], atol=1e-6)
+        assert found.map.spread.max() < 1e-6 and found.map.quality[inside].min() > 0.5
 
 
 def test_decals_keep_their_area_and_paint_rows(flat_surfaces):

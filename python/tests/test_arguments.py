@@ -132,7 +132,6 @@ TWISTED = [[0, 0, 0], [3, 2, 0], [4, 1, 0], [3, 0, 0], [0, 1, 0], [-1, 0.5, 0]] 
     (lambda f: ahm.LogMapSolver(f["cloud"]).log_map(0, frames=False).gradient, r"frames=True"),
     (lambda f: ahm.coverage(ahm.log_map(f["cloud"], 0, frames=False), 1, 0.1), r"frames=True"),
     (lambda f: ahm.LogMapSolver(f["cloud"]).log_maps([0], spread=False)[0].quality, r"spread=True"),
-    (lambda f: ahm.stroke(f["cloud"], [0, 12]).map.quality, r"no quality"),
     (lambda f: ahm.curvature(ahm.Grid((3, 3, 3))), r"mesh or a cloud"),
     (lambda f: ahm.ExactGeodesics(f["grid"]), r"mesh or a cloud"),
     (lambda f: ahm.decal(ahm.log_map(f["grid"], 0), 1, 1), r"mesh or a cloud"),

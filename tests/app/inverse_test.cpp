@@ -1,6 +1,7 @@
 // Points of a surface at given coordinates.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "program.hpp"
@@ -50,11 +51,17 @@ TEST(InverseCommand, OfTheSurroundingsAloneIsThatOfTheWholeCloud) {
   EXPECT_EQ(run({"inverse", input, "-s", "0", "--at", "0,0", "--local", "-o", folder / "o.csv"}).status, 1);
 }
 
-TEST(InverseCommand, GoesBackWhereALogmapCameFrom) {
+/// How far `ahm inverse` leads from the points whose coordinates `ahm logmap` tells, each with options of its own.
+double farthest_back(const std::vector<std::string>& there, const std::vector<std::string>& back) {
   Folder folder;
   const auto points = sphere(2000);
   const std::string input = folder.write("sphere.xyz", xyz(points)), map = folder / "map.csv";
-  ASSERT_EQ(run({"logmap", input, "-s", "0", "-o", map}).status, 0);
+  const auto succeeds = [](std::vector<std::string> words, const std::vector<std::string>& more) {
+    words.insert(words.end(), more.begin(), more.end());
+    const Outcome outcome = run(words);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+  };
+  succeeds({"logmap", input, "-s", "0", "-o", map}, there);
   std::string at;
   std::vector<std::size_t> asked;
   const auto rows = read_numbers(map);
@@ -63,16 +70,24 @@ TEST(InverseCommand, GoesBackWhereALogmapCameFrom) {
     at += std::to_string(rows[i].at("u")) + "," + std::to_string(rows[i].at("v")) + " ";
     asked.push_back(i);
   }
-  const std::string out = folder / "points.csv";
-  const Outcome outcome = run({"inverse", input, "-s", "0", "--at", at, "-o", out});
-  ASSERT_EQ(outcome.status, 0) << outcome.err;
-  const auto found = read_numbers(out);
-  ASSERT_EQ(found.size(), asked.size());
-  ASSERT_GT(found.size(), 5U);
-  for (std::size_t k = 0; k < asked.size(); ++k) {
+  succeeds({"inverse", input, "-s", "0", "--at", at, "-o", folder / "points.csv"}, back);
+  const auto found = read_numbers(folder / "points.csv");
+  EXPECT_EQ(found.size(), asked.size());
+  EXPECT_GT(found.size(), 5U);
+  double farthest = 0;
+  for (std::size_t k = 0; k < found.size(); ++k) {
     const Vec3& p = points[asked[k]];
-    EXPECT_LT(std::hypot(found[k].at("x") - p[0], found[k].at("y") - p[1], found[k].at("z") - p[2]), 1e-5);
+    farthest =
+        std::max(farthest, std::hypot(found[k].at("x") - p[0], found[k].at("y") - p[1], found[k].at("z") - p[2]));
   }
+  return farthest;
+}
+
+TEST(InverseCommand, GoesBackWhereALogmapOfTheSameOptionsCameFrom) {
+  for (const std::vector<std::string>& options :
+       {std::vector<std::string>{}, {"--order", "2"}, {"--strategy", "march"}, {"--variant", "localized"}})
+    EXPECT_LT(farthest_back(options, options), 1e-5);
+  EXPECT_GT(farthest_back({"--order", "2"}, {}), 1e-3);
 }
 
 TEST(InverseCommand, RefusesNonsense) {
@@ -82,6 +97,10 @@ TEST(InverseCommand, RefusesNonsense) {
   EXPECT_EQ(run({"inverse", input, "-s", "0", "--at", "", "-o", folder / "o.csv"}).status, 2);
   EXPECT_EQ(run({"inverse", input, "-s", "0", "--at", "1,nan", "-o", folder / "o.csv"}).status, 2);
   EXPECT_EQ(run({"inverse", input, "-s", "0", "--at", "0,0", "-o", folder / "o.obj"}).status, 1);
+  EXPECT_EQ(
+      run({"inverse", input, "-s", "0", "--at", "0,0", "-o", folder / "o.csv", "--method", "exact", "--order", "2"})
+          .status,
+      2);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // Coordinates along curves, through the program.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -60,10 +61,13 @@ TEST(StrokeCommand, AStraightLineOnAPlaneOfPointsGivesThePlane) {
   expect_straight(rows, 0.21, 0.4, 1e-9);
   for (NumberRow& p : rows)
     EXPECT_NEAR(p["distance"], std::hypot(std::max({0.0, 0.21 - p["x"], p["x"] - 0.77}), p["y"] - 0.4), 1e-9);
-  const auto curve = read_json(folder / "stroke.json").at("curve");
+  const auto summary = read_json(folder / "stroke.json"), curve = summary.at("curve");
+  EXPECT_EQ(summary.at("untrusted"),
+            std::count_if(rows.begin(), rows.end(), [](NumberRow& p) { return p["quality"] < 0.5; }));
+  EXPECT_LT(summary.at("untrusted"), 9);
   EXPECT_NEAR(curve.at("length").get<double>(), 0.56, 1e-12);
   EXPECT_LT(curve.at("largest_gap").get<double>(), 1e-12);
-  EXPECT_TRUE(read_text(folder / "stroke.csv").starts_with("index,x,y,z,u,v,distance,status\n"));
+  EXPECT_TRUE(read_text(folder / "stroke.csv").starts_with("index,x,y,z,u,v,distance,status,quality,spread\n"));
 }
 
 TEST(StrokeCommand, ALineAbovePointsIsMovedToThem) {
@@ -99,7 +103,7 @@ TEST(StrokeCommand, ARadiusLeavesOutWhatLiesBeyondAndMovesNothing) {
   for (std::size_t i = 0; i < whole.size(); ++i) {
     if (std::isnan(near[i]["u"])) {
       ++beyond;
-      EXPECT_TRUE(std::isnan(near[i]["distance"]));
+      for (const char* name : {"distance", "quality", "spread"}) EXPECT_TRUE(std::isnan(near[i][name])) << name;
     } else {
       EXPECT_EQ(near[i]["u"], whole[i]["u"]);
       EXPECT_EQ(near[i]["v"], whole[i]["v"]);
@@ -153,10 +157,11 @@ TEST(StrokeCommand, TheEquatorOfASphereGivesLongitudeAndLatitude) {
   double side = 0;
   for (NumberRow& p : rows) {
     const double latitude = std::asin(p["z"]), longitude = std::atan2(p["y"], p["x"]);
+    if (std::abs(latitude) > 1.5) EXPECT_LT(p["quality"], 0.5);  // all of the equator is as near
     if (std::abs(latitude) > 1) continue;
     if (side == 0 && std::abs(latitude) > h) side = latitude * p["v"] > 0 ? 1 : -1;
     EXPECT_NEAR(p["v"], side * latitude, h);
-    EXPECT_EQ(p["distance"], std::abs(p["v"]));
+    EXPECT_NEAR(p["distance"], std::abs(latitude), 0.5 * h);
     if (std::abs(longitude) < std::numbers::pi / 2) continue;  // u jumps where the curve closes
     EXPECT_NEAR(std::remainder(p["u"] - longitude, 2 * std::numbers::pi), 0, h);
   }

@@ -16,13 +16,14 @@ void for_each_map(const std::vector<Vec3>& points, const std::string& size, cons
   std::vector<std::vector<std::string>> commands{
       {"logmap", input, "-o", folder / "map.csv"},
       {"inverse", input, "--at", "0.01,0", "-o", folder / "points.csv"},
-      {"coverage", input, "--radius", size, "--spacing", "0.05", "-o", folder / "path.csv"}};
+      {"coverage", input, "--radius", size, "--spacing", "0.05", "-o", folder / "path.csv"},
+      {"stroke", input, "--curve", "0 9", "-o", folder / "stroke.csv"}};
   if (io::has_images()) {
     io::write_png(folder / "image.png", Image(8, 8));
     commands.push_back({"decal", input, "--image", folder / "image.png", "--size", size, "-o", folder / "decal.ply"});
   }
   for (auto& words : commands) {
-    words.insert(words.end(), {"--source", "0"});
+    if (words[0] != "stroke") words.insert(words.end(), {"--source", "0"});
     const auto outcome = run(words);
     ASSERT_EQ(outcome.status, 0) << outcome.err;
     check(words[0], outcome.err);

@@ -35,7 +35,7 @@ struct Result {
   Table rows() const {
     Table result{.title = "a result"};
     result.add({"x", "y", "z"}, points);
-    result.add({"nx", "ny", "nz"}, normals).in_csv = false;
+    result.add({"nx", "ny", "nz"}, normals).for_viewers = true;
     result.faces = {face_begin, face_vertices};
     return result;
   }

@@ -9,6 +9,7 @@
 #include <locale>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <vector>
 
 #include "ahm/io/formats.hpp"
 #include "files.hpp"
@@ -104,6 +105,24 @@ TEST_F(Write, ColumnsComeInTheirOrder) {
   write(path("a.ply"), table);
   EXPECT_NE(contents(path("a.ply")).find("double nz\nproperty int piece\nproperty double hx\n"), std::string::npos);
   EXPECT_EQ(read(path("a.ply")).points, result.points);
+}
+
+TEST_F(Write, SaysWhereColumnsForViewersGo) {
+  const Result result;
+  const Table all = result.table();
+  Table others = all;
+  std::erase_if(others.columns, [](const Column& column) { return column.for_viewers; });
+  ASSERT_LT(others.columns.size(), all.columns.size());
+  for (const std::string& extension : extensions(Use::write)) {
+    write(path("all"), all, extension);
+    write(path("others"), others, extension);
+    EXPECT_EQ(contents(path("all")) != contents(path("others")), writes_for_viewers(path("all"), extension))
+        << extension;
+    EXPECT_EQ(writes_for_viewers(path("a" + extension)), writes_for_viewers(path("a.ply"), extension)) << extension;
+  }
+  EXPECT_FALSE(writes_for_viewers("a.CSV"));
+  EXPECT_FALSE(writes_for_viewers("/dev/stdout"));
+  EXPECT_TRUE(writes_for_viewers("a.glb"));
 }
 
 TEST_F(Write, RefusesColumnsThatDoNotFit) {

@@ -308,7 +308,7 @@ TEST(ViewerSessionExport, SendsWhatItsWriterWrites) {
   const std::string n = std::to_string(sphere.geometry.points.size());
   const json at = {{"row", 0}};
   EXPECT_EQ(sent({{"what", "map"}, {"source", at}}).body, n + " " + n);
-  EXPECT_EQ(sent({{"what", "stroke"}, {"points", {at, {{"row", 30}}}}}).body, n + " 0");
+  EXPECT_EQ(sent({{"what", "stroke"}, {"points", {at, {{"row", 30}}}}}).body, n + " " + n);
   EXPECT_FALSE(folder.empty());
   EXPECT_FALSE(std::filesystem::exists(folder));
 

@@ -142,7 +142,7 @@ struct Session::Impl {
   /// A map by row, and how it is told.
   std::string bundle(const LogMap& map, const RowLogMap& rows, const Vec3& source, const std::optional<Frame>& frame,
                      view::Scene shown, view::Pattern pattern, const json& more) const {
-    const std::vector<double> quality = map.spread().empty() ? std::vector<double>() : quality_of(map, rows);
+    const std::vector<double> quality = quality_of(map, rows);
     shown.u = rows.u, shown.v = rows.v;
     shown.quality = quality;
     shown.source = source;
@@ -297,7 +297,8 @@ struct Session::Impl {
     const Settings settings = of_curve(request.settings(options.settings));
     const SurfaceCurve curve = curve_of(request);
     const LogMap made = in_turn(stop, [&] { return stroke(curve, settings, stop); });
-    options.write(file, rows_from_curve(surface, made, curve, radius_of(settings)), {});
+    const RowLogMap rows = rows_from_curve(surface, made, curve, radius_of(settings));
+    options.write(file, rows, quality_of(made, rows));
   }
 
   void write_decal(const Request& request, const std::filesystem::path& file, const std::stop_token& stop) {

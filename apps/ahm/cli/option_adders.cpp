@@ -228,6 +228,18 @@ CLI::Option* add_variant(CLI::App& app, SolveOptions& o) {
   return add_parsed(app, "--variant", o.variant, choice_of(variants), "NAME", one_of(names));
 }
 
+CLI::Option* add_strategy(CLI::App& app, SolveOptions& o) {
+  return add_parsed(
+      app, "--strategy", o.strategy,
+      choice_of<Strategy>({{"auto", Strategy::automatic}, {"global", Strategy::global}, {"march", Strategy::march}}),
+      "NAME", "auto (default), global: one factorization, or march: band by band, any size and distance");
+}
+
+CLI::Option* add_order(CLI::App& app, SolveOptions& o) {
+  return add_parsed(app, "--order", o.order, integer_parser(1, 2), "N",
+                    "1 (default), or 2: extrapolate from several diffusion times");
+}
+
 CLI::Option* add_t_coef(CLI::App& app, SolveOptions& o) {
   return add_parsed(app, "--t-coef", o.t_coef, parse_positive, "T",
                     "Diffusion time in squared mean edge lengths, > 0 (default 1); larger is smoother");

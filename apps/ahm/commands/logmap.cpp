@@ -149,14 +149,8 @@ void offer_method(CLI::App& app, LogmapOptions& o) {
              choice_of<Ordering>({{"amd", Ordering::amd}, {"nested-dissection", Ordering::nested_dissection}}), "NAME",
              "Of the factorization: amd (default) or nested-dissection")
       ->group(group);
-  add_parsed(
-      app, "--strategy", o.solve.strategy,
-      choice_of<Strategy>({{"auto", Strategy::automatic}, {"global", Strategy::global}, {"march", Strategy::march}}),
-      "NAME", "auto (default), global: one factorization, or march: band by band, any size and distance")
-      ->group(group);
-  add_parsed(app, "--order", o.solve.order, integer_parser(1, 2), "N",
-             "1 (default), or 2: extrapolate from several diffusion times, with an estimate of the error")
-      ->group(group);
+  add_strategy(app, o.solve)->group(group);
+  add_order(app, o.solve)->group(group);
   add_parsed(app, "--accuracy", o.solve.accuracy, parse_positive, "A",
              "Of a march, against a global solve, relative (default 1e-9)")
       ->group(group);

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "ahm/maps/quality.hpp"
 #include "cli/system_info.hpp"
+#include "output/results.hpp"
 #include "output/summary.hpp"
 #include "output/wording.hpp"
 
@@ -27,11 +27,6 @@ double largest_distance(const RowLogMap& rows) {
   for (double d : rows.distance)
     if (d > largest) largest = d;  // false for NaN
   return largest;
-}
-
-/// Mapped rows at a cut locus or in a fold.
-std::ptrdiff_t untrusted(const std::vector<double>& quality) {
-  return std::count_if(quality.begin(), quality.end(), [](double q) { return q < trusted_quality; });
 }
 
 /// Of the numbers that are not NaN.
@@ -98,9 +93,7 @@ std::string as_text(const LogmapRun& run) {
   text += fmt::format("\nsource {} at {:.6g} {:.6g} {:.6g}, largest distance {:.6g}, mean edge length {:.4g}\n",
                       run.source.row ? fmt::format("{}", run.source.row->index) : to_string(run.spec), p[0], p[1], p[2],
                       largest_distance(run.rows), run.input.mean_edge_length());
-  const auto ok = static_cast<double>(count(run.rows, Status::ok));
-  text += fmt::format("quality above {} at {:.2f} % of the mapped vertices", trusted_quality,
-                      ok > 0 ? 100 - 100 * static_cast<double>(untrusted(run.quality)) / ok : 0.0);
+  text += quality_as_text(run.quality);
   if (!run.rows.error_estimate.empty())
     text += fmt::format(", median error about {:.2g}", median(run.rows.error_estimate));
   return text + "\n";

@@ -7,6 +7,7 @@
 
 #include "ahm/applications/surface_curve.hpp"
 #include "ahm/error.hpp"
+#include "ahm/maps/quality.hpp"
 #include "cli/numbers.hpp"
 #include "cli/option_adders.hpp"
 #include "cli/source_list.hpp"
@@ -27,13 +28,17 @@ constexpr const char* stroke_footer =
     "They are joined by shortest paths, over the faces of meshes and the tangent planes of clouds, with samples every\n"
     "half edge.\n"
     "\n"
-    "OUTPUT  .csv, .jsonl, .ply, .pcd or .vtp; one row per vertex of INPUT, in its order: "
-    "index,x,y,z,u,v,distance,status\n"
+    "OUTPUT  .csv, .jsonl, .ply, .pcd or .vtp; one row per vertex of INPUT, in its order:\n"
+    "          index,x,y,z,u,v,distance,status,quality,spread\n"
     "          u  arclength along the curve, before and after its ends straight on\n"
     "          v  distance from it, positive on its left as seen from outside (the side of the normals)\n"
     "        With --circle the curve becomes a circle of its length about the origin; with --positions its points get\n"
     "        these coordinates, a list 'u,v u,v ...' or a file with one pair per line, and u,v go on from there.\n"
     "          distance  from the curve, along the surface\n"
+    "          quality   in (0, 1]; below 0.5 do not trust u,v: several parts of the curve are as near, or the surface "
+    "is\n"
+    "                    too coarse for its bends\n"
+    "          spread    standard deviation of (u, v) over the ways by which heat came\n"
     "\n"
     "Examples:\n"
     "  ahm stroke scan.ply --curve '0,0,1.2 0.3,0,1.1 0.5,0.2,1' -o stroke.csv --view stroke.png\n"
@@ -94,16 +99,18 @@ void comment_on_curve(const SurfaceCurve& curve, double edge, Journal& journal) 
         curve.jump, curve.jump / edge));
 }
 
-void write_results(const SurfaceCurve& curve, const StrokeOptions& shape, const RowLogMap& rows, Results& results,
-                   Journal& journal) {
+void write_results(const SurfaceCurve& curve, const StrokeOptions& shape, const RowLogMap& rows,
+                   const std::vector<double>& quality, Results& results, Journal& journal) {
   io::Table table = results.table();
-  add_stroke(table, rows);
+  add_map(table, rows, quality);
   std::vector<Vec3> line = curve.points;
   if (shape.closed) line.push_back(line.front());
   view::Scene scene = results.scene();
   scene.u = rows.u;
   scene.v = rows.v;
   scene.distance = rows.distance;
+  scene.quality = quality;
+  scene.told = {rows.distance, rows.spread, rows.status, {}};
   scene.curve = line;
   scene.source = line.front();
   if (curve.first) scene.source_axes = {curve.first->x, curve.first->y, curve.first->normal};
@@ -113,7 +120,7 @@ void write_results(const SurfaceCurve& curve, const StrokeOptions& shape, const 
 }
 
 void report(const StrokeCommandOptions& options, const Input& input, const SurfaceCurve& curve, const RowLogMap& rows,
-            Journal& journal) {
+            const std::vector<double>& quality, Journal& journal) {
   const auto mapped = std::count(rows.status.begin(), rows.status.end(), Status::ok);
   double farthest = 0;
   for (double d : rows.distance) farthest = std::max(farthest, std::isnan(d) ? 0 : d);
@@ -131,12 +138,13 @@ void report(const StrokeCommandOptions& options, const Input& input, const Surfa
   j["n"] = rows.status.size();
   j["mapped"] = mapped;
   j["largest_distance"] = farthest;
+  j["untrusted"] = untrusted(quality);
   const std::string text = fmt::format(
       "{} curve of {} points, {:.6g} long, off the surface by {:.2g} at most\n{} of {} vertices mapped, up to {:.6g} "
       "from "
-      "the curve\n",
+      "the curve\n{}\n",
       options.shape.closed ? "closed" : "open", curve.points.size(), curve.length, curve.gap, mapped,
-      rows.status.size(), farthest);
+      rows.status.size(), farthest, quality_as_text(quality));
   deliver(std::move(j), text, options.output, journal);
 }
 
@@ -153,9 +161,11 @@ void run(const StrokeCommandOptions& options) {
   const LogMap map = solve(reaching, input, curve, journal);
   const RowLogMap rows = rows_from_curve(input.surface(), map, curve, radius);
   comment_on_statuses(rows.status, options.input.path, journal);
+  const std::vector<double> quality = on_rows(rows, map_quality(input.graph(), map, options.solve.threads));
+  comment_on_quality(quality, "keep to what is near with --radius", journal);
   Results results(options.output, input, options.input);
-  write_results(curve, options.shape, rows, results, journal);
-  report(options, input, curve, rows, journal);
+  write_results(curve, options.shape, rows, quality, results, journal);
+  report(options, input, curve, rows, quality, journal);
   results.keep();
 }
 

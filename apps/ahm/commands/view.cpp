@@ -74,7 +74,7 @@ viewer::SessionOptions session_options(const ViewOptions& options, const Input& 
   session.write = [&input, &normals](const std::filesystem::path& file, const RowLogMap& rows,
                                      const std::vector<double>& quality) {
     io::Table table = table_of(input.geometry, normals, input.geometry.colors);
-    quality.empty() ? add_stroke(table, rows) : add_map(table, rows, quality);
+    add_map(table, rows, quality);
     io::write(file, table);
   };
   session.write_path = [](const std::filesystem::path& file, const std::vector<Vec3>& points) {

@@ -25,6 +25,10 @@ void check_view(const std::string& path) {
     throw InvalidArgument(fmt::format("--view {}: this build of ahm cannot write {} files", path, extension));
 }
 
+std::ptrdiff_t count_mapped(const std::vector<double>& quality) {
+  return std::count_if(quality.begin(), quality.end(), [](double q) { return std::isfinite(q); });
+}
+
 }  // namespace
 
 void check_results(const std::string& input, const OutputOptions& output, const std::vector<std::string>& endings) {
@@ -51,9 +55,18 @@ void comment_on_statuses(const std::vector<Status>& status, const std::string& i
                     unreached));
 }
 
+std::ptrdiff_t untrusted(const std::vector<double>& quality) {
+  return std::count_if(quality.begin(), quality.end(), [](double q) { return q < trusted_quality; });
+}
+
+std::string quality_as_text(const std::vector<double>& quality) {
+  const auto mapped = static_cast<double>(count_mapped(quality));
+  return fmt::format("quality above {} at {:.2f} % of the mapped vertices", trusted_quality,
+                     mapped > 0 ? 100 - 100 * static_cast<double>(untrusted(quality)) / mapped : 0.0);
+}
+
 void comment_on_quality(const std::vector<double>& quality, std::string_view advice, Journal& journal) {
-  const auto mapped = std::count_if(quality.begin(), quality.end(), [](double q) { return std::isfinite(q); });
-  const auto poor = std::count_if(quality.begin(), quality.end(), [](double q) { return q < trusted_quality; });
+  const std::ptrdiff_t mapped = count_mapped(quality), poor = untrusted(quality);
   if (5 * poor <= mapped) return;
   journal.add_warning(fmt::format(
       "at {:.0f} % of the mapped vertices the map is not to be trusted (quality below {}): they lie beyond a cut "
@@ -63,10 +76,9 @@ void comment_on_quality(const std::vector<double>& quality, std::string_view adv
 
 namespace {
 
-/// Lines of numbers have no normals, which take their time on large surfaces.
+/// Normals are for viewers, and take their time on large surfaces.
 bool shows_normals(const OutputOptions& output) {
-  const std::string ending = output.format.empty() ? io::lower_extension(output.output) : output.format;
-  return !output.view.empty() || (ending != ".csv" && ending != ".jsonl");
+  return !output.view.empty() || io::writes_for_viewers(output.output, output.format);
 }
 
 }  // namespace
@@ -101,8 +113,8 @@ io::Table table_of(const io::Geometry& input, const std::vector<Vec3>& normals,
                    const std::vector<std::array<std::uint8_t, 3>>& colors) {
   io::Table table{.title = "logarithmic map by libahm"};
   table.add({"x", "y", "z"}, input.points);
-  if (!normals.empty()) table.add({"nx", "ny", "nz"}, normals).in_csv = false;
-  if (!colors.empty()) table.add({"red", "green", "blue"}, colors).in_csv = false;
+  if (!normals.empty()) table.add({"nx", "ny", "nz"}, normals).for_viewers = true;
+  if (!colors.empty()) table.add({"red", "green", "blue"}, colors).for_viewers = true;
   for (const io::Property& property : input.properties) table.add(input_column(property.name), property.values);
   table.faces = input.faces();
   table.acquisition = input.acquisition;
@@ -113,18 +125,11 @@ void add_map(io::Table& table, const RowLogMap& rows, const std::vector<double>&
   table.add("u", rows.u);
   table.add("v", rows.v);
   table.add("distance", rows.distance);
-  table.add("angle", rows.angle);
+  if (!rows.angle.empty()) table.add("angle", rows.angle);
   table.add("status", rows.status);
   table.add("quality", quality);
   table.add("spread", rows.spread);
   if (!rows.error_estimate.empty()) table.add("error_estimate", rows.error_estimate);
-}
-
-void add_stroke(io::Table& table, const RowLogMap& rows) {
-  table.add("u", rows.u);
-  table.add("v", rows.v);
-  table.add("distance", rows.distance);
-  table.add("status", rows.status);
 }
 
 io::Table Results::table() const {

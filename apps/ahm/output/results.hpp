@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -22,6 +23,12 @@ void check_results(const std::string& input, const OutputOptions& output, const 
 /// Warns where many rows have no number.
 void comment_on_statuses(const std::vector<Status>& status, const std::string& input, Journal& journal);
 
+/// How many mapped rows have a quality below `trusted_quality`. @param quality  by row; NaN does not count
+std::ptrdiff_t untrusted(const std::vector<double>& quality);
+
+/// The share of the mapped rows that are not: "quality above 0.5 at 97.20 % of the mapped vertices".
+std::string quality_as_text(const std::vector<double>& quality);
+
 /// Warns where more than a fifth of the mapped rows lie below `trusted_quality`.
 /// @param quality  by row; NaN does not count
 /// @param advice   what to do about it in this subcommand
@@ -35,10 +42,8 @@ std::string input_column(const std::string& name);
 io::Table table_of(const io::Geometry& input, const std::vector<Vec3>& normals,
                    const std::vector<std::array<std::uint8_t, 3>>& colors);
 
-/// The columns of a map: u, v, distance, angle, status, quality, spread, error_estimate.
+/// The columns of a map: u, v, distance, angle (not from a curve), status, quality, spread, error_estimate (of order 2).
 void add_map(io::Table& table, const RowLogMap& rows, const std::vector<double>& quality);
-/// Those of a map from a curve: u, v, distance, status.
-void add_stroke(io::Table& table, const RowLogMap& rows);
 
 /// The files of a run: all of them or, after a failure, none.
 class Results {

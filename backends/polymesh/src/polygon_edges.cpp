@@ -9,7 +9,6 @@
 #include "ahm/error.hpp"
 #include "ahm/maps/cost.hpp"
 #include "ahm/util/component_lengths.hpp"
-#include "ahm/util/disjoint_sets.hpp"
 #include "ahm/util/parallel.hpp"
 #include "polygon.hpp"
 
@@ -197,21 +196,12 @@ void write_transport(std::complex<double> turn_i, bool mirrored_i, std::complex<
   out[3] = reflects ? -R.real() : R.real();
 }
 
-/// Vertices whose faces have no area still need a mass, small against all others of their component.
-void raise_masses(const PolygonMesh& mesh, double mean_edge_length, std::vector<double>& masses) {
-  detail::DisjointSets parts(masses.size());
-  for (Index f = 0; f < mesh.face_count(); ++f)
-    for (const Index v : mesh.face(f)) parts.join(mesh.face(f)[0], v);
-  std::vector<double> total(masses.size(), 0.0), count = total;
-  for (std::size_t v = 0; v < masses.size(); ++v) {
-    const Index part = parts.root(static_cast<Index>(v));
-    total[part] += masses[v];
-    ++count[part];
-  }
-  for (std::size_t v = 0; v < masses.size(); ++v) {
-    const Index part = parts.root(static_cast<Index>(v));
-    const double mean = total[part] > 0 ? total[part] / count[part] : mean_edge_length * mean_edge_length;
-    masses[v] = std::max(masses[v], 1e-9 * mean);
+/// Vertices whose faces have no area still need a mass, small against that of others of their component with area.
+void raise_masses(CsrGraphData& g) {
+  for (std::size_t v = 0; v < g.masses.size(); ++v) {
+    const double own = g.component_edge_lengths.empty() ? 0 : g.component_edge_lengths[v];
+    const double edge = own > 0 ? own : *g.mean_edge_length;
+    g.masses[v] = std::max(g.masses[v], 1e-9 * edge * edge);
   }
 }
 
@@ -269,7 +259,7 @@ CsrGraphData polygon_edges(const PolygonMesh& mesh, const Frames& frames, const 
     }
     g.masses[k] = mass;
   });
-  raise_masses(mesh, *g.mean_edge_length, g.masses);
+  raise_masses(g);
   return g;
 }
 

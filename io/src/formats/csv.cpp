@@ -24,13 +24,11 @@ void append_row(std::string& text, const Column& column, std::size_t row) {
 void write(AtomicFile& file, const Table& table) {
   std::string text = "index";
   for (const Column& column : table.columns)
-    for (const std::string& name : column.names)
-      if (column.in_csv) text += "," + name;
+    for (const std::string& name : column.names) text += "," + name;
   file.write(text + "\n");
   write_lines(file, table, [&](std::string& line, std::size_t row) {
     line += std::to_string(row);
-    for (const Column& column : table.columns)
-      if (column.in_csv) append_row(line, column, row);
+    for (const Column& column : table.columns) append_row(line, column, row);
     line += '\n';
   });
 }
@@ -43,6 +41,8 @@ bool take_points(const ByteStream& file, const TakePoint& take) { return take_co
 
 }  // namespace
 
-Format csv_format() { return {.extensions = {".csv"}, .read = read, .take_points = take_points, .write = write}; }
+Format csv_format() {
+  return {.extensions = {".csv"}, .read = read, .take_points = take_points, .write = write, .for_viewers = false};
+}
 
 }  // namespace ahm::io

@@ -28,6 +28,7 @@ struct Format {
   /// Of such files: hands over all points, and says whether they have normals.
   bool (*take_points)(const ByteStream& file, const TakePoint& take) = nullptr;
   void (*write)(AtomicFile& file, const Table& table) = nullptr;
+  bool for_viewers = true;  ///< `write` is given the columns that are for viewers only, too
   void (*write_textured)(const std::filesystem::path& path, std::span<const MeshPart> parts) = nullptr;
   std::string missing = {};  ///< a library this build is without, and the functions above therefore null
 };

@@ -36,14 +36,13 @@ void append_row(std::string& text, const Column& column, std::size_t row) {
 void write(AtomicFile& file, const Table& table) {
   write_lines(file, table, [&](std::string& text, std::size_t row) {
     text += "{\"index\":" + std::to_string(row);
-    for (const Column& column : table.columns)
-      if (column.in_csv) append_row(text, column, row);
+    for (const Column& column : table.columns) append_row(text, column, row);
     text += "}\n";
   });
 }
 
 }  // namespace
 
-Format jsonl_format() { return {.extensions = {".jsonl"}, .write = write}; }
+Format jsonl_format() { return {.extensions = {".jsonl"}, .write = write, .for_viewers = false}; }
 
 }  // namespace ahm::io

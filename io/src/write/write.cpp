@@ -5,6 +5,7 @@
 #include <cerrno>
 #include <string>
 #include <system_error>
+#include <vector>
 
 #include "ahm/io/formats.hpp"
 #include "formats/format.hpp"
@@ -17,10 +18,15 @@ namespace {
   throw IoError("cannot write " + quoted_path(path) + ": " + what);
 }
 
+/// What a file is written as: as asked for, or else by its name.
+std::string extension_to_write(const std::filesystem::path& path, const std::string& asked) {
+  const std::string extension = asked.empty() ? lower_extension(path) : asked;
+  return extension.empty() && is_stream(path) ? ".csv" : extension;
+}
+
 /// The format to write to. @throws IoError
-const Format& format_to_write(const std::filesystem::path& path, std::string extension) {
-  if (extension.empty()) extension = lower_extension(path);
-  if (extension.empty() && is_stream(path)) extension = ".csv";
+const Format& format_to_write(const std::filesystem::path& path, const std::string& asked) {
+  const std::string extension = extension_to_write(path, asked);
   const Format* format = find_format(extension);
   if (format == nullptr || (format->write == nullptr && format->missing.empty()))
     fail(path, "unknown file type " + in_quotes(extension) + "; known are " + list_of(extensions(Use::write)));
@@ -35,8 +41,19 @@ void write(const std::filesystem::path& path, const Table& table, const std::str
   const Format& format = format_to_write(path, extension);
   check(table);
   AtomicFile file(path);
-  format.write(file, table);
+  if (format.for_viewers) {
+    format.write(file, table);
+  } else {
+    Table numbers = table;
+    std::erase_if(numbers.columns, [](const Column& column) { return column.for_viewers; });
+    format.write(file, numbers);
+  }
   file.commit();
+}
+
+bool writes_for_viewers(const std::filesystem::path& path, const std::string& extension) {
+  const Format* format = find_format(extension_to_write(path, extension));
+  return format == nullptr || format->for_viewers;
 }
 
 void check_writable(const std::filesystem::path& path, const std::string& extension) {

@@ -120,7 +120,7 @@ void add_sample(Source& source, Vertex vertex, double weight, const Vec2& z, con
   const double c = direction[0], s = direction[1];
   const double axes[] = {c * tangent[0] - s * left[0], s * tangent[0] + c * left[0], c * tangent[1] - s * left[1],
                          s * tangent[1] + c * left[1]};
-  source.add(vertex, weight, z, axes, {point, 0});
+  source.add(vertex, weight, z, axes, {point, 0, z});
 }
 
 void check_shape(const StrokeOptions& options) {
@@ -204,7 +204,8 @@ Source stroke_source(std::span<const StrokePoint> points) {
       const auto z = point.offsets().subspan(2 * i, 2), U = point.axes().subspan(4 * i, 4);
       const double offset[] = {position[0] + c * z[0] - s * z[1], position[1] + s * z[0] + c * z[1]};
       const double axes[] = {c * U[0] - s * U[1], s * U[0] + c * U[1], c * U[2] - s * U[3], s * U[2] + c * U[3]};
-      source.add(point.vertices()[i], weight * point.weights()[i], offset, axes, {static_cast<Index>(k), length(z)});
+      source.add(point.vertices()[i], weight * point.weights()[i], offset, axes,
+                 {static_cast<Index>(k), length(z), position});
     }
   }
   return source;

@@ -276,8 +276,9 @@ double reach_from_curve(const TangentGraph& graph, double radius) {
 
 RowLogMap rows_from_curve(const Surface& surface, const LogMap& map, const SurfaceCurve& curve, double radius) {
   RowLogMap rows = surface.on_rows(map);
+  rows.angle.clear();
   const TangentGraph& graph = surface.graph();
-  const double edges = map.method() == Method::exact ? 0 : graph.is_delaunay() ? 0.25 : 1;
+  const double edges = map.method() == Method::exact ? 0 : 0.25;
   const double slack = edges * graph.mean_edge_length() * graph.length_unit();
   for (std::size_t i = 0; i < rows.u.size(); ++i) {
     if (curve.shape) {
@@ -289,10 +290,10 @@ RowLogMap rows_from_curve(const Surface& surface, const LogMap& map, const Surfa
         rows.distance[i] = std::clamp(in_plane, std::max(0.0, least - slack), from_samples + slack);
     }
     if (!(rows.distance[i] > radius)) continue;
-    rows.u[i] = rows.v[i] = rows.angle[i] = rows.distance[i] = NAN;
-    for (std::vector<double>* more : {&rows.spread, &rows.error_estimate})
-      if (!more->empty()) (*more)[i] = NAN;
+    rows.u[i] = rows.v[i] = rows.distance[i] = rows.spread[i] = NAN;
+    if (!rows.error_estimate.empty()) rows.error_estimate[i] = NAN;
     rows.status[i] = Status::beyond_radius;
+    rows.vertex[i].reset();
   }
   return rows;
 }

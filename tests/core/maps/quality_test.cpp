@@ -137,12 +137,13 @@ TEST(MapQuality, IsNanWhereTheMapIs) {
   EXPECT_EQ(map.count(Status::disconnected), flat.size());
 }
 
-TEST(MapQuality, NeedsAPointAndTheRightGraph) {
+TEST(MapQuality, NeedsTheRightGraphAndOfCurvesThePlane) {
   const CsrGraph graph(sphere_graph(200)), other(sphere_graph(300));
   const LogMapSolver solver(graph);
-  const Source curve = Source(2).add(Vertex{3}, 1, std::array{0.0, 0.0}, {}, {0, 0.0});
-  EXPECT_THROW(map_quality(graph, solver.solve(curve)), InvalidArgument);
   EXPECT_THROW(map_quality(other, solver.solve(Source::at_vertex(Vertex{0}))), InvalidArgument);
+  const CsrGraph space(lattice3(6).data);
+  const Source curve = Source(3).add(Vertex{3}, 1, std::array{0.0, 0.0, 0.0}, {}, {0, 0.0});
+  EXPECT_THROW(map_quality(space, LogMapSolver(space).solve(curve)), InvalidArgument);
 }
 
 }  // namespace

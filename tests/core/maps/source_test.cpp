@@ -43,6 +43,11 @@ TEST(SourceAdd, RefusesNonsense) {
       },
       "offset");
   expect_error<InvalidArgument>([&] { source.add(Vertex{4}, 1.0, zero, std::array{1.0, 0.0, 0.0, 2.0}); }, "axes");
+  expect_error<InvalidArgument>(
+      [&] {
+        source.add(Vertex{4}, 1.0, std::array{3.0, 1.0}, identity, {0, 0.5, {3.0, 0.0}});
+      },
+      "'offset' is 1 from the position of 'place', whose distance is 0.5");
   expect_error<InvalidArgument>([&] { Source::at_vertex(Vertex{1}, zero); }, "direction");
   expect_error<InvalidArgument>([&] { Source::at_vertex(Vertex{1}).add(Vertex{2}, 1.0, zero, identity); },
                                 "no further samples");

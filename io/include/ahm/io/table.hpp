@@ -36,7 +36,7 @@ struct Column {
   std::vector<std::string> names;  ///< letters, digits and _
   /// rows x names
   std::variant<std::span<const double>, std::span<const Index>, std::span<const std::uint8_t>, CodedWords> values;
-  bool in_csv = true;  ///< false: for viewers only, left out of .csv
+  bool for_viewers = false;  ///< only: left out of .csv and .jsonl
 
   std::size_t rows() const;
 };

@@ -33,6 +33,9 @@ namespace ahm::io {
 /// @param extension  of the format, whatever the file is called; empty: that of the name
 void write(const std::filesystem::path& path, const Table& table, const std::string& extension = {});
 
+/// Whether `write` puts columns that are for viewers only into such a file; true of files that it does not write.
+bool writes_for_viewers(const std::filesystem::path& path, const std::string& extension = {});
+
 /// Writes an .obj with curves as its lines (`l`), in doubles; the file appears when it is complete, or not at all.
 /// @param points  of all curves, one behind the other
 /// @param begin   rising: where each begins among them; curves without points have no line

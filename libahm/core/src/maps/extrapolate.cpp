@@ -175,6 +175,7 @@ LogMap extrapolate(const TangentGraph& graph, const ComponentScales& scales, dou
                    std::move(distances),
                    spread ? std::vector<double>(first.spread().begin(), first.spread().end()) : std::vector<double>(),
                    {first.directions().begin(), first.directions().end()},
+                   {first.nearest().begin(), first.nearest().end()},
                    {middle.frames().begin(), middle.frames().end()},
                    std::move(error)};
   extras.radius = radius;

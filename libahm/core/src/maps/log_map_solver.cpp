@@ -62,6 +62,7 @@ struct Found {
 /// What a front found; empty: distances are measured by heat.
 struct Unfolded final : KnownDistances {
   std::vector<double> distances, directions;
+  std::vector<Index> nearest;  ///< sample of a curve
 
   double of(Index vertex) const override { return distances[vertex]; }
 };
@@ -69,17 +70,18 @@ struct Unfolded final : KnownDistances {
 Unfolded unfolded_from(const TangentGraph& graph, const std::shared_ptr<const UnfoldingFront::Stars>& stars,
                        const Source& source, const MapSettings& map) {
   if (!unfolds(graph, source)) return {};
-  UnfoldingFront front(graph, stars, map.spread && !source.is_curve());
+  UnfoldingFront front(graph, stars, map.spread && graph.is_delaunay());
   front.add(source);
   run_front(front, graph, map.radius, map.progress.stop);
   const auto n = static_cast<std::size_t>(graph.size());
   Unfolded found;
   found.distances.resize(n);
   found.directions.resize(front.has_directions() ? 2 * n : 0);
+  found.nearest.resize(source.is_curve() ? n : 0);
   for (std::size_t i = 0; i < n; ++i) {
     found.distances[i] = front.distance(Vertex(i));
-    if (found.directions.empty()) continue;
-    std::ranges::copy(front.direction(Vertex(i)), found.directions.begin() + 2 * i);
+    if (!found.nearest.empty()) found.nearest[i] = front.nearest(Vertex(i));
+    if (!found.directions.empty()) std::ranges::copy(front.direction(Vertex(i)), found.directions.begin() + 2 * i);
   }
   return found;
 }
@@ -225,12 +227,9 @@ LogMap LogMapSolver::Impl::map_of(const Values& values, Strategy how, const Marc
   const SourceComponents components(source, scales.components.of_vertex);
   std::vector<double> coordinates(n * d);
   std::vector<Status> status(n);
-  MapExtras extras{march,
-                   std::vector<double>(n),
-                   std::vector<double>(map.spread && !source.is_curve() ? n : 0),
-                   unfolded.directions,
-                   {},
-                   {}};
+  MapExtras extras{
+      march, std::vector<double>(n), std::vector<double>(map.spread ? n : 0), unfolded.directions, unfolded.nearest, {},
+      {}};
   extras.radius = map.radius;
   if (map.frames) extras.frames.resize(n * d * d);
   detail::for_each_index(n, threads, [&](std::size_t i) {
@@ -247,6 +246,7 @@ LogMap LogMapSolver::Impl::map_of(const Values& values, Strategy how, const Marc
   });
   if (unfolded.distances.empty()) place_source(source, extras.distances);
   for (const auto& [vertex, known] : SourceVertices(source, graph.dimension())) {
+    if (known.vector.empty()) continue;
     std::copy(known.vector.begin(), known.vector.end(), coordinates.begin() + static_cast<std::ptrdiff_t>(vertex * d));
     if (!extras.spread.empty()) extras.spread[vertex] = 0;
   }
@@ -304,8 +304,7 @@ std::vector<LogMap> LogMapSolver::Impl::solve_block(std::size_t time, std::span<
   AffineHeat heat(graph, operators(time), map.variant, right_hand_side_of(sources, graph, operators(time), map.variant),
                   threads);
   const bool lengths = std::any_of(sources.begin(), sources.end(), [&](auto& one) { return !unfolds(graph, one); });
-  const bool squares =
-      lengths || (map.spread && std::any_of(sources.begin(), sources.end(), [](auto& one) { return !one.is_curve(); }));
+  const bool squares = lengths || map.spread;
   const auto solve = [&] {
     heat.diffuse();
     if (map.progress.stop.stop_requested()) throw Cancelled("cancelled during solve");

@@ -27,6 +27,8 @@ constexpr double unrolled_spread = 0.01;
 constexpr double doubtful_loss = 0.5;
 /// In mean edge lengths, by which fronts over edges that are no triangulation may be off.
 constexpr double forgiven = 1;
+/// Likewise, from curves on triangulations: what lies between samples half an edge apart is known to half of that.
+constexpr double forgiven_between_samples = 0.25;
 /// Of the triangles that vertices see around them, the shares that the others must see, too, for a front to count at all
 /// and in full: with noise every vertex sees triangles of its own.
 constexpr double believed_from = 0.7, believed_in_full = 0.8;
@@ -40,10 +42,27 @@ double difference(std::span<const double> phi, double d, std::span<const double>
   return std::hypot(phi[0] - d * direction[0], phi[1] - d * direction[1]);
 }
 
+/// phi from where the ways to the vertices begin: at a point itself, along a curve at its sample nearest to the vertex. n x d.
+std::vector<double> ways_of(const LogMap& map) {
+  std::vector<double> ways(map.coordinates().begin(), map.coordinates().end());
+  const Source& source = map.source();
+  if (!source.is_curve()) return ways;
+  std::vector<Vec2> starts;
+  for (std::size_t k = 0; k < source.vertices().size(); ++k) {
+    const auto [point, distance, position] = source.place(k);
+    starts.resize(std::max(starts.size(), static_cast<std::size_t>(point) + 1));
+    starts[point] = position;
+  }
+  for (std::size_t i = 0; i < map.status().size(); ++i)
+    for (std::size_t a = 0; a < 2 && map.status()[i] == Status::ok; ++a) ways[2 * i + a] -= starts[map.nearest()[i]][a];
+  return ways;
+}
+
 /// The vectors of a front over edges that are no triangulation, beside those of a map.
 class Comparison {
  public:
-  Comparison(const TangentGraph& graph, const LogMap& map, const UnfoldingFront& front) : map_(map), front_(front) {
+  Comparison(const TangentGraph& graph, const LogMap& map, const UnfoldingFront& front)
+      : front_(front), radius_(map.radius()) {
     std::vector<Vertex> reached, some;
     for (Index i = 0; i < graph.size(); ++i)
       if (map.status()[i] == Status::ok) reached.emplace_back(i);
@@ -52,23 +71,22 @@ class Comparison {
     belief_ = std::clamp((share - believed_from) / (believed_in_full - believed_from), 0.0, 1.0);
   }
 
-  /// How far phi is off by what the front says, world units.
-  double off(Vertex vertex, double h) const {
-    const std::span<const double> phi = map_.coordinates(vertex);
-    const double d = std::min(front_.distance(vertex), reach * map_.radius());
-    double off = d - length(phi);
+  /// How far a way is off by what the front says, world units.
+  double off(Vertex vertex, std::span<const double> way, double h) const {
+    const double d = std::min(front_.distance(vertex), reach * radius_);
+    double off = d - length(way);
     if (d > 0 && front_.has_directions() && !front_.is_bent(vertex))
-      off = std::max(off, difference(phi, d, front_.direction(vertex)));
+      off = std::max(off, difference(way, d, front_.direction(vertex)));
     return belief_ * off - forgiven * h;
   }
 
  private:
-  const LogMap& map_;
   const UnfoldingFront& front_;
+  double radius_;
   double belief_;  ///< in what the front says
 };
 
-/// Geodesic polar coordinates as a map on a Delaunay triangulation has them; NaN on other graphs.
+/// Geodesic polar coordinates, from where the way begins, as a map on a Delaunay triangulation has them; NaN on other graphs.
 Vec2 polar_coordinates(const LogMap& map, Index vertex) {
   if (map.directions().empty()) return {NAN, NAN};
   const double d = map.distances()[vertex];
@@ -104,8 +122,8 @@ void check_map(const TangentGraph& graph, const LogMap& map) {
   if (map.size() != graph.size() || map.dimension() != graph.dimension())
     throw InvalidArgument("map_quality: the map has " + std::to_string(map.size()) + " vertices, the graph " +
                           std::to_string(graph.size()));
-  if (map.source().is_curve())
-    throw InvalidArgument("a map from a curve has no quality: its coordinates are no vectors to it");
+  if (map.source().is_curve() && (map.dimension() != 2 || map.nearest().size() != map.status().size()))
+    throw InvalidArgument("a map from a curve has a quality where its dimension is 2 and it knows the nearest samples");
   if (map.spread().empty())
     throw InvalidArgument("map_without_spread", "the map has no spread", "solve with MapOptions::spread");
 }
@@ -114,6 +132,9 @@ std::vector<double> quality_beside(const TangentGraph& graph, const LogMap& map,
                                    unsigned threads) {
   std::vector<double> quality(static_cast<std::size_t>(graph.size()), std::numeric_limits<double>::quiet_NaN());
   const ComponentScales scales(graph);
+  const std::vector<double> ways = ways_of(map);
+  const auto dimension = static_cast<std::size_t>(map.dimension());
+  const bool of_curve = map.source().is_curve();
   // Distances of heat may be below the straight line; unfolded ones hardly are.
   const bool may_be_short = map.method() == Method::heat && !graph.is_delaunay();
   const std::optional<Vec3> source = may_be_short ? place_in_space(graph, map.source()) : std::nullopt;
@@ -122,19 +143,20 @@ std::vector<double> quality_beside(const TangentGraph& graph, const LogMap& map,
   detail::for_each_index(quality.size(), threads, [&](std::size_t i) {
     if (map.status()[i] != Status::ok) return;
     const Vertex vertex(static_cast<Index>(i));
-    const std::span<const double> phi = map.coordinates(vertex);
+    const std::span<const double> way = std::span(ways).subspan(i * dimension, dimension);
     const double h = scales.h(vertex.index) * graph.length_unit();
     double d = map.distances()[i];
     if (const auto frame = source ? graph.frame(vertex.index) : std::nullopt)
       d = std::max(d, distance(frame->origin, *source));
     const double away = std::max(d, h), spread = map.spread()[i] / away;
-    double off = std::abs(length(phi) - d), lost = 0;
+    double off = std::abs(length(way) - d), lost = 0;
     if (const Vec2 psi = polar_coordinates(map, vertex.index); !std::isnan(psi[0])) {
-      const double by_direction = std::hypot(phi[0] - psi[0], phi[1] - psi[1]);
+      const double by_direction = std::hypot(way[0] - psi[0], way[1] - psi[1]);
       off += std::min(spread / unrolled_spread, 1.0) * (by_direction - off);
-      lost = lost_along_edges(graph, map, vertex.index, psi);
+      if (!of_curve) lost = lost_along_edges(graph, map, vertex.index, psi);  // else psi jumps from sample to sample
     }
-    if (comparison) off = std::max(off, comparison->off(vertex, h));
+    if (of_curve) off = std::max(0.0, off - forgiven_between_samples * h);
+    if (comparison) off = std::max(off, comparison->off(vertex, way, h));
     const double doubt = std::hypot(spread / doubtful_spread, off / away / doubtful_difference, lost / doubtful_loss);
     quality[i] = 1 / (1 + doubt * doubt);
   });
@@ -145,7 +167,7 @@ std::vector<double> quality_beside(const TangentGraph& graph, const LogMap& map,
 
 QualityFront::QualityFront(const TangentGraph& graph, const Source& source, double radius,
                            const std::stop_token& stop) {
-  if (graph.is_delaunay() || source.is_curve()) return;
+  if (graph.is_delaunay()) return;
   front_.emplace(graph, nullptr, true);
   front_->add(source);
   run_front(*front_, graph, reach * radius, stop);

@@ -108,6 +108,12 @@ void Source::append(Vertex vertex, double weight, std::span<const double> offset
                           " matrix");
   if (place.point < 0 || !(place.distance >= 0) || !std::isfinite(place.distance))
     throw InvalidArgument(where + "'place' must have a point >= 0 and a finite distance >= 0");
+  if (d == 2) {
+    const double away = std::hypot(offset[0] - place.position[0], offset[1] - place.position[1]);
+    if (!(std::abs(away - place.distance) <= 1e-6 * (away + length(offset))))
+      throw InvalidArgument(where + "'offset' is " + detail::number(away) +
+                            " from the position of 'place', whose distance is " + detail::number(place.distance));
+  }
   places_.push_back(place);
   vertices_.push_back(vertex);
   weights_.push_back(weight);

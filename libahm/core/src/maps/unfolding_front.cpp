@@ -128,12 +128,13 @@ Index UnfoldingFront::add(const Source& source) {
   Scratch offset(d_), back(d_);
   for (std::size_t k = 0; k < source.vertices().size(); ++k) {
     if (!(source.weights()[k] > 0)) continue;
-    const auto [point, away] = source.place(k);
+    const auto [point, away, position] = source.place(k);
     points_ = std::max(points_, first + point + 1);
     const std::span<const double> axes =
         source.axes().empty() ? source.axes() : source.axes().subspan(k * d_ * d_, d_ * d_);
     for (std::size_t c = 0; c < d_; ++c) {
-      offset.data()[c] = source.offsets().empty() ? 0 : source.offsets()[k * d_ + c] / unit;
+      const double start = d_ == 2 ? position[c] : 0;
+      offset.data()[c] = source.offsets().empty() ? 0 : (source.offsets()[k * d_ + c] - start) / unit;
       back.data()[c] = 0;
     }
     for (std::size_t c = 0; c < d_; ++c)
@@ -146,13 +147,16 @@ Index UnfoldingFront::add(const Source& source) {
     }
     const bool mirrored = !axes.empty() && axes[0] * axes[3] < axes[1] * axes[2];
     given.push_back({vertex, first + point, away / unit, {offset.data()[0], offset.data()[1]}, mirrored});
-    const bool beside = away != 0 && source.vertices().size() == 1;
+    const auto is_of_point = [&, point = point](std::size_t other) {
+      return other < source.vertices().size() && source.place(other).point == point;
+    };
+    const bool beside = away != 0 && !is_of_point(k - 1) && !is_of_point(k + 1);
     const Star star = graph_.star(vertex);
     for (std::size_t e = 0; e < star.degree(); ++e) {
       const double side = length(star.log(e));
       longest_ = std::max(longest_, side);
       // The neighbours lie in the tangent plane of the point's only vertex, too, and of one that all but is the point.
-      if (source.is_curve() || !(beside || away / unit <= least_ray * side)) continue;
+      if (!(beside || away / unit <= least_ray * side)) continue;
       const Vec2 from{star.log(e)[0] - back.data()[0], star.log(e)[1] - back.data()[1]};
       const Vec2 there =
           axes.empty() ? from : Vec2{axes[0] * from[0] + axes[2] * from[1], axes[1] * from[0] + axes[3] * from[1]};
@@ -160,8 +164,9 @@ Index UnfoldingFront::add(const Source& source) {
                        mirrored != (may_reflect && star.transport(e).reflects())});
     }
   }
+  // Also where another point is nearer by less: what lies on this one's side of the border between them comes from there.
   for (const Given& one : given)
-    offer(one.vertex, one.point, one.distance, 0, {}, {unit_vector(one.offset), one.mirrored});
+    offer(one.vertex, one.point, one.distance, 4 * longest_, {}, {unit_vector(one.offset), one.mirrored});
   if (stars_) offer_midpoints(given);
   return first;
 }

@@ -154,18 +154,22 @@ Source ExactGeodesics::joined(std::span<const ExactSource> given, const Placed& 
       const Vec2 there = given[k].position + Vec2{c * z[0] - s * z[1], s * z[0] + c * z[1]};
       const Vec2 turned_u = c * u - s * v, turned_v = s * u + c * v;
       all.add(source.vertices()[i], source.weights()[i], there,
-              Axes{turned_u[0], turned_v[0], turned_u[1], turned_v[1]}, {static_cast<Index>(k), norm(z)});
+              Axes{turned_u[0], turned_v[0], turned_u[1], turned_v[1]},
+              {static_cast<Index>(k), norm(z), given[k].position});
     }
   }
   return all;
 }
 
-/// Per vertex half of what its longest side to a neighbour of the same source has too much in the map, graph units.
-std::vector<double> ExactGeodesics::jumps(std::span<const double> coordinates, std::span<const Index> labels) const {
+/// Per vertex half of what its longest side to a neighbour of the same source, or of the same curve, has too much in the map,
+/// world units.
+std::vector<double> ExactGeodesics::jumps(std::span<const double> coordinates, std::span<const Index> labels,
+                                          bool of_curve) const {
   std::vector<double> jump(labels.size(), 0);
   for (exact::Half h = 0; h < 3 * flat_.surface.face_count(); ++h) {
     const exact::HalfRecord& r = flat_.surface.record(h);
-    if (labels[r.tail] != labels[r.head] || labels[r.tail] < 0) continue;
+    if (labels[r.tail] < 0 || labels[r.head] < 0) continue;
+    if (!of_curve && labels[r.tail] != labels[r.head]) continue;
     const double apart = std::hypot(coordinates[2 * r.head] - coordinates[2 * r.tail],
                                     coordinates[2 * r.head + 1] - coordinates[2 * r.tail + 1]);
     const double excess = (apart - flat_.length_unit * r.length) / 2;
@@ -228,7 +232,8 @@ LabelledLogMap ExactGeodesics::log_map(const Placed& from, Source source, const 
       frame = exact.arrival(v).half >= 0 ? arriving(flat_.surface, exact.arrival(v), phi) : a;
     extras.frames.insert(extras.frames.end(), frame.begin(), frame.end());
   }
-  if (!source.is_curve()) extras.spread = jumps(coordinates, labels);
+  extras.spread = jumps(coordinates, labels, source.is_curve());
+  if (source.is_curve()) extras.nearest = labels;
   LogMap map(2, Variant::adaptive, Strategy::automatic, std::move(source), std::move(coordinates),
              {exact.status().begin(), exact.status().end()}, std::move(extras));
   return {std::move(map), std::move(labels)};

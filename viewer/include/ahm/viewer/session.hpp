@@ -44,8 +44,7 @@ struct SessionOptions {
   Settings settings;                        ///< that the page starts with
   std::optional<SurfacePoint> source = {};  ///< that it starts from; none: what lies in the middle of the picture
   unsigned threads = 0;                     ///< 0: one per core
-  /// Writes a map by row to a file, by its ending; none: nothing is exported. `quality` is empty for a map from a curve,
-  /// which has the columns of a stroke.
+  /// Writes a map, from a point or a curve, by row to a file, by its ending; none: nothing is exported.
   std::function<void(const std::filesystem::path&, const RowLogMap&, const std::vector<double>& quality)> write = {};
   /// Likewise a path, a tool path, and a decal.
   std::function<void(const std::filesystem::path&, const std::vector<Vec3>&)> write_path = {};

@@ -60,8 +60,8 @@ SurfaceCurve draw_curve(const Surface& surface, std::span<const CurvePoint> give
 double reach_from_curve(const TangentGraph& graph, double radius);
 
 /// The map from a curve by row. Its distances are those from the curve: as the coordinates have it beside the curve and in the
-/// plane, within what the map's own, from samples of the curve, leave open (for exact maps; a quarter of an edge more on
-/// meshes, an edge more where distances are not unfolded: clouds, polygons, grids). The map's own are told where the coordinates are the user's own.
+/// plane, within what the map's own, from samples of the curve, leave open (for exact maps; for others a quarter of an edge
+/// more). The map's own are told where the coordinates are the user's own. Angles, which mean nothing from a curve, are left out.
 /// @param radius  rows farther than this are beyond it, world units; the map must reach `reach_from_curve`
 RowLogMap rows_from_curve(const Surface& surface, const LogMap& map, const SurfaceCurve& curve,
                           double radius = std::numeric_limits<double>::infinity());

@@ -40,6 +40,7 @@ struct MapExtras {
   std::vector<double> distances;
   std::vector<double> spread;
   std::vector<double> directions;
+  std::vector<Index> nearest;
   std::vector<double> frames;
   std::vector<double> error_estimate;
   Method method = Method::heat;
@@ -109,12 +110,16 @@ class LogMap {
   std::span<const double> distances() const noexcept { return extras_.distances; }
   /// sqrt(q_i / lambda_i - |phi_i|^2), the standard deviation of the coordinates over the ways by which heat arrives, world
   /// units: 0 on flat graphs, small inside the cut locus, about the distance on it. NaN where not ok; of an exact map half
-  /// of the longest jump to a neighbour, beyond the length of the side; empty from a curve and without MapOptions::spread.
+  /// of the longest jump to a neighbour, beyond the length of the side; empty without MapOptions::spread. From a curve it is over its
+  /// points, too: 0 on flat graphs beside a straight one, about the distance where a bent one's normals meet.
   std::span<const double> spread() const noexcept { return extras_.spread; }
   /// Where distances are unfolded, the unit vectors in which the ways to the vertices leave the source (`UnfoldingFront`), n x 2 in
-  /// its frame: beside phi, which `map_quality` compares with them. NaN at the source itself. Empty elsewhere, from a curve and
-  /// without MapOptions::spread.
+  /// its frame: beside phi, which `map_quality` compares with them; from a curve, of the ways from its nearest sample. NaN at the
+  /// source itself. Empty elsewhere and without MapOptions::spread.
   std::span<const double> directions() const noexcept { return extras_.directions; }
+  /// From a curve, the number of the sample nearest to each vertex (`Source::Place::point`), -1 where none is; empty of other
+  /// sources.
+  std::span<const Index> nearest() const noexcept { return extras_.nearest; }
   /// Number of vertices with this status.
   Index count(Status status) const noexcept;
 

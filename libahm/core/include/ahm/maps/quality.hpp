@@ -40,12 +40,15 @@ inline constexpr double trusted_quality = 0.5;
 /// it counts only where stars agree on their triangles, which noise undoes (`UnfoldingFront::agreement`); elsewhere there is
 /// ||phi| - d| with the distance of heat, which sees no holes.
 ///
+/// From a curve (d = 2) phi and psi count from the coordinates of the sample nearest to the vertex. c is 0, since psi jumps from
+/// sample to sample, and h / 4 is forgiven on Delaunay triangulations: samples are half an edge apart.
+///
 /// It is 1 on flat convex geometry, falls with h on smooth surfaces, and is low across a cut locus, where bumps turn directions,
 /// where features are coarser than edges, and behind holes: where the surface is curved, and where the way around is longer by a
 /// tenth and more; heat knows the straight line only. Against exact vectors in docs/accuracy.md.
 /// @param threads  0: one per core
 /// @return n numbers in (0, 1]; NaN where the map is not ok
-/// @throws InvalidArgument when the map is from a curve, belongs to another graph or was made without its spread
+/// @throws InvalidArgument when the map belongs to another graph, was made without its spread, or is from a curve and d is not 2
 std::vector<double> map_quality(const TangentGraph& graph, const LogMap& map, unsigned threads = 0);
 
 /// The front that `map_quality` compares a map of heat with, where the edges are no Delaunay triangulation: most of its work, and
@@ -56,7 +59,7 @@ class QualityFront {
   /// @throws Cancelled
   QualityFront(const TangentGraph& graph, const Source& source, double radius = std::numeric_limits<double>::infinity(),
                const std::stop_token& stop = {});
-  /// Null on Delaunay triangulations, whose maps have a front of their own, and from curves.
+  /// Null on Delaunay triangulations, whose maps have a front of their own.
   const UnfoldingFront* get() const noexcept { return front_ ? &*front_ : nullptr; }
 
  private:

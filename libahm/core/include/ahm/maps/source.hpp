@@ -11,6 +11,7 @@
 /// \endcode
 #pragma once
 
+#include <array>
 #include <functional>
 #include <optional>
 #include <span>
@@ -44,10 +45,12 @@ class Source {
   static Source joined(std::span<const Source> points);
 
   /// A sample of a curve or another set of points, whose coordinates are not its place on the surface: the point of the
-  /// source that it belongs to, from 0, and how far the vertex is from that point, world units.
+  /// source that it belongs to, from 0, how far the vertex is from that point, and (d = 2) the coordinates of the point; world
+  /// units.
   struct Place {
     Index point = 0;
     double distance = 0;
+    std::array<double, 2> position{};
   };
 
   /// Adds a sample of the one point p.

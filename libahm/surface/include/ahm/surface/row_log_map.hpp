@@ -15,7 +15,7 @@ namespace ahm {
 struct RowLogMap {
   std::vector<double> u, v;                   ///< world units
   std::vector<double> distance;               ///< `LogMap::distance`, world units, but no less than the straight line
-  std::vector<double> angle;                  ///< atan2(v, u), in (-pi, pi]
+  std::vector<double> angle;                  ///< atan2(v, u), in (-pi, pi]; empty from a curve
   std::vector<double> spread;                 ///< `LogMap::spread`, world units
   std::vector<double> error_estimate;         ///< of order 2 (`LogMap::error_estimate`), else empty
   std::vector<Status> status;                 ///< `removed` for rows without a vertex

@@ -123,7 +123,7 @@ class ExactGeodesics {
   LabelledLogMap log_map(const Placed& from, Source source, const ExactMapOptions& options) const;
   Placed placed(std::span<const ExactSource> sources) const;
   static Source joined(std::span<const ExactSource> given, const Placed& placed);
-  std::vector<double> jumps(std::span<const double> coordinates, std::span<const Index> labels) const;
+  std::vector<double> jumps(std::span<const double> coordinates, std::span<const Index> labels, bool of_curve) const;
   Axes axes(const SurfacePoint& at, const PlacedSource& placed, const exact::MeshPoint& point) const;
   double u_in_face(const SurfacePoint& at, const PlacedSource& placed, Index face) const;
   Axes at_corner(exact::Half corner, double u) const;
