@@ -131,8 +131,8 @@ void measure(const Ground& ground, const View& view, Table& table) {
     Found found;
     for (int s = 0; s < source_count; ++s) {
       const Index source = size / 11 + s * (size / source_count);
-      compare(ground, exact::exact_map(ground.polyhedral, ground.polyhedral.vertex_point(ground.vertices[source])), view,
-              solver.solve(Source::at_vertex(view.vertex(source))), found);
+      compare(ground, exact::exact_map(ground.polyhedral, ground.polyhedral.vertex_point(ground.vertices[source])),
+              view, solver.solve(Source::at_vertex(view.vertex(source))), found);
     }
     const auto count = static_cast<double>(found.quality.size());
     const double all_right = static_cast<double>(std::count(found.is_right.begin(), found.is_right.end(), 1));

@@ -138,7 +138,8 @@ TEST(Normals, EstimatedAreTheNearerTheMorePoints) {
     double sum = 0;
     for (Index i = 0; i < n; ++i) {
       const Frame frame = *surface.graph().frame(surface.rows().vertex(Row(i))->index);
-      degrees.push_back(std::acos(std::min(1.0, dot(cross(frame.x, frame.y), cloud.normals[i]))) * 180 / std::numbers::pi);
+      degrees.push_back(std::acos(std::min(1.0, dot(cross(frame.x, frame.y), cloud.normals[i]))) * 180 /
+                        std::numbers::pi);
       sum += degrees.back();
     }
     std::sort(degrees.begin(), degrees.end());
