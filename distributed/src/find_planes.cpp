@@ -6,7 +6,7 @@
 #include "ahm/util/text.hpp"
 #include "ahm/util/vec.hpp"
 #include "around_file.hpp"
-#include "edge_unfolding.hpp"
+#include "offset_noise.hpp"
 #include "stream_median.hpp"
 #include "tangent_planes.hpp"
 
@@ -51,10 +51,14 @@ void write(const TileFolder& folder, std::size_t tile, const Surroundings& aroun
            const std::vector<char>& complete) {
   std::vector<double> spacings;
   for (Index i = around.begin; i < around.end; ++i) spacings.push_back(spacing_at(near, i));
-  const std::vector<double> offsets =
+  const pointcloud::NeighborOffsets offsets =
       neighbor_offsets(around.cloud, near, planes, around.begin, around.end, folder.options().threads);
+  const pointcloud::OffsetCounts& c = offsets.counts;
+  const std::vector<Offset> counts{c.points, c.apart, c.beside, c.between};
   const std::vector<Index> k{near.k};
-  folder.write(kind::noise, tile, {array("offsets", offsets), array("spacings", spacings)});
+  folder.write(kind::noise, tile,
+               {array("offsets", offsets.all), array("largest", offsets.largest), array("counts", counts),
+                array("spacings", spacings)});
   folder.write(kind::neighbors, tile,
                {array("begin", near.begin), array("indices", std::span<const Index>(near.indices)),
                 array("radius", near.radius), array("k", k)});
@@ -79,6 +83,16 @@ std::optional<double> median(const TileFolder& folder, std::string_view name) {
   return result.value();
 }
 
+pointcloud::OffsetCounts offset_counts(const TileFolder& folder) {
+  pointcloud::OffsetCounts sum;
+  for (std::size_t t = 0; t < folder.tiles(); ++t) {
+    const ArrayFile file = folder.open(kind::noise, t);
+    const auto counts = file.get<Offset>("counts");
+    sum.points += counts[0], sum.apart += counts[1], sum.beside += counts[2], sum.between += counts[3];
+  }
+  return sum;
+}
+
 }  // namespace
 
 /// Neighbours and planes, with as much around the tile as they and all that follows depend on.
@@ -98,9 +112,9 @@ void find_planes(TileFolder& folder, std::size_t tile) {
 
 /// The noise of the whole cloud.
 void measure_noise(TileFolder& folder) {
-  const std::optional<double> offset = median(folder, "offsets");
+  const double all = median(folder, "offsets").value_or(0), largest = median(folder, "largest").value_or(0);
   Manifest& m = folder.manifest();
-  m.noise = offset ? pointcloud::noise_of_median(*offset) : 0;
+  m.noise = noise_of(offset_counts(folder), all, largest).deviation;
   const double spacing = median(folder, "spacings").value_or(0);
   if (m.options.k == 0 && m.k == 30 && m.noise > much_noise * spacing)
     throw InvalidGeometry(

@@ -243,6 +243,24 @@ Mesh torus(Index n) {
   return mesh;
 }
 
+Mesh dented_square(Index n) {
+  Mesh mesh = flat_square(n, 0);
+  for (std::size_t k = 0; k < mesh.plane.size(); ++k) {
+    const auto i = static_cast<Index>(k) % n, j = static_cast<Index>(k) / n;
+    mesh.plane[k] = {static_cast<double>(i), j == 0 && i % 2 == 1 ? 1e-3 : j};
+    mesh.positions[k] = {mesh.plane[k][0], mesh.plane[k][1], 0};
+  }
+  mesh.faces.clear();
+  for (Index j = 0; j + 1 < n; ++j)
+    for (Index i = 0; i + 1 < n; ++i) {
+      const Index k = j * n + i;
+      mesh.faces.push_back({k, k + 1, k + n});
+      mesh.faces.push_back({k + 1, k + n + 1, k + n});
+    }
+  for (Index i = 0; i + 2 < n; i += 2) mesh.faces.push_back({i, i + 2, i + 1});
+  return mesh;
+}
+
 Mesh flat_square(Index side, double jitter, unsigned seed) {
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> uniform(-jitter, jitter);

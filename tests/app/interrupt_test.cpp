@@ -159,6 +159,20 @@ TEST(ScarceMemory, IsNamedAndEndsTheRun) {
   EXPECT_GT(done, 0);
 }
 
+// Threads take address space of their own: where one thread can march, two do not fail.
+TEST(ScarceMemory, SufficesForTwoThreadsWhereItDoesForOne) {
+  Folder folder;
+  const auto input = folder.write("sphere.xyz", xyz(sphere(20000)));
+  const auto status = [&](rlim_t megabytes, const char* threads) {
+    return run_within(megabytes, {"logmap", input, "--source", "0", "--strategy", "march", "--threads", threads, "-o",
+                                  folder / "map.csv"})
+        .status;
+  };
+  rlim_t enough = 250;
+  while (enough < 3000 && status(enough, "1") != 0) enough += 25;
+  EXPECT_EQ(status(enough + 25, "2"), 0) << enough << " MB";
+}
+
 TEST(OldOutput, SurvivesAFailure) {
   Folder folder;
   const auto output = folder.write("map.csv", "precious\n");

@@ -1,6 +1,8 @@
 /// \file
 /// The program ahm: reads the command line, runs the command, turns exceptions into messages and exit statuses.
 
+#include <malloc.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <exception>
@@ -27,7 +29,15 @@ int report(const std::string& message, int status) {
   return status;
 }
 
+/// The allocator keeps 64 MB of address space for every thread, which a limit of it has no room for.
+void share_one_arena_within_limits() {
+#ifdef M_ARENA_MAX
+  if (rlimit limit{}; getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY) mallopt(M_ARENA_MAX, 1);
+#endif
+}
+
 int run(int argc, char** argv) try {
+  share_one_arena_within_limits();
   install_interrupt_handling("ahm");
   parse_command_line(argc, argv)();
   return 0;

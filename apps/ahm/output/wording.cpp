@@ -80,6 +80,10 @@ constexpr Sentence sentences[] = {
      "{0:.0f} given [normal points|normals point] to the other side than the majority around and [was|were] turned"},
     {"k_reduced", "k = {0:.0f} was reduced to {1:.0f}: the cloud has only {2:.0f} distinct [point|points]"},
     {"k_raised", "noise of {1:.4g} across the surface: planes and edges were made of {0:.0f} neighbours per point"},
+    {"layers",
+     "the points lie in layers {0:.3g} apart, nearer than neighbours, and are mapped as one surface: right for scans "
+     "of the "
+     "same side, wrong for the two sides of a thin wall, which only given normals tell apart"},
     {"no_surface",
      "{0:.0f} of {1:.0f} points have neighbours as thick as wide: this is no surface there, and distances are not to "
      "be trusted"},

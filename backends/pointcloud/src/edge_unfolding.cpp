@@ -3,17 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ahm/util/parallel.hpp"
 #include "ahm/util/vec.hpp"
-#include "points_per_task.hpp"
 
 namespace ahm::pointcloud {
 namespace {
-
-constexpr Index nearest_few = 6;  ///< neighbours per point that noise is measured on
-
-/// Standard deviation of a normal distribution over the median of its absolute value.
-constexpr double deviation_of_median = 1 / 0.6744897501960817;
 
 /// What noise explains: offsets of fewer standard deviations. Of the rest of normal noise the share in squared lengths is
 /// below a percent, so that noisy planes keep their distances.
@@ -30,34 +23,6 @@ double squared_excess(double offset, double noise) {
   return squared > reach ? squared - reach * (reach / squared) : 0.0;
 }
 
-/// `nearest_few` for each point; -1: none.
-std::vector<double> offsets_of(const CleanPoints& cloud, const Neighborhoods& neighborhoods,
-                               const TangentPlanes& planes, Index begin, Index end, unsigned threads) {
-  std::vector<double> offsets(static_cast<std::size_t>(end - begin) * nearest_few, -1.0);
-  detail::parallel_chunks(end - begin, points_per_task, threads, [&](Offset first, Offset last) {
-    for (Offset i = first; i < last; ++i) {
-      const auto point = static_cast<Index>(begin + i);
-      if (!planes.has_plane(point)) continue;
-      const auto neighbors = neighborhoods.of(point);
-      const Index few = std::min(nearest_few, static_cast<Index>(neighbors.size()));
-      for (Index k = 0; k < few; ++k) {
-        const Index j = neighbors[k];
-        if (!planes.has_plane(j)) continue;
-        const MeanPlane mean(planes.normals[point], planes.normals[j]);
-        offsets[i * nearest_few + k] = std::abs(dot(mean.normal, cloud.points[j] - cloud.points[point]));
-      }
-    }
-  });
-  return offsets;
-}
-
-double noise_of(std::vector<double> offsets) {
-  if (offsets.empty()) return 0;
-  const auto middle = offsets.begin() + static_cast<std::ptrdiff_t>(offsets.size() / 2);
-  std::nth_element(offsets.begin(), middle, offsets.end());
-  return noise_of_median(*middle);
-}
-
 }  // namespace
 
 MeanPlane::MeanPlane(const Vec3& from, const Vec3& to) {
@@ -67,37 +32,6 @@ MeanPlane::MeanPlane(const Vec3& from, const Vec3& to) {
   normal = (1 / length) * sum;
   across = 0.5 * (from - side * to);
   cosine = std::min(1.0, 0.5 * length);
-}
-
-std::vector<double> neighbor_offsets(const CleanPoints& cloud, const Neighborhoods& neighborhoods,
-                                     const TangentPlanes& planes, Index begin, Index end, unsigned threads) {
-  std::vector<double> offsets = offsets_of(cloud, neighborhoods, planes, begin, end, threads);
-  std::erase(offsets, -1.0);
-  return offsets;
-}
-
-double noise_of_median(double offset) { return offset * deviation_of_median; }
-
-double offset_noise(const CleanPoints& cloud, const Neighborhoods& neighborhoods, const TangentPlanes& planes,
-                    unsigned threads) {
-  return noise_of(neighbor_offsets(cloud, neighborhoods, planes, 0, static_cast<Index>(cloud.points.size()), threads));
-}
-
-std::vector<double> offset_noise(const CleanPoints& cloud, const Neighborhoods& neighborhoods,
-                                 const TangentPlanes& planes, const std::vector<std::vector<Index>>& parts,
-                                 unsigned threads) {
-  const std::vector<double> all =
-      offsets_of(cloud, neighborhoods, planes, 0, static_cast<Index>(cloud.points.size()), threads);
-  std::vector<double> noise, offsets;
-  for (const auto& points : parts) {
-    offsets.clear();
-    for (const Index i : points)
-      for (Index k = 0; k < nearest_few; ++k)
-        if (const double offset = all[static_cast<std::size_t>(i) * nearest_few + k]; offset >= 0)
-          offsets.push_back(offset);
-    noise.push_back(noise_of(offsets));
-  }
-  return noise;
 }
 
 Vec3 unfolded_edge(const Vec3& tail, const Vec3& head, const Vec3& edge, double noise) {

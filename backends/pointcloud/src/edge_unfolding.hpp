@@ -16,22 +16,6 @@ struct MeanPlane {
   double cosine;  ///< of half that angle, at least the root of one half
 };
 
-/// Absolute offsets of the nearest few neighbours of the given points across their mean planes.
-std::vector<double> neighbor_offsets(const CleanPoints& cloud, const Neighborhoods& neighborhoods,
-                                     const TangentPlanes& planes, Index begin, Index end, unsigned threads);
-
-/// What `offset_noise` makes of the median of these offsets.
-double noise_of_median(double offset);
-
-/// The standard deviation of the offsets of neighbours across their mean planes, by the median, which corners and other sheets
-/// do not move; 0 on flat clouds up to rounding. In units of the clean points.
-double offset_noise(const CleanPoints& cloud, const Neighborhoods& neighborhoods, const TangentPlanes& planes,
-                    unsigned threads);
-/// The same of each of these parts.
-std::vector<double> offset_noise(const CleanPoints& cloud, const Neighborhoods& neighborhoods,
-                                 const TangentPlanes& planes, const std::vector<std::vector<Index>>& parts,
-                                 unsigned threads);
-
 /// Where the head of an edge lies in the tangent plane of its tail, in space. The part of the edge in the mean plane is unfolded
 /// as two planes that meet in a crease half way; of its offset across the mean plane only what noise cannot explain adds
 /// to the length. Reversing an edge turns the result by the transport between the planes, and reverses it.

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "ahm/util/parallel.hpp"
-#include "edge_unfolding.hpp"
+#include "offset_noise.hpp"
 
 namespace ahm::pointcloud {
 namespace {
@@ -19,7 +19,7 @@ constexpr double much_noise = 0.5;
 struct PartPlanes {
   Neighborhoods neighborhoods;
   TangentPlanes planes;
-  double noise;
+  Noise noise;
 };
 
 /// Without the noise.
@@ -42,7 +42,7 @@ PartPlanes find_planes(const CleanPoints& cloud, std::span<const Vec3> normals, 
 PartPlanes widened(PartPlanes result, const CleanPoints& cloud, std::span<const Vec3> normals,
                    const NeighborSearch& search, const CloudOptions& options) {
   for (Index k = 2 * default_neighbors; k <= most_k; k *= 2) {
-    if (!(result.noise > much_noise * spacing(result.neighborhoods)) || result.neighborhoods.k < k / 2) break;
+    if (!(result.noise.deviation > much_noise * spacing(result.neighborhoods)) || result.neighborhoods.k < k / 2) break;
     PartPlanes wider = find_planes(cloud, normals, search, k, options);
     if (wider.planes.thick > result.planes.thick) break;
     result = std::move(wider);
@@ -57,7 +57,7 @@ class NoisyParts {
       : cloud_(cloud), normals_(normals), options_(options) {}
 
   /// @param noise  of its points, which it takes the place of
-  void widen(const std::vector<Index>& points, TangentPlanes& planes, double& noise) {
+  void widen(const std::vector<Index>& points, TangentPlanes& planes, Noise& noise) {
     CleanPoints part;
     part.unit = cloud_.unit;
     for (const Index i : points) {
@@ -118,7 +118,7 @@ class NoisyParts {
   std::vector<Found> found_;
   Index k_ = 0;
   std::size_t size_ = 0;
-  double noise_ = 0;
+  Noise noise_;
 };
 
 }  // namespace
@@ -139,7 +139,8 @@ NoisyPlanes find_noisy_planes(const CleanPoints& cloud, std::span<const Vec3> no
     if (!options.k) whole = widened(std::move(whole), cloud, normals, search, options);
     result.neighborhoods = std::move(whole.neighborhoods);
     result.planes = std::move(whole.planes);
-    result.noise = result.typical_noise = whole.noise;
+    result.noise = whole.noise.deviation;
+    result.typical_noise = whole.noise;
     result.k = result.neighborhoods.k;
     return result;
   }
@@ -147,17 +148,19 @@ NoisyPlanes find_noisy_planes(const CleanPoints& cloud, std::span<const Vec3> no
   result.planes = std::move(whole.planes);
   result.k = result.neighborhoods.k;
   const auto points = result.parts->points();
-  std::vector<double> noise = offset_noise(cloud, result.neighborhoods, result.planes, points, options.threads);
+  std::vector<Noise> noise = offset_noise(cloud, result.neighborhoods, result.planes, points, options.threads);
   const auto largest =
       std::max_element(points.begin(), points.end(), [](const auto& a, const auto& b) { return a.size() < b.size(); });
   result.typical_noise = noise[static_cast<std::size_t>(largest - points.begin())];
   NoisyParts noisy(cloud, normals, options);
   for (std::size_t p = 0; p < points.size() && !options.k; ++p)
     if (static_cast<Index>(points[p].size()) > default_neighbors + 1 &&
-        noise[p] > much_noise * spacing(result.neighborhoods, points[p]))
+        noise[p].deviation > much_noise * spacing(result.neighborhoods, points[p]))
       noisy.widen(points[p], result.planes, noise[p]);
   noisy.put_into(result);
-  result.noise = PerPart(result.parts->of_point, std::move(noise));
+  std::vector<double> deviations;
+  for (const Noise& of_part : noise) deviations.push_back(of_part.deviation);
+  result.noise = PerPart(result.parts->of_point, std::move(deviations));
   return result;
 }
 

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "cloud_parts.hpp"
+#include "offset_noise.hpp"
 #include "tangent_planes.hpp"
 
 namespace ahm::pointcloud {
@@ -16,9 +17,9 @@ struct NoisyPlanes {
   Neighborhoods neighborhoods;
   TangentPlanes planes;
   std::unique_ptr<const CloudParts> parts;
-  PerPart noise;             ///< `offset_noise`
-  Index k = 0;               ///< the largest number of neighbours asked for in a part ...
-  double typical_noise = 0;  ///< ... and the noise there: that of the largest of such parts
+  PerPart noise;        ///< its deviation
+  Index k = 0;          ///< the largest number of neighbours asked for in a part ...
+  Noise typical_noise;  ///< ... and the noise there: that of the largest of such parts
 };
 
 /// Neighbours and planes. Where nobody fixed their number, noisy parts get more neighbours, since the error of a plane is

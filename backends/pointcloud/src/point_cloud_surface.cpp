@@ -178,7 +178,8 @@ PointCloudSurface PointCloudSurface::build(std::span<const Vec3> input, std::spa
   details.k_asked = options.k.value_or(default_neighbors);
   auto [neighborhoods, planes, parts, noise, k, typical_noise] = find_noisy_planes(cloud, normals, *search, options);
   details.k = k;
-  details.noise = typical_noise * cloud.unit;
+  details.noise = typical_noise.deviation * cloud.unit;
+  details.layer_gap = typical_noise.layer_gap * cloud.unit;
   if (!normals.empty()) details.estimated = planes.estimated;
   details.contradicted = planes.contradicted;
   details.thick = planes.thick;
@@ -252,6 +253,7 @@ Report PointCloudSurface::report() const {
           {"thick", d.thick},
           {"oriented", d.oriented},
           {"noise", d.noise},
+          {"layer_gap", d.layer_gap},
           {"mollification", d.mollification},
           {"seconds.normals", d.seconds_normals},
           {"seconds.delaunay", d.seconds_delaunay},
@@ -275,6 +277,7 @@ std::vector<Warning> PointCloudSurface::warnings() const {
   if (d.k < d.k_asked)
     result.push_back(
         {"k_reduced", {static_cast<double>(d.k_asked), static_cast<double>(d.k), static_cast<double>(d.k + 1)}, {}});
+  if (d.layer_gap > 0 && d.rejected_normals == 0) result.push_back({"layers", {d.layer_gap}, {}});
   if (d.k > d.k_asked) result.push_back({"k_raised", {static_cast<double>(d.k), d.noise}, {}});
   warn("non_finite", d.non_finite);
   warn("duplicates", d.duplicates);

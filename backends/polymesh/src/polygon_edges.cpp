@@ -20,6 +20,9 @@ using Eigen::Vector3d;
 
 constexpr double largest_weight = 1e4;
 
+/// Of a sliver on the boundary, so that vertices in nothing else stay joined.
+constexpr double least_conductance = 1e-3;
+
 /// Stiffness and mass of every face, and what is worth telling about them.
 class FaceMatrices {
  public:
@@ -46,6 +49,44 @@ class FaceMatrices {
   }
   double mass(Offset corner) const { return masses_[corner]; }
 
+  /// Triangles that are slivers on the boundary conduct along their outer side only, as those of triangle meshes: a side whose
+  /// weight is negative balances the other two.
+  void flatten_slivers() {
+    const detail::HalfEdges edges = mesh_.topology().half_edges();
+    std::vector<std::uint8_t> flat(shape_.size(), 0);
+    std::vector<detail::Half> outer;
+    for (detail::Half h = 0; h < edges.size(); ++h)
+      if (edges.twin[h] < 0) outer.push_back(h);
+    while (!outer.empty()) {
+      const detail::Half base = outer.back(), beyond = edges.twin[base];
+      outer.pop_back();
+      const Index f = mesh_.face_of(base);
+      if (mesh_.face(f).size() != 3 || flat[f]) continue;
+      if (!((beyond >= 0 ? side_weight(beyond) : 0) + side_weight(base) < 0)) continue;
+      flat[f] = 1;
+      const detail::Half a = edges.next(base), b = edges.previous(base);
+      const double weight_a = side_weight(a), weight_b = side_weight(b);
+      set_side_weight(base, 0);
+      set_side_weight(a, std::max(0.25 / weight_b, least_conductance));
+      set_side_weight(b, std::max(0.25 / weight_a, least_conductance));
+      for (const detail::Half side : {a, b})
+        if (edges.twin[side] >= 0) outer.push_back(edges.twin[side]);
+    }
+  }
+
+  /// Takes what a face gives too little along a side from what the face beyond gives: what counts is their sum.
+  void balance_sides() {
+    const detail::HalfEdges edges = mesh_.topology().half_edges();
+    for (detail::Half h = 0; h < edges.size(); ++h) {
+      const detail::Half beyond = edges.twin[h];
+      if (beyond < h) continue;
+      const double here = side_weight(h), there = side_weight(beyond);
+      if ((here < 0) == (there < 0)) continue;
+      set_side_weight(here < 0 ? h : beyond, 0);
+      set_side_weight(here < 0 ? beyond : h, std::max(here + there, 0.0));
+    }
+  }
+
   void summarize(bool clamp, PolygonDetails& report) const {
     for (Index f = 0; f < mesh_.face_count(); ++f) {
       const auto m = static_cast<Index>(mesh_.face(f).size());
@@ -63,6 +104,19 @@ class FaceMatrices {
   }
 
  private:
+  /// Place of the weight between the ends of a side, from its tail.
+  std::size_t place(detail::Half h) const {
+    const Index f = mesh_.face_of(h);
+    const auto m = static_cast<Offset>(mesh_.face(f).size()), c = h - mesh_.face_begin()[f];
+    return static_cast<std::size_t>(begin_[f] + c * m + (c + 1) % m);
+  }
+  double side_weight(detail::Half h) const { return weights_[place(h)]; }
+  void set_side_weight(detail::Half h, double w) {
+    const Index f = mesh_.face_of(h);
+    const auto m = static_cast<Offset>(mesh_.face(f).size()), c = h - mesh_.face_begin()[f];
+    weights_[place(h)] = weights_[static_cast<std::size_t>(begin_[f] + (c + 1) % m * m + c)] = w;
+  }
+
   /// The number of edges grows with the square of a face's corners: better said than swapped for.
   void check_memory() const {
     const double bytes = 64.0 * static_cast<double>(begin_.back()), memory = machine_memory();
@@ -170,8 +224,12 @@ CsrGraphData polygon_edges(const PolygonMesh& mesh, const Frames& frames, const 
   g.kind = mesh.report().orientable ? TransportKind::rotation2 : TransportKind::block;
   g.length_unit = mesh.length_unit();
   measure_sides(mesh, g, report);
-  const FaceMatrices matrices(mesh, options);
+  FaceMatrices matrices(mesh, options);
   matrices.summarize(options.clamp_weights, report);
+  if (options.clamp_weights) {
+    matrices.flatten_slivers();
+    matrices.balance_sides();
+  }
 
   g.row_begin.assign(n + 1, 0);
   for (std::size_t v = 0; v < n; ++v) {

@@ -49,25 +49,6 @@ double vertex_error(const Mesh& mesh, const RowLogMap& map, Index source) {
   return plane_error(mesh, map, mesh.plane[source], {there[0] * c + there[1] * s, there[1] * c - there[0] * s});
 }
 
-/// A lattice of n x n vertices whose lowest row dents between every second one, and slivers that fill the dents.
-Mesh dented_square(Index n) {
-  Mesh mesh = flat_square(n, 0);
-  for (std::size_t k = 0; k < mesh.plane.size(); ++k) {
-    const auto i = static_cast<Index>(k) % n, j = static_cast<Index>(k) / n;
-    mesh.plane[k] = {static_cast<double>(i), j == 0 && i % 2 == 1 ? 1e-3 : j};
-    mesh.positions[k] = {mesh.plane[k][0], mesh.plane[k][1], 0};
-  }
-  mesh.faces.clear();
-  for (Index j = 0; j + 1 < n; ++j)
-    for (Index i = 0; i + 1 < n; ++i) {
-      const Index k = j * n + i;
-      mesh.faces.push_back({k, k + 1, k + n});
-      mesh.faces.push_back({k + 1, k + n + 1, k + n});
-    }
-  for (Index i = 0; i + 2 < n; i += 2) mesh.faces.push_back({i, i + 2, i + 1});
-  return mesh;
-}
-
 // What is given at points goes to what is nearest to them. Along slivers on the boundary, which no flip removes, heat must not
 // run as if they had no length.
 TEST(MeshPlane, HeatDoesNotRunAlongSliversOnTheBoundary) {

@@ -1,6 +1,7 @@
 #include "heat/memory_limits.hpp"
 
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -54,6 +55,13 @@ double resource_limit() {
     if (rlimit limit{}; getrlimit(resource, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY)
       least = std::min(least, static_cast<double>(limit.rlim_cur));
   return least;
+}
+
+double address_space_left() {
+  const double limit = resource_limit();
+  if (std::isinf(limit)) return limit;
+  const double pages = number_in("/proc/self/statm");
+  return std::isinf(pages) ? limit : limit - pages * static_cast<double>(sysconf(_SC_PAGE_SIZE));
 }
 
 bool address_space_is_limited() {

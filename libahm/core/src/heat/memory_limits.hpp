@@ -15,6 +15,12 @@ double control_group_limit(const std::filesystem::path& groups, const std::files
 /// The lesser of the process's limits of address space and of data (RLIMIT_AS, RLIMIT_DATA); infinity without.
 double resource_limit();
 
+/// What of that limit the process has not mapped yet; infinity where there is none.
+double address_space_left();
+
+/// Address space that each thread of a solve takes beside its numbers: a stack, an arena of the allocator, a buffer of BLAS.
+inline constexpr double bytes_per_thread = 208e6;
+
 /// Whether the system may refuse address space before memory is used up: by a `resource_limit`, or since it never promises
 /// more memory than it has (vm.overcommit_memory = 2).
 bool address_space_is_limited();

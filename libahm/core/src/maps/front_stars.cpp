@@ -118,6 +118,8 @@ void UnfoldingFront::Stars::find_neighbors(const TangentGraph& graph, Index vert
   }
   std::sort(neighbors.begin(), neighbors.end(),
             [](const Neighbor& a, const Neighbor& b) { return a.turn != b.turn ? a.turn < b.turn : a.edge < b.edge; });
+  const auto is_same = [](const Neighbor& a, const Neighbor& b) { return a.vertex == b.vertex && a.log == b.log; };
+  neighbors.erase(std::unique(neighbors.begin(), neighbors.end(), is_same), neighbors.end());
 }
 
 void UnfoldingFront::Stars::append_corners(const TangentGraph& graph, Index vertex, std::vector<Neighbor>& neighbors,

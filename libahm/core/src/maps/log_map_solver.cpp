@@ -17,6 +17,7 @@
 #include "heat/check_options.hpp"
 #include "heat/component_scales.hpp"
 #include "heat/heat_system.hpp"
+#include "heat/memory_limits.hpp"
 #include "maps/affine_heat.hpp"
 #include "maps/extrapolate.hpp"
 #include "maps/front_stars.hpp"
@@ -138,6 +139,7 @@ struct LogMapSolver::Impl {
   std::vector<LogMap> solve_block(std::size_t time, std::span<const Source> sources, std::vector<Unfolded>& unfolded,
                                   const MapSettings& map, unsigned threads) const;
   std::vector<LogMap> solve_block(std::span<const Source> sources, const MapSettings& map, unsigned threads) const;
+  unsigned threads_for(unsigned requested) const;
 };
 
 namespace {
@@ -353,6 +355,15 @@ std::vector<LogMap> LogMapSolver::Impl::solve_block(std::span<const Source> sour
   return result;
 }
 
+/// One where the address space is limited and has no room for what threads take beside a map.
+unsigned LogMapSolver::Impl::threads_for(unsigned requested) const {
+  const unsigned threads = detail::thread_count(requested);
+  const double left = address_space_left();
+  if (threads == 1 || std::isinf(left)) return threads;
+  const GraphSize size{graph.size(), graph.dimension(), graph.transport_kind()};
+  return left < estimate_cost(size, strategy, options.order).bytes + threads * bytes_per_thread ? 1 : threads;
+}
+
 LogMapSolver::LogMapSolver(const TangentGraph& graph, const HeatOptions& options) {
   impl_ = std::make_unique<const Impl>(graph, options);
 }
@@ -372,13 +383,13 @@ LogMap LogMapSolver::solve(const Source& source, const MapOptions& options) cons
 
 std::vector<LogMap> LogMapSolver::solve(std::span<const Source> sources, const MapOptions& options) const {
   MapSettings settings = settings_of(options, impl_->options);
-  const unsigned threads = options.threads.value_or(impl_->options.threads);
+  const unsigned threads = impl_->threads_for(options.threads.value_or(impl_->options.threads));
   for (const Source& source : sources) check_source(source, impl_->graph);
   const std::size_t block = impl_->strategy == Strategy::global ? sources_per_block(impl_->graph.size()) : 1;
   const auto count = static_cast<Offset>(sources.size());
   // A single block cannot be shared out: its own steps use the threads instead, where that pays.
   const bool single = sources.size() <= block && impl_->graph.size() > 5000;
-  const unsigned threads_per_block = single ? detail::thread_count(threads) : 1;
+  const unsigned threads_per_block = single ? threads : 1;
 
   return detail::with_memory_check("solving for log maps", [&] {
     std::vector<std::optional<LogMap>> maps(sources.size());

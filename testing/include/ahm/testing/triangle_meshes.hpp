@@ -28,6 +28,8 @@ Mesh joined(Mesh mesh, const Mesh& other, const Vec3& shift = {0, 0, 0});
 /// A tilted unit square, its points inserted one by one into random faces, never improved: needles and caps of every
 /// degree.
 Mesh sliver_square(Index n, unsigned seed = 1);
+/// A lattice of n x n vertices whose lowest row dents between every second one, and slivers that fill the dents.
+Mesh dented_square(Index n);
 /// A jittered grid with random diagonals on a tilted rectangle 1 x `aspect`, with two round holes.
 Mesh holed_square(Index side, unsigned seed = 1, double aspect = 1.0);
 /// A planar maze of corridors one cell wide, `cells` x `cells` of them, each of 2 x 2 quads.

@@ -76,8 +76,9 @@ struct CloudDetails {
   Index thick = 0;             ///< points whose neighbours are as thick as wide: no surface there
   Index turned = 0;            ///< given normals that pointed to the other side than the majority around them
   bool oriented = false;       ///< given normals fix which side is up, everywhere
-  double noise = 0;          ///< standard deviation of neighbours' offsets across the surface, world units; of several
-                             ///< parts that of the largest which got k neighbours
+  double noise = 0;      ///< standard deviation of neighbours' offsets across the surface, world units; of several
+                         ///< parts that of the largest which got k neighbours
+  double layer_gap = 0;  ///< of layers nearer than neighbours that nearly all points there lie in, world units; 0: none
   double mollification = 0;  ///< length added to every edge of the tufted cover, world units; the largest of the parts
   double seconds_normals = 0;    ///< neighbours and tangent planes
   double seconds_delaunay = 0;   ///< local triangulations
@@ -90,10 +91,10 @@ struct CloudDetails {
 /// axis, u is x of `graph().frame(vertex)`.
 ///
 /// Its report: points, vertices, non_finite, duplicates, degenerate, k, components, triangles, flips, rejected_long,
-/// rejected_normals, rejected_steep, reflections, normals_given, contradicted, thick, oriented, noise, mollification, seconds.normals, seconds.delaunay,
+/// rejected_normals, rejected_steep, reflections, normals_given, contradicted, thick, oriented, noise, layer_gap, mollification, seconds.normals, seconds.delaunay,
 /// seconds.laplacian, seconds.graph.
 /// Its warnings, each with a count unless said otherwise: normals_estimated; normals_contradicted; cover_not_delaunay (no number);
-/// degenerate (with rows); normals_turned; k_reduced (asked for, used, distinct points); k_raised (used, noise); no_surface (points as
+/// degenerate (with rows); normals_turned; k_reduced (asked for, used, distinct points); k_raised (used, noise); layers (gap); no_surface (points as
 /// thick as wide, vertices); non_finite; duplicates; thin_walls (pairs of
 /// neighbours not joined); reflections (edges); cloud_components (of more than one).
 /// Faults of a row: row_left_out (by `CloudOptions::rows`), row_removed (not finite, no tangent plane, no triangle).
