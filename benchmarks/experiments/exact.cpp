@@ -167,6 +167,8 @@ void measure(const Surface& surface, Table& table) {
              quantile(second.errors, 0.95),
              quantile(second.errors, 1),
              paths.milliseconds,
+             quantile(paths.longer, 0.5),
+             mean(paths.longer),
              quantile(paths.longer, 0.95),
              quantile(paths.longer, 1)});
 }
@@ -196,6 +198,8 @@ Table exact_compared(const Settings& settings) {
                "order 2 vector 95%",
                "order 2 vector max",
                "fast path ms",
+               "fast path longer median",
+               "fast path longer mean",
                "fast path longer 95%",
                "fast path longer max"});
   std::vector<Index> sizes{640};

@@ -20,21 +20,8 @@ Vec3 on_sphere(double polar, double turn) {
   return {std::sin(polar) * std::cos(turn), std::sin(polar) * std::sin(turn), std::cos(polar)};
 }
 
-NamedMesh read_triangles(const std::filesystem::path& path) {
-  const io::Geometry file = io::read(path);
-  NamedMesh mesh{{file.points, {}, {}}, path.stem().string()};
-  for (std::size_t f = 0; f < file.face_count(); ++f) {
-    if (file.face(f).size() != 3)
-      throw InvalidGeometry(fmt::format("face {} has {} corners; triangulate the mesh", f, file.face(f).size()));
-    mesh.faces.push_back({file.face(f)[0], file.face(f)[1], file.face(f)[2]});
-  }
-  if (mesh.faces.empty()) throw InvalidGeometry("has no faces");
-  return mesh;
-}
-
-}  // namespace
-
-std::vector<NamedMesh> user_meshes(const Settings& settings, Index largest) {
+/// Of `settings.meshes` and below, by size.
+std::vector<std::filesystem::path> mesh_files(const Settings& settings) {
   std::vector<std::pair<std::uintmax_t, std::filesystem::path>> files;
   if (!settings.meshes.empty())
     for (const auto& entry : std::filesystem::recursive_directory_iterator(settings.meshes))
@@ -42,12 +29,54 @@ std::vector<NamedMesh> user_meshes(const Settings& settings, Index largest) {
           type == ".ply" || type == ".off" || type == ".obj" || type == ".stl")
         files.emplace_back(entry.file_size(), entry.path());
   std::sort(files.begin(), files.end());
+  std::vector<std::filesystem::path> paths;
+  for (auto& [size, path] : files) paths.push_back(std::move(path));
+  return paths;
+}
+
+bool only_triangles(const io::Geometry& file) {
+  for (std::size_t f = 0; f < file.face_count(); ++f)
+    if (file.face(f).size() != 3) return false;
+  return true;
+}
+
+NamedMesh read_triangles(const std::filesystem::path& path) {
+  const io::Geometry file = io::read(path);
+  if (file.face_count() == 0) throw InvalidGeometry("has no faces");
+  if (!only_triangles(file)) throw InvalidGeometry("no triangle mesh");
+  NamedMesh mesh{{file.points, {}, {}}, path.stem().string()};
+  for (std::size_t f = 0; f < file.face_count(); ++f)
+    mesh.faces.push_back({file.face(f)[0], file.face(f)[1], file.face(f)[2]});
+  return mesh;
+}
+
+}  // namespace
+
+std::vector<NamedMesh> user_meshes(const Settings& settings, Index largest) {
   std::vector<NamedMesh> meshes;
-  for (const auto& [size, path] : files) try {
+  for (const auto& path : mesh_files(settings)) try {
       if (NamedMesh mesh = read_triangles(path); static_cast<Index>(mesh.positions.size()) <= largest)
         meshes.push_back(std::move(mesh));
     } catch (const Error& e) {
       fmt::print(stderr, "left out: {}: {}\n", path.string(), e.what());
+    }
+  return meshes;
+}
+
+std::vector<NamedPolygons> user_polygons(const Settings& settings, Index largest) {
+  std::vector<NamedPolygons> meshes;
+  for (const auto& path : mesh_files(settings)) try {
+      const io::Geometry file = io::read(path);
+      if (only_triangles(file) || static_cast<Index>(file.points.size()) > largest) continue;
+      NamedPolygons& mesh = meshes.emplace_back();
+      mesh.positions = file.points;
+      mesh.name = path.stem().string();
+      for (std::size_t f = 0; f < file.face_count(); ++f) {
+        const auto face = file.face(f);
+        mesh.add({face.begin(), face.end()});
+      }
+    } catch (const Error&) {
+      continue;  // `user_meshes` names it
     }
   return meshes;
 }

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "ahm/testing/polygon_meshes.hpp"
 #include "experiments/experiment.hpp"
 #include "shapes.hpp"
 
@@ -17,10 +18,15 @@ namespace ahm::bench {
 struct NamedMesh : Mesh {
   std::string name;
 };
+struct NamedPolygons : test::Polygons {
+  std::string name;
+};
 
 /// Every triangle mesh of the folder `settings.meshes` and below, by size of file, that has at most `largest` vertices.
 /// What cannot be read, or has other polygons, is named on the error stream and left out.
 std::vector<NamedMesh> user_meshes(const Settings& settings, Index largest = 1'000'000'000);
+/// Every other mesh there, of polygons.
+std::vector<NamedPolygons> user_polygons(const Settings& settings, Index largest);
 
 /// Sphere by meridians and parallels; few parallels make long thin triangles. `last` < pi leaves it open at the bottom.
 Mesh parallels_and_meridians(int parallels, int meridians, double last = std::numbers::pi);

@@ -10,10 +10,13 @@
 #include <numeric>
 #include <optional>
 
+#include "ahm/error.hpp"
 #include "ahm/maps/log_map_solver.hpp"
 #include "ahm/maps/quality.hpp"
 #include "ahm/pointcloud/point_cloud_surface.hpp"
+#include "ahm/polymesh/polygon_mesh_surface.hpp"
 #include "ahm/surface/exact/exact_map.hpp"
+#include "ahm/surface/exact/flat_triangles.hpp"
 #include "ahm/testing/triangle_meshes.hpp"
 #include "experiments/comparison.hpp"
 
@@ -32,21 +35,30 @@ struct Found {
   std::vector<char> is_right;
 };
 
-/// A graph of a surface, and which of its vertices is one of the surface's.
+/// Where exact maps run, and which of its vertices are compared.
+struct Ground {
+  std::string name;
+  const exact::PolyhedralSurface& polyhedral;
+  double unit;       ///< of its lengths
+  double mean_edge;  ///< world units
+  std::vector<Vertex> vertices;
+};
+
+/// A graph of the same surface, and which of its vertices is the k-th that is compared.
 struct View {
   std::string name;
   const TangentGraph& graph;
-  std::function<Vertex(Vertex)> vertex;
+  std::function<Vertex(Index k)> vertex;
 };
 
 /// Vertices nearer than two edges are left out: there the vectors are short and the edges few.
-void compare(const Surface& surface, const exact::ExactMap& truth, const View& view, const LogMap& map, Found& found) {
-  const double unit = surface.graph().length_unit(), near = 2 * surface.mean_edge();
+void compare(const Ground& ground, const exact::ExactMap& truth, const View& view, const LogMap& map, Found& found) {
+  const double unit = ground.unit, near = 2 * ground.mean_edge;
   const std::vector<double> quality = map_quality(view.graph, map);
   std::vector<Complex> exact, ours;
   std::vector<std::size_t> vertices;
-  for (Index i = 0; i < surface.size(); ++i) {
-    const Vertex own(i), v = view.vertex(own);
+  for (Index k = 0; k < std::ssize(ground.vertices); ++k) {
+    const Vertex own = ground.vertices[k], v = view.vertex(k);
     if (map.status(v) != Status::ok || !(truth.distance(own) * unit > near)) continue;
     vertices.push_back(static_cast<std::size_t>(v.index));
     exact.emplace_back(unit * truth.coordinates(own)[0], unit * truth.coordinates(own)[1]);
@@ -112,21 +124,21 @@ std::optional<Curve> curve_of(std::span<const double> quality, const Found& foun
   return curve;
 }
 
-void measure(const Surface& surface, const View& view, Table& table) {
-  const exact::PolyhedralSurface polyhedral = surface.polyhedron();
+void measure(const Ground& ground, const View& view, Table& table) {
+  const auto size = static_cast<Index>(ground.vertices.size());
   for (Variant variant : all_variants) {
     const LogMapSolver solver(view.graph, {.variant = variant});
     Found found;
     for (int s = 0; s < source_count; ++s) {
-      const Vertex source(surface.size() / 11 + s * (surface.size() / source_count));
-      compare(surface, exact::exact_map(polyhedral, polyhedral.vertex_point(source)), view,
-              solver.solve(Source::at_vertex(view.vertex(source))), found);
+      const Index source = size / 11 + s * (size / source_count);
+      compare(ground, exact::exact_map(ground.polyhedral, ground.polyhedral.vertex_point(ground.vertices[source])),
+              view, solver.solve(Source::at_vertex(view.vertex(source))), found);
     }
     const auto count = static_cast<double>(found.quality.size());
     const double all_right = static_cast<double>(std::count(found.is_right.begin(), found.is_right.end(), 1));
-    std::vector<Cell> row{surface.name(),
+    std::vector<Cell> row{ground.name,
                           view.name,
-                          surface.size(),
+                          size,
                           std::string(to_string(variant)),
                           mean(found.distance_error),
                           quantile(found.distance_error, 0.95),
@@ -154,10 +166,37 @@ void measure(const Surface& surface, const View& view, Table& table) {
 
 /// As triangles, and where no vertex is dropped or joined to another, its vertices as points.
 void measure(const Surface& surface, Table& table) {
-  measure(surface, {"triangles", surface.graph(), [](Vertex v) { return v; }}, table);
+  const exact::PolyhedralSurface polyhedral = surface.polyhedron();
+  Ground ground{surface.name(), polyhedral, surface.graph().length_unit(), surface.mean_edge(), {}};
+  for (Index i = 0; i < surface.size(); ++i) ground.vertices.emplace_back(i);
+  measure(ground, {"triangles", surface.graph(), [](Index k) { return Vertex(k); }}, table);
   const auto cloud = pointcloud::PointCloudSurface::build(surface.points());
   if (cloud.graph().size() != surface.size()) return;
-  measure(surface, {"points", cloud.graph(), [&](Vertex v) { return *cloud.rows().vertex(Row(v.index)); }}, table);
+  measure(ground, {"points", cloud.graph(), [&](Index k) { return *cloud.rows().vertex(Row(k)); }}, table);
+}
+
+/// Refined, and as polygons. Exact maps run over the triangles of the refinement.
+void measure(const NamedPolygons& mesh, Table& table) {
+  using polymesh::Discretization;
+  const auto build = [&](Discretization how) {
+    return polymesh::PolygonMeshSurface::build(mesh.positions, mesh.begin, mesh.corners,
+                                               {.discretization = how, .non_manifold = NonManifold::split});
+  };
+  const auto refined = build(Discretization::refined), polygons = build(Discretization::polygons);
+  const FlatTriangles flat = refined.flat_triangles();
+  Ground ground{mesh.name,
+                flat.surface,
+                flat.length_unit,
+                refined.graph().mean_edge_length() * refined.graph().length_unit(),
+                {}};
+  std::vector<Row> rows;
+  for (Index r = 0; r < mesh.vertices(); ++r)
+    if (const auto vertex = refined.rows().vertex(Row(r)); vertex && polygons.rows().vertex(Row(r))) {
+      rows.emplace_back(r);
+      ground.vertices.push_back(*vertex);
+    }
+  for (const auto& [name, surface] : {std::pair{"refined", &refined}, std::pair{"polygons", &polygons}})
+    measure(ground, {name, surface->graph(), [&](Index k) { return *surface->rows().vertex(rows[k]); }}, table);
 }
 
 }  // namespace
@@ -180,7 +219,14 @@ Table trust(const Settings& settings) {
     measure(Surface(fmt::format("cone {:.0f}", degrees), cone(angle, static_cast<int>(std::sqrt(2 * n / angle)))),
             table);
   }
+  measure(NamedPolygons{test::cube_sphere(static_cast<Index>(std::sqrt(n / 6.0))), "sphere of quads"}, table);
+  measure(NamedPolygons{test::voronoi_sphere(n / 2), "sphere of Voronoi cells"}, table);
   for_user_surfaces(settings, 60000, [&](const Surface& surface) { measure(surface, table); });
+  for (const NamedPolygons& mesh : user_polygons(settings, 60000)) try {
+      measure(mesh, table);
+    } catch (const Error& e) {
+      fmt::print(stderr, "left out: {}: {}\n", mesh.name, e.what());
+    }
   table.seen = fmt::format("95th percentile of the relative error, medians over meshes: distance {:.3f}, |phi| {:.2f}.",
                            quantile(table.numbers("distance 95%"), 0.5), quantile(table.numbers("|phi| 95%"), 0.5));
   return table;

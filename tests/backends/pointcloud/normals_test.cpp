@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <random>
 #include <string>
 
@@ -126,6 +127,26 @@ TEST(Normals, WithNoiseAreNoWorseThanNone) {
                      std::to_string(given));
       EXPECT_LT(given, 1.1 * estimated) << points_noise << ", " << noise;
     }
+  }
+}
+
+TEST(Normals, EstimatedAreTheNearerTheMorePoints) {
+  for (Index n : {300, 1000, 3000, 10000}) {
+    const Cloud cloud = random_sphere(n);
+    const auto surface = pointcloud::PointCloudSurface::build(cloud.points);
+    std::vector<double> degrees;
+    double sum = 0;
+    for (Index i = 0; i < n; ++i) {
+      const Frame frame = *surface.graph().frame(surface.rows().vertex(Row(i))->index);
+      degrees.push_back(std::acos(std::min(1.0, dot(cross(frame.x, frame.y), cloud.normals[i]))) * 180 /
+                        std::numbers::pi);
+      sum += degrees.back();
+    }
+    std::sort(degrees.begin(), degrees.end());
+    const double near = degrees[static_cast<std::size_t>(0.95 * n)];
+    RecordProperty(std::to_string(n) + " points: mean, 95 %, largest",
+                   std::to_string(sum / n) + ", " + std::to_string(near) + ", " + std::to_string(degrees.back()));
+    EXPECT_LT(near, 100 / std::sqrt(n)) << n;
   }
 }
 
