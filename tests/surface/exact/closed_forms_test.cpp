@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <numbers>
 
 #include "ahm/testing/paper_band.hpp"
@@ -38,6 +40,32 @@ TEST(ExactMap, ScalesTheDirectionsAboutAnApexToAFullTurn) {
   for (Index v = 1; v < map.size(); ++v) {
     const double turn = 2 * 3.14159265358979323846, expected = first + cone.polar[v][1] * turn / cone.angle;
     EXPECT_NEAR(std::remainder(map.direction(Vertex(v)) - expected, turn), 0, 1e-12);
+  }
+}
+
+// Far along a tube the rays beside a row of vertices miss the next one by what rounding makes of their angles, many times over.
+TEST(ExactMap, GoesFarAlongTubes) {
+  const Index around = 40, rings = 900;
+  const double radius = around / (2 * std::numbers::pi), side = 2 * radius * std::sin(std::numbers::pi / around);
+  Mesh tube;
+  for (Index j = 0; j < rings; ++j)
+    for (Index i = 0; i < around; ++i) {
+      const double angle = 2 * std::numbers::pi * i / around;
+      tube.positions.push_back({radius * std::cos(angle), radius * std::sin(angle), static_cast<double>(j)});
+      if (j + 1 == rings) continue;
+      const Index a = j * around + i, b = j * around + (i + 1) % around;
+      tube.faces.push_back({a, b, b + around});
+      tube.faces.push_back({a, b + around, a + around});
+    }
+  const Polyhedron polyhedron(tube);
+  const double unit = polyhedron.mesh.length_unit();
+  for (const Index source : {12, 20}) {
+    const ExactMap map = exact::exact_map(polyhedron.surface, polyhedron.surface.vertex_point(Vertex(source)));
+    for (Index v = 0; v < map.size(); ++v) {
+      const Index apart = std::abs(v % around - source % around);
+      const double across = side * std::min(apart, around - apart), along = v / around - source / around;
+      ASSERT_NEAR(map.distance(Vertex(v)) * unit, std::hypot(across, along), 1e-9) << source << ' ' << v;
+    }
   }
 }
 

@@ -36,6 +36,9 @@ constexpr std::size_t most_seen = 2048;
 constexpr double rounding = 1e-12, least_cube = 1e-280;
 /// Of a ray shorter than this share of a side nobody knows the direction.
 constexpr double least_ray = 1e-6;
+/// Rays to the ends of a side that differ by more than this many times the angle at which it is seen come along two ways, as
+/// around a tube, and there is none between them.
+constexpr double two_ways = 6;
 /// A way that bends at the boundary by no more than this angle, all in all, goes straight on: boundaries of surfaces are not
 /// straight to the last bit.
 constexpr float straight_on = 0.5F;
@@ -79,7 +82,7 @@ bool is_beyond(double from_a, double from_b, double ab, double cx, double cy, do
 }
 
 /// The direction at the point of the ray to c, from those of the rays to a and b: what both say, by how near it crosses the
-/// side.
+/// side; of two ways that of the nearer end.
 /// @param side  1: a, b, c counterclockwise; -1: clockwise
 Vec2 direction_across(const Across& point, double ab, double cx, double cy, const Vec2& to_a, const Vec2& to_b,
                       double side) {
@@ -88,6 +91,7 @@ Vec2 direction_across(const Across& point, double ab, double cx, double cy, cons
   const Vec2 by_a = turned(to_a, a, c, side), by_b = turned(to_b, b, c, side);
   if (!(length(a) > least_ray * ab) || std::isnan(to_a[0])) return by_b;
   if (!(length(b) > least_ray * ab) || std::isnan(to_b[0])) return by_a;
+  if (std::hypot(by_a[0] - by_b[0], by_a[1] - by_b[1]) > two_ways * ab / length(c)) return share < 0.5 ? by_a : by_b;
   const Vec2 sum{(1 - share) * by_a[0] + share * by_b[0], (1 - share) * by_a[1] + share * by_b[1]};
   const double size = length(sum);
   return size > 0 ? Vec2{sum[0] / size, sum[1] / size} : by_a;

@@ -52,10 +52,10 @@ void check_reached(const PolyhedralSurface& surface, const Found& found, double 
   const auto check = [&](Index from, Index to, double length) {
     const double way = (distance[from] + length) * (1 + 1e-9 + 3 * tolerance);
     if (!(way < found.horizon) || distance[to] <= way) return;
-    throw InvalidGeometry("windows_lost",
-                          "windows were lost on the way to vertex " + std::to_string(to) + ", a side of " +
-                              detail::number(length) + " from vertex " + std::to_string(from),
-                          "repair the needles there, allow for a tolerance, or use heat");
+    throw InvalidGeometry(
+        "windows_lost",
+        "windows were lost on the way to vertex " + std::to_string(to) + " beside vertex " + std::to_string(from),
+        "repair the needles there, allow for a tolerance, or use heat");
   };
   for (Index v = 0; v < surface.vertex_count(); ++v) {
     if (!(distance[v] < found.horizon)) continue;  // most, where the radius is small

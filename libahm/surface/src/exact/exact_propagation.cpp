@@ -11,6 +11,9 @@ using std::numbers::pi;
 
 /// Rays to a vertex that cross a side closer than this multiple of it may be one ray, past a vertex they both touch.
 constexpr double same_ray = 1e-10;
+/// Angle by which rays past a vertex miss it where the surface is flat up to rounding: what many such vertices on one line add up
+/// to is more than a share of a side, far away.
+constexpr double missed_angle = 1e-12;
 /// Added to both ends of the angles that open behind a vertex.
 constexpr double wedge_margin = 1e-12;
 
@@ -96,7 +99,8 @@ void ExactPropagation::cross_face(const Window& w) {
   if (has_targets()) see_targets_of(w, sigma);
 
   const double crossing = crossing_to(w.from, apex(r));
-  const double beside = window_margin * r.length;
+  const double across = crossing - w.from[0], down = -w.from[1];
+  const double beside = window_margin * r.length + missed_angle * (across * across + down * down) / down;
   bool left = crossing > w.begin, right = crossing < w.end;
   double to_apex = 0;
   if (crossing > w.begin - beside && crossing < w.end + beside) {
