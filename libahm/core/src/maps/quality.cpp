@@ -25,8 +25,9 @@ constexpr double doubtful_spread = 0.3, doubtful_difference = 0.1;
 constexpr double unrolled_spread = 0.01;
 /// Where as much of the lengths of edges is lost a map is no longer one of the neighbourhood.
 constexpr double doubtful_loss = 0.5;
-/// In mean edge lengths, by which fronts over edges that are no triangulation may be off.
-constexpr double forgiven = 1;
+/// In mean edge lengths, by which fronts over edges that are no triangulation may be off, and the share of edges that maps lose
+/// beside them all the same.
+constexpr double forgiven = 1, forgiven_loss = 0.2;
 /// Likewise, from curves on triangulations: what lies between samples half an edge apart is known to half of that.
 constexpr double forgiven_between_samples = 0.25;
 /// Of the triangles that vertices see around them, the shares that the others must see, too, for a front to count at all
@@ -80,6 +81,15 @@ class Comparison {
     return belief_ * off - forgiven * h;
   }
 
+  /// Geodesic polar coordinates; NaN where the way bends at the boundary.
+  Vec2 polar_coordinates(Vertex vertex) const {
+    if (!front_.has_directions() || front_.is_bent(vertex)) return {NAN, NAN};
+    const double d = front_.distance(vertex);
+    const Vec2 direction = front_.direction(vertex);
+    return {d * direction[0], d * direction[1]};
+  }
+  double belief() const { return belief_; }
+
  private:
   const UnfoldingFront& front_;
   double radius_;
@@ -95,14 +105,18 @@ Vec2 polar_coordinates(const LogMap& map, Index vertex) {
 
 /// How much of the edges of a vertex a map loses that geodesic polar coordinates keep: root mean squares over that of the edges,
 /// the lesser one of what is lost of their lengths and of how unlike both change along them; 0 where nothing is known.
-double lost_along_edges(const TangentGraph& graph, const LogMap& map, Index vertex, const Vec2& psi) {
+/// @param polar  polar(j): geodesic polar coordinates; NaN: unknown
+template <class Polar>
+double lost_along_edges(const TangentGraph& graph, const LogMap& map, Index vertex, const Polar& polar) {
+  const Vec2 psi = polar(vertex);
+  if (std::isnan(psi[0])) return 0;
   const Star star = graph.star(vertex);
   const std::span<const double> phi = map.coordinates(Vertex(vertex));
   const double unit = graph.length_unit();
   double off = 0, all = 0, kept = 0, edges = 0;
   for (std::size_t e = 0; e < star.degree(); ++e) {
     const Index j = star.neighbors[e];
-    const Vec2 psi_j = polar_coordinates(map, j);
+    const Vec2 psi_j = polar(j);
     if (map.status()[j] != Status::ok || std::isnan(psi_j[0])) continue;
     const std::span<const double> phi_j = map.coordinates(Vertex(j));
     const Vec2 by_psi{psi_j[0] - psi[0], psi_j[1] - psi[1]};
@@ -117,6 +131,9 @@ double lost_along_edges(const TangentGraph& graph, const LogMap& map, Index vert
   }
   return all > 0 ? std::sqrt(std::clamp(1 - kept / edges, 0.0, off / all)) : 0;
 }
+
+/// Of what fronts over edges that are no triangulation say is lost, since neighbours of theirs differ by more than edges do.
+double forgiving(double lost) { return std::max(0.0, lost - forgiven_loss) / (1 - forgiven_loss); }
 
 void check_map(const TangentGraph& graph, const LogMap& map) {
   if (map.size() != graph.size() || map.dimension() != graph.dimension())
@@ -153,7 +170,13 @@ std::vector<double> quality_beside(const TangentGraph& graph, const LogMap& map,
     if (const Vec2 psi = polar_coordinates(map, vertex.index); !std::isnan(psi[0])) {
       const double by_direction = std::hypot(way[0] - psi[0], way[1] - psi[1]);
       off += std::min(spread / unrolled_spread, 1.0) * (by_direction - off);
-      if (!of_curve) lost = lost_along_edges(graph, map, vertex.index, psi);  // else psi jumps from sample to sample
+      // Along curves psi jumps from sample to sample.
+      if (!of_curve)
+        lost = lost_along_edges(graph, map, vertex.index, [&](Index j) { return polar_coordinates(map, j); });
+    } else if (comparison && !of_curve && comparison->belief() > 0) {
+      lost = comparison->belief() * forgiving(lost_along_edges(graph, map, vertex.index, [&](Index j) {
+               return comparison->polar_coordinates(Vertex(j));
+             }));
     }
     if (of_curve) off = std::max(0.0, off - forgiven_between_samples * h);
     if (comparison) off = std::max(off, comparison->off(vertex, way, h));
