@@ -290,8 +290,9 @@ RowLogMap rows_from_curve(const Surface& surface, const LogMap& map, const Surfa
         rows.distance[i] = std::clamp(in_plane, std::max(0.0, least - slack), from_samples + slack);
     }
     if (!(rows.distance[i] > radius)) continue;
-    rows.u[i] = rows.v[i] = rows.distance[i] = rows.spread[i] = NAN;
-    if (!rows.error_estimate.empty()) rows.error_estimate[i] = NAN;
+    rows.u[i] = rows.v[i] = rows.distance[i] = NAN;
+    for (std::vector<double>* more : {&rows.spread, &rows.error_estimate})
+      if (!more->empty()) (*more)[i] = NAN;
     rows.status[i] = Status::beyond_radius;
     rows.vertex[i].reset();
   }
