@@ -47,6 +47,12 @@ Result solved(const std::string& mesh, const std::string& source, const std::vec
   return {read_json(folder / "run.json"), read_csv(folder / "map.csv")};
 }
 
+TEST(PolygonFiles, OfTrianglesAreSolvedAsPolygonsWhereThatIsAskedFor) {
+  const std::string triangles = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n";
+  EXPECT_EQ(solved(triangles, "0", {"--discretization", "polygons"}).json.at("backend"), "polymesh");
+  EXPECT_EQ(solved(triangles, "0").json.at("backend"), "trimesh");
+}
+
 TEST(PolygonFiles, AreTheIdentityOnAFlatSheetByEitherDiscretization) {
   for (const std::string how : {"auto", "polygons", "refined"}) {
     const auto [json, rows] = solved(quads(14), "30", {"--discretization", how, "--u-axis", "1,0,0"});

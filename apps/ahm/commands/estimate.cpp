@@ -76,7 +76,7 @@ void tell(const GraphSize& size, const std::string& backend, Strategy chosen, co
 
 void estimate_from_size(const LogmapOptions& options) {
   const io::Geometry input = read_input(options.input);
-  const Backend& backend = choose_backend(input, options.input.backend);
+  const Backend& backend = choose_backend(input, options.input);
   const GraphSize size{vertices_of(input, backend, options.input)};
   const HeatOptions heat = heat_options(options.solve);
   tell(size, std::string(backend.name), choose_strategy(size, heat), options.output.json,

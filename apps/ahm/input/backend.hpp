@@ -45,7 +45,8 @@ struct Backend {
 /// All of them, in the order in which `auto` asks them.
 std::span<const Backend> backends();
 
-/// The user's choice, or for `auto` the backend that suits the input.
-const Backend& choose_backend(const io::Geometry& input, const std::string& requested);
+/// The user's choice, or for `auto` the backend that suits the input; of triangles, too, the one for polygons where they are to be
+/// solved as polygons.
+const Backend& choose_backend(const io::Geometry& input, const InputOptions& options);
 
 }  // namespace ahm::app

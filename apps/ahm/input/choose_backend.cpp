@@ -7,7 +7,9 @@
 
 namespace ahm::app {
 
-const Backend& choose_backend(const io::Geometry& input, const std::string& requested) {
+const Backend& choose_backend(const io::Geometry& input, const InputOptions& options) {
+  const bool as_polygons = options.backend == "auto" && options.discretization == "polygons" && input.face_count() > 0;
+  const std::string requested = as_polygons ? "polymesh" : options.backend;
   const auto all = backends();
   const auto found = std::find_if(all.begin(), all.end(), [&](const Backend& b) {
     return requested == "auto" ? b.suits(input) : b.name == requested;

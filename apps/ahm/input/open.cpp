@@ -96,7 +96,7 @@ Input open_input(io::Geometry geometry, const InputOptions& options, Journal& jo
   std::optional<RepairedMesh> mesh = repair(geometry, options);
   const std::optional<SourceSpec> place =
       mesh && source ? std::optional(in_remaining_faces(*source, *mesh, "--source")) : source;
-  const Backend& backend = choose_backend(geometry, options.backend);
+  const Backend& backend = choose_backend(geometry, options);
   if (options.local && place && geometry.face_count() > 0 && backend.uses_faces)
     return open_surroundings(std::move(geometry), backend, std::move(mesh), given_faces, options, *place, journal);
   Built built = build(backend, geometry, mesh, options, place, journal);

@@ -173,7 +173,7 @@ std::vector<Attempt> attempts(const Survey& s, const InputOptions& options) {
 void try_surface(io::Geometry input, const Attempt& attempt, const Progress& progress, Survey& s) {
   if (attempt.as_cloud) input.face_begin.clear(), input.face_vertices.clear();
   std::optional<RepairedMesh> mesh = repair(input, attempt.options);
-  const Backend& backend = choose_backend(input, "auto");
+  const Backend& backend = choose_backend(input, InputOptions{});
   std::string flags = attempt.flags;
   if (attempt.as_cloud && s.mesh) flags.insert(0, fmt::format(" --backend {}", backend.name));
   const Built built = mesh ? build_repaired(backend, input, *mesh, attempt.options, {}, progress)
