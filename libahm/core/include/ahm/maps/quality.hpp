@@ -33,9 +33,10 @@ inline constexpr double trusted_quality = 0.5;
 /// with d the distance, no less than the straight line in space where the graph has frames, and h the mean edge length of the
 /// vertex's component. |phi - psi| is no less than ||phi| - d|, and comes to that alone as spread_i / d_i goes from 0.01 to 0 on
 /// Delaunay triangulations: there phi is the unrolling of what lies between, as of a plane behind its holes. It is that alone,
-/// too, in other dimensions than 2, where fronts see holes if edges lie along orthogonal axes. c, on Delaunay triangulations alone, is how much of the edges phi loses that psi keeps: far away on
-/// a tube |phi - psi| is small beside d, but what lies around the tube has come to lie on a line. Of a map by `Method::exact`
-/// there is the spread alone. Where the edges are no Delaunay triangulation a front is less exact: h is forgiven, directions are
+/// too, in other dimensions than 2, where fronts see holes if edges lie along orthogonal axes. c is how much of the edges phi loses
+/// that psi keeps: far away on a tube |phi - psi| is small beside d, but what lies around the tube has come to lie on a line. Of a
+/// map by `Method::exact` there is the spread alone. Where the edges are no Delaunay triangulation a front is less exact: h is
+/// forgiven, and of c the first .2 (then (c - .2) / .8), directions are
 /// not asked for where the way bends at the boundary by half a radian and more, around a hole or in a notch of the sampling, and
 /// it counts only where stars agree on their triangles, which noise undoes (`UnfoldingFront::agreement`); elsewhere there is
 /// ||phi| - d| with the distance of heat, which sees no holes.
