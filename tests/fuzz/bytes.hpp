@@ -58,6 +58,7 @@ int allow_refusals(const Work& work) {
     work();
   } catch (const Error& error) {
     require(*error.what() != '\0', "errors have words");
+    require(std::strncmp(error.what(), "PCD files are read by", 21) != 0, "the module that reads PCD is there");
   } catch (const std::bad_alloc&) {
   }
   return 0;

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <iterator>
 #include <string>
 
 #include "ahm/io/formats.hpp"
@@ -237,6 +238,47 @@ void add_las(const Seeds& seeds) {
   seeds.add("las", "two.las", las);
 }
 
+/// Two points with a colour: text, binary, and compressed, which here is one run of bytes as they are.
+void add_pcd(const Seeds& seeds) {
+  const std::string head =
+      "# .PCD v0.7\nVERSION 0.7\nFIELDS x y z rgb\nSIZE 4 4 4 4\nTYPE F F F U\nCOUNT 1 1 1 1\nWIDTH 2\nHEIGHT 1\n"
+      "VIEWPOINT 0 0 0 1 0 0 0\nPOINTS 2\nDATA ";
+  seeds.add("pcd", "text.pcd", head + "ascii\n0 0.5 1 255\n1 nan 0 65280\n");
+  std::string records;
+  for (int k = 0; k < 8; ++k) put(records, static_cast<float>(k));
+  seeds.add("pcd", "binary.pcd", head + "binary\n" + records);
+  std::string packed = head + "binary_compressed\n";
+  put(packed, static_cast<std::uint32_t>(records.size() + 1));
+  put(packed, static_cast<std::uint32_t>(records.size()));
+  packed += static_cast<char>(records.size() - 1);  // LZF: a run of as many bytes and one
+  seeds.add("pcd", "compressed.pcd", packed + records);
+}
+
+/// Points of each format that is streamed, behind the number of the format: files of `seeds` without faces.
+void add_points(const Seeds& seeds) {
+  const test::Cloud cloud = test::even_sphere(12);
+  io::Table table = table_of(cloud.points, cloud.normals);
+  for (const bool text : {false, true}) {
+    table.text = text;
+    io::write(seeds.file("ply", text ? "points_text.ply" : "points.ply"), table);
+  }
+  const std::vector<std::string> files[] = {{"csv/cloud.csv"},
+                                            {"las/two.las"},
+                                            {"pcd/text.pcd", "pcd/binary.pcd", "pcd/compressed.pcd"},
+                                            {"ply/points.ply", "ply/points_text.ply"},
+                                            {"pts/ball.pts"},
+                                            {"xyz/ball.xyz"}};
+  std::uint8_t format = 0;
+  for (const auto& of_format : files) {
+    for (const std::string& file : of_format) {
+      std::ifstream in(seeds.file(file.substr(0, 3), file.substr(4)), std::ios::binary);
+      const std::string bytes(std::istreambuf_iterator<char>(in), {});
+      seeds.add("points", file.substr(4), bytes_of(format) + bytes);
+    }
+    ++format;
+  }
+}
+
 void add_gltf(const Seeds& seeds) {
   std::string bytes;
   for (const float x : {0.F, 0.F, 0.F, 1.F, 0.F, 0.F, 0.F, 1.F, 0.F}) put(bytes, x);
@@ -285,8 +327,10 @@ int main(int argc, char** argv) try {
   add_graphs(seeds);
   add_files(seeds);
   add_las(seeds);
+  add_pcd(seeds);
   add_vtk(seeds);
   add_gltf(seeds);
+  add_points(seeds);
   add_command_lines(seeds);
   return 0;
 } catch (const std::exception& error) {
