@@ -1,10 +1,10 @@
 // The experiments about cost, at toy size.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
 
+#include "ahm/io/temporary_folder.hpp"
 #include "experiments/experiment.hpp"
 #include "shapes.hpp"
 
@@ -53,8 +53,8 @@ void write_off(const Mesh& mesh, const std::filesystem::path& path) {
 }
 
 TEST(RuntimeExperiment, TakesTheMeshesOfAFolderAndLeavesOutWhatIsNone) {
-  const auto folder = std::filesystem::path(testing::TempDir()) / ("ahm_runtime_meshes" + std::to_string(getpid()));
-  std::filesystem::remove_all(folder);
+  const io::TemporaryFolder temporary("ahm_test_");
+  const auto& folder = temporary.directory();
   std::filesystem::create_directories(folder / "below");
   write_off(torus(300), folder / "ring.off");
   write_off(split_icosphere(100), folder / "below" / "ball.off");

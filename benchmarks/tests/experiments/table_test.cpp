@@ -1,5 +1,4 @@
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,6 +8,7 @@
 #include <limits>
 
 #include "ahm/error.hpp"
+#include "ahm/io/temporary_folder.hpp"
 #include "experiments/comparison.hpp"
 #include "experiments/report.hpp"
 #include "experiments/run_record.hpp"
@@ -16,12 +16,6 @@
 
 namespace ahm::bench {
 namespace {
-
-std::filesystem::path fresh_folder(const char* name) {
-  const auto folder = std::filesystem::path(testing::TempDir()) / (name + std::to_string(getpid()));
-  std::filesystem::remove_all(folder);
-  return folder;
-}
 
 std::string text_of(const std::filesystem::path& path) {
   std::ifstream file(path);
@@ -32,8 +26,8 @@ TEST(Table, ComesBackFromItsFile) {
   Table table({"name", "with, comma", "number"});
   table.add({"a \"quoted\" word", "x,y", 0.1});
   table.add({"", {}, -3});
-  const auto folder = fresh_folder("ahm_table");
-  std::filesystem::create_directories(folder);
+  const io::TemporaryFolder temporary("ahm_test_");
+  const auto& folder = temporary.directory();
   table.write(folder / "table.csv");
   const Table back = Table::read(folder / "table.csv");
   EXPECT_EQ(back.columns(), table.columns());
@@ -90,8 +84,8 @@ TEST(Surface, KnowsExactMapsAndPathsOfEdges) {
 }
 
 TEST(UserMeshes, AreRunAsWellAndBrokenFilesLeftOut) {
-  const auto folder = fresh_folder("ahm_meshes");
-  std::filesystem::create_directories(folder);
+  const io::TemporaryFolder temporary("ahm_test_");
+  const auto& folder = temporary.directory();
   std::ofstream(folder / "octahedron.off") << "OFF\n6 8 0\n1 0 0\n-1 0 0\n0 1 0\n0 -1 0\n0 0 1\n0 0 -1\n"
                                               "3 0 2 4\n3 2 1 4\n3 1 3 4\n3 3 0 4\n"
                                               "3 2 0 5\n3 1 2 5\n3 3 1 5\n3 0 3 5\n";
@@ -107,7 +101,8 @@ TEST(UserMeshes, AreRunAsWellAndBrokenFilesLeftOut) {
 }
 
 TEST(Report, HoldsWhatWasRunAndItsPlotOrWhyThereIsNone) {
-  const auto folder = fresh_folder("ahm_report");
+  const io::TemporaryFolder temporary("ahm_test_");
+  const auto& folder = temporary.directory();
   RunRecord record(folder);
   const Experiment& first = experiments().front();
   record.run(first, {.toy = true});
@@ -122,7 +117,11 @@ TEST(Report, HoldsWhatWasRunAndItsPlotOrWhyThereIsNone) {
     EXPECT_NE(page.find(report.problem.substr(0, 8)), std::string::npos);
 }
 
-TEST(Report, OfNothingIsRefused) { EXPECT_THROW(write_report(fresh_folder("ahm_no_report")), IoError); }
+TEST(Report, OfNothingIsRefused) {
+  const io::TemporaryFolder temporary("ahm_test_");
+  EXPECT_THROW(write_report(temporary.directory()), IoError);
+  EXPECT_THROW(write_report(temporary.directory() / "nowhere"), IoError);
+}
 
 }  // namespace
 }  // namespace ahm::bench
