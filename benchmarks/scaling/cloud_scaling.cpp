@@ -13,7 +13,7 @@ namespace {
 
 std::vector<double> measure(Index n, Ordering ordering, const Settings& settings) {
   const std::vector<Vec3> points = test::random_sphere(n).points;
-  const MapOptions options{.threads = settings.threads};
+  const MapOptions options{.threads = settings.threads}, alone{.threads = settings.threads, .distances = false};
   std::optional<pointcloud::PointCloudSurface> cloud;
   std::optional<LogMapSolver> solver;
   const double build =
@@ -29,16 +29,20 @@ std::vector<double> measure(Index n, Ordering ordering, const Settings& settings
   const double adaptive = median_of_five([&] { solver->solve(source, options); });
   const double localized =
       median_of_five([&] { solver->solve(source, {.variant = Variant::localized, .threads = settings.threads}); });
+  const double coordinates = median_of_five([&] { solver->solve(source, alone); });
   std::vector<Source> sources;
   for (Index s = 0; s < 64; ++s) sources.push_back(cloud->source(Row(s * (n / 64))).source);
   const double batch = seconds([&] { solver->solve(sources, options); });
+  const double batch_alone = seconds([&] { solver->solve(sources, alone); });
   return {build,
           factor,
           first,
           build + factor + first,
           adaptive,
           localized,
+          coordinates,
           batch / 64,
+          batch_alone / 64,
           static_cast<double>(solver->operators().statistics().bytes) / 1e6,
           peak,
           peak_megabytes(),
@@ -49,11 +53,12 @@ std::vector<double> measure(Index n, Ordering ordering, const Settings& settings
 
 Table cloud_scaling(const Settings& settings) {
   Table table({"points", "ordering", "graph s", "factor s", "first map s", "total s", "further adaptive s",
-               "further localized s", "batch of 64, s each", "factors MB", "peak MB", "peak MB with the batch", "ok"});
+               "further localized s", "u and v alone s", "batch of 64, s each", "batch of u and v alone, s each",
+               "factors MB", "peak MB", "peak MB with the batch", "ok"});
   for (Index n : sizes(settings, 1000, {10000, 100000, 400000}))
     for (const auto& [name, ordering] : {std::pair{"amd", Ordering::amd}, {"metis", Ordering::nested_dissection}}) {
       std::vector<Cell> row{n, name};
-      for (double number : in_own_process(11, [&] { return measure(n, ordering, settings); })) row.push_back(number);
+      for (double number : in_own_process(13, [&] { return measure(n, ordering, settings); })) row.push_back(number);
       table.add(row);
     }
   const Table amd = table.where("ordering", "amd");

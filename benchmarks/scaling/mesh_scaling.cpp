@@ -13,7 +13,7 @@ namespace {
 
 std::vector<double> measure(Index n, const Settings& settings) {
   const Mesh mesh = split_icosphere(n);
-  const MapOptions options{.threads = settings.threads};
+  const MapOptions options{.threads = settings.threads}, alone{.threads = settings.threads, .distances = false};
   std::optional<trimesh::TriangleMeshSurface> surface;
   std::optional<LogMapSolver> solver;
   const double build = seconds([&] {
@@ -28,19 +28,29 @@ std::vector<double> measure(Index n, const Settings& settings) {
   const double adaptive = median_of_five([&] { solver->solve(source, options); });
   const double localized =
       median_of_five([&] { solver->solve(source, {.variant = Variant::localized, .threads = settings.threads}); });
+  const double coordinates = median_of_five([&] { solver->solve(source, alone); });
   std::vector<Source> sources;
   for (Index s = 0; s < 64; ++s) sources.push_back(surface->source(Row(s * (mesh.vertices() / 64))).source);
   const double batch = seconds([&] { solver->solve(sources, options); });
-  return {static_cast<double>(mesh.vertices()), build, first, adaptive, localized, batch / 64, peak};
+  const double batch_alone = seconds([&] { solver->solve(sources, alone); });
+  return {static_cast<double>(mesh.vertices()),
+          build,
+          first,
+          adaptive,
+          localized,
+          coordinates,
+          batch / 64,
+          batch_alone / 64,
+          peak};
 }
 
 }  // namespace
 
 Table mesh_scaling(const Settings& settings) {
-  Table table({"vertices", "graph s", "first map s", "further adaptive s", "further localized s", "batch of 64, s each",
-               "peak MB"});
+  Table table({"vertices", "graph s", "first map s", "further adaptive s", "further localized s", "u and v alone s",
+               "batch of 64, s each", "batch of u and v alone, s each", "peak MB"});
   for (Index n : sizes(settings, 600, {10000, 40000, 160000})) {
-    const std::vector<double> numbers = in_own_process(7, [&] { return measure(n, settings); });
+    const std::vector<double> numbers = in_own_process(9, [&] { return measure(n, settings); });
     std::vector<Cell> row{static_cast<Index>(numbers[0])};
     row.insert(row.end(), numbers.begin() + 1, numbers.end());
     table.add(row);

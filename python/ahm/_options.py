@@ -45,6 +45,7 @@ CHECKS: Dict[str, Callable[[Any, str], Any]] = {
     "tolerance": _tolerance,
     "frames": arguments.flag,
     "spread": arguments.flag,
+    "distances": arguments.flag,
     "k": _whole(1),
     "margin": _positive,
     "delaunay": arguments.flag,

@@ -165,7 +165,7 @@ class _Heat(_On):
         if strategy not in _STRATEGIES:
             raise NotImplementedError(f"strategy: {strategy!r} is not there; 'AffineLocal' and 'AffineAdaptive' are")
         rows = self._rows(v_inds, self._many)
-        return [m.uv for m in self.solver.log_maps(rows, variant=_STRATEGIES[strategy])]
+        return [m.uv for m in self.solver.log_maps(rows, variant=_STRATEGIES[strategy], distances=False)]
 
     def compute_signed_distance(self, *given: Any, **options: Any) -> np.ndarray:
         raise NotImplementedError("compute_signed_distance is not there; `ahm.stroke` gives signed distances along a curve")

@@ -68,6 +68,7 @@ MapOptions map_options(const py::dict& options) {
   if (unsigned threads = 0; read(options, "threads", threads)) o.threads = threads;
   read(options, "frames", o.frames);
   read(options, "spread", o.spread);
+  read(options, "distances", o.distances);
   return o;
 }
 

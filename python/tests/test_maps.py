@@ -128,6 +128,19 @@ def test_sampling_and_inverting_undo_each_other(flat_surfaces):
         assert not m.inverse([[99.0, 0]]).valid.any()
 
 
+def test_coordinates_alone_are_the_same(sphere):
+    solver = ahm.LogMapSolver(sphere)
+    whole, alone = (solver.log_maps([0, 9], distances=wanted) for wanted in (True, False))
+    for one, other in zip(whole, alone):
+        assert (one.uv == other.uv).all() and (one.status == other.status).all()
+        assert other.distance == pytest.approx(np.maximum(
+            np.hypot(*other.uv.T), np.linalg.norm(sphere.points - sphere.points[other.source.row], axis=1)), abs=1e-12)
+        assert np.isnan(other.spread).all()
+    assert (whole[0].distance > np.hypot(*whole[0].uv.T) + 1).any()
+    with pytest.raises(ahm.InvalidArgument, match="spread=True"):
+        alone[0].quality
+
+
 def test_quality_and_spread_tell_of_the_cut_locus(sphere):
     m = ahm.log_map(sphere, 0)
     opposite = int(np.argmin(sphere.points @ sphere.points[0]))

@@ -48,7 +48,7 @@ std::vector<double> MapMaker::coordinates_of_whole(std::span<const Vertex> sourc
     if (solver_ != nullptr) {
       std::vector<Source> starts;
       for (Vertex vertex : sources.subspan(first, count)) starts.push_back(Source::at_vertex(vertex));
-      std::ranges::move(solver_->solve(starts, {.spread = false}), maps.begin());
+      std::ranges::move(solver_->solve(starts, {.distances = false}), maps.begin());
     } else {
       detail::parallel_chunks(static_cast<Offset>(count), 1, threads_, [&](Offset k, Offset) {
         const std::size_t s = first + static_cast<std::size_t>(k);

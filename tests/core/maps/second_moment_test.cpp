@@ -142,6 +142,35 @@ TEST(SecondMoment, MayBeLeftOut) {
   EXPECT_EQ(LogMapSolver(long_tube).solve(Source::at_vertex(Vertex{7})).strategy(), Strategy::march);
 }
 
+TEST(Distances, MayBeLeftOut) {
+  CsrGraphData delaunay = tube(900, 5);
+  delaunay.is_delaunay = true;
+  for (const CsrGraphData& data : {delaunay, sphere_graph(900), bent_lattice(10)}) {
+    const CsrGraph graph(data);
+    for (const Strategy strategy : {Strategy::automatic, Strategy::march})
+      for (const int order : {1, 2}) {
+        const LogMapSolver solver(graph, {.order = order, .strategy = strategy});
+        const Source source = Source::at_vertex(Vertex{7});
+        const LogMap all = solver.solve(source, {.frames = true});
+        const LogMap map = solver.solve(source, {.frames = true, .distances = false});
+        ASSERT_EQ(map.strategy(), all.strategy());
+        ASSERT_TRUE(std::ranges::equal(map.coordinates(), all.coordinates()));
+        ASSERT_TRUE(std::ranges::equal(map.status(), all.status()));
+        ASSERT_TRUE(std::ranges::equal(map.frames(), all.frames()));
+        ASSERT_TRUE(std::ranges::equal(map.error_estimate(), all.error_estimate()));
+        for (Index i = 0; i < graph.size(); ++i) ASSERT_EQ(map.distance(Vertex(i)), length(map.coordinates(Vertex(i))));
+        EXPECT_TRUE(map.spread().empty() && map.directions().empty());
+        EXPECT_THROW(map_quality(graph, map), InvalidArgument);
+      }
+  }
+  const CsrGraph graph(sphere_graph(900));
+  const LogMap near = LogMapSolver(graph).solve(Source::at_vertex(Vertex{7}), {.radius = 1, .distances = false});
+  EXPECT_GT(near.count(Status::beyond_radius), 300);
+  for (Index i = 0; i < graph.size(); ++i)
+    ASSERT_TRUE(near.status(Vertex(i)) == Status::ok ? near.distance(Vertex(i)) <= 1
+                                                     : std::isnan(near.coordinates(Vertex(i))[0]));
+}
+
 TEST(Distances, AreZeroAtTheSourceInEveryOrder) {
   const CsrGraph graph(sphere_graph(500));
   for (int order : {1, 2})

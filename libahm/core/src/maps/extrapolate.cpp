@@ -146,7 +146,7 @@ ExtrapolatedRow extrapolate_row(const std::array<TimedRow, 3>& rows, const Extra
 }
 
 LogMap extrapolate(const TangentGraph& graph, const ComponentScales& scales, double t_coef, const DiffusionTimes& times,
-                   const std::vector<const LogMap*>& maps, double radius, bool spread) {
+                   const std::vector<const LogMap*>& maps, double radius, bool with_distances, bool with_spread) {
   const std::array<const LogMap*, 3> of_times{maps.front(), maps[maps.size() - 2], maps.back()};
   const LogMap &first = *of_times[0], &middle = *of_times[1];
   const auto n = static_cast<std::size_t>(first.size()), d = static_cast<std::size_t>(first.dimension());
@@ -171,13 +171,16 @@ LogMap extrapolate(const TangentGraph& graph, const ComponentScales& scales, dou
   }
   const bool marched =
       std::any_of(maps.begin(), maps.end(), [](auto* map) { return map->strategy() == Strategy::march; });
-  MapExtras extras{first.march(),
-                   std::move(distances),
-                   spread ? std::vector<double>(first.spread().begin(), first.spread().end()) : std::vector<double>(),
-                   {first.directions().begin(), first.directions().end()},
-                   {first.nearest().begin(), first.nearest().end()},
-                   {middle.frames().begin(), middle.frames().end()},
-                   std::move(error)};
+  MapExtras extras;
+  extras.march = first.march();
+  extras.frames.assign(middle.frames().begin(), middle.frames().end());
+  extras.error_estimate = std::move(error);
+  if (with_distances) {
+    extras.distances = std::move(distances);
+    extras.directions.assign(first.directions().begin(), first.directions().end());
+    extras.nearest.assign(first.nearest().begin(), first.nearest().end());
+  }
+  if (with_spread) extras.spread.assign(first.spread().begin(), first.spread().end());
   extras.radius = radius;
   for (std::size_t k = 1; k < maps.size(); ++k) extras.march += maps[k]->march();
   return LogMap(first.dimension(), first.variant(), marched ? Strategy::march : Strategy::global, first.source(),

@@ -93,8 +93,9 @@ ExtrapolatedRow extrapolate_row(const std::array<TimedRow, 3>& rows, const Extra
 /// a is about 1 where phi is smooth in sqrt(tau), and g small where the variance of the ways of heat is linear in it; where it is not (cut loci, and with three times beside them), the shortest
 /// time is kept. A vertex that
 /// lacks coordinates at any of the times keeps that status.
-/// @param spread  whether the result has it; distances of heat need that of the first and the last map all the same
+/// @param with_distances, with_spread  whether the result has them; the maps have distances, and those of heat need the spread of
+/// the first and the last map all the same
 LogMap extrapolate(const TangentGraph& graph, const ComponentScales& scales, double t_coef, const DiffusionTimes& times,
-                   const std::vector<const LogMap*>& maps, double radius, bool spread);
+                   const std::vector<const LogMap*>& maps, double radius, bool with_distances, bool with_spread);
 
 }  // namespace ahm

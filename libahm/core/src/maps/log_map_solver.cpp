@@ -40,7 +40,7 @@ std::size_t sources_per_block(Index n) {
 struct MapSettings {
   Variant variant;
   double radius;
-  bool frames, spread;
+  bool frames, spread, distances;
   Progress progress;
   bool tells_beyond = false;  ///< the radius, where a solve came farther
 };
@@ -48,8 +48,8 @@ struct MapSettings {
 MapSettings settings_of(const MapOptions& map, const HeatOptions& options) {
   if (!(map.radius > 0))
     throw InvalidArgument("radius is " + detail::number(map.radius) + "; it must be > 0 (infinity: the whole graph)");
-  return {map.variant.value_or(options.variant), map.radius, map.frames, map.spread,
-          map.progress.value_or(options.progress)};
+  return {map.variant.value_or(options.variant), map.radius,    map.frames,
+          map.spread && map.distances,           map.distances, map.progress.value_or(options.progress)};
 }
 
 /// What a solve knows of a vertex besides its coordinates; world units.
@@ -69,7 +69,7 @@ struct Unfolded final : KnownDistances {
 
 Unfolded unfolded_from(const TangentGraph& graph, const std::shared_ptr<const UnfoldingFront::Stars>& stars,
                        const Source& source, const MapSettings& map) {
-  if (!unfolds(graph, source)) return {};
+  if (!map.distances || !unfolds(graph, source)) return {};
   UnfoldingFront front(graph, stars, map.spread && graph.is_delaunay());
   front.add(source);
   run_front(front, graph, map.radius, map.progress.stop);
@@ -218,7 +218,7 @@ class GlobalValues {
 };
 
 /// The map that `values` tell of.
-/// @param unfolded  empty: distances are those of heat
+/// @param unfolded  empty: distances are those of heat, if any are wanted
 template <class Values>
 LogMap LogMapSolver::Impl::map_of(const Values& values, Strategy how, const MarchStatistics& march,
                                   const Source& source, const Unfolded& unfolded, const MapSettings& map,
@@ -227,9 +227,12 @@ LogMap LogMapSolver::Impl::map_of(const Values& values, Strategy how, const Marc
   const SourceComponents components(source, scales.components.of_vertex);
   std::vector<double> coordinates(n * d);
   std::vector<Status> status(n);
-  MapExtras extras{
-      march, std::vector<double>(n), std::vector<double>(map.spread ? n : 0), unfolded.directions, unfolded.nearest, {},
-      {}};
+  MapExtras extras;
+  extras.march = march;
+  if (map.distances) extras.distances.resize(n);
+  if (map.spread) extras.spread.resize(n);
+  extras.directions = unfolded.directions;
+  extras.nearest = unfolded.nearest;
   extras.radius = map.radius;
   if (map.frames) extras.frames.resize(n * d * d);
   detail::for_each_index(n, threads, [&](std::size_t i) {
@@ -240,22 +243,23 @@ LogMap LogMapSolver::Impl::map_of(const Values& values, Strategy how, const Marc
     status[i] = !components.hold(vertex)     ? Status::disconnected
                 : found.status == Status::ok ? row.status
                                              : found.status;
-    extras.distances[i] = unfolded.distances.empty() ? row.distance : unfolded.distances[i];
+    if (map.distances) extras.distances[i] = unfolded.distances.empty() ? row.distance : unfolded.distances[i];
     if (!extras.spread.empty()) extras.spread[i] = row.spread;
     if (map.frames) values.axes(vertex, extras.frames.data() + i * d * d);
   });
-  if (unfolded.distances.empty()) place_source(source, extras.distances);
+  if (map.distances && unfolded.distances.empty()) place_source(source, extras.distances);
   for (const auto& [vertex, known] : SourceVertices(source, graph.dimension())) {
     if (known.vector.empty()) continue;
     std::copy(known.vector.begin(), known.vector.end(), coordinates.begin() + static_cast<std::ptrdiff_t>(vertex * d));
     if (!extras.spread.empty()) extras.spread[vertex] = 0;
   }
   for (std::size_t i = 0; i < n; ++i) {
-    if (status[i] == Status::ok && extras.distances[i] > map.radius && !map.tells_beyond)
-      status[i] = Status::beyond_radius;
+    const std::span phi = std::span(coordinates).subspan(i * d, d);
+    const double distance = map.distances ? extras.distances[i] : length(phi);
+    if (status[i] == Status::ok && distance > map.radius && !map.tells_beyond) status[i] = Status::beyond_radius;
     if (status[i] == Status::ok) continue;
-    std::fill_n(coordinates.begin() + static_cast<std::ptrdiff_t>(i * d), d, NAN);
-    extras.distances[i] = NAN;
+    std::ranges::fill(phi, NAN);
+    if (map.distances) extras.distances[i] = NAN;
     if (!extras.spread.empty()) extras.spread[i] = NAN;
     if (!extras.directions.empty()) extras.directions[2 * i] = extras.directions[2 * i + 1] = NAN;
   }
@@ -303,7 +307,7 @@ std::vector<LogMap> LogMapSolver::Impl::solve_block(std::size_t time, std::span<
   }
   AffineHeat heat(graph, operators(time), map.variant, right_hand_side_of(sources, graph, operators(time), map.variant),
                   threads);
-  const bool lengths = std::any_of(sources.begin(), sources.end(), [&](auto& one) { return !unfolds(graph, one); });
+  const bool lengths = map.distances && std::ranges::any_of(sources, [&](auto& one) { return !unfolds(graph, one); });
   const bool squares = lengths || map.spread;
   const auto solve = [&] {
     heat.diffuse();
@@ -334,7 +338,7 @@ void LogMapSolver::Impl::check_memory() const {
 std::vector<LogMap> LogMapSolver::Impl::solve_block(std::span<const Source> sources, const MapSettings& map,
                                                     unsigned threads) const {
   MapSettings wider = map;
-  wider.tells_beyond = true;
+  wider.tells_beyond = wider.distances = true;
   wider.radius = diffusion_times.radius_of_each(map.radius, scales.edge_length, graph.length_unit());
   std::vector<Unfolded> unfolded;
   if (times.size() == 1) return solve_block(0, sources, unfolded, map, threads);
@@ -349,7 +353,8 @@ std::vector<LogMap> LogMapSolver::Impl::solve_block(std::span<const Source> sour
   for (std::size_t s = 0; s < sources.size(); ++s) {
     std::vector<const LogMap*> maps;
     for (const auto& at_time : at_times) maps.push_back(&at_time[s]);
-    result.push_back(extrapolate(graph, scales, options.t_coef, diffusion_times, maps, map.radius, map.spread));
+    result.push_back(
+        extrapolate(graph, scales, options.t_coef, diffusion_times, maps, map.radius, map.distances, map.spread));
   }
   return result;
 }
