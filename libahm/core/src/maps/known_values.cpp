@@ -30,7 +30,7 @@ void KnownValues::take_heat(Index number, double lambda, std::int32_t exponent) 
 void KnownValues::take_values(Index number, Index place, const AffineHeat& heat, std::size_t source,
                               std::int32_t frame_exponent) {
   double* row = rows_[number];
-  row[1] = heat.square_at(source, place);
+  row[1] = heat.has_squares() ? heat.square_at(source, place) : 0;
   heat.unknown_at(source, place, row + 3);
   if (heat.has_lengths()) {
     row[2] = heat.length_at(source, place);

@@ -52,6 +52,11 @@ MapSettings settings_of(const MapOptions& map, const HeatOptions& options) {
           map.spread && map.distances,           map.distances, map.progress.value_or(options.progress)};
 }
 
+/// Of a march: distances tell where one ends.
+MarchGoal goal_of(const MapSettings& map) {
+  return map.distances || std::isfinite(map.radius) ? MarchGoal::map : MarchGoal::coordinates;
+}
+
 /// What a solve knows of a vertex besides its coordinates; world units.
 struct Found {
   Status status;
@@ -129,7 +134,8 @@ struct LogMapSolver::Impl {
 
   March front(std::size_t time, const MapSettings& map, const Unfolded* unfolded, unsigned threads) const {
     const KnownDistances* known = unfolded && !unfolded->distances.empty() ? unfolded : nullptr;
-    return March(graph, options, *times[time].of_vertices, map.variant, {map.radius, known}, threads, map.progress);
+    return March(graph, options, *times[time].of_vertices, map.variant, {map.radius, known}, threads, map.progress,
+                 nullptr, nullptr, goal_of(map));
   }
   template <class Values>
   LogMap map_of(const Values& values, Strategy how, const MarchStatistics& march, const Source& source,
@@ -277,8 +283,10 @@ LogMap LogMapSolver::Impl::finished(AffineHeat& heat, std::size_t time, std::siz
                                     const Unfolded& unfolded, const MapSettings& map, unsigned threads) const {
   LogMap result = map_of(GlobalValues(heat, s), Strategy::global, {}, source, unfolded, map, threads);
   if (options.strategy != Strategy::automatic || result.count(Status::unreached) == 0) return result;
-  if (!heat.has_squares()) heat.solve_squares();
-  if (!heat.has_lengths() && !graph.is_delaunay()) heat.solve_lengths();
+  if (goal_of(map) == MarchGoal::map) {
+    if (!heat.has_squares()) heat.solve_squares();
+    if (!heat.has_lengths() && !graph.is_delaunay()) heat.solve_lengths();
+  }
   March on = front(time, map, &unfolded, threads);
   on.run_on(heat, s, source);
   return marched(on, source, unfolded, map, threads);

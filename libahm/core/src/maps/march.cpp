@@ -37,7 +37,7 @@ March::March(const TangentGraph& graph, const HeatOptions& options, const MarchS
       d_(static_cast<std::size_t>(graph.dimension())),
       numbers_(graph.size()),
       ways_(1),
-      known_(graph, system_of(variant), goal == MarchGoal::map),
+      known_(graph, system_of(variant), goal != MarchGoal::distances),
       found_(d_ + 2),
       nothing_(d_, NAN) {
   options_.progress = {};
@@ -180,10 +180,10 @@ void March::solve_values(Solve& solve) {
     solve.exponents.frame = static_cast<std::int32_t>(team_.greatest(known_.frame_exponent_for(numbers_behind(solve))));
     add_values_behind(solve, heat.right_hand_side(0));
   }
-  if (goal_ == MarchGoal::map) heat.diffuse_frames();
+  if (goal_ != MarchGoal::distances) heat.diffuse_frames();
   heat.solve();
-  heat.solve_squares();
-  if (!graph_.is_delaunay()) heat.solve_lengths();
+  if (goal_ != MarchGoal::coordinates) heat.solve_squares();
+  if (goal_ != MarchGoal::coordinates && !graph_.is_delaunay()) heat.solve_lengths();
   for (std::size_t k = 0; k < solve.near.size(); ++k)
     take_values(solve.band.vertices[solve.near[k]], solve.numbers[k], solve.near[k], heat, 0, solve.exponents.frame);
 }
@@ -270,7 +270,7 @@ void March::take_values(Index vertex, Index number, Index place, const AffineHea
                         std::int32_t frame_exponent) {
   known_.take_values(number, place, heat, s, frame_exponent);
   const std::span phi(found_[number], d_);
-  const bool has_frames = goal_ == MarchGoal::map;
+  const bool has_frames = goal_ != MarchGoal::distances;
   if (has_frames)
     heat.coordinates_at(s, place, phi.data());
   else

@@ -75,6 +75,7 @@ struct MarchReach {
 /// What a march looks for.
 enum class MarchGoal {
   map,
+  coordinates,  ///< of a map, without what distances and spread need; the radius must be infinite
   distances,  ///< alone, without frames: coordinates are those of z in the frame of each vertex; the variant must be localized
 };
 

@@ -29,8 +29,8 @@ struct MapOptions {
   std::optional<unsigned> threads = {};
   bool frames = false;  ///< keep the transported frames
   bool spread = true;   ///< find and keep `LogMap::spread`; where distances are unfolded it is a fifth of the work
-  /// Find `LogMap::distance`. Without, a map is coordinates alone, in about half the time: its distance is |phi|, and it has no
-  /// spread (and so no quality).
+  /// Find `LogMap::distance`. Without, a map is coordinates alone, from factors in about half the time: its distance is |phi|, and it
+  /// has no spread (and so no quality).
   bool distances = true;
   std::optional<Progress> progress = {};
 };
