@@ -5,6 +5,7 @@
 
 #include "ahm/util/component_lengths.hpp"
 #include "ahm/util/parallel.hpp"
+#include "ahm/util/unset_vector.hpp"
 
 namespace ahm::trimesh {
 namespace {
@@ -21,25 +22,33 @@ constexpr double least_conductance = 1e-3;
 
 class Rows {
  public:
-  Rows(const IntrinsicTriangulation& triangulation, const VertexFrames& frames, bool clamp)
-      : triangulation_(triangulation), edges_(triangulation.half_edges()), frames_(frames), clamp_(clamp) {
+  Rows(const IntrinsicTriangulation& triangulation, const VertexFrames& frames, bool clamp, unsigned threads)
+      : triangulation_(triangulation),
+        edges_(triangulation.half_edges()),
+        frames_(frames),
+        clamp_(clamp),
+        half_cotangents_(static_cast<std::size_t>(edges_.size())),
+        units_(frames.angle.size()) {
+    detail::for_each_index(half_cotangents_.size(), threads, [&](std::size_t h) {
+      half_cotangents_[h] = 0.5 * triangulation_.cotangent(static_cast<Half>(h));
+    });
+    detail::for_each_index(units_.size(), threads, [&](std::size_t e) { units_[e] = unit(frames_.angle[e]); });
     if (clamp) find_slivers();
   }
 
   /// (cot alpha + cot beta) / 2, one of them on the boundary.
   double cotangents(Half side) const {
     const Half t = edges_.twin[side];
-    return 0.5 *
-           (t >= 0 ? triangulation_.cotangent(side) + triangulation_.cotangent(t) : triangulation_.cotangent(side));
+    return t >= 0 ? half_cotangents_[side] + half_cotangents_[t] : half_cotangents_[side];
   }
 
   /// What a face gives to the weight of its side: half the cotangent of the angle across, but in a sliver.
   double from_face(Half side) const {
     const Half base = base_.empty() ? -1 : base_[static_cast<std::size_t>(side / 3)];
-    if (base < 0) return 0.5 * triangulation_.cotangent(side);
+    if (base < 0) return half_cotangents_[side];
     if (side == base) return 0;
     const Half third = detail::next(side) == base ? detail::previous(side) : detail::next(side);
-    return std::max(0.5 / triangulation_.cotangent(third), least_conductance);
+    return std::max(0.25 / half_cotangents_[third], least_conductance);
   }
 
   /// w_ij; no less than what counts, so that squares and rectangles have no diagonal in the operators.
@@ -73,8 +82,7 @@ class Rows {
     for_each(i, [&](Half side, bool from_tail, bool forward) {
       g.neighbors[at] = from_tail ? edges_.head(side) : edges_.tail[side];
       g.weights[at] = weight(side);
-      const Vec2 u_ij = unit(frames_.angle[edges_.directed(side, from_tail)]);
-      const Vec2 u_ji = unit(frames_.angle[edges_.directed(side, !from_tail)]);
+      const Vec2 u_ij = units_[edges_.directed(side, from_tail)], u_ji = units_[edges_.directed(side, !from_tail)];
       const double length = triangulation_.length(side);
       g.logs[2 * at] = length * u_ij[0];
       g.logs[2 * at + 1] = length * u_ij[1];
@@ -124,8 +132,7 @@ class Rows {
     while (!outer.empty()) {
       const Half h = outer.back(), beyond = edges_.twin[h];
       outer.pop_back();
-      if (base_[h / 3] >= 0 || !((beyond >= 0 ? from_face(beyond) : 0) + 0.5 * triangulation_.cotangent(h) < 0))
-        continue;
+      if (base_[h / 3] >= 0 || !((beyond >= 0 ? from_face(beyond) : 0) + half_cotangents_[h] < 0)) continue;
       base_[h / 3] = h;
       for (const Half side : {detail::next(h), detail::previous(h)})
         if (edges_.twin[side] >= 0) outer.push_back(edges_.twin[side]);
@@ -136,7 +143,9 @@ class Rows {
   HalfEdges edges_;
   const VertexFrames& frames_;
   bool clamp_;
-  std::vector<Half> base_;  ///< of the faces that are slivers: the outer side; -1: of the others
+  detail::UnsetVector<double> half_cotangents_;  ///< of the angles across the sides
+  detail::UnsetVector<Vec2> units_;              ///< directions of directed edges
+  std::vector<Half> base_;                       ///< of the faces that are slivers: the outer side; -1: of the others
 };
 
 /// Vertices whose faces have no area still need a mass: where it is below 1e-14 of the square of their longest edge, it
@@ -161,7 +170,7 @@ CsrGraphData mesh_edges(const TriangleMesh& mesh, const IntrinsicTriangulation& 
                         const VertexFrames& frames, bool clamp, unsigned threads, MeshDetails& report) {
   const auto n = static_cast<std::size_t>(mesh.vertex_count());
   const HalfEdges edges = triangulation.half_edges();
-  const Rows rows(triangulation, frames, clamp);
+  const Rows rows(triangulation, frames, clamp, threads);
   CsrGraphData g;
   g.kind = mesh.report().orientable ? TransportKind::rotation2 : TransportKind::block;
   g.length_unit = mesh.length_unit();

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "ahm/util/parallel.hpp"
+#include "ahm/util/unset_vector.hpp"
 
 namespace ahm::trimesh {
 namespace {
@@ -40,11 +41,17 @@ constexpr double roundings = 8;
 /// Total uncertainties below this cannot be told from curvature, and need not be: the error they make is as small.
 constexpr double least_uncertainty = 1e-10;
 
+/// Angles of the triangulation's faces, per corner.
+using CornerAngles = detail::UnsetVector<double>;
+
 /// The corners of the triangulation about one vertex, and what their angles are in its tangent space.
 class Fan {
  public:
-  Fan(const HalfEdges& edges, const IntrinsicTriangulation& triangulation, Corner start)
-      : edges_(edges), triangulation_(triangulation), start_(edges.rightmost(start)) {}
+  /// @param angles  filled at these corners
+  Fan(const HalfEdges& edges, const IntrinsicTriangulation& triangulation, Corner start, CornerAngles& angles)
+      : edges_(edges), triangulation_(triangulation), start_(edges.rightmost(start)), angles_(angles) {
+    closed_ = for_each([&](Corner c) { angles_[c.half] = triangulation_.angle(c.half); });
+  }
 
   /// Calls visit(corner) counter-clockwise; returns whether the fan is closed.
   template <class Visit>
@@ -60,35 +67,37 @@ class Fan {
 
   /// What all angles are multiplied by, and those of single corners instead, which are appended.
   double find_scale(double rounding, std::vector<std::pair<Half, double>>& mended) const {
+    if (!closed_) return 1.0;
     double sum = 0, uncertainty = 0;
-    const bool closed = for_each([&](Corner c) {
-      sum += triangulation_.angle(c.half);
+    for_each([&](Corner c) {
+      sum += angles_[c.half];
       uncertainty += uncertain(c, rounding);
     });
-    if (!closed) return 1.0;
     const double lack = 2 * pi - sum;
     if (!(uncertainty > least_uncertainty) || !(std::abs(lack) <= uncertainty)) return 2 * pi / sum;
     for_each([&](Corner c) {
       if (const double share = uncertain(c, rounding) / uncertainty * lack; share != 0)
-        mended.emplace_back(c.half, 1 + share / triangulation_.angle(c.half));
+        mended.emplace_back(c.half, 1 + share / angles_[c.half]);
     });
     return 1.0;
   }
 
  private:
   double uncertain(Corner c, double rounding) const {
-    if (!(triangulation_.angle(c.half) > 0)) return 0;
+    if (!(angles_[c.half] > 0)) return 0;
     return roundings * rounding * (1 / triangulation_.length(c.half) + 1 / triangulation_.length(previous(c.half)));
   }
 
   const HalfEdges& edges_;
   const IntrinsicTriangulation& triangulation_;
   Corner start_;
+  CornerAngles& angles_;
+  bool closed_ = false;
 };
 
 /// Sets the angles of the edges of one vertex.
-void set_angles(const HalfEdges& edges, const IntrinsicTriangulation& triangulation, const Reference& reference,
-                Index v, VertexFrames& frames) {
+void set_angles(const HalfEdges& edges, const CornerAngles& angles, const Reference& reference, Index v,
+                VertexFrames& frames) {
   const Corner start = frames.start[v];
   auto store = [&](Half side, bool from_tail, double angle, bool forward) {
     const std::size_t edge = edges.directed(side, from_tail);
@@ -99,7 +108,7 @@ void set_angles(const HalfEdges& edges, const IntrinsicTriangulation& triangulat
   double angle = closed ? -reference.angle * frames.corner_scale(start.half, v) : 0.0;
   for (Corner c = start;;) {
     store(edges.right(c), c.forward, angle, c.forward);
-    angle += frames.corner_scale(c.half, v) * triangulation.angle(c.half);
+    angle += frames.corner_scale(c.half, v) * angles[c.half];
     const Corner left = edges.turn_left(c);
     if (left.half < 0) store(edges.left(c), !c.forward, angle, c.forward);
     if (left.half < 0 || left == start) return;
@@ -117,58 +126,66 @@ Vec3 axis_across(const Vec3& n) {
   return 1 / norm(across) * across;
 }
 
-/// The fan of faces about a vertex of the input mesh, in space.
-class SpatialFan {
- public:
-  SpatialFan(const TriangleMesh& mesh, const HalfEdges& edges, Index v)
-      : mesh_(mesh), edges_(edges), start_(reference_corner(mesh, edges, v)), center_(mesh.position(Vertex(v))) {}
+/// A face about a vertex of the input mesh, in space.
+struct SpatialFace {
+  Vec3 first, second;  ///< sides from the vertex, counter-clockwise
+  Vec3 normal;         ///< their cross product
+  double area;         ///< its length
+  double angle;        ///< at the vertex
+};
 
-  /// Calls visit(first side, second side), as vectors, for each face counter-clockwise; returns whether the fan is
-  /// closed.
-  template <class Visit>
-  bool for_each_face(const Visit& visit) const {
-    for (Corner c = start_;;) {
-      const Vec3 a = mesh_.position(Vertex(edges_.head(c.half))) - center_,
-                 b = mesh_.position(Vertex(edges_.tail[previous(c.half)])) - center_;
-      c.forward ? visit(a, b) : visit(b, a);
-      c = edges_.turn_left(c);
-      if (c.half < 0 || c == start_) return c.half >= 0;
+/// The faces about a vertex, counter-clockwise.
+struct SpatialFan {
+  std::vector<SpatialFace> faces;
+  bool is_closed = false;
+
+  void look_around(const TriangleMesh& mesh, const HalfEdges& edges, Index v) {
+    faces.clear();
+    const Corner start = reference_corner(mesh, edges, v);
+    const Vec3& center = mesh.position(Vertex(v));
+    for (Corner c = start;;) {
+      const Vec3 a = mesh.position(Vertex(edges.head(c.half))) - center,
+                 b = mesh.position(Vertex(edges.tail[previous(c.half)])) - center;
+      add(c.forward ? a : b, c.forward ? b : a);
+      c = edges.turn_left(c);
+      is_closed = c.half >= 0;
+      if (!is_closed || c == start) return;
     }
   }
 
  private:
-  const TriangleMesh& mesh_;
-  const HalfEdges& edges_;
-  Corner start_;
-  Vec3 center_;
+  void add(const Vec3& a, const Vec3& b) {
+    const Vec3 normal = cross(a, b);
+    const double area = norm(normal);
+    faces.push_back({a, b, normal, area, std::atan2(area, dot(a, b))});
+  }
 };
 
 /// The mean of the face normals weighted by angle: of faces whose normals rounding leaves alone or, where there are none, of
 /// all. Zero where they cancel.
 Vec3 mean_normal(const SpatialFan& fan, double rounding) {
   Vec3 sum{0, 0, 0}, of_all{0, 0, 0};
-  fan.for_each_face([&](const Vec3& a, const Vec3& b) {
-    const Vec3 normal = cross(a, b);
-    const double area = norm(normal), longest = std::max({norm(a), norm(b), norm(b - a)});
-    if (!(area > 0)) return;
-    const Vec3 weighted = std::atan2(area, dot(a, b)) / area * normal;
+  for (const SpatialFace& face : fan.faces) {
+    if (!(face.area > 0)) continue;
+    const double longest = std::max({norm(face.first), norm(face.second), norm(face.second - face.first)});
+    const Vec3 weighted = face.angle / face.area * face.normal;
     of_all = of_all + weighted;
-    if (rounding * longest <= certain_normal * area) sum = sum + weighted;
-  });
+    if (rounding * longest <= certain_normal * face.area) sum = sum + weighted;
+  }
   return norm(sum) > 1e-12 ? sum : of_all;
 }
 
 /// The normal is the mean of the face normals; x makes the projected edges lie as close as possible to where the tangent
 /// space has them.
-Frame frame_in_space(const TriangleMesh& mesh, const HalfEdges& edges, Index v) {
-  const SpatialFan fan(mesh, edges, v);
+/// @param fan  of the vertex
+Frame frame_in_space(const TriangleMesh& mesh, const SpatialFan& fan, Index v) {
   const Vec3 sum = mean_normal(fan, mesh.rounding(Vertex(v)));
   Vec3 reference{0, 0, 0};
   double angle_sum = 0;
-  const bool closed = fan.for_each_face([&](const Vec3& a, const Vec3& b) {
-    if (angle_sum == 0) reference = a;
-    angle_sum += std::atan2(norm(cross(a, b)), dot(a, b));
-  });
+  for (const SpatialFace& face : fan.faces) {
+    if (angle_sum == 0) reference = face.first;
+    angle_sum += face.angle;
+  }
   // Where the faces cancel or the reference edge stands on the plane, any axes will do.
   const double length = norm(sum), reach = norm(reference);
   const Vec3 normal = length > 1e-12 ? 1 / length * sum
@@ -178,19 +195,19 @@ Frame frame_in_space(const TriangleMesh& mesh, const HalfEdges& edges, Index v) 
   x = norm(x) > 1e-12 * reach ? 1 / norm(x) * x : axis_across(normal);
   const Vec3 y = cross(normal, x);
 
-  const double scale = closed && angle_sum > 0 ? 2 * pi / angle_sum : 1.0;
+  const double scale = fan.is_closed && angle_sum > 0 ? 2 * pi / angle_sum : 1.0;
   double angle = 0;
   Vec2 fit{};
   auto add = [&](const Vec3& side, double weight) {
     const Vec2 p{dot(side, x), dot(side, y)};
     if (norm(p) > 0) fit = fit + weight / norm(p) * product(p, unit(-angle));
   };
-  fan.for_each_face([&](const Vec3& a, const Vec3& b) {
-    const double corner = scale * std::atan2(norm(cross(a, b)), dot(a, b));
-    add(a, corner);
+  for (const SpatialFace& face : fan.faces) {
+    const double corner = scale * face.angle;
+    add(face.first, corner);
     angle += corner;
-    add(b, corner);
-  });
+    add(face.second, corner);
+  }
   fit = norm(fit) > 1e-12 ? normalized(fit) : Vec2{1, 0};
   const Vec3 fitted = fit[0] * x + fit[1] * y;
   return {mesh.original_position(Vertex(v)), fitted, cross(normal, fitted), normal};
@@ -218,10 +235,11 @@ VertexFrames find_frames(const TriangleMesh& mesh, const IntrinsicTriangulation&
   frames.angle.assign(directed, 0.0);
   if (!edges.mirrored.empty()) frames.sense.assign(directed, 0);
   std::vector<Reference> references(n);
+  CornerAngles angles(static_cast<std::size_t>(edges.size()));
   std::mutex mending;
   detail::for_each_index(n, threads, [&](std::size_t v) {
     references[v] = find_reference(mesh, input, triangulation, static_cast<Index>(v));
-    const Fan fan(edges, triangulation, references[v].corner);
+    const Fan fan(edges, triangulation, references[v].corner, angles);
     std::vector<std::pair<Half, double>> mended;
     frames.start[v] = fan.start();
     frames.scale[v] = fan.find_scale(mesh.rounding(Vertex(static_cast<Index>(v))), mended);
@@ -230,9 +248,8 @@ VertexFrames find_frames(const TriangleMesh& mesh, const IntrinsicTriangulation&
     frames.mended.insert(frames.mended.end(), mended.begin(), mended.end());
   });
   std::sort(frames.mended.begin(), frames.mended.end());
-  detail::for_each_index(n, threads, [&](std::size_t v) {
-    set_angles(edges, triangulation, references[v], static_cast<Index>(v), frames);
-  });
+  detail::for_each_index(
+      n, threads, [&](std::size_t v) { set_angles(edges, angles, references[v], static_cast<Index>(v), frames); });
   return frames;
 }
 
@@ -241,8 +258,13 @@ std::vector<Frame> frames_in_space(const TriangleMesh& mesh, unsigned threads) {
   if (!mesh.has_positions()) return frames;
   frames.resize(mesh.vertex_count());
   const HalfEdges edges = mesh.topology().half_edges();
-  detail::for_each_index(frames.size(), threads,
-                         [&](std::size_t v) { frames[v] = frame_in_space(mesh, edges, static_cast<Index>(v)); });
+  detail::parallel_chunks(static_cast<Offset>(frames.size()), 1 << 12, threads, [&](Offset begin, Offset end) {
+    SpatialFan fan;
+    for (auto v = static_cast<Index>(begin); v < end; ++v) {
+      fan.look_around(mesh, edges, v);
+      frames[v] = frame_in_space(mesh, fan, v);
+    }
+  });
   return frames;
 }
 
