@@ -34,7 +34,7 @@ constexpr Advice advices[] = {
     {"collinear_faces", "remove them, or use method 'heat'"},
     {"diffusion_time_range", "give a t_coef near 1"},
     {"map_without_frames", "make it with frames=True"},
-    {"map_without_spread", "make it with spread=True"},
+    {"map_without_spread", "make it with spread=True and distances=True"},
     {"no_flat_triangles", "use method 'heat'"},
     {"non_finite", "drop such points with drop_non_finite=True"},
     {"non_manifold_edges", "repair them, or cut the mesh there with non_manifold='split'"},

@@ -172,6 +172,34 @@ TEST(SurfaceCurve, ItsRowsAreAsFarAsTheSurfaceIsLong) {
   }
 }
 
+// v is biased beside a bend, the distance is not.
+TEST(SurfaceCurve, ItsRowsKnowTheirDistanceFromACircle) {
+  const Mesh mesh = flat_square(61);
+  const auto check = [&](const Surface& surface, double most) {
+    const double edge = surface.graph().mean_edge_length() * surface.graph().length_unit(), radius = 10 * edge;
+    const Vec3 middle = surface.positions()[mesh.vertices() / 2];
+    std::vector<CurvePoint> given;
+    for (int k = 0; k < 48; ++k) {
+      const double a = 2 * std::numbers::pi * k / 48;
+      given.emplace_back(Vec3{middle[0] + radius * std::cos(a), middle[1] + radius * std::sin(a), 0});
+    }
+    const SurfaceCurve curve = draw_curve(surface, given, {.closed = true});
+    const RowLogMap rows = rows_from_curve(surface, LogMapSolver(surface.graph()).solve(curve.source), curve);
+    double sum = 0;
+    Index count = 0;
+    for (Index i = 0; i < mesh.vertices(); ++i) {
+      const Vec3& p = surface.positions()[i];
+      const double from_middle = std::hypot(p[0] - middle[0], p[1] - middle[1]);
+      if (std::max(std::abs(p[0] - middle[0]), std::abs(p[1] - middle[1])) > 2 * radius) continue;
+      sum += std::abs(rows.distance[i] - std::abs(from_middle - radius));
+      ++count;
+    }
+    EXPECT_LT(sum / count, most * edge);
+  };
+  check(trimesh::TriangleMeshSurface::build(mesh.positions, mesh.faces), 0.03);
+  check(pointcloud::PointCloudSurface::build(mesh.positions), 0.1);
+}
+
 TEST(SurfaceCurve, SaysWhatIsWrongWithACurve) {
   const Mesh band = moebius_mesh(80, 6);
   const auto surface = trimesh::TriangleMeshSurface::build(band.positions, band.faces);

@@ -210,6 +210,24 @@ TEST(Surface, TheClosestPointOnAnEdgeIsOfTheFirstOfItsFacesHoweverRoundingFalls)
   }
 }
 
+TEST(Surface, TheClosestPointOnASmallPartIsThatOfThePartAlone) {
+  const Mesh mesh = icosphere(2);
+  std::vector<Vec3> positions;
+  std::vector<Triangle> faces;
+  for (const double scale : {1.0, 1e-12}) {  // the large part first
+    const auto first = static_cast<Index>(positions.size());
+    for (const Vec3& p : mesh.positions) positions.push_back({scale * p[0], scale * p[1], scale * p[2]});
+    for (const auto& [a, b, c] : mesh.faces) faces.push_back({a + first, b + first, c + first});
+  }
+  const auto surface = TriangleMeshSurface::build(positions, faces);
+  for (std::size_t f = mesh.faces.size(); f < faces.size(); ++f) {
+    Vec3 p;
+    for (std::size_t a = 0; a < 3; ++a)
+      p[a] = 0.5 * positions[faces[f][0]][a] + 0.3 * positions[faces[f][1]][a] + 0.2 * positions[faces[f][2]][a];
+    ASSERT_EQ(std::get<FacePoint>(surface.closest_point(p).point).face, static_cast<Index>(f));
+  }
+}
+
 TEST(Surface, ATangentPointOfACloudCarriesItsOffset) {
   std::vector<Vec3> points;
   for (int x = 0; x < 20; ++x)

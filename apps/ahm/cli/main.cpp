@@ -1,9 +1,11 @@
 /// \file
 /// The program ahm: reads the command line, runs the command, turns exceptions into messages and exit statuses.
 
-#include <malloc.h>
 #include <sys/resource.h>
 #include <unistd.h>
+#if __has_include(<malloc.h>)
+#include <malloc.h>
+#endif
 
 #include <exception>
 #include <new>

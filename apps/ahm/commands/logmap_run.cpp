@@ -92,10 +92,11 @@ void map_from_source(const LogmapOptions& options, const Input& input, std::opti
   std::optional<LogMap> solved;
   std::optional<QualityFront> front;
   const auto solve = [&] { solved = maps->map(options.solve, input, options.source.spec, source, journal); };
+  const std::stop_token stop = journal.progress().stop;
   const auto unfold = [&] {
-    if (maps->solver) front.emplace(input.graph(), source.source, map_options(options.solve).radius);
+    if (maps->solver) front.emplace(input.graph(), source.source, map_options(options.solve).radius, stop);
   };
-  detail::run_both(options.solve.threads != 1, solve, unfold);
+  detail::run_both(detail::thread_count(options.solve.threads) > 1, solve, unfold);
   const LogMap& map = *solved;
   RowLogMap rows = input.surface().on_rows(map, options.solve.threads);
   const std::vector<double> quality =

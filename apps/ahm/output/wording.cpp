@@ -79,7 +79,9 @@ constexpr Sentence sentences[] = {
     {"normals_turned",
      "{0:.0f} given [normal points|normals point] to the other side than the majority around and [was|were] turned"},
     {"k_reduced", "k = {0:.0f} was reduced to {1:.0f}: the cloud has only {2:.0f} distinct [point|points]"},
-    {"k_raised", "noise of {1:.4g} across the surface: planes and edges were made of {0:.0f} neighbours per point"},
+    {"k_raised",
+     "noise of {1:.4g} across the surface, or sheets as near as that, which only given normals tell apart: planes and "
+     "edges were made of {0:.0f} neighbours per point"},
     {"layers",
      "the points lie in layers {0:.3g} apart, nearer than neighbours, and are mapped as one surface: right for scans "
      "of the "
@@ -91,9 +93,13 @@ constexpr Sentence sentences[] = {
     {"duplicates", "{0:.0f} duplicate [point was|points were] merged"},
     {"thin_walls",
      "{0:.0f} [pair|pairs] of neighbours [was|were] not joined because their normals disagree (thin walls)"},
+    {"lines",
+     "{0:.0f} points lie along lines, as of a scanner, that are too far apart to be joined: no surface, and distances "
+     "go "
+     "straight across what a line surrounds; thin them along the lines (--voxel)"},
     {"reflections",
      "{0:.0f} [edge joins|edges join] oppositely oriented normals and [is treated as a reflection|are treated as "
-     "reflections]"},
+     "reflections]; where sheets are nearer to each other than six spacings, ways lead from one to the other there"},
     {"cloud_components", "the cloud falls into {0:.0f} components; a map covers those that hold its source"},
 };
 

@@ -94,7 +94,8 @@ class StarTriangulator {
 
   Offset too_long = 0, other_sheet = 0, too_steep = 0;
 
-  void triangulate(Index i, std::vector<Triangle>& out) {
+  /// @return whether the triangles go all around the point
+  bool triangulate(Index i, std::vector<Triangle>& out) {
     images_.clear();
     const PlaneAxes axes(planes_.normals[i]);
     const double unit = 1.0 / neighborhoods_.radius[i];
@@ -107,16 +108,19 @@ class StarTriangulator {
       if (squared > least_projection * least_projection * length * length)
         images_.push_back({x / squared, y / squared, j});
     }
-    if (images_.size() < 2) return;
+    if (images_.size() < 2) return false;
     if (!drop_inner(images_)) images_.push_back({0, 0, -1});
     convex_hull(images_, hull_);
+    bool closed = hull_.size() > 2;
     for (std::size_t a = 0; a < hull_.size() && hull_.size() > 2; ++a) {
       const Index j = hull_[a].vertex, l = hull_[(a + 1) % hull_.size()].vertex;
+      if (j < 0) closed = false;
       if (j < 0 || l < 0) continue;
       Triangle t{i, j, l};
       std::sort(t.begin(), t.end());
       out.push_back(t);
     }
+    return closed;
   }
 
  private:
@@ -170,16 +174,17 @@ std::vector<Triangle> unique_triangles(const std::vector<std::vector<Triangle>>&
 
 std::vector<Triangle> local_delaunay(const CleanPoints& cloud, const Neighborhoods& neighborhoods,
                                      const TangentPlanes& planes, const PerPart& oriented, const PerPart& noise,
-                                     const CloudOptions& options, CloudDetails& report) {
+                                     const CloudOptions& options, CloudDetails& report, std::vector<char>* inner) {
   const auto n = static_cast<Offset>(cloud.points.size());
   std::vector<std::vector<Triangle>> parts(static_cast<std::size_t>((n + points_per_task - 1) / points_per_task));
+  if (inner) inner->assign(static_cast<std::size_t>(n), 0);
   std::atomic<Offset> too_long{0}, other_sheet{0}, too_steep{0};
   detail::parallel_chunks(n, points_per_task, options.threads, [&](Offset begin, Offset end) {
     StarTriangulator star(cloud, neighborhoods, planes, oriented, noise, options.max_edge_ratio);
     auto& part = parts[begin / points_per_task];
     part.reserve(static_cast<std::size_t>(end - begin) * 6);
-    for (Offset i = begin; i < end; ++i)
-      if (planes.has_plane(static_cast<Index>(i))) star.triangulate(static_cast<Index>(i), part);
+    for (auto i = static_cast<Index>(begin); i < end; ++i)
+      if (const bool closed = planes.has_plane(i) && star.triangulate(i, part); inner) (*inner)[i] = closed;
     too_long += star.too_long;
     other_sheet += star.other_sheet;
     too_steep += star.too_steep;

@@ -15,8 +15,10 @@ namespace ahm::pointcloud {
 /// order.
 /// @param oriented  1 where neighbours whose normals point the other way are rejected
 /// @param noise  of offsets across the surface; neighbours far beyond it, steeply above the surface, are rejected
+/// @param inner  filled, unless it is null: of each point, whether its triangles go all around it
 std::vector<Triangle> local_delaunay(const CleanPoints& cloud, const Neighborhoods& neighborhoods,
                                      const TangentPlanes& planes, const PerPart& oriented, const PerPart& noise,
-                                     const CloudOptions& options, CloudDetails& report);
+                                     const CloudOptions& options, CloudDetails& report,
+                                     std::vector<char>* inner = nullptr);
 
 }  // namespace ahm::pointcloud

@@ -96,6 +96,20 @@ PerPart per_part(const CloudParts& parts, const std::vector<char>& marks) {
   return {parts.of_point, std::vector<double>(marks.begin(), marks.end())};
 }
 
+/// Points of parts, beyond the smallest, that have no inner point.
+Index points_on_lines(const CloudParts& parts, const std::vector<char>& inner) {
+  std::vector<Index> sizes(static_cast<std::size_t>(parts.count), 0);
+  std::vector<char> has_inner(sizes.size(), 0);
+  for (std::size_t i = 0; i < inner.size(); ++i) {
+    ++sizes[parts.of_point[i]];
+    has_inner[parts.of_point[i]] |= inner[i];
+  }
+  Index points = 0;
+  for (std::size_t part = 0; part < sizes.size(); ++part)
+    if (!has_inner[part] && sizes[part] > default_neighbors) points += sizes[part];
+  return points;
+}
+
 /// Makes the signs of the normals consistent, except in parts that are cut, where the given ones are kept.
 /// @return the parts whose given signs are right everywhere
 std::vector<char> orient(const CleanPoints& cloud, const WeightedEdges& edges, std::span<const Vec3> given,
@@ -187,8 +201,10 @@ PointCloudSurface PointCloudSurface::build(std::span<const Vec3> input, std::spa
   const std::vector<char> cut = cut_between_sheets(normals, cloud, planes, neighborhoods, *parts, options);
   details.seconds_normals = stopwatch.lap();
 
+  std::vector<char> inner;
   std::vector<Triangle> triangles =
-      local_delaunay(cloud, neighborhoods, planes, per_part(*parts, cut), noise, options, details);
+      local_delaunay(cloud, neighborhoods, planes, per_part(*parts, cut), noise, options, details, &inner);
+  details.lines = points_on_lines(*parts, inner);
   details.seconds_delaunay = stopwatch.lap();
   neighborhoods = {};
 
@@ -251,6 +267,7 @@ Report PointCloudSurface::report() const {
           {"normals_given", d.normals_given},
           {"contradicted", d.contradicted},
           {"thick", d.thick},
+          {"lines", d.lines},
           {"oriented", d.oriented},
           {"noise", d.noise},
           {"layer_gap", d.layer_gap},
@@ -272,6 +289,7 @@ std::vector<Warning> PointCloudSurface::warnings() const {
   warn("normals_contradicted", d.contradicted);
   if (d.thick > thick_share * d.vertices)
     result.push_back({"no_surface", {static_cast<double>(d.thick), static_cast<double>(d.vertices)}, {}});
+  warn("lines", d.lines);
   warn("degenerate", d.degenerate, d.first_degenerate);
   warn("normals_turned", d.turned);
   if (d.k < d.k_asked)

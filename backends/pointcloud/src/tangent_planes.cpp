@@ -1,5 +1,6 @@
 #include "tangent_planes.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -14,6 +15,7 @@
 #include "ahm/util/parallel.hpp"
 #include "ahm/util/vec.hpp"
 #include "given_planes.hpp"
+#include "plane_axes.hpp"
 #include "points_per_task.hpp"
 
 namespace ahm::pointcloud {
@@ -22,6 +24,12 @@ namespace {
 /// Neighbours are narrow, and more of them are wanted, when their second principal variance is below this share of the
 /// first.
 constexpr double narrow_ratio = 1e-3;
+
+/// Where the second variance is below this share of the first, neighbours may lie along a curve that bends by less than a right angle.
+constexpr double bent_ratio = 0.05;
+
+/// Fewer points tell no curve from a plane.
+constexpr std::size_t least_on_curve = 8;
 
 /// Neighbours are as thick as wide when their third principal variance is above this share of the second.
 constexpr double thick_ratio = 0.25;
@@ -117,6 +125,47 @@ void compact(const std::vector<Index>& counts, Neighborhoods& result) {
   result.indices.resize(static_cast<std::size_t>(result.begin[n]));
 }
 
+/// Whether point i and its neighbours lie along a curve in their plane, as on a scan line around a pipe: as near to a parabola as
+/// narrow ones to a line.
+bool on_a_curve(std::span<const Vec3> points, Index i, std::span<const Index> neighbors, const Vec3& normal) {
+  if (neighbors.size() < least_on_curve) return false;
+  const PlaneAxes axes(normal);
+  const auto in_plane = [&](Index j) {
+    const Vec3 offset = points[j] - points[i];
+    return Eigen::Vector2d(dot(axes.x, offset), dot(axes.y, offset));
+  };
+  const double count = static_cast<double>(neighbors.size()) + 1;
+  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+  Eigen::Matrix2d second = Eigen::Matrix2d::Zero();
+  for (const Index j : neighbors) {
+    const Eigen::Vector2d p = in_plane(j);
+    mean += p;
+    second += p * p.transpose();
+  }
+  mean /= count;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> principal(second / count - mean * mean.transpose());
+  const double first = principal.eigenvalues()[1];
+  // Least squares of (1, s, s^2) against t, s along and t across, in units of the deviation along.
+  Eigen::Matrix3d normal_matrix = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d right = Eigen::Vector3d::Zero();
+  double squares = 0;
+  const auto add = [&](const Eigen::Vector2d& p) {
+    const Eigen::Vector2d q = principal.eigenvectors().transpose() * (p - mean) / std::sqrt(first);
+    const Eigen::Vector3d row(1, q[1], q[1] * q[1]);
+    normal_matrix += row * row.transpose();
+    right += q[0] * row;
+    squares += q[0] * q[0];
+  };
+  add(Eigen::Vector2d::Zero());
+  for (const Index j : neighbors) add(in_plane(j));
+  return squares - right.dot(normal_matrix.ldlt().solve(right)) <= narrow_ratio * count;
+}
+
+/// Whether the neighbours that a plane was fitted to do not tell how it lies.
+bool is_narrow(const PlaneFit& fit, std::span<const Vec3> points, Index i, std::span<const Index> neighbors) {
+  return !(fit.ratio > narrow_ratio) || (fit.ratio < bent_ratio && on_a_curve(points, i, neighbors, fit.normal));
+}
+
 struct WiderNeighborhood {
   Index point;
   std::vector<Index> neighbors;
@@ -132,7 +181,7 @@ PlaneFit fit_wider(std::span<const Vec3> points, const NeighborSearch& search, I
         points, wider.point, neighbors_of(points, wider.point, search, factor * k, buffers), k, max_edge_ratio);
     wider.neighbors.assign(neighbors.begin(), neighbors.end());
     fit = fit_plane(points, wider.point, wider.neighbors);
-    if (fit.ratio > narrow_ratio) break;
+    if (!is_narrow(fit, points, wider.point, wider.neighbors)) break;
   }
   return fit;
 }
@@ -176,7 +225,7 @@ void fit_planes(const CleanPoints& cloud, const NeighborSearch& search, const Cl
     for (Offset i = begin; i < end; ++i) {
       const auto point = static_cast<Index>(i);
       PlaneFit fit = fit_plane(cloud.points, point, neighborhoods.of(point));
-      if (!(fit.ratio > narrow_ratio) && n > neighborhoods.k + 1) {
+      if (is_narrow(fit, cloud.points, point, neighborhoods.of(point)) && n > neighborhoods.k + 1) {
         WiderNeighborhood candidate{point, {}};
         fit = fit_wider(cloud.points, search, neighborhoods.k, options.max_edge_ratio, candidate);
         wider[begin / points_per_task].push_back(std::move(candidate));

@@ -14,8 +14,8 @@ namespace {
 
 constexpr std::size_t leaf = 8;  // triangles
 constexpr double infinity = std::numeric_limits<double>::infinity();
-/// What is nearer to an edge or a corner than this share of a side lies there, and of faces whose distances differ by less, relative
-/// to coordinates, the first is the nearest: a curve that crosses an edge is the same one however it is scaled and turned.
+/// What is nearer to an edge or a corner than this share of a side lies there, and of faces whose distances differ by less than this
+/// share of their coordinates the first is the nearest: a curve that crosses an edge is the same one however it is scaled and turned.
 constexpr double rounding = 1e-12;
 
 /// Where on the segment from a to b the point nearest to p lies, in [0, 1].
@@ -109,39 +109,58 @@ void FaceTree::build(std::size_t begin, std::size_t end) {
 FaceTree::Hit FaceTree::nearest(const Vec3& position) const {
   const double size = std::max({largest(boxes_[0].low), largest(boxes_[0].high), largest(position)});
   const double unit = power_of_two_below(size), scale = 1 / unit;
-  Hit best{{0, {}}, {}, infinity};
-  search(0, {scale * position, scale}, best);
-  return {std::move(best.point), unit * best.position, unit * best.distance};
-}
-
-void FaceTree::search(std::size_t number, const Query& query, Hit& best) const {
-  const Box& box = boxes_[number];
-  if (box.second == 0) {
-    for (std::size_t t = box.begin; t < box.end; ++t) look_at(pieces_[t], query, best);
-    return;
-  }
-  const auto away = [&](std::size_t b) {
-    return std::sqrt(squared_distance(query.position, query.scale * boxes_[b].low, query.scale * boxes_[b].high));
+  const Vec3 from = scale * position;
+  const double own = largest(from);
+  double least = infinity;
+  // What has to be looked at: triangles that may be as near as the nearest so far but for the rounding of coordinates.
+  const auto visit = [&](auto&& self, std::size_t number, const auto& look_at) -> void {
+    const Box& box = boxes_[number];
+    if (box.second == 0) {
+      for (std::size_t t = box.begin; t < box.end; ++t) look_at(pieces_[t]);
+      return;
+    }
+    const auto away = [&](std::size_t b) {
+      return std::sqrt(squared_distance(from, scale * boxes_[b].low, scale * boxes_[b].high));
+    };
+    const auto is_near = [&](std::size_t b) {
+      return away(b) <=
+             least + rounding * std::max({own, scale * largest(boxes_[b].low), scale * largest(boxes_[b].high)});
+    };
+    std::size_t near = number + 1, far = box.second;
+    if (away(far) < away(near)) std::swap(near, far);
+    if (is_near(near)) self(self, near, look_at);
+    if (is_near(far)) self(self, far, look_at);
   };
-  std::size_t near = number + 1, far = box.second;
-  if (away(far) < away(near)) std::swap(near, far);
-  if (away(near) <= best.distance + rounding) search(near, query, best);
-  if (away(far) <= best.distance + rounding) search(far, query, best);
+  visit(visit, 0, [&](const Piece& piece) { least = std::min(least, look(piece, from, scale).distance); });
+  Hit best;
+  bool found = false;
+  visit(visit, 0, [&](const Piece& piece) {
+    if (found && piece.face > best.point.face) return;
+    const Look here = look(piece, from, scale);
+    if (here.distance > least + rounding * std::max(own, here.size)) return;
+    if (found && piece.face == best.point.face && !(unit * here.distance < best.distance)) return;
+    std::vector<double> of_corners(faces_[piece.face].size(), 0.0);
+    of_corners[0] = here.weights[0];
+    of_corners[piece.corner] = here.weights[1];
+    of_corners[piece.corner + 1] = here.weights[2];
+    best = {{piece.face, std::move(of_corners)}, unit * here.position, unit * here.distance};
+    found = true;
+  });
+  return best;
 }
 
-void FaceTree::look_at(const Piece& piece, const Query& query, Hit& best) const {
+/// The point of a triangle that is nearest; all lengths times `scale`.
+FaceTree::Look FaceTree::look(const Piece& piece, const Vec3& from, double scale) const {
   std::array<Vec3, 3> t;
-  for (int k = 0; k < 3; ++k) t[static_cast<std::size_t>(k)] = query.scale * corner(piece, k);
-  const std::array<double, 3> weights = nearest_in(t, query.position);
-  const Vec3 found = combined(t, weights);
-  const double distance = norm(found - query.position);
-  const bool is_first = piece.face < best.point.face && distance <= best.distance + rounding;
-  if (!(distance < best.distance - rounding || is_first)) return;
-  std::vector<double> of_corners(faces_[piece.face].size(), 0.0);
-  of_corners[0] = weights[0];
-  of_corners[piece.corner] = weights[1];
-  of_corners[piece.corner + 1] = weights[2];
-  best = {{piece.face, std::move(of_corners)}, found, distance};
+  Look here{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    t[k] = scale * corner(piece, static_cast<int>(k));
+    here.size = std::max(here.size, largest(t[k]));
+  }
+  here.weights = nearest_in(t, from);
+  here.position = combined(t, here.weights);
+  here.distance = norm(here.position - from);
+  return here;
 }
 
 }  // namespace ahm

@@ -6,7 +6,7 @@
 #include <functional>
 #include <limits>
 #include <numbers>
-#include <optional>
+#include <utility>
 
 #include "ahm/graph/components.hpp"
 #include "ahm/util/small_math.hpp"
@@ -52,11 +52,15 @@ class AngleSum {
 /// Whether two vertices have a neighbour in common besides the one at hand: as in a square without its diagonal, whose fourth
 /// corner it is, and not across a notch of the boundary.
 bool have_common_neighbor(const TangentGraph& graph, Index a, Index b, Index except) {
+  if (graph.star(a).degree() > graph.star(b).degree()) std::swap(a, b);
+  static thread_local std::vector<Index> beside_a;  // a star lives until the next one
   const auto of_a = graph.star(a).neighbors;
-  const std::vector<Index> beside_a(of_a.begin(), of_a.end());  // a star lives until the next one
-  const auto of_b = graph.star(b).neighbors;
-  return std::ranges::any_of(of_b,
-                             [&](Index j) { return j != except && std::ranges::find(beside_a, j) != beside_a.end(); });
+  beside_a.assign(of_a.begin(), of_a.end());
+  return std::ranges::any_of(beside_a, [&](Index j) {
+    if (j == except) return false;
+    const auto of_j = graph.star(j).neighbors;
+    return std::ranges::find(of_j, b) != of_j.end();
+  });
 }
 
 /// The third side of the corner between two neighbours of a vertex; NaN where the star is open between them.
@@ -65,7 +69,7 @@ double third_side(const TangentGraph& graph, Index vertex, const Neighbor& right
   const double open = std::numeric_limits<double>::quiet_NaN();
   const Vec2 &u = right.log, &v = left.log;
   if (right.vertex == left.vertex || cross(u, v) <= 0) return open;
-  const double apart = std::hypot(u[0] - v[0], u[1] - v[1]);
+  const double apart = length(Vec2{u[0] - v[0], u[1] - v[1]});
   const bool by_right = graph.star(right.vertex).degree() <= graph.star(left.vertex).degree();
   const Star star = graph.star(by_right ? right.vertex : left.vertex);
   double third = open;  // of several, that which lies best in the plane
@@ -314,16 +318,24 @@ UnfoldingFront::Stars::Stars(const TangentGraph& graph, std::vector<std::uint8_t
   }
 }
 
-std::optional<UnfoldingFront::Stars::HalfSide> UnfoldingFront::Stars::midpoint(Index a, Index b) const {
-  std::optional<HalfSide> found;
-  for (const Corner& half : of(a)) {
-    if (half.neighbor < vertices_) return std::nullopt;
-    const auto around = of(half.neighbor);
-    if (std::none_of(around.begin(), around.end(), [&](const Corner& c) { return c.neighbor == b; })) continue;
-    if (found) return std::nullopt;
-    found = {half.neighbor, half.length};
+void UnfoldingFront::Stars::find_cut_edges(Index vertex, std::vector<CutEdge>& edges) const {
+  edges.clear();
+  for (const Corner& half : of(vertex)) {
+    if (half.neighbor < vertices_) return;
+    for (const Corner& beside : of(half.neighbor))
+      if (beside.neighbor < vertices_ && beside.neighbor != vertex)
+        edges.push_back({beside.neighbor, half.neighbor, half.length});
   }
-  return found;
+  std::ranges::sort(edges, {}, [](const CutEdge& e) { return std::pair(e.end, e.midpoint); });
+  const auto last = std::ranges::unique(edges, {}, &CutEdge::midpoint).begin();
+  edges.erase(last, edges.end());
+  auto kept = edges.begin();
+  for (auto first = edges.begin(); first != edges.end();) {
+    const auto next = std::find_if(first, edges.end(), [&](const CutEdge& e) { return e.end != first->end; });
+    if (next - first == 1) *kept++ = *first;
+    first = next;
+  }
+  edges.erase(kept, edges.end());
 }
 
 std::shared_ptr<const UnfoldingFront::Stars> UnfoldingFront::stars(const TangentGraph& graph) {

@@ -39,12 +39,13 @@ class UnfoldingFront::Stars {
   /// open, or where it may be rounding.
   static double curvature_of(std::span<const Corner> corners);
 
-  /// The midpoint of the edge that joins two vertices, and half its length; none where several do, or triangles are whole.
-  struct HalfSide {
-    Index midpoint;
-    double half;
+  /// An edge of a vertex that is cut at its midpoint.
+  struct CutEdge {
+    Index end, midpoint;
+    double half;  ///< half its length
   };
-  std::optional<HalfSide> midpoint(Index a, Index b) const;
+  /// Those of a vertex, by their ends, without the ones that lead to the same end; none where triangles are whole.
+  void find_cut_edges(Index vertex, std::vector<CutEdge>& edges) const;
 
   /// Appends the corners of a vertex; `neighbors` is workspace.
   static void append_corners(const TangentGraph& graph, Index vertex, std::vector<Neighbor>& neighbors,

@@ -40,7 +40,7 @@ constexpr double reach = 1.25;
 
 /// How far a vector is from d times a direction.
 double difference(std::span<const double> phi, double d, std::span<const double> direction) {
-  return std::hypot(phi[0] - d * direction[0], phi[1] - d * direction[1]);
+  return length(Vec2{phi[0] - d * direction[0], phi[1] - d * direction[1]});
 }
 
 /// phi from where the ways to the vertices begin: at a point itself, along a curve at its sample nearest to the vertex. n x d.
@@ -122,7 +122,7 @@ double lost_along_edges(const TangentGraph& graph, const LogMap& map, Index vert
     const Vec2 by_psi{psi_j[0] - psi[0], psi_j[1] - psi[1]};
     const Vec2 by_phi{phi_j[0] - phi[0], phi_j[1] - phi[1]};
     const double edge = length(star.log(e)), longest = std::max(edge, length(by_psi) / unit),
-                 difference = std::hypot(by_phi[0] - by_psi[0], by_phi[1] - by_psi[1]) / unit,
+                 difference = length(Vec2{by_phi[0] - by_psi[0], by_phi[1] - by_psi[1]}) / unit,
                  by_map = length(by_phi) / unit;
     off += difference * difference;
     all += longest * longest;
@@ -168,7 +168,7 @@ std::vector<double> quality_beside(const TangentGraph& graph, const LogMap& map,
     const double away = std::max(d, h), spread = map.spread()[i] / away;
     double off = std::abs(length(way) - d), lost = 0;
     if (const Vec2 psi = polar_coordinates(map, vertex.index); !std::isnan(psi[0])) {
-      const double by_direction = std::hypot(way[0] - psi[0], way[1] - psi[1]);
+      const double by_direction = length(Vec2{way[0] - psi[0], way[1] - psi[1]});
       off += std::min(spread / unrolled_spread, 1.0) * (by_direction - off);
       // Along curves psi jumps from sample to sample.
       if (!of_curve)

@@ -68,7 +68,7 @@ struct Across {
 
 /// `v` turned as the ray `from` must be to become the ray `to`, the other way round if `side` is -1; unit length.
 Vec2 turned(const Vec2& v, const Vec2& from, const Vec2& to, double side) {
-  const double along = dot(from, to), across = side * cross(from, to), by = std::hypot(along, across);
+  const double along = dot(from, to), across = side * cross(from, to), by = length(Vec2{along, across});
   return {(v[0] * along - v[1] * across) / by, (v[1] * along + v[0] * across) / by};
 }
 
@@ -91,7 +91,7 @@ Vec2 direction_across(const Across& point, double ab, double cx, double cy, cons
   const Vec2 by_a = turned(to_a, a, c, side), by_b = turned(to_b, b, c, side);
   if (!(length(a) > least_ray * ab) || std::isnan(to_a[0])) return by_b;
   if (!(length(b) > least_ray * ab) || std::isnan(to_b[0])) return by_a;
-  if (std::hypot(by_a[0] - by_b[0], by_a[1] - by_b[1]) > two_ways * ab / length(c)) return share < 0.5 ? by_a : by_b;
+  if (length(Vec2{by_a[0] - by_b[0], by_a[1] - by_b[1]}) > two_ways * ab / length(c)) return share < 0.5 ? by_a : by_b;
   const Vec2 sum{(1 - share) * by_a[0] + share * by_b[0], (1 - share) * by_a[1] + share * by_b[1]};
   const double size = length(sum);
   return size > 0 ? Vec2{sum[0] / size, sum[1] / size} : by_a;
@@ -179,16 +179,21 @@ Index UnfoldingFront::add(const Source& source) {
 void UnfoldingFront::offer_midpoints(std::vector<Given>& given) {
   std::sort(given.begin(), given.end(),
             [](const Given& a, const Given& b) { return std::tie(a.point, a.vertex) < std::tie(b.point, b.vertex); });
-  for (std::size_t i = 0; i < given.size(); ++i)
-    for (std::size_t j = i + 1; j < given.size() && given[j].point == given[i].point; ++j) {
-      const auto side = stars_->midpoint(given[i].vertex, given[j].vertex);
-      if (!side) continue;
-      const double a = given[i].distance, b = given[j].distance;
-      const double squared = 0.5 * (a * a + b * b) - side->half * side->half;
-      const Vec2 between{given[i].offset[0] + given[j].offset[0], given[i].offset[1] + given[j].offset[1]};
-      offer(side->midpoint, given[i].point, std::sqrt(std::max(0.0, squared)), 0, {},
-            {unit_vector(between), given[i].mirrored});
+  std::vector<Stars::CutEdge> edges;
+  for (const Given& one : given) {
+    stars_->find_cut_edges(one.vertex, edges);
+    for (const auto& edge : edges) {
+      if (edge.end <= one.vertex) continue;
+      const auto ends = std::ranges::equal_range(given, std::pair(one.point, edge.end), {},
+                                                 [](const Given& g) { return std::pair(g.point, g.vertex); });
+      for (const Given& other : ends) {
+        const double a = one.distance, b = other.distance;
+        const double squared = 0.5 * (a * a + b * b) - edge.half * edge.half;
+        const Vec2 between{one.offset[0] + other.offset[0], one.offset[1] + other.offset[1]};
+        offer(edge.midpoint, one.point, std::sqrt(std::max(0.0, squared)), 0, {}, {unit_vector(between), one.mirrored});
+      }
     }
+  }
 }
 
 void UnfoldingFront::run(double radius) {

@@ -74,6 +74,7 @@ struct CloudDetails {
   Index estimated = 0;         ///< given normals that are zero or not finite and were estimated
   Index contradicted = 0;      ///< given normals whose planes the points contradict: only their sides were taken
   Index thick = 0;             ///< points whose neighbours are as thick as wide: no surface there
+  Index lines = 0;             ///< points in parts without a point that others surround: lines, and no surface
   Index turned = 0;            ///< given normals that pointed to the other side than the majority around them
   bool oriented = false;       ///< given normals fix which side is up, everywhere
   double noise = 0;      ///< standard deviation of neighbours' offsets across the surface, world units; of several
@@ -91,11 +92,11 @@ struct CloudDetails {
 /// axis, u is x of `graph().frame(vertex)`.
 ///
 /// Its report: points, vertices, non_finite, duplicates, degenerate, k, components, triangles, flips, rejected_long,
-/// rejected_normals, rejected_steep, reflections, normals_given, contradicted, thick, oriented, noise, layer_gap, mollification, seconds.normals, seconds.delaunay,
+/// rejected_normals, rejected_steep, reflections, normals_given, contradicted, thick, lines, oriented, noise, layer_gap, mollification, seconds.normals, seconds.delaunay,
 /// seconds.laplacian, seconds.graph.
 /// Its warnings, each with a count unless said otherwise: normals_estimated; normals_contradicted; cover_not_delaunay (no number);
 /// degenerate (with rows); normals_turned; k_reduced (asked for, used, distinct points); k_raised (used, noise); layers (gap); no_surface (points as
-/// thick as wide, vertices); non_finite; duplicates; thin_walls (pairs of
+/// thick as wide, vertices); lines (points); non_finite; duplicates; thin_walls (pairs of
 /// neighbours not joined); reflections (edges); cloud_components (of more than one).
 /// Faults of a row: row_left_out (by `CloudOptions::rows`), row_removed (not finite, no tangent plane, no triangle).
 class PointCloudSurface final : public Surface {

@@ -7,6 +7,7 @@
 /// \endcode
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -41,16 +42,15 @@ class FaceTree {
     std::size_t second;      ///< the second half's box, 0 in a leaf; the first half's one follows this one
   };
 
-  struct Query {
+  struct Look {
+    std::array<double, 3> weights;  ///< of its corners
     Vec3 position;
-    double
-        scale;  ///< a power of two that takes lengths into the range of their squares; positions and hits are times it
+    double distance, size;  ///< size: the largest coordinate of the triangle
   };
 
   const Vec3& corner(const Piece& piece, int k) const;
   void build(std::size_t begin, std::size_t end);
-  void search(std::size_t box, const Query& query, Hit& best) const;
-  void look_at(const Piece& piece, const Query& query, Hit& best) const;
+  Look look(const Piece& piece, const Vec3& from, double scale) const;
 
   std::span<const Vec3> positions_;
   FaceList faces_;

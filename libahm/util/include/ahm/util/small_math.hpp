@@ -31,12 +31,17 @@ inline double power_of_two_below(double x) {
   return x == 0 ? 1.0 : std::ldexp(1.0, std::clamp(std::ilogb(x), -1022, 1022));
 }
 
-/// Euclidean length without overflow.
+/// Euclidean length without overflow; of vectors times a power of two the same bits.
 inline double length(std::span<const double> v) {
-  if (v.size() == 2) return std::hypot(v[0], v[1]);
+  const double squared = dot(v, v);
+  if ((squared > 1e-280 && squared < 1e280) || std::isnan(squared)) return std::sqrt(squared);
+  double largest = 0;
+  for (double x : v) largest = std::max(largest, std::abs(x));
+  if (largest == 0 || std::isinf(largest)) return largest;
+  const double unit = power_of_two_below(largest);
   double sum = 0;
-  for (double x : v) sum = std::hypot(sum, x);
-  return sum;
+  for (double x : v) sum += (x / unit) * (x / unit);
+  return unit * std::sqrt(sum);
 }
 
 }  // namespace ahm
