@@ -53,10 +53,7 @@ py::tuple stroke(const py::object& maker, const py::tuple& points, const Doubles
     PlacedSource source{drawn.source, drawn.points.front(), drawn.first, std::nullopt};
     LogMap solved = solve(by, drawn, o);
     const unsigned threads = by.solver() != nullptr ? by.solver()->solver.options().threads : 0;
-    auto made = std::make_shared<Map>(by.body(), std::move(source), std::move(solved), threads);
-    made->rows.distance =
-        rows_from_curve(by.body()->surface_for("a stroke"), made->map, drawn, made->map.radius()).distance;
-    return std::pair(std::move(made), std::move(drawn));
+    return std::pair(std::make_shared<Map>(by.body(), std::move(source), std::move(solved), threads), std::move(drawn));
   });
   return py::make_tuple(map, owned(std::move(curve.points)), curve.length, curve.gap, curve.jump);
 }

@@ -161,7 +161,8 @@ void add_mesh_options(CLI::App& app, InputOptions& o) {
   const char* group = "Triangle meshes";
   app.add_flag_callback(
          "--no-flips", [&o] { o.flips = false; },
-         "Keep the edges as they are instead of flipping to intrinsic Delaunay")
+         "Keep the edges as they are instead of flipping to intrinsic Delaunay, for comparison: distances are those of "
+         "heat, not around holes, and quality tells less")
       ->group(group);
   add_non_manifold(app, o)->group(group);
   add_parsed(app, "--discretization", o.discretization, choice({"auto", "polygons", "refined"}), "NAME",

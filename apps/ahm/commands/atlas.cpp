@@ -98,6 +98,15 @@ void comment(const AtlasCommandOptions& options, const Made& made, const Tangent
         made.atlas.charts.size(),
         options.max_distortion ? "raise --charts or lower --max-distortion"
                                : "raise --charts, or let --max-distortion 2 add sources"));
+  const auto distorted = std::ranges::count_if(made.distortion.charts, [&](const DistortionSummary& chart) {
+    return options.max_distortion && chart.percentile_95 > *options.max_distortion;
+  });
+  if (distorted > 0)
+    journal.add_warning(
+        fmt::format("{} of {} charts are distorted by more than {:.4g} at over 5 % of their area: more sources did not "
+                    "help, or there are "
+                    "as many as there may be; the surface is too coarse for its bends there",
+                    distorted, made.atlas.charts.size(), *options.max_distortion));
 }
 
 void write_files(const AtlasCommandOptions& options, const SurfaceFaces& faces, const Made& made) {

@@ -63,6 +63,25 @@ std::vector<double> quality_within(double radius, const RowLogMap& rows, std::ve
   return quality;
 }
 
+/// Whether a map spreads a vertex and its neighbours over at least half of their area. Behind a corner that ways bend at exact maps lay
+/// them along a line, which no path around the source covers.
+bool has_area(const TangentGraph& graph, const LogMap& map, Index vertex) {
+  struct Moments {
+    double xx = 0, xy = 0, yy = 0;
+    void add(double x, double y) { xx += x * x, xy += x * y, yy += y * y; }
+    double determinant() const { return xx * yy - xy * xy; }
+  } of_map, of_edges;
+  const Star star = graph.star(vertex);
+  const auto phi = map.coordinates(Vertex(vertex));
+  for (std::size_t e = 0; e < star.degree(); ++e) {
+    const auto there = map.coordinates(Vertex(star.neighbors[e]));
+    if (std::isnan(there[0])) continue;
+    of_map.add((there[0] - phi[0]) / graph.length_unit(), (there[1] - phi[1]) / graph.length_unit());
+    of_edges.add(star.log(e)[0], star.log(e)[1]);
+  }
+  return of_map.determinant() >= 0.25 * of_edges.determinant();
+}
+
 /// Of the area within the radius, the share whose vertices are trusted.
 double trusted_share(const TangentGraph& graph, const LogMap& map, const std::vector<double>& quality,
                      const CoverageCommandOptions& options) {
@@ -70,7 +89,8 @@ double trusted_share(const TangentGraph& graph, const LogMap& map, const std::ve
   for (Index i = 0; i < graph.size(); ++i) {
     if (!(map.distance(Vertex(i)) <= options.path.radius)) continue;
     all += graph.mass(i);
-    if (quality[i] >= options.min_quality) trusted += graph.mass(i);
+    if (quality[i] >= options.min_quality && (map.method() == Method::heat || has_area(graph, map, i)))
+      trusted += graph.mass(i);
   }
   return trusted / all;
 }

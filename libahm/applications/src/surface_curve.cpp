@@ -239,8 +239,12 @@ SurfaceCurve draw(const Surface& surface, std::span<const CurvePoint> given, boo
   return curve;
 }
 
-/// Fronts over other graphs than triangulations are off by no more than the lesser of these, of an edge and of the distance.
-constexpr double most_off_edges = 0.25, most_off = 0.005;
+/// Whether coordinates along a curve are those of a flat surface: along straight lines and circles. Beside other bends they are biased.
+bool has_exact_coordinates(const SurfaceCurve& curve) {
+  if (curve.shape->shape == StrokeShape::circle) return true;
+  constexpr double straight = 1 - 1e-6;
+  return !curve.shape->closed && distance(curve.points.front(), curve.points.back()) >= straight * curve.length;
+}
 
 /// From a point with these coordinates to the curve, in the plane of coordinates.
 double distance_from_curve(double u, double v, double length, const StrokeOptions& shape) {
@@ -282,13 +286,17 @@ RowLogMap rows_from_curve(const Surface& surface, const LogMap& map, const Surfa
   rows.angle.clear();
   const TangentGraph& graph = surface.graph();
   const double edge = graph.mean_edge_length() * graph.length_unit();
-  const bool is_sharp = map.method() == Method::exact || graph.is_delaunay();
+  const bool is_exact = map.method() == Method::exact, flat = curve.shape && has_exact_coordinates(curve);
   for (std::size_t i = 0; i < rows.u.size(); ++i) {
     if (curve.shape) {
       // Between samples the curve is nearer by no more than half a piece makes it, in the plane.
       const double from_samples = rows.distance[i], share = std::min(1.0, curve.jump / 2 / from_samples);
       const double least = from_samples * std::sqrt(1 - share * share);
-      const double slack = is_sharp ? 0 : std::min(most_off_edges * edge, most_off * from_samples);
+      // By so much coordinates may be nearer to the truth than a front from samples.
+      const double slack = is_exact              ? 0
+                           : flat                ? 0.25 * edge
+                           : graph.is_delaunay() ? 0
+                                                 : std::min(0.25 * edge, 0.005 * from_samples);
       const double in_plane = distance_from_curve(rows.u[i], rows.v[i], curve.length, *curve.shape);
       if (!std::isnan(from_samples))
         rows.distance[i] = std::clamp(in_plane, std::max(0.0, least - slack), from_samples + slack);

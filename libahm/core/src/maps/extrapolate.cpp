@@ -148,7 +148,7 @@ ExtrapolatedRow extrapolate_row(const std::array<TimedRow, 3>& rows, const Extra
 LogMap extrapolate(const TangentGraph& graph, const ComponentScales& scales, double t_coef, const DiffusionTimes& times,
                    const std::vector<const LogMap*>& maps, double radius, bool with_distances, bool with_spread) {
   const std::array<const LogMap*, 3> of_times{maps.front(), maps[maps.size() - 2], maps.back()};
-  const LogMap &first = *of_times[0], &middle = *of_times[1];
+  const LogMap& first = *of_times[0];
   const auto n = static_cast<std::size_t>(first.size()), d = static_cast<std::size_t>(first.dimension());
   std::vector<double> coordinates(n * d), distances(n), error(n);
   std::vector<Status> status(n);
@@ -173,7 +173,7 @@ LogMap extrapolate(const TangentGraph& graph, const ComponentScales& scales, dou
       std::any_of(maps.begin(), maps.end(), [](auto* map) { return map->strategy() == Strategy::march; });
   MapExtras extras;
   extras.march = first.march();
-  extras.frames.assign(middle.frames().begin(), middle.frames().end());
+  extras.frames.assign(first.frames().begin(), first.frames().end());
   extras.error_estimate = std::move(error);
   if (with_distances) {
     extras.distances = std::move(distances);

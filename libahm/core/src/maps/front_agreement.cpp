@@ -14,8 +14,9 @@ namespace {
 constexpr std::size_t most_neighbors = 200;
 /// The third side of a triangle and the edge there differ by no more than this share, where stars agree on the triangle.
 constexpr double same_side = 0.01;
-/// Opposite angles of a quadrilateral on a circle sum to pi, but for rounding.
-constexpr double same_circle = 1e-6;
+/// Opposite angles of a quadrilateral on a circle sum to pi. Where they miss it by less, as those of a lattice on a bent surface, either
+/// diagonal will do, and stars may choose differently.
+constexpr double same_circle = 0.05;
 
 }  // namespace
 

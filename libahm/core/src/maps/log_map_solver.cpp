@@ -352,7 +352,7 @@ std::vector<LogMap> LogMapSolver::Impl::solve_block(std::span<const Source> sour
   if (times.size() == 1) return solve_block(0, sources, unfolded, map, threads);
   std::vector<std::vector<LogMap>> at_times;
   for (std::size_t time = 0; time < times.size(); ++time) {
-    wider.frames = map.frames && time + 2 == times.size();
+    wider.frames = map.frames && time == 0;  // the nearest to those of no time
     // Those of the first and the last tell where not to extrapolate; of vectors the last does.
     wider.spread = map.spread || time + 1 == times.size() || (time == 0 && !graph.is_delaunay());
     at_times.push_back(solve_block(time, sources, unfolded, wider, threads));

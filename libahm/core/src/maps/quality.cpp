@@ -59,18 +59,21 @@ std::vector<double> ways_of(const LogMap& map) {
   return ways;
 }
 
+/// How far what a front over edges that are no triangulation says of a map's vertices counts.
+double belief_in_fronts(const TangentGraph& graph, const LogMap& map) {
+  std::vector<Vertex> reached, some;
+  for (Index i = 0; i < graph.size(); ++i)
+    if (map.status()[i] == Status::ok) reached.emplace_back(i);
+  for (std::size_t k = 0; k < reached.size(); k += reached.size() / asked + 1) some.push_back(reached[k]);
+  const double share = UnfoldingFront::agreement(graph, some);
+  return std::clamp((share - believed_from) / (believed_in_full - believed_from), 0.0, 1.0);
+}
+
 /// The vectors of a front over edges that are no triangulation, beside those of a map.
 class Comparison {
  public:
   Comparison(const TangentGraph& graph, const LogMap& map, const UnfoldingFront& front)
-      : front_(front), radius_(map.radius()) {
-    std::vector<Vertex> reached, some;
-    for (Index i = 0; i < graph.size(); ++i)
-      if (map.status()[i] == Status::ok) reached.emplace_back(i);
-    for (std::size_t k = 0; k < reached.size(); k += reached.size() / asked + 1) some.push_back(reached[k]);
-    const double share = UnfoldingFront::agreement(graph, some);
-    belief_ = std::clamp((share - believed_from) / (believed_in_full - believed_from), 0.0, 1.0);
-  }
+      : front_(front), radius_(map.radius()), belief_(belief_in_fronts(graph, map)) {}
 
   /// How far a way is off by what the front says, world units.
   double off(Vertex vertex, std::span<const double> way, double h) const {
@@ -194,6 +197,17 @@ QualityFront::QualityFront(const TangentGraph& graph, const Source& source, doub
   front_.emplace(graph, nullptr, true);
   front_->add(source);
   run_front(*front_, graph, reach * radius, stop);
+}
+
+double directions_compared(const TangentGraph& graph, const LogMap& map, const QualityFront& front) {
+  if (!front.get() || !front.get()->has_directions() || map.method() != Method::heat) return 1;
+  Offset mapped = 0, bent = 0;
+  for (Index i = 0; i < graph.size(); ++i) {
+    if (map.status()[i] != Status::ok) continue;
+    ++mapped;
+    bent += front.get()->is_bent(Vertex(i));
+  }
+  return mapped > 0 ? belief_in_fronts(graph, map) * (1 - static_cast<double>(bent) / static_cast<double>(mapped)) : 1;
 }
 
 std::vector<double> map_quality(const TangentGraph& graph, const LogMap& map, const QualityFront& front,
