@@ -184,9 +184,12 @@ void UnfoldingFront::offer_midpoints(std::vector<Given>& given) {
     stars_->find_cut_edges(one.vertex, edges);
     for (const auto& edge : edges) {
       if (edge.end <= one.vertex) continue;
-      const auto ends = std::ranges::equal_range(given, std::pair(one.point, edge.end), {},
-                                                 [](const Given& g) { return std::pair(g.point, g.vertex); });
-      for (const Given& other : ends) {
+      const auto comes_before_end = [&](const Given& g, Index end) {
+        return std::tie(g.point, g.vertex) < std::tie(one.point, end);
+      };
+      for (auto at = std::lower_bound(given.begin(), given.end(), edge.end, comes_before_end);
+           at != given.end() && at->point == one.point && at->vertex == edge.end; ++at) {
+        const Given& other = *at;
         const double a = one.distance, b = other.distance;
         const double squared = 0.5 * (a * a + b * b) - edge.half * edge.half;
         const Vec2 between{one.offset[0] + other.offset[0], one.offset[1] + other.offset[1]};
