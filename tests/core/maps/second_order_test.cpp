@@ -179,5 +179,31 @@ TEST(SecondOrder, LengthensNothingBeyondWhatIsPossible) {
       }
 }
 
+// What is extrapolated of vectors is turned back in frames: the ways arrive as at the shortest time.
+TEST(SecondOrder, KeepsTheWaysThatArrive) {
+  for (const CsrGraphData& data : {sphere_graph(2500), as_blocks(sphere_graph(900))}) {
+    const CsrGraph graph(data);
+    const Source source = Source::at_vertex(Vertex{7});
+    const LogMap first = LogMapSolver(graph).solve(source, {.frames = true});
+    const LogMap second = LogMapSolver(graph, {.order = 2}).solve(source, {.frames = true});
+    const auto arrives = [](const LogMap& map, Index i) {
+      const auto U = map.frames().subspan(4 * static_cast<std::size_t>(i), 4);
+      const auto phi = map.coordinates(Vertex(i));
+      const double size = length(phi);
+      return Vec2{(U[0] * phi[0] + U[1] * phi[1]) / size, (U[2] * phi[0] + U[3] * phi[1]) / size};
+    };
+    double turned = 0;
+    for (Index i = 0; i < graph.size(); ++i) {
+      if (i == 7) continue;
+      const Vec2 a = arrives(first, i), b = arrives(second, i);
+      ASSERT_NEAR(a[0], b[0], 1e-9) << i;
+      ASSERT_NEAR(a[1], b[1], 1e-9) << i;
+      turned = std::max(turned, std::abs(first.frames()[4 * static_cast<std::size_t>(i)] -
+                                         second.frames()[4 * static_cast<std::size_t>(i)]));
+    }
+    EXPECT_GT(turned, 1e-4);
+  }
+}
+
 }  // namespace
 }  // namespace ahm::test
