@@ -262,20 +262,16 @@ void add_points(const Seeds& seeds) {
     table.text = text;
     io::write(seeds.file("ply", text ? "points_text.ply" : "points.ply"), table);
   }
-  const std::vector<std::string> files[] = {{"csv/cloud.csv"},
-                                            {"las/two.las"},
-                                            {"pcd/text.pcd", "pcd/binary.pcd", "pcd/compressed.pcd"},
-                                            {"ply/points.ply", "ply/points_text.ply"},
-                                            {"pts/ball.pts"},
-                                            {"xyz/ball.xyz"}};
-  std::uint8_t format = 0;
-  for (const auto& of_format : files) {
-    for (const std::string& file : of_format) {
-      std::ifstream in(seeds.file(file.substr(0, 3), file.substr(4)), std::ios::binary);
-      const std::string bytes(std::istreambuf_iterator<char>(in), {});
-      seeds.add("points", file.substr(4), bytes_of(format) + bytes);
-    }
-    ++format;
+  struct Streamed {
+    std::uint8_t format;
+    const char *fuzzer, *name;
+  };
+  for (const auto& [format, fuzzer, name] :
+       {Streamed{0, "csv", "cloud.csv"}, Streamed{1, "las", "two.las"}, Streamed{2, "pcd", "text.pcd"},
+        Streamed{2, "pcd", "binary.pcd"}, Streamed{2, "pcd", "compressed.pcd"}, Streamed{3, "ply", "points.ply"},
+        Streamed{3, "ply", "points_text.ply"}, Streamed{4, "pts", "ball.pts"}, Streamed{5, "xyz", "ball.xyz"}}) {
+    std::ifstream in(seeds.file(fuzzer, name), std::ios::binary);
+    seeds.add("points", name, bytes_of(format) + std::string(std::istreambuf_iterator<char>(in), {}));
   }
 }
 

@@ -1,6 +1,4 @@
 // A stream of points, on any bytes: of what can be read whole it hands over the same points, packed with gzip or not.
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
 #include <cstring>
@@ -11,30 +9,13 @@
 #include <vector>
 
 #include "ahm/io/point_stream.hpp"
+#include "ahm/io/temporary_folder.hpp"
 #include "bytes.hpp"
 #include "formats/format.hpp"
 #include "read/gunzip.hpp"
 
 namespace ahm::fuzz {
 namespace {
-
-/// A file of this process, removed at its end.
-class Scratch {
- public:
-  explicit Scratch(std::string name)
-      : path_(std::filesystem::temp_directory_path() / ("ahm_points" + std::to_string(getpid()) + name)) {}
-  Scratch(const Scratch&) = delete;
-  Scratch& operator=(const Scratch&) = delete;
-  ~Scratch() { std::filesystem::remove(path_); }
-
-  const std::filesystem::path& fill(const std::string& bytes) const {
-    std::ofstream(path_, std::ios::binary) << bytes;
-    return path_;
-  }
-
- private:
-  std::filesystem::path path_;
-};
 
 struct Points {
   std::vector<Vec3> points;
@@ -57,7 +38,10 @@ Points stream(const std::filesystem::path& path) {
   return all;
 }
 
-void check(const io::Format& format, const Scratch& scratch, const std::string& bytes) {
+void check(const io::Format& format, const std::string& bytes) {
+  const io::TemporaryFolder scratch("ahm_fuzz_");
+  const std::filesystem::path path = scratch.directory() / ("file" + format.extensions.front());
+  std::ofstream(path, std::ios::binary) << bytes;
   std::optional<io::Geometry> whole;
   io::Input in{"/nowhere/file" + format.extensions.front(), bytes};
   if (format.read != nullptr)
@@ -66,7 +50,7 @@ void check(const io::Format& format, const Scratch& scratch, const std::string& 
       whole = format.read(in);
     });
   std::optional<Points> parts;
-  allow_refusals([&] { parts = stream(scratch.fill(bytes)); });
+  allow_refusals([&] { parts = stream(path); });
   if (!whole || !parts || whole->points.size() > 100000) return;
   require(parts->points.size() == whole->points.size(), "as many points as read whole");
   require(std::equal(parts->points.begin(), parts->points.end(), whole->points.begin(),
@@ -87,7 +71,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (size == 0) return 0;
   constexpr std::array extensions{".csv", ".las", ".pcd", ".ply", ".pts", ".xyz"};
   const io::Format& format = *io::find_format(extensions[*data % extensions.size()]);
-  const fuzz::Scratch scratch(format.extensions.front());
-  fuzz::check(format, scratch, std::string(reinterpret_cast<const char*>(data) + 1, size - 1));
+  fuzz::check(format, std::string(reinterpret_cast<const char*>(data) + 1, size - 1));
   return 0;
 }

@@ -104,8 +104,7 @@ void comment(const AtlasCommandOptions& options, const Made& made, const Tangent
   if (distorted > 0)
     journal.add_warning(
         fmt::format("{} of {} charts are distorted by more than {:.4g} at over 5 % of their area: more sources did not "
-                    "help, or there are "
-                    "as many as there may be; the surface is too coarse for its bends there",
+                    "help, or there are as many as there may be; the surface is too coarse for its bends there",
                     distorted, made.atlas.charts.size(), *options.max_distortion));
 }
 

@@ -96,7 +96,7 @@ void map_from_source(const LogmapOptions& options, const Input& input, std::opti
   const auto unfold = [&] {
     if (maps->solver) front.emplace(input.graph(), source.source, map_options(options.solve).radius, stop);
   };
-  detail::run_both(detail::thread_count(options.solve.threads) > 1, solve, unfold);
+  detail::run_both(options.solve.threads, solve, unfold);
   const LogMap& map = *solved;
   RowLogMap rows = input.surface().on_rows(map, options.solve.threads);
   const std::vector<double> quality =

@@ -95,8 +95,7 @@ constexpr Sentence sentences[] = {
      "{0:.0f} [pair|pairs] of neighbours [was|were] not joined because their normals disagree (thin walls)"},
     {"lines",
      "{0:.0f} points lie along lines, as of a scanner, that are too far apart to be joined: no surface, and distances "
-     "go "
-     "straight across what a line surrounds; thin them along the lines (--voxel)"},
+     "go straight across what a line surrounds; thin them along the lines (--voxel)"},
     {"reflections",
      "{0:.0f} [edge joins|edges join] oppositely oriented normals and [is treated as a reflection|are treated as "
      "reflections]; where sheets are nearer to each other than six spacings, ways lead from one to the other there"},

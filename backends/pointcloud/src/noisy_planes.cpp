@@ -134,7 +134,7 @@ NoisyPlanes find_noisy_planes(const CleanPoints& cloud, std::span<const Vec3> no
     result.parts = options.parts_apart ? std::make_unique<const CloudParts>(whole.neighborhoods)
                                        : std::make_unique<const CloudParts>(static_cast<Index>(cloud.points.size()));
   };
-  detail::run_both(detail::thread_count(options.threads) > 1, find_noise, find_parts);
+  detail::run_both(options.threads, find_noise, find_parts);
   if (result.parts->count == 1) {
     if (!options.k) whole = widened(std::move(whole), cloud, normals, search, options);
     result.neighborhoods = std::move(whole.neighborhoods);

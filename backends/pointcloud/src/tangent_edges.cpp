@@ -101,7 +101,7 @@ CsrGraphData tangent_edges(const CleanPoints& cloud, const TangentPlanes& planes
   RowPlaces places(edges, vertex_of_clean, vertices, threads);
   const std::size_t directed = 2 * edges.tails.size();
   detail::run_both(
-      detail::thread_count(threads) > 1, [&] { g.transports.resize(width * directed); },
+      threads, [&] { g.transports.resize(width * directed); },
       [&] { g.neighbors.resize(directed), g.weights.resize(directed), g.logs.resize(2 * directed); });
   detail::parallel_chunks(count, edges_per_task, threads, [&](Offset begin, Offset end) {
     for (Offset e = begin; e < end; ++e) {

@@ -266,7 +266,7 @@ WeightedEdges TuftedCover::weighted_edges() const {
       for (int s = 0; s < 3; ++s) result.masses[tail_[h + s]] += third;
     }
   };
-  detail::run_both(detail::thread_count(threads_) > 1, bucket, weigh_points);
+  detail::run_both(threads_, bucket, weigh_points);
 
   std::vector<WeightedEdges> parts(static_cast<std::size_t>((n_ + points_per_task - 1) / points_per_task));
   detail::parallel_chunks(n_, points_per_task, threads_, [&](Offset from, Offset to) {

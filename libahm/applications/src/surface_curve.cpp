@@ -285,18 +285,20 @@ RowLogMap rows_from_curve(const Surface& surface, const LogMap& map, const Surfa
   RowLogMap rows = surface.on_rows(map);
   rows.angle.clear();
   const TangentGraph& graph = surface.graph();
-  const double edge = graph.mean_edge_length() * graph.length_unit();
-  const bool is_exact = map.method() == Method::exact, flat = curve.shape && has_exact_coordinates(curve);
+  const double quarter = 0.25 * graph.mean_edge_length() * graph.length_unit();
+  const bool is_exact = map.method() == Method::exact, is_flat = curve.shape && has_exact_coordinates(curve);
+  // By so much coordinates may be nearer to the truth than a front from samples.
+  const auto slack_at = [&](double from_samples) {
+    if (is_exact) return 0.0;
+    if (is_flat) return quarter;
+    return graph.is_delaunay() ? 0.0 : std::min(quarter, 0.005 * from_samples);
+  };
   for (std::size_t i = 0; i < rows.u.size(); ++i) {
     if (curve.shape) {
       // Between samples the curve is nearer by no more than half a piece makes it, in the plane.
       const double from_samples = rows.distance[i], share = std::min(1.0, curve.jump / 2 / from_samples);
       const double least = from_samples * std::sqrt(1 - share * share);
-      // By so much coordinates may be nearer to the truth than a front from samples.
-      const double slack = is_exact              ? 0
-                           : flat                ? 0.25 * edge
-                           : graph.is_delaunay() ? 0
-                                                 : std::min(0.25 * edge, 0.005 * from_samples);
+      const double slack = slack_at(from_samples);
       const double in_plane = distance_from_curve(rows.u[i], rows.v[i], curve.length, *curve.shape);
       if (!std::isnan(from_samples))
         rows.distance[i] = std::clamp(in_plane, std::max(0.0, least - slack), from_samples + slack);

@@ -165,8 +165,7 @@ std::unique_ptr<const HeatSystem> factored_system(const TangentGraph& graph, std
 
   double lost = 0;
   detail::run_both(
-      detail::thread_count(options.threads) > 1,
-      [&] { without_openmp_regions([&] { system->B.emplace(matrices.B, of_B, name_B); }); },
+      options.threads, [&] { without_openmp_regions([&] { system->B.emplace(matrices.B, of_B, name_B); }); },
       [&] {
         without_openmp_regions([&] { system->A.emplace(matrices.A, analysis.of_A(), name_A); });
         lost = lost_heat(*system, graph, graph.size());

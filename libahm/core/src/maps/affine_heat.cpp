@@ -58,7 +58,7 @@ void AffineHeat::diffuse_frames() {
 
 void AffineHeat::diffuse() {
   detail::run_both(
-      threads_ > 1, [&] { diffuse_heat(); }, [&] { diffuse_frames(); });
+      threads_, [&] { diffuse_heat(); }, [&] { diffuse_frames(); });
 }
 
 /// rho_i = -tau sum_j w_ij e_ij lambda_j, columns of n vectors of d numbers. The translation from j to i is -e_ij: it

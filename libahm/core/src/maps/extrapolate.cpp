@@ -116,6 +116,23 @@ double limit_of(std::span<const double> p1, std::span<const double> pc, std::spa
   return disagreement;
 }
 
+/// Turns frames by what extrapolation turned vectors by, so that a vector and the way it arrives by, U phi, stay together: at the shortest
+/// time the errors of both make up for each other. In the plane.
+void turn_back(std::span<double> frames, const LogMap& first, std::span<const double> coordinates) {
+  for (std::size_t i = 0; 4 * i < frames.size(); ++i) {
+    const std::span<const double> before = first.coordinates(Vertex(i)), phi = coordinates.subspan(2 * i, 2);
+    const double size = length(before) * length(phi);
+    if (!(size > 0)) continue;
+    const double c = (phi[0] * before[0] + phi[1] * before[1]) / size,
+                 s = (phi[0] * before[1] - phi[1] * before[0]) / size;
+    for (double* row = &frames[4 * i]; row != &frames[4 * i] + 4; row += 2) {
+      const double x = row[0], y = row[1];
+      row[0] = c * x + s * y;
+      row[1] = c * y - s * x;
+    }
+  }
+}
+
 }  // namespace
 
 ExtrapolatedRow extrapolate_row(const std::array<TimedRow, 3>& rows, const ExtrapolationScales& scales,
@@ -144,27 +161,6 @@ ExtrapolatedRow extrapolate_row(const std::array<TimedRow, 3>& rows, const Extra
   std::fill(phi.begin(), phi.end(), NAN);
   return {status, NAN, NAN};
 }
-
-namespace {
-
-/// Turns frames by what extrapolation turned vectors by, so that a vector and the way it arrives by, U phi, stay together: at the shortest
-/// time the errors of both make up for each other. In the plane.
-void turn_back(std::span<double> frames, const LogMap& first, std::span<const double> coordinates) {
-  for (std::size_t i = 0; 4 * i < frames.size(); ++i) {
-    const std::span<const double> before = first.coordinates(Vertex(i)), phi = coordinates.subspan(2 * i, 2);
-    const double size = length(before) * length(phi);
-    if (!(size > 0)) continue;
-    const double c = (phi[0] * before[0] + phi[1] * before[1]) / size,
-                 s = (phi[0] * before[1] - phi[1] * before[0]) / size;
-    for (double* row = &frames[4 * i]; row != &frames[4 * i] + 4; row += 2) {
-      const double x = row[0], y = row[1];
-      row[0] = c * x + s * y;
-      row[1] = c * y - s * x;
-    }
-  }
-}
-
-}  // namespace
 
 LogMap extrapolate(const TangentGraph& graph, const ComponentScales& scales, double t_coef, const DiffusionTimes& times,
                    const std::vector<const LogMap*>& maps, double radius, bool with_distances, bool with_spread) {

@@ -326,11 +326,7 @@ void UnfoldingFront::Stars::find_cut_edges(Index vertex, std::vector<CutEdge>& e
       if (beside.neighbor < vertices_ && beside.neighbor != vertex)
         edges.push_back({beside.neighbor, half.neighbor, half.length});
   }
-  std::sort(edges.begin(), edges.end(), [](const CutEdge& a, const CutEdge& b) {
-    return a.end != b.end ? a.end < b.end : a.midpoint < b.midpoint;
-  });
-  const auto same = [](const CutEdge& a, const CutEdge& b) { return a.midpoint == b.midpoint; };
-  edges.erase(std::unique(edges.begin(), edges.end(), same), edges.end());
+  std::sort(edges.begin(), edges.end(), [](const CutEdge& a, const CutEdge& b) { return a.end < b.end; });
   auto kept = edges.begin();
   for (auto first = edges.begin(); first != edges.end();) {
     const auto next = std::find_if(first, edges.end(), [&](const CutEdge& e) { return e.end != first->end; });

@@ -307,7 +307,7 @@ LocalMaps joined(const TangentGraph& graph, std::vector<Entries>& entries, unsig
     join(entries, &Entries::transports, total * maps.transport_width(), maps.transports);
     join(entries, &Entries::logs, total * static_cast<std::size_t>(graph.dimension()), maps.logs);
   };
-  detail::run_both(detail::thread_count(threads) > 1, join_numbers, join_vertices);
+  detail::run_both(threads, join_numbers, join_vertices);
   return maps;
 }
 

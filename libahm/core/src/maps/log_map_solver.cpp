@@ -48,8 +48,12 @@ struct MapSettings {
 MapSettings settings_of(const MapOptions& map, const HeatOptions& options) {
   if (!(map.radius > 0))
     throw InvalidArgument("radius is " + detail::number(map.radius) + "; it must be > 0 (infinity: the whole graph)");
-  return {map.variant.value_or(options.variant), map.radius,    map.frames,
-          map.spread && map.distances,           map.distances, map.progress.value_or(options.progress)};
+  return {.variant = map.variant.value_or(options.variant),
+          .radius = map.radius,
+          .frames = map.frames,
+          .spread = map.spread && map.distances,
+          .distances = map.distances,
+          .progress = map.progress.value_or(options.progress)};
 }
 
 /// Of a march: distances tell where one ends.
@@ -308,7 +312,7 @@ std::vector<LogMap> LogMapSolver::Impl::solve_block(std::size_t time, std::span<
     for (std::size_t s = 0; s < sources.size(); ++s) {
       March on = front(time, map, ends ? &unfolded[s] : nullptr, threads);
       detail::run_both(
-          threads > 1, [&] { on.run(sources[s]); }, unfold);
+          threads, [&] { on.run(sources[s]); }, unfold);
       maps.push_back(marched(on, sources[s], unfolded[s], map, threads));
     }
     return maps;
@@ -324,7 +328,7 @@ std::vector<LogMap> LogMapSolver::Impl::solve_block(std::size_t time, std::span<
     if (squares) heat.solve_squares();
     if (lengths) heat.solve_lengths();
   };
-  detail::run_both(threads > 1, solve, unfold);
+  detail::run_both(threads, solve, unfold);
   for (std::size_t s = 0; s < sources.size(); ++s)
     maps.push_back(finished(heat, time, s, sources[s], unfolded[s], map, threads));
   return maps;

@@ -91,7 +91,7 @@ void March::march(const Source* source) {
       progress_.step("solve", static_cast<double>(accepted_count_) / graph_.size());
       std::unique_ptr<Solve> next;
       detail::run_both(
-          last != nullptr,
+          last ? 2 : 1,
           [&] {
             if (last) without_openmp_regions([&] { solve_values(*last); });
           },

@@ -177,22 +177,22 @@ Index UnfoldingFront::add(const Source& source) {
 
 /// A point of a triangle is at the distance of its median from the midpoint of a side whose ends' distances are given.
 void UnfoldingFront::offer_midpoints(std::vector<Given>& given) {
-  std::sort(given.begin(), given.end(),
-            [](const Given& a, const Given& b) { return std::tie(a.point, a.vertex) < std::tie(b.point, b.vertex); });
+  const auto comes_before = [](const Given& a, const Given& b) {
+    return std::tie(a.point, a.vertex) < std::tie(b.point, b.vertex);
+  };
+  std::sort(given.begin(), given.end(), comes_before);
   std::vector<Stars::CutEdge> edges;
   for (const Given& one : given) {
     stars_->find_cut_edges(one.vertex, edges);
     for (const auto& edge : edges) {
       if (edge.end <= one.vertex) continue;
-      const auto comes_before_end = [&](const Given& g, Index end) {
-        return std::tie(g.point, g.vertex) < std::tie(one.point, end);
-      };
-      for (auto at = std::lower_bound(given.begin(), given.end(), edge.end, comes_before_end);
-           at != given.end() && at->point == one.point && at->vertex == edge.end; ++at) {
-        const Given& other = *at;
-        const double a = one.distance, b = other.distance;
+      Given end = one;
+      end.vertex = edge.end;
+      const auto [first, last] = std::equal_range(given.begin(), given.end(), end, comes_before);
+      for (auto other = first; other != last; ++other) {
+        const double a = one.distance, b = other->distance;
         const double squared = 0.5 * (a * a + b * b) - edge.half * edge.half;
-        const Vec2 between{one.offset[0] + other.offset[0], one.offset[1] + other.offset[1]};
+        const Vec2 between{one.offset[0] + other->offset[0], one.offset[1] + other->offset[1]};
         offer(edge.midpoint, one.point, std::sqrt(std::max(0.0, squared)), 0, {}, {unit_vector(between), one.mirrored});
       }
     }

@@ -70,11 +70,11 @@ void parallel_sort(std::vector<T>& values, unsigned threads, const Less& less) {
     });
 }
 
-/// Runs two tasks at once when `concurrently`, else one after the other; the first exception is rethrown when both
-/// ended.
+/// Runs two tasks at once on two threads or more (0: one per core), else one after the other; the first exception is rethrown when
+/// both ended.
 template <class First, class Second>
-void run_both(bool concurrently, const First& first, const Second& second) {
-  parallel_chunks(2, 1, concurrently ? 2 : 1, [&](Offset begin, Offset) { begin == 0 ? first() : second(); });
+void run_both(unsigned threads, const First& first, const Second& second) {
+  parallel_chunks(2, 1, threads, [&](Offset begin, Offset) { begin == 0 ? first() : second(); });
 }
 
 }  // namespace ahm::detail
