@@ -161,10 +161,12 @@ TEST(Scales, DoNotMatterToStraightLines) {
 }
 
 TEST(Scales, DoNotMatterToCurves) {
-  expect_same_at_all_scales({"stroke"}, [](double s) {
+  const auto curve = [](double s) {
     return Words{"--curve",
                  words(s, {0.3, 0.05, 0.1}) + " " + words(s, {0.6, 0.35, 0.1}) + " " + words(s, {0.9, 0.65, 0})};
-  });
+  };
+  expect_same_at_all_scales({"stroke"}, curve);
+  expect_same_at_all_scales({"stroke", "--method", "exact"}, curve, {0, 1});
 }
 
 TEST(Scales, DoNotMatterToPathsOfTools) {

@@ -155,7 +155,7 @@ Source ExactGeodesics::joined(std::span<const ExactSource> given, const Placed& 
       const Vec2 turned_u = c * u - s * v, turned_v = s * u + c * v;
       all.add(source.vertices()[i], source.weights()[i], there,
               Axes{turned_u[0], turned_v[0], turned_u[1], turned_v[1]},
-              {static_cast<Index>(k), norm(z), given[k].position});
+              {static_cast<Index>(k), length(z), given[k].position});
     }
   }
   return all;
