@@ -99,10 +99,9 @@ void map_from_source(const LogmapOptions& options, const Input& input, std::opti
   detail::run_both(options.solve.threads, solve, unfold);
   const LogMap& map = *solved;
   RowLogMap rows = input.surface().on_rows(map, options.solve.threads);
-  const std::vector<double> quality =
-      on_rows(rows, front ? map_quality(input.graph(), map, *front, options.solve.threads)
-                          : map_quality(input.graph(), map, options.solve.threads));
-  const double compared = front ? directions_compared(input.graph(), map, *front) : 1;
+  const auto [of_vertices, compared] = front ? map_quality(input.graph(), map, *front, options.solve.threads)
+                                             : ComparedQuality{map_quality(input.graph(), map, options.solve.threads)};
+  const std::vector<double> quality = on_rows(rows, of_vertices);
   front.reset();
   if (options.input.around_source) settle_left_out(input, source, *options.solve.radius, rows);
   comment_on_statuses(rows.status, options.input.path, journal);

@@ -138,7 +138,7 @@ TEST(MapQuality, IsTheSameBesideAFrontMadeWithoutTheMap) {
     const LogMap map = LogMapSolver(graph).solve(source, {.radius = radius});
     const QualityFront front(graph, source, radius);
     ASSERT_NE(front.get(), nullptr);
-    const std::vector<double> expected = map_quality(graph, map), quality = map_quality(graph, map, front, 2);
+    const std::vector<double> expected = map_quality(graph, map), quality = map_quality(graph, map, front, 2).quality;
     for (Index i = 0; i < graph.size(); ++i)
       ASSERT_TRUE(quality[i] == expected[i] || (std::isnan(quality[i]) && std::isnan(expected[i]))) << "vertex " << i;
   }

@@ -23,8 +23,9 @@
 #include "maps/front_stars.hpp"
 #include "maps/heat_distance.hpp"
 #include "maps/march.hpp"
-#include "maps/run_front.hpp"
+#include "maps/solved_values.hpp"
 #include "maps/source_vertices.hpp"
+#include "maps/unfolded.hpp"
 #include "maps/vertex_row.hpp"
 
 namespace ahm {
@@ -59,40 +60,6 @@ MapSettings settings_of(const MapOptions& map, const HeatOptions& options) {
 /// Of a march: distances tell where one ends.
 MarchGoal goal_of(const MapSettings& map) {
   return map.distances || std::isfinite(map.radius) ? MarchGoal::map : MarchGoal::coordinates;
-}
-
-/// What a solve knows of a vertex besides its coordinates; world units.
-struct Found {
-  Status status;
-  double root_mean_square = 0;  ///< sqrt(q / lambda)
-  double distance = 0;          ///< of heat
-};
-
-/// What a front found; empty: distances are measured by heat.
-struct Unfolded final : KnownDistances {
-  std::vector<double> distances, directions;
-  std::vector<Index> nearest;  ///< sample of a curve
-
-  double of(Index vertex) const override { return distances[vertex]; }
-};
-
-Unfolded unfolded_from(const TangentGraph& graph, const std::shared_ptr<const UnfoldingFront::Stars>& stars,
-                       const Source& source, const MapSettings& map) {
-  if (!map.distances || !unfolds(graph, source)) return {};
-  UnfoldingFront front(graph, stars, map.spread && graph.is_delaunay());
-  front.add(source);
-  run_front(front, graph, map.radius, map.progress.stop);
-  const auto n = static_cast<std::size_t>(graph.size());
-  Unfolded found;
-  found.distances.resize(n);
-  found.directions.resize(front.has_directions() ? 2 * n : 0);
-  found.nearest.resize(source.is_curve() ? n : 0);
-  for (std::size_t i = 0; i < n; ++i) {
-    found.distances[i] = front.distance(Vertex(i));
-    if (!found.nearest.empty()) found.nearest[i] = front.nearest(Vertex(i));
-    if (!found.directions.empty()) std::ranges::copy(front.direction(Vertex(i)), found.directions.begin() + 2 * i);
-  }
-  return found;
 }
 
 /// One diffusion time.
@@ -191,42 +158,6 @@ void LogMapSolver::Impl::factor(std::size_t time, const Progress& progress) cons
   });
 }
 
-/// What a march found, vertex by vertex.
-class MarchedValues {
- public:
-  MarchedValues(const March& front, double radius) : front_(front), radius_(radius) {}
-
-  Found read(Index vertex, std::span<double> phi) const {
-    const auto found = front_.coordinates(vertex);
-    std::copy(found.begin(), found.end(), phi.begin());
-    if (front_.accepted(vertex)) return {Status::ok, front_.root_mean_square(vertex), front_.distance(vertex)};
-    return {std::isinf(radius_) ? Status::unreached : Status::beyond_radius};
-  }
-  void axes(Index vertex, double* out) const { front_.axes(vertex, out); }
-
- private:
-  const March& front_;
-  double radius_;
-};
-
-/// What a global solve found for source number s of a block.
-class GlobalValues {
- public:
-  GlobalValues(const AffineHeat& heat, std::size_t s) : heat_(heat), s_(s), frames_(heat.frames(s)) {}
-
-  Found read(Index vertex, std::span<double> phi) const {
-    heat_.coordinates_at(s_, vertex, phi.data());
-    return {heat_.reached(s_, vertex) ? Status::ok : Status::unreached, heat_.root_mean_square_at(s_, vertex),
-            heat_.distance_at(s_, vertex)};
-  }
-  void axes(Index vertex, double* out) const { frames_.axes(vertex, out); }
-
- private:
-  const AffineHeat& heat_;
-  std::size_t s_;
-  FrameField frames_;
-};
-
 /// The map that `values` tell of.
 /// @param unfolded  empty: distances are those of heat, if any are wanted
 template <class Values>
@@ -248,7 +179,7 @@ LogMap LogMapSolver::Impl::map_of(const Values& values, Strategy how, const Marc
   detail::for_each_index(n, threads, [&](std::size_t i) {
     const auto vertex = static_cast<Index>(i);
     const std::span phi = std::span(coordinates).subspan(i * d, d);
-    const Found found = values.read(vertex, phi);
+    const SolvedValue found = values.read(vertex, phi);
     const VertexRow row = vertex_row({phi, found.root_mean_square, found.distance});
     status[i] = !components.hold(vertex)     ? Status::disconnected
                 : found.status == Status::ok ? row.status
@@ -304,7 +235,10 @@ std::vector<LogMap> LogMapSolver::Impl::solve_block(std::size_t time, std::span<
   std::vector<LogMap> maps;
   const auto unfold = [&] {
     if (unfolded.empty())
-      for (const Source& source : sources) unfolded.push_back(unfolded_from(graph, stars(), source, map));
+      for (const Source& source : sources)
+        unfolded.push_back(map.distances
+                               ? unfolded_from(source, graph, stars(), map.spread, map.radius, map.progress.stop)
+                               : Unfolded{});
   };
   if (strategy == Strategy::march) {
     const bool ends = std::isfinite(map.radius);  // where distances say, so that they come first

@@ -59,21 +59,21 @@ std::vector<double> ways_of(const LogMap& map) {
   return ways;
 }
 
-/// How far what a front over edges that are no triangulation says of a map's vertices counts.
-double belief_in_fronts(const TangentGraph& graph, const LogMap& map) {
-  std::vector<Vertex> reached, some;
-  for (Index i = 0; i < graph.size(); ++i)
-    if (map.status()[i] == Status::ok) reached.emplace_back(i);
-  for (std::size_t k = 0; k < reached.size(); k += reached.size() / asked + 1) some.push_back(reached[k]);
-  const double share = UnfoldingFront::agreement(graph, some);
-  return std::clamp((share - believed_from) / (believed_in_full - believed_from), 0.0, 1.0);
-}
-
 /// The vectors of a front over edges that are no triangulation, beside those of a map.
 class Comparison {
  public:
   Comparison(const TangentGraph& graph, const LogMap& map, const UnfoldingFront& front)
-      : front_(front), radius_(map.radius()), belief_(belief_in_fronts(graph, map)) {}
+      : front_(front), radius_(map.radius()) {
+    std::vector<Vertex> reached, some;
+    for (Index i = 0; i < graph.size(); ++i)
+      if (map.status()[i] == Status::ok) reached.emplace_back(i);
+    for (std::size_t k = 0; k < reached.size(); k += reached.size() / asked + 1) some.push_back(reached[k]);
+    const double share = UnfoldingFront::agreement(graph, some);
+    belief_ = std::clamp((share - believed_from) / (believed_in_full - believed_from), 0.0, 1.0);
+    if (!front.has_directions() || reached.empty()) return;
+    const auto bent = std::ranges::count_if(reached, [&](Vertex vertex) { return front.is_bent(vertex); });
+    directions_compared_ = belief_ * (1 - static_cast<double>(bent) / static_cast<double>(reached.size()));
+  }
 
   /// How far a way is off by what the front says, world units.
   double off(Vertex vertex, std::span<const double> way, double h) const {
@@ -92,11 +92,13 @@ class Comparison {
     return {d * direction[0], d * direction[1]};
   }
   double belief() const { return belief_; }
+  double directions_compared() const { return directions_compared_; }
 
  private:
   const UnfoldingFront& front_;
   double radius_;
-  double belief_;  ///< in what the front says
+  double belief_ = 0;  ///< in what the front says
+  double directions_compared_ = 1;
 };
 
 /// Geodesic polar coordinates, from where the way begins, as a map on a Delaunay triangulation has them; NaN on other graphs.
@@ -148,7 +150,7 @@ void check_map(const TangentGraph& graph, const LogMap& map) {
     throw InvalidArgument("map_without_spread", "the map has no spread", "solve with MapOptions::spread");
 }
 
-std::vector<double> quality_beside(const TangentGraph& graph, const LogMap& map, const UnfoldingFront* front,
+std::vector<double> quality_beside(const TangentGraph& graph, const LogMap& map, const Comparison* comparison,
                                    unsigned threads) {
   std::vector<double> quality(static_cast<std::size_t>(graph.size()), std::numeric_limits<double>::quiet_NaN());
   const ComponentScales scales(graph);
@@ -158,8 +160,6 @@ std::vector<double> quality_beside(const TangentGraph& graph, const LogMap& map,
   // Distances of heat may be below the straight line; unfolded ones hardly are.
   const bool may_be_short = map.method() == Method::heat && !graph.is_delaunay();
   const std::optional<Vec3> source = may_be_short ? place_in_space(graph, map.source()) : std::nullopt;
-  std::optional<Comparison> comparison;
-  if (front) comparison.emplace(graph, map, *front);
   detail::for_each_index(quality.size(), threads, [&](std::size_t i) {
     if (map.status()[i] != Status::ok) return;
     const Vertex vertex(static_cast<Index>(i));
@@ -199,27 +199,17 @@ QualityFront::QualityFront(const TangentGraph& graph, const Source& source, doub
   run_front(*front_, graph, reach * radius, stop);
 }
 
-double directions_compared(const TangentGraph& graph, const LogMap& map, const QualityFront& front) {
-  if (!front.get() || !front.get()->has_directions() || map.method() != Method::heat) return 1;
-  Offset mapped = 0, bent = 0;
-  for (Index i = 0; i < graph.size(); ++i) {
-    if (map.status()[i] != Status::ok) continue;
-    ++mapped;
-    bent += front.get()->is_bent(Vertex(i));
-  }
-  return mapped > 0 ? belief_in_fronts(graph, map) * (1 - static_cast<double>(bent) / static_cast<double>(mapped)) : 1;
-}
-
-std::vector<double> map_quality(const TangentGraph& graph, const LogMap& map, const QualityFront& front,
-                                unsigned threads) {
+ComparedQuality map_quality(const TangentGraph& graph, const LogMap& map, const QualityFront& front, unsigned threads) {
   check_map(graph, map);
-  return quality_beside(graph, map, map.method() == Method::heat ? front.get() : nullptr, threads);
+  if (map.method() != Method::heat || !front.get()) return {quality_beside(graph, map, nullptr, threads)};
+  const Comparison comparison(graph, map, *front.get());
+  return {quality_beside(graph, map, &comparison, threads), comparison.directions_compared()};
 }
 
 std::vector<double> map_quality(const TangentGraph& graph, const LogMap& map, unsigned threads) {
   check_map(graph, map);
   if (map.method() != Method::heat) return quality_beside(graph, map, nullptr, threads);
-  return map_quality(graph, map, QualityFront(graph, map.source(), map.radius()), threads);
+  return map_quality(graph, map, QualityFront(graph, map.source(), map.radius()), threads).quality;
 }
 
 }  // namespace ahm

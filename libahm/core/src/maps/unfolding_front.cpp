@@ -8,6 +8,7 @@
 #include "ahm/util/scratch.hpp"
 #include "ahm/util/small_math.hpp"
 #include "ahm/util/vec.hpp"
+#include "maps/across_side.hpp"
 #include "maps/focusing.hpp"
 #include "maps/front_stars.hpp"
 #include "maps/right_hand_side.hpp"
@@ -25,77 +26,14 @@ constexpr double same_length = 1e-10, same_focusing = 1e-6;
 constexpr Index most_gains = 40;
 /// Points whose distances a vertex knows: the samples of a curve are many, and all but equally near.
 constexpr Index most_points = 8;
-/// Sides that are shorter than this share of the other two, or of a distance, no longer tell where its point lies.
-constexpr double shortest_side = 1e-6, shortest_side_far_away = 1e-13;
 /// A line may miss the side by this share of it, and is taken to pass its end. Where edges are no triangulation, as between points that lie
 /// in squares, it may pass between two triangles that bend away from it, and seen from neither leave only edges.
 constexpr double missed = 1e-9, missed_between = 1e-3;
 /// Stars that are kept until others take their place: those ahead of the front are asked for several times.
 constexpr std::size_t most_seen = 2048;
-/// Sums of products may be off by less than this share of the largest, unless they are below `least_cube`.
-constexpr double rounding = 1e-12, least_cube = 1e-280;
-/// Of a ray shorter than this share of a side nobody knows the direction.
-constexpr double least_ray = 1e-6;
-/// Rays to the ends of a side that differ by more than this many times the angle at which it is seen come along two ways, as
-/// around a tube, and there is none between them.
-constexpr double two_ways = 6;
 /// A way that bends at the boundary by no more than this angle, all in all, goes straight on: boundaries of surfaces are not
 /// straight to the last bit.
 constexpr float straight_on = 0.5F;
-
-/// Where a point lies in the layout of a triangle with a at 0, b at (ab, 0) and c at (cx, cy) above: at (x, -depth); the square of
-/// its distance from c, and where the line to c crosses the side, if `found`.
-struct Across {
-  double squared, x, depth, share;
-  bool found;
-};
-
-/// Of a point at distances `from_a` and `from_b` below the side ab; not found where c is no nearer than the root of `limit`, or
-/// where the straight line to the point does not cross that side. It is asked a dozen times for each vertex, mostly in vain for
-/// any of these reasons: so all is computed, and decided at once.
-[[gnu::always_inline]] inline Across across_side(double from_a, double from_b, double ab, double cx, double cy,
-                                                 double limit, double missed) {
-  const double x = 0.5 * (ab + (from_a - from_b) * (from_a + from_b) / ab);
-  const double squared_y = (from_a - x) * (from_a + x), along = (cx - x) * (cx - x) + cy * cy + squared_y;
-  const double depth = std::sqrt(squared_y > 0 ? squared_y : 0.0), height = cy + depth;
-  const double at_side = x * cy + cx * depth;  // where the line crosses, times height
-  const double squared = (cx - x) * (cx - x) + height * height;
-  const bool found = (ab > shortest_side * std::max(std::abs(cx), cy)) & (ab > shortest_side_far_away * from_a) &
-                     (squared_y >= -1e-14 * from_a * from_a) & (along < limit) & (squared < limit) &
-                     (at_side >= -missed * ab * height) & (at_side <= (1 + missed) * ab * height);
-  return {squared, x, depth, std::clamp(at_side / (ab * height), 0.0, 1.0), found};
-}
-
-/// `v` turned as the ray `from` must be to become the ray `to`, the other way round if `side` is -1; unit length.
-Vec2 turned(const Vec2& v, const Vec2& from, const Vec2& to, double side) {
-  const double along = dot(from, to), across = side * cross(from, to), by = length(Vec2{along, across});
-  return {(v[0] * along - v[1] * across) / by, (v[1] * along + v[0] * across) / by};
-}
-
-/// Whether c is certainly no nearer to that point than the root of `limit`: `along` of `across_side`, without its division. So it
-/// is of most vertices that the front has passed.
-bool is_beyond(double from_a, double from_b, double ab, double cx, double cy, double limit) {
-  const double twice_x_ab = ab * ab + (from_a - from_b) * (from_a + from_b),
-               squared = cx * cx + cy * cy + from_a * from_a;
-  const double least = squared - limit - rounding * (squared + from_a * from_a + limit + ab * ab);
-  return (least * ab > cx * twice_x_ab + least_cube) & (std::abs(twice_x_ab) <= 2.1 * ab * from_a);
-}
-
-/// The direction at the point of the ray to c, from those of the rays to a and b: what both say, by how near it crosses the
-/// side; of two ways that of the nearer end.
-/// @param side  1: a, b, c counterclockwise; -1: clockwise
-Vec2 direction_across(const Across& point, double ab, double cx, double cy, const Vec2& to_a, const Vec2& to_b,
-                      double side) {
-  const double x = point.x, depth = point.depth, share = point.share;
-  const Vec2 a{-x, depth}, b{ab - x, depth}, c{cx - x, cy + depth};
-  const Vec2 by_a = turned(to_a, a, c, side), by_b = turned(to_b, b, c, side);
-  if (!(length(a) > least_ray * ab) || std::isnan(to_a[0])) return by_b;
-  if (!(length(b) > least_ray * ab) || std::isnan(to_b[0])) return by_a;
-  if (length(Vec2{by_a[0] - by_b[0], by_a[1] - by_b[1]}) > two_ways * ab / length(c)) return share < 0.5 ? by_a : by_b;
-  const Vec2 sum{(1 - share) * by_a[0] + share * by_b[0], (1 - share) * by_a[1] + share * by_b[1]};
-  const double size = length(sum);
-  return size > 0 ? Vec2{sum[0] / size, sum[1] / size} : by_a;
-}
 
 /// Whether a front at this distance, so focused, comes before another one.
 bool comes_before(double distance, double focusing, double other, double other_focusing) {

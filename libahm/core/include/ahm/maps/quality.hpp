@@ -66,12 +66,15 @@ class QualityFront {
  private:
   std::optional<UnfoldingFront> front_;
 };
+/// A quality, and how much it tells of.
+struct ComparedQuality {
+  std::vector<double> quality;
+  /// At what share of the mapped vertices it is one of directions, and not of distances alone: 1 on triangulations, less where noise,
+  /// clumps or too few neighbours open stars, behind which ways count as bent, or leave them in disagreement on their triangles.
+  double directions_compared = 1;
+};
 /// The same quality. @param front  from the source of the map, with its radius
-std::vector<double> map_quality(const TangentGraph& graph, const LogMap& map, const QualityFront& front,
-                                unsigned threads = 0);
-/// At what share of the mapped vertices that quality is one of directions, and not of distances alone: 1 on triangulations, less where
-/// noise, clumps or too few neighbours open stars, behind which ways count as bent, or leave them in disagreement on their
-/// triangles.
-double directions_compared(const TangentGraph& graph, const LogMap& map, const QualityFront& front);
+ComparedQuality map_quality(const TangentGraph& graph, const LogMap& map, const QualityFront& front,
+                            unsigned threads = 0);
 
 }  // namespace ahm

@@ -1,0 +1,30 @@
+#include "maps/unfolded.hpp"
+
+#include <algorithm>
+
+#include "maps/heat_distance.hpp"
+#include "maps/run_front.hpp"
+
+namespace ahm {
+
+Unfolded unfolded_from(const Source& source, const TangentGraph& graph,
+                       const std::shared_ptr<const UnfoldingFront::Stars>& stars, bool directions, double radius,
+                       const std::stop_token& stop) {
+  if (!unfolds(graph, source)) return {};
+  UnfoldingFront front(graph, stars, directions && graph.is_delaunay());
+  front.add(source);
+  run_front(front, graph, radius, stop);
+  const auto n = static_cast<std::size_t>(graph.size());
+  Unfolded found;
+  found.distances.resize(n);
+  found.directions.resize(front.has_directions() ? 2 * n : 0);
+  found.nearest.resize(source.is_curve() ? n : 0);
+  for (std::size_t i = 0; i < n; ++i) {
+    found.distances[i] = front.distance(Vertex(i));
+    if (!found.nearest.empty()) found.nearest[i] = front.nearest(Vertex(i));
+    if (!found.directions.empty()) std::ranges::copy(front.direction(Vertex(i)), found.directions.begin() + 2 * i);
+  }
+  return found;
+}
+
+}  // namespace ahm
