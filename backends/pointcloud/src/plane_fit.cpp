@@ -29,8 +29,11 @@ PlaneFit fit_plane(std::span<const Vec3> points, Index i, std::span<const Index>
   const auto& variance = eigen.eigenvalues();
   const double ratio = variance[2] > 0 ? variance[1] / variance[2] : 0.0;
   if (!(ratio > collinear_ratio)) return {};
-  const Eigen::Vector3d n = eigen.eigenvectors().col(0);
-  return {normalized(Vec3{n[0], n[1], n[2]}), ratio, std::max(0.0, variance[0]) / variance[1]};
+  const auto axis = [&](int k) {
+    const Eigen::Vector3d v = eigen.eigenvectors().col(k);
+    return normalized(Vec3{v[0], v[1], v[2]});
+  };
+  return {axis(0), axis(2), ratio, std::max(0.0, variance[0]) / variance[1]};
 }
 
 }  // namespace ahm::pointcloud

@@ -127,43 +127,31 @@ void compact(const std::vector<Index>& counts, Neighborhoods& result) {
 
 /// Whether point i and its neighbours lie along a curve in their plane, as on a scan line around a pipe: as near to a parabola as
 /// narrow ones to a line.
-bool on_a_curve(std::span<const Vec3> points, Index i, std::span<const Index> neighbors, const Vec3& normal) {
+bool on_a_curve(std::span<const Vec3> points, Index i, std::span<const Index> neighbors, const PlaneFit& fit) {
   if (neighbors.size() < least_on_curve) return false;
-  const PlaneAxes axes(normal);
-  const auto in_plane = [&](Index j) {
-    const Vec3 offset = points[j] - points[i];
-    return Eigen::Vector2d(dot(axes.x, offset), dot(axes.y, offset));
-  };
-  const double count = static_cast<double>(neighbors.size()) + 1;
-  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
-  Eigen::Matrix2d second = Eigen::Matrix2d::Zero();
-  for (const Index j : neighbors) {
-    const Eigen::Vector2d p = in_plane(j);
-    mean += p;
-    second += p * p.transpose();
-  }
-  mean /= count;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> principal(second / count - mean * mean.transpose());
-  const double first = principal.eigenvalues()[1];
-  // Least squares of (1, s, s^2) against t, s along and t across, in units of the deviation along.
+  const Vec3 across = cross(fit.normal, fit.along);
+  const double unit = norm(points[neighbors.back()] - points[i]);
+  // Least squares of (1, s, s^2) against t, s along and t across.
   Eigen::Matrix3d normal_matrix = Eigen::Matrix3d::Zero();
+  normal_matrix(0, 0) = 1;  // the point itself
   Eigen::Vector3d right = Eigen::Vector3d::Zero();
   double squares = 0;
-  const auto add = [&](const Eigen::Vector2d& p) {
-    const Eigen::Vector2d q = principal.eigenvectors().transpose() * (p - mean) / std::sqrt(first);
-    const Eigen::Vector3d row(1, q[1], q[1] * q[1]);
+  for (const Index j : neighbors) {
+    const Vec3 offset = points[j] - points[i];
+    const double s = dot(fit.along, offset) / unit, t = dot(across, offset) / unit;
+    const Eigen::Vector3d row(1, s, s * s);
     normal_matrix += row * row.transpose();
-    right += q[0] * row;
-    squares += q[0] * q[0];
-  };
-  add(Eigen::Vector2d::Zero());
-  for (const Index j : neighbors) add(in_plane(j));
-  return squares - right.dot(normal_matrix.ldlt().solve(right)) <= narrow_ratio * count;
+    right += t * row;
+    squares += t * t;
+  }
+  const double count = normal_matrix(0, 0), mean = normal_matrix(0, 1) / count;
+  const double variance = normal_matrix(1, 1) / count - mean * mean;
+  return squares - right.dot(normal_matrix.ldlt().solve(right)) <= narrow_ratio * count * variance;
 }
 
 /// Whether the neighbours that a plane was fitted to do not tell how it lies.
 bool is_narrow(const PlaneFit& fit, std::span<const Vec3> points, Index i, std::span<const Index> neighbors) {
-  return !(fit.ratio > narrow_ratio) || (fit.ratio < bent_ratio && on_a_curve(points, i, neighbors, fit.normal));
+  return !(fit.ratio > narrow_ratio) || (fit.ratio < bent_ratio && on_a_curve(points, i, neighbors, fit));
 }
 
 struct WiderNeighborhood {

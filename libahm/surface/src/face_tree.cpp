@@ -106,38 +106,47 @@ void FaceTree::build(std::size_t begin, std::size_t end) {
   build(half, end);
 }
 
+/// What a search knows; all lengths times `scale`.
+struct FaceTree::Search {
+  double scale;
+  Vec3 from;
+  double size;  ///< of its coordinates
+  double least = infinity;
+
+  double to(const Box& box) const { return std::sqrt(squared_distance(from, scale * box.low, scale * box.high)); }
+  /// Whether what is in a box may be as near as the nearest so far but for the rounding of coordinates.
+  bool may_be_in(const Box& box) const {
+    return to(box) <= least + rounding * std::max({size, scale * largest(box.low), scale * largest(box.high)});
+  }
+};
+
+/// Looks at the triangles in a box that may be the nearest.
+template <class LookAt>
+void FaceTree::visit(std::size_t number, const Search& search, const LookAt& look_at) const {
+  const Box& box = boxes_[number];
+  if (box.second == 0) {
+    for (std::size_t t = box.begin; t < box.end; ++t) look_at(pieces_[t]);
+    return;
+  }
+  std::size_t near = number + 1, far = box.second;
+  if (search.to(boxes_[far]) < search.to(boxes_[near])) std::swap(near, far);
+  for (const std::size_t half : {near, far})
+    if (search.may_be_in(boxes_[half])) visit(half, search, look_at);
+}
+
 FaceTree::Hit FaceTree::nearest(const Vec3& position) const {
   const double size = std::max({largest(boxes_[0].low), largest(boxes_[0].high), largest(position)});
   const double unit = power_of_two_below(size), scale = 1 / unit;
-  const Vec3 from = scale * position;
-  const double own = largest(from);
-  double least = infinity;
-  // What has to be looked at: triangles that may be as near as the nearest so far but for the rounding of coordinates.
-  const auto visit = [&](auto&& self, std::size_t number, const auto& look_at) -> void {
-    const Box& box = boxes_[number];
-    if (box.second == 0) {
-      for (std::size_t t = box.begin; t < box.end; ++t) look_at(pieces_[t]);
-      return;
-    }
-    const auto away = [&](std::size_t b) {
-      return std::sqrt(squared_distance(from, scale * boxes_[b].low, scale * boxes_[b].high));
-    };
-    const auto is_near = [&](std::size_t b) {
-      return away(b) <=
-             least + rounding * std::max({own, scale * largest(boxes_[b].low), scale * largest(boxes_[b].high)});
-    };
-    std::size_t near = number + 1, far = box.second;
-    if (away(far) < away(near)) std::swap(near, far);
-    if (is_near(near)) self(self, near, look_at);
-    if (is_near(far)) self(self, far, look_at);
-  };
-  visit(visit, 0, [&](const Piece& piece) { least = std::min(least, look(piece, from, scale).distance); });
+  Search search{scale, scale * position, scale * largest(position)};
+  visit(0, search, [&](const Piece& piece) {
+    search.least = std::min(search.least, look(piece, search.from, scale).distance);
+  });
   Hit best;
   bool found = false;
-  visit(visit, 0, [&](const Piece& piece) {
+  visit(0, search, [&](const Piece& piece) {
     if (found && piece.face > best.point.face) return;
-    const Look here = look(piece, from, scale);
-    if (here.distance > least + rounding * std::max(own, here.size)) return;
+    const Look here = look(piece, search.from, scale);
+    if (here.distance > search.least + rounding * std::max(search.size, here.size)) return;
     if (found && piece.face == best.point.face && !(unit * here.distance < best.distance)) return;
     std::vector<double> of_corners(faces_[piece.face].size(), 0.0);
     of_corners[0] = here.weights[0];

@@ -14,6 +14,7 @@ namespace ahm::pointcloud {
 
 struct PlaneFit {
   Vec3 normal{0, 0, 0};  ///< unit direction of least variance, either sign; zero where the points lie on a line
+  Vec3 along{0, 0, 0};   ///< unit direction of most variance, either sign; zero likewise
   double ratio = 0;      ///< second principal variance / first
   double thickness = 0;  ///< third principal variance / second
 };

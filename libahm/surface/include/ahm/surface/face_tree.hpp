@@ -48,8 +48,12 @@ class FaceTree {
     double distance, size;  ///< size: the largest coordinate of the triangle
   };
 
+  struct Search;
+
   const Vec3& corner(const Piece& piece, int k) const;
   void build(std::size_t begin, std::size_t end);
+  template <class LookAt>
+  void visit(std::size_t number, const Search& search, const LookAt& look_at) const;
   Look look(const Piece& piece, const Vec3& from, double scale) const;
 
   std::span<const Vec3> positions_;
