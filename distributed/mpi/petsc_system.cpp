@@ -144,8 +144,8 @@ class PetscSystem final : public HeatSystem {
     B_ = std::make_unique<Operator>(ranks, B, halo_rows_, "B", options.accuracy, traffic);
   }
 
-  void solve_A(std::span<double> X, Offset columns) const override { solve(*A_, X, columns, n_); }
-  void solve_B(std::span<double> X, Offset columns) const override { solve(*B_, X, columns, n_ * d_); }
+  void solve_A(std::span<double> X, Offset columns, unsigned) const override { solve(*A_, X, columns, n_); }
+  void solve_B(std::span<double> X, Offset columns, unsigned) const override { solve(*B_, X, columns, n_ * d_); }
 
  private:
   static void solve(const Operator& with, std::span<double> X, Offset columns, std::size_t rows) {

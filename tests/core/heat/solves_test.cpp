@@ -9,6 +9,7 @@
 #include "heat/blas_control.hpp"
 #include "heat/block_solve.hpp"
 #include "heat/conjugate_gradient.hpp"
+#include "heat/solve_groups.hpp"
 #include "heat/triangular_solve.hpp"
 
 namespace ahm::test {
@@ -142,6 +143,103 @@ TEST(BlockSolve, IsTheNarrowSolveOfEveryColumnWhateverIsBesideIt) {
       for (std::size_t k = 0; k < some.size(); ++k) ASSERT_EQ(some[k], all[k]) << columns;
     }
   }
+}
+
+/// A factor whose supernodes are a binary tree in postorder, each of some columns above its way to the root.
+struct TreeFactor {
+  Offset n = 0;
+  std::vector<std::int64_t> permutation, super{0}, row_begin{0}, value_begin{0}, indices;
+  std::vector<double> values;
+
+  explicit TreeFactor(int depth) {
+    std::vector<Offset> parent;
+    number(depth, parent);
+    const auto supernodes = static_cast<Offset>(parent.size());
+    for (Offset s = 0; s < supernodes; ++s) super.push_back(n += 3 + s % 2);
+    for (Offset s = 0; s < supernodes; ++s) {
+      for (Offset a = s; a >= 0; a = parent[a])
+        for (Offset r = super[a]; r < super[a + 1]; ++r)
+          if (a == s || r % 3 != 0 || a == parent[s]) indices.push_back(r);
+      row_begin.push_back(static_cast<std::int64_t>(indices.size()));
+      const Offset columns = super[s + 1] - super[s], rows = row_begin[s + 1] - row_begin[s];
+      value_begin.push_back(value_begin[s] + rows * columns);
+      for (Offset j = 0; j < columns; ++j)
+        for (Offset r = 0; r < rows; ++r)
+          values.push_back(r < j ? 0 : r == j ? 3.0 : 0.1 * std::sin(1.0 + static_cast<double>(s + 3 * r + 7 * j)));
+    }
+    for (Offset k = 0; k < n; ++k) permutation.push_back(k);
+  }
+  SupernodalFactor view() const {
+    return {n, false, permutation, super, row_begin, value_begin, indices, values.data()};
+  }
+
+ private:
+  static Offset number(int depth, std::vector<Offset>& parent) {
+    const Offset left = depth > 0 ? number(depth - 1, parent) : -1, right = depth > 0 ? number(depth - 1, parent) : -1;
+    const auto self = static_cast<Offset>(parent.size());
+    parent.push_back(-1);
+    if (depth > 0) parent[left] = parent[right] = self;
+    return self;
+  }
+};
+
+TEST(SolveGroups, AreSubtreesAndWhatIsAboveThem) {
+  const TreeFactor factor(12);
+  const SupernodalFactor L = factor.view();
+  const auto groups = solve_groups(L);
+  ASSERT_NE(groups, nullptr);
+  std::vector<int> seen(factor.super.size() - 1, 0);
+  for (const Offset s : groups->top) ++seen[s];
+  std::vector<Offset> work;
+  for (Offset g = 0; g < groups->count(); ++g) {
+    work.push_back(0);
+    for (std::size_t t = groups->begin[g]; t < groups->begin[g + 1]; ++t) {
+      const auto [first, last, end] = groups->subtrees[t];
+      EXPECT_EQ(end, factor.super[last]);
+      for (Offset s = first; s < last; ++s) {
+        ++seen[s];
+        work.back() += factor.value_begin[s + 1] - factor.value_begin[s];
+        for (Offset k = factor.row_begin[s]; k < factor.row_begin[s + 1]; ++k)
+          ASSERT_EQ(factor.indices[k] < end, groups->place[factor.indices[k]] < 0) << "supernode " << s;
+      }
+    }
+  }
+  for (const int times : seen) ASSERT_EQ(times, 1);
+  EXPECT_GT(groups->count(), 1);
+  for (const Offset w : work) EXPECT_GT(5 * groups->count() * w, 4 * (work[0] + work[1]));
+  std::size_t rows = 0;
+  for (const auto place : groups->place) rows += place >= 0;
+  EXPECT_EQ(rows, groups->top_rows);
+}
+
+TEST(SolveGroups, GiveTheSolutionOfOneThreadAfterTheOther) {
+  const TreeFactor factor(12);
+  const auto groups = solve_groups(factor.view());
+  ASSERT_NE(groups, nullptr);
+  for (Offset columns = 1; columns <= max_narrow_columns; ++columns)
+    for (const bool is_point : {false, true}) {
+      std::vector<double> b(static_cast<std::size_t>(factor.n * columns), 0.0);
+      for (std::size_t k = is_point ? 17 : 0; k < (is_point ? 18 : b.size()); ++k)
+        b[k] = std::cos(1.0 + 0.7 * static_cast<double>(k));
+      std::vector<double> plain = b, one = b;
+      narrow_solve(factor.view(), plain, columns);
+      narrow_solve(factor.view(), one, columns, groups.get(), 1);
+      for (const unsigned threads : {2u, 3u, 9u}) {
+        std::vector<double> many = b;
+        narrow_solve(factor.view(), many, columns, groups.get(), threads);
+        ASSERT_EQ(many, one) << threads;
+      }
+      for (std::size_t k = 0; k < b.size(); ++k) ASSERT_NEAR(one[k], plain[k], 1e-12 * (1 + std::abs(plain[k])));
+    }
+}
+
+TEST(SolveGroups, AreNotMadeWhereTheyDoNotPayOrSupernodesAreOutOfOrder) {
+  EXPECT_EQ(solve_groups(TreeFactor(4).view()), nullptr);
+  TreeFactor factor(12);
+  // Supernode 3, the third leaf, becomes a child of the root: what comes before 6 is no longer below it.
+  for (Offset k = factor.row_begin[3] + factor.super[4] - factor.super[3]; k < factor.row_begin[4]; ++k)
+    factor.indices[k] = factor.n - 1;
+  EXPECT_EQ(solve_groups(factor.view()), nullptr);
 }
 
 TEST(OneBlasThread, MayBeNestedAndSaysWhatTheBlasIs) {

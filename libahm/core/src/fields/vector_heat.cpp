@@ -87,7 +87,7 @@ Blend blend_scalars(const LogMapSolver& solver, const Givers& givers, std::span<
     columns[vertex] += b * (values[point] * unit);
     columns[n + vertex] += b;
   });
-  solver.operators().solve_scalar(columns, 2);
+  solver.operators().solve_scalar(columns, 2, solver.options().threads);
   Blend blend;
   blend.heat.assign(columns.begin() + static_cast<std::ptrdiff_t>(n), columns.end());
   blend.least = least_share * *std::max_element(blend.heat.begin(), blend.heat.end());
@@ -132,7 +132,7 @@ VertexField transport(const LogMapSolver& solver, Source points, std::size_t cou
         field.values[vertex * d + c] += b * turned;
       }
     });
-    solver.operators().solve_vector(field.values, 1);
+    solver.operators().solve_vector(field.values, 1, solver.options().threads);
     std::vector<char> reached(n);
     for (std::size_t i = 0; i < n; ++i) {
       const std::span vector = std::span(field.values).subspan(i * d, d);

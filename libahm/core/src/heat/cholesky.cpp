@@ -13,6 +13,7 @@
 #include "ahm/util/text.hpp"
 #include "heat/blas_control.hpp"
 #include "heat/block_solve.hpp"
+#include "heat/solve_groups.hpp"
 #include "heat/triangular_solve.hpp"
 
 namespace ahm {
@@ -228,6 +229,7 @@ double SymbolicCholesky::operations() const noexcept { return impl_->operations;
 
 struct CholeskyFactor::Impl {
   FactorPointer L;
+  std::unique_ptr<const SolveGroups> groups;
   Offset rows;
   bool is_complex;
 
@@ -293,14 +295,16 @@ CholeskyFactor::CholeskyFactor(const SparseUpper& matrix, const SymbolicCholesky
   }
   common.check(name);
   impl_->check_pivots(*common.get(), name);
+  if (impl_->L->is_super) impl_->groups = solve_groups(supernodal_view(*impl_->L));
   impl_->check_residual(*this, matrix, name);
 }
 
 CholeskyFactor::~CholeskyFactor() = default;
 CholeskyFactor::CholeskyFactor(CholeskyFactor&&) noexcept = default;
 
-void CholeskyFactor::solve(std::span<double> X, Offset columns) const {
-  if (impl_->L->is_super && columns <= max_narrow_columns) return narrow_solve(supernodal_view(*impl_->L), X, columns);
+void CholeskyFactor::solve(std::span<double> X, Offset columns, unsigned threads) const {
+  if (impl_->L->is_super && columns <= max_narrow_columns)
+    return narrow_solve(supernodal_view(*impl_->L), X, columns, impl_->groups.get(), threads);
   if (impl_->L->is_super && nonzeros() <= most_block_numbers)
     return block_solve(supernodal_view(*impl_->L), X, columns);
   OneBlasThread one_thread;
@@ -317,7 +321,8 @@ Offset CholeskyFactor::nonzeros() const noexcept {
 std::size_t CholeskyFactor::bytes() const noexcept {
   const cholmod_factor& L = *impl_->L;
   const std::size_t indices = L.is_super ? L.ssize + 3 * L.nsuper : L.nzmax + 4 * L.n;
-  return static_cast<std::size_t>(nonzeros()) * (impl_->is_complex ? 16 : 8) + (indices + 2 * L.n) * sizeof(Offset);
+  return static_cast<std::size_t>(nonzeros()) * (impl_->is_complex ? 16 : 8) + (indices + 2 * L.n) * sizeof(Offset) +
+         (impl_->groups ? impl_->groups->bytes() : 0);
 }
 
 LinearAlgebraInfo linear_algebra_info() {

@@ -55,7 +55,8 @@ class CholeskyFactor {
   CholeskyFactor(CholeskyFactor&&) noexcept;
 
   /// X <- K^-1 X, column major; complex vectors as interleaved pairs.
-  void solve(std::span<double> X, Offset columns) const;
+  /// @param threads  that share a large factor among up to `max_narrow_columns` columns; the same bits on any number
+  void solve(std::span<double> X, Offset columns, unsigned threads = 1) const;
 
   Offset nonzeros() const noexcept;
   std::size_t bytes() const noexcept;

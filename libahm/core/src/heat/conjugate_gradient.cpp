@@ -56,7 +56,7 @@ void ConjugateGradient::backward(std::span<double> x) const {
   }
 }
 
-void ConjugateGradient::solve(std::span<double> X, Offset columns) const {
+void ConjugateGradient::solve(std::span<double> X, Offset columns, unsigned) const {
   const std::size_t n = scale_.size();
   for (Offset c = 0; c < columns; ++c) solve(X.subspan(static_cast<std::size_t>(c) * n, n));
 }

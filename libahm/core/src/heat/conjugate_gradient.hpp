@@ -23,9 +23,9 @@ class ConjugateGradient {
   /// @throws NotPositiveDefinite (a diagonal entry is not positive)
   ConjugateGradient(const SparseUpper& matrix, const char* name);
 
-  /// X <- K^-1 X, column major.
+  /// X <- K^-1 X, column major, on this thread.
   /// @throws NotPositiveDefinite (a direction of negative energy, or no convergence)
-  void solve(std::span<double> X, Offset columns) const;
+  void solve(std::span<double> X, Offset columns, unsigned threads = 1) const;
 
   /// Entries above the diagonal.
   Offset nonzeros() const noexcept { return static_cast<Offset>(values_.size()); }

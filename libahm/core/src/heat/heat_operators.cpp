@@ -47,16 +47,16 @@ const FactorStatistics& HeatOperators::statistics() const noexcept { return impl
 std::span<const Index> HeatOperators::components() const noexcept { return impl_->components.of_vertex; }
 Index HeatOperators::component_count() const noexcept { return impl_->components.count; }
 
-void HeatOperators::solve_scalar(std::span<double> X, Index columns) const {
+void HeatOperators::solve_scalar(std::span<double> X, Index columns, unsigned threads) const {
   if (columns < 0 || static_cast<Offset>(X.size()) != static_cast<Offset>(impl_->n) * columns)
     throw InvalidArgument("solve_scalar: 'X' has " + std::to_string(X.size()) + " numbers, expected n x columns");
-  if (columns > 0) detail::with_memory_check("solving with A", [&] { impl_->system->solve_A(X, columns); });
+  if (columns > 0) detail::with_memory_check("solving with A", [&] { impl_->system->solve_A(X, columns, threads); });
 }
 
-void HeatOperators::solve_vector(std::span<double> X, Index columns) const {
+void HeatOperators::solve_vector(std::span<double> X, Index columns, unsigned threads) const {
   if (columns < 0 || static_cast<Offset>(X.size()) != static_cast<Offset>(impl_->n) * impl_->d * columns)
     throw InvalidArgument("solve_vector: 'X' has " + std::to_string(X.size()) + " numbers, expected n x d x columns");
-  if (columns > 0) detail::with_memory_check("solving with B", [&] { impl_->system->solve_B(X, columns); });
+  if (columns > 0) detail::with_memory_check("solving with B", [&] { impl_->system->solve_B(X, columns, threads); });
 }
 
 }  // namespace ahm

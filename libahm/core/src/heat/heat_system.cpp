@@ -58,13 +58,13 @@ class LateFactor {
   LateFactor(SparseUpper B, Analysis analysis, int dimension)
       : B_(std::move(B)), analysis_(std::move(analysis)), dimension_(dimension) {}
 
-  void solve(std::span<double> X, Offset columns) const {
+  void solve(std::span<double> X, Offset columns, unsigned threads) const {
     std::call_once(once_, [&] {
       without_openmp_regions([&] { factor_.emplace(B_, analysis_->of_B(B_, dimension_), name_B); });
       B_ = {};
       analysis_.reset();
     });
-    factor_->solve(X, columns);
+    factor_->solve(X, columns, threads);
   }
   static Offset nonzeros() { return 0; }
   static std::size_t bytes() { return 0; }
@@ -83,8 +83,8 @@ class SystemOf final : public HeatSystem {
  public:
   SystemOf(std::vector<double> tau, double scaling) : HeatSystem(std::move(tau), scaling) {}
 
-  void solve_A(std::span<double> X, Offset columns) const override { A->solve(X, columns); }
-  void solve_B(std::span<double> X, Offset columns) const override { B->solve(X, columns); }
+  void solve_A(std::span<double> X, Offset columns, unsigned threads) const override { A->solve(X, columns, threads); }
+  void solve_B(std::span<double> X, Offset columns, unsigned threads) const override { B->solve(X, columns, threads); }
 
   FactorStatistics& statistics_to_fill() { return statistics_; }
   /// @param lost  heat, by A

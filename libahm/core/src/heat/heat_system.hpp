@@ -16,10 +16,10 @@ class HeatSystem {
  public:
   virtual ~HeatSystem() = default;
 
-  /// X <- (c A)^-1 X, column major.
-  virtual void solve_A(std::span<double> X, Offset columns) const = 0;
+  /// X <- (c A)^-1 X, column major; the same bits on any number of threads.
+  virtual void solve_A(std::span<double> X, Offset columns, unsigned threads = 1) const = 0;
   /// X <- (c B)^-1 X, column major; complex numbers as interleaved pairs.
-  virtual void solve_B(std::span<double> X, Offset columns) const = 0;
+  virtual void solve_B(std::span<double> X, Offset columns, unsigned threads = 1) const = 0;
 
   /// Of each vertex.
   std::span<const double> tau() const noexcept { return tau_; }

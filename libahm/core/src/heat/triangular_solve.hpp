@@ -42,7 +42,11 @@ struct Supernode {
   const double* at(Offset row, Offset column) const { return values + (column * rows + row) * W; }
 };
 
+struct SolveGroups;
+
 /// X <- K^-1 X for 1 to `max_narrow_columns` columns, column major; complex vectors as interleaved pairs.
-void narrow_solve(const SupernodalFactor& L, std::span<double> X, Offset columns);
+/// @param groups  of this factor, which the threads share; null: one after the other
+void narrow_solve(const SupernodalFactor& L, std::span<double> X, Offset columns, const SolveGroups* groups = nullptr,
+                  unsigned threads = 1);
 
 }  // namespace ahm

@@ -33,7 +33,7 @@ void AffineHeat::diffuse_heat() {
   for (std::size_t s = 0; s < rhs_.size(); ++s)
     for (std::size_t k = 0; k < rhs_[s].vertices.size(); ++k)
       lambda_[s * n_ + static_cast<std::size_t>(rhs_[s].vertices[k])] += rhs_[s].heat[k];
-  operators_.solve_scalar(lambda_, static_cast<Index>(rhs_.size()));
+  operators_.solve_scalar(lambda_, static_cast<Index>(rhs_.size()), threads_);
   least_heat_.clear();
   for (std::size_t s = 0; s < rhs_.size(); ++s) {
     const auto heat = lambda(s);
@@ -53,7 +53,7 @@ void AffineHeat::diffuse_frames() {
       for (int a = 0; a < columns; ++a)
         for (std::size_t c = 0; c < d_; ++c) rhs[a * n_ * d_ + c] += frame[layout_.place(static_cast<int>(c), a)];
     }
-  operators_.solve_vector(frame_solution_, static_cast<Index>(rhs_.size()) * columns);
+  operators_.solve_vector(frame_solution_, static_cast<Index>(rhs_.size()) * columns, threads_);
 }
 
 void AffineHeat::diffuse() {
@@ -108,7 +108,7 @@ void AffineHeat::solve() {
       for (std::size_t a = 0; a < d_; ++a)
         right_side[place_.place(static_cast<std::size_t>(rhs_[s].vertices[k]), a)] += rhs_[s].values[k * d_ + a];
   }
-  system_.solve(operators_, unknown_, rhs_.size());
+  system_.solve(operators_, unknown_, rhs_.size(), threads_);
 }
 
 /// A^-1 (s + b |z|^2)
@@ -151,7 +151,7 @@ void AffineHeat::solve_squares() {
         entry += system_.paired(frames(s), in.vertices[k], std::span(in.pairs).subspan(k * d_ * d_, d_ * d_));
     }
   }
-  operators_.solve_scalar(squares_, static_cast<Index>(rhs_.size()));
+  operators_.solve_scalar(squares_, static_cast<Index>(rhs_.size()), threads_);
 }
 
 /// A^-1 (s(r) + b |z|^2)
@@ -183,7 +183,7 @@ void AffineHeat::solve_lengths() {
     for (std::size_t k = 0; k < in.vertices.size(); ++k)
       lengths_[s * n_ + static_cast<std::size_t>(in.vertices[k])] += given[k];
   }
-  operators_.solve_scalar(lengths_, static_cast<Index>(rhs_.size()));
+  operators_.solve_scalar(lengths_, static_cast<Index>(rhs_.size()), threads_);
 }
 
 void AffineHeat::unknown_at(std::size_t source, Index vertex, double* out) const {

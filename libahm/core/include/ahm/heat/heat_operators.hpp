@@ -58,11 +58,12 @@ class HeatOperators {
 
   /// X <- (c A)^-1 X for `columns` right-hand sides, column major n x columns. c is the fixed power of two that brings
   /// the operators to order one; it is the same for A and B and cancels in every quotient of solutions.
+  /// @param threads  that share a large factor among a few columns (0: one per core); the same bits on any number
   /// @throws InvalidArgument when the span's length is not n * columns
-  void solve_scalar(std::span<double> X, Index columns) const;
+  void solve_scalar(std::span<double> X, Index columns, unsigned threads = 1) const;
   /// X <- (c B)^-1 X for `columns` vector fields, column major: each column holds n vectors of d numbers.
   /// @throws InvalidArgument when the span's length is not n * d * columns
-  void solve_vector(std::span<double> X, Index columns) const;
+  void solve_vector(std::span<double> X, Index columns, unsigned threads = 1) const;
   /// The constant c.
   double scaling() const noexcept;
 

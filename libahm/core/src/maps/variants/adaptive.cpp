@@ -22,8 +22,9 @@ class Adaptive final : public VariantSystem {
            std::size_t n) const override {
     U.to_source(vertex, rho.data(), right_side + vertex, n);
   }
-  void solve(const HeatOperators& operators, std::span<double> X, std::size_t sources) const override {
-    operators.solve_scalar(X, static_cast<Index>(sources) * operators.dimension());
+  void solve(const HeatOperators& operators, std::span<double> X, std::size_t sources,
+             unsigned threads) const override {
+    operators.solve_scalar(X, static_cast<Index>(sources) * operators.dimension(), threads);
   }
   void add_pairs(const Star& star, std::span<const double> factors, std::span<const double> values,
                  double* pairs) const override {

@@ -29,8 +29,9 @@ class Localized final : public VariantSystem {
            std::size_t) const override {
     std::copy(rho.begin(), rho.end(), right_side + static_cast<std::size_t>(vertex) * rho.size());
   }
-  void solve(const HeatOperators& operators, std::span<double> X, std::size_t sources) const override {
-    operators.solve_vector(X, static_cast<Index>(sources));
+  void solve(const HeatOperators& operators, std::span<double> X, std::size_t sources,
+             unsigned threads) const override {
+    operators.solve_vector(X, static_cast<Index>(sources), threads);
   }
   void add_pairs(const Star& star, std::span<const double> factors, std::span<const double> values,
                  double* pairs) const override {
