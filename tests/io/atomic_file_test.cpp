@@ -51,6 +51,17 @@ TEST_F(AtomicFileTest, KeepsThePermissionsAndFollowsLinks) {
             std::filesystem::perms::owner_read | std::filesystem::perms::owner_write);
 }
 
+TEST_F(AtomicFileTest, MakesWhatALinkLeadsTo) {
+  std::filesystem::create_directory(path("folder"));
+  std::filesystem::create_symlink("folder/new.txt", path("first.txt"));
+  std::filesystem::create_symlink("first.txt", path("link.txt"));
+  AtomicFile file(path("link.txt"));
+  file.write("new");
+  file.commit();
+  EXPECT_TRUE(std::filesystem::is_symlink(path("link.txt")) && std::filesystem::is_symlink(path("first.txt")));
+  EXPECT_EQ(contents(path("folder/new.txt")), "new");
+}
+
 TEST_F(AtomicFileTest, RefusesDirectoriesAndMissingDirectories) {
   EXPECT_THROW(AtomicFile{directory_}, IoError);
   EXPECT_THROW(AtomicFile{path("absent/a.txt")}, IoError);
@@ -146,14 +157,73 @@ TEST_F(AtomicFileTest, RemovesWhatKilledProcessesLeft) {
   EXPECT_EQ(files_left(), 1u);
 }
 
+// In a container every process may have the number of the one that was killed.
+TEST_F(AtomicFileTest, RemovesThemWhoeverHasTheirNumberNow) {
+  make(".ahm-" + std::to_string(::getpid()) + "-900.tmp", "half");
+  make(".ahm-1-0.tmp", "half");
+  AtomicFile file(path("a.txt"));
+  file.commit();
+  EXPECT_EQ(files_left(), 1u);
+}
+
+TEST_F(AtomicFileTest, KeepsItsOwnAndTheirLockUntilTheyAreNamed) {
+  AtomicFile one(path("a.txt")), two(path("b.txt"));
+  one.write("one");
+  one.finish();
+  const pid_t child = ::fork();  // another process that tidies up here
+  if (child == 0) {
+    const auto folder = path("").string();
+    ::execlp("/bin/sh", "sh", "-c", ("for f in " + folder + "/.ahm-*; do flock -n \"$f\" rm \"$f\"; done").c_str(),
+             nullptr);
+    ::_exit(1);
+  }
+  ::waitpid(child, nullptr, 0);
+  one.commit();
+  two.commit();
+  EXPECT_EQ(contents(path("a.txt")), "one");
+  EXPECT_EQ(files_left(), 2u);
+}
+
+TEST_F(AtomicFileTest, AreNamedTogetherInASet) {
+  make("a.txt", "old");
+  const auto write = [&](const char* name) {
+    AtomicFile file(path(name));
+    file.write("new");
+    file.commit();
+  };
+  {
+    FileSet set;
+    write("a.txt"), write("b.txt");
+    EXPECT_EQ(contents(path("a.txt")), "old");
+    EXPECT_FALSE(std::filesystem::exists(path("b.txt")));
+  }
+  EXPECT_EQ(contents(path("a.txt")), "old");
+  EXPECT_EQ(files_left(), 1u);
+  {
+    FileSet set;
+    write("a.txt");
+    {
+      FileSet inner;
+      write("c.txt");
+      FileSet::commit();
+      EXPECT_EQ(contents(path("c.txt")), "new");
+    }
+    write("b.txt");
+    EXPECT_EQ(contents(path("a.txt")), "old");
+    FileSet::commit();
+  }
+  for (const char* name : {"a.txt", "b.txt", "c.txt"}) EXPECT_EQ(contents(path(name)), "new");
+  EXPECT_EQ(files_left(), 3u);
+  FileSet::commit();  // none: nothing to do
+  write("d.txt");
+  EXPECT_EQ(contents(path("d.txt")), "new");
+}
+
 TEST_F(AtomicFileTest, LeavesTheFilesOfOthersAlone) {
   const std::string dead = ".ahm-" + std::to_string(dead_process());
   const std::string locked = dead + "-0.tmp";  // as by a process on another machine
-  const std::vector<std::string> names{locked,          ".ahm-" + std::to_string(::getpid()) + "-900.tmp",
-                                       ".ahm-1-0.tmp",  ".ahm-0-0.tmp",
-                                       ".ahm--5-0.tmp", dead + "-0.x",
-                                       ".ahm-x-0.tmp",  "ahm-2-0.tmp",
-                                       ".ahm-.tmp",     ".ahm-99999999999999-0.tmp"};
+  const std::vector<std::string> names{locked,         ".ahm-0-0.tmp", ".ahm--5-0.tmp", dead + "-0.x",
+                                       ".ahm-x-0.tmp", "ahm-2-0.tmp",  ".ahm-.tmp",     ".ahm-99999999999999-0.tmp"};
   for (const std::string& name : names) make(name, "precious");
   std::filesystem::create_directory(path(dead + "-3.tmp"));
   const int descriptor = ::open(path(locked).c_str(), O_RDONLY);

@@ -204,7 +204,6 @@ void run(const CellsOptions& options) {
   Results results(options.output, input, options.input);
   write_results(rows, positions, results, journal);
   report(options, input, source_rows, positions, sizes(graph, cells.labels, sources.size()), farthest, journal);
-  results.keep();
 }
 
 void offer(CLI::App& app, CellsOptions& o) {

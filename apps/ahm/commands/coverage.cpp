@@ -175,7 +175,6 @@ void run(const CoverageCommandOptions& options) {
   journal.start("write");
   write_coverage(options.output.output, options.output.format, path);
   report(options, input, source, path, trusted_share(input.graph(), map, quality, options), amount, journal);
-  results.keep();
 }
 
 void offer(CLI::App& app, CoverageCommandOptions& o) {

@@ -13,6 +13,7 @@
 #include "commands/solve.hpp"
 #include "commands/subcommand.hpp"
 #include "input/open.hpp"
+#include "output/output_paths.hpp"
 #include "output/results.hpp"
 #include "output/summary.hpp"
 
@@ -43,6 +44,9 @@ struct LocalMapsOptions {
 
 void check_options(const LocalMapsOptions& options) {
   check_results(options.input.path, options.output, {".npz"});
+  // The list is read once the number of rows is known, and must still be there then.
+  if (options.sources != "all")
+    check_outputs({options.sources}, {{"--output", options.output.output}, {"--json", options.output.json}}, false);
   if (!io::has_npz()) throw InvalidArgument("this build of ahm cannot write .npz files; it was built without minizip");
 }
 

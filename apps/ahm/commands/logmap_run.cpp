@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "ahm/error.hpp"
+#include "ahm/io/atomic_file.hpp"
 #include "ahm/io/formats.hpp"
 #include "ahm/maps/quality.hpp"
 #include "ahm/util/parallel.hpp"
@@ -120,7 +121,6 @@ void map_from_source(const LogmapOptions& options, const Input& input, std::opti
   report({options.input.path, options.source.spec, options.solve, input, maps->solver, source, map, rows, quality,
           is_named},
          options.output, journal);
-  results.keep();
 }
 
 /// Whether the surface depends on the source.
@@ -148,6 +148,7 @@ void check_log_map(const LogmapOptions& options, const std::vector<std::string>&
 bool attempt(const std::string& what, bool alone, const std::function<void()>& work) {
   if (alone) return work(), true;
   try {
+    io::FileSet files;
     work();
     return true;
   } catch (const Cancelled&) {

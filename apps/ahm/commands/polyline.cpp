@@ -54,7 +54,6 @@ void write_view(const LineFinder& finder, const Input& input, const InputOptions
   scene.curve_pieces = pieces;
   if (!curves.from && !curves.points.empty()) scene.source = curves.points.front();
   results.write_view(scene, journal, picture);
-  results.keep();
 }
 
 }  // namespace

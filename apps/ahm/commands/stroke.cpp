@@ -166,7 +166,6 @@ void run(const StrokeCommandOptions& options) {
   Results results(options.output, input, options.input);
   write_results(curve, options.shape, rows, quality, results, journal);
   report(options, input, curve, rows, quality, journal);
-  results.keep();
 }
 
 void offer(CLI::App& app, StrokeCommandOptions& o) {

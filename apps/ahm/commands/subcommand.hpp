@@ -8,6 +8,8 @@
 #include <memory>
 #include <span>
 
+#include "ahm/io/atomic_file.hpp"
+
 namespace ahm::app {
 
 /// A part of the command line and what it asks for.
@@ -17,7 +19,7 @@ struct Subcommand {
 };
 
 /// @param offer  adds the options of the subcommand to the command line
-/// @param run    does the work, once they are read
+/// @param run    does the work, once they are read. Its files get their names when `deliver` tells of them, else at its end
 template <class Options>
 Subcommand subcommand(CLI::App& program, const char* name, const char* purpose, const char* footer,
                       void (*offer)(CLI::App&, Options&), void (*run)(const Options&)) {
@@ -25,7 +27,11 @@ Subcommand subcommand(CLI::App& program, const char* name, const char* purpose, 
   CLI::App& app = *program.add_subcommand(name, purpose);
   offer(app, *options);
   app.footer(footer);
-  return {&app, [options, run] { run(*options); }};
+  return {&app, [options, run] {
+            io::FileSet files;
+            run(*options);
+            io::FileSet::commit();
+          }};
 }
 
 /// Adds a subcommand to the program's command line.

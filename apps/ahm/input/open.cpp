@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iostream>
 
 #include "ahm/error.hpp"
 #include "ahm/heat/heat_operators.hpp"
@@ -77,7 +76,7 @@ Input open_surroundings(io::Geometry geometry, const Backend& backend, std::opti
 }  // namespace
 
 io::Geometry read_input(const InputOptions& options) {
-  return options.path == "-" ? io::read(std::cin, options.format) : io::read(options.path, options.format);
+  return options.path == "-" ? io::read_standard_input(options.format) : io::read(options.path, options.format);
 }
 
 io::Geometry read_input(const InputOptions& options, Journal& journal) {

@@ -7,7 +7,6 @@
 #include <filesystem>
 
 #include "ahm/error.hpp"
-#include "ahm/io/atomic_file.hpp"
 #include "ahm/io/formats.hpp"
 #include "ahm/maps/quality.hpp"
 #include "output/output_paths.hpp"
@@ -90,17 +89,6 @@ Results::Results(const OutputOptions& output, const Input& input, const InputOpt
       threads_(options.threads),
       normals_(shows_normals(output) ? input.normals(options.threads) : std::vector<Vec3>()) {}
 
-Results::~Results() {
-  std::error_code ignored;
-  for (const std::string& path : written_)
-    if (!io::is_stream(path)) std::filesystem::remove(path, ignored);
-}
-
-namespace {
-
-/// Results have their names to themselves: a column of the input that is called like one is `input_` and its name.
-}  // namespace
-
 std::string input_column(const std::string& name) {
   constexpr std::string_view own[] = {
       "index", "x",  "y",  "z",     "nx",       "ny",    "nz",     "red",     "green",  "blue",
@@ -165,7 +153,6 @@ void Results::write_view(const view::Scene& scene, Journal& journal, const view:
   if (output_.view.empty()) return;
   journal.start("view");
   draw(output_.view, scene, picture.pattern, output_.picture, threads_);
-  written_.push_back(output_.view);
 }
 
 void Results::write(const io::Table& table, const view::Scene& scene, Journal& journal,
@@ -173,7 +160,6 @@ void Results::write(const io::Table& table, const view::Scene& scene, Journal& j
   write_view(scene, journal, picture);
   journal.start("write");
   io::write(output_.output, table, output_.format);
-  written_.push_back(output_.output);
   journal.finish();
   journal.clear_display();
 }

@@ -45,12 +45,11 @@ io::Table table_of(const io::Geometry& input, const std::vector<Vec3>& normals,
 /// The columns of a map: u, v, distance, angle (not from a curve), status, quality, spread, error_estimate (of order 2).
 void add_map(io::Table& table, const RowLogMap& rows, const std::vector<double>& quality);
 
-/// The files of a run: all of them or, after a failure, none.
+/// The files of a run.
 class Results {
  public:
   /// @param output, input  must outlive the results. @param options  that the input was opened with
   Results(const OutputOptions& output, const Input& input, const InputOptions& options);
-  ~Results();
   Results(const Results&) = delete;
   Results& operator=(const Results&) = delete;
 
@@ -65,8 +64,6 @@ class Results {
   /// Likewise, and --output.
   void write(const io::Table& table, const view::Scene& scene, Journal& journal,
              const view::PictureOptions& picture = {});
-  /// The run has succeeded.
-  void keep() { written_.clear(); }
 
  private:
   const OutputOptions& output_;
@@ -74,7 +71,6 @@ class Results {
   std::string title_;
   unsigned threads_;
   std::vector<Vec3> normals_;  ///< empty where nothing shows them
-  std::vector<std::string> written_;
 };
 
 }  // namespace ahm::app

@@ -34,7 +34,9 @@ void deliver(nlohmann::ordered_json summary, const std::string& text, const Outp
   summary["seconds_total"] = journal.times().total();
   summary["peak_rss_bytes"] = peak_rss_bytes();
   summary.update(further);
-  write_json(output.json, summary, output.json_lines);
+  write_json(output.json == "-" ? "" : output.json, summary, output.json_lines);
+  io::FileSet::commit();  // whoever reads what is told now finds them, and nobody has to
+  if (output.json == "-") write_json("-", summary, output.json_lines);
   if (output.verbosity == Verbosity::quiet) return;
   std::vector<std::string> wrote;
   if (!output.output.empty() && !io::is_stream(output.output)) wrote.push_back(output.output);

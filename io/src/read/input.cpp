@@ -1,7 +1,11 @@
 #include "read/input.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
 #include <limits>
+#include <system_error>
 
 #include "ahm/error.hpp"
 #include "ahm/types.hpp"
@@ -21,18 +25,41 @@ Input load(const std::filesystem::path& path) {
   return in;
 }
 
-Input load(std::istream& stream) {
+namespace {
+
+/// @param next  next(in, room, size): reads up to so many bytes, and tells how many; 0 at the end
+template <class Next>
+Input load_unnamed(const Next& next) {
   Input in{"-", {}};
   constexpr std::size_t block = std::size_t{1} << 20;
-  for (std::size_t done = 0; stream; in.bytes.resize(done)) {
+  for (std::size_t done = 0, got = 1; got > 0; in.bytes.resize(done)) {
     in.bytes.resize(done + block);
-    stream.read(in.bytes.data() + done, block);
-    done += static_cast<std::size_t>(stream.gcount());
+    got = next(in, in.bytes.data() + done, block);
+    done += got;
   }
-  if (stream.bad()) fail(in, "the stream cannot be read");
   if (in.bytes.empty()) fail(in, "the stream is empty (0 bytes)");
   if (is_gzip(in)) gunzip(in);
   return in;
+}
+
+}  // namespace
+
+Input load(std::istream& stream) {
+  return load_unnamed([&](const Input& in, char* room, std::size_t size) {
+    stream.read(room, static_cast<std::streamsize>(size));
+    if (stream.bad()) fail(in, "the stream cannot be read");
+    return static_cast<std::size_t>(stream.gcount());
+  });
+}
+
+Input load_standard_input() {
+  return load_unnamed([](const Input& in, char* room, std::size_t size) {
+    ssize_t got = -1;
+    do got = ::read(STDIN_FILENO, room, size);
+    while (got < 0 && errno == EINTR);
+    if (got < 0) fail(in, std::generic_category().message(errno));
+    return static_cast<std::size_t>(got);
+  });
 }
 
 void check_gzip_name(const Input& in) {

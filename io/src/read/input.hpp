@@ -28,6 +28,8 @@ Input load(const std::filesystem::path& path);
 
 /// The same of all that a stream holds, under the name "-". @throws IoError; an empty stream is refused here
 Input load(std::istream& stream);
+/// Standard input. @throws IoError with the system's reason
+Input load_standard_input();
 
 /// That a file whose name says that gzip compressed it is. @throws IoError
 void check_gzip_name(const Input& in);

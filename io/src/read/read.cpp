@@ -54,8 +54,7 @@ Geometry read_by_extension(const std::filesystem::path& path, std::string extens
 }
 
 /// By the extension, or else by the first bytes.
-Geometry read_stream(std::istream& stream, std::string extension) {
-  const Input in = load(stream);
+Geometry read_unnamed(const Input& in, std::string extension) {
   if (extension.empty()) {
     const Format* format = recognized_format(in.bytes);
     if (format == nullptr)
@@ -95,7 +94,11 @@ Geometry read(const std::filesystem::path& path, const std::string& extension) {
 }
 
 Geometry read(std::istream& stream, const std::string& extension) {
-  return checked("-", [&] { return read_stream(stream, extension); });
+  return checked("-", [&] { return read_unnamed(load(stream), extension); });
+}
+
+Geometry read_standard_input(const std::string& extension) {
+  return checked("-", [&] { return read_unnamed(load_standard_input(), extension); });
 }
 
 }  // namespace ahm::io

@@ -135,27 +135,23 @@ std::filesystem::path temporary_name(const std::filesystem::path& target) {
   return target.parent_path() / name.append(suffix);
 }
 
-/// The process in a temporary name; 0 where it is none.
-pid_t process_of(std::string_view name) {
-  if (!name.starts_with(prefix) || !name.ends_with(suffix)) return 0;
+/// Whether it is one of these names.
+bool is_temporary_name(std::string_view name) {
+  if (!name.starts_with(prefix) || !name.ends_with(suffix)) return false;
   name.remove_prefix(prefix.size());
   pid_t process = 0;
   const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), process);
-  return error == std::errc() && *end == '-' && process > 0 ? process : 0;
+  return error == std::errc() && *end == '-' && process > 0;
 }
 
-/// Whether a process is still there, on this machine.
-bool is_alive(pid_t process) { return ::kill(process, 0) == 0 || errno != ESRCH; }
-
-/// Removes what processes that were killed left half written in a directory. Nobody has a file that is no longer locked: on
-/// file systems that are shared, its process may live on another machine.
+/// Removes what processes that were killed left half written in a directory: files that are no longer locked. The process's number
+/// tells nothing: it may live on another machine, or in another container, and every process of a container may have the same one.
 void remove_leftovers(const std::filesystem::path& directory) {
   const std::unique_ptr<DIR, int (*)(DIR*)> entries(::opendir(directory.empty() ? "." : directory.c_str()), ::closedir);
   if (!entries) return;
   const int folder = ::dirfd(entries.get());
   while (const dirent* entry = ::readdir(entries.get())) {
-    const pid_t process = process_of(entry->d_name);
-    if (process == 0 || is_alive(process)) continue;
+    if (!is_temporary_name(entry->d_name)) continue;
     const int file = ::openat(folder, entry->d_name, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
     if (file < 0) continue;
     struct stat info {};
@@ -164,6 +160,15 @@ void remove_leftovers(const std::filesystem::path& directory) {
       ::unlinkat(folder, entry->d_name, 0);
     ::close(file);
   }
+}
+
+/// What a chain of symbolic links leads to, whether it exists or not.
+std::filesystem::path followed(std::filesystem::path path) {
+  std::error_code ignored;
+  for (int links = 0; links < 40 && std::filesystem::is_symlink(path, ignored); ++links)
+    path = path.parent_path() / std::filesystem::read_symlink(path, ignored);
+  const auto real = std::filesystem::weakly_canonical(path, ignored);
+  return ignored || real.empty() ? path : real;
 }
 
 /// Once for each directory.
@@ -184,9 +189,7 @@ bool is_stream(const std::filesystem::path& path) {
   return ::stat(path.c_str(), &info) == 0 && !S_ISREG(info.st_mode) && !S_ISDIR(info.st_mode);
 }
 
-AtomicFile::AtomicFile(const std::filesystem::path& path) : path_(path), target_(path) {
-  std::error_code ignored;
-  if (const auto real = std::filesystem::weakly_canonical(path, ignored); !ignored && !real.empty()) target_ = real;
+AtomicFile::AtomicFile(const std::filesystem::path& path) : path_(path), target_(followed(path)) {
   struct stat info {};
   const bool exists = ::stat(path.c_str(), &info) == 0;
   if (exists && S_ISDIR(info.st_mode)) fail(EISDIR);
@@ -204,16 +207,31 @@ AtomicFile::AtomicFile(const std::filesystem::path& path) : path_(path), target_
   for (int tries = 0; descriptor_ < 0; ++tries) {
     temporary_ = temporary_name(target_);
     descriptor_ = create(temporary_, slot_);
-    if (descriptor_ >= 0) break;
-    const int error = errno;
-    temporary_.clear();
-    if (error != EEXIST || tries == 100) fail(error);
+    if (descriptor_ < 0) {
+      const int error = errno;
+      temporary_.clear();
+      if (error != EEXIST || tries == 100) fail(error);
+      continue;
+    }
+    // See remove_leftovers; another process's may have come before the lock.
+    ::flock(descriptor_, LOCK_EX | LOCK_NB);
+    struct stat own {};
+    if (::fstat(descriptor_, &own) == 0 && own.st_nlink > 0) break;
+    discard();
   }
-  ::flock(descriptor_, LOCK_EX | LOCK_NB);  // see remove_leftovers
   if (exists) ::fchmod(descriptor_, info.st_mode & 0777);
 }
 
 AtomicFile::~AtomicFile() { discard(); }
+
+AtomicFile::AtomicFile(AtomicFile&& other) noexcept
+    : path_(std::move(other.path_)),
+      target_(std::move(other.target_)),
+      temporary_(std::exchange(other.temporary_, {})),
+      buffer_(std::move(other.buffer_)),
+      descriptor_(std::exchange(other.descriptor_, -1)),
+      finished_(std::exchange(other.finished_, false)),
+      slot_(std::exchange(other.slot_, -1)) {}
 
 void AtomicFile::write(std::string_view bytes) {
   constexpr std::size_t block = std::size_t{1} << 20;
@@ -238,20 +256,27 @@ void AtomicFile::flush() {
 
 void AtomicFile::finish() {
   flush();
-  // A pipe or terminal has nothing to synchronise, and says so with EINVAL.
+  // A pipe or terminal has nothing to synchronise, and would say so with EINVAL. A file stays open: so it is locked.
   if (!temporary_.empty() && ::fsync(descriptor_) != 0) fail(errno);
-  const int descriptor = std::exchange(descriptor_, -1);
-  if (::close(descriptor) != 0 && errno != EINTR) fail(errno);
+  if (temporary_.empty() && ::close(std::exchange(descriptor_, -1)) != 0 && errno != EINTR) fail(errno);
   finished_ = true;
 }
 
 void AtomicFile::commit() {
   if (!finished_) finish();
+  if (temporary_.empty())
+    finished_ = false;
+  else if (FileSet::innermost != nullptr)
+    FileSet::innermost->files_.push_back(std::move(*this));
+  else
+    name();
+}
+
+void AtomicFile::name() {
   finished_ = false;
-  if (temporary_.empty()) return;
   if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail(errno);
   temporary_.clear();
-  forget(slot_);
+  discard();
 }
 
 void AtomicFile::discard() noexcept {
@@ -267,6 +292,18 @@ void AtomicFile::fail(int error) {
   const std::string problem = "cannot write " + quoted_path(path_) + ": " + std::generic_category().message(error);
   if (error == EPIPE) throw IoError("pipe_closed", problem, "nobody reads it any more");
   throw IoError(problem);
+}
+
+thread_local FileSet* FileSet::innermost = nullptr;
+
+FileSet::FileSet() noexcept : outer_(std::exchange(innermost, this)) {}
+
+FileSet::~FileSet() { innermost = outer_; }
+
+void FileSet::commit() {
+  if (innermost == nullptr) return;
+  for (AtomicFile& file : innermost->files_) file.name();
+  innermost->files_.clear();
 }
 
 void remove_unfinished_files() noexcept {

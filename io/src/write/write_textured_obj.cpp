@@ -78,6 +78,7 @@ void write_textured_obj(const std::filesystem::path& path, std::span<const MeshP
   AtomicFile mtl(path.parent_path() / (stem + ".mtl"));
   mtl.write(materials);
   obj.finish();
+  mtl.finish();
   mtl.commit();
   obj.commit();
 }

@@ -11,6 +11,8 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "ahm/error.hpp"
 
@@ -22,10 +24,13 @@ namespace ahm::io {
 /// A target that is a pipe or a device (/dev/stdout) is written to directly. A symbolic link is followed, and the file
 /// it leads to is replaced, with its permissions kept.
 class AtomicFile {
+  friend class FileSet;
+
  public:
   /// @throws IoError with the system's reason when the file cannot be created
   explicit AtomicFile(const std::filesystem::path& path);
   ~AtomicFile();
+  AtomicFile(AtomicFile&& other) noexcept;
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
 
@@ -38,11 +43,12 @@ class AtomicFile {
   /// Writes what is left and waits until it is on the disk: for several files, of which none is to be had without the others.
   /// @throws IoError as `write`
   void finish();
-  /// `finish`, unless that has been done, and gives the file its name. @throws IoError as `write`
+  /// `finish`, unless that has been done, and gives the file its name, or has its `FileSet` do so. @throws IoError as `write`
   void commit();
 
  private:
   void flush();
+  void name();
   void discard() noexcept;
   [[noreturn]] void fail(int error);
 
@@ -53,6 +59,25 @@ class AtomicFile {
   int descriptor_ = -1;
   bool finished_ = false;
   int slot_ = -1;  // in the registry of unfinished files
+};
+
+/// Files that are to be had together: those that this thread commits while the set lives get their names when it is committed, one
+/// right after the other, and none without. Sets may be nested; files belong to the innermost.
+class FileSet {
+ public:
+  FileSet() noexcept;
+  ~FileSet();
+  FileSet(const FileSet&) = delete;
+  FileSet& operator=(const FileSet&) = delete;
+
+  /// Of the innermost set of this thread, if there is one. @throws IoError where a file cannot be renamed
+  static void commit();
+
+ private:
+  friend class AtomicFile;
+  static thread_local FileSet* innermost;
+  FileSet* outer_;
+  std::vector<AtomicFile> files_;
 };
 
 /// Whether a path leads to what cannot be replaced by a renamed file: a pipe, a device, or the process's own output

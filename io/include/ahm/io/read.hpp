@@ -41,10 +41,14 @@ namespace ahm::io {
 /// @param extension  of the format, whatever the file is called; empty: that of the name
 Geometry read(const std::filesystem::path& path, const std::string& extension = {});
 
-/// The same from a stream, such as std::cin, read to its end; messages call it '-'.
+/// The same from a stream, read to its end; messages call it '-'.
 /// @param extension  of the format, such as ".xyz"; empty: PLY, PCD, LAS, OFF, GLB, VTP, VTK and text STL are told by their first
 /// bytes, others are refused (fault "unknown_bytes")
 /// @throws as for files
 Geometry read(std::istream& stream, const std::string& extension = {});
+
+/// The same from standard input, not through std::cin, which takes errors of the system for its end.
+/// @throws as for files
+Geometry read_standard_input(const std::string& extension = {});
 
 }  // namespace ahm::io
