@@ -24,6 +24,12 @@ constexpr double least_disagreement = 0.1;
 
 constexpr std::size_t most_neighbors = 12;
 
+/// Given planes of neighbours that bend by more than this are told from opposite ones by nothing but their signs, which may be
+/// wrong: beside sharper creases the fitted planes count, which bend from point to point.
+constexpr double sharpest_cosine = 0.1;
+/// Of neighbours in the other sheet of a thin wall: their planes are parallel, and the way there is steep.
+constexpr double parallel = 0.7, steep = 0.3;
+
 struct Fit {
   double slope, disagreement;
 };
@@ -58,12 +64,29 @@ bool contradicts(const Fit& given, const Fit& fitted) {
          given.disagreement > std::max(least_disagreement, disagreement * fitted.disagreement);
 }
 
+/// Whether the given plane of point i meets that of a neighbour in such a crease. The fitted planes, which are half way between both
+/// sides of one, tell which sides of the given ones belong together; not so in thin walls, where they are of both sheets.
+bool is_beside_crease(const CleanPoints& cloud, const Neighborhoods& neighborhoods, std::span<const Vec3> given,
+                      std::span<const Vec3> fitted, Index i) {
+  const double own_side = dot(given[i], fitted[i]);
+  bool found = false;
+  for (const Index j : neighborhoods.of(i)) {
+    if (given[j] == Vec3{0, 0, 0} || fitted[j] == Vec3{0, 0, 0}) continue;
+    const double cosine = dot(given[i], given[j]);
+    const Vec3 edge = cloud.points[j] - cloud.points[i];
+    if (std::abs(cosine) > parallel && std::abs(dot(given[i], edge)) > steep * norm(edge)) return false;
+    const double same_side = own_side * dot(given[j], fitted[j]) * dot(fitted[i], fitted[j]);
+    found |= std::copysign(1.0, same_side) * cosine < sharpest_cosine;
+  }
+  return found;
+}
+
 }  // namespace
 
 std::vector<char> take_given_planes(const CleanPoints& cloud, const Neighborhoods& neighborhoods,
                                     std::span<const Vec3> given, unsigned threads, TangentPlanes& planes) {
   const auto n = static_cast<Offset>(cloud.points.size());
-  std::vector<char> missing(static_cast<std::size_t>(n), 0), contradicted(static_cast<std::size_t>(n), 0);
+  std::vector<char> missing(static_cast<std::size_t>(n), 0), contradicted = missing, beside_crease = missing;
   detail::parallel_chunks(n, points_per_task, threads, [&](Offset begin, Offset end) {
     for (Offset i = begin; i < end; ++i) {
       const auto point = static_cast<Index>(i);
@@ -71,13 +94,14 @@ std::vector<char> take_given_planes(const CleanPoints& cloud, const Neighborhood
       if (missing[i] || !planes.has_plane(point)) continue;
       contradicted[i] =
           contradicts(fit_of(cloud, neighborhoods, given, point), fit_of(cloud, neighborhoods, planes.normals, point));
+      beside_crease[i] = is_beside_crease(cloud, neighborhoods, given, planes.normals, point);
     }
   });
   for (Offset i = 0; i < n; ++i) {
     planes.estimated += missing[i];
     planes.contradicted += contradicted[i];
     if (missing[i]) continue;
-    if (!contradicted[i])
+    if (!contradicted[i] && !beside_crease[i])
       planes.normals[i] = given[i];
     else if (dot(planes.normals[i], given[i]) < 0)
       planes.normals[i] = -1.0 * planes.normals[i];

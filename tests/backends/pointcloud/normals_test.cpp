@@ -7,6 +7,8 @@
 #include <random>
 #include <string>
 
+#include "ahm/util/small_math.hpp"
+#include "ahm/util/vec.hpp"
 #include "noisy_clouds.hpp"
 #include "solved_cloud.hpp"
 
@@ -127,6 +129,56 @@ TEST(Normals, WithNoiseAreNoWorseThanNone) {
                      std::to_string(given));
       EXPECT_LT(given, 1.1 * estimated) << points_noise << ", " << noise;
     }
+  }
+}
+
+/// Two half planes that meet at the line u = 0, whose normals are an angle apart, jittered in (u, v), outward normals.
+Cloud roof(double fold, std::vector<Vec2>& flat) {
+  Cloud cloud;
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> jitter(0.1, 0.9);
+  constexpr int side = 50;
+  const double c = std::cos(fold / 2), s = std::sin(fold / 2);
+  for (int i = 0; i < side; ++i)
+    for (int j = 0; j < side; ++j) {
+      const double u = 2 * (i + jitter(random)) / side - 1, v = 2 * (j + jitter(random)) / side - 1;
+      flat.push_back({u, v});
+      cloud.points.push_back({u * c, v, -std::abs(u) * s});
+      cloud.normals.push_back({u < 0 ? -s : s, 0, c});
+    }
+  return cloud;
+}
+
+// Where planes meet at a right angle the sign of a cosine is that of a rounded zero, and beyond it is that of the wrong side.
+TEST(Normals, AcrossSharpCreasesLieOnOneSideHoweverTheyAreTurned) {
+  for (const double degrees : {60.0, 85.0, 90.0, 91.0, 100.0, 110.0}) {
+    std::vector<Vec2> flat;
+    const Cloud cloud = roof(degrees * std::numbers::pi / 180, flat);
+    Cloud turned = cloud, flipped = cloud;
+    const Vec3 axis = normalized(Vec3{0.3, 0.5, 0.8});
+    const auto turn = [&](const Vec3& p) {  // by a radian
+      return std::cos(1.0) * p + std::sin(1.0) * cross(axis, p) + ((1 - std::cos(1.0)) * dot(axis, p)) * axis;
+    };
+    std::mt19937 random(7);
+    for (std::size_t i = 0; i < cloud.points.size(); ++i) {
+      turned.points[i] = turn(cloud.points[i]), turned.normals[i] = turn(cloud.normals[i]);
+      if (random() % 10 < 3) flipped.normals[i] = -1.0 * flipped.normals[i];
+    }
+    constexpr Index source = 50 * 12 + 25;
+    const Solved solved(cloud, true);
+    const RowLogMap map = solved.map(source), of_turned = Solved(turned, true).map(source),
+                    of_flipped = Solved(flipped, true).map(source);
+    EXPECT_EQ(solved.graph.details().turned, 0) << degrees;
+    double worst = 0, mean = 0;
+    for (std::size_t i = 0; i < flat.size(); ++i) {
+      const double d = length(flat[i] - flat[source]), off = std::abs(map.distance[i] - d);
+      worst = std::max(worst, off / std::max(d, 0.2));
+      mean += off / std::max(d, 0.2) / static_cast<double>(flat.size());
+      ASSERT_NEAR(of_turned.distance[i], map.distance[i], 1e-6) << degrees << ", row " << i;
+      ASSERT_NEAR(of_flipped.distance[i], map.distance[i], 1e-6) << degrees << ", row " << i;
+    }
+    EXPECT_LT(worst, 0.1) << degrees;
+    EXPECT_LT(mean, 0.02) << degrees;
   }
 }
 
