@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <array>
+#include <filesystem>
 #include <iostream>
 #include <map>
 #include <optional>
@@ -23,6 +24,16 @@ using namespace ahm::distributed::program;
 using polymesh::Discretization;
 
 const std::string name = "ahm-tiles";
+
+/// What lies in a folder of tiles or maps is theirs. @throws InvalidArgument
+void check_output(const std::filesystem::path& output, const std::vector<std::filesystem::path>& folders) {
+  std::error_code ignored;
+  const auto own = std::filesystem::weakly_canonical(output.has_parent_path() ? output.parent_path() : ".", ignored);
+  for (const auto& folder : folders)
+    if (std::filesystem::equivalent(own, folder, ignored))
+      throw InvalidArgument("--output " + output.string() +
+                            ": is in the folder of tiles or maps that is read; write it elsewhere");
+}
 
 struct Arguments {
   std::string input, folder, map, output, step;
@@ -182,8 +193,10 @@ void add_maps(CLI::App& app, Arguments& a) {
       "rows", "a map as CSV: row, u, v, distance, spread, status; row, distance, status; row and features");
   rows.add_option("folder", a.folder, "of tiles")->required();
   rows.add_option("map", a.map, "folder of the map, or of features of local maps")->required();
-  rows.add_option("-o,--output", a.output, "CSV file")->required();
+  rows.add_option("-o,--output", a.output, "CSV file; - for standard output")->required();
   rows.callback([&] {
+    check_output(a.output, {a.folder, a.map});
+    if (a.output == "-") a.output = "/dev/stdout";
     const bool is_local = std::filesystem::exists(Manifest::file(a.map, "local", 0));
     (is_local ? write_feature_rows : write_rows)(TiledGraph(a.folder, a.memory), a.map, a.output);
   });

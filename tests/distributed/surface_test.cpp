@@ -337,6 +337,10 @@ TEST(TiledSurface, IsMadeByTheProgram) {
   said_by(program + " build " + tiles.string());
   said_by(program + " logmap " + tiles.string() + " -o " + map.string() + " --source 0");
   said_by(program + " rows " + tiles.string() + " " + map.string() + " -o " + csv.string());
+  EXPECT_NE(
+      said_by(program + " rows " + tiles.string() + " " + map.string() + " -o " + (tiles / "manifest.json").string(), 1)
+          .find("is in the folder"),
+      std::string::npos);
   EXPECT_EQ(csv_lines(csv, "row,u,v,distance,spread,status").size(), mesh.positions.size());
   std::ofstream(folder.directory() / "cloud.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
   EXPECT_NE(said_by(program + " plan " + (folder.directory() / "cloud.obj").string() + " -o " + map.string() + "2", 1)

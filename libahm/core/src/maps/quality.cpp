@@ -78,7 +78,7 @@ class Comparison {
   /// How far a way is off by what the front says, world units.
   double off(Vertex vertex, std::span<const double> way, double h) const {
     const double d = std::min(front_.distance(vertex), reach * radius_);
-    double off = d - length(way);
+    double off = std::abs(d - length(way));
     if (d > 0 && front_.has_directions() && !front_.is_bent(vertex))
       off = std::max(off, difference(way, d, front_.direction(vertex)));
     return belief_ * off - forgiven * h;

@@ -45,11 +45,14 @@ inline void* module_symbol(const std::string& module, const char* symbol, std::s
 
 /// The table of functions that the module `module` offers as `ahm_MODULE`.
 /// @param wanted  begins the error's text: who needs it
-/// @throws IoError where the module cannot be loaded
+/// @throws IoError where the module cannot be loaded, ResourceExhausted where it or what it stands on has no room in memory
 template <class Functions>
 const Functions& module_functions(const std::string& module, const std::string& wanted) {
   static std::string error;
   static const auto* found = static_cast<const Functions*>(module_symbol(module, ("ahm_" + module).c_str(), error));
+  for (const char* no_room : {"failed to map segment", "cannot allocate memory"})
+    if (found == nullptr && error.find(no_room) != std::string::npos)
+      throw ResourceExhausted("not enough memory to load the module for PCL: " + error);
   if (found == nullptr) throw IoError(wanted + " module for PCL, which cannot be loaded: " + error);
   return *found;
 }
