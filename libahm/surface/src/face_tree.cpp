@@ -138,9 +138,8 @@ FaceTree::Hit FaceTree::nearest(const Vec3& position) const {
   const double size = std::max({largest(boxes_[0].low), largest(boxes_[0].high), largest(position)});
   const double unit = power_of_two_below(size), scale = 1 / unit;
   Search search{scale, scale * position, scale * largest(position)};
-  visit(0, search, [&](const Piece& piece) {
-    search.least = std::min(search.least, look(piece, search.from, scale).distance);
-  });
+  visit(0, search,
+        [&](const Piece& piece) { search.least = std::min(search.least, look(piece, search.from, scale).distance); });
   Hit best;
   bool found = false;
   visit(0, search, [&](const Piece& piece) {

@@ -36,7 +36,8 @@ class VariantSystem {
   virtual void put(const FrameField& U, Index vertex, std::span<const double> rho, double* right_side,
                    std::size_t n) const = 0;
   /// X <- solution, for all sources.
-  virtual void solve(const HeatOperators& operators, std::span<double> X, std::size_t sources, unsigned threads) const = 0;
+  virtual void solve(const HeatOperators& operators, std::span<double> X, std::size_t sources,
+                     unsigned threads) const = 0;
   /// The inner products of edges e_ij with the unknowns of their far ends j, which the second moment of i is made of:
   /// adds them, each times its factor, to `pairs` (d x d numbers) as far as they can be told without the frame of i ...
   /// @param values  the unknowns, degree x d
