@@ -160,6 +160,7 @@ TEST_F(ReadGltf, RefusesArraysBeyondTheirBuffers) {
                                                         {"/bufferViews/0/byteLength", 61},
                                                         {"/bufferViews/0/byteOffset", 13},
                                                         {"/bufferViews/0/byteStride", 13},
+                                                        {"/bufferViews/0/byteStride", 8},
                                                         {"/bufferViews/0/byteStride", ~std::uint64_t{0}},
                                                         {"/bufferViews/0/buffer", 1},
                                                         {"/buffers/0/byteLength", 61},

@@ -12,9 +12,10 @@ void check_mesh_input(const std::string& backend, const io::Geometry& input, con
   if (input.face_count() == 0)
     throw InvalidArgument(
         fmt::format("--backend {}: the input has no faces; --backend pointcloud maps its points", backend));
-  if (options.voxel || options.outliers || options.drop_nan)
+  if (options.voxel || options.outliers || options.drop_nan || options.k)
     throw InvalidArgument(
-        "--voxel, --outliers and --drop-nan are for point clouds; add --backend pointcloud to map the vertices as one");
+        "--voxel, --outliers, --drop-nan and --k are for point clouds; add --backend pointcloud to map the vertices as "
+        "one");
   if (source) position_in(input, *source, "--source");
 }
 

@@ -181,7 +181,11 @@ GltfArray GltfFile::array(std::uint64_t number) {
   const std::string& bytes = buffer(whole(view, "buffer", not_there));
   const std::uint64_t begin = whole(view, "byteOffset", 0), length = whole(view, "byteLength", 0);
   const std::uint64_t offset = whole(accessor, "byteOffset", 0), count = whole(accessor, "count", 0);
-  const std::uint64_t element = component->size * width, stride = std::max(whole(view, "byteStride", element), element);
+  const std::uint64_t element = component->size * width, given = whole(view, "byteStride", 0),
+                      stride = given == 0 ? element : given;
+  if (stride < element)
+    fail(in_, name + " has elements of " + std::to_string(element) + " bytes, which a byteStride of " +
+                  std::to_string(given) + " does not hold");
   if (begin > bytes.size() || length > bytes.size() - begin || offset > length ||
       (count > 0 && (length - offset < element || count - 1 > (length - offset - element) / stride)))
     fail(in_, name + " with " + std::to_string(count) + " elements does not fit into its buffer");

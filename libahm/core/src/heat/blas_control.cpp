@@ -83,7 +83,9 @@ BlasBuffer::BlasBuffer() : counted_(false) {
   std::unique_lock lock(mutex);
   if (buffers_taken == buffers && buffers < most_buffers) add_buffer(take, give_back);
   if (buffers == 0)
-    throw ResourceExhausted("out of memory: the BLAS has no room for its working buffer of 128 MB of address space");
+    throw ResourceExhausted(
+        "out of memory: the BLAS has no room for its working buffer of 128 MB of address space; raise the limit "
+        "(ulimit -v), or set OPENBLAS_NUM_THREADS=1 in the environment");
   buffer_is_free.wait(lock, [] { return buffers_taken < buffers; });
   ++buffers_taken;
   counted_ = true;
