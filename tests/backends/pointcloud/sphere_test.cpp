@@ -6,6 +6,7 @@
 #include <numbers>
 #include <vector>
 
+#include "ahm/maps/quality.hpp"
 #include "ahm/testing/vectors.hpp"
 #include "solved_cloud.hpp"
 
@@ -137,6 +138,30 @@ TEST(SphereCloud, HasTheSameMapMovedTurnedAndScaled) {
         }
         EXPECT_LT(worst, 1e-9) << scale << ' ' << angle << ' ' << reversed;
       }
+}
+
+// Where the spacing steps by ten, heat comes to the dense half through the sparse one, along ways that are too long by a half.
+TEST(SphereCloud, WhoseSpacingStepsHasNoTrustedVectorThatIsMuchTooLong) {
+  const Cloud all = random_sphere(12000, 3);
+  Cloud cloud;
+  for (std::size_t i = 0; i < all.points.size(); ++i)
+    if (all.points[i][2] > 0 || i % 100 == 0) cloud.points.push_back(all.points[i]);
+  Index source = 0;
+  for (std::size_t i = 0; i < cloud.points.size(); ++i)
+    if (std::abs(cloud.points[i][2]) < std::abs(cloud.points[source][2])) source = static_cast<Index>(i);
+  const Solved solved(cloud);
+  const LogMap map = solved.solver.solve(solved.graph.source(Row(source)).source);
+  const RowLogMap rows = solved.graph.on_rows(map);
+  const auto quality = on_rows(rows, map_quality(solved.graph.graph(), map));
+  Index trusted = 0, too_long = 0;
+  for (std::size_t i = 0; i < cloud.points.size(); ++i) {
+    if (!(quality[i] >= trusted_quality)) continue;
+    const double exact = std::acos(std::clamp(dot(cloud.points[i], cloud.points[source]), -1.0, 1.0));
+    ++trusted;
+    too_long += std::hypot(rows.u[i], rows.v[i]) > 1.25 * exact + 0.1;
+  }
+  EXPECT_GT(2 * trusted, static_cast<Index>(cloud.points.size()));
+  EXPECT_LT(200 * too_long, trusted);
 }
 
 }  // namespace
