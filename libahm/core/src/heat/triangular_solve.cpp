@@ -30,9 +30,9 @@ class NarrowSolve {
   void solve(std::span<double> X) {
     permute<true>(X);
     if (groups_)
-      solve_groups();
+      solve_by_groups();
     else
-      solve_all();
+      solve_in_order();
     permute<false>(X);
   }
 
@@ -40,7 +40,7 @@ class NarrowSolve {
   using Buffer = std::vector<double>;
   Buffer rows(Offset count) const { return Buffer(static_cast<std::size_t>(count) * width); }
 
-  void solve_all() {
+  void solve_in_order() {
     Buffer below = rows(longest_);
     const auto in_x = [this](Offset row) { return x_.get() + row * width; };
     const auto supernodes = static_cast<Offset>(L_.super.size()) - 1;
@@ -48,7 +48,7 @@ class NarrowSolve {
     for (Offset s = supernodes; s-- > 0;) backward(Supernode<W>(L_, s), below);
   }
 
-  void solve_groups() {
+  void solve_by_groups() {
     const auto in_x = [this](Offset row) { return x_.get() + row * width; };
     const auto each_group = [&](const auto& body) {
       detail::parallel_chunks(groups_->count(), 1, threads_, [&](Offset group, Offset) {

@@ -301,8 +301,9 @@ TracedPath trace(const PolyhedralSurface& surface, const MeshPoint& from, double
   else if (angle > sum && angle > 2 * pi - boundary_margin)
     angle = 0;  // along the first side, by rounding
   if (angle < -boundary_margin || angle > sum + boundary_margin)
-    throw InvalidArgument("'direction' " + detail::number(direction) + " at boundary vertex " + std::to_string(vertex) +
-                          " must be in [0, " + detail::number(sum) + "]");
+    throw InvalidArgument("the direction leads out of the surface at vertex " + std::to_string(vertex) +
+                          " of its boundary: as an angle from the first side it is " + detail::number(direction) +
+                          ", those of the surface are up to " + detail::number(sum));
   return Tracer(surface, length).from(surface.vertex_point(Vertex{vertex}), line_from_vertex(surface, vertex, angle));
 }
 
