@@ -1,6 +1,15 @@
+#include "ahm/surface/exact/exact_geodesics.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
 #include "ahm/error.hpp"
 #include "ahm/surface/directions.hpp"
-#include "ahm/surface/exact/exact_geodesics.hpp"
 #include "ahm/util/memory.hpp"
 #include "ahm/util/small_math.hpp"
 #include "ahm/util/text.hpp"
