@@ -173,12 +173,5 @@ TEST(ScarceMemory, SufficesForTwoThreadsWhereItDoesForOne) {
   EXPECT_EQ(status(enough + 25, "2"), 0) << enough << " MB";
 }
 
-TEST(OldOutput, SurvivesAFailure) {
-  Folder folder;
-  const auto output = folder.write("map.csv", "precious\n");
-  EXPECT_EQ(run({"logmap", folder.write("bad.xyz", "0 0 0\n1 zero 0\n"), "--source", "0", "-o", output}).status, 1);
-  EXPECT_EQ(read_text(output), "precious\n");
-}
-
 }  // namespace
 }  // namespace ahm::test

@@ -1,34 +1,16 @@
 // Triangle meshes through the program.
-#include <fcntl.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <sstream>
 
 #include "ahm/io/read.hpp"
 #include "program.hpp"
+#include "sheet.hpp"
 
 namespace ahm::test {
 namespace {
-
-/// A sheared grid of m x m vertices in the unit square, its triangles long and thin, as OBJ.
-std::string sheet(int m, double z = 0) {
-  std::ostringstream text;
-  text.precision(17);
-  for (int j = 0; j < m; ++j)
-    for (int i = 0; i < m; ++i)
-      text << "v " << (i + 0.3 * std::sin(5.0 * j)) / (m - 1) << ' ' << 0.1 * j / (m - 1) << ' ' << z << '\n';
-  for (int j = 0; j + 1 < m; ++j)
-    for (int i = 0; i + 1 < m; ++i) {
-      const int a = j * m + i + 1;
-      text << "f " << a << ' ' << a + 1 << ' ' << a + m + 1 << "\nf " << a << ' ' << a + m + 1 << ' ' << a + m << '\n';
-    }
-  return text.str();
-}
 
 std::vector<Row> map(const std::string& mesh, const std::string& source, const std::vector<std::string>& more = {},
                      const std::string& name = "mesh.obj") {
@@ -239,60 +221,6 @@ TEST(Mesh, WeldsStl) {
   const auto rows = map(stl + "endsolid\n", "0", {}, "strip.stl");
   EXPECT_EQ(rows.size(), 22u);
   for (const Row& row : rows) EXPECT_NEAR(row.distance, std::hypot(row.position[0], row.position[1]), 1e-10);
-}
-
-TEST(Outputs, AreAllWrittenOrNone) {
-  Folder folder;
-  const auto input = folder.write("mesh.obj", sheet(8));
-  const auto outcome = run({"logmap", input, "-s", "0", "-o", folder / "map.csv", "--json", "/dev/full"});
-  EXPECT_EQ(outcome.status, 1);
-  EXPECT_EQ(folder.files(), std::vector<std::string>{"mesh.obj"});
-}
-
-std::string contents_of(const std::string& path) {
-  std::ifstream file(path);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
-TEST(Outputs, ThatWereThereStayWhereALaterOneFails) {
-  Folder folder;
-  const auto input = folder.write("mesh.obj", sheet(8));
-  for (const char* command : {"logmap", "cells"}) {
-    const auto table = folder.write("map.csv", "old");
-    EXPECT_EQ(run({command, input, command == std::string("logmap") ? "-s" : "--count", "2", "-o", table, "--json",
-                   "/dev/full"})
-                  .status,
-              1);
-    EXPECT_EQ(contents_of(table), "old");
-    EXPECT_EQ(folder.files(), (std::vector<std::string>{"map.csv", "mesh.obj"}));
-  }
-}
-
-// An hour's work must not depend on somebody who reads that it is done.
-TEST(Outputs, AreThereThoughNobodyReadsTheSummary) {
-  Folder folder;
-  const auto input = folder.write("mesh.obj", sheet(8));
-  Running running = start({"logmap", input, "-s", "0", "-o", folder / "map.csv"});
-  ::close(running.out);
-  running.out = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
-  finish(running);
-  EXPECT_EQ(read_numbers(folder / "map.csv").size(), 64u);
-}
-
-TEST(StandardInput, ThatCannotBeReadIsNotTakenForItsEnd) {
-  Folder folder;
-  const Outcome outcome = finish(start({"info", "-", "--input-format", "xyz"}, false, folder.directory().string()));
-  EXPECT_EQ(outcome.status, 1);
-  EXPECT_NE(outcome.err.find("Is a directory"), std::string::npos) << outcome.err;
-}
-
-TEST(LocalMaps, KeepTheListTheyRead) {
-  Folder folder;
-  const auto input = folder.write("mesh.obj", sheet(8)), list = folder.write("rows.txt", "0\n5\n");
-  const Outcome outcome =
-      run({"local-maps", input, "--k", "4", "--sources", list, "-o", folder / "maps.npz", "--json", list});
-  EXPECT_EQ(outcome.status, 1);
-  EXPECT_EQ(contents_of(list), "0\n5\n");
 }
 
 TEST(Mesh, RefusesWhatHasNoSurface) {

@@ -34,9 +34,11 @@ void deliver(nlohmann::ordered_json summary, const std::string& text, const Outp
   summary["seconds_total"] = journal.times().total();
   summary["peak_rss_bytes"] = peak_rss_bytes();
   summary.update(further);
-  write_json(output.json == "-" ? "" : output.json, summary, output.json_lines);
+  const auto write_summary = [&] { write_json(output.json, summary, output.json_lines); };
+  const bool is_told = output.json == "-";
+  if (!is_told) write_summary();
   io::FileSet::commit();  // whoever reads what is told now finds them, and nobody has to
-  if (output.json == "-") write_json("-", summary, output.json_lines);
+  if (is_told) write_summary();
   if (output.verbosity == Verbosity::quiet) return;
   std::vector<std::string> wrote;
   if (!output.output.empty() && !io::is_stream(output.output)) wrote.push_back(output.output);

@@ -94,7 +94,7 @@ std::vector<char> take_given_planes(const CleanPoints& cloud, const Neighborhood
       if (missing[i] || !planes.has_plane(point)) continue;
       contradicted[i] =
           contradicts(fit_of(cloud, neighborhoods, given, point), fit_of(cloud, neighborhoods, planes.normals, point));
-      beside_crease[i] = is_beside_crease(cloud, neighborhoods, given, planes.normals, point);
+      beside_crease[i] = !contradicted[i] && is_beside_crease(cloud, neighborhoods, given, planes.normals, point);
     }
   });
   for (Offset i = 0; i < n; ++i) {

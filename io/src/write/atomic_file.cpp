@@ -204,25 +204,29 @@ AtomicFile::AtomicFile(const std::filesystem::path& path) : path_(path), target_
     return;
   }
   tidy_up(target_.parent_path());
-  for (int tries = 0; descriptor_ < 0; ++tries) {
-    temporary_ = temporary_name(target_);
-    descriptor_ = create(temporary_, slot_);
-    if (descriptor_ < 0) {
-      const int error = errno;
-      temporary_.clear();
-      if (error != EEXIST || tries == 100) fail(error);
-      continue;
-    }
-    // See remove_leftovers; another process's may have come before the lock.
-    ::flock(descriptor_, LOCK_EX | LOCK_NB);
-    struct stat own {};
-    if (::fstat(descriptor_, &own) == 0 && own.st_nlink > 0) break;
-    discard();
-  }
+  for (int tries = 0; !create_temporary(); ++tries)
+    if (tries == 100) fail(EEXIST);
   if (exists) ::fchmod(descriptor_, info.st_mode & 0777);
 }
 
 AtomicFile::~AtomicFile() { discard(); }
+
+/// Locked (see remove_leftovers). @return false where another process has that name, or has removed the file before it was locked
+bool AtomicFile::create_temporary() {
+  temporary_ = temporary_name(target_);
+  descriptor_ = create(temporary_, slot_);
+  const int error = errno;
+  struct stat own {
+  }, named{};
+  if (descriptor_ >= 0) ::flock(descriptor_, LOCK_EX | LOCK_NB);
+  if (descriptor_ >= 0 && ::fstat(descriptor_, &own) == 0 && ::stat(temporary_.c_str(), &named) == 0 &&
+      own.st_ino == named.st_ino && own.st_dev == named.st_dev)
+    return true;
+  temporary_.clear();
+  if (descriptor_ < 0 && error != EEXIST) fail(error);
+  discard();
+  return false;
+}
 
 AtomicFile::AtomicFile(AtomicFile&& other) noexcept
     : path_(std::move(other.path_)),

@@ -11,7 +11,6 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "ahm/error.hpp"
@@ -47,6 +46,7 @@ class AtomicFile {
   void commit();
 
  private:
+  bool create_temporary();
   void flush();
   void name();
   void discard() noexcept;

@@ -181,12 +181,14 @@ constexpr const char* solving = "triangular solve";
 struct SymbolicCholesky::Impl {
   FactorPointer L;
   bool supernodal;
+  std::shared_ptr<const SolveGroups> groups;
   Offset nonzeros = 0;
   double operations = 0;
 
-  void count(const cholmod_common& common) {
+  void finish(const cholmod_common& common) {
     nonzeros = static_cast<Offset>(L->is_super ? static_cast<double>(L->xsize) : common.lnz);
     operations = common.fl;
+    if (L->is_super) groups = solve_groups(supernodal_view(*L));
   }
 };
 
@@ -199,7 +201,7 @@ SymbolicCholesky::SymbolicCholesky(const SparseUpper& pattern, Ordering ordering
   cholmod_sparse matrix = view(pattern, false);
   impl_->supernodal = supernodal;
   impl_->L.reset(common.check(cholmod_l_analyze(&matrix, common.get()), "symbolic analysis"));
-  impl_->count(*common.get());
+  impl_->finish(*common.get());
 }
 
 SymbolicCholesky::SymbolicCholesky(const SparseUpper& blocks, const SymbolicCholesky& scalar, int width)
@@ -218,7 +220,7 @@ SymbolicCholesky::SymbolicCholesky(const SparseUpper& blocks, const SymbolicChol
   cholmod_sparse matrix = view(blocks, false);
   impl_->L.reset(
       common.check(cholmod_l_analyze_p(&matrix, order.data(), nullptr, 0, common.get()), "symbolic analysis"));
-  impl_->count(*common.get());
+  impl_->finish(*common.get());
 }
 
 SymbolicCholesky::~SymbolicCholesky() = default;
@@ -229,7 +231,7 @@ double SymbolicCholesky::operations() const noexcept { return impl_->operations;
 
 struct CholeskyFactor::Impl {
   FactorPointer L;
-  std::unique_ptr<const SolveGroups> groups;
+  std::shared_ptr<const SolveGroups> groups;  ///< of all factors of that pattern
   Offset rows;
   bool is_complex;
 
@@ -286,6 +288,7 @@ CholeskyFactor::CholeskyFactor(const SparseUpper& matrix, const SymbolicCholesky
   Common common(symbolic.impl_->supernodal);
   impl_->rows = matrix.size();
   impl_->is_complex = matrix.is_complex;
+  impl_->groups = symbolic.impl_->groups;
   impl_->L.reset(common.check(cholmod_l_copy_factor(symbolic.impl_->L.get(), common.get()), name));
   cholmod_sparse K = view(matrix, true);
   {
@@ -295,7 +298,6 @@ CholeskyFactor::CholeskyFactor(const SparseUpper& matrix, const SymbolicCholesky
   }
   common.check(name);
   impl_->check_pivots(*common.get(), name);
-  if (impl_->L->is_super) impl_->groups = solve_groups(supernodal_view(*impl_->L));
   impl_->check_residual(*this, matrix, name);
 }
 
