@@ -6,10 +6,12 @@
 #include <sys/stat.h>
 #include <sys/wait.h>
 
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <csignal>
 #include <thread>
+#include <vector>
 
 #include "files.hpp"
 
@@ -157,6 +159,20 @@ TEST_F(AtomicFileTest, RemovesWhatKilledProcessesLeft) {
   EXPECT_EQ(files_left(), 1u);
 }
 
+/// Some files of that name, one after the other.
+bool writes(const std::filesystem::path& path) {
+  try {
+    for (int time = 0; time < 10; ++time) {
+      AtomicFile file(path);
+      file.write("whole");
+      file.commit();
+    }
+    return true;
+  } catch (const IoError&) {
+    return false;
+  }
+}
+
 // In a container every process may have the number of the one that was killed.
 TEST_F(AtomicFileTest, RemovesThemWhoeverHasTheirNumberNow) {
   make(".ahm-" + std::to_string(::getpid()) + "-900.tmp", "half");
@@ -164,6 +180,30 @@ TEST_F(AtomicFileTest, RemovesThemWhoeverHasTheirNumberNow) {
   AtomicFile file(path("a.txt"));
   file.commit();
   EXPECT_EQ(files_left(), 1u);
+}
+
+/// Each process tidies up when it makes its first file there: then another's may not be locked yet.
+TEST_F(AtomicFileTest, ProcessesThatBeginTogetherKeepTheirFiles) {
+  constexpr int processes = 8, rounds = 100;
+  for (int round = 0; round < rounds; ++round) {
+    std::array<int, 2> start{};
+    ASSERT_EQ(::pipe(start.data()), 0);
+    std::vector<pid_t> children;
+    for (int k = 0; k < processes; ++k) {
+      children.push_back(::fork());
+      if (children.back() != 0) continue;
+      char at_once = 0;
+      ::close(start[1]);
+      ::_exit(::read(start[0], &at_once, 1) == 0 && writes(path(std::to_string(k))) ? 0 : 1);
+    }
+    ::close(start[0]), ::close(start[1]);
+    for (const pid_t child : children) {
+      int status = 1;
+      EXPECT_EQ(::waitpid(child, &status, 0), child);
+      EXPECT_EQ(status, 0);
+    }
+  }
+  EXPECT_EQ(files_left(), std::size_t{processes});
 }
 
 TEST_F(AtomicFileTest, KeepsItsOwnAndTheirLockUntilTheyAreNamed) {

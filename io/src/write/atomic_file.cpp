@@ -144,8 +144,11 @@ bool is_temporary_name(std::string_view name) {
   return error == std::errc() && *end == '-' && process > 0;
 }
 
+bool are_same(const struct stat& a, const struct stat& b) { return a.st_ino == b.st_ino && a.st_dev == b.st_dev; }
+
 /// Removes what processes that were killed left half written in a directory: files that are no longer locked. The process's number
 /// tells nothing: it may live on another machine, or in another container, and every process of a container may have the same one.
+/// So the name is looked at again under the lock: another process may have removed the file, and a third have made one of that name.
 void remove_leftovers(const std::filesystem::path& directory) {
   const std::unique_ptr<DIR, int (*)(DIR*)> entries(::opendir(directory.empty() ? "." : directory.c_str()), ::closedir);
   if (!entries) return;
@@ -154,9 +157,11 @@ void remove_leftovers(const std::filesystem::path& directory) {
     if (!is_temporary_name(entry->d_name)) continue;
     const int file = ::openat(folder, entry->d_name, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
     if (file < 0) continue;
-    struct stat info {};
+    struct stat info {
+    }, named{};
     if (::fstat(file, &info) == 0 && S_ISREG(info.st_mode) && info.st_uid == ::geteuid() &&
-        ::flock(file, LOCK_EX | LOCK_NB) == 0)
+        ::flock(file, LOCK_EX | LOCK_NB) == 0 && ::fstatat(folder, entry->d_name, &named, AT_SYMLINK_NOFOLLOW) == 0 &&
+        are_same(info, named))
       ::unlinkat(folder, entry->d_name, 0);
     ::close(file);
   }
@@ -211,16 +216,16 @@ AtomicFile::AtomicFile(const std::filesystem::path& path) : path_(path), target_
 
 AtomicFile::~AtomicFile() { discard(); }
 
-/// Locked (see remove_leftovers). @return false where another process has that name, or has removed the file before it was locked
+/// Locked (see remove_leftovers). @return false where another process has that name, or takes the file for a leftover, because it
+/// was not locked yet. File systems without locks have no leftovers removed.
 bool AtomicFile::create_temporary() {
   temporary_ = temporary_name(target_);
   descriptor_ = create(temporary_, slot_);
   const int error = errno;
   struct stat own {
   }, named{};
-  if (descriptor_ >= 0) ::flock(descriptor_, LOCK_EX | LOCK_NB);
-  if (descriptor_ >= 0 && ::fstat(descriptor_, &own) == 0 && ::stat(temporary_.c_str(), &named) == 0 &&
-      own.st_ino == named.st_ino && own.st_dev == named.st_dev)
+  const bool is_mine = descriptor_ >= 0 && (::flock(descriptor_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK);
+  if (is_mine && ::fstat(descriptor_, &own) == 0 && ::stat(temporary_.c_str(), &named) == 0 && are_same(own, named))
     return true;
   temporary_.clear();
   if (descriptor_ < 0 && error != EEXIST) fail(error);
