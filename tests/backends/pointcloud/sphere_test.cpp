@@ -140,28 +140,66 @@ TEST(SphereCloud, HasTheSameMapMovedTurnedAndScaled) {
       }
 }
 
+/// A sphere that is `factor` times sparser below its equator, and a map from a point of the equator.
+struct SteppedSphere {
+  explicit SteppedSphere(int factor) {
+    const Cloud all = random_sphere(12000, 3);
+    for (std::size_t i = 0; i < all.points.size(); ++i)
+      if (all.points[i][2] > 0 || i % static_cast<std::size_t>(factor) == 0) cloud.points.push_back(all.points[i]);
+    for (std::size_t i = 0; i < cloud.points.size(); ++i)
+      if (std::abs(cloud.points[i][2]) < std::abs(cloud.points[source][2])) source = i;
+    const Solved solved(cloud);
+    const PlacedSource placed = solved.graph.source(Row(static_cast<Index>(source)));
+    const LogMap map = solved.solver.solve(placed.source);
+    rows = solved.graph.on_rows(map);
+    quality = on_rows(rows, map_quality(solved.graph.graph(), map));
+    frame = *placed.frame;
+  }
+  /// Geodesic polar coordinates.
+  Vec2 exact(std::size_t i) const {
+    const Vec3 &p = cloud.points[i], &s = cloud.points[source];
+    const double d = std::acos(std::clamp(dot(p, s), -1.0, 1.0));
+    const Vec2 there{dot(p, frame.x), dot(p, frame.y)};
+    const double r = std::hypot(there[0], there[1]);
+    return {d / r * there[0], d / r * there[1]};
+  }
+
+  Cloud cloud;
+  std::size_t source = 0;
+  RowLogMap rows;
+  std::vector<double> quality;
+  Frame frame;
+};
+
+double size_of(const Vec2& v) { return std::hypot(v[0], v[1]); }
+
 // Where the spacing steps by ten, heat comes to the dense half through the sparse one, along ways that are too long by a half.
 TEST(SphereCloud, WhoseSpacingStepsHasNoTrustedVectorThatIsMuchTooLong) {
-  const Cloud all = random_sphere(12000, 3);
-  Cloud cloud;
-  for (std::size_t i = 0; i < all.points.size(); ++i)
-    if (all.points[i][2] > 0 || i % 100 == 0) cloud.points.push_back(all.points[i]);
-  Index source = 0;
-  for (std::size_t i = 0; i < cloud.points.size(); ++i)
-    if (std::abs(cloud.points[i][2]) < std::abs(cloud.points[source][2])) source = static_cast<Index>(i);
-  const Solved solved(cloud);
-  const LogMap map = solved.solver.solve(solved.graph.source(Row(source)).source);
-  const RowLogMap rows = solved.graph.on_rows(map);
-  const auto quality = on_rows(rows, map_quality(solved.graph.graph(), map));
+  const SteppedSphere sphere(100);
   Index trusted = 0, too_long = 0;
-  for (std::size_t i = 0; i < cloud.points.size(); ++i) {
-    if (!(quality[i] >= trusted_quality)) continue;
-    const double exact = std::acos(std::clamp(dot(cloud.points[i], cloud.points[source]), -1.0, 1.0));
+  for (std::size_t i = 0; i < sphere.quality.size(); ++i) {
+    if (i == sphere.source || !(sphere.quality[i] >= trusted_quality)) continue;
     ++trusted;
-    too_long += std::hypot(rows.u[i], rows.v[i]) > 1.25 * exact + 0.1;
+    too_long += std::hypot(sphere.rows.u[i], sphere.rows.v[i]) > 1.25 * size_of(sphere.exact(i)) + 0.1;
   }
-  EXPECT_GT(2 * trusted, static_cast<Index>(cloud.points.size()));
+  EXPECT_GT(2 * trusted, std::ssize(sphere.quality));
   EXPECT_LT(200 * too_long, trusted);
+}
+
+// And from the wrong side, with lengths that are nearly right: stars at the step are open, and ways beside them are no detours.
+TEST(SphereCloud, WhoseSpacingStepsHasNoTrustedVectorThatPointsElsewhere) {
+  for (const int factor : {9, 16, 25}) {
+    const SteppedSphere sphere(factor);
+    Index trusted = 0, elsewhere = 0;
+    for (std::size_t i = 0; i < sphere.quality.size(); ++i) {
+      if (i == sphere.source || !(sphere.quality[i] >= trusted_quality)) continue;
+      const Vec2 exact = sphere.exact(i);
+      ++trusted;
+      elsewhere += std::hypot(sphere.rows.u[i] - exact[0], sphere.rows.v[i] - exact[1]) > 0.3 * size_of(exact);
+    }
+    EXPECT_GT(3 * trusted, 2 * std::ssize(sphere.quality));
+    EXPECT_LT(100 * elsewhere, trusted) << "spacing steps by the root of " << factor;
+  }
 }
 
 }  // namespace

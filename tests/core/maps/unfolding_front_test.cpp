@@ -135,10 +135,10 @@ TEST(UnfoldingFront, AgreesWithItselfWhereEdgesAreATriangulation) {
   const CsrGraph graph(planar_triangulation(20).data);
   std::vector<Vertex> all;
   for (Index i = 0; i < 280; ++i) all.emplace_back(i);
-  EXPECT_GT(UnfoldingFront::agreement(graph, all), 0.95);
-  EXPECT_EQ(UnfoldingFront::agreement(CsrGraph(line_graph(300).data), all), 1);
-  EXPECT_EQ(UnfoldingFront::agreement(grid::GridGraph({.shape = {7, 8, 9}, .spacing = {1, 2, 0.3}}), all), 1);
-  EXPECT_EQ(UnfoldingFront::agreement(CsrGraph(lattice3(7).data), all), 0);
+  EXPECT_GT(UnfoldingFront::agreement(graph, all).agreed, 0.95);
+  EXPECT_EQ(UnfoldingFront::agreement(CsrGraph(line_graph(300).data), all).agreed, 1);
+  EXPECT_EQ(UnfoldingFront::agreement(grid::GridGraph({.shape = {7, 8, 9}, .spacing = {1, 2, 0.3}}), all).agreed, 1);
+  EXPECT_EQ(UnfoldingFront::agreement(CsrGraph(lattice3(7).data), all).agreed, 0);
 }
 
 TEST(UnfoldingFront, TellsTheNearestOfManyAndGoesOnFromThere) {

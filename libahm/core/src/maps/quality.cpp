@@ -33,14 +33,21 @@ constexpr double forgiven_between_samples = 0.25;
 /// Of the triangles that vertices see around them, the shares that the others must see, too, for a front to count at all
 /// and in full: with noise every vertex sees triangles of its own.
 constexpr double believed_from = 0.7, believed_in_full = 0.8;
-/// As many vertices are asked for them.
+/// Of the stars, the shares that are open, as at boundaries, for the directions of ways that bend there to count not at all and in
+/// full: noise and few neighbours open stars anywhere, and bend ways that go straight.
+constexpr double bent_to = 0.1, bent_in_full = 0.05;
+/// As many vertices are asked for both.
 constexpr std::size_t asked = 1000;
 /// A vertex of a map that ends at a radius is nearer than this many radii for the front, or else the two differ by far.
 constexpr double reach = 1.25;
 
-/// How far a vector is from d times a direction.
-double difference(std::span<const double> phi, double d, std::span<const double> direction) {
-  return length(Vec2{phi[0] - d * direction[0], phi[1] - d * direction[1]});
+/// How far a way is from geodesic polar coordinates, as far as these count and its spread, relative to the distance d, is not that
+/// of an unrolling; else how far its length is from d.
+double disagreement(std::span<const double> way, double d, const Vec2& polar, double spread, double counts = 1) {
+  const double by_length = std::abs(length(way) - d);
+  if (std::isnan(polar[0])) return by_length;
+  const double by_vector = length(Vec2{way[0] - polar[0], way[1] - polar[1]});
+  return by_length + counts * std::min(spread / unrolled_spread, 1.0) * std::max(0.0, by_vector - by_length);
 }
 
 /// phi from where the ways to the vertices begin: at a point itself, along a curve at its sample nearest to the vertex. n x d.
@@ -68,36 +75,38 @@ class Comparison {
     for (Index i = 0; i < graph.size(); ++i)
       if (map.status()[i] == Status::ok) reached.emplace_back(i);
     for (std::size_t k = 0; k < reached.size(); k += reached.size() / asked + 1) some.push_back(reached[k]);
-    const double share = UnfoldingFront::agreement(graph, some);
-    belief_ = std::clamp((share - believed_from) / (believed_in_full - believed_from), 0.0, 1.0);
+    const auto [agreed, open] = UnfoldingFront::agreement(graph, some);
+    belief_ = std::clamp((agreed - believed_from) / (believed_in_full - believed_from), 0.0, 1.0);
+    belief_in_bends_ = std::clamp((bent_to - open) / (bent_to - bent_in_full), 0.0, 1.0);
     if (!front.has_directions() || reached.empty()) return;
     const auto bent = std::ranges::count_if(reached, [&](Vertex vertex) { return front.is_bent(vertex); });
-    directions_compared_ = belief_ * (1 - static_cast<double>(bent) / static_cast<double>(reached.size()));
+    const double share = static_cast<double>(bent) / static_cast<double>(reached.size());
+    directions_compared_ = belief_ * (1 - share * (1 - belief_in_bends_));
   }
 
-  /// How far a way is off by what the front says, world units.
-  double off(Vertex vertex, std::span<const double> way, double h) const {
+  /// How far a way is off by what the front says, world units. @param spread  relative to the distance
+  double off(Vertex vertex, std::span<const double> way, double spread, double h) const {
     const double d = std::min(front_.distance(vertex), reach * radius_);
-    double off = std::abs(d - length(way));
-    if (d > 0 && front_.has_directions() && !front_.is_bent(vertex))
-      off = std::max(off, difference(way, d, front_.direction(vertex)));
-    return belief_ * off - forgiven * h;
+    const double counts = front_.is_bent(vertex) ? belief_in_bends_ : 1;
+    return belief_ * disagreement(way, d, polar(vertex, d), spread, counts) - forgiven * h;
   }
 
   /// Geodesic polar coordinates; NaN where the way bends at the boundary.
   Vec2 polar_coordinates(Vertex vertex) const {
-    if (!front_.has_directions() || front_.is_bent(vertex)) return {NAN, NAN};
-    const double d = front_.distance(vertex);
-    const Vec2 direction = front_.direction(vertex);
-    return {d * direction[0], d * direction[1]};
+    return front_.is_bent(vertex) ? Vec2{NAN, NAN} : polar(vertex, front_.distance(vertex));
   }
   double belief() const { return belief_; }
   double directions_compared() const { return directions_compared_; }
 
  private:
+  Vec2 polar(Vertex vertex, double d) const {
+    const Vec2 direction = front_.direction(vertex);
+    return {d * direction[0], d * direction[1]};
+  }
+
   const UnfoldingFront& front_;
   double radius_;
-  double belief_ = 0;  ///< in what the front says
+  double belief_ = 0, belief_in_bends_ = 0;  ///< in what the front says, and in its directions behind bends
   double directions_compared_ = 1;
 };
 
@@ -169,20 +178,18 @@ std::vector<double> quality_beside(const TangentGraph& graph, const LogMap& map,
     if (const auto frame = source ? graph.frame(vertex.index) : std::nullopt)
       d = std::max(d, distance(frame->origin, *source));
     const double away = std::max(d, h), spread = map.spread()[i] / away;
-    double off = std::abs(length(way) - d), lost = 0;
-    if (const Vec2 psi = polar_coordinates(map, vertex.index); !std::isnan(psi[0])) {
-      const double by_direction = length(Vec2{way[0] - psi[0], way[1] - psi[1]});
-      off += std::min(spread / unrolled_spread, 1.0) * (by_direction - off);
-      // Along curves psi jumps from sample to sample.
-      if (!of_curve)
-        lost = lost_along_edges(graph, map, vertex.index, [&](Index j) { return polar_coordinates(map, j); });
-    } else if (comparison && !of_curve && comparison->belief() > 0) {
+    const Vec2 psi = polar_coordinates(map, vertex.index);
+    double off = disagreement(way, d, psi, spread), lost = 0;
+    if (of_curve) {  // along curves psi jumps from sample to sample
+      off = std::max(0.0, off - forgiven_between_samples * h);
+    } else if (!std::isnan(psi[0])) {
+      lost = lost_along_edges(graph, map, vertex.index, [&](Index j) { return polar_coordinates(map, j); });
+    } else if (comparison && comparison->belief() > 0) {
       lost = comparison->belief() * forgiving(lost_along_edges(graph, map, vertex.index, [&](Index j) {
                return comparison->polar_coordinates(Vertex(j));
              }));
     }
-    if (of_curve) off = std::max(0.0, off - forgiven_between_samples * h);
-    if (comparison) off = std::max(off, comparison->off(vertex, way, h));
+    if (comparison) off = std::max(off, comparison->off(vertex, way, spread, h));
     const double doubt = std::hypot(spread / doubtful_spread, off / away / doubtful_difference, lost / doubtful_loss);
     quality[i] = 1 / (1 + doubt * doubt);
   });

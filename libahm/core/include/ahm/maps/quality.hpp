@@ -31,15 +31,15 @@ inline constexpr double trusted_quality = 0.5;
 ///     q_i = 1 / (1 + s_i^2 + (c_i / 0.5)^2)
 ///
 /// with d the distance, no less than the straight line in space where the graph has frames, and h the mean edge length of the
-/// vertex's component. |phi - psi| is no less than ||phi| - d|, and comes to that alone as spread_i / d_i goes from 0.01 to 0 on
-/// Delaunay triangulations: there phi is the unrolling of what lies between, as of a plane behind its holes. It is that alone,
+/// vertex's component. |phi - psi| is no less than ||phi| - d|, and comes to that alone as spread_i / d_i goes from 0.01 to 0: there
+/// phi is the unrolling of what lies between, as of a plane behind its holes. It is that alone,
 /// too, in other dimensions than 2, where fronts see holes if edges lie along orthogonal axes. c is how much of the edges phi loses
 /// that psi keeps: far away on a tube |phi - psi| is small beside d, but what lies around the tube has come to lie on a line. Of a
 /// map by `Method::exact` there is the spread alone. Where the edges are no Delaunay triangulation a front is less exact: h is
-/// forgiven, and of c the first .2 (then (c - .2) / .8), directions are
-/// not asked for where the way bends at the boundary by half a radian and more, around a hole or in a notch of the sampling, and
-/// it counts only where stars agree on their triangles, which noise undoes (`UnfoldingFront::agreement`); elsewhere there is
-/// ||phi| - d| with the distance of heat, which sees no holes.
+/// forgiven, and of c the first .2 (then (c - .2) / .8); it counts only where stars agree on their triangles, which noise
+/// undoes (`UnfoldingFront::agreement`), and elsewhere there is ||phi| - d| with the distance of heat, which sees no holes; and
+/// where more than a twentieth to a tenth of the stars are open, directions are not asked for of ways that bend at the boundary, at
+/// such stars, by half a radian and more (nor is c).
 ///
 /// From a curve (d = 2) phi and psi count from the coordinates of the sample nearest to the vertex. c is 0, since psi jumps from
 /// sample to sample, and h / 4 is forgiven on Delaunay triangulations: samples are half an edge apart.
@@ -66,13 +66,15 @@ class QualityFront {
  private:
   std::optional<UnfoldingFront> front_;
 };
+
 /// A quality, and how much it tells of.
 struct ComparedQuality {
   std::vector<double> quality;
   /// At what share of the mapped vertices it is one of directions, and not of distances alone: 1 on triangulations, less where noise,
-  /// clumps or too few neighbours open stars, behind which ways count as bent, or leave them in disagreement on their triangles.
+  /// clumps or too few neighbours open many stars, behind which ways count as bent, or leave them in disagreement on their triangles.
   double directions_compared = 1;
 };
+
 /// The same quality. @param front  from the source of the map, with its radius
 ComparedQuality map_quality(const TangentGraph& graph, const LogMap& map, const QualityFront& front,
                             unsigned threads = 0);

@@ -46,11 +46,16 @@ class UnfoldingFront {
   class Stars;
   static std::shared_ptr<const Stars> stars(const TangentGraph& graph);
 
-  /// Of the triangles that these vertices see between their neighbours, the share that the other two corners see, too: 1 of a
-  /// triangulation, less of a cloud with noise, where stars contradict each other. So do the corners of squares without
-  /// diagonals, as in grids, and those with an edge of the right length opposite, as where diagonals of polygons cross; 0 where
-  /// there are no triangles. In other dimensions than 2 the share of vertices whose edges lie along orthogonal axes.
-  static double agreement(const TangentGraph& graph, std::span<const Vertex> vertices);
+  struct Agreement {
+    /// Of the triangles that vertices see between their neighbours, the share that the other two corners see, too: 1 of a
+    /// triangulation, less of a cloud with noise, where stars contradict each other. So do the corners of squares without
+    /// diagonals, as in grids, and those with an edge of the right length opposite, as where diagonals of polygons cross; 0 where
+    /// there are no triangles. In other dimensions than 2 the share of vertices whose edges lie along orthogonal axes.
+    double agreed = 0;
+    /// Of the stars, the share with a gap: those at boundaries, and inside those that noise or few neighbours open (d = 2).
+    double open = 0;
+  };
+  static Agreement agreement(const TangentGraph& graph, std::span<const Vertex> vertices);
 
   /// @param graph       must outlive the front
   /// @param stars       of this graph; none: looked up vertex by vertex
