@@ -71,11 +71,13 @@ TEST(StrokeQuality, KnowsTheNearestSample) {
     const SurfaceCurve curve = draw_curve(surface, ring(0.3), {.closed = true});
     const LogMap map = LogMapSolver(surface.graph()).solve(curve.source);
     ASSERT_EQ(map.nearest().size(), map.status().size());
+    std::vector<Vec3> samples;
+    for (const ExactSource& sample : curve.samples) samples.push_back(surface.position(sample.point));
     for (Index r = 0; r < static_cast<Index>(surface.positions().size()); ++r) {
       const auto vertex = surface.rows().vertex(Row(r));
       double least = HUGE_VAL;
-      for (const Vec3& p : curve.points) least = std::min(least, distance(p, surface.positions()[r]));
-      EXPECT_LT(distance(curve.points[map.nearest()[vertex->index]], surface.positions()[r]),
+      for (const Vec3& p : samples) least = std::min(least, distance(p, surface.positions()[r]));
+      EXPECT_LT(distance(samples[map.nearest()[vertex->index]], surface.positions()[r]),
                 least + 0.1 * edge_of(surface));
     }
   });

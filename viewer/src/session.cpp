@@ -181,7 +181,7 @@ struct Session::Impl {
 
   /// As far as its distances go, which are not the map's own.
   LogMap stroke(const SurfaceCurve& curve, const Settings& settings, const std::stop_token& stop) {
-    const double radius = reach_from_curve(surface.graph(), radius_of(settings));
+    const double radius = reach_from_curve(curve, radius_of(settings));
     if (settings.method == Method::exact)
       return makers.geodesics()
           .log_map(curve.samples, {.radius = radius, .tolerance = settings.tolerance, .progress = until(stop)})

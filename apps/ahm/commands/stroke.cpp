@@ -25,8 +25,9 @@ constexpr const char* stroke_footer =
     "  123              a vertex of INPUT, counted from 0\n"
     "  1.5,0,-2         the nearest point of the surface; in files also 1.5 0 -2\n"
     "  face:7:.2,.3,.5  a point in face 7, by barycentric coordinates, one per corner (meshes)\n"
-    "They are joined by shortest paths, over the faces of meshes and the tangent planes of clouds, with samples every\n"
-    "half edge.\n"
+    "They are joined by shortest paths, over the faces of meshes and the tangent planes of clouds, and cut into "
+    "pieces\n"
+    "of half an edge.\n"
     "\n"
     "OUTPUT  .csv, .jsonl, .ply, .pcd or .vtp; one row per vertex of INPUT, in its order:\n"
     "          index,x,y,z,u,v,distance,status,quality,spread\n"
@@ -126,7 +127,7 @@ void report(const StrokeCommandOptions& options, const Input& input, const Surfa
   for (double d : rows.distance) farthest = std::max(farthest, std::isnan(d) ? 0 : d);
   nlohmann::ordered_json j = summary("ahm stroke", options.input.path, options.output, input);
   j["curve"] = {{"given", options.curve.size()},
-                {"points", curve.points.size()},
+                {"pieces", curve.samples.size()},
                 {"length", curve.length},
                 {"closed", options.shape.closed},
                 {"shape", !options.positions.empty()                   ? "positions"
@@ -140,10 +141,10 @@ void report(const StrokeCommandOptions& options, const Input& input, const Surfa
   j["largest_distance"] = farthest;
   j["untrusted"] = untrusted(quality);
   const std::string text = fmt::format(
-      "{} curve of {} points, {:.6g} long, off the surface by {:.2g} at most\n{} of {} vertices mapped, up to {:.6g} "
+      "{} curve of {} pieces, {:.6g} long, off the surface by {:.2g} at most\n{} of {} vertices mapped, up to {:.6g} "
       "from "
       "the curve\n{}\n",
-      options.shape.closed ? "closed" : "open", curve.points.size(), curve.length, curve.gap, mapped,
+      options.shape.closed ? "closed" : "open", curve.samples.size(), curve.length, curve.gap, mapped,
       rows.status.size(), farthest, quality_as_text(quality));
   deliver(std::move(j), text, options.output, journal);
 }
@@ -157,7 +158,7 @@ void run(const StrokeCommandOptions& options) {
 
   const double radius = options.solve.radius.value_or(std::numeric_limits<double>::infinity());
   SolveOptions reaching = options.solve;
-  if (reaching.radius) reaching.radius = reach_from_curve(input.graph(), radius);
+  if (reaching.radius) reaching.radius = reach_from_curve(curve, radius);
   const LogMap map = solve(reaching, input, curve, journal);
   const RowLogMap rows = rows_from_curve(input.surface(), map, curve, radius);
   comment_on_statuses(rows.status, options.input.path, journal);

@@ -1,13 +1,13 @@
 #include "ahm/applications/stroke.hpp"
 
 #include <cmath>
-#include <numbers>
 #include <numeric>
 #include <string>
 
 #include "ahm/error.hpp"
 #include "ahm/util/small_math.hpp"
 #include "ahm/util/vec.hpp"
+#include "plane_curve.hpp"
 
 namespace ahm {
 namespace {
@@ -40,23 +40,6 @@ Vec2 bisector(const Vec2& arriving, const Vec2& leaving, std::size_t k) {
     throw InvalidArgument("the curve, or its image in the plane, turns back or stands still at point " +
                           std::to_string(k) + "; split it there");
   return {sum[0] / norm, sum[1] / norm};
-}
-
-/// Which way a curve runs in the plane at each of its points.
-std::vector<Vec2> directions_of(std::span<const Vec2> positions, std::size_t points, bool closed) {
-  if (positions.size() != points)
-    throw InvalidArgument("'positions' has " + std::to_string(positions.size()) + " entries for " +
-                          std::to_string(points) + " points");
-  for (std::size_t k = 0; k < points; ++k)
-    if (!all_finite(positions[k]))
-      throw InvalidArgument("entry " + std::to_string(k) + " of 'positions' is not finite");
-  std::vector<Vec2> directions;
-  for (std::size_t k = 0; k < points; ++k) {
-    const bool arrives = k > 0 || closed, leaves = k + 1 < points || closed;
-    directions.push_back(bisector(arrives ? positions[k] - positions[(k + points - 1) % points] : Vec2{},
-                                  leaves ? positions[(k + 1) % points] - positions[k] : Vec2{}, k));
-  }
-  return directions;
 }
 
 /// What the graph knows of the curve at each vertex.
@@ -123,22 +106,6 @@ void add_sample(Source& source, Vertex vertex, double weight, const Vec2& z, con
   source.add(vertex, weight, z, axes, {point, 0, z});
 }
 
-void check_shape(const StrokeOptions& options) {
-  if (options.shape == StrokeShape::circle && !options.closed)
-    throw InvalidArgument("shape 'circle' needs a closed curve");
-}
-
-/// Where the point at arclength s lies in the plane of coordinates, and which way the curve runs there.
-struct Place {
-  Vec2 position, direction;
-};
-
-Place place(double s, double length, StrokeShape shape) {
-  if (shape == StrokeShape::line) return {{s, 0}, {1, 0}};
-  const double radius = length / (2 * std::numbers::pi), c = std::cos(s / radius), d = std::sin(s / radius);
-  return {{radius * c, radius * d}, {-d, c}};
-}
-
 void check_points(std::span<const Source> points, std::span<const double> lengths, bool closed) {
   const std::size_t least = closed ? 3 : 2;
   if (points.size() < least)
@@ -170,12 +137,33 @@ std::vector<StrokePoint> weighted_by_length(std::span<const Source> points, std:
 
 }  // namespace
 
+void check_shape(const StrokeOptions& options) {
+  if (options.shape == StrokeShape::circle && !options.closed)
+    throw InvalidArgument("shape 'circle' needs a closed curve");
+}
+
+std::vector<Vec2> directions_of(std::span<const Vec2> positions, std::size_t points, bool closed) {
+  if (positions.size() != points)
+    throw InvalidArgument("'positions' has " + std::to_string(positions.size()) + " entries for " +
+                          std::to_string(points) + " points");
+  for (std::size_t k = 0; k < points; ++k)
+    if (!all_finite(positions[k]))
+      throw InvalidArgument("entry " + std::to_string(k) + " of 'positions' is not finite");
+  std::vector<Vec2> directions;
+  for (std::size_t k = 0; k < points; ++k) {
+    const bool arrives = k > 0 || closed, leaves = k + 1 < points || closed;
+    directions.push_back(bisector(arrives ? positions[k] - positions[(k + points - 1) % points] : Vec2{},
+                                  leaves ? positions[(k + 1) % points] - positions[k] : Vec2{}, k));
+  }
+  return directions;
+}
+
 Source stroke_source(const TangentGraph& graph, std::span<const Vertex> path, const StrokeOptions& options) {
   check_shape(options);
   const Curve curve = follow(graph, path, options.closed);
   Source source(2);
   for (std::size_t k = 0; k < path.size(); ++k) {
-    const auto [position, direction] = place(curve.s[k], curve.length, options.shape);
+    const auto [position, direction] = place_in_plane(curve.s[k], curve.length, options.shape);
     add_sample(source, path[k], curve.weights[k], position, curve.tangents[k], curve.sides[k], direction);
   }
   return source;
@@ -218,7 +206,7 @@ std::vector<StrokePoint> stroke_points(std::span<const Source> points, std::span
   const double length = std::accumulate(lengths.begin(), lengths.end(), 0.0);
   double s = 0;
   return weighted_by_length(points, lengths, options.closed, [&](std::size_t k) {
-    const Place at = place(s, length, options.shape);
+    const PlanePlace at = place_in_plane(s, length, options.shape);
     s += k < lengths.size() ? lengths[k] : 0;
     return at;
   });
@@ -228,7 +216,9 @@ std::vector<StrokePoint> stroke_points(std::span<const Source> points, std::span
                                        std::span<const Vec2> positions, bool closed) {
   check_points(points, lengths, closed);
   const std::vector<Vec2> directions = directions_of(positions, points.size(), closed);
-  return weighted_by_length(points, lengths, closed, [&](std::size_t k) { return Place{positions[k], directions[k]}; });
+  return weighted_by_length(points, lengths, closed, [&](std::size_t k) {
+    return PlanePlace{positions[k], directions[k]};
+  });
 }
 
 Source stroke_source(std::span<const Source> points, std::span<const double> lengths, const StrokeOptions& options) {

@@ -13,18 +13,73 @@
 #include "ahm/util/text.hpp"
 #include "ahm/util/vec.hpp"
 #include "joined_points.hpp"
+#include "plane_curve.hpp"
 
 namespace ahm {
 namespace {
 
 constexpr double most_points = 1e6;
 
-/// A point of the curve: how the surface finds it, and where it is.
-struct CurveSample {
+/// Mean length of the edges about a point, world units.
+double edge_at(const Surface& surface, const SurfacePoint& point) {
+  const Source source = surface.source(point).source;
+  double sum = 0, count = 0;
+  for (const Vertex vertex : source.vertices()) {
+    const Star star = surface.graph().star(vertex.index);
+    for (std::size_t e = 0; e < star.degree(); ++e) sum += length(star.log(e));
+    count += static_cast<double>(star.degree());
+  }
+  return count > 0 ? sum / count * surface.graph().length_unit() : 0;
+}
+
+/// A place on a line: the directions of the segments that end and begin there; inside of one both are its own.
+struct PlaceOnLine {
+  Vec3 position, arriving, leaving;
+};
+
+/// A line of corners by arclength.
+class Line {
+ public:
+  explicit Line(std::span<const Vec3> corners) {
+    for (const Vec3& corner : corners) {
+      const double along = corners_.empty() ? 0 : distance(corners_.back(), corner);
+      if (!corners_.empty() && !(along > 0)) continue;
+      begins_.push_back(length() + along);
+      corners_.push_back(corner);
+    }
+  }
+  double length() const { return begins_.empty() ? 0 : begins_.back(); }
+  std::span<const Vec3> corners() const { return corners_; }
+  /// @param s  within the length, which is not 0
+  PlaceOnLine at(double s) const {
+    const double near = same_place * length();
+    const auto next = std::ranges::lower_bound(begins_, s - near) - begins_.begin();
+    const auto end = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(next, 1, std::ssize(corners_) - 1));
+    const double share = (s - begins_[end - 1]) / (begins_[end] - begins_[end - 1]);
+    const bool is_corner = std::abs(s - begins_[end]) <= near && end + 1 < corners_.size();
+    return {corners_[end - 1] + share * (corners_[end] - corners_[end - 1]), direction(end),
+            direction(is_corner ? end + 1 : end)};
+  }
+
+ private:
+  /// Share of the length by which a place may miss a corner.
+  static constexpr double same_place = 1e-9;
+
+  Vec3 direction(std::size_t end) const {
+    return 1 / (begins_[end] - begins_[end - 1]) * (corners_[end] - corners_[end - 1]);
+  }
+
+  std::vector<Vec3> corners_;
+  std::vector<double> begins_;  ///< arclengths of the corners
+};
+
+/// A piece of the curve, by its middle.
+struct Piece {
   SurfacePoint point;
-  Vec3 position;
-  std::size_t piece;  ///< after which of the given points
-  double along;       ///< the piece: in [0, 1)
+  Vec3 arriving, leaving;  ///< directions of the curve there (PlaceOnLine)
+  std::size_t after;       ///< which of the given points
+  double along;            ///< of the line to the next one, in (0, 1)
+  double length;
 };
 
 /// Joins points by shortest paths: over flat faces, and without faces over tangent planes.
@@ -61,120 +116,205 @@ class Joiner {
   std::string reason_;
 };
 
-/// Places between the ends of a line of corners, no farther apart than a step.
-std::vector<Vec3> along_line(const std::vector<Vec3>& corners, double step) {
-  std::vector<Vec3> places;
-  for (std::size_t k = 1; k < corners.size(); ++k) {
-    const Vec3 &a = corners[k - 1], &b = corners[k];
-    const int pieces = std::max(1, static_cast<int>(std::ceil(distance(a, b) / step)));
-    for (int p = 1; p <= pieces; ++p) places.push_back(a + static_cast<double>(p) / pieces * (b - a));
-  }
-  if (!places.empty()) places.pop_back();
-  return places;
-}
-
-/// How far along a line from `from` to `to` its places are: shares of its length.
-std::vector<double> shares(const Vec3& from, const std::vector<Vec3>& places, const Vec3& to) {
-  std::vector<double> along;
-  double length = 0;
-  for (std::size_t p = 0; p < places.size(); ++p)
-    along.push_back(length += distance(p > 0 ? places[p - 1] : from, places[p]));
-  length += places.empty() ? 0 : distance(places.back(), to);
-  for (double& x : along) x /= length;
-  return along;
-}
-
 double length_of(const std::vector<Vec3>& corners) {
   double length = 0;
   for (std::size_t k = 0; k + 1 < corners.size(); ++k) length += distance(corners[k], corners[k + 1]);
   return length;
 }
 
-/// The given points as corners, and points between them: on the shortest path, locally shortest between points closer than
-/// four steps, else on the straight line. Notes the largest distance of these from the surface, and which lines are
-/// straight against the rule.
-std::vector<CurveSample> sample(const Surface& surface, std::span<const CurvePoint> given, bool closed, double step,
-                                SurfaceCurve& curve) {
+[[noreturn]] void refuse_length(double length, double edge) {
+  throw InvalidArgument("curve_too_long",
+                        "the curve is " + detail::number(length) + " long, more than " + detail::number(most_points) +
+                            " times half an edge length of " + detail::number(edge),
+                        "is it in the units of the surface?");
+}
+
+[[noreturn]] void refuse_turn(const Vec3& p) {
+  throw InvalidArgument(
+      "curve_turns_back",
+      "the curve turns back at " + detail::number(p[0]) + " " + detail::number(p[1]) + " " + detail::number(p[2]),
+      "split it there");
+}
+
+/// One line between given points, or several short ones: together one piece.
+struct Stretch {
   std::vector<Vec3> corners;
-  corners.reserve(given.size() + 1);
-  for (const CurvePoint& point : given) {
-    const auto* in_space = std::get_if<Vec3>(&point);
-    corners.push_back(in_space ? *in_space : surface.position(std::get<SurfacePoint>(point)));
-  }
-  if (closed && !corners.empty()) corners.push_back(corners.front());
-  if (const double length = length_of(corners); !(length / step < most_points))
-    throw InvalidArgument("curve_too_long",
-                          "the curve is " + detail::number(length) + " long, more than " + detail::number(most_points) +
-                              " times half the mean edge length of " + detail::number(2 * step),
-                          "is it in the units of the surface?");
+  std::vector<std::size_t> lines;  ///< the numbers of the given points that its lines begin at
+  std::vector<double> ends;        ///< and the arclengths where they end
+  bool is_path = false;            ///< along the surface, not only near to it
+};
 
-  std::vector<CurveSample> samples;
-  Joiner joiner(surface);
-  const auto end_point = [&](std::size_t k) {
-    const CurvePoint& end = given[k % given.size()];
-    const auto* on_surface = std::get_if<SurfacePoint>(&end);
-    return on_surface ? *on_surface : surface.closest_point(std::get<Vec3>(end)).point;
-  };
-  const auto project = [&](const Vec3& p, std::size_t piece, double along) {
-    ClosestPoint closest = surface.closest_point(p);
-    samples.push_back({std::move(closest.point), closest.position, piece, along});
-    curve.gap = std::max(curve.gap, distance(closest.position, p));
-  };
-  for (std::size_t k = 0; k < corners.size(); ++k) {
-    if (k + 1 == corners.size() && closed) break;
-    if (const auto* on_surface = std::get_if<SurfacePoint>(&given[k]))
-      samples.push_back({*on_surface, corners[k], k, 0});
-    else
-      project(corners[k], k, 0);
-    if (k + 1 == corners.size()) break;
-    std::vector<Vec3> line{corners[k], corners[k + 1]};
-    const bool is_far = distance(line[0], line[1]) > 4 * step;
+/// Cuts a curve into pieces no longer than half of the edges about them, so that pieces in one face are few, and as many beside other
+/// parts of a surface as without these.
+class CurveCutter {
+ public:
+  CurveCutter(const Surface& surface, std::span<const CurvePoint> given, bool closed, SurfaceCurve& curve)
+      : surface_(surface), closed_(closed), curve_(curve), joiner_(surface) {
+    for (const CurvePoint& point : given) {
+      if (const auto* in_space = std::get_if<Vec3>(&point)) {
+        corners_.push_back(*in_space);
+        ClosestPoint closest = project(*in_space);
+        ends_.push_back(std::move(closest.point));
+        below_.push_back(closest.position);
+      } else {
+        ends_.push_back(std::get<SurfacePoint>(point));
+        below_.push_back(surface.position(ends_.back()));
+        corners_.push_back(below_.back());
+      }
+    }
+    if (!closed || given.empty()) return;
+    corners_.push_back(corners_.front());
+    ends_.push_back(ends_.front());
+    below_.push_back(below_.front());
+  }
+
+  std::vector<Piece> cut() {
+    const double edge = ends_.empty() ? 0 : edge_at(surface_, ends_.front()), length = length_of(corners_);
+    if (!(length <= most_points * edge / 2)) refuse_length(length, edge);
+    least_ = 1e-6 * edge;
+    Stretch open;
+    for (std::size_t k = 0; k + 1 < corners_.size(); ++k) {
+      if (!(distance(corners_[k], corners_[k + 1]) > least_)) continue;
+      Stretch line = join(k);
+      const double least = 0.75 * (edge_at(surface_, ends_[k]) / 2);
+      if (line.ends.back() < least) {
+        append(line, open);
+        if (open.ends.back() < least) continue;
+        line = std::exchange(open, {});
+      } else {
+        cut(std::exchange(open, {}));
+      }
+      cut(line);
+    }
+    cut(open);
+    if (closed_ && begin_) check_turn(*last_, *begin_, corners_.front());
+    if (closed_ && curve_.points.size() > 1) curve_.points.pop_back();  // the first again
+    const std::size_t needed = closed_ ? 3 : 2;
+    if (const std::size_t points = pieces_.size() + (closed_ ? 0 : 1); points < needed)
+      throw InvalidArgument("curve_too_short",
+                            "the curve has " + std::to_string(points) + " different points on the surface",
+                            "give at least " + std::to_string(needed) + (closed_ ? " for a closed curve" : ""));
+    return std::move(pieces_);
+  }
+
+ private:
+  ClosestPoint project(const Vec3& p) {
+    ClosestPoint closest = surface_.closest_point(p);
+    curve_.gap = std::max(curve_.gap, distance(closest.position, p));
+    return closest;
+  }
+
+  /// By the shortest path between two given points, locally shortest between near ones, else by the straight line.
+  Stretch join(std::size_t k) {
+    Stretch line{{corners_[k], corners_[k + 1]}, {k}, {}, false};
+    const bool is_far = distance(corners_[k], corners_[k + 1]) > 2 * edge_at(surface_, ends_[k]);
     if (std::vector<Vec3> path =
-            is_far ? joiner.path(end_point(k), end_point(k + 1)) : joiner.short_path(end_point(k), end_point(k + 1));
-        path.size() > 2 || (is_far && !path.empty()))
-      line = std::move(path);
-    else if (is_far && !(curve.straight_reason = joiner.reason()).empty())
-      ++curve.straight;
-    const std::vector<Vec3> places = along_line(line, step);
-    const std::vector<double> along = shares(corners[k], places, corners[k + 1]);
-    for (std::size_t p = 0; p < places.size(); ++p) project(places[p], k, along[p]);
+            is_far ? joiner_.path(ends_[k], ends_[k + 1]) : joiner_.short_path(ends_[k], ends_[k + 1]);
+        path.size() > 2 || (is_far && !path.empty())) {
+      line.corners = std::move(path);
+      line.is_path = surface_.faces().size() > 0;
+    } else if (is_far && !(curve_.straight_reason = joiner_.reason()).empty()) {
+      ++curve_.straight;
+    }
+    line.ends = {length_of(line.corners)};
+    return line;
   }
-  return samples;
-}
 
-/// Leaves out points that coincide with the one before.
-void thin(std::vector<CurveSample>& samples, bool closed, double least) {
-  const auto close = [&](const CurveSample& a, const CurveSample& b) {
-    return distance(a.position, b.position) < least;
-  };
-  samples.erase(std::unique(samples.begin(), samples.end(), close), samples.end());
-  while (closed && samples.size() > 1 && close(samples.front(), samples.back())) samples.pop_back();
-  const std::size_t needed = closed ? 3 : 2;
-  if (samples.size() < needed)
-    throw InvalidArgument("curve_too_short",
-                          "the curve has " + std::to_string(samples.size()) + " different points on the surface",
-                          "give at least " + std::to_string(needed) + (closed ? " for a closed curve" : ""));
-}
-
-/// Direction that halves the angle between arriving at point k and leaving it.
-Vec3 tangent(const std::vector<CurveSample>& samples, std::size_t k, bool closed) {
-  const std::size_t n = samples.size();
-  Vec3 sum{};
-  const auto add = [&](std::size_t from, std::size_t to) {
-    const double length = distance(samples[from].position, samples[to].position);
-    for (std::size_t a = 0; a < 3; ++a) sum[a] += (samples[to].position[a] - samples[from].position[a]) / length;
-  };
-  if (k > 0 || closed) add((k + n - 1) % n, k);
-  if (k + 1 < n || closed) add(k, (k + 1) % n);
-  if (!(dot(sum, sum) > 1e-6)) {
-    const Vec3& p = samples[k].position;
-    throw InvalidArgument(
-        "curve_turns_back",
-        "the curve turns back at " + detail::number(p[0]) + " " + detail::number(p[1]) + " " + detail::number(p[2]),
-        "split it there");
+  static void append(const Stretch& line, Stretch& to) {
+    to.lines.push_back(line.lines.front());
+    to.ends.push_back((to.ends.empty() ? 0 : to.ends.back()) + line.ends.back());
+    to.corners.insert(to.corners.end(), line.corners.begin(), line.corners.end());
   }
-  return sum;
-}
+
+  void check_turn(const Vec3& arriving, const Vec3& leaving, const Vec3& at) const {
+    const Vec3 sum = arriving + leaving;
+    if (!(dot(sum, sum) > 1e-6)) refuse_turn(at);
+  }
+
+  void cut(const Stretch& stretch) {
+    const Line line(stretch.corners);
+    if (!(line.length() > least_)) return;
+    if (last_) check_turn(*last_, line.at(0).leaving, corners_[stretch.lines.front()]);
+    if (!begin_) begin_ = line.at(0).leaving;
+    last_ = line.at(line.length()).arriving;
+    if (stretch.lines.size() > 1) return add_short_lines(stretch, line);
+    const auto on_surface = [&](double s) {
+      return stretch.is_path ? line.at(s).position : project(line.at(s).position).position;
+    };
+    const std::vector<double> cuts = cuts_of(line);
+    Vec3 from = on_surface(0);
+    add_point(from);
+    for (std::size_t p = 1; p < cuts.size(); ++p) {
+      const double begin = cuts[p - 1], end = cuts[p], middle = (begin + end) / 2;
+      const Vec3 to = on_surface(end);
+      const double length = stretch.is_path ? end - begin : distance(from, to);
+      if (!(length > least_)) continue;
+      const auto [position, arriving, leaving] = line.at(middle);
+      const double along = middle / line.length();
+      add_piece({project(position).point, arriving, leaving, stretch.lines.front(), along, length});
+      if (!stretch.is_path) add_point(to);
+      from = to;
+    }
+    if (stretch.is_path)
+      for (const Vec3& corner : line.corners()) add_point(corner);
+  }
+
+  /// As one piece, in the direction from their begin to their end.
+  void add_short_lines(const Stretch& stretch, const Line& line) {
+    double length = 0;
+    for (const std::size_t k : stretch.lines) {
+      length += distance(below_[k], below_[k + 1]);
+      add_point(below_[k]);
+    }
+    const Vec3 &from = below_[stretch.lines.front()], &to = below_[stretch.lines.back() + 1];
+    add_point(to);
+    if (!(distance(from, to) > least_)) return;
+    const double middle = line.length() / 2;
+    const auto own = std::ranges::lower_bound(stretch.ends, middle) - stretch.ends.begin();
+    const double begin = own > 0 ? stretch.ends[own - 1] : 0, along = (middle - begin) / (stretch.ends[own] - begin);
+    const Vec3 direction = 1 / distance(from, to) * (to - from);
+    add_piece({project(line.at(middle).position).point, direction, direction, stretch.lines[own], along, length});
+  }
+
+  void add_piece(Piece piece) {
+    curve_.length += piece.length;
+    curve_.jump = std::max(curve_.jump, piece.length);
+    curve_.pieces.push_back(piece.length);
+    pieces_.push_back(std::move(piece));
+  }
+
+  /// Ends of pieces, by arclength.
+  std::vector<double> cuts_of(const Line& line) const {
+    const double length = line.length();
+    std::vector<double> cuts{0};
+    while (cuts.back() < length) {
+      const double edge = edge_at(surface_, surface_.closest_point(line.at(cuts.back()).position).point);
+      if (!(edge > 0) || static_cast<double>(pieces_.size() + cuts.size()) > most_points) refuse_length(length, edge);
+      cuts.push_back(cuts.back() + edge / 2);
+    }
+    // The last one or the one before ends nearer to the line's end.
+    if (cuts.size() > 2 && cuts.back() - length > length - cuts[cuts.size() - 2]) cuts.pop_back();
+    const double share = length / cuts.back();
+    for (double& cut : cuts) cut *= share;
+    cuts.back() = length;
+    return cuts;
+  }
+
+  void add_point(const Vec3& p) {
+    if (curve_.points.empty() || distance(curve_.points.back(), p) > least_) curve_.points.push_back(p);
+  }
+
+  const Surface& surface_;
+  bool closed_;
+  SurfaceCurve& curve_;
+  Joiner joiner_;
+  std::vector<Vec3> corners_;       ///< the given points in space, closed: and the first again
+  std::vector<SurfacePoint> ends_;  ///< the same on the surface
+  std::vector<Vec3> below_;         ///< where these are
+  std::vector<Piece> pieces_;
+  std::optional<Vec3> begin_, last_;  ///< how the curve begins, and how its last line ends
+  double least_ = 0;                  ///< points nearer than this coincide
+};
 
 /// Without what is along the normal: a curve may run as steep as noise lets it.
 Vec3 flattened(const Vec3& along, const std::optional<Frame>& frame) {
@@ -195,46 +335,44 @@ Source mirrored(const Source& source) {
   return result;
 }
 
-/// @param stroke_of  makes the stroke of samples, their sources and the lengths between them
-template <class StrokeOf>
-SurfaceCurve draw(const Surface& surface, std::span<const CurvePoint> given, bool closed, const StrokeOf& stroke_of) {
-  const TangentGraph& graph = surface.graph();
-  const double edge = graph.mean_edge_length() * graph.length_unit();
-  SurfaceCurve curve;
-  std::vector<CurveSample> samples = sample(surface, given, closed, edge / 2, curve);
-  thin(samples, closed, 1e-6 * edge);
+/// The direction of a curve in the tangent plane of a point. Of two segments that meet there, in faces on either side of an edge, the
+/// one that lies in it.
+Vec3 direction_at(const Piece& piece, const std::optional<Frame>& frame) {
+  if (!frame) return piece.leaving;
+  const double arriving = std::abs(dot(piece.arriving, frame->normal)),
+               leaving = std::abs(dot(piece.leaving, frame->normal));
+  return flattened(arriving < leaving ? piece.arriving : piece.leaving, frame);
+}
 
-  const bool may_mirror = graph.transport_kind() == TransportKind::block;
-  const std::size_t n = samples.size();
-  std::vector<Source> sources;
-  std::vector<double> lengths;
+/// @param place_of  place_of(piece, s, length): where the middle of a piece, at arclength s, lies in the plane of coordinates
+template <class PlaceOf>
+SurfaceCurve draw(const Surface& surface, std::span<const CurvePoint> given, bool closed, const PlaceOf& place_of) {
+  SurfaceCurve curve;
+  const std::vector<Piece> pieces = CurveCutter(surface, given, closed, curve).cut();
+  const bool may_mirror = surface.graph().transport_kind() == TransportKind::block;
+  std::vector<StrokePoint> stroke;
   Vec3 normal{};
-  double side = 1;
+  double side = 1, s = 0;
   // Frames that look to different sides of the surface have different left sides.
   const auto turn_over = [&](const std::optional<Frame>& frame) {
     if (may_mirror && frame && dot(frame->normal, normal) < 0) side = -side;
     if (frame) normal = frame->normal;
   };
-  for (std::size_t k = 0; k < n; ++k) {
-    const Vec3 along = flattened(tangent(samples, k, closed), surface.source(samples[k].point).frame);
-    const PlacedSource point = surface.source(samples[k].point, along);
-    if (k == 0) curve.first = point.frame;
+  for (const Piece& piece : pieces) {
+    const Vec3 along = direction_at(piece, surface.source(piece.point).frame);
+    const PlacedSource point = surface.source(piece.point, along);
+    if (stroke.empty()) curve.first = point.frame;
     turn_over(point.frame);
-    sources.push_back(side < 0 ? mirrored(point.source) : point.source);
-    curve.samples.push_back({samples[k].point, along, {}, 0, side < 0});
-    curve.points.push_back(samples[k].position);
-    if (k + 1 < n || closed) lengths.push_back(distance(samples[k].position, samples[(k + 1) % n].position));
+    const auto [position, direction] = place_of(piece, s + piece.length / 2, curve.length);
+    const double angle = std::atan2(direction[1], direction[0]);
+    stroke.push_back({side < 0 ? mirrored(point.source) : point.source, piece.length, position, angle});
+    curve.samples.push_back({piece.point, along, position, angle, side < 0});
+    s += piece.length;
   }
   if (closed) turn_over(curve.first);
   if (side < 0 && closed)
     throw InvalidArgument("curve_one_sided", "the curve runs along a one-sided band, so it has no left",
                           "leave it open");
-  for (double length : lengths) curve.length += length, curve.jump = std::max(curve.jump, length);
-  const std::vector<StrokePoint> stroke = stroke_of(samples, sources, lengths);
-  for (std::size_t k = 0; k < n; ++k) {
-    curve.samples[k].position = stroke[k].position;
-    curve.samples[k].angle = stroke[k].angle;
-  }
   curve.source = stroke_source(stroke);
   return curve;
 }
@@ -246,6 +384,15 @@ bool has_exact_coordinates(const SurfaceCurve& curve) {
   return !curve.shape->closed && distance(curve.points.front(), curve.points.back()) >= straight * curve.length;
 }
 
+/// Of a piece and the two beside it, since the curve may be nearest in these.
+double longest_about(const SurfaceCurve& curve, std::size_t piece) {
+  const std::size_t n = curve.pieces.size();
+  const bool closed = curve.shape->closed;
+  const double before = piece > 0 || closed ? curve.pieces[(piece + n - 1) % n] : 0,
+               after = piece + 1 < n || closed ? curve.pieces[(piece + 1) % n] : 0;
+  return std::max({before, curve.pieces[piece], after});
+}
+
 /// From a point with these coordinates to the curve, in the plane of coordinates.
 double distance_from_curve(double u, double v, double length, const StrokeOptions& shape) {
   if (shape.shape == StrokeShape::circle) return std::abs(std::hypot(u, v) - length / (2 * std::numbers::pi));
@@ -255,8 +402,9 @@ double distance_from_curve(double u, double v, double length, const StrokeOption
 }  // namespace
 
 SurfaceCurve draw_curve(const Surface& surface, std::span<const CurvePoint> given, const StrokeOptions& options) {
-  SurfaceCurve curve = draw(surface, given, options.closed, [&](const auto&, const auto& sources, const auto& lengths) {
-    return stroke_points(sources, lengths, options);
+  check_shape(options);
+  SurfaceCurve curve = draw(surface, given, options.closed, [&](const Piece&, double s, double length) {
+    return place_in_plane(s, length, options.shape);
   });
   curve.shape = options;
   return curve;
@@ -264,44 +412,38 @@ SurfaceCurve draw_curve(const Surface& surface, std::span<const CurvePoint> give
 
 SurfaceCurve draw_curve(const Surface& surface, std::span<const CurvePoint> given, std::span<const Vec2> positions,
                         bool closed) {
-  if (positions.size() != given.size())
-    throw InvalidArgument("'positions' has " + std::to_string(positions.size()) + " entries for " +
-                          std::to_string(given.size()) + " points");
-  return draw(surface, given, closed, [&](const auto& samples, const auto& sources, const auto& lengths) {
-    std::vector<Vec2> places;
-    for (const CurveSample& sample : samples) {
-      const Vec2 &from = positions[sample.piece], &to = positions[(sample.piece + 1) % positions.size()];
-      places.push_back(from + sample.along * (to - from));
-    }
-    return stroke_points(sources, lengths, places, closed);
+  directions_of(positions, given.size(), closed);  // of corners; inside the lines they are theirs
+  return draw(surface, given, closed, [&](const Piece& piece, double, double) {
+    const Vec2 &from = positions[piece.after], &to = positions[(piece.after + 1) % positions.size()];
+    const Vec2 direction = to - from;
+    return PlanePlace{from + piece.along * direction, direction};
   });
 }
 
-double reach_from_curve(const TangentGraph& graph, double radius) {
-  return radius + 2 * graph.mean_edge_length() * graph.length_unit();
-}
+double reach_from_curve(const SurfaceCurve& curve, double radius) { return radius + 2 * curve.jump; }
 
 RowLogMap rows_from_curve(const Surface& surface, const LogMap& map, const SurfaceCurve& curve, double radius) {
   RowLogMap rows = surface.on_rows(map);
   rows.angle.clear();
-  const TangentGraph& graph = surface.graph();
-  const double quarter = 0.25 * graph.mean_edge_length() * graph.length_unit();
   const bool is_exact = map.method() == Method::exact, is_flat = curve.shape && has_exact_coordinates(curve);
-  // By so much coordinates may be nearer to the truth than a front from samples.
-  const auto slack_at = [&](double from_samples) {
-    if (is_exact) return 0.0;
-    if (is_flat) return quarter;
-    return graph.is_delaunay() ? 0.0 : std::min(quarter, 0.005 * from_samples);
-  };
+  // By so much of the distance coordinates may be nearer to the truth than a front from samples.
+  const double slack = is_exact ? 0 : is_flat ? 0.015 : surface.graph().is_delaunay() ? 0 : 0.005;
   for (std::size_t i = 0; i < rows.u.size(); ++i) {
-    if (curve.shape) {
-      // Between samples the curve is nearer by no more than half a piece makes it, in the plane.
-      const double from_samples = rows.distance[i], share = std::min(1.0, curve.jump / 2 / from_samples);
-      const double least = from_samples * std::sqrt(1 - share * share);
-      const double slack = slack_at(from_samples);
-      const double in_plane = distance_from_curve(rows.u[i], rows.v[i], curve.length, *curve.shape);
-      if (!std::isnan(from_samples))
-        rows.distance[i] = std::clamp(in_plane, std::max(0.0, least - slack), from_samples + slack);
+    if (curve.shape && rows.vertex[i] && !std::isnan(rows.distance[i])) {
+      // Between its samples the curve is nearer by no more than half a piece makes it, before the first and after the last by half a
+      // piece; how much of that, the coordinates tell.
+      const double from_samples = rows.distance[i], u = rows.u[i], v = rows.v[i];
+      const Index nearest = map.nearest()[rows.vertex[i]->index];
+      const Vec2& sample = curve.samples[nearest].position;
+      const double half = longest_about(curve, static_cast<std::size_t>(nearest)) / 2;
+      const bool is_beyond = !curve.shape->closed && !(u >= 0 && u <= curve.length);
+      const double away = std::min(1.0, half / from_samples);
+      const double least = is_beyond ? from_samples - half : from_samples * std::sqrt(1 - away * away);
+      const double in_plane = distance_from_curve(u, v, curve.length, *curve.shape),
+                   sample_in_plane = std::hypot(u - sample[0], v - sample[1]);
+      const double share = sample_in_plane > 0 ? std::min(1.0, in_plane / sample_in_plane) : 1;
+      const double front = std::max({0.0, least, share * from_samples}), play = std::min(half, slack * from_samples);
+      rows.distance[i] = std::clamp(in_plane, std::max(0.0, front - play), front + play);
     }
     if (!(rows.distance[i] > radius)) continue;
     rows.u[i] = rows.v[i] = rows.distance[i] = NAN;

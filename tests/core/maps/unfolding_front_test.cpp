@@ -6,12 +6,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
+#include <vector>
 
 #include "ahm/error.hpp"
 #include "ahm/grid/grid_graph.hpp"
 #include "ahm/testing/curved_graphs.hpp"
 #include "ahm/testing/flat_graphs.hpp"
 #include "ahm/testing/graph_changes.hpp"
+#include "ahm/testing/triangle_meshes.hpp"
 #include "ahm/trimesh/triangle_mesh_surface.hpp"
 
 namespace ahm::test {
@@ -128,6 +131,30 @@ TEST(UnfoldingFront, BendsAtTheBoundaryByItsAnglesOnly) {
     int bent = 0;
     for (Index i = 0; i < surface.graph().size(); ++i) bent += front.is_bent(Vertex(i));
     EXPECT_TRUE(hole > 0 ? bent > 50 : bent == 0) << bent;
+  }
+}
+
+// Two points in one face of a coarse surface, crossed by the midpoints of its edges: the distances and directions of each alone.
+TEST(UnfoldingFront, FromPointsInOneFaceIsThatFromEach) {
+  const Mesh mesh = torus(4000);
+  const auto surface = trimesh::TriangleMeshSurface::build(mesh.positions, mesh.faces);
+  const TangentGraph& graph = surface.graph();
+  UnfoldingFront both(graph, nullptr, true);
+  std::vector<std::unique_ptr<UnfoldingFront>> alone;
+  for (const std::vector<double>& weights : {std::vector{0.2, 0.25, 0.55}, std::vector{0.06, 0.75, 0.19}}) {
+    const Source source = surface.source(FacePoint{1061, weights}, Vec3{0.3, 0.5, 0.8}).source;
+    both.add(source);
+    alone.push_back(std::make_unique<UnfoldingFront>(graph, nullptr, true));
+    alone.back()->add(source);
+    alone.back()->run();
+  }
+  both.run();
+  for (Index i = 0; i < graph.size(); ++i) {
+    const Vertex v(i);
+    const UnfoldingFront& nearer = *alone[both.nearest(v)];
+    ASSERT_LT(both.distance(v), 1.001 * std::min(alone[0]->distance(v), alone[1]->distance(v)) + 1e-12);
+    const Vec2 is = both.direction(v), should = nearer.direction(v);
+    ASSERT_LT(std::hypot(is[0] - should[0], is[1] - should[1]), 0.02) << i;
   }
 }
 

@@ -1,6 +1,8 @@
 #include "ahm/maps/unfolding_front.hpp"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <numbers>
 #include <tuple>
@@ -24,8 +26,9 @@ constexpr double least_gain = 1e-12;
 constexpr double same_length = 1e-10, same_focusing = 1e-6;
 /// An entry is bettered no more often: where triangles contradict each other they could go on for ever.
 constexpr Index most_gains = 40;
-/// Points whose distances a vertex knows: the samples of a curve are many, and all but equally near.
-constexpr Index most_points = 8;
+/// Points whose distances a vertex knows, and how many of these are the nearest ones: the samples of a curve are many, and all but
+/// equally near.
+constexpr Index most_points = 12, nearest_points = 4;
 /// A line may miss the side by this share of it, and is taken to pass its end. Where edges are no triangulation, as between points that lie
 /// in squares, it may pass between two triangles that bend away from it, and seen from neither leave only edges.
 constexpr double missed = 1e-9, missed_between = 1e-3;
@@ -131,7 +134,8 @@ void UnfoldingFront::offer_midpoints(std::vector<Given>& given) {
         const double a = one.distance, b = other->distance;
         const double squared = 0.5 * (a * a + b * b) - edge.half * edge.half;
         const Vec2 between{one.offset[0] + other->offset[0], one.offset[1] + other->offset[1]};
-        offer(edge.midpoint, one.point, std::sqrt(std::max(0.0, squared)), 0, {}, {unit_vector(between), one.mirrored});
+        offer(edge.midpoint, one.point, std::sqrt(std::max(0.0, squared)), 4 * longest_, {},
+              {unit_vector(between), one.mirrored});
       }
     }
   }
@@ -171,15 +175,33 @@ const UnfoldingFront::Entry* UnfoldingFront::find(Index vertex, Index point) con
   return nullptr;
 }
 
-/// Gives the entry of the farthest point to a nearer one; none where there is no farther.
-Index UnfoldingFront::replace_farthest(Index vertex, Index point, double distance) {
-  Index farthest = head_[vertex];
+/// Gives the entry of another point to this one; none where all others count for more. The nearest count, and of the others those
+/// whose numbers are multiples of larger powers of two: of the samples of a curve, numbered along it, neighbours keep the same ones
+/// then, some near and some far apart, whether samples are closer together than vertices or not.
+Index UnfoldingFront::replace_least(Index vertex, Index point, double distance) {
+  struct Kept {
+    double distance;
+    Index entry, point;
+  };
+  std::array<Kept, most_points + 1> all{};
+  all[0] = {distance, none, point};
+  std::size_t count = 1;
   for (Index e = head_[vertex]; e != none; e = entries_[e].next)
-    if (entries_[e].distance > entries_[farthest].distance) farthest = e;
-  if (!(distance < entries_[farthest].distance * (1 - least_gain))) return none;
-  entries_[farthest].point = point;
-  entries_[farthest].gains = 0;
-  return farthest;
+    all[count++] = {entries_[e].distance, e, entries_[e].point};
+  // Of equally far ones the new one goes.
+  const auto comes_before = [](const Kept& a, const Kept& b) {
+    return a.distance != b.distance ? a.distance < b.distance : a.entry > b.entry;
+  };
+  std::nth_element(all.begin(), all.begin() + nearest_points, all.end(), comes_before);
+  const Kept least = *std::min_element(all.begin() + nearest_points, all.end(), [&](const Kept& a, const Kept& b) {
+    const int level_a = std::countr_zero(static_cast<unsigned>(a.point)),
+              level_b = std::countr_zero(static_cast<unsigned>(b.point));
+    return level_a != level_b ? level_a < level_b : comes_before(b, a);
+  });
+  if (least.entry == none) return none;
+  entries_[least.entry].point = point;
+  entries_[least.entry].gains = 0;
+  return least.entry;
 }
 
 /// Keeps a distance if it is the least from its point, and that point the nearest or nearly so.
@@ -191,7 +213,7 @@ void UnfoldingFront::offer(Index vertex, Index point, double distance, double sl
   Index points = 0;
   while (own != none && entries_[own].point != point) before = own, own = entries_[own].next, ++points;
   if (own == none && points >= most_points) {
-    own = replace_farthest(vertex, point, distance);
+    own = replace_least(vertex, point, distance);
     if (own == none) return;
     before = none;
     for (Index e = head_[vertex]; e != own; e = entries_[e].next) before = e;

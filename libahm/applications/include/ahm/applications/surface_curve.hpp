@@ -28,12 +28,13 @@ using CurvePoint = std::variant<Vec3, SurfacePoint>;
 /// A curve on a surface and what it amounts to.
 struct SurfaceCurve {
   Source source{2};                  ///< for heat
-  std::vector<ExactSource> samples;  ///< the same for `ExactGeodesics::log_map`: one per point
-  std::vector<Vec3> points;          ///< as sampled, on the surface, world units
-  std::optional<Frame> first;        ///< u along the curve, v left of it, at its first point
-  double length = 0;                 ///< world units
-  double gap = 0;                    ///< largest distance of the polyline in space from the surface
-  double jump = 0;                   ///< largest distance between consecutive points
+  std::vector<ExactSource> samples;  ///< the same for `ExactGeodesics::log_map`: the middles of the pieces
+  std::vector<double> pieces;        ///< their lengths, world units
+  std::vector<Vec3> points;    ///< corners of the lines, on the surface, world units; of closed ones without the last
+  std::optional<Frame> first;  ///< u along the curve, v left of it, in its first piece
+  double length = 0;           ///< world units
+  double gap = 0;              ///< largest distance of the polyline in space from the surface
+  double jump = 0;             ///< longest piece
   /// How many of the lines between given points are straight in space where they should be shortest paths, and why: the
   /// message of `Surface::flat_triangles`, or that the surface does not connect their ends.
   Index straight = 0;
@@ -41,12 +42,12 @@ struct SurfaceCurve {
   std::optional<StrokeOptions> shape;  ///< of the coordinates; none: the user's own
 };
 
-/// Joins the given points, cuts the lines into pieces of half a mean edge length at the most, and takes the nearest points
-/// of the surface (`Surface::closest_point`). The lines are shortest paths between these, over flat faces or, on clouds, over
-/// tangent planes (`shortest_line`), on clouds between points closer than two edges straight lines; on twisted polygons they
-/// are straight in space (`SurfaceCurve::straight`): give points so close that they stay near the surface.
+/// Joins the given points, cuts the lines into pieces of about half of the edges there, and takes the points of the surface nearest
+/// to their middles (`Surface::closest_point`). The lines are shortest paths between the given points, over flat faces or, on
+/// clouds, over tangent planes (`shortest_line`), on clouds between points closer than two edges straight lines; on twisted polygons
+/// they are straight in space (`SurfaceCurve::straight`): give points so close that they stay near the surface.
 /// @throws InvalidArgument (as `Surface::source`; faults curve_too_long: more than a million pieces, curve_too_short: fewer
-/// than 2 different points, closed: 3, curve_turns_back, curve_one_sided: closed along a one-sided band), as
+/// than 2 different points, closed: 3, curve_turns_back at a given point, curve_one_sided: closed along a one-sided band), as
 /// `stroke_source`
 SurfaceCurve draw_curve(const Surface& surface, std::span<const CurvePoint> given, const StrokeOptions& options = {});
 
@@ -56,12 +57,11 @@ SurfaceCurve draw_curve(const Surface& surface, std::span<const CurvePoint> give
                         bool closed = false);
 
 /// How far a map from a curve must reach for all rows within a radius of the curve, world units: its own distances are those
-/// from samples.
-double reach_from_curve(const TangentGraph& graph, double radius);
+/// from the middles of pieces.
+double reach_from_curve(const SurfaceCurve& curve, double radius);
 
 /// The map from a curve by row. Its distances are those from the curve: as the coordinates have it beside the curve and in the
-/// plane, within what the map's own, from samples of the curve, leave open (for exact maps; for others a quarter of an edge
-/// more). The map's own are told where the coordinates are the user's own. Angles, which mean nothing from a curve, are left out.
+/// plane, within what the map's own, from samples of the curve, leave open (for exact maps; for others half a piece more). The map's own are told where the coordinates are the user's own. Angles, which mean nothing from a curve, are left out.
 /// @param radius  rows farther than this are beyond it, world units; the map must reach `reach_from_curve`
 RowLogMap rows_from_curve(const Surface& surface, const LogMap& map, const SurfaceCurve& curve,
                           double radius = std::numeric_limits<double>::infinity());

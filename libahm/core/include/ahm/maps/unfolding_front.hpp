@@ -155,7 +155,7 @@ class UnfoldingFront {
   void offer_midpoints(std::vector<Given>& given);
   void offer(Index vertex, Index point, double distance, double slack, std::span<const double> displacement,
              const Way& way, double focusing = 0);
-  Index replace_farthest(Index vertex, Index point, double distance);
+  Index replace_least(Index vertex, Index point, double distance);
   void spread(Index from, Index point, double distance);
   void carry(Index from, Index point, double distance);
   double factor_at(Index vertex, Index point, std::span<const double> displacement, double distance);
