@@ -58,7 +58,7 @@ py::tuple stroke(const py::object& maker, const py::tuple& points, const Doubles
   return py::make_tuple(map, owned(std::move(curve.points)), curve.length, curve.gap, curve.jump);
 }
 
-/// Rows; vertices that no row has (inside refined polygons) are passed over.
+/// Rows.
 /// @param tolerance  of exact distances; None: by a front
 py::array farthest(const BodyPtr& body, const py::tuple& first, Index count, const py::object& tolerance,
                    const py::object& report) {
@@ -68,9 +68,10 @@ py::array farthest(const BodyPtr& body, const py::tuple& first, Index count, con
   return owned(compute(report, py::none(), [=](const Progress& progress) {
     std::vector<Index> rows;
     const Vertex begin = body->vertices_near(at).at(0);
+    const std::vector<Vertex> among = body->vertices_with_rows();
     for (Vertex vertex :
-         within ? farthest_points(body->geodesics(), begin, count, {.tolerance = *within, .progress = progress})
-                : farthest_points(body->graph(), begin, count, progress))
+         within ? farthest_points(body->geodesics(), begin, count, {.tolerance = *within, .progress = progress}, among)
+                : farthest_points(body->graph(), begin, count, progress, among))
       if (const auto row = body->row(vertex)) rows.push_back(row->index);
     return rows;
   }));

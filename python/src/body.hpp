@@ -47,6 +47,10 @@ class Body {
   const grid::GridGraph* grid() const { return grid_; }
   Index rows() const { return surface_ ? surface_->rows().row_count() : graph_->size(); }
   /// The vertex of the first row that has one.
+  /// All of a graph without a surface.
+  std::vector<Vertex> vertices_with_rows() const {
+    return surface_ ? ahm::vertices_with_rows(surface_->rows()) : std::vector<Vertex>();
+  }
   Vertex first() const { return surface_ ? first_vertex(surface_->rows()) : Vertex(0); }
 
   /// The vertex of a row. @throws InvalidArgument

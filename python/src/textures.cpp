@@ -167,9 +167,12 @@ py::tuple atlas(const py::object& maker, const py::object& sources, Index charts
   const Maker by(maker);
   AtlasAndFaces made = compute(report, py::none(), [=](const Progress& progress) {
     const TangentGraph& graph = by.body()->graph();
+    const std::vector<Vertex> among = by.body()->vertices_with_rows();
     const std::vector<Vertex> from =
         at ? charted(*by.body(), *at)
-           : farthest_points(graph, by.body()->first(), std::min(charts, graph.size()), progress);
+           : farthest_points(graph, by.body()->first(),
+                             std::min(charts, among.empty() ? graph.size() : static_cast<Index>(among.size())),
+                             progress, among);
     return in_one_step(progress, "charts", [&] { return make(by, from, refined ? &refine : nullptr, pack_options); });
   });
   using namespace py::literals;

@@ -13,9 +13,11 @@
 #include "ahm/graph/csr_graph.hpp"
 #include "ahm/maps/unfolding_front.hpp"
 #include "ahm/pointcloud/point_cloud_surface.hpp"
+#include "ahm/polymesh/polygon_mesh_surface.hpp"
 #include "ahm/testing/clouds.hpp"
 #include "ahm/testing/flat_graphs.hpp"
 #include "ahm/testing/graph_changes.hpp"
+#include "ahm/testing/polygon_meshes.hpp"
 #include "ahm/testing/triangle_meshes.hpp"
 #include "ahm/trimesh/triangle_mesh_surface.hpp"
 #include "farthest.hpp"
@@ -208,11 +210,36 @@ TEST(FarthestPoints, AreTheFirstOfThoseFarthestFromAllBefore) {
   EXPECT_EQ(farthest_points(graph, Vertex{3}, 200), expected);
 }
 
+// Of refined polygons each is the farthest of the rows, although vertices inside of faces lie farther.
+TEST(FarthestPoints, AreTheFarthestOfThoseToChooseFrom) {
+  const Polygons mesh = cube_sphere(6);
+  const auto surface = polymesh::PolygonMeshSurface::build(mesh.positions, mesh.begin, mesh.corners);
+  const std::vector<Vertex> rows = vertices_with_rows(surface.rows());
+  ASSERT_LT(std::ssize(rows), surface.graph().size());
+  const ExactGeodesics geodesics(surface);
+  for (const bool is_exact : {false, true}) {
+    const auto chosen = is_exact ? farthest_points(geodesics, rows[30], 12, {}, rows)
+                                 : farthest_points(surface.graph(), rows[30], 12, {}, rows);
+    for (std::size_t k = 1; k < chosen.size(); ++k) {
+      const auto before = std::span(chosen).first(k);
+      const std::vector<double> distances =
+          is_exact ? voronoi_cells(geodesics, before).distances : voronoi_cells(surface.graph(), before).distances;
+      double farthest = 0;
+      for (const Vertex v : rows) farthest = std::max(farthest, distances[v.index]);
+      EXPECT_GE(distances[chosen[k].index], farthest - 1e-9) << k;
+    }
+  }
+  EXPECT_THROW(farthest_points(surface.graph(), rows[0], static_cast<Index>(rows.size()) + 1, {}, rows),
+               InvalidArgument);
+}
+
 /// n points of n: were all looked at for each, that would be n^2 times.
 TEST(FarthestPoints, AreFoundWithoutLookingAtAllEachTime) {
   constexpr Index n = 1 << 12;
   std::vector<double> distance(n, std::numeric_limits<double>::infinity());
-  Farthest farthest(n);
+  std::vector<Vertex> all;
+  for (Index i = 0; i < n; ++i) all.emplace_back(i);
+  Farthest farthest(all);
   Offset changes = 0, looks = 0;
   std::vector<bool> chosen(n, false);
   Vertex next{0};

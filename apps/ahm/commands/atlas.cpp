@@ -49,9 +49,11 @@ struct AtlasCommandOptions {
 };
 
 std::vector<Vertex> choose_sources(const AtlasCommandOptions& options, const Input& input) {
-  if (options.sources.empty())
+  if (options.sources.empty()) {
+    const std::vector<Vertex> among = vertices_with_rows(input.surface().rows());
     return farthest_points(input.graph(), first_vertex(input.surface().rows()),
-                           std::min(options.charts, input.graph().size()));
+                           std::min(options.charts, static_cast<Index>(among.size())), {}, among);
+  }
   return vertices_at(input, options.sources, "--sources");
 }
 

@@ -58,42 +58,17 @@ std::vector<Vertex> vertices_of(const Input& input, const std::vector<SourceSpec
   return result;
 }
 
-/// A vertex that is none of the input's (inside a polygon) gives way to its nearest neighbour that is one and is free.
-void move_to_rows(const Surface& surface, std::vector<Vertex>& vertices) {
-  const RowMap& rows = surface.rows();
-  std::vector<bool> taken(static_cast<std::size_t>(surface.graph().size()), false);
-  for (const Vertex vertex : vertices) taken[vertex.index] = true;
-  for (auto& vertex : vertices) {
-    if (rows.row(vertex)) continue;
-    const Star star = surface.graph().star(vertex.index);
-    double least = std::numeric_limits<double>::infinity();
-    Vertex nearest = vertex;
-    for (std::size_t e = 0; e < star.degree(); ++e) {
-      const Vertex j(star.neighbors[e]);
-      const double away = std::hypot(star.log(e)[0], star.log(e)[1]);
-      if (!rows.row(j) || !(away < least) || taken[j.index]) continue;
-      least = away;
-      nearest = j;
-    }
-    taken[vertex.index] = false;
-    taken[nearest.index] = true;
-    vertex = nearest;
-  }
-}
-
 /// @param geodesics  none: by unfolding the graph
 std::vector<Vertex> spread(const CellsOptions& options, const Input& input,
                            const std::optional<ExactGeodesics>& geodesics, Journal& journal) {
   journal.start("spread");
-  if (const Index size = input.graph().size(); options.count > size)
-    throw InvalidArgument(fmt::format("--count {}: the graph has {} vertices only", options.count, size));
+  const std::vector<Vertex> among = vertices_with_rows(input.surface().rows());
+  if (options.count > std::ssize(among))
+    throw InvalidArgument(fmt::format("--count {}: the graph has {} vertices only", options.count, among.size()));
   const Vertex first =
       options.start ? vertex_at(input, *options.start, "--start") : first_vertex(input.surface().rows());
-  std::vector<Vertex> result =
-      geodesics ? farthest_points(*geodesics, first, options.count, exact_options(options.solve, journal))
-                : farthest_points(input.graph(), first, options.count, journal.progress());
-  move_to_rows(input.surface(), result);
-  return result;
+  return geodesics ? farthest_points(*geodesics, first, options.count, exact_options(options.solve, journal), among)
+                   : farthest_points(input.graph(), first, options.count, journal.progress(), among);
 }
 
 /// What is known of every row of the input.

@@ -28,12 +28,20 @@ void check_vertices(const TangentGraph& graph, std::span<const Vertex> vertices)
   }
 }
 
-void check_count(Index vertices, Vertex first, Index count) {
+/// The vertices to choose from, in ascending order: those given, or all.
+std::vector<Vertex> candidates(Index vertices, Vertex first, Index count, std::span<const Vertex> among) {
   if (first.index < 0 || first.index >= vertices)
     throw InvalidArgument("'first' " + std::to_string(first.index) + " is outside [0, " + std::to_string(vertices) +
                           ")");
-  if (count < 1 || count > vertices)
-    throw InvalidArgument("'count' " + std::to_string(count) + " must be in [1, " + std::to_string(vertices) + "]");
+  std::vector<Vertex> result(among.begin(), among.end());
+  for (Index i = 0; among.empty() && i < vertices; ++i) result.emplace_back(i);
+  std::sort(result.begin(), result.end());
+  if (result.front().index < 0 || result.back().index >= vertices)
+    throw InvalidArgument("a vertex of 'among' is outside [0, " + std::to_string(vertices) + ")");
+  if (count < 1 || count > std::ssize(result))
+    throw InvalidArgument("'count' " + std::to_string(count) + " must be in [1, " + std::to_string(result.size()) +
+                          "]");
+  return result;
 }
 
 }  // namespace
@@ -92,13 +100,12 @@ VoronoiCells voronoi_cells(const ExactGeodesics& geodesics, std::span<const Vert
   });
 }
 
-std::vector<Vertex> farthest_points(const TangentGraph& graph, Vertex first, Index count, const Progress& progress) {
-  const Index n = graph.size();
-  check_count(n, first, count);
+std::vector<Vertex> farthest_points(const TangentGraph& graph, Vertex first, Index count, const Progress& progress,
+                                    std::span<const Vertex> among) {
   return detail::with_memory_check("spreading points", [&] {
+    Farthest farthest(candidates(graph.size(), first, count, among));
     std::vector<Vertex> points{first};
     UnfoldingFront front(graph, UnfoldingFront::stars(graph));
-    Farthest farthest(n);
     while (points.size() < static_cast<std::size_t>(count)) {
       progress.step("farthest points", static_cast<double>(points.size()) / count);
       front.add(Source::at_vertex(points.back()));
@@ -110,14 +117,13 @@ std::vector<Vertex> farthest_points(const TangentGraph& graph, Vertex first, Ind
 }
 
 std::vector<Vertex> farthest_points(const ExactGeodesics& geodesics, Vertex first, Index count,
-                                    const ExactMapOptions& options) {
+                                    const ExactMapOptions& options, std::span<const Vertex> among) {
   const exact::PolyhedralSurface& triangles = geodesics.triangles().surface;
-  check_count(triangles.vertex_count(), first, count);
   return detail::with_memory_check("spreading points", [&] {
+    Farthest farthest(candidates(triangles.vertex_count(), first, count, among));
     std::vector<Vertex> points{first};
     std::vector<double> distance(static_cast<std::size_t>(triangles.vertex_count()),
                                  std::numeric_limits<double>::infinity());
-    Farthest farthest(triangles.vertex_count());
     exact::ExactOptions nearer{.tolerance = options.tolerance, .targets = {}, .progress = {}};
     nearer.progress.stop = options.progress.stop;
     while (points.size() < static_cast<std::size_t>(count)) {

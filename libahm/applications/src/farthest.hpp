@@ -2,13 +2,14 @@
 /// The farthest vertex, again and again while distances shrink.
 ///
 /// \code
-/// ahm::Farthest farthest(graph.size());
+/// ahm::Farthest farthest(vertices);
 /// const ahm::Vertex vertex = farthest.of([&](ahm::Vertex v) { return front.distance(v); });
 /// \endcode
 #pragma once
 
 #include <algorithm>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "ahm/types.hpp"
@@ -19,10 +20,10 @@ namespace ahm {
 /// which it leaves when its distance has shrunk.
 class Farthest {
  public:
-  /// All distances begin as infinity.
-  explicit Farthest(Index vertices) {
-    heap_.reserve(static_cast<std::size_t>(vertices));
-    for (Index i = 0; i < vertices; ++i) heap_.push_back({std::numeric_limits<double>::infinity(), i});
+  /// All distances begin as infinity. @param vertices  in ascending order
+  explicit Farthest(std::span<const Vertex> vertices) {
+    heap_.reserve(vertices.size());
+    for (const Vertex vertex : vertices) heap_.push_back({std::numeric_limits<double>::infinity(), vertex.index});
   }
 
   /// The first of those that are farthest.

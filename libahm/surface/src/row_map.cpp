@@ -58,4 +58,11 @@ Vertex first_vertex(const RowMap& rows) {
   throw InvalidArgument("no row has a vertex");
 }
 
+std::vector<Vertex> vertices_with_rows(const RowMap& rows) {
+  std::vector<Vertex> result;
+  for (Vertex vertex(0); vertex.index < rows.vertex_count(); ++vertex.index)
+    if (rows.row(vertex)) result.push_back(vertex);
+  return result;
+}
+
 }  // namespace ahm

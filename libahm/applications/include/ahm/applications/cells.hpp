@@ -42,13 +42,14 @@ VoronoiCells voronoi_cells(const ExactGeodesics& geodesics, std::span<const Vert
 /// `count` vertices, each the farthest from those before it, beginning with `first`; vertices of components without one
 /// count as infinitely far. Each one costs what is nearer to it than to those before.
 /// @param progress  stage "farthest points"; asked before every point
-/// @throws InvalidArgument (index, count not in [1, n]), ResourceExhausted, Cancelled
-std::vector<Vertex> farthest_points(const TangentGraph& graph, Vertex first, Index count,
-                                    const Progress& progress = {});
+/// @param among     vertices to choose from, as those of rows (`vertices_with_rows`); empty: all
+/// @throws InvalidArgument (index, count not in [1, n], n of those to choose from), ResourceExhausted, Cancelled
+std::vector<Vertex> farthest_points(const TangentGraph& graph, Vertex first, Index count, const Progress& progress = {},
+                                    std::span<const Vertex> among = {});
 /// The same by exact distances over the flat faces; of equally far vertices the first.
 /// @param options  tolerance; progress, as above. Points spread over everything, whatever the radius
 /// @throws as above, as `ExactGeodesics::log_map`
 std::vector<Vertex> farthest_points(const ExactGeodesics& geodesics, Vertex first, Index count,
-                                    const ExactMapOptions& options = {});
+                                    const ExactMapOptions& options = {}, std::span<const Vertex> among = {});
 
 }  // namespace ahm

@@ -59,5 +59,7 @@ class RowMap {
 /// The vertex of the first row that has one: where to begin, whatever order a surface has put its vertices in.
 /// @throws InvalidArgument (none has)
 Vertex first_vertex(const RowMap& rows);
+/// The vertices that the input has, in ascending order: all but those inside of refined polygons.
+std::vector<Vertex> vertices_with_rows(const RowMap& rows);
 
 }  // namespace ahm
