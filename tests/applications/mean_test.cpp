@@ -260,6 +260,24 @@ TEST(Center, IsThatOfTheExactLogarithmsOnTheSphereFromAnyStart) {
   }
 }
 
+// Of the distances, as long as the coordinates are not: behind the hole of a torus these are too short.
+TEST(Center, HasTheSpreadOfTheDistances) {
+  const Mesh mesh = torus(2000);
+  const auto surface = trimesh::TriangleMeshSurface::build(mesh.positions, mesh.faces);
+  const ExactGeodesics geodesics(surface);
+  const std::array points{Vertex{10}, Vertex{700}, Vertex{1100}, Vertex{1550}, Vertex{1900}};
+  for (Variant variant : all_variants) {
+    const LogMapSolver solver(surface.graph(), {.variant = variant});
+    for (const bool median : {false, true}) {
+      const Center center = median ? geometric_median(solver, points) : karcher_mean(solver, points);
+      const LogMap exact = geodesics.log_map(center.vertex, {});
+      double sum = 0;
+      for (const Vertex p : points) sum += std::pow(exact.distance(p), median ? 1 : 2) / points.size();
+      EXPECT_NEAR(center.spread, median ? sum : std::sqrt(sum), 0.01 * center.spread);
+    }
+  }
+}
+
 TEST(Center, TurnsWithTheFrames) {
   const CsrGraphData data = sphere_graph(500);
   const Turned turned = with_frames_turned(data);

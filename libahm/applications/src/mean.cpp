@@ -82,6 +82,22 @@ void check_seen(const Problem& problem, const LogMap& map, Vertex from, std::siz
   }
 }
 
+/// What phi is multiplied with to be as long as the distance.
+double stretch(const LogMap& map, Vertex vertex) {
+  const double size = length(map.coordinates(vertex));
+  return size > 0 ? map.distance(vertex) / size : 1;
+}
+
+/// The same at a point: the mean of its vertices'.
+double stretch(const LogMap& map, const Source& point) {
+  double sum = 0, total = 0;
+  for (std::size_t k = 0; k < point.vertices().size(); ++k) {
+    sum += point.weights()[k] * stretch(map, point.vertices()[k]);
+    total += point.weights()[k];
+  }
+  return sum / total;
+}
+
 View look(const Problem& problem, Vertex from, double radius) {
   const TangentGraph& graph = problem.maps.graph();
   View view{problem.maps.map(from, radius, problem.frames), {}, {}};
@@ -89,7 +105,8 @@ View look(const Problem& problem, Vertex from, double radius) {
   view.points.weights = problem.weights;
   for (std::size_t k = 0; k < problem.points.size(); ++k) {
     check_seen(problem, view.map, from, k);
-    for (double z : view.map.coordinates(problem.points[k])) view.points.coordinates.push_back(z / graph.length_unit());
+    const double scale = stretch(view.map, problem.points[k]) / graph.length_unit();
+    for (double z : view.map.coordinates(problem.points[k])) view.points.coordinates.push_back(scale * z);
   }
   view.center = problem.flat_center(view.points);
   return view;
@@ -100,9 +117,10 @@ View look(const Problem& problem, Vertex from, double radius) {
 Vertex follow(const TangentGraph& graph, const View& view, Vertex from, double share) {
   const auto away = [&](Index i) {
     const auto phi = view.map.coordinates(Vertex(i));
+    const double scale = stretch(view.map, Vertex(i)) / graph.length_unit();
     double sum = 0;
     for (std::size_t a = 0; a < phi.size(); ++a) {
-      const double difference = phi[a] / graph.length_unit() - share * view.center[a];
+      const double difference = scale * phi[a] - share * view.center[a];
       sum += difference * difference;
     }
     return sum;

@@ -32,7 +32,8 @@ struct Center {
   Vertex vertex;
   std::vector<double> offset;  ///< log map of the center from the vertex: d numbers in its frame, world units
   /// What is least, as a length in world units. Mean: sqrt(sum w d^2 / sum w); median: sum w d / sum w. The distances
-  /// d from the center are those of the tangent space of `vertex`.
+  /// d from the center are those in the tangent space of `vertex`, where log(p) has the direction of (u, v) and the length of the
+  /// distance.
   double spread = 0;
   Index maps = 0;          ///< log maps used
   bool converged = false;  ///< false: `max_maps` ended the search
@@ -42,9 +43,9 @@ struct Center {
 ///
 ///     x <- exp_x(sum_k w_k log_x(p_k) / sum_k w_k)
 ///
-/// exp_x leads to the vertex of the nearest coordinates; what remains at the last vertex is the offset. A step back
-/// to a vertex seen before is halved, and the vertex with the least offset counts. Exact on flat graphs, where it takes
-/// two or three maps; elsewhere the error is that of the log map.
+/// log_x(p) has the direction of the map's coordinates and the length of its distance, and exp_x leads to the vertex where it is
+/// nearest; what remains at the last vertex is the offset. A step back to a vertex seen before is halved, and the vertex with the
+/// least offset counts. Exact on flat graphs, where it takes two or three maps; elsewhere the error is that of the log map.
 /// @param maps      a `LogMapSolver`, or `ExactGeodesics`
 /// @param vertices  the points p_k
 /// @param weights   w_k >= 0, not all zero; empty: all equal. Points of weight 0 do not count
