@@ -36,6 +36,29 @@ TEST(PathCommand, UnfoldsACube) {
   EXPECT_NEAR(read_json(folder / "path.json").at("length").get<double>(), std::sqrt(5.0), 1e-12);
 }
 
+// In other units, or rows with commas between them: every command that takes positions says so.
+TEST(PathCommand, SaysThatPositionsLieFarOffTheSurface) {
+  Folder folder;
+  const std::string input = folder.write("cube.off", cube_and_square), output = folder / "out.csv";
+  const std::vector<std::vector<std::string>> commands{
+      {"path", input, "--from", "0,200,300", "--to", "7"},
+      {"path", input, "--from", "0", "--to", "0,200,300"},
+      {"trace", input, "--source", "0,200,300", "--direction", "1,0,0", "--length", "1"},
+      {"cells", input, "--sources", "0,200,300"},
+      {"center", input, "--points", "0,200,300", "--json", output},
+      {"inverse", input, "--source", "0,200,300", "--at", "0,0"},
+      {"logmap", input, "--source", "0,200,300"}};
+  for (std::vector<std::string> command : commands) {
+    if (command[0] != "center") command.insert(command.end(), {"-o", output});
+    const Outcome outcome = run(command);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_NE(outcome.err.find("0,200,300: 3"), std::string::npos) << command[0] << ": " << outcome.err;
+    EXPECT_NE(outcome.err.find("write blanks"), std::string::npos) << command[0] << ": " << outcome.err;
+  }
+  const Outcome near = run({"path", input, "--from", "0.1,0.1,-0.5", "--to", "7", "-o", output});
+  EXPECT_EQ(near.err.find("off the surface"), std::string::npos) << near.err;
+}
+
 TEST(PathCommand, GoesThroughPointsAndBack) {
   Folder folder;
   const std::string input = folder.write("cube.off", cube_and_square);

@@ -65,6 +65,7 @@ std::vector<Vertex> spread(const CellsOptions& options, const Input& input,
   const std::vector<Vertex> among = vertices_with_rows(input.surface().rows());
   if (options.count > std::ssize(among))
     throw InvalidArgument(fmt::format("--count {}: the graph has {} vertices only", options.count, among.size()));
+  if (options.start) comment_on_positions(input, std::span(&*options.start, 1), "--start", journal);
   const Vertex first =
       options.start ? vertex_at(input, *options.start, "--start") : first_vertex(input.surface().rows());
   return geodesics ? farthest_points(*geodesics, first, options.count, exact_options(options.solve, journal), among)
@@ -158,6 +159,7 @@ void run(const CellsOptions& options) {
   const Input input = open_input(options.input, journal);
   const TangentGraph& graph = input.graph();
   std::vector<Vertex> sources = vertices_of(input, options.sources);
+  comment_on_positions(input, options.sources, "--sources", journal);
   std::optional<ExactGeodesics> geodesics;
   if (options.solve.method == Method::exact) geodesics.emplace(input.surface());
   if (options.count > 0) sources = spread(options, input, geodesics, journal);

@@ -46,7 +46,11 @@ Center find_center(const CenterCommandOptions& options, const Input& input, cons
   if (!options.weights.empty() && options.weights.size() != vertices.size())
     throw InvalidArgument(fmt::format("--weights: {} numbers for {} points", options.weights.size(), vertices.size()));
   CenterOptions center;
-  if (options.start) center.start = vertex_at(input, *options.start, "--start");
+  comment_on_positions(input, options.points, "--points", journal);
+  if (options.start) {
+    comment_on_positions(input, std::span(&*options.start, 1), "--start", journal);
+    center.start = vertex_at(input, *options.start, "--start");
+  }
   journal.start("search");
   const auto find = options.median ? geometric_median : karcher_mean;
   return find(maps.maker(), vertices, options.weights, center);

@@ -144,6 +144,7 @@ void run(const CoverageCommandOptions& options) {
   Journal journal(options.output.verbosity);
   const Input input = open_around(options.input, options.path.radius, journal, options.source.spec);
   const PlacedSource source = resolve(options.source, input, options.input.threads);
+  comment_on_positions(input, std::span(&options.source.spec, 1), "--source", journal);
   const LogMap map = solve(options.solve, input, options.source.spec, source, journal);
 
   journal.start("path");

@@ -131,6 +131,7 @@ void run(const DecalCommandOptions& given) {
   Journal journal(options.output.verbosity);
   const Input input = open_around(options.input, reach(options.decal), journal, options.source.spec);
   const PlacedSource source = resolve(options.source, input, options.input.threads);
+  comment_on_positions(input, std::span(&options.source.spec, 1), "--source", journal);
   SolveOptions near = options.solve;
   near.radius = map_radius(options.decal, input.graph());
   const LogMap map = solve(near, input, options.source.spec, source, journal);

@@ -73,6 +73,7 @@ void run(const InverseCommandOptions& options) {
   Journal journal(options.output.verbosity);
   const Input input = open_around(options.input, reach(options.points), journal, options.source.spec);
   const PlacedSource source = resolve(options.source, input, options.input.threads);
+  comment_on_positions(input, std::span(&options.source.spec, 1), "--source", journal);
   const LogMap map = solve(options.solve, input, options.source.spec, source, journal);
 
   const std::vector<double> quality = map_quality(input.graph(), map, options.solve.threads);

@@ -27,16 +27,6 @@ namespace ahm::app {
 namespace {
 
 /// Something the user should know about where the source ended up.
-void comment_on_source(const SourceSpec& spec, const Input& input, const PlacedSource& source, Journal& journal) {
-  const auto* wanted = std::get_if<SourcePosition>(&spec);
-  if (wanted == nullptr) return;
-  const double away = distance(wanted->position, source.position), edge = input.mean_edge_length();
-  if (away > 10 * edge)
-    journal.add_warning(
-        fmt::format("the vertex nearest to {} is {:.4g} away, at {:.6g} {:.6g} {:.6g}: {:.0f} mean edge lengths",
-                    to_string(*wanted), away, source.position[0], source.position[1], source.position[2], away / edge));
-}
-
 void write_results(const LogmapOptions& options, const PlacedSource& source, const RowLogMap& rows,
                    const std::vector<double>& quality, const std::vector<Vec3>& away, Results& results,
                    Journal& journal) {
@@ -88,7 +78,7 @@ void check_for_rows(const OutputOptions& output) {
 void map_from_source(const LogmapOptions& options, const Input& input, std::optional<Maps>& maps, std::size_t count,
                      bool is_named, Journal& journal) {
   const PlacedSource source = resolve(options.source, input, options.input.threads);
-  comment_on_source(options.source.spec, input, source, journal);
+  comment_on_positions(input, std::span(&options.source.spec, 1), "--source", journal);
   if (!maps) maps.emplace(options.solve, input, journal, static_cast<int>(count));
   std::optional<LogMap> solved;
   std::optional<QualityFront> front;

@@ -94,9 +94,12 @@ void go_through(const PathCommandOptions& options, const std::vector<SurfacePoin
   if (!options.tighten) path.json["lengths"] = lengths;
 }
 
-Polylines find_path(const PathCommandOptions& options, const LineFinder& finder, const Input& input) {
+Polylines find_path(const PathCommandOptions& options, const LineFinder& finder, const Input& input, Journal& journal) {
   std::vector<SourceSpec> specs{*options.from};
   for (const auto& more : {options.through, options.to}) specs.insert(specs.end(), more.begin(), more.end());
+  comment_on_positions(input, std::span(&*options.from, 1), "--from", journal);
+  comment_on_positions(input, options.through, "--through", journal);
+  comment_on_positions(input, options.to, "--to", journal);
   std::vector<SurfacePoint> stops;
   for (std::size_t k = 0; k < specs.size(); ++k)
     stops.push_back(point_on_surface(input, specs[k],
@@ -116,6 +119,9 @@ Polylines find_path(const PathCommandOptions& options, const LineFinder& finder,
 Polylines find_pairs(const PathCommandOptions& options, const LineFinder& finder, const Input& input,
                      Journal& journal) {
   std::vector<std::array<SurfacePoint, 2>> ends;
+  std::vector<SourceSpec> specs;
+  for (const auto& pair : options.pairs) specs.insert(specs.end(), pair.begin(), pair.end());
+  comment_on_positions(input, specs, "--pairs", journal);
   for (const auto& [from, to] : options.pairs)
     ends.push_back({point_on_surface(input, from, "--pairs"), point_on_surface(input, to, "--pairs")});
   const std::vector<FoundLine> paths = finder.paths(ends, options.fast, journal.progress(), options.input.threads);
@@ -143,14 +149,15 @@ Polylines find_pairs(const PathCommandOptions& options, const LineFinder& finder
 }
 
 void run(const PathCommandOptions& options) {
-  run_polyline(
-      "path", options.input, options.output, {}, [&](const LineFinder& finder, const Input& input, Journal& journal) {
-        if (!finder.has_faces() && (options.fast || options.tighten))
-          throw InvalidArgument(
-              fmt::format("{}: takes faces, which this input does not have, or which --backend ignores",
-                          options.fast ? "--fast" : "--tighten"));
-        return options.pairs.empty() ? find_path(options, finder, input) : find_pairs(options, finder, input, journal);
-      });
+  run_polyline("path", options.input, options.output, {},
+               [&](const LineFinder& finder, const Input& input, Journal& journal) {
+                 if (!finder.has_faces() && (options.fast || options.tighten))
+                   throw InvalidArgument(
+                       fmt::format("{}: takes faces, which this input does not have, or which --backend ignores",
+                                   options.fast ? "--fast" : "--tighten"));
+                 return options.pairs.empty() ? find_path(options, finder, input, journal)
+                                              : find_pairs(options, finder, input, journal);
+               });
 }
 
 void offer(CLI::App& app, PathCommandOptions& o) {

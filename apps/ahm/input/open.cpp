@@ -173,4 +173,27 @@ std::vector<Vertex> vertices_at(const Input& input, const std::vector<SourceSpec
   return result;
 }
 
+void comment_on_positions(const Input& input, std::span<const SourceSpec> specs, const std::string& option,
+                          Journal& journal) {
+  constexpr double far = 10;  // mean edge lengths
+  const double edge = input.mean_edge_length();
+  const SourcePosition* farthest = nullptr;
+  double away = far * edge;
+  Index count = 0;
+  for (const SourceSpec& spec : specs) {
+    const auto* position = std::get_if<SourcePosition>(&spec);
+    if (position == nullptr) continue;
+    const double off = input.surface().closest_point(position->position).distance;
+    count += off > far * edge;
+    if (off > away) away = off, farthest = position;
+  }
+  if (farthest == nullptr) return;
+  const bool may_be_rows =
+      std::ranges::all_of(farthest->position, [](double x) { return x >= 0 && x == std::floor(x); });
+  journal.add_warning(fmt::format(
+      "{} {}: {:.4g} off the surface, {:.0f} mean edge lengths{}; what lies nearest to it counts{}", option,
+      to_string(*farthest), away, away / edge, count > 1 ? fmt::format(", and {} more so far off", count - 1) : "",
+      may_be_rows ? " (between numbers of rows write blanks)" : ""));
+}
+
 }  // namespace ahm::app

@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "cli/journal.hpp"
@@ -76,5 +77,10 @@ PlacedSource resolve(const SourceOptions& options, const Input& input, unsigned 
 /// @throws InvalidArgument, also for a point in a face
 Vertex vertex_at(const Input& input, const SourceSpec& spec, const std::string& option);
 std::vector<Vertex> vertices_at(const Input& input, const std::vector<SourceSpec>& specs, const std::string& option);
+
+/// Warns of positions that lie far off the surface: in other units, or numbers of rows with commas between them.
+/// @param option  that they were given with
+void comment_on_positions(const Input& input, std::span<const SourceSpec> specs, const std::string& option,
+                          Journal& journal);
 
 }  // namespace ahm::app

@@ -12,6 +12,7 @@
 #include "ahm/surface/exact/flat_triangles.hpp"
 #include "ahm/surface/face_tree.hpp"
 #include "ahm/util/parallel.hpp"
+#include "ahm/util/small_math.hpp"
 #include "ahm/util/text.hpp"
 #include "ahm/util/vec.hpp"
 #include "row_tree.hpp"
@@ -81,9 +82,14 @@ ClosestPoint Surface::closest_point(const Vec3& position) const {
   const Row row = nearest_row(position);
   const std::optional<Frame> frame = graph().frame(vertex(row).index);
   if (!frame) throw InvalidArgument("the graph has no frames in space, so no point of its tangent planes is nearest");
-  const double height = dot(position - positions()[row.index], frame->normal);
-  const Vec3 projected = position - height * frame->normal;
-  return {TangentPoint{row, projected}, projected, distance(position, projected)};
+  const Vec3 &point = positions()[row.index], away = position - point;
+  const Vec3 along = away - dot(away, frame->normal) * frame->normal;
+  double reach = 0;  // of the plane: as far as the neighbours
+  const Star star = graph().star(vertex(row).index);
+  for (std::size_t e = 0; e < star.degree(); ++e) reach = std::max(reach, length(star.log(e)) * graph().length_unit());
+  const double far = length(along);
+  const Vec3 nearest = point + (far > reach ? reach / far : 1) * along;
+  return {TangentPoint{row, nearest}, nearest, distance(position, nearest)};
 }
 
 Vec3 Surface::position(const SurfacePoint& point) const {

@@ -31,7 +31,14 @@ TangentPlace place_of(const Surface& surface, const SurfacePoint& point) {
 }  // namespace
 
 SurfaceLine shortest_line(const Surface& surface, const SurfacePoint& from, const SurfacePoint& to) {
-  return in_space(surface.graph(), shortest_line(surface.graph(), place_of(surface, from), place_of(surface, to)));
+  SurfaceLine line =
+      in_space(surface.graph(), shortest_line(surface.graph(), place_of(surface, from), place_of(surface, to)));
+  if (line.points.empty()) return line;
+  // The planes that the line ends in need not be theirs.
+  line.points.front() = surface.position(from);
+  line.points.back() = surface.position(to);
+  line.length = std::max(line.length, distance(line.points.front(), line.points.back()));
+  return line;
 }
 
 SurfaceLine trace_line(const Surface& surface, const SurfacePoint& from, const Vec3& direction, double length) {

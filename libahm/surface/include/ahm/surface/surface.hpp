@@ -76,7 +76,7 @@ class Surface {
   /// often, a tree over the rows is made. @throws InvalidArgument (no positions; not finite)
   Row nearest_row(const Vec3& position) const;
   /// The nearest point of the faces (polygons as fans from their first corner); without faces, of the tangent plane of the
-  /// nearest row. The first call makes a tree over the faces. @throws InvalidArgument (no positions; not finite)
+  /// nearest row, as far as its neighbours reach. The first call makes a tree over the faces. @throws InvalidArgument (no positions; not finite)
   ClosestPoint closest_point(const Vec3& position) const;
   /// Where a point lies, world units. @throws InvalidArgument (a point that this surface does not have; no positions)
   Vec3 position(const SurfacePoint& point) const;
