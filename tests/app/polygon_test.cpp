@@ -122,5 +122,21 @@ TEST(PolygonFiles, KeepTheirFacesInPly) {
   EXPECT_EQ(nlohmann::json::parse(again.out).at("polymesh").at("largest_face"), 8);
 }
 
+// The mean of the corners of a U lies between its arms.
+TEST(PolygonCommand, SaysThatAPointLiesOutsideOfItsFace) {
+  Folder folder;
+  const std::string input =
+      folder.write("u.off", "OFF\n8 1 0\n0 0 0\n3 0 0\n3 3 0\n2 3 0\n2 1 0\n1 1 0\n1 3 0\n0 3 0\n8 0 1 2 3 4 5 6 7\n");
+  const auto outcome = [&](const std::string& weights) {
+    const Outcome found =
+        run({"logmap", input, "--source", "face:0:" + weights, "-o", folder / "map.csv", "--json", "-"});
+    EXPECT_EQ(found.status, 0) << found.err;
+    return found;
+  };
+  const Outcome outside = outcome(".125,.125,.125,.125,.125,.125,.125,.125");
+  EXPECT_NE(outside.err.find("outside of its face"), std::string::npos) << outside.err;
+  EXPECT_EQ(outcome(".4,.3,0,0,.1,.1,0,.1").err.find("outside of its face"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace ahm::test

@@ -175,12 +175,20 @@ std::vector<Vertex> vertices_at(const Input& input, const std::vector<SourceSpec
 
 void comment_on_positions(const Input& input, std::span<const SourceSpec> specs, const std::string& option,
                           Journal& journal) {
-  constexpr double far = 10;  // mean edge lengths
+  constexpr double far = 10, outside = 0.01;  // mean edge lengths
   const double edge = input.mean_edge_length();
   const SourcePosition* farthest = nullptr;
   double away = far * edge;
   Index count = 0;
   for (const SourceSpec& spec : specs) {
+    if (std::holds_alternative<SourceFace>(spec)) {
+      const Vec3 wanted = position_of(input, spec, option), found = place(input, spec, std::nullopt, option).position;
+      if (const double off = distance(wanted, found); off > outside * edge)
+        journal.add_warning(
+            fmt::format("{} {}: lies outside of its face; the nearest point of the face counts, {:.4g} away, at {:.6g} "
+                        "{:.6g} {:.6g}",
+                        option, to_string(spec), off, found[0], found[1], found[2]));
+    }
     const auto* position = std::get_if<SourcePosition>(&spec);
     if (position == nullptr) continue;
     const double off = input.surface().closest_point(position->position).distance;

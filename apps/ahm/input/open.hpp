@@ -78,7 +78,8 @@ PlacedSource resolve(const SourceOptions& options, const Input& input, unsigned 
 Vertex vertex_at(const Input& input, const SourceSpec& spec, const std::string& option);
 std::vector<Vertex> vertices_at(const Input& input, const std::vector<SourceSpec>& specs, const std::string& option);
 
-/// Warns of positions that lie far off the surface: in other units, or numbers of rows with commas between them.
+/// Warns of positions that lie far off the surface, in other units, or numbers of rows with commas between them; and of points in
+/// faces that lie outside of these, as means of the corners of concave ones may.
 /// @param option  that they were given with
 void comment_on_positions(const Input& input, std::span<const SourceSpec> specs, const std::string& option,
                           Journal& journal);

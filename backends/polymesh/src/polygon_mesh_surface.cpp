@@ -263,9 +263,7 @@ PlacedSource PolygonMeshSurface::source_in_face(const FacePoint& point, const st
     const Vec3 place = position(point);
     const auto corners = faces()[point.face];
     const Vec3 u = u_axis ? *u_axis : positions()[corners[1]] - positions()[corners[0]];
-    PlacedSource result = impl_->refined->source(locate(impl_->refinement, point.face, place), u);
-    result.position = place;
-    return result;
+    return impl_->refined->source(locate(impl_->refinement, point.face, place), u);
   }
   const std::vector<double> weights = impl_->stored_weights(point);
   const Frame frame = impl_->frame(point.face, weights);
