@@ -12,6 +12,7 @@
 #include "ahm/maps/log_map_solver.hpp"
 #include "ahm/pointcloud/point_cloud_surface.hpp"
 #include "ahm/polymesh/polygon_mesh_surface.hpp"
+#include "ahm/surface/mapped_positions.hpp"
 #include "ahm/surface/surface_lines.hpp"
 #include "ahm/testing/clouds.hpp"
 #include "ahm/testing/triangle_meshes.hpp"
@@ -324,6 +325,9 @@ TEST(Surface, RowsThatACallerDidNotKeepAreRemovedAndSaidSo) {
     EXPECT_EQ(a.v[kept[k].index], b.v[k]);
   }
   EXPECT_EQ(a.status[3], Status::removed);
+  const std::vector<Vec3> mapped = mapped_positions(cloud);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    EXPECT_TRUE(i % 7 == 3 ? std::isnan(mapped[i][0]) : mapped[i] == points[i]) << i;
   try {
     cloud.source(Row(10));
     FAIL();

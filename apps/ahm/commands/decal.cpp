@@ -31,7 +31,8 @@ constexpr const char* decal_footer =
     "\n"
     "OUTPUT  .obj or .glb  the surface in gray and, a little above it, the piece under the image, cut at its borders,\n"
     "                      with its texture (opacity included); of clouds, the piece alone\n"
-    "        .ply          the points of INPUT, colored where the image lies on them\n"
+    "        .ply          the points of INPUT, colored where the image lies on them; those that --voxel\n"
+    "                      replaced, as the nearest one kept\n"
     "Where the map is not to be trusted there is no decal, and where it folds it lies on one sheet only.\n"
     "\n"
     "Examples:\n"
@@ -94,9 +95,10 @@ void write_points(const DecalCommandOptions& options, const Input& input, const 
                   const Vec3& source) {
   const auto colors = painted(input, image_coordinates_of_vertices(inverse, options.decal), image);
   io::write(options.output.output, painted_table(input, colors));
-  const std::vector<Vec3> normals = input.normals();
+  const std::vector<Vec3> normals = input.normals(), drawn = drawn_points(input, options.input);
   view::TexturedScene scene;
-  scene.points = input.geometry.points, scene.colors = colors, scene.normals = normals;
+  scene.points = drawn.empty() ? input.geometry.points : drawn;
+  scene.colors = colors, scene.normals = normals;
   write_view(options, scene, source);
 }
 

@@ -9,6 +9,7 @@
 #include "ahm/heat/heat_operators.hpp"
 #include "ahm/io/read.hpp"
 #include "ahm/surface/directions.hpp"
+#include "ahm/util/vec.hpp"
 #include "cli/source_list.hpp"
 #include "input/repair.hpp"
 #include "output/wording.hpp"
@@ -75,6 +76,15 @@ Input open_surroundings(io::Geometry geometry, const Backend& backend, std::opti
 
 }  // namespace
 
+std::optional<Vertex> Input::vertex_standing_for(Row row) const {
+  const std::optional<Vertex> own = surface().rows().vertex(row);
+  const Vec3& point = geometry.points[row.index];
+  if (own || !voxel || !is_finite(point)) return own;
+  const Row nearest = surface().nearest_row(point);
+  const bool is_near = distance(point, geometry.points[nearest.index]) <= std::sqrt(3.0) * *voxel;
+  return is_near ? surface().rows().vertex(nearest) : std::nullopt;
+}
+
 io::Geometry read_input(const InputOptions& options) {
   return options.path == "-" ? io::read_standard_input(options.format) : io::read(options.path, options.format);
 }
@@ -100,7 +110,7 @@ Input open_input(io::Geometry geometry, const InputOptions& options, Journal& jo
     return open_surroundings(std::move(geometry), backend, std::move(mesh), given_faces, options, *place, journal);
   Built built = build(backend, geometry, mesh, options, place, journal);
   journal.add_warnings(built.warnings);
-  return {std::move(geometry), &backend, std::move(built), std::move(mesh), std::nullopt, given_faces};
+  return {std::move(geometry), &backend, std::move(built), std::move(mesh), std::nullopt, given_faces, options.voxel};
 }
 
 Input open_input(const InputOptions& options, Journal& journal, const std::optional<SourceSpec>& source) {

@@ -21,11 +21,15 @@ struct Input {
   std::optional<RepairedMesh> repaired = {};  ///< the faces of `geometry` are those that remained
   /// With --local of a mesh: the faces of `geometry` that the surface has. None: all.
   std::optional<Surroundings> near = {};
-  std::size_t given_faces = 0;  ///< of the file, before the repair
+  std::size_t given_faces = 0;       ///< of the file, before the repair
+  std::optional<double> voxel = {};  ///< edge length of the cubes of which one point each was kept
 
   const Surface& surface() const { return *built.surface; }
   const TangentGraph& graph() const { return surface().graph(); }
   std::size_t rows() const { return geometry.points.size(); }
+  /// The vertex of a row; of a point that --voxel replaced, that of the nearest one kept, if it is no farther than their
+  /// cube is wide. None: what else was left out.
+  std::optional<Vertex> vertex_standing_for(Row row) const;
   /// Unit normals per row, NaN where there is none: the surface's, and with --local the mean over the faces that it lacks.
   std::vector<Vec3> normals(unsigned threads = 0) const;
   /// World units.

@@ -26,7 +26,7 @@ Colors painted(const Input& input, const std::vector<double>& places, const Imag
   colors.resize(input.rows(), {200, 200, 200});
   const RowMap& rows = input.surface().rows();
   for (std::size_t r = 0; r < colors.size(); ++r) {
-    const auto vertex = rows.vertex(Row(static_cast<Index>(r)));
+    const auto vertex = input.vertex_standing_for(Row(static_cast<Index>(r)));
     if (!vertex) continue;
     // Of equal points the first one is in the inverse.
     const auto k = static_cast<std::size_t>(rows.row(*vertex)->index);

@@ -33,7 +33,8 @@ class DecalMesh {
 
 using Colors = std::vector<std::array<std::uint8_t, 3>>;
 
-/// The colors of the input, light gray where there are none, under the image.
+/// The colors of the input, light gray where there are none, under the image. Points that --voxel replaced are colored as the
+/// nearest one kept.
 /// @param places  `image_coordinates_of_vertices`
 Colors painted(const Input& input, const std::vector<double>& places, const Image& image);
 

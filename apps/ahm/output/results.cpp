@@ -9,6 +9,7 @@
 #include "ahm/error.hpp"
 #include "ahm/io/formats.hpp"
 #include "ahm/maps/quality.hpp"
+#include "ahm/surface/mapped_positions.hpp"
 #include "output/output_paths.hpp"
 
 namespace ahm::app {
@@ -82,12 +83,20 @@ bool shows_normals(const OutputOptions& output) {
 
 }  // namespace
 
+std::vector<Vec3> drawn_points(const Input& input, const InputOptions& options) {
+  const bool is_thinned = options.voxel || options.outliers;
+  const bool shows_all = options.around_source || input.geometry.face_count() > 0;
+  if (input.surface().faces().size() > 0 || (shows_all && !is_thinned)) return {};
+  return mapped_positions(input.surface());
+}
+
 Results::Results(const OutputOptions& output, const Input& input, const InputOptions& options)
     : output_(output),
       input_(input.geometry),
       title_(std::filesystem::path(options.path).filename().string()),
       threads_(options.threads),
-      normals_(shows_normals(output) ? input.normals(options.threads) : std::vector<Vec3>()) {}
+      normals_(shows_normals(output) ? input.normals(options.threads) : std::vector<Vec3>()),
+      drawn_(output.view.empty() ? std::vector<Vec3>() : drawn_points(input, options)) {}
 
 std::string input_column(const std::string& name) {
   constexpr std::string_view own[] = {
@@ -128,10 +137,9 @@ io::Table Results::table() const {
 
 view::Scene Results::scene() const {
   view::Scene scene;
-  scene.points = input_.points;
+  scene.points = drawn_.empty() ? input_.points : drawn_;
   scene.normals = normals_;
-  scene.face_begin = input_.face_begin;
-  scene.face_vertices = input_.face_vertices;
+  if (drawn_.empty()) scene.face_begin = input_.face_begin, scene.face_vertices = input_.face_vertices;
   scene.title = title_;
   scene.colors = input_.colors;
   return scene;

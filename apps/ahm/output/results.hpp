@@ -45,6 +45,11 @@ io::Table table_of(const io::Geometry& input, const std::vector<Vec3>& normals,
 /// The columns of a map: u, v, distance, angle (not from a curve), status, quality, spread, error_estimate (of order 2).
 void add_map(io::Table& table, const RowLogMap& rows, const std::vector<double>& quality);
 
+/// What a picture shows of a cloud: the points that its graph has, NaN in place of the others, which lie denser and would
+/// hide them. Empty: all of the input is shown, as it is where there are faces; with --local what lies around the map, too.
+/// @param options  that the input was opened with
+std::vector<Vec3> drawn_points(const Input& input, const InputOptions& options);
+
 /// The files of a run.
 class Results {
  public:
@@ -71,6 +76,7 @@ class Results {
   std::string title_;
   unsigned threads_;
   std::vector<Vec3> normals_;  ///< empty where nothing shows them
+  std::vector<Vec3> drawn_;    ///< `drawn_points`
 };
 
 }  // namespace ahm::app

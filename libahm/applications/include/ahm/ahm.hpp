@@ -50,6 +50,7 @@
 #include "ahm/surface/glued_mesh.hpp"
 #include "ahm/surface/gluing.hpp"
 #include "ahm/surface/half_edges.hpp"
+#include "ahm/surface/mapped_positions.hpp"
 #include "ahm/surface/mesh_repair.hpp"
 #include "ahm/surface/mesh_topology.hpp"
 #include "ahm/surface/repaired_surface.hpp"

@@ -1,0 +1,20 @@
+/// \file
+/// The points of a surface that its graph has: what a picture of a cloud shows.
+///
+/// \code
+/// scene.points = mapped = ahm::mapped_positions(surface);   // points that are not finite are left out
+/// \endcode
+#pragma once
+
+#include <vector>
+
+#include "ahm/surface/surface.hpp"
+
+namespace ahm {
+
+/// The positions of the rows, NaN where a row has no vertex: in a cloud that was thinned, all but the points that stand
+/// for the others. Drawn beside these, the others would hide them.
+/// @return  rows x 3, world units; empty for a surface given by lengths alone
+std::vector<Vec3> mapped_positions(const Surface& surface);
+
+}  // namespace ahm
