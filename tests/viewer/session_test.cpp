@@ -250,6 +250,35 @@ TEST_F(ViewerSession, ARequestThatIsOvertakenByANewerOneIsTheOneCancelled) {
   EXPECT_EQ(session.answer("stroke", stroke.dump()).status, 409);  // of the same kind as a map
 }
 
+TEST(ViewerSessionOfACloud, ShowsAndTakesWhatIsLeftOfAThinnedOne) {
+  io::Geometry geometry;
+  std::vector<Row> kept;
+  for (int x = 0; x < 40; ++x)
+    for (int y = 0; y < 40; ++y) {
+      if (x % 2 == 0 && y % 2 == 0) kept.emplace_back(static_cast<Index>(geometry.points.size()));
+      geometry.points.push_back({0.1 * x, 0.1 * y + 0.03 * (x % 2), 0});
+    }
+  geometry.points.push_back({NAN, 0, 0});
+  const auto cloud = pointcloud::PointCloudSurface::build(geometry.points, {}, {.rows = kept});
+  SessionOptions options = sphere_options();
+  options.source = Row(41);  // beside row 0
+  const Session session(cloud, geometry, options);
+  const auto points = Unpacked(session.answer("surface", {}).body).array<std::int32_t>("points");
+  std::set<std::int32_t> drawn(points.begin(), points.end()), expected;
+  for (const Row row : kept) expected.insert(row.index);
+  EXPECT_EQ(drawn, expected);
+  EXPECT_EQ(json::parse(session.answer("info", {}).body).at("source").at("row"),
+            cloud.nearest_row(geometry.points[41]).index);
+
+  const Answer answer = session.answer("map", request({{"source", {{"row", 83}}}}));
+  ASSERT_EQ(answer.status, 200) << answer.body;
+  EXPECT_EQ(Unpacked(answer.body).meta.at("spec"), std::to_string(cloud.nearest_row(geometry.points[83]).index));
+  EXPECT_EQ(session.answer("stroke", request({{"points", {{{"row", 1}}, {{"row", 83}}}}})).status, 200);
+  EXPECT_EQ(session.answer("path", request({{"from", {{"row", 1}}}, {"to", {{"row", 83}}}})).status, 200);
+  EXPECT_EQ(session.answer("map", request({{"source", {{"row", 1600}}}})).status, 400);  // it is nowhere
+  EXPECT_EQ(session.answer("map", request({{"source", {{"row", 1601}}}})).status, 400);
+}
+
 TEST(ViewerSessionOfACloud, TellsGradientsOfEveryDiscAndHasNoPaths) {
   io::Geometry geometry;
   for (int x = 0; x < 20; ++x)

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "ahm/util/vec.hpp"
+
 namespace ahm::viewer {
 namespace {
 
@@ -43,6 +45,19 @@ SurfacePoint read_point(const json& value, const std::string& name) {
 }
 
 }  // namespace
+
+SurfacePoint standing_for(const Surface& surface, const SurfacePoint& point) {
+  const auto* row = std::get_if<Row>(&point);
+  if (!row) return point;
+  try {
+    surface.vertex(*row);
+  } catch (const InvalidArgument& e) {
+    if (e.fault() != "row_left_out") return point;  // refused where it is used
+    const Vec3& position = surface.positions()[row->index];
+    if (is_finite(position)) return surface.nearest_row(position);
+  }
+  return point;
+}
 
 Request::Request(std::string_view body) : json_(json::parse(body, nullptr, false)) {
   if (json_.is_discarded()) throw InvalidArgument("request: the body is no JSON");

@@ -11,6 +11,9 @@
 
 namespace ahm::viewer {
 
+/// The point, or for a row that was left out before the graph of a cloud was built the row nearest to it.
+SurfacePoint standing_for(const Surface& surface, const SurfacePoint& point);
+
 /// The members of a request's object. All members throw InvalidArgument that names the one that does not fit.
 class Request {
  public:

@@ -10,6 +10,7 @@
 
 #include "ahm/applications/surface_curve.hpp"
 #include "ahm/maps/quality.hpp"
+#include "ahm/surface/mapped_positions.hpp"
 #include "ahm/surface/surface_lines.hpp"
 #include "ahm/view/page.hpp"
 #include "channels.hpp"
@@ -36,9 +37,11 @@ Answer answer_of(const json& body) { return {200, "application/json", body.dump(
 /// More requests than can be kept waiting.
 struct Busy {};
 
-view::Scene scene_of(const Surface& surface, const io::Geometry& geometry, const std::vector<Vec3>& normals) {
+/// @param drawn  of a cloud the points that are drawn, and so can be picked
+view::Scene scene_of(const Surface& surface, const io::Geometry& geometry, const std::vector<Vec3>& drawn,
+                     const std::vector<Vec3>& normals) {
   view::Scene scene;
-  scene.points = geometry.points;
+  scene.points = drawn.empty() ? geometry.points : drawn;
   scene.normals = normals;
   const FaceList faces = surface.faces();
   scene.face_begin = faces.begin;
@@ -58,6 +61,7 @@ struct Session::Impl {
   const Surface& surface;
   const io::Geometry& geometry;
   SessionOptions options;
+  std::vector<Vec3> drawn;  ///< of a cloud: without the rows that have no vertex, from which there is no map
   std::vector<Vec3> normals;
   view::Scene scene;
   view::PageSurface page;
@@ -71,8 +75,9 @@ struct Session::Impl {
       : surface(given),
         geometry(read),
         options(std::move(wanted)),
+        drawn(given.faces().size() > 0 ? std::vector<Vec3>() : mapped_positions(given)),
         normals(given.normals()),
-        scene(scene_of(given, read, normals)),
+        scene(scene_of(given, read, drawn, normals)),
         page(titled(), picture()),
         makers(given, options.threads) {
     warm_up = std::jthread([this](const std::stop_token& stop) { prepare(stop); });
@@ -81,6 +86,16 @@ struct Session::Impl {
   ~Impl() {
     channels.stop_all();
     warm_up.request_stop();
+  }
+
+  SurfacePoint point_in(const Request& request, const char* name) const {
+    return standing_for(surface, request.point(name));
+  }
+
+  std::vector<SurfacePoint> curve_points(const Request& request) const {
+    std::vector<SurfacePoint> points = request.points("points");
+    for (SurfacePoint& each : points) each = standing_for(surface, each);
+    return points;
   }
 
   view::Scene titled() const {
@@ -155,7 +170,7 @@ struct Session::Impl {
 
   Answer answer_map(const Request& request) {
     const std::stop_token stop = channels.begin(request.client(), Channels::Kind::map, request.number());
-    const SurfacePoint source = request.point("source");
+    const SurfacePoint source = point_in(request, "source");
     const Settings settings = request.settings(options.settings);
     const PlacedSource placed = surface.source(source, settings.u_axis);
     const LogMap made = in_turn(stop, [&] { return map(source, placed, settings, stop); });
@@ -175,7 +190,7 @@ struct Session::Impl {
   }
 
   SurfaceCurve curve_of(const Request& request) const {
-    const std::vector<SurfacePoint> points = request.points("points");
+    const std::vector<SurfacePoint> points = curve_points(request);
     return draw_curve(surface, std::vector<CurvePoint>(points.begin(), points.end()));
   }
 
@@ -195,8 +210,8 @@ struct Session::Impl {
     const SurfaceCurve curve = curve_of(request);
     const LogMap made = in_turn(stop, [&] { return stroke(curve, settings, stop); });
     std::string list;
-    for (const SurfacePoint& point : request.points("points"))
-      list.append(list.empty() ? "" : " ").append(spec(surface, point));
+    for (const SurfacePoint& each : curve_points(request))
+      list.append(list.empty() ? "" : " ").append(spec(surface, each));
     view::Scene shown = scene;
     shown.curve = curve.points;
     return {200, "application/octet-stream",
@@ -228,7 +243,7 @@ struct Session::Impl {
 
   Answer answer_path(const Request& request) {
     const std::stop_token stop = channels.begin(request.client(), Channels::Kind::path, request.number());
-    const Ends ends{request.point("from"), request.point("to")};
+    const Ends ends{point_in(request, "from"), point_in(request, "to")};
     const SurfaceLine made = path(ends, stop);
     return answer_of(
         {{"points", positions(page, made.points)},
@@ -257,7 +272,7 @@ struct Session::Impl {
 
   Answer answer_coverage(const Request& request) {
     const std::stop_token stop = channels.begin(request.client(), Channels::Kind::coverage, request.number());
-    const SurfacePoint source = request.point("source");
+    const SurfacePoint source = point_in(request, "source");
     const Settings settings = of_patch(request.settings(options.settings));
     const CoverageOptions cover = request.cover();
     const CoveragePath path = tool_path(source, cover, settings, stop);
@@ -286,7 +301,7 @@ struct Session::Impl {
 
   void write_map(const Request& request, const std::filesystem::path& file, const std::stop_token& stop) {
     const Settings settings = request.settings(options.settings);
-    const SurfacePoint source = request.point("source");
+    const SurfacePoint source = point_in(request, "source");
     const PlacedSource placed = surface.source(source, settings.u_axis);
     const LogMap made = in_turn(stop, [&] { return map(source, placed, settings, stop); });
     const RowLogMap rows = surface.on_rows(made);
@@ -307,7 +322,7 @@ struct Session::Impl {
     decal.angle = request.finite("angle") * std::numbers::pi / 180;
     Settings settings = of_patch(request.settings(options.settings));
     settings.radius = map_radius(decal, surface.graph());
-    const SurfacePoint source = request.point("source");
+    const SurfacePoint source = point_in(request, "source");
     const PlacedSource placed = surface.source(source, settings.u_axis);
     const LogMap made = in_turn(stop, [&] { return map(source, placed, settings, stop, true); });
     options.write_decal(file, inverse_map(surface, made, {.threads = options.threads}), decal, image);
@@ -325,8 +340,8 @@ struct Session::Impl {
       if (what == "stroke") return write_stroke(request, file, stop);
       if (what == "decal") return write_decal(request, file, stop);
       if (what == "path")
-        return options.write_path(file, path({request.point("from"), request.point("to")}, stop).points);
-      options.write_coverage(file, tool_path(request.point("source"), request.cover(),
+        return options.write_path(file, path({point_in(request, "from"), point_in(request, "to")}, stop).points);
+      options.write_coverage(file, tool_path(point_in(request, "source"), request.cover(),
                                              of_patch(request.settings(options.settings)), stop));
     };
     return {200, "application/octet-stream", exported(format, write)};
@@ -358,7 +373,7 @@ struct Session::Impl {
                  {"order", usual.order},
                  {"t_coef", usual.t_coef}};
     if (usual.radius) info["radius"] = *usual.radius;
-    if (options.source) info["source"] = point_as_json(*options.source);
+    if (options.source) info["source"] = point_as_json(standing_for(surface, *options.source));
     return answer_of(info);
   }
 

@@ -70,7 +70,8 @@ std::string spec(const Surface& surface, const SurfacePoint& point);
 /// the other, each on all threads.
 ///
 /// Requests are JSON objects. A point is {"row": 42} or {"face": 7, "weights": [0.2, 0.3, 0.5]}. With a map go, each by
-/// choice, "method", "variant", "order", "t_coef", "radius" (null: none), "u_axis".
+/// choice, "method", "variant", "order", "t_coef", "radius" (null: none), "u_axis". Rows of a cloud that were left out before
+/// its graph was built are not drawn; for such a row the nearest one that was not stands.
 ///
 /// | name     | request, besides "client"                              | answer                                        |
 /// |----------|--------------------------------------------------------|-----------------------------------------------|
