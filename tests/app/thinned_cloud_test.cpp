@@ -1,4 +1,4 @@
-// Clouds that --voxel thins: what is drawn and colored of them.
+// Clouds that --voxel thins: what is drawn, colored and named of them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -79,6 +79,43 @@ TEST_F(ThinnedCloud, HasTheColorsOfADecalAtAllPoints) {
     if (std::abs(away - 0.25) < 0.05) continue;  // the nearest kept point may be on the other side of the border
     EXPECT_EQ(out.colors[i][1] == 0, away < 0.25) << i;
   }
+}
+
+TEST_F(ThinnedCloud, KeepsEveryRowThatACommandNames) {
+  // Of neighbours in one voxel at most one would be kept.
+  const Words all{"41", "42", "81", "82", "83", "905", "906"};
+  std::string list, pairs, lines;
+  for (const std::string& row : all) {
+    list += row + " ";
+    pairs += row + " 0\n";
+    lines += row + " 1,0,0 0.1\n";
+  }
+  const std::string csv = folder / "out.csv";
+  const std::map<std::string, std::vector<Words>> commands{
+      {"path",
+       {{"--from", "41", "--through", "42 81", "--to", "82 83 905 906", "-o", csv},
+        {"--pairs", folder.write("pairs.txt", pairs), "-o", csv}}},
+      {"trace", {{"--lines", folder.write("lines.txt", lines), "-o", csv}}},
+      {"cells", {{"--sources", list, "-o", csv}, {"--count", "4", "--start", "82", "-o", csv}}},
+      {"center", {{"--points", list, "--start", "42"}}},
+      {"stroke", {{"--curve", list, "-o", csv}}}};
+  for (const auto& [command, each] : commands)
+    for (const Words& more : each) EXPECT_EQ(run_thinned(command, more).status, 0) << command << ' ' << more.front();
+  // The named rows are found, and not others beside them.
+  ASSERT_EQ(run_thinned("cells", {"--sources", list, "-o", csv}).status, 0);
+  const auto cells = read_numbers(csv);
+  for (std::size_t k = 0; k < all.size(); ++k) EXPECT_EQ(cells[std::stoul(all[k])].at("label"), static_cast<double>(k));
+}
+
+TEST_F(ThinnedCloud, KeepsTheSourcesOfCharts) {
+  if (!io::has_images()) GTEST_SKIP() << "this build has no stb";
+  EXPECT_EQ(run_thinned("atlas", {"--sources", "41 42 906", "-o", folder / "out.obj"}).status, 0);
+}
+
+TEST_F(ThinnedCloud, RefusesNamedRowsThatDoNotExist) {
+  const Outcome outcome = run_thinned("path", {"--from", "0", "--to", "1600", "-o", folder / "out.csv"});
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_NE(outcome.err.find("--to 1600"), std::string::npos) << outcome.err;
 }
 
 }  // namespace

@@ -130,7 +130,8 @@ CLI::Option* add_non_manifold(CLI::App& app, InputOptions& o) {
 
 void add_cloud_options(CLI::App& app, InputOptions& o) {
   const char* group = "Point clouds";
-  add_parsed(app, "--voxel", o.voxel, parse_positive, "SIZE", "Keep one point per cube of this edge length first")
+  add_parsed(app, "--voxel", o.voxel, parse_positive, "SIZE",
+             "Keep one point per cube of this edge length first, and the rows that are named")
       ->group(group);
   app.add_flag("--outliers", o.outliers, "Remove statistical outliers first")->group(group);
   add_drop_nan(app, o)->group(group);

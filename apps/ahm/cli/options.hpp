@@ -24,6 +24,7 @@ struct InputOptions {
 
   // Point clouds
   std::optional<double> voxel;
+  std::vector<SourceSpec> named;  ///< points that the command names: --voxel keeps their rows
   bool outliers = false;
   bool drop_nan = false;
   bool around_source = false;   ///< build the graph only around the source,

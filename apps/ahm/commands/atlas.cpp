@@ -167,7 +167,7 @@ void run(const AtlasCommandOptions& options) {
   check_texture_output(options.input.path, options.output, {".obj", ".glb"}, {"atlas"}, options.texture);
   if (!options.texture.empty()) io::read_image(options.texture);  // better refused now than after the work
   Journal journal(options.output.verbosity);
-  const Input input = open_input(options.input, journal);
+  const Input input = open_input(naming(options.input, options.sources), journal);
   const TangentGraph& graph = input.graph();
   SolveOptions solve = options.solve;
   if (input.surface().faces().size() > 0) solve.strategy = Strategy::march;  // charts need no factors of the whole

@@ -156,7 +156,9 @@ void report(const CellsOptions& options, const Input& input, const std::vector<I
 void run(const CellsOptions& options) {
   check_results(options.input.path, options.output);
   Journal journal(options.output.verbosity);
-  const Input input = open_input(options.input, journal);
+  std::vector<SourceSpec> named = options.sources;
+  if (options.start) named.push_back(*options.start);
+  const Input input = open_input(naming(options.input, named), journal);
   const TangentGraph& graph = input.graph();
   std::vector<Vertex> sources = vertices_of(input, options.sources);
   comment_on_positions(input, options.sources, "--sources", journal);

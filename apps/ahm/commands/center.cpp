@@ -98,7 +98,9 @@ void comment_on(const Center& center, const TangentGraph& graph, Journal& journa
 void run(const CenterCommandOptions& options) {
   check_outputs({options.input.path}, {{"--json", options.output.json}}, options.output.keep_existing);
   Journal journal(options.output.verbosity);
-  const Input input = open_input(options.input, journal);
+  std::vector<SourceSpec> named = options.points;
+  if (options.start) named.push_back(*options.start);
+  const Input input = open_input(naming(options.input, named), journal);
   const Maps maps(options.solve, input, journal, 6);
   const Center center = find_center(options, input, maps, journal);
   comment_on(center, input.graph(), journal);

@@ -63,6 +63,21 @@ std::vector<std::array<SourceSpec, 2>> read_pairs(const std::string& file) {
   return pairs;
 }
 
+/// From where, through what, to where.
+std::vector<SourceSpec> stops_of(const PathCommandOptions& options) {
+  std::vector<SourceSpec> specs{*options.from};
+  for (const auto& more : {options.through, options.to}) specs.insert(specs.end(), more.begin(), more.end());
+  return specs;
+}
+
+/// All points that the command names.
+std::vector<SourceSpec> named_points(const PathCommandOptions& options) {
+  if (options.pairs.empty()) return stops_of(options);
+  std::vector<SourceSpec> specs;
+  for (const auto& pair : options.pairs) specs.insert(specs.end(), pair.begin(), pair.end());
+  return specs;
+}
+
 /// Adds the ways from stop to stop, as one curve.
 void go_through(const PathCommandOptions& options, const std::vector<SurfacePoint>& stops,
                 const std::vector<SourceSpec>& specs, const LineFinder& finder, Polylines& path) {
@@ -95,8 +110,7 @@ void go_through(const PathCommandOptions& options, const std::vector<SurfacePoin
 }
 
 Polylines find_path(const PathCommandOptions& options, const LineFinder& finder, const Input& input, Journal& journal) {
-  std::vector<SourceSpec> specs{*options.from};
-  for (const auto& more : {options.through, options.to}) specs.insert(specs.end(), more.begin(), more.end());
+  std::vector<SourceSpec> specs = stops_of(options);
   comment_on_positions(input, std::span(&*options.from, 1), "--from", journal);
   comment_on_positions(input, options.through, "--through", journal);
   comment_on_positions(input, options.to, "--to", journal);
@@ -119,9 +133,7 @@ Polylines find_path(const PathCommandOptions& options, const LineFinder& finder,
 Polylines find_pairs(const PathCommandOptions& options, const LineFinder& finder, const Input& input,
                      Journal& journal) {
   std::vector<std::array<SurfacePoint, 2>> ends;
-  std::vector<SourceSpec> specs;
-  for (const auto& pair : options.pairs) specs.insert(specs.end(), pair.begin(), pair.end());
-  comment_on_positions(input, specs, "--pairs", journal);
+  comment_on_positions(input, named_points(options), "--pairs", journal);
   for (const auto& [from, to] : options.pairs)
     ends.push_back({point_on_surface(input, from, "--pairs"), point_on_surface(input, to, "--pairs")});
   const std::vector<FoundLine> paths = finder.paths(ends, options.fast, journal.progress(), options.input.threads);
@@ -149,7 +161,7 @@ Polylines find_pairs(const PathCommandOptions& options, const LineFinder& finder
 }
 
 void run(const PathCommandOptions& options) {
-  run_polyline("path", options.input, options.output, {},
+  run_polyline("path", naming(options.input, named_points(options)), options.output, {},
                [&](const LineFinder& finder, const Input& input, Journal& journal) {
                  if (!finder.has_faces() && (options.fast || options.tighten))
                    throw InvalidArgument(

@@ -102,13 +102,14 @@ Polylines find_line(const TraceCommandOptions& options, const LineFinder& finder
 }
 
 void run(const TraceCommandOptions& options) {
-  run_polyline("trace", options.input, options.output, options.line.source,
+  const bool is_one = options.lines.empty();
+  std::vector<SourceSpec> sources;
+  if (is_one) sources.push_back(*options.line.source);
+  for (const WantedLine& line : options.lines) sources.push_back(*line.source);
+  run_polyline("trace", naming(options.input, sources), options.output, options.line.source,
                [&](const LineFinder& finder, const Input& input, Journal& journal) {
-                 std::vector<SourceSpec> sources;
-                 if (options.lines.empty()) sources.push_back(*options.line.source);
-                 for (const WantedLine& line : options.lines) sources.push_back(*line.source);
-                 comment_on_positions(input, sources, options.lines.empty() ? "--source" : "--lines", journal);
-                 return options.lines.empty() ? find_line(options, finder, input) : find_lines(options, finder, input);
+                 comment_on_positions(input, sources, is_one ? "--source" : "--lines", journal);
+                 return is_one ? find_line(options, finder, input) : find_lines(options, finder, input);
                });
 }
 

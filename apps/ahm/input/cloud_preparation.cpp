@@ -62,18 +62,38 @@ std::vector<Vec3> taken(const std::vector<Vec3>& all, const std::vector<Index>& 
   return result;
 }
 
+std::optional<Index> row_of(const SourceSpec& spec) {
+  const auto* vertex = std::get_if<SourceVertex>(&spec);
+  return vertex ? std::optional(vertex->index) : std::nullopt;
+}
+
+/// Of every voxel the points that are named, or where none is the one that represents it. Ascending.
+/// @param rows  of the points, ascending
+std::vector<Index> representatives(const pcl_bridge::ReducedCloud& reduced, const std::vector<Index>& rows,
+                                   const std::vector<SourceSpec>& named) {
+  std::vector<Index> kept;
+  std::vector<bool> has_named(reduced.point_of_row.size());
+  for (const SourceSpec& spec : named) {
+    const std::optional<Index> row = row_of(spec);
+    const auto place = row ? std::lower_bound(rows.begin(), rows.end(), *row) : rows.end();
+    if (place == rows.end() || *place != *row) continue;  // refused where it is used
+    kept.push_back(static_cast<Index>(place - rows.begin()));
+    has_named[reduced.row_of_point[kept.back()]] = true;
+  }
+  for (std::size_t voxel = 0; voxel < has_named.size(); ++voxel)
+    if (!has_named[voxel]) kept.push_back(reduced.point_of_row[voxel]);
+  std::sort(kept.begin(), kept.end());
+  kept.erase(std::unique(kept.begin(), kept.end()), kept.end());
+  return kept;
+}
+
 void apply_voxel_grid(PreparedCloud& cloud, const io::Geometry& input, const InputOptions& options,
-                      std::optional<Index> source) try {
+                      const std::vector<SourceSpec>& named) try {
   const bool with_normals = !input.normals.empty() && options.normals != "estimate";
   const pcl_bridge::ReducedCloud reduced =
       pcl_functions().voxel_grid(taken(input.points, cloud.rows),
                                  with_normals ? taken(input.normals, cloud.rows) : std::vector<Vec3>(), *options.voxel);
-  std::vector<Index> kept = reduced.point_of_row;
-  if (source) {  // the source represents its voxel itself
-    const auto place = std::lower_bound(cloud.rows.begin(), cloud.rows.end(), *source) - cloud.rows.begin();
-    kept[reduced.row_of_point[place]] = static_cast<Index>(place);
-    std::sort(kept.begin(), kept.end());
-  }
+  std::vector<Index> kept = representatives(reduced, cloud.rows, named);
   cloud.voxel_replaced = static_cast<Index>(cloud.rows.size() - kept.size());
   for (Index& point : kept) point = cloud.rows[point];
   cloud.rows = std::move(kept);
@@ -104,10 +124,10 @@ PreparedCloud prepare_cloud(const io::Geometry& input, const InputOptions& optio
   require_normals(input, options);
   if (options.local && source) keep_surroundings(cloud, input, *options.local, *source);
 #ifdef AHM_WITH_PCL
-  const auto* vertex = source ? std::get_if<SourceVertex>(&*source) : nullptr;
-  const std::optional<Index> row = vertex ? std::optional(vertex->index) : std::nullopt;
-  if (options.voxel) apply_voxel_grid(cloud, input, options, row);
-  if (options.outliers) apply_outlier_removal(cloud, input, row);
+  std::vector<SourceSpec> named = options.named;
+  if (source) named.push_back(*source);
+  if (options.voxel) apply_voxel_grid(cloud, input, options, named);
+  if (options.outliers) apply_outlier_removal(cloud, input, source ? row_of(*source) : std::nullopt);
 #endif
   cloud.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return cloud;

@@ -22,7 +22,8 @@ struct PreparedCloud {
 };
 
 /// Applies the options that concern the input cloud, in the order non-finite, surroundings, voxel grid, outliers.
-/// @param source  where the map starts: a row represents its voxel, and is no outlier or the call is refused
+/// Rows that the command names (`options.named`, `source`) represent their voxels.
+/// @param source  where the map starts: a row is no outlier, or the call is refused
 /// @throws InvalidGeometry (non-finite points without --drop-nan; unusable normals), InvalidArgument
 PreparedCloud prepare_cloud(const io::Geometry& input, const InputOptions& options,
                             const std::optional<SourceSpec>& source);

@@ -117,6 +117,11 @@ Input open_input(const InputOptions& options, Journal& journal, const std::optio
   return open_input(read_input(options, journal), options, journal, source);
 }
 
+InputOptions naming(InputOptions options, const std::vector<SourceSpec>& points) {
+  options.named.insert(options.named.end(), points.begin(), points.end());
+  return options;
+}
+
 InputOptions around_source(const InputOptions& options, std::optional<double> radius) {
   InputOptions result = options;
   if (!options.around_source) return result;

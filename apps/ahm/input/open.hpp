@@ -52,6 +52,9 @@ Input open_input(io::Geometry geometry, const InputOptions& options, Journal& jo
 /// @throws InvalidGeometry where there are no points; what the reader and the backend throw
 Input open_input(const InputOptions& options, Journal& journal, const std::optional<SourceSpec>& source = {});
 
+/// The options of a command that names these points.
+InputOptions naming(InputOptions options, const std::vector<SourceSpec>& points);
+
 /// The same around the source, as a map of this radius needs it, where that is asked for.
 /// @throws InvalidArgument where there is no radius; as above
 Input open_around(const InputOptions& options, std::optional<double> radius, Journal& journal,
