@@ -160,7 +160,7 @@ void check(const TileOptions& options) {
 
 void check(const TileOptions& options, const io::PointStream& stream) {
   if (stream.has_normals() && !options.ignore_normals)
-    throw InvalidArgument("normals_given", "the file has normals, which tiles do not use yet",
+    throw InvalidArgument("normals_given", "the file has normals, which tiles do not use",
                           "set ignore_normals to have them estimated");
   if (stream.size() > most_points)
     throw ResourceExhausted("the file has " + std::to_string(stream.size()) + " points; at most 2^30 are supported");
