@@ -71,7 +71,9 @@ std::string as_text(const MethodAdvice& advice) {
   const std::string bend = fmt::format("half of the edges bend by at most {}, 5 % by at least {}",
                                        degrees(advice.median_bend), degrees(advice.sharp_bend));
   if (advice.exact_first) return fmt::format("--method exact for a few maps, heat for many ({})", bend);
-  return fmt::format("heat; --method exact with --radius, or where it has to follow every face ({})", bend);
+  return fmt::format(
+      "heat; --method exact, on large meshes with --radius or --tolerance, where it has to follow every face ({})",
+      bend);
 }
 
 }  // namespace ahm::app
