@@ -26,8 +26,8 @@ struct Estimate {
 /// Of the program itself.
 constexpr BuildCost base{.bytes = 17e6, .seconds = 0.01};
 
-Estimate estimate(const GraphSize& size, Strategy strategy, const Backend& graph, int order) {
-  const Cost cost = estimate_cost(size, strategy, order);
+Estimate estimate(const GraphSize& size, Strategy strategy, const Backend& graph, const HeatOptions& heat) {
+  const Cost cost = estimate_cost(size, strategy, heat.order, heat.threads);
   const double n = size.vertices;
   return {strategy, base.bytes + graph.cost.bytes * n + cost.bytes,
           base.seconds + graph.cost.seconds * n + cost.first_map_seconds};
@@ -80,7 +80,7 @@ void estimate_from_size(const LogmapOptions& options) {
   const GraphSize size{vertices_of(input, backend, options.input)};
   const HeatOptions heat = heat_options(options.solve);
   tell(size, std::string(backend.name), choose_strategy(size, heat), options.output.json,
-       [&](Strategy strategy) { return told(estimate(size, strategy, backend, heat.order)); });
+       [&](Strategy strategy) { return told(estimate(size, strategy, backend, heat)); });
 }
 
 /// Of the graph that the map would be made on; what it took until then is known.

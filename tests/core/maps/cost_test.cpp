@@ -57,6 +57,18 @@ TEST(Cost, OfOrderTwoIsThatOfItsTimes) {
   }
 }
 
+TEST(Cost, OfAMarchOnTwoThreadsIsThatOfTwoBands) {
+  constexpr GraphSize size{100'000, 2, TransportKind::rotation2};
+  for (int order : {1, 2}) {
+    const Cost one = estimate_cost(size, Strategy::march, order, 1),
+               two = estimate_cost(size, Strategy::march, order, 2);
+    EXPECT_GT(two.bytes, 1.1 * one.bytes);
+    EXPECT_LT(two.bytes, 1.8 * one.bytes);
+    EXPECT_EQ(two.first_map_seconds, one.first_map_seconds);
+  }
+  EXPECT_EQ(estimate_cost(size, Strategy::global, 1, 1).bytes, estimate_cost(size, Strategy::global, 1, 2).bytes);
+}
+
 TEST(Cost, OfOrderTwoCountsForTheChoice) {
   constexpr GraphSize size{200'000, 2, TransportKind::rotation2};
   const auto memory = static_cast<std::size_t>(1.5 * estimate_cost(size, Strategy::global).bytes);
@@ -118,15 +130,17 @@ TEST(CostOfGraph, GrowsWithTheRadiusUpToTheWholeGraph) {
 }
 
 TEST(CostOfGraph, IsThatOfTheSizeWhereASurfaceIsEven) {
-  for (Index n : {3000, 30000}) {
-    const CsrGraph graph = sphere(n);
-    for (Strategy strategy : {Strategy::global, Strategy::march})
-      for (int order : {1, 2}) {
-        const Cost by_size = estimate_cost({n, 2, graph.transport_kind()}, strategy, order),
-                   by_graph = estimate_cost(graph, Source::at_vertex(Vertex(0)), strategy, {.order = order});
-        EXPECT_NEAR(by_size.bytes / by_graph.bytes, 1, 0.5) << n << " " << to_string(strategy) << order;
-      }
-  }
+  for (unsigned threads : {1u, 2u})
+    for (Index n : {3000, 30000}) {
+      const CsrGraph graph = sphere(n);
+      for (Strategy strategy : {Strategy::global, Strategy::march})
+        for (int order : {1, 2}) {
+          const Cost by_size = estimate_cost({n, 2, graph.transport_kind()}, strategy, order, threads),
+                     by_graph = estimate_cost(graph, Source::at_vertex(Vertex(0)), strategy,
+                                              {.order = order, .threads = threads});
+          EXPECT_NEAR(by_size.bytes / by_graph.bytes, 1, 0.5) << n << " " << to_string(strategy) << order;
+        }
+    }
 }
 
 TEST(CostOfGraph, RefusesWhatCannotBeSolved) {

@@ -47,11 +47,12 @@ Cost global(double n, int d, double numbers, const Times& times) {
           share * times.count * 3e-8 * n * std::log2(n + 1)};
 }
 
-/// Linear, but for the band at hand, whose depth grows with the root of the diffusion time.
-Cost march(double n, int d, double numbers, const Times& times) {
+/// Linear, but for the band at hand, whose depth grows with the root of the diffusion time, and on two threads and more the next
+/// one's heat.
+Cost march(double n, int d, double numbers, const Times& times, bool looks_ahead) {
   const double seconds = times.count * (d > 2 ? 1.5e-6 : 3.3e-6) * numbers * n, depth = std::sqrt(times.longest);
   const double band = d > 2 ? 150 * numbers * std::min(n, depth * 60 * std::pow(n, 2.0 / 3.0))
-                            : 4e4 * numbers * std::min(depth * std::sqrt(n), n / 60);
+                            : (looks_ahead ? 7.2e4 : 4e4) * numbers * std::min(depth * std::sqrt(n), n / 60);
   return {8 * (numbers + 4 * d + 5) * n + (d > 2 ? 0 : 180 * n) + band, seconds, seconds};
 }
 
@@ -152,14 +153,14 @@ Cost estimate_cost(const TangentGraph& graph, const Source& source, Strategy str
   return result;
 }
 
-Cost estimate_cost(const GraphSize& size, Strategy strategy, int order) {
+Cost estimate_cost(const GraphSize& size, Strategy strategy, int order, unsigned threads) {
   if (strategy == Strategy::automatic) throw InvalidArgument("estimate_cost: strategy must be global or march");
   const double n = size.vertices;
   // Real numbers per entry of the operators A and B.
   const double numbers = 1.0 + static_cast<double>(TransportLayout{size.kind, size.dimension}.width());
   const Times times(n, size.dimension, order);
   return strategy == Strategy::global ? global(n, size.dimension, numbers, times)
-                                      : march(n, size.dimension, numbers, times);
+                                      : march(n, size.dimension, numbers, times, detail::thread_count(threads) > 1);
 }
 
 Strategy choose_strategy(const GraphSize& size, const HeatOptions& options) {

@@ -311,7 +311,7 @@ unsigned LogMapSolver::Impl::threads_for(unsigned requested) const {
   const double left = address_space_left();
   if (threads == 1 || std::isinf(left)) return threads;
   const GraphSize size{graph.size(), graph.dimension(), graph.transport_kind()};
-  return left < estimate_cost(size, strategy, options.order).bytes + threads * bytes_per_thread ? 1 : threads;
+  return left < estimate_cost(size, strategy, options.order, threads).bytes + threads * bytes_per_thread ? 1 : threads;
 }
 
 LogMapSolver::LogMapSolver(const TangentGraph& graph, const HeatOptions& options) {

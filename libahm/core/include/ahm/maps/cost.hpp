@@ -33,8 +33,9 @@ struct Cost {
 /// volumes (to a factor of two). Scans whose density varies may take twice that by march, long tubes half.
 /// @param strategy  global or march
 /// @param order     of the maps, 1 or 2: two times a map's diffusion times of order 1 and more (`HeatOptions::order`)
+/// @param threads   a march on two and more holds two bands; 0: one per core
 /// @throws InvalidArgument (automatic)
-Cost estimate_cost(const GraphSize& size, Strategy strategy, int order = 1);
+Cost estimate_cost(const GraphSize& size, Strategy strategy, int order = 1, unsigned threads = 0);
 
 /// From the graph: by the symbolic analysis of what is factored, which is the graph or the bands of a march; these are cut where
 /// the ways along edges from the source say. Good to a third on surfaces (docs/march.md), in a tenth of a map's time.
