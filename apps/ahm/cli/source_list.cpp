@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -23,13 +25,24 @@ std::vector<std::string> words_of(const std::string& text) {
   return words;
 }
 
+/// Holds letters as no number does.
+bool looks_like_a_name(const std::string& text) {
+  return !text.starts_with("face:") &&
+         std::ranges::any_of(text, [](unsigned char c) { return std::isalpha(c) != 0 && c != 'e' && c != 'E'; });
+}
+
 /// Hands every entry to `parse`: words of the text, or lines of the file it names.
 void for_each_entry(const std::string& text, const std::function<void(const std::string&)>& parse) {
   std::error_code ignored;
   if (std::filesystem::is_regular_file(text, ignored)) return for_each_line(text, text, "entries", parse);
   const std::vector<std::string> words = words_of(text);
   if (words.empty()) throw std::invalid_argument("the list is empty");
-  for (const std::string& word : words) parse(word);
+  try {
+    for (const std::string& word : words) parse(word);
+  } catch (const std::invalid_argument& e) {
+    if (words.size() > 1 || !looks_like_a_name(text)) throw;
+    throw std::invalid_argument(fmt::format("there is no file '{}', and {}", text, e.what()));
+  }
 }
 
 std::vector<std::string>& lists() {
@@ -45,6 +58,12 @@ SourceSpec parse_entry(const std::string& text) {
 }  // namespace
 
 const std::vector<std::string>& lists_read() { return lists(); }
+
+void require_file(const std::string& path, const std::string& what) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored))
+    throw std::invalid_argument(fmt::format("there is no file '{}'; write the name of one with {}", path, what));
+}
 
 void for_each_line(const std::string& path, const std::string& name, const std::string& what,
                    const std::function<void(const std::string&)>& parse) {

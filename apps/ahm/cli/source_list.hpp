@@ -12,6 +12,11 @@
 
 namespace ahm::app {
 
+/// For options that take a file alone.
+/// @param what  stands in it
+/// @throws std::invalid_argument where there is none of this name
+void require_file(const std::string& path, const std::string& what);
+
 /// Calls `parse` with every line of a file but empty ones and those that begin with #.
 /// @param name  of the file, for messages
 /// @param what  is listed, likewise: "entries"

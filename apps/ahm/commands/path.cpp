@@ -58,6 +58,7 @@ std::array<SourceSpec, 2> parse_pair(const std::string& line) {
 }
 
 std::vector<std::array<SourceSpec, 2>> read_pairs(const std::string& file) {
+  require_file(file, "two SPECs in every line");
   std::vector<std::array<SourceSpec, 2>> pairs;
   for_each_line(file, file, "pairs", [&](const std::string& line) { pairs.push_back(parse_pair(line)); });
   return pairs;

@@ -48,6 +48,7 @@ WantedLine parse_line(const std::string& text) {
 }
 
 std::vector<WantedLine> read_lines(const std::string& file) {
+  require_file(file, "SPEC X,Y,Z in every line");
   std::vector<WantedLine> lines;
   for_each_line(file, file, "lines", [&](const std::string& line) { lines.push_back(parse_line(line)); });
   return lines;
