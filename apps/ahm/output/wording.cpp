@@ -108,6 +108,7 @@ struct Advice {
 
 constexpr Advice advices[] = {
     {"unknown_bytes", "name it with --input-format"},
+    {"unknown_type", "if it is one of them, name it with --input-format"},
     {"duplicate_faces", "drop them with --drop-duplicates, or mend all there is with --repair"},
     {"repeated_vertices", "drop them with --drop-degenerate, or mend all there is with --repair"},
     {"small_faces", "drop them with --drop-degenerate, or mend all there is with --repair"},

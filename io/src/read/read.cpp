@@ -43,8 +43,10 @@ const Format& format_to_read(const std::filesystem::path& path, const std::strin
   }
   for (const auto& [name, reason] : refused)
     if (extension == name) fail(path, std::string(reason));
-  fail(path, "unknown file type " + in_quotes(extension) + "; known are " + list_of(extensions(Use::read)) +
-                 ", each also as .gz");
+  throw IoError("unknown_type",
+                "cannot read " + quoted_path(path) + ": unknown file type " + in_quotes(extension) + "; known are " +
+                    list_of(extensions(Use::read)) + ", each also as .gz",
+                "rename it, or name its format");
 }
 
 Geometry read_by_extension(const std::filesystem::path& path, std::string extension) {
