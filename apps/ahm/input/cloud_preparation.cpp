@@ -52,6 +52,11 @@ void keep_surroundings(PreparedCloud& cloud, const io::Geometry& input, double r
   cloud.beyond = static_cast<Index>(cloud.rows.size() - near.size());
   cloud.rows.clear();
   for (const Row row : near) cloud.rows.push_back(row.index);
+  if (near.size() < 3)
+    throw InvalidArgument(fmt::format(
+        "--local: only {} within {:.6g} of the source {}, a surface takes 3; reach farther, or leave it out",
+        near.size() == 1 ? "1 point lies" : fmt::format("{} points lie", near.size()), 1.5 * radius,
+        to_string(source)));
 }
 
 #ifdef AHM_WITH_PCL
