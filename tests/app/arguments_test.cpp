@@ -80,6 +80,31 @@ TEST_F(Arguments, UnknownOptionsAndMissingOnesAreUsageErrors) {
   expect_refused(run({}), 2, "subcommand");
 }
 
+TEST_F(Arguments, WrongValuesAreWrongCommandLines) {
+  expect_refused(with({"--view", folder / "map.jpg"}), 2, "--view");
+  expect_refused(with({"--local"}), 2, "--local: needs --radius");
+  expect_refused(with({"--method", "exact", "--tolerance", "0.5"}), 2, "--tolerance");
+  expect_refused(with({"--sources", "nowhere.txt"}), 2, "--sources: there is no file 'nowhere.txt'");
+  const auto refused = [&](const std::string& command, const std::string& option, const std::string& text) {
+    const Words words{command, input, option, text, "-o", folder / "lines.csv"};
+    expect_refused(run(words), 2, option + ": there is no file '" + text + "'");
+  };
+  refused("path", "--pairs", "1 2");
+  refused("trace", "--lines", "0 1,0,0");
+}
+
+TEST_F(Arguments, OnePointIsNoSurroundings) {
+  expect_refused(with({"--radius", "1e-9", "--local"}), 1, "only 1 point lies within 1.5e-09 of the source 0");
+}
+
+TEST(UnknownFileType, MayBeNamed) {
+  Folder folder;
+  const Outcome outcome = run({"info", folder.write("cloud.dat", xyz(sphere(10)))});
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_NE(outcome.err.find("unknown file type '.dat'"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("--input-format"), std::string::npos) << outcome.err;
+}
+
 TEST_F(Arguments, OutputsAreCheckedBeforeTheWork) {
   const auto refused = [&](const Words& more, const std::string& culprit) {
     Words words = {"logmap", input, "--source", "0"};
@@ -93,7 +118,6 @@ TEST_F(Arguments, OutputsAreCheckedBeforeTheWork) {
   refused({"-o", input}, "cloud.xyz");
   refused({"-o", folder / "map.csv", "--json", input}, "--json");
   refused({"-o", folder / "map.csv", "--json", folder / "./map.csv"}, "same file");
-  refused({"-o", folder / "map.csv", "--view", folder / "map.jpg"}, ".jpg");
   refused({"-o", folder / "map.csv", "--view", folder / "nowhere/map.png"}, "nowhere");
   EXPECT_EQ(read_text(input), xyz(sphere(200)));
 }

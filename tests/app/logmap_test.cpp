@@ -160,7 +160,7 @@ TEST(Logmap, NeedsARadiusToBeLocal) {
   Folder folder;
   const Outcome outcome =
       run({"logmap", folder.write("plane.xyz", xyz(plane(10))), "-s", "0", "-o", folder / "map.csv", "--local"});
-  EXPECT_EQ(outcome.status, 1);
+  EXPECT_EQ(outcome.status, 2);
   EXPECT_NE(outcome.err.find("--radius"), std::string::npos) << outcome.err;
 }
 

@@ -254,7 +254,7 @@ TEST(StrokeCommand, RefusesNonsenseAndLeavesNothing) {
   expect({"--curve", "face:0:1,0,0 face:1:1,0,0"}, 1, "--curve face");
   expect({"--curve", "0.1,0.1,0 0.9,0.1,0 0.1,0.1,0"}, 1, "turns back");
   expect({"--curve", "0,0,0 1e9,0,0"}, 1, "units");
-  expect({"--curve", "0,0,0 1,0,0", "--view", folder / "stroke.jpg"}, 1, ".jpg");
+  expect({"--curve", "0,0,0 1,0,0", "--view", folder / "stroke.jpg"}, 2, "--view");
   expect({"--curve", "0,0,0 1,0,0", "-o", folder / "nowhere/a.csv"}, 2, "--output");
   EXPECT_EQ(folder.files(), (Words{"bad.txt", "empty.txt", "plane.xyz"}));
 }

@@ -9,6 +9,7 @@
 #include "cli/numbers.hpp"
 #include "cli/source_list.hpp"
 #include "input/backend.hpp"
+#include "output/output_names.hpp"
 #include "output/picture_options.hpp"
 
 namespace ahm::app {
@@ -153,8 +154,8 @@ CLI::Option* add_normals(CLI::App& app, InputOptions& o) {
 void add_local(CLI::App& app, InputOptions& o, const std::string& radius) {
   app.add_flag("--local", o.around_source,
                radius +
-                   ": build the graph of the surroundings of the source only, fast on huge\n"
-                   "scans and meshes; the diffusion time is then that of the surroundings, and the noise\n"
+                   ": build the graph of the surroundings of the source only,\n"
+                   "fast on huge scans and meshes; the diffusion time is then that of the surroundings, and the noise\n"
                    "of a cloud, which decides what is connected");
 }
 
@@ -162,8 +163,8 @@ void add_mesh_options(CLI::App& app, InputOptions& o) {
   const char* group = "Triangle meshes";
   app.add_flag_callback(
          "--no-flips", [&o] { o.flips = false; },
-         "Keep the edges as they are instead of flipping to intrinsic Delaunay, for comparison: distances are those of "
-         "heat, not around holes, and quality tells less")
+         "Keep the edges as they are instead of flipping to intrinsic Delaunay, for comparison: distances are\n"
+         "those of heat, not around holes, and quality tells less")
       ->group(group);
   add_non_manifold(app, o)->group(group);
   add_parsed(app, "--discretization", o.discretization, choice({"auto", "polygons", "refined"}), "NAME",
@@ -215,7 +216,12 @@ CLI::Option* add_method(CLI::App& app, SolveOptions& o) {
 }
 
 CLI::Option* add_tolerance(CLI::App& app, SolveOptions& o) {
-  return add_parsed(app, "--tolerance", o.tolerance, parse_positive, "R",
+  const auto parse = [](const std::string& text) {
+    const double value = parse_positive(text);
+    if (value > 0.1) throw std::invalid_argument(fmt::format("'{}' is greater than 0.1", text));
+    return value;
+  };
+  return add_parsed(app, "--tolerance", o.tolerance, parse, "R",
                     "With --method exact: distances may be off by R times their length, at most 0.1; nearly linear\n"
                     "time, many times less on large smooth meshes. Default: exact");
 }
@@ -285,7 +291,13 @@ CLI::Option* add_json(CLI::App& app, OutputOptions& o) {
 }
 
 CLI::Option* add_view(CLI::App& app, OutputOptions& o) {
-  return add_parsed(app, "--view", o.view, non_empty, "FILE", "Draw the result: .png or .html");
+  const auto parse = [](const std::string& text) {
+    const std::string ending = io::lower_extension(text);
+    if (!is_pattern(non_empty(text)) && ending != ".png" && ending != ".html" && ending != ".htm")
+      throw std::invalid_argument(fmt::format("'{}' must end in .png or .html", text));
+    return text;
+  };
+  return add_parsed(app, "--view", o.view, parse, "FILE", "Draw the result: .png or .html");
 }
 
 void add_verbosity(CLI::App& app, Verbosity& verbosity, const std::string& group) {
