@@ -30,6 +30,8 @@ constexpr const char* main_footer =
     "of the shortest path that leads to it from the source. By heat, the default, coordinates behind holes\n"
     "go straight on, as in the plane; --method exact takes the way around.\n"
     "\n"
+    "ahm manual [SUBCOMMAND] prints a manual page, ahm completion bash|zsh|fish a script for the shell.\n"
+    "\n"
     "Exit status: 0 success, 1 the work failed, 2 the command line is wrong, 129, 130 or 143 interrupted.";
 
 std::function<void()> print_later(std::string text) {

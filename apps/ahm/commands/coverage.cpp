@@ -23,6 +23,7 @@ constexpr const char* coverage_footer =
     "SPEC is 123, x,y,z or face:7:.2,.3,.5 as in 'ahm logmap'.\n"
     "OUTPUT is .csv, .jsonl, or .ply and .vtp with edges between consecutive points; one row per point, in order of "
     "travel:\n"
+    "  index         of the point, from 0 (.csv, .jsonl)\n"
     "  piece         a tool lifts between pieces     line          of the raster\n"
     "  x,y,z         on the surface                  nx,ny,nz      its normal\n"
     "  hx,hy,hz      heading, unit, in the surface   u,v           coordinates\n"

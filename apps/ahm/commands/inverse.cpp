@@ -22,6 +22,7 @@ constexpr const char* inverse_footer =
     "POINTS is a list 'u,v u,v ...' or a file with one pair per line, in the unit of INPUT.\n"
     "OUTPUT is .csv, .jsonl, .ply or .vtp; one row per pair, nan where the map is not to be trusted or has no such "
     "point:\n"
+    "  index         of the pair, from 0 (.csv, .jsonl)\n"
     "  u,v           as given                        x,y,z         on the surface\n"
     "  nx,ny,nz      its normal, on the source's side\n"
     "  hx,hy,hz      heading of u there: unit, in the surface\n"
