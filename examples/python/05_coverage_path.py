@@ -26,7 +26,8 @@ def main():
     m = ahm.log_map(mesh, [0.0, 0.0, 0.0], u_axis=[1, 0, 0], order=2)
     path = ahm.coverage(m, radius=0.8, spacing=0.05)
     length = sum(np.linalg.norm(np.diff(path.position[path.piece == k], axis=0), axis=1).sum() for k in range(path.pieces))
-    print(f"{len(path.uv)} of {path.planned} points in {path.pieces} pieces, {length:.2f} long")
+    bends = np.count_nonzero(path.between)
+    print(f"{len(path.uv) - bends} of {path.planned} points, and {bends} where the way bends, in {path.pieces} pieces, {length:.2f} long")
     apart = path.spacing[np.isfinite(path.spacing)]
     print(f"lines are {apart.min():.4f} to {apart.max():.4f} apart; 0.05 was asked for")
     if options.save:
