@@ -165,6 +165,7 @@ void add_commands(CLI::App& app, Arguments& a) {
 int run(const std::vector<std::string>& words) {
   Arguments a;
   CLI::App app("Maps over tiles (ahm-tiles) by the ranks of an MPI run. What follows -- are options of PETSc.", name);
+  app.set_version_flag("--version", name + " " AHM_VERSION, "Print the version");
   app.require_subcommand(1);
   add_commands(app, a);
   a.local.options.maps.heat.threads = 1;

@@ -230,6 +230,7 @@ std::string told(const Error& error) {
 int run(int argc, char** argv) {
   Arguments a;
   CLI::App app("Clouds that do not fit into memory: tiles of their graph, and log maps over them.", name);
+  app.set_version_flag("--version", name + " " AHM_VERSION, "Print the version");
   app.require_subcommand(1);
   add_building(app, a);
   add_maps(app, a);
