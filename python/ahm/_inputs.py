@@ -15,7 +15,8 @@ from ._surfaces import Surface
 
 
 def read(path: Union[str, "os.PathLike[str]"], kind: Optional[str] = None, **options: Any) -> Surface:
-    """The surface in a file: .ply, .off, .obj, .stl, .pcd, .las, .xyz, .pts, .txt, .csv, .glb or .gltf, each also as .gz.
+    """The surface in a file: .ply, .pcd, .las, .xyz, .txt, .asc, .csv, .pts, .off, .obj, .stl, .glb, .gltf, .vtp or .vtk, each also
+    as .gz.
 
     path : its name: str, bytes or what has `__fspath__`.
     kind : "triangles", "polygons" or "cloud"; None: as the file has it. A mesh read as a cloud keeps its normals.
