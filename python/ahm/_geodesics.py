@@ -23,6 +23,9 @@ class Path(NamedTuple):
     length: float  #: world units
     complete: bool  #: False of a trace that ended at the boundary
 
+    def __repr__(self) -> str:
+        return f"<ahm.Path: {len(self.points)} points, {self.length:.6g} long{'' if self.complete else ', to the boundary'}>"
+
 
 def geodesic_path(surface: Any, stops: Any, to: Any = None, *, closed: bool = False, fast: bool = False, taut: bool = False,
                   progress: Progress = None) -> Optional[Path]:

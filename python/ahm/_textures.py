@@ -30,6 +30,9 @@ class Decal(NamedTuple):
     uv: np.ndarray  #: (p, 2) in [0, 1]: (0, 0) the lower left corner of the image
     hidden: int  #: triangles left out, since another sheet of the map lies over the same place
 
+    def __repr__(self) -> str:
+        return f"<ahm.Decal: {len(self.points)} points, {len(self.faces)} faces>"
+
 
 def decal(map: Union[LogMap, InverseMap], width: float, height: float, *, angle: float = 0.0, mirrored: bool = False,
           radius: Optional[float] = None, lift: float = 0.0) -> Decal:
@@ -85,6 +88,10 @@ class Coverage(NamedTuple):
     pieces: int
     planned: int  #: points of the pattern in the plane; those missing lie outside of the valid region
 
+    def __repr__(self) -> str:
+        found = len(self.between) - int(np.count_nonzero(self.between))
+        return f"<ahm.Coverage: {len(self.uv)} points, {found} of {self.planned} of the pattern, pieces: {self.pieces}>"
+
 
 def coverage(map: Union[LogMap, InverseMap], radius: float, spacing: float, *, pattern: str = "raster",
              step: Optional[float] = None, angle: float = 0.0) -> Coverage:
@@ -119,6 +126,9 @@ class Atlas(NamedTuple):
     sources: np.ndarray  #: (charts,) int32 row of every chart's source; -1: a vertex that the input does not have
     distortion: Dict[str, float]  #: of D = max(1 / sigma1, sigma2): mean, median, percentile_95, largest; shares collapsed_area
     #: (D > 1e6, not in the mean), flipped, flipped_area
+
+    def __repr__(self) -> str:
+        return f"<ahm.Atlas: charts: {len(self.sources)}, {len(self.points)} points, {len(self.faces)} faces>"
 
 
 def atlas(solver: Any, sources: Any = None, *, charts: int = 20, max_distortion: Optional[float] = None,

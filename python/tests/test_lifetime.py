@@ -326,3 +326,7 @@ def test_reprs_tell_what_things_are(sphere):
     assert repr(ahm.Grid((3, 4, 5))) == "<ahm.Grid: 3 x 4 x 5 vertices>"
     assert repr(ahm.potpourri3d.GeodesicTracer(sphere.points, sphere.faces)) == f"<ahm.potpourri3d.GeodesicTracer: on {sphere!r}>"
     assert "LocalMaps: 642 sources" in repr(ahm.local_maps(sphere, 0.2))
+    m = ahm.log_map(sphere, 4)
+    results = ahm.geodesic_path(sphere, 4, 40), ahm.coverage(m, 0.5, 0.1), ahm.decal(m, 0.4, 0.3), ahm.atlas(sphere, charts=4)
+    for result, name in zip(results, ("Path", "Coverage", "Decal", "Atlas")):
+        assert repr(result).startswith(f"<ahm.{name}: ") and len(repr(result)) < 100, repr(result)
