@@ -40,6 +40,8 @@ class Places:
                             f"not {arguments.describe(value)}")
         else:
             given = arguments.array(value, self.here())
+            if self.name == "source" and given.dtype.kind in "iu" and given.shape != (self.surface._position_width,):
+                raise ValueError(f"source: one row or one position is needed, not shape {given.shape}; log_maps takes several")
             if given.ndim != 1:
                 raise ValueError(f"{self.here()}: a position has {self.surface._position_width} numbers, not shape {given.shape}")
             self._add(POSITION, -1, positions(given[None], self.where, len(self.kinds), self.surface)[0])

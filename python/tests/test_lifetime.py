@@ -330,3 +330,9 @@ def test_reprs_tell_what_things_are(sphere):
     results = ahm.geodesic_path(sphere, 4, 40), ahm.coverage(m, 0.5, 0.1), ahm.decal(m, 0.4, 0.3), ahm.atlas(sphere, charts=4)
     for result, name in zip(results, ("Path", "Coverage", "Decal", "Atlas")):
         assert repr(result).startswith(f"<ahm.{name}: ") and len(repr(result)) < 100, repr(result)
+
+
+def test_log_map_says_what_takes_several_sources(sphere):
+    for several in ([3], [3, 4], np.array([[3, 4]])):
+        with pytest.raises(ValueError, match="log_maps takes several"):
+            ahm.log_map(sphere, several)
