@@ -85,7 +85,8 @@ class Surface:
 
     @property
     def warnings(self) -> List[Dict[str, Any]]:
-        """What one should know: dictionaries with `id`, `numbers`, `rows` and `name`, as listed in the C++ headers."""
+        """What one should know: dictionaries with `text`, a sentence, and `id`, `numbers`, `rows` and `name`, as listed in the C++
+        headers."""
         return self._body.warnings()
 
     @property

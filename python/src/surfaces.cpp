@@ -11,6 +11,7 @@
 #include "body.hpp"
 #include "compute.hpp"
 #include "options.hpp"
+#include "output/warning_text.hpp"
 #include "parts.hpp"
 
 namespace ahm::python {
@@ -256,7 +257,8 @@ py::dict warning(const Warning& warning) {
   py::list rows, values;
   for (Row row : warning.rows) rows.append(row.index);
   for (double x : warning.numbers) values.append(x);
-  return py::dict("id"_a = std::string(warning.id), "numbers"_a = values, "rows"_a = rows, "name"_a = warning.name);
+  return py::dict("id"_a = std::string(warning.id), "numbers"_a = values, "rows"_a = rows, "name"_a = warning.name,
+                  "text"_a = app::worded(warning));
 }
 
 void add_surfaces(py::module_& module) {

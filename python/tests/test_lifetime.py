@@ -332,6 +332,12 @@ def test_reprs_tell_what_things_are(sphere):
         assert repr(result).startswith(f"<ahm.{name}: ") and len(repr(result)) < 100, repr(result)
 
 
+def test_warnings_have_a_sentence(sphere):
+    points = np.concatenate([sphere.points, sphere.points[:1]])
+    (found,) = [w for w in ahm.PointCloud(points).warnings if w["id"] == "duplicates"]
+    assert found["text"] == "1 duplicate point was merged"
+
+
 def test_log_map_says_what_takes_several_sources(sphere):
     for several in ([3], [3, 4], np.array([[3, 4]])):
         with pytest.raises(ValueError, match="log_maps takes several"):

@@ -7,11 +7,9 @@
 
 #include "ahm/error.hpp"
 #include "ahm/report.hpp"
+#include "output/warning_text.hpp"
 
 namespace ahm::app {
-
-/// A sentence.
-std::string worded(const Warning& warning);
 
 /// An error's message, with the options of the program as its remedy where the libraries name one of their own.
 std::string worded(const Error& error);

@@ -1,0 +1,14 @@
+/// \file
+/// The warnings of the libraries as sentences, for the programs and the Python package.
+#pragma once
+
+#include <string>
+
+#include "ahm/report.hpp"
+
+namespace ahm::app {
+
+/// A sentence.
+std::string worded(const Warning& warning);
+
+}  // namespace ahm::app
