@@ -16,6 +16,7 @@
 #include "commands/subcommand.hpp"
 #include "output/summary.hpp"
 #include "output/texture_output.hpp"
+#include "output/wording.hpp"
 
 namespace ahm::app {
 namespace {
@@ -153,11 +154,12 @@ void report(const AtlasCommandOptions& options, const Input& input, const Made& 
       {"size", packed.size}, {"margin", packed.margin}, {"texels_per_unit", packed.scale}, {"filled", packed.filled}};
   const DistortionSummary& d = made.distortion.all;
   const std::string text = fmt::format(
-      "{} charts around {} sources, {} faces\n"
+      "{} around {}, {}\n"
       "distortion: mean {:.4g}, median {:.4g}, 95 % of the area below {:.4g}{}; flipped: {:.3g} % of the triangles, "
       "{:.3g} % of the area\n"
       "texture: {} x {}, {:.1f} % filled, {:.4g} texels per unit of length\n",
-      made.atlas.charts.size(), made.atlas.sources.size(), made.faces, d.mean, d.median, d.percentile_95,
+      counted(made.atlas.charts.size(), "chart"), counted(made.atlas.sources.size(), "source"),
+      counted(made.faces, "face"), d.mean, d.median, d.percentile_95,
       d.collapsed_area > 0 ? fmt::format(", {:.2g} % collapses", 100 * d.collapsed_area) : "", 100 * d.flipped,
       100 * d.flipped_area, packed.size, packed.size, 100 * packed.filled, packed.scale);
   deliver(std::move(j), text, options.output, journal);

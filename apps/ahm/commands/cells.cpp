@@ -16,6 +16,7 @@
 #include "commands/subcommand.hpp"
 #include "output/results.hpp"
 #include "output/summary.hpp"
+#include "output/wording.hpp"
 
 namespace ahm::app {
 namespace {
@@ -147,8 +148,9 @@ void report(const CellsOptions& options, const Input& input, const std::vector<I
                             {"area", cells[k].area}});
   const std::size_t shown = std::min<std::size_t>(rows.size(), 12);
   const std::string text =
-      fmt::format("{} cells around vertices {}{}\nareas {:.4g} to {:.4g}, farthest point {:.6g} from its source\n",
-                  rows.size(), fmt::join(rows.begin(), rows.begin() + static_cast<std::ptrdiff_t>(shown), " "),
+      fmt::format("{} around {} {}{}\nareas {:.4g} to {:.4g}, farthest point {:.6g} from its source\n",
+                  counted(rows.size(), "cell"), rows.size() == 1 ? "vertex" : "vertices",
+                  fmt::join(rows.begin(), rows.begin() + static_cast<std::ptrdiff_t>(shown), " "),
                   shown < rows.size() ? " ..." : "", smallest->area, largest->area, farthest);
   deliver(std::move(j), text, options.output, journal);
 }

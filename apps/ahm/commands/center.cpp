@@ -13,6 +13,7 @@
 #include "input/open.hpp"
 #include "output/output_paths.hpp"
 #include "output/summary.hpp"
+#include "output/wording.hpp"
 
 namespace ahm::app {
 namespace {
@@ -73,10 +74,11 @@ void report(const CenterCommandOptions& options, const Input& input, const Cente
                  {"converged", center.converged}};
   const Vec3 &v = vertex, &p = position;
   const std::string text = fmt::format(
-      "{} of {} points at {:.9g} {:.9g} {:.9g}\nnearest vertex {} at {:.9g} {:.9g} {:.9g}\n{} {:.6g}; maps used: {}, "
+      "{} of {} at {:.9g} {:.9g} {:.9g}\nnearest vertex {} at {:.9g} {:.9g} {:.9g}\n{} {:.6g}; maps used: {}, "
       "{}\n",
-      name, options.points.size(), p[0], p[1], p[2], row ? fmt::format("{}", row->index) : "(inside a face)", v[0],
-      v[1], v[2], options.median ? "mean distance" : "root mean squared distance", center.spread, center.maps,
+      name, counted(options.points.size(), "point"), p[0], p[1], p[2],
+      row ? fmt::format("{}", row->index) : "(inside a face)", v[0], v[1], v[2],
+      options.median ? "mean distance" : "root mean squared distance", center.spread, center.maps,
       center.converged ? "converged" : "not converged");
   deliver(std::move(j), text, options.output, journal);
   if (options.output.verbosity == Verbosity::quiet && options.output.json != "-")

@@ -15,6 +15,7 @@
 #include "output/output_paths.hpp"
 #include "output/results.hpp"
 #include "output/summary.hpp"
+#include "output/wording.hpp"
 
 namespace ahm::app {
 namespace {
@@ -133,10 +134,10 @@ void report(const CoverageCommandOptions& options, const Input& input, const Pla
   j["trusted_area"] = trusted;
   j["spacing_in_space"] = {{"percentile_5", amount.spacing_low}, {"percentile_95", amount.spacing_high}};
   deliver(j,
-          fmt::format("{}: {} points in {} pieces, {:.4g} long, lines {:.4g} to {:.4g} apart in space\n"
+          fmt::format("{}: {} in {}, {:.4g} long, lines {:.4g} to {:.4g} apart in space\n"
                       "on the surface: {:.1f} % of the pattern; trusted: {:.1f} % of the area within the radius\n",
-                      pattern, path.points.size(), path.pieces, amount.length, amount.spacing_low, amount.spacing_high,
-                      100 * amount.covered, 100 * trusted),
+                      pattern, counted(path.points.size(), "point"), counted(path.pieces, "piece"), amount.length,
+                      amount.spacing_low, amount.spacing_high, 100 * amount.covered, 100 * trusted),
           options.output, journal);
 }
 

@@ -16,6 +16,7 @@
 #include "output/output_paths.hpp"
 #include "output/results.hpp"
 #include "output/summary.hpp"
+#include "output/wording.hpp"
 
 namespace ahm::app {
 namespace {
@@ -163,8 +164,8 @@ void run(const LocalMapsOptions& options) {
   j["sources"] = wanted.size();
   j["entries"] = maps.neighbors.size();
   j["mean_neighbours"] = mean;
-  deliver(j, fmt::format("{} neighbourhoods of {:.1f} vertices on average\n", wanted.size(), mean), options.output,
-          journal);
+  deliver(j, fmt::format("{} of {:.1f} vertices on average\n", counted(wanted.size(), "neighbourhood"), mean),
+          options.output, journal);
 }
 
 void offer(CLI::App& app, LocalMapsOptions& o) {

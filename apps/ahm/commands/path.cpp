@@ -9,6 +9,7 @@
 #include "cli/source_list.hpp"
 #include "commands/polyline.hpp"
 #include "commands/subcommand.hpp"
+#include "output/wording.hpp"
 
 namespace ahm::app {
 namespace {
@@ -103,8 +104,8 @@ void go_through(const PathCommandOptions& options, const std::vector<SurfacePoin
     length = curve.length;
   }
   path.add(curve.points);
-  path.text = fmt::format("a {} of {} points, {:.6g} long\n", options.tighten ? "closed geodesic" : "path",
-                          path.points.size(), length);
+  path.text = fmt::format("a {} of {}, {:.6g} long\n", options.tighten ? "closed geodesic" : "path",
+                          counted(path.points.size(), "point"), length);
   path.json["points"] = path.points.size();
   path.json["length"] = length;
   if (!options.tighten) path.json["lengths"] = lengths;
@@ -157,7 +158,8 @@ Polylines find_pairs(const PathCommandOptions& options, const LineFinder& finder
   if (found < paths.size())
     journal.add_warning(fmt::format("{} of {} pairs are not connected by the surface and have no path",
                                     paths.size() - found, paths.size()));
-  result.text = fmt::format("{} paths of {} points, {:.6g} long together\n", found, result.points.size(), length);
+  result.text = fmt::format("{} of {}, {:.6g} long together\n", counted(found, "path"),
+                            counted(result.points.size(), "point"), length);
   return result;
 }
 

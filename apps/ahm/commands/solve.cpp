@@ -5,6 +5,7 @@
 #include "ahm/error.hpp"
 #include "ahm/maps/cost.hpp"
 #include "cli/system_info.hpp"
+#include "output/wording.hpp"
 
 namespace ahm::app {
 namespace {
@@ -24,7 +25,7 @@ void check_memory(const SolveOptions& options, const TangentGraph& graph) {
 std::string strategy_as_text(const LogMap& map) {
   const MarchStatistics& m = map.march();
   if (map.strategy() == Strategy::global) return "global";
-  return fmt::format("march: {} bands, the largest of {} vertices", m.bands, m.largest_band);
+  return fmt::format("march: {}, the largest of {} vertices", counted(m.bands, "band"), m.largest_band);
 }
 
 }  // namespace

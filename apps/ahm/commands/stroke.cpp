@@ -141,10 +141,10 @@ void report(const StrokeCommandOptions& options, const Input& input, const Surfa
   j["largest_distance"] = farthest;
   j["untrusted"] = untrusted(quality);
   const std::string text = fmt::format(
-      "{} curve of {} pieces, {:.6g} long, off the surface by {:.2g} at most\n{} of {} vertices mapped, up to {:.6g} "
+      "{} curve of {}, {:.6g} long, off the surface by {:.2g} at most\n{} of {} vertices mapped, up to {:.6g} "
       "from "
       "the curve\n{}\n",
-      options.shape.closed ? "closed" : "open", curve.samples.size(), curve.length, curve.gap, mapped,
+      options.shape.closed ? "closed" : "open", counted(curve.samples.size(), "piece"), curve.length, curve.gap, mapped,
       rows.status.size(), farthest, quality_as_text(quality));
   deliver(std::move(j), text, options.output, journal);
 }

@@ -8,6 +8,7 @@
 #include "cli/source_list.hpp"
 #include "commands/polyline.hpp"
 #include "commands/subcommand.hpp"
+#include "output/wording.hpp"
 
 namespace ahm::app {
 namespace {
@@ -82,8 +83,9 @@ Polylines find_lines(const TraceCommandOptions& options, const LineFinder& finde
     length += line.length;
     at_boundary += line.complete ? 0 : 1;
   }
-  result.text = fmt::format("{} lines of {} points, {:.6g} long together; {} end at the boundary\n",
-                            options.lines.size(), result.points.size(), length, at_boundary);
+  result.text = fmt::format("{} of {}, {:.6g} long together; {} at the boundary\n",
+                            counted(options.lines.size(), "line"), counted(result.points.size(), "point"), length,
+                            at_boundary == 1 ? "1 ends" : fmt::format("{} end", at_boundary));
   return result;
 }
 
@@ -97,7 +99,7 @@ Polylines find_line(const TraceCommandOptions& options, const LineFinder& finder
   result.json["end"] = {{"at", line.complete ? "length" : "boundary"}, {"position", points.back()}};
   result.json["points"] = points.size();
   result.json["length"] = line.length;
-  result.text = fmt::format("a line of {} points, {:.6g} long{}\n", points.size(), line.length,
+  result.text = fmt::format("a line of {}, {:.6g} long{}\n", counted(points.size(), "point"), line.length,
                             line.complete ? "" : ", where it meets the boundary");
   return result;
 }

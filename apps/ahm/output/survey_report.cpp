@@ -192,8 +192,8 @@ std::string as_text(const Survey& s, const std::string& path) {
         line("unit", guess.unit.empty() ? "the file does not tell" : fmt::format("{}? ({})", guess.unit, guess.reason));
   }
   if (s.spacing)
-    text += line("spacing", fmt::format("smallest {:.4g}, median {:.4g}, largest {:.4g} (at {} points)",
-                                        s.spacing->smallest, s.spacing->median, s.spacing->largest, s.spacing->count));
+    text += line("spacing", fmt::format("smallest {:.4g}, median {:.4g}, largest {:.4g} (at {})", s.spacing->smallest,
+                                        s.spacing->median, s.spacing->largest, counted(s.spacing->count, "point")));
   if (s.mesh) text += mesh_text(s);
   if (s.surface) text += line("components", parts_text(s));
   if (s.surface) text += line("method", as_text(s.surface->method));

@@ -60,6 +60,10 @@ std::string of_one(std::string text) {
 
 }  // namespace
 
+std::string counted(std::size_t count, std::string_view noun) {
+  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
+}
+
 std::string worded(const Error& error) {
   for (const auto& [fault, remedy] : advices)
     if (error.fault() == fault) return of_one(fmt::format("{}; {}", error.problem(), remedy));

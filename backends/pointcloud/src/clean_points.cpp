@@ -175,8 +175,8 @@ CleanPoints clean_points(std::span<const Vec3> input, const std::function<Index(
     clean.clean_of_input[kept[position]] = static_cast<Index>(clean.points.size()) - 1;
   }
   if (clean.points.size() < 3)
-    throw InvalidGeometry("the cloud has " + std::to_string(clean.points.size()) +
-                          " distinct finite points; at least 3 are needed");
+    throw InvalidGeometry("the cloud has " + std::to_string(clean.points.size()) + " distinct finite " +
+                          (clean.points.size() == 1 ? "point" : "points") + "; at least 3 are needed");
   return clean;
 }
 

@@ -29,7 +29,8 @@ constexpr double thick_share = 0.15;
 
 void check_arguments(std::span<const Vec3> points, const CloudOptions& options) {
   if (points.size() < 3)
-    throw InvalidGeometry("the cloud has " + std::to_string(points.size()) + " points; at least 3 are needed");
+    throw InvalidGeometry("the cloud has " + std::to_string(points.size()) +
+                          (points.size() == 1 ? " point" : " points") + "; at least 3 are needed");
   if (options.k && *options.k < 3)
     throw InvalidArgument("k is " + std::to_string(*options.k) + "; it must be at least 3 (default 30)");
   if (!(options.max_edge_ratio >= 1))

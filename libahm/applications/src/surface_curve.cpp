@@ -191,9 +191,10 @@ class CurveCutter {
     if (closed_ && curve_.points.size() > 1) curve_.points.pop_back();  // the first again
     const std::size_t needed = closed_ ? 3 : 2;
     if (const std::size_t points = pieces_.size() + (closed_ ? 0 : 1); points < needed)
-      throw InvalidArgument("curve_too_short",
-                            "the curve has " + std::to_string(points) + " different points on the surface",
-                            "give at least " + std::to_string(needed) + (closed_ ? " for a closed curve" : ""));
+      throw InvalidArgument(
+          "curve_too_short",
+          "the curve has " + std::to_string(points) + " different point" + (points == 1 ? "" : "s") + " on the surface",
+          "give at least " + std::to_string(needed) + (closed_ ? " for a closed curve" : ""));
     return std::move(pieces_);
   }
 
