@@ -84,6 +84,13 @@ TEST_F(ReadPcd, RefusesCompressedPadding) {
                  {"padding"});
 }
 
+// What follows is no comment: PCL would leave out the point.
+TEST_F(ReadPcd, RefusesTextWithAZeroByte) {
+  const std::string text = header("x y z", "4 4 4", "F F F", "1 1 1", 2, "ascii");
+  expect_refused("z.pcd", text + "0 1 2 " + std::string(3, '\0') + "\n3 4 5\n", {"line"});
+  expect_refused("z.pcd", text + std::string(3, '\0') + "\n3 4 5\n", {"line"});
+}
+
 TEST_F(ReadPcd, ReadsAnEmptyCloud) { EXPECT_TRUE(read_bytes("e.pcd", doubles(0, "ascii")).points.empty()); }
 
 TEST_F(ReadPcd, ReadsWholeNumberFieldsAndOrganisedClouds) {

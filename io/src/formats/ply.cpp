@@ -32,7 +32,7 @@ class Body {
     element_ = &element;
     item_ = item;
     if (!text_) return;
-    if (!lines_.next_filled('\0')) fail_at_line(in_, lines_.number(), "the file ends before " + name_of_item());
+    if (!lines_.next_filled()) fail_at_line(in_, lines_.number(), "the file ends before " + name_of_item());
     rest_ = lines_.line();
   }
 
@@ -76,7 +76,7 @@ class Body {
     if (text_ && !next_word(rest_).empty()) fail_here("more values than " + name_of_item() + " has properties");
   }
 
-  bool at_end() { return text_ ? !lines_.next_filled('\0') : position_ == in_.bytes.size(); }
+  bool at_end() { return text_ ? !lines_.next_filled() : position_ == in_.bytes.size(); }
 
   [[noreturn]] void fail_here(const std::string& what) const {
     if (text_) fail_at_line(in_, lines_.number(), what);

@@ -201,7 +201,7 @@ void read_pcd_text(const Input& in, const PcdHeader& header, Lines& lines,
   for (const PcdField& field : header.fields) per_point += field.count;
   std::uint64_t point = 0;
   Words words;
-  while (lines.next_filled('\0')) {
+  while (lines.next_filled()) {
     if (point++ == header.points)
       fail_at_line(in, lines.number(), "more lines than the " + std::to_string(header.points) + " points");
     split_words(lines.line(), words);

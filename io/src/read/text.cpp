@@ -86,9 +86,9 @@ bool Lines::next() {
   return true;
 }
 
-bool Lines::next_filled(char comment) {
+bool Lines::next_filled(std::optional<char> comment) {
   while (next()) {
-    line_ = line_.substr(0, find_comment(line_, comment));
+    if (comment) line_ = line_.substr(0, find_comment(line_, *comment));
     if (!std::ranges::all_of(line_, is_blank)) return true;
   }
   return false;

@@ -23,9 +23,9 @@ class Lines {
 
   /// Moves to the next line; false at the end.
   bool next();
-  /// Moves to the next line that holds a word before any `comment` sign (at the front of a word); `line` is then
-  /// without it.
-  bool next_filled(char comment);
+  /// Moves to the next line that holds a word before any `comment` sign (at the front of a word), if there is such a sign; `line` is
+  /// then without it.
+  bool next_filled(std::optional<char> comment = {});
 
   /// Without the line end; valid until the next.
   std::string_view line() const noexcept { return line_; }

@@ -28,7 +28,7 @@ constexpr double same_length = 1e-10, same_focusing = 1e-6;
 constexpr Index most_gains = 40;
 /// Points whose distances a vertex knows, and how many of these are the nearest ones: the samples of a curve are many, and all but
 /// equally near.
-constexpr Index most_points = 12, nearest_points = 4;
+constexpr Index most_points = 8, most_of_curve = 12, nearest_of_curve = 4;
 /// A line may miss the side by this share of it, and is taken to pass its end. Where edges are no triangulation, as between points that lie
 /// in squares, it may pass between two triangles that bend away from it, and seen from neither leave only edges.
 constexpr double missed = 1e-9, missed_between = 1e-3;
@@ -68,6 +68,7 @@ Index UnfoldingFront::add(const Source& source) {
   check_source(source, graph_);
   const double unit = graph_.length_unit();
   const Index first = points_;
+  of_curve_ = of_curve_ || source.is_curve();
   const bool may_reflect = graph_.transport_layout().may_reflect();
   std::vector<Given> given;
   Scratch offset(d_), back(d_);
@@ -175,29 +176,31 @@ const UnfoldingFront::Entry* UnfoldingFront::find(Index vertex, Index point) con
   return nullptr;
 }
 
-/// Gives the entry of another point to this one; none where all others count for more. The nearest count, and of the others those
-/// whose numbers are multiples of larger powers of two: of the samples of a curve, numbered along it, neighbours keep the same ones
-/// then, some near and some far apart, whether samples are closer together than vertices or not.
+/// Gives the entry of another point to this one; none where all others count for more. The nearest count, and of the others, samples
+/// of a curve, those whose numbers are multiples of larger powers of two: neighbours keep the same ones then, some near and some far
+/// apart, whether samples are closer together than vertices or not.
 Index UnfoldingFront::replace_least(Index vertex, Index point, double distance) {
   struct Kept {
     double distance;
     Index entry, point;
   };
-  std::array<Kept, most_points + 1> all{};
-  all[0] = {distance, none, point};
-  std::size_t count = 1;
-  for (Index e = head_[vertex]; e != none; e = entries_[e].next)
-    all[count++] = {entries_[e].distance, e, entries_[e].point};
   // Of equally far ones the new one goes.
   const auto comes_before = [](const Kept& a, const Kept& b) {
     return a.distance != b.distance ? a.distance < b.distance : a.entry > b.entry;
   };
-  std::nth_element(all.begin(), all.begin() + nearest_points, all.end(), comes_before);
-  const Kept least = *std::min_element(all.begin() + nearest_points, all.end(), [&](const Kept& a, const Kept& b) {
+  const auto counts_less = [&](const Kept& a, const Kept& b) {
     const int level_a = std::countr_zero(static_cast<unsigned>(a.point)),
               level_b = std::countr_zero(static_cast<unsigned>(b.point));
-    return level_a != level_b ? level_a < level_b : comes_before(b, a);
-  });
+    return of_curve_ && level_a != level_b ? level_a < level_b : comes_before(b, a);
+  };
+  std::array<Kept, most_of_curve + 1> all{{{distance, none, point}}};
+  std::size_t count = 1;
+  for (Index e = head_[vertex]; e != none; e = entries_[e].next)
+    all[count++] = {entries_[e].distance, e, entries_[e].point};
+  const auto end = all.begin() + static_cast<std::ptrdiff_t>(count),
+             others = all.begin() + (of_curve_ ? nearest_of_curve : 0);
+  if (of_curve_) std::nth_element(all.begin(), others, end, comes_before);
+  const Kept least = *std::min_element(others, end, counts_less);
   if (least.entry == none) return none;
   entries_[least.entry].point = point;
   entries_[least.entry].gains = 0;
@@ -212,7 +215,7 @@ void UnfoldingFront::offer(Index vertex, Index point, double distance, double sl
   if (!(distance <= nearest + slack)) return;
   Index points = 0;
   while (own != none && entries_[own].point != point) before = own, own = entries_[own].next, ++points;
-  if (own == none && points >= most_points) {
+  if (own == none && points >= (of_curve_ ? most_of_curve : most_points)) {
     own = replace_least(vertex, point, distance);
     if (own == none) return;
     before = none;

@@ -175,6 +175,7 @@ class UnfoldingFront {
   double missed_;       ///< share of a side by which a line may miss it
   bool is_curved_;      ///< whether the curvature of the surface counts: on Delaunay triangulations
   bool directions_;
+  bool of_curve_ = false;           ///< whether samples of a curve are among the points
   std::vector<double> curvatures_;  ///< of what is not in `stars_`, once one is asked for; NaN: not yet
   std::vector<Way> ways_;           ///< of the entries, where directions are kept
   std::priority_queue<Waiting, std::vector<Waiting>, std::greater<>> queue_;
