@@ -10,6 +10,7 @@
 
 #include "ahm/error.hpp"
 #include "ahm/surface/surface_lines.hpp"
+#include "ahm/util/small_math.hpp"
 #include "ahm/util/text.hpp"
 #include "ahm/util/vec.hpp"
 #include "joined_points.hpp"
