@@ -95,7 +95,7 @@ std::string as_text(const LogmapRun& run) {
                       largest_distance(run.rows), run.input.mean_edge_length());
   text += quality_as_text(run.quality);
   if (!run.rows.error_estimate.empty())
-    text += fmt::format(", median error about {:.2g}", median(run.rows.error_estimate));
+    text += fmt::format(", median error of the diffusion times about {:.2g}", median(run.rows.error_estimate));
   return text + "\n";
 }
 
