@@ -191,7 +191,7 @@ class CurveCutter {
     if (closed_ && begin_) check_turn(*last_, *begin_, corners_.front());
     if (closed_ && curve_.points.size() > 1) curve_.points.pop_back();  // the first again
     const std::size_t needed = closed_ ? 3 : 2;
-    if (const std::size_t points = pieces_.size() + (closed_ ? 0 : 1); points < needed)
+    if (const std::size_t points = pieces_.size() + (closed_ || corners_.empty() ? 0 : 1); points < needed)
       throw InvalidArgument(
           "curve_too_short",
           "the curve has " + std::to_string(points) + " different point" + (points == 1 ? "" : "s") + " on the surface",
