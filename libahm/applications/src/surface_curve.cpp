@@ -145,7 +145,7 @@ struct Stretch {
   bool is_path = false;            ///< along the surface, not only near to it
 };
 
-/// Cuts a curve into pieces no longer than half of the edges about them, so that pieces in one face are few, and as many beside other
+/// Cuts a curve into pieces of about half of the edges there, so that pieces in one face are few, and as many beside other
 /// parts of a surface as without these.
 class CurveCutter {
  public:
