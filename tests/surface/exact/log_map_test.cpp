@@ -379,5 +379,39 @@ TEST(ExactGeodesics, PathsAndTracesAreStraightOnPlanes) {
   }
 }
 
+// Where edges are much shorter than in the mean, vectors as short count by their own edges.
+TEST(MapQuality, TrustsNoRoughPlacesOfFineEdges) {
+  constexpr Index side = 24;
+  Mesh mesh;
+  const auto along = [](Index k) { return std::pow(k / (side - 1.0), 4); };
+  for (Index i = 0; i < side; ++i)
+    for (Index j = 0; j < side; ++j) {
+      const Index least = std::max<Index>(std::min(i, j), 1);
+      const double edge = along(least) - along(least - 1);
+      mesh.positions.push_back({along(i), along(j), 0.7 * edge * std::sin(12.9898 * i + 78.233 * j)});
+      const Index a = i * side + j, b = a + side;
+      if (i + 1 < side && j + 1 < side) mesh.faces.insert(mesh.faces.end(), {{a, b, b + 1}, {a, b + 1, a + 1}});
+    }
+  const auto surface = trimesh::TriangleMeshSurface::build(mesh.positions, mesh.faces);
+  const Row source(3 * side + 3);
+  const LogMap exact = exact_log_map(surface, source);
+  const double edge = surface.graph().mean_edge_length() * surface.graph().length_unit();
+  for (Variant variant : all_variants) {
+    const LogMap heat = LogMapSolver(surface.graph(), {.variant = variant}).solve(surface.source(source).source);
+    const std::vector<double> quality = map_quality(surface.graph(), heat);
+    Index near = 0, wrong = 0;
+    for (Index i = 0; i < surface.graph().size(); ++i) {
+      const Vertex v(i);
+      const double d = exact.distance(v);
+      if (!(d > 0 && d < edge)) continue;
+      const auto is = heat.coordinates(v), should = exact.coordinates(v);
+      ++near;
+      wrong += quality[i] >= trusted_quality && std::hypot(is[0] - should[0], is[1] - should[1]) > 0.1 * d;
+    }
+    EXPECT_GT(near, 50);
+    EXPECT_LT(wrong, 0.05 * near) << to_string(variant);
+  }
+}
+
 }  // namespace
 }  // namespace ahm::test

@@ -25,13 +25,13 @@ inline constexpr double trusted_quality = 0.5;
 /// How far the vector phi can be trusted: by the spread of the ways that heat took, and by how well it agrees with the vector
 /// psi of geodesic polar coordinates, distance and direction of an `UnfoldingFront`.
 ///
-///     s_i = | (spread_i / 0.3, |phi_i - psi_i| / 0.1) | / max(d_i, h)
+///     s_i = | (spread_i / 0.3, |phi_i - psi_i| / 0.1) | / max(d_i, h_i)
 ///     c_i^2 = min(1 - sum_j |phi_j - phi_i|^2 / sum_j |e_ij|^2,
 ///                 sum_j |(phi_j - phi_i) - (psi_j - psi_i)|^2 / sum_j max(|e_ij|, |psi_j - psi_i|)^2),  at least 0
 ///     q_i = 1 / (1 + s_i^2 + (c_i / 0.5)^2)
 ///
-/// with d the distance, no less than the straight line in space where the graph has frames, and h the mean edge length of the
-/// vertex's component. |phi - psi| is no less than ||phi| - d|, and comes to that alone as spread_i / d_i goes from 0.01 to 0: there
+/// with d the distance, no less than the straight line in space where the graph has frames, h the mean edge length of the
+/// vertex's component, and h_i that or the mean length of its own edges, whichever is less. |phi - psi| is no less than ||phi| - d|, and comes to that alone as spread_i / d_i goes from 0.01 to 0: there
 /// phi is the unrolling of what lies between, as of a plane behind its holes. It is that alone,
 /// too, in other dimensions than 2, where fronts see holes if edges lie along orthogonal axes. c is how much of the edges phi loses
 /// that psi keeps: far away on a tube |phi - psi| is small beside d, but what lies around the tube has come to lie on a line. Of a
