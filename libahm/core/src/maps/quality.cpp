@@ -4,9 +4,11 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "ahm/error.hpp"
+#include "ahm/graph/mean_edge.hpp"
 #include "ahm/maps/place_in_space.hpp"
 #include "ahm/maps/unfolding_front.hpp"
 #include "ahm/util/parallel.hpp"
@@ -146,14 +148,6 @@ double lost_along_edges(const TangentGraph& graph, const LogMap& map, Index vert
   return all > 0 ? std::sqrt(std::clamp(1 - kept / edges, 0.0, off / all)) : 0;
 }
 
-/// Mean length of the edges of a vertex, world units.
-double mean_edge(const TangentGraph& graph, Index vertex) {
-  const Star star = graph.star(vertex);
-  double sum = 0;
-  for (std::size_t e = 0; e < star.degree(); ++e) sum += length(star.log(e));
-  return star.degree() > 0 ? sum / static_cast<double>(star.degree()) * graph.length_unit() : 0;
-}
-
 /// Of what fronts over edges that are no triangulation say is lost, since neighbours of theirs differ by more than edges do.
 double forgiving(double lost) { return std::max(0.0, lost - forgiven_loss) / (1 - forgiven_loss); }
 
@@ -185,7 +179,8 @@ std::vector<double> quality_beside(const TangentGraph& graph, const LogMap& map,
     double d = map.distances()[i];
     if (const auto frame = source ? graph.frame(vertex.index) : std::nullopt)
       d = std::max(d, distance(frame->origin, *source));
-    const double away = std::max(d, std::min(h, mean_edge(graph, vertex.index))), spread = map.spread()[i] / away;
+    const double away = std::max(d, std::min(h, mean_edge(graph, std::span(&vertex, 1)))),
+                 spread = map.spread()[i] / away;
     const Vec2 psi = polar_coordinates(map, vertex.index);
     double off = disagreement(way, d, psi, spread), lost = 0;
     if (of_curve) {  // along curves psi jumps from sample to sample
