@@ -71,6 +71,12 @@ TEST_F(Arguments, BackendsForMeshesNeedFaces) {
   for (const std::string backend : {"trimesh", "polymesh"}) expect_refused(with({"--backend", backend}), 1, backend);
 }
 
+TEST_F(Arguments, OptionsForMeshesAreNoneForClouds) {
+  for (const Words& words :
+       std::vector<Words>{{"--no-flips"}, {"--non-manifold", "split"}, {"--discretization", "polygons"}, {"--repair"}})
+    expect_refused(with(words), 1, words[0]);
+}
+
 TEST_F(Arguments, UnknownOptionsAndMissingOnesAreUsageErrors) {
   expect_refused(with({"--frobnicate"}), 2, "--frobnicate");
   expect_refused(run({"logmap", input, "-o", folder / "map.csv"}), 2, "--source");

@@ -159,6 +159,17 @@ TEST(ScarceMemory, IsNamedAndEndsTheRun) {
   EXPECT_GT(done, 0);
 }
 
+TEST(ScarceMemory, IsNotFilledByAStreamWithoutEnd) {
+  Folder folder;
+  const std::string command = "yes 1 2 3 | (ulimit -v 1500000; '" AHM_PROGRAM "' info - 2> '" + (folder / "words") +
+                              "'; echo $? > '" + (folder / "status") + "')";
+  std::system(command.c_str());
+  EXPECT_EQ(read_text(folder / "status"), "1\n");
+  EXPECT_NE(read_text(folder / "words").find("the stream goes on after 488 MB, a third of the memory"),
+            std::string::npos)
+      << read_text(folder / "words");
+}
+
 // Threads take address space of their own: where one thread can march, two do not fail.
 TEST(ScarceMemory, SufficesForTwoThreadsWhereItDoesForOne) {
   Folder folder;

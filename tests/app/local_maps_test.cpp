@@ -55,6 +55,19 @@ TEST(LocalMapsCommand, FindsTheNeighboursOnAPlane) {
   }
 }
 
+TEST(LocalMapsCommand, SaysThatItsRadiusHoldsNothing) {
+  Folder folder;
+  const std::string input = folder.write("plane.xyz", xyz(plane(12))), out = folder / "maps.npz";
+  const auto words = [&](const char* radius, const char* nearest) {
+    const Outcome outcome = run({"local-maps", input, "--radius", radius, "--k", nearest, "-o", out});
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return outcome.err;
+  };
+  EXPECT_NE(words("1e-3", "5").find("144 of 144 neighbourhoods hold their source alone"), std::string::npos);
+  EXPECT_EQ(words("1e-3", "1"), "");
+  EXPECT_EQ(words("0.3", "5"), "");
+}
+
 TEST(LocalMapsCommand, PadsToAFixedCount) {
   Folder folder;
   const auto input = folder.write("plane.xyz", xyz(plane(12)));

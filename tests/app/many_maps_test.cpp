@@ -1,6 +1,8 @@
 // Several files and several sources in one run: each map is what a run of its own makes.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <filesystem>
 #include <sstream>
 
 #include "program.hpp"
@@ -63,6 +65,18 @@ TEST_F(ManyMaps, AreMadeBesideThoseThatFail) {
     EXPECT_NE(outcome.err.find(part), std::string::npos) << outcome.err;
   EXPECT_EQ(read_text(folder / "maps/plane_0_map.csv"), alone(plane_file, "3"));
   EXPECT_FALSE(std::filesystem::exists(folder / "maps/plane_1_map.csv"));
+}
+
+TEST_F(ManyMaps, OfManyThatFailTheFirstAreTold) {
+  std::string rows = "3\n";
+  for (int k = 0; k < 50; ++k) rows += "100000\n";
+  const auto outcome =
+      run({"logmap", plane_file, "--sources", folder.write("rows.txt", rows), "-o", folder / "maps/", "--quiet"});
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 12) << outcome.err;
+  for (const char* part : {"40 more of its maps failed", "50 of 51 maps were not made"})
+    EXPECT_NE(outcome.err.find(part), std::string::npos) << outcome.err;
+  EXPECT_TRUE(std::filesystem::exists(folder / "maps/plane_0_map.csv"));
 }
 
 TEST_F(ManyMaps, TellOneLineEach) {

@@ -229,7 +229,9 @@ TEST(Mesh, RefusesWhatHasNoSurface) {
   expect_refused(sheet(4) + "f 1 2 2\n", "face");
   expect_refused(sheet(4), "face", {}, "face:18:1,0,0");
   expect_refused(sheet(4), "vertices", {}, "16");
-  expect_refused(sheet(4), "--voxel", {"--voxel", "0.1"});
+  for (const std::vector<std::string>& words :
+       std::vector<std::vector<std::string>>{{"--voxel", "0.1"}, {"--knn", "flann"}, {"--normals", "estimate"}})
+    expect_refused(sheet(4), words[0], words);
   EXPECT_EQ(map(book, "0", {"--non-manifold", "split"}).size(), 5u);
 }
 

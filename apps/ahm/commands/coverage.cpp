@@ -168,6 +168,11 @@ void run(const CoverageCommandOptions& options) {
         "lines lie up to {:.4g} apart in space, more than --spacing {}: the surface is saddle-shaped or rough",
         amount.spacing_high, options.path.spacing));
 
+  if (options.path.radius < input.mean_edge_length())
+    journal.add_warning(fmt::format(
+        "--radius {}: is less than an edge ({:.4g} in the mean); the path is laid between the neighbours of the source",
+        options.path.radius, input.mean_edge_length()));
+
   const RowLogMap rows = input.surface().on_rows(map);
   const std::vector<double> row_quality = on_rows(rows, quality);
   comment_on_quality(quality_within(options.path.radius, rows, row_quality), "lower --radius, or start elsewhere",

@@ -135,6 +135,17 @@ void write(const LocalMapsOptions& options, const RowLocalMaps& maps, const std:
   file.commit();
 }
 
+/// Radii in other units, or of too few edges, are seen by neighbourhoods without neighbours.
+void comment_on_lonely(const RowLocalMaps& maps, const LocalMapsOptions& options, const Input& input,
+                       Journal& journal) {
+  Index lonely = 0;
+  for (Index s = 0; s < maps.sources(); ++s) lonely += maps.indptr[s + 1] - maps.indptr[s] == 1;
+  if (options.radius > 0 && options.nearest != 1 && 2 * lonely > maps.sources())
+    journal.add_warning(
+        fmt::format("--radius {}: {} of {} neighbourhoods hold their source alone; edges are {:.4g} long in the mean",
+                    options.radius, lonely, maps.sources(), input.mean_edge_length()));
+}
+
 void run(const LocalMapsOptions& options) {
   check_options(options);
   Journal journal(options.output.verbosity);
@@ -154,6 +165,8 @@ void run(const LocalMapsOptions& options) {
 
   if (std::any_of(maps.weights.begin(), maps.weights.end(), [](double w) { return std::isnan(w); }))
     journal.add_warning("weight: no double holds squares of such lengths; they are given as nan");
+
+  comment_on_lonely(maps, options, input, journal);
 
   journal.start("write");
   write(options, maps, wanted, input.graph(), vertices);

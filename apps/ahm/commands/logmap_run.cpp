@@ -26,7 +26,9 @@
 namespace ahm::app {
 namespace {
 
-/// Something the user should know about where the source ended up.
+/// Failures of the maps of one file.
+constexpr std::size_t most_told = 10;
+
 void write_results(const LogmapOptions& options, const PlacedSource& source, const RowLogMap& rows,
                    const std::vector<double>& quality, const std::vector<Vec3>& away, Results& results,
                    Journal& journal) {
@@ -135,7 +137,7 @@ void check_log_map(const LogmapOptions& options, const std::vector<std::string>&
   check_outputs(inputs, files, output.keep_existing);
 }
 
-bool attempt(const std::string& what, bool alone, const std::function<void()>& work) {
+bool attempt(const std::string& what, bool alone, const std::function<void()>& work, bool tells) {
   if (alone) return work(), true;
   try {
     io::FileSet files;
@@ -144,7 +146,7 @@ bool attempt(const std::string& what, bool alone, const std::function<void()>& w
   } catch (const Cancelled&) {
     throw;
   } catch (const Error& e) {
-    say(fmt::format("ahm: error: {}: {}\n", what, worded(e)));
+    if (tells) say(fmt::format("ahm: error: {}: {}\n", what, worded(e)));
     return false;
   }
 }
@@ -162,15 +164,18 @@ std::size_t run_log_maps(const std::vector<LogmapOptions>& maps, bool alone) {
   std::size_t failed = 0;
   for (const LogmapOptions& map : maps) {
     if (!journal) journal.emplace(map.output.verbosity);
-    failed += !attempt(map.input.path, alone, [&] {
+    const auto work = [&] {
       if (for_source) {
         solvers.reset();
         input.emplace(open_input(geometry, around_source(map.input, map.solve.radius), *journal, map.source.spec));
       }
       map_from_source(map, *input, solvers, for_source ? 1 : maps.size(), !alone, *journal);
-    });
+    };
+    failed += !attempt(map.input.path, alone, work, failed < most_told);
     journal.reset();
   }
+  if (failed > most_told)
+    say(fmt::format("ahm: error: {}: {} more of its maps failed\n", first.input.path, failed - most_told));
   return failed;
 }
 

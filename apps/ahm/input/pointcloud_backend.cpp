@@ -1,12 +1,10 @@
-#include <fmt/format.h>
-
 #include <utility>
 
 #include "ahm/error.hpp"
 #include "ahm/pointcloud/point_cloud_surface.hpp"
-#include "cli/source_list.hpp"
 #include "input/backend.hpp"
 #include "input/cloud_preparation.hpp"
+#include "input/input_checks.hpp"
 #ifdef AHM_WITH_PCL
 #include "input/pcl_module.hpp"
 #endif
@@ -17,16 +15,6 @@ namespace {
 using pointcloud::CloudOptions;
 using pointcloud::NormalSigns;
 using pointcloud::PointCloudSurface;
-
-/// The cheap checks: everything about the source that needs no graph.
-const std::optional<SourceSpec>& checked_source(const std::optional<SourceSpec>& source, const io::Geometry& input) {
-  if (!source) return source;
-  if (const auto* face = std::get_if<SourceFace>(&*source))
-    throw InvalidArgument(fmt::format(
-        "--source {}: a cloud has no faces (backend pointcloud); write a vertex index or x,y,z", to_string(*face)));
-  position_in(input, *source, "--source");
-  return source;
-}
 
 pointcloud::NeighborSearchFactory search_factory(const std::string& name) {
   if (name == "flann") return pointcloud::flann_search;
@@ -77,12 +65,8 @@ bool suits(const io::Geometry& input) { return input.face_count() == 0; }
 
 Built build(const io::Geometry& input, const InputOptions& options, const std::optional<SourceSpec>& source,
             const Progress& progress) {
-  if (options.repair.any())
-    throw InvalidArgument(
-        "--repair, --weld, --drop-degenerate, --drop-duplicates and --orient are for meshes; a cloud joins equal "
-        "points "
-        "by itself");
-  const PreparedCloud prepared = prepare_cloud(input, options, checked_source(source, input));
+  check_cloud_input(input, options, source);
+  const PreparedCloud prepared = prepare_cloud(input, options, source);
   CloudOptions cloud = cloud_options(options, progress);
   cloud.rows.emplace(prepared.rows.begin(), prepared.rows.end());
   const std::span<const Vec3> normals = options.normals == "estimate" ? std::span<const Vec3>() : input.normals;
