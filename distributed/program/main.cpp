@@ -1,6 +1,8 @@
 /// \file
 /// The program ahm-tiles: clouds that do not fit into memory, from a file of points to a log map, step by step; and meshes.
 
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
 #include <array>
 #include <filesystem>
@@ -242,12 +244,12 @@ int run(int argc, char** argv) {
   return 0;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  app::install_interrupt_handling(name);
+/// The exit status of `run`; what it throws is told.
+int run_told(int argc, char** argv) {
   try {
-    return run(argc, argv);
+    const int status = run(argc, argv);
+    if (std::cout.flush()) return status;
+    std::cerr << "ahm-tiles: error: standard output cannot be written\n";
   } catch (const std::bad_alloc&) {
     std::cerr << "ahm-tiles: error: out of memory; plan smaller tiles\n";
   } catch (const Error& e) {
@@ -258,4 +260,13 @@ int main(int argc, char** argv) {
     std::cerr << "ahm-tiles: error: unknown failure\n";
   }
   return 1;
+}
+
+}  // namespace
+
+// Ends without the destructors of libraries, as the program ahm does: where address space does not suffice OpenBLAS would wait
+// for threads that never end.
+int main(int argc, char** argv) {
+  app::install_interrupt_handling(name);
+  _exit(run_told(argc, argv));
 }

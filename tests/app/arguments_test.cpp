@@ -89,6 +89,7 @@ TEST_F(Arguments, UnknownOptionsAndMissingOnesAreUsageErrors) {
 TEST_F(Arguments, WrongValuesAreWrongCommandLines) {
   expect_refused(with({"--view", folder / "map.jpg"}), 2, "--view");
   expect_refused(with({"--local"}), 2, "--local: needs --radius");
+  expect_refused(with({"--strategy", "global", "--accuracy", "1e-3"}), 2, "--accuracy");
   expect_refused(with({"--method", "exact", "--tolerance", "0.5"}), 2, "--tolerance");
   expect_refused(with({"--sources", "nowhere.txt"}), 2, "--sources: there is no file 'nowhere.txt'");
   const auto refused = [&](const std::string& command, const std::string& option, const std::string& text) {
@@ -134,6 +135,24 @@ TEST_F(Arguments, ALinkToTheInputIsTheInput) {
   EXPECT_EQ(outcome.status, 1);
   EXPECT_NE(outcome.err.find("input"), std::string::npos) << outcome.err;
   EXPECT_EQ(read_text(input), xyz(sphere(200)));
+}
+
+TEST_F(Arguments, ALinkToWhatIsNotThereYetIsThatFile) {
+  std::filesystem::create_symlink("map.csv", folder / "link.csv");
+  const auto outcome = run({"logmap", input, "--source", "0", "-o", folder / "map.csv", "--json", folder / "link.csv"});
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_NE(outcome.err.find("the same file"), std::string::npos) << outcome.err;
+}
+
+TEST(FilesBesideTheInput, AreNotReplaced) {
+  const Folder folder;
+  const std::string scene = folder.write(
+      "scene.gltf", R"({"asset": {"version": "2.0"}, "buffers": [{"uri": "of%20it.csv", "byteLength": 3}]})");
+  const std::string buffer = folder.write("of it.csv", "abc");
+  const auto outcome = run({"logmap", scene, "--source", "0", "-o", buffer});
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_NE(outcome.err.find("is the input file, or one that it names"), std::string::npos) << outcome.err;
+  EXPECT_EQ(read_text(buffer), "abc");
 }
 
 TEST(Help, IsThereForStrangers) {

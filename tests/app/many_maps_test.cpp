@@ -168,5 +168,13 @@ TEST_F(ManyMaps, StandardInputIsAFileWithoutAName) {
   EXPECT_NE(unknown.err.find("--input-format"), std::string::npos) << unknown.err;
 }
 
+TEST_F(ManyMaps, StandardInputIsAnInput) {
+  const auto outcome = finish(start(
+      {"logmap", "-", "-s", "5", "--input-format", "xyz", "--format", "csv", "-o", plane_file}, false, plane_file));
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_NE(outcome.err.find("is the input file"), std::string::npos) << outcome.err;
+  EXPECT_EQ(read_text(plane_file), xyz(plane(12)));
+}
+
 }  // namespace
 }  // namespace ahm::test

@@ -270,5 +270,19 @@ TEST(TilesProgram, NamesItsOwnOptions) {
   EXPECT_EQ(said_by(command, 1), "ahm-tiles: error: 1 points of the file are not finite; --drop-nan leaves them out\n");
 }
 
+/// OpenBLAS' own threads then never end. From 200 MB on the system's loader and they have what they need to begin with.
+TEST(TilesProgram, EndsWhereAddressSpaceIsScarce) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the address sanitizer takes more than any limit";
+#endif
+  const TiledCloud cloud(hills(80), {.tile_points = 1500});
+  for (const char* kilobytes : {"210000", "260000", "320000"}) {
+    const std::string command = std::string("ulimit -v ") + kilobytes + "; timeout 600 " AHM_TILES_PROGRAM " build " +
+                                cloud.tiles.string() + "; echo ended $?";
+    const std::string said = said_by("(" + command + ")");
+    EXPECT_TRUE(said.ends_with("ended 0\n") || said.ends_with("ended 1\n")) << kilobytes << ": " << said;
+  }
+}
+
 }  // namespace
 }  // namespace ahm::test

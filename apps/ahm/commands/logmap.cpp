@@ -177,8 +177,10 @@ void offer(CLI::App& app, LogmapCommand& command) {
       "Tell what time and memory a map would take, and end: from the size of INPUT (evenly sampled, no radius), or\n"
       "with --source from its graph, which is built for it, to a third. How far a march on a cloud goes on beyond\n"
       "--radius is not known before: it takes at most what it takes without");
-  app.callback([=, &command, &o] {
+  app.callback([=, &app, &command, &o] {
     if (o.input.around_source && !o.solve.radius) throw CLI::ValidationError("--local", "needs --radius");
+    if (o.solve.strategy == Strategy::global && app.count("--accuracy") > 0)
+      throw CLI::ValidationError("--accuracy", "belongs to a march; --strategy global has none");
     if (estimate->count() > 0) return;
     if (command.sources.empty()) throw CLI::RequiredError("--source");
     if (output->count() == 0) throw CLI::RequiredError("--output");

@@ -7,11 +7,13 @@
 #include <algorithm>
 #include <cerrno>
 #include <filesystem>
+#include <map>
 #include <system_error>
 
 #include "ahm/error.hpp"
 #include "ahm/io/atomic_file.hpp"
 #include "ahm/io/formats.hpp"
+#include "ahm/io/read.hpp"
 #include "cli/source_list.hpp"
 
 namespace ahm::app {
@@ -24,8 +26,16 @@ bool is_file(const OutputPath& output) { return !output.path.empty() && output.p
 bool same_file(const fs::path& a, const fs::path& b) {
   std::error_code error;
   if (fs::equivalent(a, b, error) && !error) return true;
-  const fs::path x = fs::weakly_canonical(a, error), y = fs::weakly_canonical(b, error);
-  return !error && x == y;
+  return io::without_links(a) == io::without_links(b);
+}
+
+/// Whether a file is an input, or what one is read with. Each input is asked for that once.
+bool is_read(const fs::path& file, const std::string& input) {
+  static std::map<std::string, std::vector<fs::path>> beside;
+  if (same_file(file, input == "-" ? "/dev/stdin" : input)) return true;
+  auto found = beside.find(input);
+  if (found == beside.end()) found = beside.emplace(input, io::files_beside(input)).first;
+  return std::ranges::any_of(found->second, [&](const fs::path& other) { return same_file(file, other); });
 }
 
 void check_directory(const OutputPath& output) {
@@ -48,9 +58,9 @@ void check_outputs(const std::vector<std::string>& inputs, const std::vector<Out
     if (!is_file(outputs[i])) continue;
     check_directory(outputs[i]);
     for (const std::string& input : inputs)
-      if (same_file(outputs[i].path, input))
-        throw InvalidArgument(
-            fmt::format("{} {}: is the input file; it would be overwritten", outputs[i].option, outputs[i].path));
+      if (!io::is_stream(outputs[i].path) && is_read(outputs[i].path, input))
+        throw InvalidArgument(fmt::format("{} {}: is the input file, or one that it names; it would be overwritten",
+                                          outputs[i].option, outputs[i].path));
     for (const std::string& list : lists_read())
       if (same_file(outputs[i].path, list))
         throw InvalidArgument(fmt::format("{} {}: is a list that is read by this command; it would be overwritten",

@@ -5,6 +5,7 @@
 /// in io/CMakeLists.txt. `read`, `write`, `check_writable`, `write_textured`, `extensions` and their messages follow.
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -23,6 +24,8 @@ struct Format {
   std::vector<std::string> signatures =
       {};  ///< a file without a name is of this format where it begins with one of these
   Geometry (*read)(const Input& in) = nullptr;
+  /// What it reads beside a file of its own; null: nothing.
+  std::vector<std::filesystem::path> (*files_beside)(const Input& in) = nullptr;
   /// For `PointStream`: where points are, from a file's beginning; nullopt: nowhere in particular (text, compressed).
   std::optional<PointRecords> (*records)(const Input& in) = nullptr;
   /// Of such files: hands over all points, and says whether they have normals.

@@ -208,6 +208,9 @@ class GltfReader {
 
 Geometry read_gltf(const Input& in) { return GltfReader(in).read(); }
 
-Format gltf_format() { return {.extensions = {".gltf"}, .read = read_gltf}; }
+Format gltf_format() {
+  return {
+      .extensions = {".gltf"}, .read = read_gltf, .files_beside = [](const Input& in) { return GltfFile(in).files(); }};
+}
 
 }  // namespace ahm::io

@@ -56,6 +56,8 @@ std::optional<std::string> from_base64(std::string_view text) {
   return bytes;
 }
 
+bool is_data(const std::string& uri) { return uri.starts_with("data:"); }
+
 /// %20 and the like.
 std::string without_escapes(std::string_view uri) {
   std::string result;
@@ -152,18 +154,33 @@ const std::string& GltfFile::buffer(std::uint64_t index) {
   const auto found = object.find("uri");
   if (found == object.end()) {
     bytes = chunk_;
-  } else if (const std::string uri = found->is_string() ? found->get<std::string>() : ""; uri.starts_with("data:")) {
+  } else if (const std::string uri = found->is_string() ? found->get<std::string>() : ""; is_data(uri)) {
     const std::size_t comma = uri.find(";base64,");
     const auto data = comma == std::string::npos ? std::nullopt : from_base64(std::string_view(uri).substr(comma + 8));
     if (!data) fail(in_, "buffer " + std::to_string(index) + " is no base64 data");
     bytes = *data;
   } else {
-    bytes = load(in_.path.parent_path() / without_escapes(uri)).bytes;
+    bytes = load(file(uri)).bytes;
   }
   if (const std::uint64_t length = whole(object, "byteLength", 0); length > bytes.size())
     fail(in_, "buffer " + std::to_string(index) + " should have " + std::to_string(length) + " bytes, but has " +
                   std::to_string(bytes.size()) + "; the file is cut short");
   return bytes;
+}
+
+std::filesystem::path GltfFile::file(const std::string& uri) const {
+  return in_.path.parent_path() / without_escapes(uri);
+}
+
+std::vector<std::filesystem::path> GltfFile::files() const {
+  std::vector<std::filesystem::path> result;
+  const auto buffers = root_.find("buffers");
+  if (buffers == root_.end() || !buffers->is_array()) return result;
+  for (const Json& buffer : *buffers)
+    if (const auto uri = buffer.is_object() ? buffer.find("uri") : buffer.end();
+        uri != buffer.end() && uri->is_string())
+      if (const auto text = uri->get<std::string>(); !is_data(text)) result.push_back(file(text));
+  return result;
 }
 
 GltfArray GltfFile::array(std::uint64_t number) {

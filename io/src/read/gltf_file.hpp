@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -33,11 +34,14 @@ class GltfFile {
   std::uint64_t whole(const Json& object, const char* member, std::uint64_t none) const;
   /// `count` numbers; empty when there is no such member. @throws IoError when it is something else
   std::vector<double> numbers(const Json& object, const char* member, std::size_t count) const;
+  /// The files beside it that its buffers are in, whether they exist or not.
+  std::vector<std::filesystem::path> files() const;
   /// The numbers of an accessor, normalized ones in [0, 1] or [-1, 1]. @throws IoError
   GltfArray array(std::uint64_t accessor);
 
  private:
   const std::string& buffer(std::uint64_t index);
+  std::filesystem::path file(const std::string& uri) const;
 
   const Input& in_;
   Json root_;

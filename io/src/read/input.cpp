@@ -8,8 +8,8 @@
 #include <system_error>
 
 #include "ahm/error.hpp"
-#include "ahm/maps/cost.hpp"
 #include "ahm/types.hpp"
+#include "read/free_memory.hpp"
 #include "read/gunzip.hpp"
 #include "read/regular_file.hpp"
 
@@ -28,22 +28,20 @@ Input load(const std::filesystem::path& path) {
 
 namespace {
 
-/// Of what has no size: it may have no end, and where it grows it is in memory twice.
-constexpr double share_of_memory = 1.0 / 3;
-
+/// Of no known size, and perhaps without end.
 /// @param next  next(in, room, size): reads up to so many bytes, and tells how many; 0 at the end
 template <class Next>
 Input load_unnamed(const Next& next) {
   Input in{"-", {}};
   constexpr std::size_t block = std::size_t{1} << 20;
-  const double most = share_of_memory * machine_memory();
+  const std::uint64_t most = free_memory() / 3;
   for (std::size_t done = 0, got = 1; got > 0; in.bytes.resize(done)) {
     in.bytes.resize(done + block);
     got = next(in, in.bytes.data() + done, block);
     done += got;
-    if (most > 0 && static_cast<double>(done) > most)
-      throw ResourceExhausted("cannot read '-': the stream goes on after " + std::to_string(done >> 20) +
-                              " MB, a third of the memory; read it from a file");
+    if (done > most)
+      throw ResourceExhausted("cannot read '-': the stream is larger than " + std::to_string(most >> 20) +
+                              " MB, a third of the memory that is free");
   }
   if (in.bytes.empty()) fail(in, "the stream is empty (0 bytes)");
   if (is_gzip(in)) gunzip(in);

@@ -49,9 +49,14 @@ const Format& format_to_read(const std::filesystem::path& path, const std::strin
                 "rename it, or name its format");
 }
 
+/// That of the name; of a compressed file that before .gz.
+std::string extension_of(const std::filesystem::path& path) {
+  const std::string extension = lower_extension(path);
+  return extension == ".gz" ? lower_extension(path.stem()) : extension;
+}
+
 Geometry read_by_extension(const std::filesystem::path& path, std::string extension) {
-  if (extension.empty()) extension = lower_extension(path);
-  if (extension == ".gz") extension = lower_extension(path.stem());
+  if (extension.empty() || extension == ".gz") extension = extension_of(path);
   return format_to_read(path, extension).read(load(path));
 }
 
@@ -101,6 +106,14 @@ Geometry read(std::istream& stream, const std::string& extension) {
 
 Geometry read_standard_input(const std::string& extension) {
   return checked("-", [&] { return read_unnamed(load_standard_input(), extension); });
+}
+
+std::vector<std::filesystem::path> files_beside(const std::filesystem::path& path) try {
+  const Format* const format = find_format(extension_of(path));
+  return format != nullptr && format->files_beside != nullptr ? format->files_beside(load(path))
+                                                              : std::vector<std::filesystem::path>();
+} catch (const Error&) {
+  return {};
 }
 
 }  // namespace ahm::io

@@ -167,15 +167,6 @@ void remove_leftovers(const std::filesystem::path& directory) {
   }
 }
 
-/// What a chain of symbolic links leads to, whether it exists or not.
-std::filesystem::path followed(std::filesystem::path path) {
-  std::error_code ignored;
-  for (int links = 0; links < 40 && std::filesystem::is_symlink(path, ignored); ++links)
-    path = path.parent_path() / std::filesystem::read_symlink(path, ignored);
-  const auto real = std::filesystem::weakly_canonical(path, ignored);
-  return ignored || real.empty() ? path : real;
-}
-
 /// Once for each directory.
 void tidy_up(const std::filesystem::path& directory) {
   static std::mutex mutex;
@@ -186,6 +177,14 @@ void tidy_up(const std::filesystem::path& directory) {
 
 }  // namespace
 
+std::filesystem::path without_links(std::filesystem::path path) {
+  std::error_code ignored;
+  for (int links = 0; links < 40 && std::filesystem::is_symlink(path, ignored); ++links)
+    path = path.parent_path() / std::filesystem::read_symlink(path, ignored);
+  const auto real = std::filesystem::weakly_canonical(path, ignored);
+  return ignored || real.empty() ? path : real;
+}
+
 bool is_stream(const std::filesystem::path& path) {
   // The process's own output may be redirected to a file, which whoever redirected it holds open.
   const std::string& name = path.native();
@@ -194,7 +193,7 @@ bool is_stream(const std::filesystem::path& path) {
   return ::stat(path.c_str(), &info) == 0 && !S_ISREG(info.st_mode) && !S_ISDIR(info.st_mode);
 }
 
-AtomicFile::AtomicFile(const std::filesystem::path& path) : path_(path), target_(followed(path)) {
+AtomicFile::AtomicFile(const std::filesystem::path& path) : path_(path), target_(without_links(path)) {
   struct stat info {};
   const bool exists = ::stat(path.c_str(), &info) == 0;
   if (exists && S_ISDIR(info.st_mode)) fail(EISDIR);

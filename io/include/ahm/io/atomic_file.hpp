@@ -84,6 +84,9 @@ class FileSet {
 /// (/dev/stdout), wherever that has been redirected to.
 bool is_stream(const std::filesystem::path& path);
 
+/// The file that an `AtomicFile` of this path makes or replaces: what a chain of symbolic links leads to, whether it exists or not.
+std::filesystem::path without_links(std::filesystem::path path);
+
 /// Deletes the temporary files of all uncommitted `AtomicFile`s of the process, whatever its other threads do: one that
 /// wants another `AtomicFile` from now on, or misses its own, waits for the end. Async-signal-safe: for a handler of
 /// SIGINT, SIGTERM or SIGHUP that ends the process afterwards.

@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <istream>
 #include <string>
+#include <vector>
 
 #include "ahm/error.hpp"
 #include "ahm/io/geometry.hpp"
@@ -50,5 +51,8 @@ Geometry read(std::istream& stream, const std::string& extension = {});
 /// The same from standard input, not through std::cin, which takes errors of the system for its end.
 /// @throws as for files
 Geometry read_standard_input(const std::string& extension = {});
+
+/// The files beside it that a file is read with: the buffers of a .gltf. None where it cannot be read.
+std::vector<std::filesystem::path> files_beside(const std::filesystem::path& path);
 
 }  // namespace ahm::io
