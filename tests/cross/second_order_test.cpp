@@ -84,7 +84,7 @@ TEST(SecondOrderOnClouds, IsNeverMuchWorseFromAnySource) {
          {std::pair(std::string("peanut"), sphere_like(peanut)), {"star", sphere_like(star)}}) {
       const Gain found = gain(mesh, variant);
       EXPECT_LT(found.worst, 1.1) << name << ", " << to_string(variant);
-      EXPECT_LT(found.mean, 0.95) << name << ", " << to_string(variant);
+      EXPECT_LT(found.mean, 0.97) << name << ", " << to_string(variant);
     }
 }
 

@@ -38,6 +38,9 @@ void check(const CoverageOptions& o) {
   if (!(points < 1 << 30))
     throw InvalidArgument("the pattern has about " + detail::number(points) +
                           " points, more than 2^30; enlarge spacing or step, or lower radius");
+  if (const double machine = machine_memory(); machine > 0 && points * sizeof(CoveragePoint) > machine)
+    throw ResourceExhausted("the pattern has about " + detail::number(points) +
+                            " points, for which memory does not suffice; enlarge spacing or step, or lower radius");
 }
 
 /// A line of the raster, `across` away from the source, from left to right along (1, 0).

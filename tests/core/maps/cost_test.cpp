@@ -45,7 +45,7 @@ TEST(Cost, OfBlocksIsThatOfTheirNumbers) {
 }
 
 TEST(Cost, OfOrderTwoIsThatOfItsTimes) {
-  for (const auto& [n, times] : {std::pair{5000, 2.0}, std::pair{50000, 3.0}}) {
+  for (const auto& [n, times] : {std::pair{2000, 2.0}, std::pair{5000, 3.0}}) {
     const GraphSize size{n, 2, TransportKind::rotation2};
     const Cost one = estimate_cost(size, Strategy::global), two = estimate_cost(size, Strategy::global, 2);
     EXPECT_NEAR(two.first_map_seconds / one.first_map_seconds, times, 1e-12);
@@ -53,7 +53,8 @@ TEST(Cost, OfOrderTwoIsThatOfItsTimes) {
     EXPECT_GT(two.bytes, one.bytes * (1 + (times - 1) / 2));
     const Cost march = estimate_cost(size, Strategy::march), marches = estimate_cost(size, Strategy::march, 2);
     EXPECT_NEAR(marches.first_map_seconds / march.first_map_seconds, times, 1e-12);
-    EXPECT_GT(marches.bytes, march.bytes);  // the bands of longer times are deeper
+    EXPECT_GE(marches.bytes, march.bytes);
+    if (times > 2) EXPECT_GT(marches.bytes, march.bytes);  // the bands of longer times are deeper, but no larger than all
   }
 }
 

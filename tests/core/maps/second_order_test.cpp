@@ -69,7 +69,7 @@ TEST(SecondOrder, MarchesToTheSameMap) {
 }
 
 TEST(SecondOrder, ExtrapolatesTwoMapsOfTheFirst) {
-  const CsrGraph graph(sphere_graph(3000));
+  const CsrGraph graph(sphere_graph(2000));
   const LogMap one = LogMapSolver(graph, {.t_coef = 1}).solve(Source::at_vertex(Vertex{5}));
   const LogMap two = LogMapSolver(graph, {.t_coef = 2}).solve(Source::at_vertex(Vertex{5}));
   const LogMap map = LogMapSolver(graph, global).solve(Source::at_vertex(Vertex{5}));

@@ -28,9 +28,9 @@ constexpr Index march_from = 50'000, march_volumes_from = 10'000;
 struct Times {
   Times(double n, int d, int order) {
     if (order == 1) return;
-    const double c = std::pow(n, 1.0 / d) / 50;
-    count = c < 2 ? 2 : 3;
-    longest = 2 * std::max(1.0, c < 2 ? 1.0 : c);
+    const double c = middle_time(n, d);
+    count = c > 1 ? 3 : 2;
+    longest = 2 * c;
   }
   double count = 1, longest = 1;
 };

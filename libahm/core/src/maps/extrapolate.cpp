@@ -12,14 +12,18 @@
 
 namespace ahm {
 
+double middle_time(double vertices, int dimension) {
+  constexpr double least = 1.5;
+  const double c = std::pow(vertices, 1.0 / dimension) / 50;
+  return c < 1 ? 1 : std::max(c, least);
+}
+
 DiffusionTimes::DiffusionTimes(int order, int dimension, std::span<const Index> sizes)
     : count_(order == 1 ? 1 : 2), middle_(sizes.size(), 1.0) {
   if (order == 1) return;
   for (std::size_t k = 0; k < middle_.size(); ++k) {
-    const double c = std::pow(static_cast<double>(sizes[k]), 1.0 / dimension) / 50;
-    if (c < 2) continue;
-    middle_[k] = c;
-    count_ = 3;
+    middle_[k] = middle_time(static_cast<double>(sizes[k]), dimension);
+    if (middle_[k] > 1) count_ = 3;
   }
 }
 
@@ -34,20 +38,18 @@ double DiffusionTimes::radius_of_each(double radius, std::span<const double> edg
 
 namespace {
 
-/// How much of the shortest time is kept, since phi is not smooth in sqrt(tau): where it changes faster than on smooth
-/// surfaces, and where, with three times, heat of the longest comes along several ways and the two limits disagree by as
-/// much as they correct.
-double share_of_first(double rate, double c, double relative_disagreement, double relative_spread) {
-  const double fast = std::clamp((rate - 3) / 2, 0.0, 1.0);
-  if (!(c > 1) || !(relative_disagreement > 0.4)) return fast;
-  return std::max(fast,
-                  std::clamp(std::min((relative_disagreement - 0.4) / 0.4, (relative_spread - 0.1) / 0.1), 0.0, 1.0));
-}
-
 constexpr double root_2_less_1 = std::numbers::sqrt2 - 1;
 
 /// 0 up to `low`, 1 from `high` on.
 double ramp(double x, double low, double high) { return std::clamp((x - low) / (high - low), 0.0, 1.0); }
+
+/// How much of the shortest time is kept, since phi is not smooth in sqrt(tau): where it changes faster than on smooth surfaces.
+double share_by_rate(double rate) { return ramp(rate, 3, 5); }
+
+/// With three times: where heat of the longest comes along several ways and the two limits disagree by as much as they correct.
+double share_by_limits(double relative_disagreement, double relative_spread) {
+  return std::min(ramp(relative_disagreement, 0.4, 0.8), ramp(relative_spread, 0.1, 0.2));
+}
 
 /// Distances of heat from one source at the times 1, c and 2 c, and how wide its ways spread at the first and the last.
 struct TimedDistance {
@@ -63,14 +65,14 @@ double doubt_by_spread(const TimedDistance& r, double c) {
   return r.first_spread > 0 ? std::abs(ratio * ratio / std::sqrt(2 * c) - 1) : 0.0;
 }
 
-/// How much of the shortest time's distance is kept, at least as much as of phi: all of it where the limit is farther away
-/// than on smooth surfaces, where heat spreads otherwise than on them, where edges do not follow the way, as between points
+/// How much of the shortest time's distance is kept, at least `by_rate`: all of it where the limit is farther away than on smooth
+/// surfaces, where heat spreads otherwise than on them, where edges do not follow the way, as between points
 /// that are much denser one way than the other, and where, with three times, the two limits disagree by as much as they
 /// correct.
-double share_of_first_distance(double share_of_phi, const TimedDistance& r, double c, double path) {
-  if (!(r.first > 0)) return share_of_phi;
+double share_of_first_distance(double by_rate, const TimedDistance& r, double c, double path) {
+  if (!(r.first > 0)) return by_rate;
   const double correction = std::abs(r.limit() - r.first);
-  const double share = std::max({share_of_phi, ramp(correction / r.first, 0.02, 0.04),
+  const double share = std::max({by_rate, ramp(correction / r.first, 0.02, 0.04),
                                  ramp(doubt_by_spread(r, c), 0.1, 0.25), ramp(path / r.first, 1.1, longest_way)});
   if (!(c > 1) || !(correction > 0)) return share;
   const double other = (std::sqrt(c) * r.first - r.middle) / (std::sqrt(c) - 1);
@@ -146,13 +148,16 @@ ExtrapolatedRow extrapolate_row(const std::array<TimedRow, 3>& rows, const Extra
   Scratch at_zero(phi.size());
   const std::span<double> limit = at_zero.span();
   const double disagreement = limit_of(first.phi, middle.phi, last.phi, c, limit);
-  const double w = share_of_first(gap(last.phi, middle.phi) / step, c, disagreement / gap(limit, first.phi),
-                                  last.spread / std::max(last.distance, scales.h));
+  const double by_rate = share_by_rate(gap(last.phi, middle.phi) / step), correction = gap(limit, first.phi);
+  const bool has_limits = c > 1 && correction > 0;
+  const double by_limits =
+      has_limits ? share_by_limits(disagreement / correction, last.spread / std::max(last.distance, scales.h)) : 0;
+  const double w = std::max(by_rate, by_limits);
   for (std::size_t a = 0; a < phi.size(); ++a) phi[a] = (1 - w) * limit[a] + w * first.phi[a];
   const TimedDistance r{first.distance, middle.distance, last.distance, first.spread, last.spread};
   double distance = r.first;
   if (!kind.unfolded) {
-    distance += (1 - share_of_first_distance(w, r, c, path)) * (r.limit() - r.first);
+    distance += (1 - share_of_first_distance(by_rate, r, c, path)) * (r.limit() - r.first);
     distance = std::min(distance, std::max(r.first, path));
   }
   if (!kind.of_curve) shorten(phi, first.phi, std::max(length(first.phi), distance));

@@ -12,9 +12,12 @@
 
 namespace ahm {
 
-/// The diffusion times of one order as factors of t_coef, per component: {1}, or {1, c, 2c} with c = n^(1/d) / 50, n that of
-/// the component, and c = 1 where that is less than 2. Longer times shrink the error that comes from the mesh's directions,
-/// ~ 1/c, and extrapolation removes the one in sqrt(tau) that grows with them.
+/// The second of three diffusion times of order 2, by t_coef: c = n^(1/d) / 50, but 1.5 at least, for n vertices in dimension d; 1
+/// where c is less than 1: there are two.
+double middle_time(double vertices, int dimension);
+
+/// The diffusion times of one order as factors of t_coef, per component: {1}, {1, 2}, or {1, c, 2c}. Longer times shrink the error
+/// that comes from the mesh's directions, ~ 1/c, and extrapolation removes the one in sqrt(tau) that grows with them.
 class DiffusionTimes {
  public:
   /// @param sizes  vertices of each component
@@ -78,9 +81,9 @@ ExtrapolatedRow extrapolate_row(const std::array<TimedRow, 3>& rows, const Extra
 ///     phi* = phi(c) + (phi(c) - phi(2c)) / (sqrt 2 - 1)
 ///     a    = |phi(2c) - phi(c)| / (sqrt(tau_2c) - sqrt(tau_c))
 ///     b    = |phi* - phi*(1, c)| / |phi* - phi(1)|,   s = spread(2c) / max(d, h)
-///     w    = max( clamp((a - 3)/2, 0, 1),  min( clamp((b - .4)/.4, 0, 1), clamp((s - .1)/.1, 0, 1) ) )
+///     w    = max( clamp((a - 3)/2, 0, 1),  min( clamp((b - .4)/.4, 0, 1), clamp((s - .1)/.1, 0, 1) ) )    b = 0 with two times
 ///     phi  = (1 - w) phi* + w phi(1)
-///     w_d  = max( w, clamp((e - .02)/.02, 0, 1), clamp((g - .1)/.15, 0, 1), clamp((l/d(1) - 1.1)/.05, 0, 1),
+///     w_d  = max( clamp((a - 3)/2, 0, 1), clamp((e - .02)/.02, 0, 1), clamp((g - .1)/.15, 0, 1), clamp((l/d(1) - 1.1)/.05, 0, 1),
 ///                 clamp((b_d - .25)/.25, 0, 1) )
 ///
 /// with e = |d* - d(1)| / d(1), g = |spread(2c)^2 / (sqrt(2c) spread(1)^2) - 1|, l the shortest way along edges and b_d the b

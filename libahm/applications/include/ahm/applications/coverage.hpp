@@ -59,7 +59,7 @@ struct CoveragePath {
 ///
 /// The spiral keeps its pitch where |phi| is the distance from the source, as it is where the map is to be trusted; raster lines keep theirs near
 /// the source and on flat or rolled surfaces (`CoveragePoint::spacing`).
-/// @throws InvalidArgument (values not finite or out of range, more than 2^30 points)
+/// @throws InvalidArgument (values not finite or out of range, more than 2^30 points), ResourceExhausted (more than memory holds)
 CoveragePath coverage_path(const InverseMap& inverse, const CoverageOptions& options);
 
 /// The same with the points of a piece joined by shortest paths over flat faces (`exact::locally_shortest_path`), which lie
