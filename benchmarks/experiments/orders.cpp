@@ -92,6 +92,8 @@ Table orders(const Settings& settings) {
   measure(Surface("graded saddle", graded(settings.toy ? 25 : 120)), table);
   for (Index n : settings.toy ? std::vector<Index>{640} : std::vector<Index>{2500, 10000, 40000})
     measure(Surface("sphere", test::split_icosphere(n)), table);
+  for (Index n : settings.toy ? std::vector<Index>{700} : std::vector<Index>{2500, 5000, 9000, 20000})
+    measure(Surface("random sphere", sliver_sphere(n)), table);
   measure(Surface("torus", torus(settings.toy ? 640 : 20000)), table);
   for_user_surfaces(settings, 20000, [&](const Surface& surface) { measure(surface, table); });
   table.seen = fmt::format(
