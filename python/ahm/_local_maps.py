@@ -179,7 +179,8 @@ def local_stroke(surface: Any, points: Any, radius: float, *, closed: bool = Fal
                  t_coef: float = 1.0, variant: str = "adaptive", progress: Progress = None) -> LocalStroke:
     """`stroke` within a radius alone: time and memory of what lies there, however large the surface is.
 
-    points, closed, shape : as of `stroke`. radius, margin, t_coef, variant, progress : as of `local_maps`.
+    points, closed, shape : as of `stroke`. radius, margin, t_coef, variant, progress : as of `local_maps`. Distances are those from
+        the nearest sample of the curve, which are half an edge apart.
 
     >>> import ahm
     >>> near = ahm.local_stroke(ahm.shapes.plane(40, 40), [[10, 20, 0], [20, 20, 0]], radius=2.5)

@@ -84,7 +84,8 @@ class LogMap:
 
     @property
     def distance(self) -> np.ndarray:
-        """(n,) geodesic distance from the source, world units: more accurate than |uv|; of an exact map |uv|."""
+        """(n,) geodesic distance from the source, world units: more accurate than |uv|; of an exact map |uv|. Of a stroke that
+        from the curve; where its coordinates are `positions`, from its nearest sample, a quarter of an edge off at most."""
         return self._map.distance()
 
     @property

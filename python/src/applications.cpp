@@ -51,9 +51,12 @@ py::tuple stroke(const py::object& maker, const py::tuple& points, const Doubles
     o.progress = progress;
     SurfaceCurve drawn = draw_stroke(*by.body(), at, uv, shape);
     PlacedSource source{drawn.source, drawn.points.front(), drawn.first, std::nullopt};
+    const double radius = std::exchange(o.radius, reach_from_curve(drawn, o.radius));
     LogMap solved = solve(by, drawn, o);
+    RowLogMap rows = rows_from_curve(by.body()->surface_for("a stroke"), solved, drawn, radius);
     const unsigned threads = by.solver() != nullptr ? by.solver()->solver.options().threads : 0;
-    return std::pair(std::make_shared<Map>(by.body(), std::move(source), std::move(solved), threads), std::move(drawn));
+    auto map = std::make_shared<Map>(by.body(), std::move(source), std::move(solved), threads, std::move(rows));
+    return std::pair(std::move(map), std::move(drawn));
   });
   return py::make_tuple(map, owned(std::move(curve.points)), curve.length, curve.gap, curve.jump);
 }

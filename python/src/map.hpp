@@ -43,7 +43,8 @@ class Maker {
 
 /// A map, and what it is on the rows.
 struct Map {
-  Map(BodyPtr on, PlacedSource from, LogMap made, unsigned threads);
+  /// @param given  the map by rows; none: as the surface has it
+  Map(BodyPtr on, PlacedSource from, LogMap made, unsigned threads, std::optional<RowLogMap> given = {});
 
   BodyPtr body;
   PlacedSource source;

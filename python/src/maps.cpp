@@ -18,12 +18,16 @@
 
 namespace ahm::python {
 
-Map::Map(BodyPtr on, PlacedSource from, LogMap made, unsigned threads)
+Map::Map(BodyPtr on, PlacedSource from, LogMap made, unsigned threads, std::optional<RowLogMap> given)
     : body(std::move(on)), source(std::move(from)), map(std::move(made)), threads(threads) {
   if (body->surface() == nullptr) return;
-  rows = body->surface()->on_rows(map);
+  rows = given ? *std::move(given) : body->surface()->on_rows(map);
   uv.resize(2 * rows.u.size());
-  for (std::size_t r = 0; r < rows.u.size(); ++r) uv[2 * r] = rows.u[r], uv[2 * r + 1] = rows.v[r];
+  rows.angle.resize(rows.u.size());
+  for (std::size_t r = 0; r < rows.u.size(); ++r) {
+    uv[2 * r] = rows.u[r], uv[2 * r + 1] = rows.v[r];
+    rows.angle[r] = std::atan2(rows.v[r], rows.u[r]);
+  }
   rows.u = {}, rows.v = {};
 }
 

@@ -201,6 +201,13 @@ def test_strokes_on_the_plane(flat_surfaces):
         side = np.sign(found.map.source.axes[2, 2])
         np.testing.assert_allclose(found.map.uv[inside], (expected * [1, side])[inside], atol=1e-6)
         assert found.map.spread.max() < 1e-6 and found.map.quality[inside].min() > 0.5
+        beyond = np.maximum(0, np.maximum(0.5 - s.points[:, 0], s.points[:, 0] - 2.5))
+        away = np.hypot(beyond, s.points[:, 1] - 1.25)
+        np.testing.assert_allclose(found.map.distance, away, atol=1e-6)
+        within = ahm.stroke(s, [[0.5, 1.25, 0], [2.5, 1.25, 0]], radius=0.5).map
+        clear = np.abs(away - 0.5) > 1e-6
+        np.testing.assert_array_equal(within.ok[clear], (away < 0.5)[clear])
+        np.testing.assert_array_equal(np.isnan(within.angle), ~within.ok)
 
 
 def test_decals_keep_their_area_and_paint_rows(flat_surfaces):

@@ -9,6 +9,9 @@
 #include <fstream>
 
 #include "ahm/maps/cost.hpp"
+#include "ahm/maps/log_map_solver.hpp"
+#include "ahm/testing/curved_graphs.hpp"
+#include "support/expect_error.hpp"
 
 namespace ahm::test {
 namespace {
@@ -104,6 +107,17 @@ TEST(MemoryLimits, OfResourcesCountAsTheMachines) {
     EXPECT_EQ(choose_strategy({.vertices = 1'000'000}, {}), Strategy::march);  // the factors take more
   }
   EXPECT_EQ(machine_memory(), machine);
+}
+
+TEST(MemoryLimits, AreNotFilledByMapsThatAreKnownNotToFit) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the address sanitizer takes more than any limit";
+#endif
+  const CsrGraph graph(sphere_graph(20000));
+  const LogMapSolver solver(graph, {.strategy = Strategy::march});
+  const std::vector<Source> sources(2000, Source::at_vertex(Vertex(0)));
+  const Lowered lowered(RLIMIT_DATA, 1'000'000'000);
+  expect_error<ResourceExhausted>([&] { solver.solve(sources); }, "2000 maps of 20000 vertices fill the memory");
 }
 
 }  // namespace

@@ -86,13 +86,14 @@ struct LogMapSolver::Impl {
 
   const HeatOperators& operators(std::size_t time) const {
     std::call_once(times[time].factored, [&] {
-      if (strategy == Strategy::march) check_memory();
+      if (strategy == Strategy::march) check_memory_of_factors();
       factor(time, {});
     });
     return *times[time].operators;
   }
   void factor(std::size_t time, const Progress& progress) const;
-  void check_memory() const;
+  void check_memory_of_factors() const;
+  void check_memory_of_maps(std::size_t count, const MapSettings& map) const;
   /// Kept by solvers that make many maps.
   std::shared_ptr<const UnfoldingFront::Stars> stars() const {
     if (!graph.is_delaunay()) return nullptr;
@@ -122,6 +123,13 @@ struct LogMapSolver::Impl {
 };
 
 namespace {
+
+/// @param what  takes so much, in the words of the message
+void check_memory(double bytes, double memory, const std::string& what, const std::string& advice) {
+  if (!(memory > 0 && bytes > memory)) return;
+  throw ResourceExhausted(what + ", about " + detail::number(std::round(bytes / 1e7) / 100) + " GB of " +
+                          detail::number(std::round(memory / 1e7) / 100) + " GB; " + advice);
+}
 
 /// The checks come before anything else is asked of the graph.
 const TangentGraph& checked(const TangentGraph& graph, const HeatOptions& options) {
@@ -269,15 +277,21 @@ std::vector<LogMap> LogMapSolver::Impl::solve_block(std::size_t time, std::span<
 }
 
 /// A marching solver was asked for the factors that it does without: better refused than swapped for.
-void LogMapSolver::Impl::check_memory() const {
-  const double wanted =
-      estimate_cost({graph.size(), graph.dimension(), graph.transport_kind()}, Strategy::global).bytes;
-  const double memory = options.memory > 0 ? static_cast<double>(options.memory) : machine_memory();
-  if (memory > 0 && wanted > memory)
-    throw ResourceExhausted("this needs the factors of all " + std::to_string(graph.size()) + " vertices, about " +
-                            detail::number(std::round(wanted / 1e7) / 100) + " GB of " +
-                            detail::number(std::round(memory / 1e7) / 100) +
-                            " GB; thin the surface or cut out the part that is wanted");
+void LogMapSolver::Impl::check_memory_of_factors() const {
+  check_memory(estimate_cost({graph.size(), graph.dimension(), graph.transport_kind()}, Strategy::global).bytes,
+               options.memory > 0 ? static_cast<double>(options.memory) : machine_memory(),
+               "this needs the factors of all " + std::to_string(graph.size()) + " vertices",
+               "thin the surface or cut out the part that is wanted");
+}
+
+/// Of the maps alone: better refused than begun.
+void LogMapSolver::Impl::check_memory_of_maps(std::size_t count, const MapSettings& map) const {
+  const auto d = static_cast<double>(graph.dimension());
+  const double numbers = d + (map.distances ? 1 : 0) + (map.spread ? 1 : 0) + (map.frames ? d * d : 0);
+  check_memory(static_cast<double>(count) * graph.size() * (numbers * sizeof(double) + sizeof(Status)),
+               machine_memory(),
+               std::to_string(count) + " maps of " + std::to_string(graph.size()) + " vertices fill the memory",
+               "solve for fewer at a time, or for local maps");
 }
 
 /// The same at all times, extrapolated.
@@ -335,6 +349,7 @@ std::vector<LogMap> LogMapSolver::solve(std::span<const Source> sources, const M
   MapSettings settings = settings_of(options, impl_->options);
   const unsigned threads = impl_->threads_for(options.threads.value_or(impl_->options.threads));
   for (const Source& source : sources) check_source(source, impl_->graph);
+  if (sources.size() > 1) impl_->check_memory_of_maps(sources.size(), settings);
   const std::size_t block = impl_->strategy == Strategy::global ? sources_per_block(impl_->graph.size()) : 1;
   const auto count = static_cast<Offset>(sources.size());
   // A single block cannot be shared out: its own steps use the threads instead, where that pays.

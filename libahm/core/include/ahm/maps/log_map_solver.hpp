@@ -56,6 +56,7 @@ class LogMapSolver {
 
   /// Many sources. Global: as blocks of right-hand sides, the same numbers in the same order as one block at a time on
   /// one thread. Marched: one after the other on each thread.
+  /// @throws as for one; ResourceExhausted where the maps alone would fill the memory, before any is made
   std::vector<LogMap> solve(std::span<const Source> sources, const MapOptions& options = {}) const;
 
   const TangentGraph& graph() const noexcept;
