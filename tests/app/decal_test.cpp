@@ -153,6 +153,7 @@ TEST(DecalCommand, RefusesWhatItCannotDo) {
   refuses({"--image", image, "-s", "0", "--size", "-1", "-o", out}, "--size");
   refuses({"--image", image, "-s", "9999", "--size", "1", "-o", out}, "9999");
   refuses({"--image", image, "-s", "0", "--size", "1", "-o", folder / "out.csv"}, ".ply");
+  refuses({"--image", image, "-s", "0", "--size", "1", "--lift", "0.1", "-o", folder / "out.ply"}, "--lift");
   refuses({"--image", image, "-s", "0", "--size", "1", "-o", folder / "out.glb", "--json", image}, "image.png");
   EXPECT_EQ(folder.files(), (std::vector<std::string>{"image.png", "plate.off"}));
 }

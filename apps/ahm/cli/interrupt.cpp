@@ -3,6 +3,8 @@
 #include <signal.h>
 #include <unistd.h>
 
+#include <exception>
+#include <new>
 #include <string>
 
 #include "ahm/io/atomic_file.hpp"
@@ -10,19 +12,40 @@
 namespace ahm::app {
 namespace {
 
-std::string message;  // set before any handler is
+// Set before any handler is.
+std::string interrupted, out_of_memory, unknown_failure;
+
+void tell(const std::string& message) {
+  [[maybe_unused]] const ssize_t ignored = write(STDERR_FILENO, message.data(), message.size());
+}
 
 // Only calls that are allowed in a handler.
 extern "C" void on_signal(int number) {
   io::remove_unfinished_files();
-  [[maybe_unused]] const ssize_t ignored = write(STDERR_FILENO, message.data(), message.size());
+  tell(interrupted);
   _exit(128 + number);
+}
+
+[[noreturn]] void on_terminate() {
+  io::remove_unfinished_files();
+  try {
+    if (const std::exception_ptr thrown = std::current_exception()) std::rethrow_exception(thrown);
+    tell(unknown_failure);
+  } catch (const std::bad_alloc&) {
+    tell(out_of_memory);
+  } catch (...) {
+    tell(unknown_failure);
+  }
+  _exit(1);
 }
 
 }  // namespace
 
 void install_interrupt_handling(const std::string& program) {
-  message = "\n" + program + ": interrupted\n";
+  interrupted = "\n" + program + ": interrupted\n";
+  out_of_memory = program + ": error: out of memory\n";
+  unknown_failure = program + ": error: unknown failure\n";
+  std::set_terminate(on_terminate);
   signal(SIGPIPE, SIG_IGN);  // writing reports EPIPE
   signal(SIGXFSZ, SIG_IGN);  // writing reports EFBIG
   constexpr int ending[] = {SIGINT, SIGTERM, SIGHUP};

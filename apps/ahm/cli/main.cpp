@@ -10,7 +10,7 @@
 #include <exception>
 #include <new>
 #include <stdexcept>
-#include <string>
+#include <string_view>
 
 #include "ahm/error.hpp"
 #include "cli/command_line.hpp"
@@ -26,8 +26,9 @@ constexpr int failed = 1;
 constexpr int usage = 2;
 constexpr const char* out_of_memory = "out of memory; thin the input (--voxel), lower --k, or use a machine with more";
 
-int report(const std::string& message, int status) {
-  say("ahm: error: " + message + "\n");
+/// In pieces: there may be no memory for them in one.
+int report(std::string_view message, int status) {
+  for (const std::string_view part : {std::string_view("ahm: error: "), message, std::string_view("\n")}) say(part);
   return status;
 }
 

@@ -122,9 +122,14 @@ void report(const DecalCommandOptions& options, const Input& input, const Decal&
   deliver(std::move(j), text, options.output, journal);
 }
 
+/// Whether the points of the input are written, colored.
+bool is_points(const OutputOptions& output) { return io::lower_extension(output.output) == ".ply"; }
+
 void run(const DecalCommandOptions& given) {
   DecalCommandOptions options = given;
   check_texture_output(options.input.path, options.output, {".obj", ".glb", ".ply"}, {"decal"}, options.image);
+  if (is_points(options.output) && (options.lift || options.alone))
+    throw InvalidArgument("--lift and --alone are for .obj and .glb: a .ply holds the colors of INPUT's points");
   const Image image = io::read_image(options.image);
   const DecalOptions usual = decal_of(image, options.size);
   options.decal.width = usual.width, options.decal.height = usual.height;
@@ -157,7 +162,7 @@ void run(const DecalCommandOptions& given) {
                     100 - 100 * amount.covered));
 
   journal.start("write");
-  io::lower_extension(options.output.output) == ".ply" ? write_points(options, input, inverse, image, source.position)
+  is_points(options.output) ? write_points(options, input, inverse, image, source.position)
                                                        : write_mesh(options, input, decal, image, source.position);
   report(options, input, decal, amount, source.position, journal);
 }

@@ -135,6 +135,18 @@ void write(const LocalMapsOptions& options, const RowLocalMaps& maps, const std:
   file.commit();
 }
 
+/// Maps around a vertex of very many neighbours are each solved on all of these.
+void comment_on_hubs(const TangentGraph& graph, std::size_t sources, Journal& journal) {
+  constexpr double long_work = 3e8;  // a minute
+  std::size_t most = 0;
+  for (Index i = 0; i < graph.size(); ++i) most = std::max(most, graph.star(i).degree());
+  if (const auto degree = static_cast<double>(most); degree * static_cast<double>(std::min(most, sources)) > long_work)
+    journal.add_warning(
+        fmt::format("a vertex has {} neighbours, and each map around it is solved on all of them: this takes long; "
+                    "choose --sources",
+                    most));
+}
+
 /// Radii in other units, or of too few edges, are seen by neighbourhoods without neighbours.
 void comment_on_lonely(const RowLocalMaps& maps, const LocalMapsOptions& options, const Input& input,
                        Journal& journal) {
@@ -154,6 +166,8 @@ void run(const LocalMapsOptions& options) {
   const std::vector<Row> wanted = wanted_rows(options, rows);
   std::vector<Vertex> vertices;
   for (Row row : wanted) vertices.push_back(*rows.vertex(row));
+
+  comment_on_hubs(input.graph(), vertices.size(), journal);
 
   journal.start("solve");
   LocalMapOptions map_options;

@@ -2,9 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <limits>
+
 #include "ahm/error.hpp"
 #include "ahm/maps/cost.hpp"
 #include "cli/system_info.hpp"
+#include "input/memory_check.hpp"
 #include "output/wording.hpp"
 
 namespace ahm::app {
@@ -20,6 +23,19 @@ void check_memory(const SolveOptions& options, const TangentGraph& graph) {
         "--strategy global: the factors would take about {}, this machine has {}; leave the choice to auto, which "
         "marches",
         bytes_as_text(static_cast<std::int64_t>(wanted)), bytes_as_text(static_cast<std::int64_t>(memory))));
+}
+
+void check_memory_of_march(const SolveOptions& options, const TangentGraph& graph, const Source& source,
+                           Journal& journal) {
+  constexpr double worth_a_look = 0.4;
+  const GraphSize size{graph.size(), graph.dimension(), graph.transport_kind()};
+  const double quick = estimate_cost(size, Strategy::march, options.order, options.threads).bytes;
+  if (!(quick > worth_a_look * machine_memory())) return;
+  const double radius = options.radius.value_or(std::numeric_limits<double>::infinity());
+  check_memory(
+      "the map",
+      static_cast<double>(peak_rss_bytes()) + estimate_cost(graph, source, Strategy::march, options, radius).bytes,
+      journal);
 }
 
 std::string strategy_as_text(const LogMap& map) {
@@ -57,6 +73,7 @@ ExactMapOptions exact_options(const SolveOptions& options, Journal& journal) {
 
 LogMap solve(const SolveOptions& options, const LogMapSolver& solver, const Source& source, Journal& journal) {
   journal.start("solve");
+  if (solver.strategy() == Strategy::march) check_memory_of_march(options, solver.graph(), source, journal);
   LogMap map = solver.solve(source, map_options(options));
   journal.tell(strategy_as_text(map));
   return map;

@@ -11,6 +11,7 @@
 #include "ahm/surface/directions.hpp"
 #include "ahm/util/vec.hpp"
 #include "cli/source_list.hpp"
+#include "input/memory_check.hpp"
 #include "input/repair.hpp"
 #include "output/wording.hpp"
 
@@ -106,6 +107,8 @@ Input open_input(io::Geometry geometry, const InputOptions& options, Journal& jo
   const std::optional<SourceSpec> place =
       mesh && source ? std::optional(in_remaining_faces(*source, *mesh, "--source")) : source;
   const Backend& backend = choose_backend(geometry, options);
+  if (!options.local && !options.voxel)
+    check_memory("the graph", backend.cost.bytes * static_cast<double>(geometry.points.size()), journal);
   if (options.local && place && geometry.face_count() > 0 && backend.uses_faces)
     return open_surroundings(std::move(geometry), backend, std::move(mesh), given_faces, options, *place, journal);
   Built built = build(backend, geometry, mesh, options, place, journal);
