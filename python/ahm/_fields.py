@@ -22,8 +22,8 @@ def distance(surface: Any, sources: Any, *, targets: Any = None, method: str = "
     sources : one or more points: rows, positions, `(faces, barycentric)`, `(edges, t)`.
     targets : None: all rows, result (n,); or points, result (k,). Other targets than rows take method "exact".
     method : "unfold": a front over the triangles, no heat, best for distances on meshes; "heat": the distance of a log
-        map, by one solve each of A and B on clouds, grids and graphs, smooth, best on noise; on meshes log maps unfold it, too;
-        "exact": of the flat triangles of a mesh.
+        map, by one solve each of A and B on clouds, grids and graphs, smooth, best on noise, rounded off by about an edge half-way
+        between sources; on meshes log maps unfold it, too; "exact": of the flat triangles of a mesh.
     radius : NaN beyond this distance; world units. Not for "heat".
     tolerance : of exact distances, as of `ExactGeodesics`.
     progress : as of `LogMapSolver`.

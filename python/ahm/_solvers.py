@@ -139,7 +139,7 @@ class LogMapSolver(_Maker):
     def log_maps(self, sources: Any, *, u_axis: Any = None, radius: Optional[float] = None, frames: bool = False,
                  spread: bool = True, distances: bool = True, variant: Optional[str] = None, threads: Optional[int] = None,
                  progress: Progress = None) -> List[LogMap]:
-        """One map for each source, in blocks, which is faster than one by one, and the same numbers.
+        """One map for each source, in blocks, which is faster than one by one, and the same to rounding.
 
         sources : (k,) rows, (k, 3) positions, `(faces, barycentric)`, `(edges, t)`, or a list of any.
         spread : keep `LogMap.spread`, which `quality` needs and which is a fifth of the work.
