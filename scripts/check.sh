@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # What a compiler and the tests do not see: the format of every source, clang-tidy on what is ours, and the tests of the
-# library, its backends and io under the address and undefined-behaviour sanitizers; with sanitizers-python those of the Python
+# libraries under the address and undefined-behaviour sanitizers; with sanitizers-python those of the Python
 # package, too; with threads what is parallel under the thread sanitizer. Installs what these take.
 #   check.sh [format|tidy|tidy-all|sanitizers|sanitizers-python|threads ...]     format, tidy and sanitizers without a word
 # tidy looks at what differs from main and at what includes that; tidy-all at everything, without the one check that takes as long
