@@ -54,7 +54,8 @@ Manifest plan_mesh(const std::filesystem::path& input, const std::filesystem::pa
           "'" + input.string() +
           "' has no faces, and clouds are not cut into tiles from files of its kind; save it as .ply");
     if (options.k != 0 || options.drop_non_finite || options.ignore_normals)
-      throw InvalidArgument("--k, --drop-nan and --ignore-normals are for clouds, and '" + input.string() + "' is a mesh");
+      throw InvalidArgument("--k, --drop-nan and --ignore-normals are for clouds, and '" + input.string() +
+                            "' is a mesh");
     surface = surface_of(geometry, mesh, progress);
   }
   for (const Warning& warning : surface->warnings())

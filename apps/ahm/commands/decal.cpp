@@ -163,7 +163,7 @@ void run(const DecalCommandOptions& given) {
 
   journal.start("write");
   is_points(options.output) ? write_points(options, input, inverse, image, source.position)
-                                                       : write_mesh(options, input, decal, image, source.position);
+                            : write_mesh(options, input, decal, image, source.position);
   report(options, input, decal, amount, source.position, journal);
 }
 

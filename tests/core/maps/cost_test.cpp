@@ -54,7 +54,8 @@ TEST(Cost, OfOrderTwoIsThatOfItsTimes) {
     const Cost march = estimate_cost(size, Strategy::march), marches = estimate_cost(size, Strategy::march, 2);
     EXPECT_NEAR(marches.first_map_seconds / march.first_map_seconds, times, 1e-12);
     EXPECT_GE(marches.bytes, march.bytes);
-    if (times > 2) EXPECT_GT(marches.bytes, march.bytes);  // the bands of longer times are deeper, but no larger than all
+    if (times > 2)
+      EXPECT_GT(marches.bytes, march.bytes);  // the bands of longer times are deeper, but no larger than all
   }
 }
 
