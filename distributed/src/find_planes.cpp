@@ -83,12 +83,14 @@ std::optional<double> median(const TileFolder& folder, std::string_view name) {
   return result.value();
 }
 
-pointcloud::OffsetCounts offset_counts(const TileFolder& folder) {
+/// @param largest  median of the largest offsets
+pointcloud::OffsetCounts offset_counts(const TileFolder& folder, double largest) {
   pointcloud::OffsetCounts sum;
   for (std::size_t t = 0; t < folder.tiles(); ++t) {
     const ArrayFile file = folder.open(kind::noise, t);
     const auto counts = file.get<Offset>("counts");
     sum.points += counts[0], sum.apart += counts[1], sum.beside += counts[2], sum.between += counts[3];
+    sum.alike += pointcloud::count_alike(file.get<double>("largest"), largest);
   }
   return sum;
 }
@@ -114,7 +116,7 @@ void find_planes(TileFolder& folder, std::size_t tile) {
 void measure_noise(TileFolder& folder) {
   const double all = median(folder, "offsets").value_or(0), largest = median(folder, "largest").value_or(0);
   Manifest& m = folder.manifest();
-  m.noise = noise_of(offset_counts(folder), all, largest).deviation;
+  m.noise = noise_of(offset_counts(folder, largest), all, largest).deviation;
   const double spacing = median(folder, "spacings").value_or(0);
   if (m.options.k == 0 && m.k == 30 && m.noise > much_noise * spacing)
     throw InvalidGeometry(

@@ -22,6 +22,9 @@ constexpr double least_offset = 1e-6;
 /// In layers nearly all points have neighbours in another one, and of the offsets hardly any is between these shares of the
 /// largest of its point, where those of normal noise are every second time.
 constexpr double layered_points = 0.9, between_from = 0.25, between_to = 0.75, between_layers = 0.25;
+/// Layers are as far apart at most points, to this share, as at the middle one; on lattices over bends, whose points have neighbours
+/// across the bend and along it, offsets are of any size.
+constexpr double alike_by = 0.25, alike_in_layers = 0.8;
 
 /// `nearest_few` for each point; -1: none.
 std::vector<double> offsets_of(const CleanPoints& cloud, const Neighborhoods& neighborhoods,
@@ -59,6 +62,7 @@ double take_median(std::vector<double>& values) {
 
 Noise noise_of(NeighborOffsets offsets) {
   const double all = take_median(offsets.all), largest = take_median(offsets.largest);
+  offsets.counts.alike = count_alike(offsets.largest, largest);
   return noise_of(offsets.counts, all, largest);
 }
 
@@ -82,6 +86,10 @@ void NeighborOffsets::add(std::span<const double> of_point, double radius) {
       std::ranges::count_if(of_point, [&](double t) { return t > between_from * most && t < between_to * most; });
 }
 
+Offset count_alike(std::span<const double> largest, double median) {
+  return std::ranges::count_if(largest, [&](double t) { return std::abs(t - median) <= alike_by * median; });
+}
+
 NeighborOffsets neighbor_offsets(const CleanPoints& cloud, const Neighborhoods& neighborhoods,
                                  const TangentPlanes& planes, Index begin, Index end, unsigned threads) {
   const std::vector<double> all = offsets_of(cloud, neighborhoods, planes, begin, end, threads);
@@ -95,7 +103,8 @@ NeighborOffsets neighbor_offsets(const CleanPoints& cloud, const Neighborhoods& 
 Noise noise_of(const OffsetCounts& counts, double all, double largest) {
   const auto share = [](Offset some, Offset of) { return static_cast<double>(some) / static_cast<double>(of); };
   const bool layers = counts.beside > 0 && share(counts.between, counts.beside) < between_layers &&
-                      share(counts.apart, counts.points) > layered_points;
+                      share(counts.apart, counts.points) > layered_points &&
+                      share(counts.alike, counts.apart) > alike_in_layers;
   if (layers) return {largest * deviation_of_largest, largest};
   return {all * deviation_of_median, 0};
 }

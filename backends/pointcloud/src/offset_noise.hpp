@@ -20,7 +20,11 @@ struct OffsetCounts {
   Offset apart = 0;    ///< ... and an offset that is more than rounding
   Offset beside = 0;   ///< offsets of these beside the largest of each
   Offset between = 0;  ///< ... and near neither zero nor the largest
+  Offset alike = 0;    ///< largest ones near their median
 };
+
+/// How many of these are near their median.
+Offset count_alike(std::span<const double> largest, double median);
 
 /// Absolute offsets of the nearest few neighbours of points across their mean planes, in units of the clean points.
 struct NeighborOffsets {
@@ -36,8 +40,8 @@ struct NeighborOffsets {
 NeighborOffsets neighbor_offsets(const CleanPoints& cloud, const Neighborhoods& neighborhoods,
                                  const TangentPlanes& planes, Index begin, Index end, unsigned threads);
 
-/// By the median of all offsets, which corners and other sheets do not move. Where points lie in layers nearer to each other than
-/// neighbours, as those of two scans or of the sides of a thin plate, that median is of the offsets within a layer or between
+/// By the median of all offsets, which corners and other sheets do not move. Where points lie in layers as far apart everywhere, and
+/// nearer than neighbours, as those of two scans or of the sides of a thin plate, that median is of the offsets within a layer or between
 /// two, as it happens: there it is by the largest of each point.
 /// @param all, largest  medians; 0 of none
 Noise noise_of(const OffsetCounts& counts, double all, double largest);

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
+#include <vector>
 
 #include "ahm/util/vec.hpp"
 #include "noisy_clouds.hpp"
@@ -63,6 +65,15 @@ TEST(Layers, AreNeitherNoiseNorBendsNorCorners) {
     EXPECT_FALSE(is_seen(with_noise(random_sphere(n), share * spacing()).points)) << share;
   EXPECT_FALSE(is_seen(even_sphere(n).points));
   EXPECT_FALSE(is_seen(folded_cloud(60, 6, std::numbers::pi / 2).points));
+  for (const auto& [height, waves] : {std::pair(0.05, 10), {0.1, 10}, {0.03, 20}, {0.05, 20}})
+    for (const int side : {30, 50, 80, 120}) {
+      std::vector<Vec3> lattice;
+      for (int i = 0; i < side * side; ++i) {
+        const double x = static_cast<double>(i % side) / (side - 1), y = static_cast<double>(i / side) / (side - 1);
+        lattice.push_back({x, y, height * std::sin(waves * x)});
+      }
+      EXPECT_FALSE(is_seen(lattice)) << height << ' ' << waves << ' ' << side;
+    }
 }
 
 // Given sides tell the two sides of a wall apart: there is nothing to be told, and no noise.
