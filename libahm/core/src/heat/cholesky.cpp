@@ -238,9 +238,11 @@ struct CholeskyFactor::Impl {
   void check_pivots(const cholmod_common& common, const char* name) const {
     const auto [low, high] = pivot_range(*L);
     if (common.status == CHOLMOD_NOT_POSDEF || L->minor != L->n || !(low > 0) || !std::isfinite(high))
-      throw NotPositiveDefinite(std::string("operator ") + name + " is not positive definite (column " +
-                                std::to_string(L->minor) + " of " + std::to_string(L->n) +
-                                " in elimination order): check the graph's weights; negative ones can cause this");
+      throw NotPositiveDefinite("not_positive_definite",
+                                std::string("operator ") + name + " is not positive definite (column " +
+                                    std::to_string(L->minor) + " of " + std::to_string(L->n) + " in elimination order)",
+                                "check the graph's weights: negative ones can cause this, and points nearly on top of "
+                                "each other");
   }
 
   void solve(cholmod_dense& X, Dense& solution, Dense& Y, Dense& E, Common& common) const {
@@ -276,9 +278,10 @@ struct CholeskyFactor::Impl {
     std::vector<double> residual = multiply(matrix, x);
     for (std::size_t i = 0; i < b.size(); ++i) residual[i] -= b[i];
     if (!(largest(residual) <= 1e-10 * scale))
-      throw NotPositiveDefinite(std::string("operator ") + name + ": the factorization fails its residual check (" +
-                                detail::number(largest(residual) / scale) +
-                                " relative); the graph is too ill-conditioned");
+      throw NotPositiveDefinite("ill_conditioned",
+                                std::string("operator ") + name + ": the factorization fails its residual check (" +
+                                    detail::number(largest(residual) / scale) + " relative)",
+                                "the graph is too ill-conditioned");
   }
 };
 
