@@ -16,7 +16,7 @@ void check_memory(const std::string& what, double bytes, Journal& journal) {
       fmt::format("{} takes about {}, this machine lets it take {}", what,
                   bytes_as_text(static_cast<std::int64_t>(bytes)), bytes_as_text(static_cast<std::int64_t>(memory)));
   if (at_least * bytes > memory)
-    throw ResourceExhausted(told + "; thin the input (--voxel), or map what is near (--local with --radius)");
+    throw ResourceExhausted(told + "; thin the input, map what is near (ahm logmap --local), or cut it (ahm-tiles)");
   journal.add_warning(told + ": the system may end it");
 }
 
