@@ -95,8 +95,8 @@ void check_memory(const TileFolder& folder, std::size_t tile, std::size_t points
   const double wanted = static_cast<double>(points) * bytes_per_point;
   if (wanted > static_cast<double>(folder.options().memory))
     throw ResourceExhausted("tile " + std::to_string(tile) + " and what is around it have " + std::to_string(points) +
-                            " points, which take about " + detail::number(std::round(wanted / 1e7) / 100) +
-                            " GB; give more memory, plan smaller tiles, or remove stray points first");
+                            " points, which take about " + detail::gigabytes(wanted) +
+                            "; give more memory, plan smaller tiles, or remove stray points first");
 }
 
 }  // namespace

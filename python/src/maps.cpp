@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <iterator>
 #include <tuple>
 #include <utility>
 
@@ -23,11 +24,10 @@ Map::Map(BodyPtr on, PlacedSource from, LogMap made, unsigned threads, std::opti
   if (body->surface() == nullptr) return;
   rows = given ? *std::move(given) : body->surface()->on_rows(map);
   uv.resize(2 * rows.u.size());
-  rows.angle.resize(rows.u.size());
-  for (std::size_t r = 0; r < rows.u.size(); ++r) {
-    uv[2 * r] = rows.u[r], uv[2 * r + 1] = rows.v[r];
-    rows.angle[r] = std::atan2(rows.v[r], rows.u[r]);
-  }
+  for (std::size_t r = 0; r < rows.u.size(); ++r) uv[2 * r] = rows.u[r], uv[2 * r + 1] = rows.v[r];
+  if (rows.angle.empty())  // of strokes
+    std::ranges::transform(rows.v, rows.u, std::back_inserter(rows.angle),
+                           [](double v, double u) { return std::atan2(v, u); });
   rows.u = {}, rows.v = {};
 }
 

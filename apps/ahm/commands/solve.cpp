@@ -14,7 +14,7 @@ namespace ahm::app {
 namespace {
 
 /// Better refused than swapped for.
-void check_memory(const SolveOptions& options, const TangentGraph& graph) {
+void check_memory_of_factors(const SolveOptions& options, const TangentGraph& graph) {
   if (options.strategy != Strategy::global) return;
   const GraphSize size{graph.size(), graph.dimension(), graph.transport_kind()};
   const double wanted = estimate_cost(size, Strategy::global, options.order).bytes, memory = machine_memory();
@@ -25,12 +25,14 @@ void check_memory(const SolveOptions& options, const TangentGraph& graph) {
         bytes_as_text(static_cast<std::int64_t>(wanted)), bytes_as_text(static_cast<std::int64_t>(memory))));
 }
 
+/// The look takes a tenth of a map's time, and is spared where there is plenty.
 void check_memory_of_march(const SolveOptions& options, const TangentGraph& graph, const Source& source,
                            Journal& journal) {
   constexpr double worth_a_look = 0.4;
+  const double memory = machine_memory();
   const GraphSize size{graph.size(), graph.dimension(), graph.transport_kind()};
   const double quick = estimate_cost(size, Strategy::march, options.order, options.threads).bytes;
-  if (!(quick > worth_a_look * machine_memory())) return;
+  if (!(memory > 0 && quick > worth_a_look * memory)) return;
   const double radius = options.radius.value_or(std::numeric_limits<double>::infinity());
   check_memory(
       "the map",
@@ -47,7 +49,7 @@ std::string strategy_as_text(const LogMap& map) {
 }  // namespace
 
 LogMapSolver make_solver(const SolveOptions& options, const TangentGraph& graph, Journal& journal, int maps) {
-  check_memory(options, graph);
+  check_memory_of_factors(options, graph);
   journal.start("factor");
   HeatOptions heat = options;
   heat.expected_maps = maps;

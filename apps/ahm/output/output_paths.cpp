@@ -41,7 +41,6 @@ bool is_read(const fs::path& file, const std::string& input) {
 void check_directory(const OutputPath& output) {
   const fs::path path(output.path);
   std::error_code error;
-  if (io::is_stream(output.path)) return;
   if (fs::is_directory(path, error)) throw IoError(fmt::format("{} {}: is a directory", output.option, output.path));
   const fs::path parent = path.has_parent_path() ? path.parent_path() : fs::path(".");
   if (!fs::is_directory(parent, error))
@@ -56,22 +55,22 @@ void check_directory(const OutputPath& output) {
 void check_outputs(const std::vector<std::string>& inputs, const std::vector<OutputPath>& outputs, bool keep_existing) {
   for (std::size_t i = 0; i < outputs.size(); ++i) {
     if (!is_file(outputs[i])) continue;
-    check_directory(outputs[i]);
+    const auto& [option, path] = outputs[i];
+    const bool is_stream = io::is_stream(path);
+    if (!is_stream) check_directory(outputs[i]);
     for (const std::string& input : inputs)
-      if (!io::is_stream(outputs[i].path) && is_read(outputs[i].path, input))
-        throw InvalidArgument(fmt::format("{} {}: is the input file, or one that it names; it would be overwritten",
-                                          outputs[i].option, outputs[i].path));
-    for (const std::string& list : lists_read())
-      if (same_file(outputs[i].path, list))
-        throw InvalidArgument(fmt::format("{} {}: is a list that is read by this command; it would be overwritten",
-                                          outputs[i].option, outputs[i].path));
-    if (keep_existing && fs::exists(outputs[i].path) && !io::is_stream(outputs[i].path))
-      throw InvalidArgument(
-          fmt::format("{} {}: exists; leave --no-overwrite out to replace it", outputs[i].option, outputs[i].path));
-    for (std::size_t j = 0; j < i; ++j)
-      if (is_file(outputs[j]) && same_file(outputs[i].path, outputs[j].path))
+      if (!is_stream && is_read(path, input))
         throw InvalidArgument(
-            fmt::format("{} and {} name the same file {}", outputs[j].option, outputs[i].option, outputs[i].path));
+            fmt::format("{} {}: is the input file, or one that it names; it would be overwritten", option, path));
+    for (const std::string& list : lists_read())
+      if (same_file(path, list))
+        throw InvalidArgument(
+            fmt::format("{} {}: is a list that is read by this command; it would be overwritten", option, path));
+    if (keep_existing && fs::exists(path) && !is_stream)
+      throw InvalidArgument(fmt::format("{} {}: exists; leave --no-overwrite out to replace it", option, path));
+    for (std::size_t j = 0; j < i; ++j)
+      if (is_file(outputs[j]) && same_file(path, outputs[j].path))
+        throw InvalidArgument(fmt::format("{} and {} name the same file {}", outputs[j].option, option, path));
   }
 }
 

@@ -14,6 +14,9 @@ struct Advice {
   std::string_view fault, remedy;
 };
 
+constexpr std::string_view join_points =
+    "points nearly on top of each other do this: --voxel (clouds) or --weld (meshes) joins them";
+
 constexpr Advice advices[] = {
     {"unknown_bytes", "name it with --input-format"},
     {"unknown_type", "if it is one of them, name it with --input-format"},
@@ -25,9 +28,8 @@ constexpr Advice advices[] = {
     {"non_manifold_vertices", "split them with --non-manifold split, or mend all there is with --repair"},
     {"diffusion_time_range", "give a --t-coef near 1"},
     {"heat_lost", "give a smaller --t-coef"},
-    {"not_positive_definite",
-     "points nearly on top of each other do this: --voxel (clouds) or --weld (meshes) joins them"},
-    {"ill_conditioned", "points nearly on top of each other do this: --voxel (clouds) or --weld (meshes) joins them"},
+    {"not_positive_definite", join_points},
+    {"ill_conditioned", join_points},
     {"twisted_faces", "use --discretization polygons"},
     {"collinear_faces", "remove them, or use --method heat"},
     {"no_flat_triangles", "use --method heat"},

@@ -102,9 +102,7 @@ namespace {
 /// Twice as much room, from four times the file on.
 void grow(const Input& in, std::uint64_t most, std::string& room) {
   constexpr std::size_t least = 1 << 16;
-  if (room.size() >= most)
-    throw ResourceExhausted("cannot read " + quoted_path(in.path) + ": unpacked it is larger than " +
-                            std::to_string(most >> 20) + " MB, a third of the memory that is free");
+  if (room.size() >= most) fail_too_large(in, "unpacked it", most);
   const std::uint64_t wanted = room.empty() ? 4 * in.bytes.size() : 2 * room.size();
   room.resize(std::min<std::uint64_t>(most, std::max<std::uint64_t>(wanted, least)));
 }
@@ -114,7 +112,7 @@ void grow(const Input& in, std::uint64_t most, std::string& room) {
 bool is_gzip(const Input& in) { return in.bytes.starts_with("\x1f\x8b"); }
 
 void gunzip(Input& in) {
-  const std::uint64_t most = free_memory() / 3;
+  const std::uint64_t most = room_for_input();
   Gunzip packed(in, [all = std::string_view(in.bytes)]() mutable { return std::exchange(all, {}); });
   std::string result;
   std::size_t made = 0;

@@ -34,14 +34,12 @@ template <class Next>
 Input load_unnamed(const Next& next) {
   Input in{"-", {}};
   constexpr std::size_t block = std::size_t{1} << 20;
-  const std::uint64_t most = free_memory() / 3;
+  const std::uint64_t most = room_for_input();
   for (std::size_t done = 0, got = 1; got > 0; in.bytes.resize(done)) {
     in.bytes.resize(done + block);
     got = next(in, in.bytes.data() + done, block);
     done += got;
-    if (done > most)
-      throw ResourceExhausted("cannot read '-': the stream is larger than " + std::to_string(most >> 20) +
-                              " MB, a third of the memory that is free");
+    if (done > most) fail_too_large(in, "the stream", most);
   }
   if (in.bytes.empty()) fail(in, "the stream is empty (0 bytes)");
   if (is_gzip(in)) gunzip(in);
@@ -75,6 +73,11 @@ void check_gzip_name(const Input& in) {
 
 void fail(const Input& in, const std::string& what) {
   throw IoError("cannot read " + quoted_path(in.path) + ": " + what);
+}
+
+void fail_too_large(const Input& in, const std::string& what, std::uint64_t most) {
+  throw ResourceExhausted("cannot read " + quoted_path(in.path) + ": " + what + " is larger than " +
+                          std::to_string(most >> 20) + " MB, a third of the memory that is free");
 }
 
 void fail_at_line(const Input& in, std::int64_t line, const std::string& what) {

@@ -36,6 +36,8 @@ void check_gzip_name(const Input& in);
 
 /// Throws IoError "cannot read 'path': what".
 [[noreturn]] void fail(const Input& in, const std::string& what);
+/// Throws ResourceExhausted "cannot read 'path': what is larger than ... MB". @param most  `room_for_input`
+[[noreturn]] void fail_too_large(const Input& in, const std::string& what, std::uint64_t most);
 /// Throws IoError "cannot read 'path', line 12: what".
 [[noreturn]] void fail_at_line(const Input& in, std::int64_t line, const std::string& what);
 /// Throws IoError "cannot read 'path', byte 345: what".

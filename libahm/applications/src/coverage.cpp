@@ -24,6 +24,14 @@ void remove(Vec3& v, const Vec3& axis) {
   for (std::size_t c = 0; c < 3; ++c) v[c] -= along * axis[c];
 }
 
+/// @param has  "the path has 7"
+/// @param points  for which there must be room at once
+void check_memory(const std::string& has, double points) {
+  if (const double machine = machine_memory(); machine > 0 && points * sizeof(CoveragePoint) > machine)
+    throw ResourceExhausted(has +
+                            " points, for which memory does not suffice; enlarge spacing or step, or lower radius");
+}
+
 void check(const CoverageOptions& o) {
   const auto check_positive = [](const char* name, double value) {
     if (!(value > 0 && std::isfinite(value)))
@@ -38,9 +46,7 @@ void check(const CoverageOptions& o) {
   if (!(points < 1 << 30))
     throw InvalidArgument("the pattern has about " + detail::number(points) +
                           " points, more than 2^30; enlarge spacing or step, or lower radius");
-  if (const double machine = machine_memory(); machine > 0 && points * sizeof(CoveragePoint) > machine)
-    throw ResourceExhausted("the pattern has about " + detail::number(points) +
-                            " points, for which memory does not suffice; enlarge spacing or step, or lower radius");
+  check_memory("the pattern has about " + detail::number(points), points);
 }
 
 /// A line of the raster, `across` away from the source, from left to right along (1, 0).
@@ -136,18 +142,16 @@ class Carrier {
   }
 
   void append(const InversePoint& point, const Vec2& q, Index line) {
-    if (path_.points.size() == path_.points.capacity()) check_memory();
+    if (path_.points.size() == path_.points.capacity()) check_room();
     const double arclength = size() == 0 ? 0.0 : path_.points.back().arclength + distance(point);
     path_.points.push_back(
         {point.position, point.normal, point.frame().x, q, path_.pieces, line, arclength, 0.0, false});
   }
 
   /// Before the points move to twice their room.
-  void check_memory() const {
-    const double needed = 3.0 * sizeof(CoveragePoint) * static_cast<double>(path_.points.size());
-    if (const double machine = machine_memory(); machine > 0 && needed > machine)
-      throw ResourceExhausted("the path has more than " + std::to_string(path_.points.size()) +
-                              " points, for which memory does not suffice; enlarge spacing or step, or lower radius");
+  void check_room() const {
+    const std::size_t count = path_.points.size();
+    check_memory("the path has more than " + std::to_string(count), 3.0 * static_cast<double>(count));
   }
 
   /// Headings and spacings of the current piece; a point alone has none and is dropped.

@@ -87,8 +87,8 @@ void check_memory(const TangentGraph& graph, std::span<const Source> sources, st
   if (const double count = counts[samples / 2]; count > enough)
     throw ResourceExhausted("half of the " + std::to_string(sources.size()) + " local maps would hold more than " +
                             detail::number(std::floor(enough)) + " vertices each, and fill the memory of " +
-                            detail::number(std::round(memory / 1e7) / 100) +
-                            " GB; take a smaller radius, fewer sources, or the nearest vertices alone");
+                            detail::gigabytes(memory) +
+                            "; take a smaller radius, fewer sources, or the nearest vertices alone");
 }
 
 /// One source's part of the result.

@@ -127,8 +127,8 @@ namespace {
 /// @param what  takes so much, in the words of the message
 void check_memory(double bytes, double memory, const std::string& what, const std::string& advice) {
   if (!(memory > 0 && bytes > memory)) return;
-  throw ResourceExhausted(what + ", about " + detail::number(std::round(bytes / 1e7) / 100) + " GB of " +
-                          detail::number(std::round(memory / 1e7) / 100) + " GB; " + advice);
+  throw ResourceExhausted(what + ", about " + detail::gigabytes(bytes) + " of " + detail::gigabytes(memory) + "; " +
+                          advice);
 }
 
 /// The checks come before anything else is asked of the graph.

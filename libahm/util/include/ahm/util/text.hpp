@@ -2,6 +2,7 @@
 /// Numbers in messages. Not part of the public interface.
 #pragma once
 
+#include <cmath>
 #include <cstdio>
 #include <string>
 
@@ -13,5 +14,8 @@ inline std::string number(double value) {
   std::snprintf(buffer, sizeof buffer, "%.6g", value);
   return buffer;
 }
+
+/// "1.23 GB"
+inline std::string gigabytes(double bytes) { return number(std::round(bytes / 1e7) / 100) + " GB"; }
 
 }  // namespace ahm::detail
