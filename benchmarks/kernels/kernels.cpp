@@ -17,7 +17,7 @@ int run_kernels(std::vector<std::string> options) {
   const LinearAlgebraInfo info = linear_algebra_info();
   benchmark::AddCustomContext("CHOLMOD", info.cholmod);
   benchmark::AddCustomContext("BLAS", info.blas);
-  without_openmp_regions([] { benchmark::RunSpecifiedBenchmarks(); });
+  benchmark::RunSpecifiedBenchmarks();
   return 0;
 }
 

@@ -141,13 +141,11 @@ std::vector<double> measure(Index n, const Speeds& speeds) {
     add(usual_seconds(analyzed), (bytes(matrices.A.column_begin) + bytes(matrices.A.rows)) / copy);
     const SymbolicCholesky symbolic = analyzed();
     const double flops = factor_size(matrices.A, Ordering::amd).flops;
-    without_openmp_regions([&] {  // as the solver does; a process that was forked has no threads for them
-      for (const bool scalar : {true, false}) {
-        const auto factored = [&] { return CholeskyFactor(scalar ? matrices.A : matrices.B, symbolic, "benchmark"); };
-        add(usual_seconds(factored), scalar ? flops / dgemm : 4 * flops / zgemm);
-        factor_bytes += static_cast<double>(factored().bytes());
-      }
-    });
+    for (const bool scalar : {true, false}) {
+      const auto factored = [&] { return CholeskyFactor(scalar ? matrices.A : matrices.B, symbolic, "benchmark"); };
+      add(usual_seconds(factored), scalar ? flops / dgemm : 4 * flops / zgemm);
+      factor_bytes += static_cast<double>(factored().bytes());
+    }
   }
 
   // Each map goes down and up both factors at least once.

@@ -186,7 +186,7 @@ struct TreeFactor {
 TEST(SolveGroups, AreSubtreesAndWhatIsAboveThem) {
   const TreeFactor factor(12);
   const SupernodalFactor L = factor.view();
-  const auto groups = solve_groups(L);
+  const auto groups = solve_groups(L, supernode_tree(L));
   ASSERT_NE(groups, nullptr);
   std::vector<int> seen(factor.super.size() - 1, 0);
   for (const Offset s : groups->top) ++seen[s];
@@ -214,7 +214,7 @@ TEST(SolveGroups, AreSubtreesAndWhatIsAboveThem) {
 
 TEST(SolveGroups, GiveTheSolutionOfOneThreadAfterTheOther) {
   const TreeFactor factor(12);
-  const auto groups = solve_groups(factor.view());
+  const auto groups = solve_groups(factor.view(), supernode_tree(factor.view()));
   ASSERT_NE(groups, nullptr);
   for (Offset columns = 1; columns <= max_narrow_columns; ++columns)
     for (const bool is_point : {false, true}) {
@@ -234,12 +234,12 @@ TEST(SolveGroups, GiveTheSolutionOfOneThreadAfterTheOther) {
 }
 
 TEST(SolveGroups, AreNotMadeWhereTheyDoNotPayOrSupernodesAreOutOfOrder) {
-  EXPECT_EQ(solve_groups(TreeFactor(4).view()), nullptr);
+  EXPECT_EQ(solve_groups(TreeFactor(4).view(), supernode_tree(TreeFactor(4).view())), nullptr);
   TreeFactor factor(12);
   // Supernode 3, the third leaf, becomes a child of the root: what comes before 6 is no longer below it.
   for (Offset k = factor.row_begin[3] + factor.super[4] - factor.super[3]; k < factor.row_begin[4]; ++k)
     factor.indices[k] = factor.n - 1;
-  EXPECT_EQ(solve_groups(factor.view()), nullptr);
+  EXPECT_EQ(solve_groups(factor.view(), supernode_tree(factor.view())), nullptr);
 }
 
 TEST(OneBlasThread, MayBeNestedAndSaysWhatTheBlasIs) {
@@ -251,13 +251,6 @@ TEST(OneBlasThread, MayBeNestedAndSaysWhatTheBlasIs) {
   }
   EXPECT_FALSE(before.empty());
   EXPECT_TRUE(blas_is_optimized("OpenBLAS 0.3.21"));
-}
-
-TEST(WithoutOpenmpRegions, RunsTheWorkAndPassesOnItsErrors) {
-  int runs = 0;
-  without_openmp_regions([&] { without_openmp_regions([&] { ++runs; }); });
-  EXPECT_EQ(runs, 1);
-  EXPECT_THROW(without_openmp_regions([] { throw InvalidArgument("work"); }), InvalidArgument);
 }
 
 }  // namespace

@@ -6,14 +6,10 @@
 #include <climits>
 #include <condition_variable>
 #include <cstdlib>
-#include <exception>
 #include <mutex>
-#include <system_error>
-#include <thread>
 #include <vector>
 
 #include "ahm/error.hpp"
-#include "ahm/util/memory.hpp"
 #include "heat/memory_limits.hpp"
 
 namespace ahm {
@@ -98,30 +94,6 @@ BlasBuffer::~BlasBuffer() {
     --buffers_taken;
   }
   buffer_is_free.notify_one();
-}
-
-void without_openmp_regions(const std::function<void()>& work) {
-  static auto* const set_levels = find_function<void(int)>("omp_set_max_active_levels");
-  thread_local bool done = false;
-  if (done) return work();
-  std::exception_ptr error;
-  const auto run = [&] {
-    done = true;
-    try {
-      // The OpenMP runtime ends the process where it cannot have a few bytes, so they are asked for beforehand.
-      detail::require_memory(std::size_t{1} << 16);
-      if (set_levels) set_levels(0);
-      work();
-    } catch (...) {
-      error = std::current_exception();
-    }
-  };
-  try {
-    std::jthread(run).join();
-  } catch (const std::system_error&) {
-    throw ResourceExhausted("out of memory: there is no room for a thread to factor on");
-  }
-  if (error) std::rethrow_exception(error);
 }
 
 std::string blas_name() {

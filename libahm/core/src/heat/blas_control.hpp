@@ -2,7 +2,6 @@
 /// The BLAS of the process: its name, and one thread of it while we work.
 #pragma once
 
-#include <functional>
 #include <string>
 
 namespace ahm {
@@ -33,11 +32,6 @@ class BlasBuffer {
  private:
   bool counted_;
 };
-
-/// Runs `work` where CHOLMOD's OpenMP regions stay on one thread, since at our sizes they cost more than they give: on a
-/// thread of its own, so that the caller's settings are left alone, or at once where that has been done already. Rethrows
-/// what it throws, and ResourceExhausted where there is no room for a thread.
-void without_openmp_regions(const std::function<void()>& work);
 
 /// Configuration string of OpenBLAS, else the file that provides `dgemm`.
 std::string blas_name();

@@ -13,6 +13,7 @@
 #include "ahm/util/text.hpp"
 #include "heat/blas_control.hpp"
 #include "heat/block_solve.hpp"
+#include "heat/multifrontal.hpp"
 #include "heat/solve_groups.hpp"
 #include "heat/triangular_solve.hpp"
 
@@ -181,14 +182,18 @@ constexpr const char* solving = "triangular solve";
 struct SymbolicCholesky::Impl {
   FactorPointer L;
   bool supernodal;
-  std::shared_ptr<const SolveGroups> groups;
+  std::optional<FactorPattern> pattern;  ///< of supernodes
   Offset nonzeros = 0;
   double operations = 0;
 
-  void finish(const cholmod_common& common) {
+  void finish(const SparseUpper& matrix, const cholmod_common& common) {
     nonzeros = static_cast<Offset>(L->is_super ? static_cast<double>(L->xsize) : common.lnz);
     operations = common.fl;
-    if (L->is_super) groups = solve_groups(supernodal_view(*L));
+    if (!L->is_super) return;
+    const SupernodalFactor view = supernodal_view(*L);
+    SupernodeTree tree = supernode_tree(view);
+    std::shared_ptr<const SolveGroups> groups = solve_groups(view, tree);
+    pattern.emplace(FactorPattern{FactorEntries(matrix, view), std::move(tree), std::move(groups)});
   }
 };
 
@@ -201,7 +206,7 @@ SymbolicCholesky::SymbolicCholesky(const SparseUpper& pattern, Ordering ordering
   cholmod_sparse matrix = view(pattern, false);
   impl_->supernodal = supernodal;
   impl_->L.reset(common.check(cholmod_l_analyze(&matrix, common.get()), "symbolic analysis"));
-  impl_->finish(*common.get());
+  impl_->finish(pattern, *common.get());
 }
 
 SymbolicCholesky::SymbolicCholesky(const SparseUpper& blocks, const SymbolicCholesky& scalar, int width)
@@ -220,7 +225,7 @@ SymbolicCholesky::SymbolicCholesky(const SparseUpper& blocks, const SymbolicChol
   cholmod_sparse matrix = view(blocks, false);
   impl_->L.reset(
       common.check(cholmod_l_analyze_p(&matrix, order.data(), nullptr, 0, common.get()), "symbolic analysis"));
-  impl_->finish(*common.get());
+  impl_->finish(blocks, *common.get());
 }
 
 SymbolicCholesky::~SymbolicCholesky() = default;
@@ -235,14 +240,31 @@ struct CholeskyFactor::Impl {
   Offset rows;
   bool is_complex;
 
-  void check_pivots(const cholmod_common& common, const char* name) const {
-    const auto [low, high] = pivot_range(*L);
-    if (common.status == CHOLMOD_NOT_POSDEF || L->minor != L->n || !(low > 0) || !std::isfinite(high))
-      throw NotPositiveDefinite("not_positive_definite",
-                                std::string("operator ") + name + " is not positive definite (column " +
-                                    std::to_string(L->minor) + " of " + std::to_string(L->n) + " in elimination order)",
-                                "check the graph's weights: negative ones can cause this, and points nearly on top of "
-                                "each other");
+  /// CHOLMOD makes room for the numbers.
+  void factor_supernodal(const SparseUpper& matrix, const FactorPattern& pattern, Common& common, const char* name,
+                         unsigned threads) {
+    groups = pattern.groups;
+    cholmod_l_change_factor(is_complex ? CHOLMOD_COMPLEX : CHOLMOD_REAL, 1, 1, 1, 1, L.get(), common.get());
+    common.check(name);
+    check_pivots(factor_by_fronts(matrix, pattern, supernodal_view(*L), static_cast<double*>(L->x), threads), name);
+  }
+
+  void factor_simplicial(const SparseUpper& matrix, Common& common, const char* name) {
+    cholmod_sparse K = view(matrix, true);
+    cholmod_l_factorize(&K, L.get(), common.get());
+    common.check(name);
+    check_pivots(static_cast<Offset>(L->minor), name);
+  }
+
+  /// @param good  columns that could be eliminated
+  void check_pivots(Offset good, const char* name) const {
+    if (good == rows)
+      if (const auto [low, high] = pivot_range(*L); low > 0 && std::isfinite(high)) return;
+    throw NotPositiveDefinite("not_positive_definite",
+                              std::string("operator ") + name + " is not positive definite (column " +
+                                  std::to_string(good) + " of " + std::to_string(rows) + " in elimination order)",
+                              "check the graph's weights: negative ones can cause this, and points nearly on top of "
+                              "each other");
   }
 
   void solve(cholmod_dense& X, Dense& solution, Dense& Y, Dense& E, Common& common) const {
@@ -285,22 +307,16 @@ struct CholeskyFactor::Impl {
   }
 };
 
-CholeskyFactor::CholeskyFactor(const SparseUpper& matrix, const SymbolicCholesky& symbolic, const char* name)
+CholeskyFactor::CholeskyFactor(const SparseUpper& matrix, const SymbolicCholesky& symbolic, const char* name,
+                               unsigned threads)
     : impl_(std::make_unique<Impl>()) {
   OneBlasThread one_thread;
   Common common(symbolic.impl_->supernodal);
   impl_->rows = matrix.size();
   impl_->is_complex = matrix.is_complex;
-  impl_->groups = symbolic.impl_->groups;
   impl_->L.reset(common.check(cholmod_l_copy_factor(symbolic.impl_->L.get(), common.get()), name));
-  cholmod_sparse K = view(matrix, true);
-  {
-    std::optional<BlasBuffer> buffer;
-    if (impl_->L->is_super) buffer.emplace();
-    if (!cholmod_l_factorize(&K, impl_->L.get(), common.get())) common.check(name);
-  }
-  common.check(name);
-  impl_->check_pivots(*common.get(), name);
+  impl_->L->is_super ? impl_->factor_supernodal(matrix, *symbolic.impl_->pattern, common, name, threads)
+                     : impl_->factor_simplicial(matrix, common, name);
   impl_->check_residual(*this, matrix, name);
 }
 

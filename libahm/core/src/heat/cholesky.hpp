@@ -48,9 +48,10 @@ class SymbolicCholesky {
 class CholeskyFactor {
  public:
   /// Factorizes and checks the result: every pivot finite and positive, and the residual of one solve small.
-  /// @param name  of the operator, for messages
+  /// @param name     of the operator, for messages
+  /// @param threads  that share the work; the same bits on any number
   /// @throws NotPositiveDefinite, ResourceExhausted
-  CholeskyFactor(const SparseUpper& matrix, const SymbolicCholesky& symbolic, const char* name);
+  CholeskyFactor(const SparseUpper& matrix, const SymbolicCholesky& symbolic, const char* name, unsigned threads = 1);
   ~CholeskyFactor();
   CholeskyFactor(CholeskyFactor&&) noexcept;
 

@@ -60,7 +60,7 @@ class LateFactor {
 
   void solve(std::span<double> X, Offset columns, unsigned threads) const {
     std::call_once(once_, [&] {
-      without_openmp_regions([&] { factor_.emplace(B_, analysis_->of_B(B_, dimension_), name_B); });
+      factor_.emplace(B_, analysis_->of_B(B_, dimension_), name_B);
       B_ = {};
       analysis_.reset();
     });
@@ -165,9 +165,9 @@ std::unique_ptr<const HeatSystem> factored_system(const TangentGraph& graph, std
 
   double lost = 0;
   detail::run_both(
-      options.threads, [&] { without_openmp_regions([&] { system->B.emplace(matrices.B, of_B, name_B); }); },
+      options.threads, [&] { system->B.emplace(matrices.B, of_B, name_B, options.threads); },
       [&] {
-        without_openmp_regions([&] { system->A.emplace(matrices.A, analysis.of_A(), name_A); });
+        system->A.emplace(matrices.A, analysis.of_A(), name_A);
         lost = lost_heat(*system, graph, graph.size());
       });
   system->statistics_to_fill().factor_seconds = stopwatch.lap();
@@ -183,7 +183,7 @@ std::unique_ptr<const HeatSystem> heat_first_system(const TangentGraph& graph, s
   std::unique_ptr<System>& system = begun.first;
   AssembledOperators& matrices = begun.second;
   Analysis analysis(matrices, options);
-  without_openmp_regions([&] { system->A.emplace(matrices.A, analysis.of_A(), name_A); });
+  system->A.emplace(matrices.A, analysis.of_A(), name_A);
   system->B.emplace(std::move(matrices.B), std::move(analysis), graph.dimension());
   system->finish(lost_heat(*system, graph, graph.size()));
   return std::move(system);

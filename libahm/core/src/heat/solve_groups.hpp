@@ -8,7 +8,8 @@
 #include <vector>
 
 #include "ahm/types.hpp"
-#include "heat/triangular_solve.hpp"
+#include "heat/supernodal_factor.hpp"
+#include "heat/supernode_tree.hpp"
 
 namespace ahm {
 
@@ -31,6 +32,6 @@ struct SolveGroups {
 };
 
 /// Null where they would not pay: for small factors, and where supernodes are not in postorder.
-std::unique_ptr<const SolveGroups> solve_groups(const SupernodalFactor& L);
+std::unique_ptr<const SolveGroups> solve_groups(const SupernodalFactor& L, const SupernodeTree& tree);
 
 }  // namespace ahm

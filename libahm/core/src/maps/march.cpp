@@ -85,36 +85,33 @@ struct March::Solve {
 
 void March::march(const Source* source) {
   OneBlasThread one_thread;
-  without_openmp_regions([&] {
-    std::unique_ptr<Solve> last;  // accepted by its heat; its values are still to be found
-    while (last || source || team_.sum(static_cast<std::int64_t>(front_.size())) > 0) {
-      progress_.step("solve", static_cast<double>(accepted_count_) / graph_.size());
-      std::unique_ptr<Solve> next;
-      detail::run_both(
-          last ? 2 : 1,
-          [&] {
-            if (last) without_openmp_regions([&] { solve_values(*last); });
-          },
-          [&] { next = solve_heat(source); });
-      if (std::exchange(last, nullptr) && keep_to_reach())
-        continue;  // `next` comes from what is no longer in the front
-      if (!next) {
-        front_.clear();
-      } else if (!accept_near(*next)) {
-        depth_ *= 1.4;  // and stays so: where one band was too thin, the next ones would be
-        continue;
-      } else if (looks_ahead_) {
-        pass_front(next->accepted());
-        last = std::move(next);
-      } else {
-        solve_values(*next);
-        pass_front(next->accepted());
-        keep_to_reach();
-      }
-      source = nullptr;
-      if (keeper_) keeper_->end_band(*this);
+  std::unique_ptr<Solve> last;  // accepted by its heat; its values are still to be found
+  while (last || source || team_.sum(static_cast<std::int64_t>(front_.size())) > 0) {
+    progress_.step("solve", static_cast<double>(accepted_count_) / graph_.size());
+    std::unique_ptr<Solve> next;
+    detail::run_both(
+        last ? 2 : 1,
+        [&] {
+          if (last) solve_values(*last);
+        },
+        [&] { next = solve_heat(source); });
+    if (std::exchange(last, nullptr) && keep_to_reach()) continue;  // `next` comes from what is no longer in the front
+    if (!next) {
+      front_.clear();
+    } else if (!accept_near(*next)) {
+      depth_ *= 1.4;  // and stays so: where one band was too thin, the next ones would be
+      continue;
+    } else if (looks_ahead_) {
+      pass_front(next->accepted());
+      last = std::move(next);
+    } else {
+      solve_values(*next);
+      pass_front(next->accepted());
+      keep_to_reach();
     }
-  });
+    source = nullptr;
+    if (keeper_) keeper_->end_band(*this);
+  }
 }
 
 /// Finds the next band and its heat, and changes nothing. Null where nothing is ahead.

@@ -88,9 +88,7 @@ void share_groups(const std::vector<std::vector<Index>>& groups, unsigned thread
       if (!idle.empty()) worker = std::move(idle.back()), idle.pop_back();
     }
     if (!worker) worker = make();
-    without_openmp_regions([&] {
-      for (Offset g = begin; g < end; ++g) work(*worker, groups[static_cast<std::size_t>(g)]);
-    });
+    for (Offset g = begin; g < end; ++g) work(*worker, groups[static_cast<std::size_t>(g)]);
     std::scoped_lock lock(mutex);
     idle.push_back(std::move(worker));
     done += end - begin;

@@ -1,0 +1,217 @@
+#include "heat/front_factor.hpp"
+
+#include <cmath>
+
+extern "C" {
+void dpotrf_(const char*, const int*, double*, const int*, int*);
+void zpotrf_(const char*, const int*, double*, const int*, int*);
+void dtrsm_(const char*, const char*, const char*, const char*, const int*, const int*, const double*, const double*,
+            const int*, double*, const int*);
+void ztrsm_(const char*, const char*, const char*, const char*, const int*, const int*, const double*, const double*,
+            const int*, double*, const int*);
+void dsyrk_(const char*, const char*, const int*, const int*, const double*, const double*, const int*, const double*,
+            double*, const int*);
+void zherk_(const char*, const char*, const int*, const int*, const double*, const double*, const int*, const double*,
+            double*, const int*);
+}
+
+namespace ahm {
+namespace {
+
+/// Four numbers, or two complex ones, at once.
+using Four [[gnu::vector_size(4 * sizeof(double)), gnu::aligned(alignof(double)), gnu::may_alias]] = double;
+
+/// Numbers of a tile's columns: two vectors.
+constexpr Offset tall = 8;
+
+/// sum_k L_rk conj(L_ck) of R * 4 / W rows and J columns.
+template <int W, int R, int J>
+struct Tile {
+  Four straight[J][R] = {}, crossed[W == 1 ? 1 : J][W == 1 ? 1 : R] = {};
+
+  /// @param row, column  first rows of L in its first column
+  [[gnu::always_inline]] Tile(const double* row, const double* column, Offset stride, Offset count) {
+    for (Offset k = 0; k < count; ++k, row += stride, column += stride) {
+      const Four* left = reinterpret_cast<const Four*>(row);
+#pragma GCC unroll 4
+      for (int c = 0; c < J; ++c)
+#pragma GCC unroll 2
+        for (int r = 0; r < R; ++r) {
+          straight[c][r] += left[r] * column[c * W];
+          if constexpr (W == 2) crossed[c][r] += left[r] * column[c * W + 1];
+        }
+    }
+  }
+  [[gnu::always_inline]] void get(int column, int r, Four& sum) const {
+    sum = straight[column][r];
+    if constexpr (W == 2)
+      sum += Four{1, -1, 1, -1} * __builtin_shufflevector(crossed[column][r], crossed[column][r], 1, 0, 3, 2);
+  }
+};
+
+/// A column block of the front on its way: rows from `begin` on, of the columns that begin there.
+template <int W, int J, bool Own>
+struct ColumnBlock {
+  const double* L;
+  Offset rows, eliminated;  ///< numbers of a column, columns
+  double* target[J];        ///< as if they began at row 0
+
+  /// Of own columns: what is eliminated is subtracted. Of those below: stored with a minus.
+  template <int R>
+  [[gnu::always_inline]] void tile(Offset begin, Offset r, Offset skipped = 0) const {
+    const Tile<W, R, J> tile(L + r, L + begin, rows, eliminated);
+#pragma GCC unroll 4
+    for (int c = 0; c < J; ++c)
+#pragma GCC unroll 2
+      for (int v = 0; v < R; ++v) {
+        Four sum;
+        tile.get(c, v, sum);
+        double* out = target[c] + r + 4 * v;
+        if (skipped == 0) {
+          Four& all = *reinterpret_cast<Four*>(out);
+          all = Own ? all - sum : -sum;
+        } else {
+          for (Offset k = skipped; k < 4; ++k) out[k] = Own ? out[k] - sum[k] : -sum[k];
+        }
+      }
+  }
+  [[gnu::always_inline]] void all(Offset begin) const {
+    Offset r = begin;
+    for (; r + tall <= rows; r += tall) tile<2>(begin, r);
+    for (; r + 4 <= rows; r += 4) tile<1>(begin, r);
+    if (r == rows) return;
+    if (rows >= 4) return tile<1>(begin, rows - 4, r - (rows - 4));
+    for (; r < rows; r += W)
+      for (int c = 0; c < J; ++c) one(begin, r, c);
+  }
+
+ private:
+  /// Where a column has less than four numbers.
+  [[gnu::always_inline]] void one(Offset begin, Offset r, int c) const {
+    double re = 0, im = 0;
+    for (Offset k = 0; k < eliminated; ++k) {
+      const double *a = L + k * rows + r, *b = L + k * rows + begin + c * W;
+      re += a[0] * b[0];
+      if constexpr (W == 2) {
+        re += a[1] * b[1];
+        im += a[1] * b[0] - a[0] * b[1];
+      }
+    }
+    double* out = target[c] + r;
+    out[0] = Own ? out[0] - re : -re;
+    if constexpr (W == 2) out[1] = Own ? out[1] - im : -im;
+  }
+};
+
+/// J columns from j on, which all before have been eliminated from, among themselves. @return how many pivots are good
+template <int W, int J>
+[[gnu::always_inline]] inline int finish_columns(double* L, Offset rows, Offset j) {
+  double* column[J];
+  for (int c = 0; c < J; ++c) column[c] = L + (j + c) * rows;
+  for (int c = 0; c < J; ++c) {
+    const double pivot = column[c][(j + c) * W];
+    if (!(pivot > 0) || !std::isfinite(pivot)) return c;
+    const double root = std::sqrt(pivot), inverse = 1 / root;
+    column[c][(j + c) * W] = root;
+    if constexpr (W == 2) column[c][(j + c) * W + 1] = 0;
+    for (Offset r = (j + c + 1) * W; r < rows; ++r) column[c][r] *= inverse;
+    for (int next = c + 1; next < J; ++next) {
+      const double re = column[c][(j + next) * W];
+      if constexpr (W == 1) {
+        for (Offset r = (j + next) * W; r < rows; ++r) column[next][r] -= column[c][r] * re;
+      } else {
+        const double im = column[c][(j + next) * W + 1];
+        for (Offset r = (j + next) * W; r < rows; r += 2) {
+          const double x = column[c][r], y = column[c][r + 1];
+          column[next][r] -= x * re + y * im;
+          column[next][r + 1] -= y * re - x * im;
+        }
+      }
+    }
+  }
+  return J;
+}
+
+template <int W, int J>
+[[gnu::always_inline]] inline int own_columns(double* L, Offset rows, Offset j) {
+  ColumnBlock<W, J, true> block{L, rows, j, {}};
+  for (int c = 0; c < J; ++c) block.target[c] = L + (j + c) * rows;
+  block.all(j * W);
+  return finish_columns<W, J>(L, rows, j);
+}
+
+template <int W, int J>
+[[gnu::always_inline]] inline void columns_below(const double* L, Offset rows, Offset columns, Offset c,
+                                                 double* update) {
+  const Offset below = rows - columns * W;
+  ColumnBlock<W, J, false> block{L, rows, columns, {}};
+  for (int a = 0; a < J; ++a) block.target[a] = update + (c + a) * below - columns * W;
+  block.all((columns + c) * W);
+}
+
+/// Columns at a time: as many as registers hold sums of.
+template <int W>
+constexpr int at_once = W == 1 ? 4 : 2;
+
+/// @param rows  numbers of a column
+template <int W>
+[[gnu::always_inline]] inline Offset factor_small(double* L, Offset rows, Offset columns, double* update) {
+  constexpr int J = at_once<W>;
+  for (Offset j = 0; j < columns;) {
+    const bool many = j + J <= columns;
+    const int wanted = many ? J : 1;
+    const int good = many ? own_columns<W, J>(L, rows, j) : own_columns<W, 1>(L, rows, j);
+    j += good;
+    if (good < wanted) return j;
+  }
+  const Offset below = rows / W - columns;
+  Offset c = 0;
+  for (; c + J <= below; c += J) columns_below<W, J>(L, rows, columns, c, update);
+  for (; c < below; ++c) columns_below<W, 1>(L, rows, columns, c, update);
+  return columns;
+}
+
+#ifdef __x86_64__
+template <int W>
+[[gnu::target("avx2,fma")]] Offset factor_small_avx2(double* L, Offset rows, Offset columns, double* update) {
+  return factor_small<W>(L, rows, columns, update);
+}
+#endif
+template <int W>
+Offset factor_small_anywhere(double* L, Offset rows, Offset columns, double* update) {
+  return factor_small<W>(L, rows, columns, update);
+}
+
+template <int W>
+Offset factor_large(double* L, Offset all_rows, Offset all_columns, double* update) {
+  const int rows = static_cast<int>(all_rows), columns = static_cast<int>(all_columns), below = rows - columns;
+  const double one[2] = {1, 0}, zero = 0, minus = -1;
+  int failed = 0;
+  (W == 1 ? dpotrf_ : zpotrf_)("L", &columns, L, &rows, &failed);
+  if (failed > 0) return failed - 1;
+  for (Offset j = 0; j < all_columns; ++j)  // OpenBLAS does not stop at NaN
+    if (!std::isfinite(L[j * (all_rows + 1) * W])) return j;
+  if (below > 0) {
+    double* L_below = L + all_columns * W;
+    (W == 1 ? dtrsm_ : ztrsm_)("R", "L", "C", "N", &below, &columns, one, L, &rows, L_below, &rows);
+    (W == 1 ? dsyrk_ : zherk_)("L", "N", &below, &columns, &minus, L_below, &rows, &zero, update, &below);
+  }
+  return all_columns;
+}
+
+}  // namespace
+
+template <int W>
+Offset factor_front(double* L, Offset rows, Offset columns, double* update) {
+  if (is_large_front(rows, columns)) return factor_large<W>(L, rows, columns, update);
+#ifdef __x86_64__
+  static const bool fast = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+  if (fast) return factor_small_avx2<W>(L, rows * W, columns, update);
+#endif
+  return factor_small_anywhere<W>(L, rows * W, columns, update);
+}
+
+template Offset factor_front<1>(double*, Offset, Offset, double*);
+template Offset factor_front<2>(double*, Offset, Offset, double*);
+
+}  // namespace ahm
