@@ -24,7 +24,7 @@ install(FILES
 # pkg-config: ahm-core, ahm-pointcloud, ...; not for what stands on PCL or GoogleTest. A static libahm needs what is private.
 file(RELATIVE_PATH AHM_PREFIX_FROM_PC "${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig" "${CMAKE_INSTALL_PREFIX}")
 string(REGEX REPLACE "/$" "" AHM_PREFIX_FROM_PC "${AHM_PREFIX_FROM_PC}")
-set(private_core "-lcholmod -pthread -ldl")
+set(private_core "-lcholmod -lamd -llapack -lblas -pthread -ldl")
 set(private_flann "")
 set(private_io "-ldl")
 if(AHM_WITH_FLANN)

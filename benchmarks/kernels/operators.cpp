@@ -38,14 +38,14 @@ void assemble(benchmark::State& state, Shape shape) {
 /// Ordering, elimination tree and supernodes, which A and B share.
 void analyze(benchmark::State& state, Shape shape, Ordering ordering) {
   const ahm::AssembledOperators matrices = operators(graph_of(shape, static_cast<ahm::Index>(state.range(0))));
-  for (auto _ : state) benchmark::DoNotOptimize(ahm::SymbolicCholesky(matrices.A, ordering, true));
+  for (auto _ : state) benchmark::DoNotOptimize(ahm::SymbolicCholesky(matrices.A, ordering));
   state.SetItemsProcessed(state.iterations() * state.range(0));
 }
 
 /// Numbers into the analyzed pattern; the check of the residual is part of it.
 void factorize(benchmark::State& state, Shape shape, Ordering ordering, bool scalar) {
   ahm::AssembledOperators matrices = operators(graph_of(shape, static_cast<ahm::Index>(state.range(0))));
-  const ahm::SymbolicCholesky symbolic(matrices.A, ordering, true);
+  const ahm::SymbolicCholesky symbolic(matrices.A, ordering);
   const SparseUpper& matrix = scalar ? matrices.A : matrices.B;
   const double seconds =
       run(state, [&] { benchmark::DoNotOptimize(ahm::CholeskyFactor(matrix, symbolic, "benchmark")); });

@@ -27,7 +27,7 @@ const ahm::CholeskyFactor& factor_of(const ahm::TangentGraph& graph, Shape shape
     const double h = graph.mean_edge_length();
     const std::vector<double> tau(static_cast<std::size_t>(graph.size()), h * h);
     const ahm::AssembledOperators matrices = ahm::assemble(graph, tau, 1.0 / (h * h));
-    const ahm::SymbolicCholesky symbolic(matrices.A, Ordering::amd, true);
+    const ahm::SymbolicCholesky symbolic(matrices.A, Ordering::amd);
     kept = std::make_unique<Kept>(shape, graph.size(), scalar,
                                   ahm::CholeskyFactor(scalar ? matrices.A : matrices.B, symbolic, "benchmark"));
   }

@@ -39,7 +39,6 @@ CHECKS: Dict[str, Callable[[Any, str], Any]] = {
     "memory": _whole(0, 2**62),
     "accuracy": _positive,
     "ordering": _one_of("amd", "nested_dissection"),
-    "supernodal": arguments.flag,
     "threads": _whole(0, 4096),
     "radius": _radius,
     "tolerance": _tolerance,

@@ -83,7 +83,6 @@ class LogMapSolver(_Maker):
     memory : for "automatic": bytes that factors may take; 0: half of the machine's memory.
     accuracy : of marches, against a global solve, relative.
     ordering : "amd", or "nested_dissection": for many maps.
-    supernodal : factor in dense blocks, which is faster; False: never call SuiteSparse's module under the GPL.
     threads : 0: one per core. No result depends on it.
     progress : None, True (a bar), or a callable (stage, fraction).
 
@@ -98,11 +97,11 @@ class LogMapSolver(_Maker):
 
     def __init__(self, surface: Any, *, t_coef: float = 1.0, variant: str = "adaptive", order: int = 1,
                  strategy: str = "automatic", expected_maps: int = 0, memory: int = 0, accuracy: float = 1e-9,
-                 ordering: str = "amd", supernodal: bool = True, threads: int = 0, progress: Progress = None) -> None:
+                 ordering: str = "amd", threads: int = 0, progress: Progress = None) -> None:
         self.surface = as_surface(surface)
         self.options = checked(t_coef=t_coef, variant=variant, order=order, strategy=strategy,
                                expected_maps=expected_maps, memory=memory, accuracy=accuracy, ordering=ordering,
-                               supernodal=supernodal, threads=threads)
+                               threads=threads)
         with reporting(progress) as report:
             self._core = _core.Solver(self.surface._body, self.options, report)
 

@@ -22,7 +22,6 @@ HeatOptions heat_options(const py::dict& options) {
   read(options, "accuracy", o.accuracy);
   read_choice(options, "ordering", o.ordering,
               {{"amd", Ordering::amd}, {"nested_dissection", Ordering::nested_dissection}});
-  read(options, "supernodal", o.supernodal);
   read(options, "threads", o.threads);
   return o;
 }

@@ -78,7 +78,6 @@ TEST(Threads, EightOnOneSolverGetWhatOneGets) {
   ask_from_eight_threads({});
   ask_from_eight_threads({.variant = Variant::localized, .order = 2});
   ask_from_eight_threads({.strategy = Strategy::march});
-  ask_from_eight_threads({.supernodal = false});
 }
 
 TEST(Threads, EightFactorAtOnceWhatOneFactors) {

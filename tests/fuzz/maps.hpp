@@ -39,7 +39,6 @@ inline void solve(const TangentGraph& graph, Bytes& bytes) {
   options.variant = (way & 1) != 0 ? Variant::localized : Variant::adaptive;
   options.order = (way & 2) != 0 ? 2 : 1;
   options.strategy = (way & 4) != 0 ? Strategy::march : Strategy::global;
-  options.supernodal = (way & 8) == 0;
   options.ordering = (way & 16) != 0 ? Ordering::nested_dissection : Ordering::amd;
   if ((way & 32) != 0) options.t_coef = bytes.coordinate((way & 64) != 0);
   const LogMapSolver solver(graph, options);

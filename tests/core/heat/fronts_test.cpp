@@ -133,7 +133,7 @@ Eigen::SparseMatrix<Number<W>> eigen_matrix(const SparseUpper& K) {
 template <int W>
 void expect_solutions(Offset side, Ordering ordering) {
   const SparseUpper K = grid(side, W == 2);
-  const SymbolicCholesky symbolic(K, ordering, true);
+  const SymbolicCholesky symbolic(K, ordering);
   const CholeskyFactor factor(K, symbolic, "K"), shared(K, symbolic, "K", 3);
   const Eigen::SimplicialLLT<Eigen::SparseMatrix<Number<W>>> eigens(eigen_matrix<W>(K));
   for (const Offset columns : {1, 2, 3, 4, 7}) {
@@ -167,7 +167,7 @@ TEST(CholeskyFactor, NamesTheSameColumnOnAnyNumberOfThreads) {
   for (const Offset bad : {Offset{3}, Offset{9000}, Offset{20001}})
     for (Offset p = K.column_begin[bad]; p < K.column_begin[bad + 1]; ++p)
       if (K.rows[p] == bad) K.values[p] = -1;
-  const SymbolicCholesky symbolic(K, Ordering::amd, true);
+  const SymbolicCholesky symbolic(K, Ordering::amd);
   std::vector<std::string> told;
   for (const unsigned threads : {1u, 2u, 4u}) try {
       const CholeskyFactor factor(K, symbolic, "K", threads);

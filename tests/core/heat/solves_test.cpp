@@ -63,7 +63,8 @@ TEST(ConjugateGradient, RefusesWhatIsNotPositiveDefinite) {
 
 /// L of two supernodes, {0, 1} and {2}, by hand: columns (2, 1, 3), (., 4, 5), (6).
 struct HandFactor {
-  std::vector<std::int64_t> permutation, super{0, 2, 3}, row_begin{0, 3, 4}, value_begin{0, 6, 7}, indices{0, 1, 2, 2};
+  std::vector<std::int32_t> permutation, indices{0, 1, 2, 2};
+  std::vector<Offset> super{0, 2, 3}, row_begin{0, 3, 4}, value_begin{0, 6, 7};
   std::vector<double> values{2, 1, 3, 0, 4, 5, 6};
   SupernodalFactor view() const {
     return {3, false, permutation, super, row_begin, value_begin, indices, values.data()};
@@ -72,7 +73,7 @@ struct HandFactor {
 
 TEST(NarrowSolve, InvertsAFactorWrittenByHand) {
   const double L[3][3] = {{2, 0, 0}, {1, 4, 0}, {3, 5, 6}};
-  for (const std::vector<std::int64_t>& order : {std::vector<std::int64_t>{0, 1, 2}, {2, 0, 1}}) {
+  for (const std::vector<std::int32_t>& order : {std::vector<std::int32_t>{0, 1, 2}, {2, 0, 1}}) {
     HandFactor factor;
     factor.permutation = order;
     for (Offset columns = 1; columns <= max_narrow_columns; ++columns) {
@@ -94,7 +95,8 @@ TEST(NarrowSolve, InvertsAFactorWrittenByHand) {
 struct ChainFactor {
   Offset n = 0;
   int width;
-  std::vector<std::int64_t> permutation, super{0}, row_begin{0}, value_begin{0}, indices;
+  std::vector<std::int32_t> permutation, indices;
+  std::vector<Offset> super{0}, row_begin{0}, value_begin{0};
   std::vector<double> values;
 
   explicit ChainFactor(bool is_complex) : width(is_complex ? 2 : 1) {
@@ -103,8 +105,8 @@ struct ChainFactor {
     for (Offset s = 0; s < supernodes; ++s) {
       const Offset columns = super[s + 1] - super[s];
       for (Offset r = super[s]; r < n; ++r)
-        if (r < super[s + 1] || r % 3 == 0 || r + 2 >= n) indices.push_back(r);
-      row_begin.push_back(static_cast<std::int64_t>(indices.size()));
+        if (r < super[s + 1] || r % 3 == 0 || r + 2 >= n) indices.push_back(static_cast<std::int32_t>(r));
+      row_begin.push_back(static_cast<Offset>(indices.size()));
       const Offset rows = row_begin[s + 1] - row_begin[s];
       value_begin.push_back(value_begin[s] + rows * columns);
       for (Offset j = 0; j < columns; ++j)
@@ -112,7 +114,7 @@ struct ChainFactor {
           for (int w = 0; w < width; ++w)
             values.push_back(r < j ? 0 : r == j ? (w == 0 ? 2.0 + 0.1 * s : 0) : std::sin(1.0 + s + 3 * r + 7 * j + w));
     }
-    for (Offset k = 0; k < n; ++k) permutation.push_back((5 * k + 2) % n);
+    for (Offset k = 0; k < n; ++k) permutation.push_back(static_cast<std::int32_t>((5 * k + 2) % n));
   }
   SupernodalFactor view() const {
     return {n, width == 2, permutation, super, row_begin, value_begin, indices, values.data()};
@@ -148,8 +150,10 @@ TEST(BlockSolve, IsTheNarrowSolveOfEveryColumnWhateverIsBesideIt) {
 /// A factor whose supernodes are a binary tree in postorder, each of some columns above its way to the root.
 struct TreeFactor {
   Offset n = 0;
-  std::vector<std::int64_t> permutation, super{0}, row_begin{0}, value_begin{0}, indices;
+  std::vector<std::int32_t> permutation, indices;
+  std::vector<Offset> super{0}, row_begin{0}, value_begin{0};
   std::vector<double> values;
+  SupernodeTree tree;
 
   explicit TreeFactor(int depth) {
     std::vector<Offset> parent;
@@ -159,15 +163,17 @@ struct TreeFactor {
     for (Offset s = 0; s < supernodes; ++s) {
       for (Offset a = s; a >= 0; a = parent[a])
         for (Offset r = super[a]; r < super[a + 1]; ++r)
-          if (a == s || r % 3 != 0 || a == parent[s]) indices.push_back(r);
-      row_begin.push_back(static_cast<std::int64_t>(indices.size()));
+          if (a == s || r % 3 != 0 || a == parent[s]) indices.push_back(static_cast<std::int32_t>(r));
+      row_begin.push_back(static_cast<Offset>(indices.size()));
       const Offset columns = super[s + 1] - super[s], rows = row_begin[s + 1] - row_begin[s];
       value_begin.push_back(value_begin[s] + rows * columns);
       for (Offset j = 0; j < columns; ++j)
         for (Offset r = 0; r < rows; ++r)
           values.push_back(r < j ? 0 : r == j ? 3.0 : 0.1 * std::sin(1.0 + static_cast<double>(s + 3 * r + 7 * j)));
     }
-    for (Offset k = 0; k < n; ++k) permutation.push_back(k);
+    for (Offset k = 0; k < n; ++k) permutation.push_back(static_cast<std::int32_t>(k));
+    tree.parent = std::move(parent);
+    tree.find_children();
   }
   SupernodalFactor view() const {
     return {n, false, permutation, super, row_begin, value_begin, indices, values.data()};
@@ -186,7 +192,7 @@ struct TreeFactor {
 TEST(SolveGroups, AreSubtreesAndWhatIsAboveThem) {
   const TreeFactor factor(12);
   const SupernodalFactor L = factor.view();
-  const auto groups = solve_groups(L, supernode_tree(L));
+  const auto groups = solve_groups(L, factor.tree);
   ASSERT_NE(groups, nullptr);
   std::vector<int> seen(factor.super.size() - 1, 0);
   for (const Offset s : groups->top) ++seen[s];
@@ -214,7 +220,7 @@ TEST(SolveGroups, AreSubtreesAndWhatIsAboveThem) {
 
 TEST(SolveGroups, GiveTheSolutionOfOneThreadAfterTheOther) {
   const TreeFactor factor(12);
-  const auto groups = solve_groups(factor.view(), supernode_tree(factor.view()));
+  const auto groups = solve_groups(factor.view(), factor.tree);
   ASSERT_NE(groups, nullptr);
   for (Offset columns = 1; columns <= max_narrow_columns; ++columns)
     for (const bool is_point : {false, true}) {
@@ -233,13 +239,9 @@ TEST(SolveGroups, GiveTheSolutionOfOneThreadAfterTheOther) {
     }
 }
 
-TEST(SolveGroups, AreNotMadeWhereTheyDoNotPayOrSupernodesAreOutOfOrder) {
-  EXPECT_EQ(solve_groups(TreeFactor(4).view(), supernode_tree(TreeFactor(4).view())), nullptr);
-  TreeFactor factor(12);
-  // Supernode 3, the third leaf, becomes a child of the root: what comes before 6 is no longer below it.
-  for (Offset k = factor.row_begin[3] + factor.super[4] - factor.super[3]; k < factor.row_begin[4]; ++k)
-    factor.indices[k] = factor.n - 1;
-  EXPECT_EQ(solve_groups(factor.view(), supernode_tree(factor.view())), nullptr);
+TEST(SolveGroups, AreNotMadeWhereTheyDoNotPay) {
+  const TreeFactor factor(4);
+  EXPECT_EQ(solve_groups(factor.view(), factor.tree), nullptr);
 }
 
 TEST(OneBlasThread, MayBeNestedAndSaysWhatTheBlasIs) {

@@ -2,18 +2,7 @@
 
 #include <cmath>
 
-extern "C" {
-void dpotrf_(const char*, const int*, double*, const int*, int*);
-void zpotrf_(const char*, const int*, double*, const int*, int*);
-void dtrsm_(const char*, const char*, const char*, const char*, const int*, const int*, const double*, const double*,
-            const int*, double*, const int*);
-void ztrsm_(const char*, const char*, const char*, const char*, const int*, const int*, const double*, const double*,
-            const int*, double*, const int*);
-void dsyrk_(const char*, const char*, const int*, const int*, const double*, const double*, const int*, const double*,
-            double*, const int*);
-void zherk_(const char*, const char*, const int*, const int*, const double*, const double*, const int*, const double*,
-            double*, const int*);
-}
+#include "heat/blas.hpp"
 
 namespace ahm {
 namespace {

@@ -37,8 +37,7 @@ constexpr double most_loss = 1e-6;
 /// A pattern's analysis for A and for B, which have the same one where B is complex.
 class Analysis {
  public:
-  Analysis(const AssembledOperators& matrices, const HeatOptions& options)
-      : scalar_(matrices.A, options.ordering, options.supernodal) {}
+  Analysis(const AssembledOperators& matrices, const HeatOptions& options) : scalar_(matrices.A, options.ordering) {}
 
   const SymbolicCholesky& of_A() const { return scalar_; }
   /// @param dimension  of the graph

@@ -1,8 +1,8 @@
 #include "heat/multifrontal.hpp"
 
 #include <algorithm>
-#include <atomic>
-#include <numeric>
+#include <memory>
+#include <vector>
 
 #include "ahm/util/parallel.hpp"
 #include "heat/blas_control.hpp"
@@ -10,30 +10,19 @@
 
 namespace ahm {
 
-FactorEntries::FactorEntries(const SparseUpper& pattern, const SupernodalFactor& L)
-    : begin_(static_cast<std::size_t>(L.size) + 1, 0), entries_(pattern.rows.size()) {
-  std::vector<Offset> place(static_cast<std::size_t>(L.size));
-  for (Offset k = 0; k < L.size; ++k) place[L.permutation[k]] = k;
-  const auto each = [&](const auto& visit) {
-    for (Offset j = 0; j < pattern.size(); ++j)
-      for (Offset p = pattern.column_begin[j]; p < pattern.column_begin[j + 1]; ++p)
-        visit(place[pattern.rows[p]], place[j], p);
-  };
-  each([&](Offset i, Offset j, Offset) { ++begin_[std::min(i, j) + 1]; });
-  std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
-  std::vector<std::size_t> next(begin_.begin(), begin_.end() - 1);
-  each([&](Offset i, Offset j, Offset p) { entries_[next[std::min(i, j)]++] = {std::max(i, j), i < j ? ~p : p}; });
-}
-
 namespace {
 
 /// Of real (W = 1) or complex (W = 2) numbers.
 template <int W>
 class Multifrontal {
  public:
-  Multifrontal(const SparseUpper& matrix, const FactorPattern& pattern, const SupernodalFactor& L, double* values,
-               unsigned threads)
-      : matrix_(matrix), pattern_(pattern), L_(L), values_(values), threads_(threads), updates_(L.super.size() - 1) {}
+  Multifrontal(const SparseUpper& matrix, const SupernodalPattern& pattern, double* values, unsigned threads)
+      : matrix_(matrix),
+        pattern_(pattern),
+        L_(pattern.factor(W == 2, values)),
+        values_(values),
+        threads_(threads),
+        updates_(pattern.super.size() - 1) {}
 
   Offset run() {
     if (!pattern_.groups) {
@@ -107,7 +96,7 @@ class Multifrontal {
     const Supernode<W> child(L_, number);
     const Offset size = child.rows - child.columns, rows = Own ? parent.rows : parent.rows - parent.columns,
                  skipped = Own ? 0 : parent.columns;
-    const std::int64_t* index = child.index + child.columns;
+    const std::int32_t* index = child.index + child.columns;
     const Offset end = parent.first + parent.columns;
     const Offset split = std::lower_bound(index, index + size, end) - index;
     for (Offset j = Own ? 0 : split; j < (Own ? split : size); ++j) {
@@ -119,8 +108,8 @@ class Multifrontal {
   }
 
   const SparseUpper& matrix_;
-  const FactorPattern& pattern_;
-  const SupernodalFactor& L_;
+  const SupernodalPattern& pattern_;
+  SupernodalFactor L_;
   double* values_;
   unsigned threads_;
   std::vector<std::unique_ptr<double[]>> updates_;  ///< that supernodes leave to their parents
@@ -128,10 +117,9 @@ class Multifrontal {
 
 }  // namespace
 
-Offset factor_by_fronts(const SparseUpper& matrix, const FactorPattern& pattern, const SupernodalFactor& L,
-                        double* values, unsigned threads) {
-  return matrix.is_complex ? Multifrontal<2>(matrix, pattern, L, values, threads).run()
-                           : Multifrontal<1>(matrix, pattern, L, values, threads).run();
+Offset factor_by_fronts(const SparseUpper& matrix, const SupernodalPattern& pattern, double* values, unsigned threads) {
+  return matrix.is_complex ? Multifrontal<2>(matrix, pattern, values, threads).run()
+                           : Multifrontal<1>(matrix, pattern, values, threads).run();
 }
 
 }  // namespace ahm

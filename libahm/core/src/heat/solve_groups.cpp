@@ -18,7 +18,6 @@ constexpr std::size_t groups = 4;
 struct Subtrees {
   std::vector<Offset> first;    ///< the least descendant
   std::vector<Offset> numbers;  ///< of the factor
-  bool are_in_postorder = true;
 };
 
 Subtrees subtrees_of(const SupernodalFactor& L, const SupernodeTree& tree) {
@@ -26,18 +25,12 @@ Subtrees subtrees_of(const SupernodalFactor& L, const SupernodeTree& tree) {
   subtrees.first.resize(tree.parent.size());
   std::iota(subtrees.first.begin(), subtrees.first.end(), Offset{0});
   subtrees.numbers.resize(tree.parent.size());
-  std::vector<Offset> descendants(tree.parent.size(), 1);
   for (std::size_t s = 0; s < tree.parent.size(); ++s) {
-    const auto own = static_cast<Offset>(s);
     subtrees.numbers[s] += L.value_begin[s + 1] - L.value_begin[s];
-    subtrees.are_in_postorder &= own - subtrees.first[s] + 1 == descendants[s];
     const Offset parent = tree.parent[s];
     if (parent < 0) continue;
-    subtrees.are_in_postorder &= parent > own;
-    if (!subtrees.are_in_postorder) break;
     subtrees.first[parent] = std::min(subtrees.first[parent], subtrees.first[s]);
     subtrees.numbers[parent] += subtrees.numbers[s];
-    descendants[parent] += descendants[s];
   }
   return subtrees;
 }
@@ -62,10 +55,20 @@ std::vector<Offset> roots_below_top(const SupernodeTree& tree, const std::vector
 
 }  // namespace
 
+void SupernodeTree::find_children() {
+  child_begin.assign(parent.size() + 1, 0);
+  for (const Offset p : parent)
+    if (p >= 0) ++child_begin[p + 1];
+  std::partial_sum(child_begin.begin(), child_begin.end(), child_begin.begin());
+  children.resize(static_cast<std::size_t>(child_begin.back()));
+  std::vector<Offset> next(child_begin.begin(), child_begin.end() - 1);
+  for (std::size_t s = 0; s < parent.size(); ++s)
+    if (parent[s] >= 0) children[next[parent[s]]++] = static_cast<Offset>(s);
+}
+
 std::unique_ptr<const SolveGroups> solve_groups(const SupernodalFactor& L, const SupernodeTree& tree) {
   if (L.value_begin.back() < least_numbers) return nullptr;
   const Subtrees subtrees = subtrees_of(L, tree);
-  if (!subtrees.are_in_postorder) return nullptr;
   std::vector<bool> is_top(tree.parent.size(), false);
   const std::vector<Offset> roots = roots_below_top(tree, subtrees.numbers, is_top);
 

@@ -5,13 +5,26 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "ahm/types.hpp"
 #include "heat/supernodal_factor.hpp"
-#include "heat/supernode_tree.hpp"
 
 namespace ahm {
+
+/// The elimination tree of supernodes.
+struct SupernodeTree {
+  std::vector<Offset> parent;  ///< the supernode of the first row below; -1: of a root
+  /// Of each supernode its children, ascending: children[child_begin[s]] to children[child_begin[s + 1]].
+  std::vector<Offset> child_begin, children;
+
+  std::span<const Offset> children_of(Offset s) const {
+    return std::span(children).subspan(child_begin[s], child_begin[s + 1] - child_begin[s]);
+  }
+  /// From the parents.
+  void find_children();
+};
 
 /// Subtrees of the elimination tree, in groups of about the same work, and the supernodes above them all. On the way down
 /// groups touch rows of their own, and add to those of the top; on the way up they read the top. The groups are the same on any
@@ -31,7 +44,7 @@ struct SolveGroups {
   std::size_t bytes() const { return place.size() * sizeof(std::int32_t); }
 };
 
-/// Null where they would not pay: for small factors, and where supernodes are not in postorder.
+/// Null where they would not pay, for small factors. Supernodes are in postorder.
 std::unique_ptr<const SolveGroups> solve_groups(const SupernodalFactor& L, const SupernodeTree& tree);
 
 }  // namespace ahm

@@ -14,8 +14,9 @@ namespace ahm {
 struct SupernodalFactor {
   Offset size;
   bool is_complex;
-  std::span<const std::int64_t> permutation;  ///< row k of the factor is row permutation[k] of the matrix
-  std::span<const std::int64_t> super, row_begin, value_begin, indices;
+  std::span<const std::int32_t> permutation;  ///< row k of the factor is row permutation[k] of the matrix
+  std::span<const Offset> super, row_begin, value_begin;
+  std::span<const std::int32_t> indices;
   const double* values;  ///< complex: interleaved pairs
 };
 
@@ -30,7 +31,7 @@ struct Supernode {
         begin(L.value_begin[s]),
         values(L.values + begin * W) {}
   Offset first, columns, rows;
-  const std::int64_t* index;  ///< of its rows
+  const std::int32_t* index;  ///< of its rows
   Offset begin;               ///< of its numbers among those of the factor
   const double* values;
   const double* at(Offset row, Offset column) const { return values + (column * rows + row) * W; }

@@ -45,9 +45,6 @@ struct HeatOptions {
   double accuracy = 1e-9;
 
   Ordering ordering = Ordering::amd;
-  /// Supernodal LL^T (fast; SuiteSparse's GPL module). false: simplicial (LGPL), the only choice in a build with
-  /// AHM_SUPERNODAL=OFF.
-  bool supernodal = true;
   bool check_graph = true;  ///< run `validate(graph)` first: O(n)
 
   /// 0: one per core. No result depends on it.

@@ -1,0 +1,234 @@
+#include "heat/supernodal_pattern.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include "ahm/error.hpp"
+
+namespace ahm {
+namespace {
+
+using Numbers = std::vector<std::int32_t>;
+
+Numbers inverse(const Numbers& order) {
+  Numbers place(order.size());
+  for (std::size_t k = 0; k < order.size(); ++k) place[order[k]] = static_cast<std::int32_t>(k);
+  return place;
+}
+
+/// Calls visit(i, j, p) for each entry p of the matrix, with its row and column in the order of elimination.
+template <class Visit>
+void for_each_entry(const SparseUpper& matrix, const Numbers& place, const Visit& visit) {
+  for (Offset j = 0; j < matrix.size(); ++j)
+    for (Offset p = matrix.column_begin[j]; p < matrix.column_begin[j + 1]; ++p)
+      visit(place[matrix.rows[p]], place[j], p);
+}
+
+/// Of each row the columns before it, in the order of elimination.
+struct Before {
+  std::vector<Offset> begin;
+  Numbers columns;
+
+  Before(const SparseUpper& matrix, const Numbers& place) : begin(static_cast<std::size_t>(matrix.size()) + 1, 0) {
+    for_each_entry(matrix, place, [&](std::int32_t i, std::int32_t j, Offset) { begin[std::max(i, j) + 1] += i != j; });
+    std::partial_sum(begin.begin(), begin.end(), begin.begin());
+    columns.resize(static_cast<std::size_t>(begin.back()));
+    std::vector<Offset> next(begin.begin(), begin.end() - 1);
+    for_each_entry(matrix, place, [&](std::int32_t i, std::int32_t j, Offset) {
+      if (i != j) columns[next[std::max(i, j)]++] = std::min(i, j);
+    });
+  }
+  std::span<const std::int32_t> of(std::int32_t row) const {
+    return std::span(columns).subspan(begin[row], begin[row + 1] - begin[row]);
+  }
+};
+
+/// The elimination tree of columns [Liu90]; -1: a root.
+Numbers elimination_tree(const Before& before, std::int32_t n) {
+  Numbers parent(static_cast<std::size_t>(n), -1), ancestor(parent);
+  for (std::int32_t row = 0; row < n; ++row)
+    for (std::int32_t column : before.of(row))
+      while (column != -1 && column != row) {
+        const std::int32_t next = ancestor[column];
+        ancestor[column] = row;
+        if (next == -1) parent[column] = row;
+        column = next;
+      }
+  return parent;
+}
+
+/// Children before parents, subtrees together.
+Numbers postorder(const Numbers& parent) {
+  const auto n = static_cast<std::int32_t>(parent.size());
+  Numbers first_child(parent.size(), -1), next_sibling(parent.size(), -1), order, waiting;
+  for (std::int32_t k = n; k-- > 0;)
+    if (parent[k] >= 0) next_sibling[k] = std::exchange(first_child[parent[k]], k);
+  order.reserve(parent.size());
+  for (std::int32_t root = 0; root < n; ++root) {
+    if (parent[root] >= 0) continue;
+    waiting.push_back(root);
+    while (!waiting.empty()) {
+      const std::int32_t k = waiting.back();
+      if (const std::int32_t child = first_child[k]; child >= 0) {
+        first_child[k] = next_sibling[child];
+        waiting.push_back(child);
+      } else {
+        order.push_back(k);
+        waiting.pop_back();
+      }
+    }
+  }
+  return order;
+}
+
+FactorEntries entries_of(const SparseUpper& matrix, const Numbers& place) {
+  FactorEntries result;
+  result.begin.assign(static_cast<std::size_t>(matrix.size()) + 1, 0);
+  result.entries.resize(matrix.rows.size());
+  for_each_entry(matrix, place, [&](std::int32_t i, std::int32_t j, Offset) { ++result.begin[std::min(i, j) + 1]; });
+  std::partial_sum(result.begin.begin(), result.begin.end(), result.begin.begin());
+  std::vector<Offset> next(result.begin.begin(), result.begin.end() - 1);
+  for_each_entry(matrix, place, [&](std::int32_t i, std::int32_t j, Offset p) {
+    result.entries[next[std::min(i, j)]++] = {std::max(i, j), i < j ? ~p : p};
+  });
+  return result;
+}
+
+/// Rows of each column of the factor, the diagonal among them; columns are in postorder [GNP94].
+class ColumnCounts {
+ public:
+  ColumnCounts(const FactorEntries& entries, const Numbers& parent)
+      : first_(parent.size(), -1), most_(parent.size(), -1), last_leaf_(parent.size(), -1), ancestor_(parent.size()) {
+    const auto n = static_cast<std::int32_t>(parent.size());
+    std::iota(ancestor_.begin(), ancestor_.end(), 0);
+    counts.resize(parent.size());
+    for (std::int32_t j = 0; j < n; ++j) {
+      counts[j] = first_[j] == -1 ? 1 : 0;
+      for (std::int32_t k = j; k != -1 && first_[k] == -1; k = parent[k]) first_[k] = j;
+    }
+    for (std::int32_t j = 0; j < n; ++j) {
+      if (parent[j] != -1) --counts[parent[j]];
+      for (const auto& entry : entries.of_column(j)) add_leaf(entry.row, j);
+      if (parent[j] != -1) ancestor_[j] = parent[j];
+    }
+    for (std::int32_t j = 0; j < n; ++j)
+      if (parent[j] != -1) counts[parent[j]] += counts[j];
+  }
+  Numbers counts;
+
+ private:
+  /// Where column j is a leaf of the subtree of columns that row i has entries in, but for the first it takes from the count of its
+  /// lowest ancestor in common with the leaf before.
+  void add_leaf(std::int32_t i, std::int32_t j) {
+    if (i <= j || first_[j] <= most_[i]) return;
+    most_[i] = first_[j];
+    ++counts[j];
+    const std::int32_t before = std::exchange(last_leaf_[i], j);
+    if (before == -1) return;
+    std::int32_t common = before;
+    while (common != ancestor_[common]) common = ancestor_[common];
+    for (std::int32_t k = before; k != common;) k = std::exchange(ancestor_[k], common);
+    --counts[common];
+  }
+
+  Numbers first_, most_, last_leaf_, ancestor_;
+};
+
+/// Columns in a row of the tree, each the only child of the next, and of the same rows but for its own.
+struct Run {
+  std::int32_t first, columns, rows;
+  double zeros = 0;  ///< that joining has brought in
+
+  /// Joins the run before, whose last column is a child of this one's first, if that brings in few zeros.
+  bool join(const Run& child) {
+    const double more = static_cast<double>(child.columns) * (child.columns + rows - child.rows), all = zeros + more;
+    const double width = child.columns + columns, size = width * (width + 1) / 2 + width * (rows - columns);
+    const double share = all / size;
+    if (width > 4 && more > 0 && !(width <= 16 && share < 0.8) && !(width <= 48 && share < 0.1) && !(share < 0.05))
+      return false;
+    *this = {child.first, child.columns + columns, child.columns + rows, all};
+    return true;
+  }
+};
+
+std::vector<Run> runs_of(const Numbers& parent, const Numbers& counts) {
+  const auto n = static_cast<std::int32_t>(parent.size());
+  Numbers children(parent.size(), 0);
+  for (const std::int32_t p : parent)
+    if (p >= 0) ++children[p];
+  std::vector<Run> runs;
+  for (std::int32_t j = 0; j < n; ++j) {
+    if (j > 0 && parent[j - 1] == j && counts[j - 1] == counts[j] + 1 && children[j] == 1)
+      ++runs.back().columns;
+    else
+      runs.push_back({j, 1, counts[j]});
+  }
+  std::vector<Run> joined;  // the last one first
+  for (auto run = runs.rbegin(); run != runs.rend(); ++run)
+    if (joined.empty() || parent[run->first + run->columns - 1] != joined.back().first || !joined.back().join(*run))
+      joined.push_back(*run);
+  std::reverse(joined.begin(), joined.end());
+  return joined;
+}
+
+/// Rows are appended in ascending order, to all supernodes from those of its columns to its own.
+/// @param post, place  columns in postorder, and where they lie there
+void find_indices(SupernodalPattern& pattern, const Numbers& supernode_of, const Before& before, const Numbers& post,
+                  const Numbers& place) {
+  const auto n = static_cast<std::int32_t>(supernode_of.size());
+  pattern.indices.resize(static_cast<std::size_t>(pattern.row_begin.back()));
+  std::vector<Offset> next(pattern.row_begin.begin(), pattern.row_begin.end() - 1);
+  Numbers seen(next.size(), -1);
+  for (std::size_t s = 0; s < next.size(); ++s)
+    for (auto row = static_cast<std::int32_t>(pattern.super[s]); row < pattern.super[s + 1]; ++row)
+      pattern.indices[next[s]++] = row;
+  for (std::int32_t row = 0; row < n; ++row) {
+    seen[supernode_of[row]] = row;
+    for (const std::int32_t column : before.of(post[row]))
+      for (Offset s = supernode_of[place[column]]; seen[s] != row; s = pattern.tree.parent[s]) {
+        seen[s] = row;
+        pattern.indices[next[s]++] = row;
+      }
+  }
+}
+
+}  // namespace
+
+SupernodalPattern supernodal_pattern(const SparseUpper& matrix, Numbers order) {
+  if (matrix.size() > std::numeric_limits<std::int32_t>::max())
+    throw ResourceExhausted("symbolic analysis: the matrix is too large for its index type");
+  const auto n = static_cast<std::int32_t>(matrix.size());
+  const Before before(matrix, inverse(order));
+  Numbers parent = elimination_tree(before, n);
+  const Numbers post = postorder(parent), place = inverse(post);
+
+  SupernodalPattern pattern;
+  for (const std::int32_t k : post) pattern.permutation.push_back(order[k]);
+  Numbers tree(parent.size(), -1);
+  for (std::int32_t k = 0; k < n; ++k)
+    if (parent[k] >= 0) tree[place[k]] = place[parent[k]];
+  pattern.entries = entries_of(matrix, inverse(pattern.permutation));
+  const ColumnCounts columns(pattern.entries, tree);
+  for (const double count : columns.counts) pattern.operations += count * count;
+
+  pattern.super = pattern.row_begin = pattern.value_begin = {0};
+  Numbers supernode_of(parent.size());
+  for (const Run& run : runs_of(tree, columns.counts)) {
+    std::fill_n(supernode_of.begin() + run.first, run.columns, static_cast<std::int32_t>(pattern.super.size()) - 1);
+    pattern.super.push_back(run.first + run.columns);
+    pattern.row_begin.push_back(pattern.row_begin.back() + run.rows);
+    pattern.value_begin.push_back(pattern.value_begin.back() + static_cast<Offset>(run.rows) * run.columns);
+  }
+  for (std::size_t s = 0; s + 1 < pattern.super.size(); ++s) {
+    const std::int32_t above = tree[pattern.super[s + 1] - 1];
+    pattern.tree.parent.push_back(above < 0 ? -1 : supernode_of[above]);
+  }
+  pattern.tree.find_children();
+  find_indices(pattern, supernode_of, before, post, place);
+  pattern.groups = solve_groups(pattern.factor(false, nullptr), pattern.tree);
+  return pattern;
+}
+
+}  // namespace ahm

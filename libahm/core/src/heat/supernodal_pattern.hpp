@@ -1,0 +1,57 @@
+/// \file
+/// The symbolic analysis of a sparse Cholesky factorization: what is the same of all matrices of a pattern.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "heat/solve_groups.hpp"
+#include "heat/sparse_upper.hpp"
+#include "heat/supernodal_factor.hpp"
+
+namespace ahm {
+
+/// Where the entries of a matrix lie in its factor.
+struct FactorEntries {
+  struct Entry {
+    std::int32_t row;     ///< in the order of elimination
+    std::int64_t source;  ///< among the values of the matrix; ~source: its conjugate
+  };
+  std::vector<Offset> begin;  ///< of the columns, in the order of elimination
+  std::vector<Entry> entries;
+
+  std::span<const Entry> of_column(Offset column) const {
+    return std::span(entries).subspan(begin[column], begin[column + 1] - begin[column]);
+  }
+};
+
+struct SupernodalPattern {
+  std::vector<std::int32_t> permutation, indices;  ///< as in `SupernodalFactor`, and so are the next three
+  std::vector<Offset> super, row_begin, value_begin;
+  SupernodeTree tree;
+  std::shared_ptr<const SolveGroups> groups;  ///< null: supernodes go one after the other
+  FactorEntries entries;
+  double operations = 0;  ///< of real numbers, that a factorization without the zeros in supernodes takes
+
+  SupernodalFactor factor(bool is_complex, const double* values) const {
+    return {static_cast<Offset>(permutation.size()),
+            is_complex,
+            permutation,
+            super,
+            row_begin,
+            value_begin,
+            indices,
+            values};
+  }
+  Offset numbers() const { return value_begin.back(); }
+};
+
+/// Column counts by skeletons [GNP94], supernodes as in CHOLMOD [CDHR08]: columns of the same rows, and small ones joined at the
+/// price of some zeros.
+/// @param order  of elimination; that of the pattern goes along its elimination tree in postorder, and leaves the same fill
+/// @throws ResourceExhausted
+SupernodalPattern supernodal_pattern(const SparseUpper& matrix, std::vector<std::int32_t> order);
+
+}  // namespace ahm
