@@ -66,7 +66,7 @@ template <class Number>
 using Gemm = void(const char*, const char*, const int*, const int*, const int*, const Number*, const Number*,
                   const int*, const Number*, const int*, const Number*, Number*, const int*);
 
-/// A product of two matrices by the BLAS that the process started with, which is CHOLMOD's.
+/// A product of two matrices by the BLAS that the process started with.
 template <class Number>
 struct Product {
   static constexpr int side = 512;

@@ -1,15 +1,15 @@
-# Says at configure time which BLAS CHOLMOD will run on: the reference BLAS is several times slower than an optimised one.
+# Says at configure time which BLAS will be called: the reference BLAS is several times slower than an optimised one.
 if(NOT DEFINED AHM_BLAS_FOUND)
   try_run(AHM_BLAS_RUN AHM_BLAS_COMPILED "${CMAKE_BINARY_DIR}/blas_check" "${CMAKE_CURRENT_LIST_DIR}/blas_check.c"
     CMAKE_FLAGS "-DINCLUDE_DIRECTORIES=${CHOLMOD_INCLUDE_DIR}"
     LINK_LIBRARIES ${CHOLMOD_LIBRARY} ${CMAKE_DL_LIBS}
     RUN_OUTPUT_VARIABLE AHM_BLAS_OUTPUT)
   string(STRIP "${AHM_BLAS_OUTPUT}" AHM_BLAS_OUTPUT)
-  set(AHM_BLAS_FOUND "${AHM_BLAS_OUTPUT}" CACHE INTERNAL "BLAS in use by CHOLMOD")
+  set(AHM_BLAS_FOUND "${AHM_BLAS_OUTPUT}" CACHE INTERNAL "BLAS in use")
 endif()
 if(AHM_BLAS_FOUND MATCHES "OpenBLAS|openblas|mkl|blis|atlas")
-  message(STATUS "BLAS in use by CHOLMOD: ${AHM_BLAS_FOUND}")
+  message(STATUS "BLAS in use: ${AHM_BLAS_FOUND}")
 else()
-  message(WARNING "CHOLMOD runs on an unoptimised BLAS (${AHM_BLAS_FOUND}): factorizations will be several times slower. "
+  message(WARNING "The BLAS is not optimised (${AHM_BLAS_FOUND}): factorizations of large surfaces will be several times slower. "
     "Install an optimised one (Debian: libopenblas0-pthread).")
 endif()

@@ -30,6 +30,30 @@ long heat_bytes(const Surface& surface) {
   return peak();
 }
 
+/// A graph of a few hubs to which all other vertices are joined, alone.
+CsrGraph hubs(Index n, Index count) {
+  CsrGraphData g;
+  g.masses.assign(static_cast<std::size_t>(n), 1.0);
+  g.row_begin.push_back(0);
+  for (Index i = 0; i < n; ++i) {
+    for (Index j = i < count ? count : 0; j < (i < count ? n : count); ++j) {
+      g.neighbors.push_back(j);
+      g.weights.push_back(1.0);
+      g.logs.insert(g.logs.end(), {i < j ? 1.0 : -1.0, 0.0});
+      g.transports.insert(g.transports.end(), {1.0, 0.0});
+    }
+    g.row_begin.push_back(static_cast<Offset>(g.neighbors.size()));
+  }
+  return CsrGraph(std::move(g));
+}
+
+TEST(Factors, TakeMemoryInProportionToThemselvesWhereThousandsOfVerticesAreJoinedToTheSameFew) {
+  const CsrGraph graph = hubs(5000, 60);
+  const PeakBytes peak;
+  const HeatOperators operators(graph, {.threads = 1});
+  EXPECT_LT(peak(), 8 * static_cast<long>(operators.statistics().bytes));
+}
+
 TEST(ExactMaps, TakeLessThanAFifthOfTheMemoryOfHeat) {
   const auto surface = sphere(40000);
   const long heat = heat_bytes(surface);

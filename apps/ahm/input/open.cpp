@@ -21,8 +21,9 @@ namespace {
 void comment_on_blas(Journal& journal) {
   const LinearAlgebraInfo info = linear_algebra_info();
   if (!info.blas_optimized)
-    journal.add_warning("CHOLMOD runs on a BLAS that is not optimized (" + info.blas +
-                        "): several times slower; on Debian install libopenblas0-pthread");
+    journal.add_warning(
+        "the BLAS is not optimized (" + info.blas +
+        "): factorizations of large surfaces are several times slower; on Debian install libopenblas0-pthread");
 }
 
 /// With the option that asked for it in the message.

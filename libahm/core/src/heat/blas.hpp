@@ -2,6 +2,7 @@
 /// What of the BLAS and LAPACK is called. Only where a `BlasBuffer` lives.
 #pragma once
 
+// NOLINTBEGIN(readability-identifier-naming)
 extern "C" {
 void dpotrf_(const char*, const int*, double*, const int*, int*);
 void zpotrf_(const char*, const int*, double*, const int*, int*);
@@ -18,3 +19,4 @@ void dgemm_(const char*, const char*, const int*, const int*, const int*, const 
 void zgemm_(const char*, const char*, const int*, const int*, const int*, const double*, const double*, const int*,
             const double*, const int*, const double*, double*, const int*);
 }
+// NOLINTEND(readability-identifier-naming)

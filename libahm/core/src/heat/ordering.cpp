@@ -4,6 +4,7 @@
 #include <cholmod.h>
 
 #include <limits>
+#include <mutex>
 #include <string>
 
 #include "ahm/error.hpp"
@@ -44,6 +45,15 @@ class Common {
   cholmod_common common_;
 };
 
+bool is_permutation(const std::vector<Offset>& order) {
+  std::vector<bool> seen(order.size(), false);
+  for (const Offset row : order) {
+    if (row < 0 || row >= static_cast<Offset>(order.size()) || seen[row]) return false;
+    seen[row] = true;
+  }
+  return true;
+}
+
 std::vector<std::int32_t> by_nested_dissection(const SparseUpper& pattern) {
   cholmod_sparse view{};
   view.nrow = view.ncol = static_cast<std::size_t>(pattern.size());
@@ -55,12 +65,16 @@ std::vector<std::int32_t> by_nested_dissection(const SparseUpper& pattern) {
   view.xtype = CHOLMOD_PATTERN;
   view.dtype = CHOLMOD_DOUBLE;
   view.sorted = view.packed = 1;
+  // METIS draws from the process' random numbers, which it sets to a beginning of its own: one order at a time, or none is repeated.
+  static std::mutex mutex;
+  const std::scoped_lock lock(mutex);
   Common common;
   std::vector<Offset> order(view.nrow);
   const bool done = cholmod_l_metis(&view, nullptr, 0, 0, order.data(), common.get());
   if (common.get()->status == CHOLMOD_OUT_OF_MEMORY) throw ResourceExhausted(out_of_memory);
   if (!done || common.get()->status < 0)
     throw Error("symbolic analysis: METIS failed with status " + std::to_string(common.get()->status));
+  if (!is_permutation(order)) throw ResourceExhausted(out_of_memory);  // METIS had no memory, and CHOLMOD does not ask
   return {order.begin(), order.end()};
 }
 

@@ -1,8 +1,8 @@
 /// \file
 /// Solves with a supernodal factor for few right-hand sides.
 ///
-/// CHOLMOD calls the BLAS four times per supernode. Our factors have one small supernode for every few vertices, so that the
-/// calls cost more than reading the factor for few right-hand sides; beyond `max_narrow_columns` the BLAS is faster.
+/// Our factors have one small supernode for every few vertices, so that the BLAS, called four times per supernode, costs more than
+/// reading the factor for few right-hand sides; beyond `max_narrow_columns` it is faster.
 #pragma once
 
 #include <span>
