@@ -3,12 +3,10 @@
 #include <cmath>
 
 #include "heat/blas.hpp"
+#include "heat/four.hpp"
 
 namespace ahm {
 namespace {
-
-/// Four numbers, or two complex ones, at once.
-using Four [[gnu::vector_size(4 * sizeof(double)), gnu::aligned(alignof(double)), gnu::may_alias]] = double;
 
 /// Numbers of a tile's columns: two vectors.
 constexpr Offset tall = 8;
@@ -16,12 +14,12 @@ constexpr Offset tall = 8;
 /// sum_k L_rk conj(L_ck) of R * 4 / W rows and J columns.
 template <int W, int R, int J>
 struct Tile {
-  Four straight[J][R] = {}, crossed[W == 1 ? 1 : J][W == 1 ? 1 : R] = {};
+  Four straight[J][R] = {}, crossed[(J - 1) * (W - 1) + 1][(R - 1) * (W - 1) + 1] = {};  // none where W is 1
 
   /// @param row, column  first rows of L in its first column
   [[gnu::always_inline]] Tile(const double* row, const double* column, Offset stride, Offset count) {
     for (Offset k = 0; k < count; ++k, row += stride, column += stride) {
-      const Four* left = reinterpret_cast<const Four*>(row);
+      const Four* left = four(row);
 #pragma GCC unroll 4
       for (int c = 0; c < J; ++c)
 #pragma GCC unroll 2
@@ -31,10 +29,10 @@ struct Tile {
         }
     }
   }
-  [[gnu::always_inline]] void get(int column, int r, Four& sum) const {
-    sum = straight[column][r];
+  [[gnu::always_inline]] void get(int column, int r, Four* sum) const {
+    *sum = straight[column][r];
     if constexpr (W == 2)
-      sum += Four{1, -1, 1, -1} * __builtin_shufflevector(crossed[column][r], crossed[column][r], 1, 0, 3, 2);
+      *sum += Four{1, -1, 1, -1} * __builtin_shufflevector(crossed[column][r], crossed[column][r], 1, 0, 3, 2);
   }
 };
 
@@ -54,11 +52,11 @@ struct ColumnBlock {
 #pragma GCC unroll 2
       for (int v = 0; v < R; ++v) {
         Four sum;
-        tile.get(c, v, sum);
+        tile.get(c, v, &sum);
         double* out = target[c] + r + 4 * v;
         if (skipped == 0) {
-          Four& all = *reinterpret_cast<Four*>(out);
-          all = Own ? all - sum : -sum;
+          Four* all = four(out);
+          *all = Own ? *all - sum : -sum;
         } else {
           for (Offset k = skipped; k < 4; ++k) out[k] = Own ? out[k] - sum[k] : -sum[k];
         }

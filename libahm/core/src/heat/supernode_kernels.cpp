@@ -1,18 +1,12 @@
 #include "heat/supernode_kernels.hpp"
 
+#include "heat/four.hpp"
+
 namespace ahm {
 namespace {
 
 /// From the columns that are read to those that are asked for meanwhile.
 constexpr Offset ahead_columns = 8;
-
-/// Four numbers, or two complex ones, at once.
-using Four [[gnu::vector_size(4 * sizeof(double)), gnu::aligned(alignof(double)), gnu::may_alias]] = double;
-
-[[gnu::always_inline]] inline const Four& four(const double* numbers) {
-  return *reinterpret_cast<const Four*>(numbers);
-}
-[[gnu::always_inline]] inline Four& four(double* numbers) { return *reinterpret_cast<Four*>(numbers); }
 
 /// A number of a vector and of the factor.
 template <int W>
@@ -46,11 +40,11 @@ struct Number {
 
 /// y -= x times the numbers of a column of the factor, four at once.
 template <int W>
-[[gnu::always_inline]] inline void subtract_product(Number<W> x, const Four& column, Four& y) {
+[[gnu::always_inline]] inline void subtract_product(Number<W> x, const Four* column, Four* y) {
   if constexpr (W == 1)
-    y -= x.re * column;
+    *y -= x.re * *column;
   else
-    y -= x.re * column + Four{-x.im, x.im, -x.im, x.im} * __builtin_shufflevector(column, column, 1, 0, 3, 2);
+    *y -= x.re * *column + Four{-x.im, x.im, -x.im, x.im} * __builtin_shufflevector(*column, *column, 1, 0, 3, 2);
 }
 
 /// sum conj(L_r) y_r over the rows of a column, four numbers at once.
@@ -58,9 +52,9 @@ template <int W>
 struct Product {
   Four straight{}, crossed{};
 
-  [[gnu::always_inline]] void add(const Four& column, const Four& y) {
-    straight += column * y;
-    if constexpr (W == 2) crossed += column * __builtin_shufflevector(y, y, 1, 0, 3, 2);
+  [[gnu::always_inline]] void add(const Four* column, const Four* y) {
+    straight += *column * *y;
+    if constexpr (W == 2) crossed += *column * __builtin_shufflevector(*y, *y, 1, 0, 3, 2);
   }
   [[gnu::always_inline]] Number<W> sum() const {
     const double re = (straight[0] + straight[1]) + (straight[2] + straight[3]);
@@ -113,10 +107,10 @@ template <int W, int K, int J>
     prefetch(L.column, r, ahead_columns * rows);
 #pragma GCC unroll 4
     for (int c = 0; c < K; ++c) {
-      Four left = four(y + c * rows + r);
+      Four left = *four(y + c * rows + r);
 #pragma GCC unroll 4
-      for (int a = 0; a < J; ++a) subtract_product(x[c][a], four(L.column[a] + r), left);
-      four(y + c * rows + r) = left;
+      for (int a = 0; a < J; ++a) subtract_product(x[c][a], four(L.column[a] + r), &left);
+      *four(y + c * rows + r) = left;
     }
   }
   for (; r < rows; r += W)
@@ -141,9 +135,9 @@ template <int W, int K, int J>
     prefetch(L.column, r - 4, -ahead_columns * rows);
 #pragma GCC unroll 4
     for (int c = 0; c < K; ++c) {
-      const Four known = four(y + c * rows + r - 4);
+      const Four known = *four(y + c * rows + r - 4);
 #pragma GCC unroll 4
-      for (int a = 0; a < J; ++a) products[c][a].add(four(L.column[a] + r - 4), known);
+      for (int a = 0; a < J; ++a) products[c][a].add(four(L.column[a] + r - 4), &known);
     }
   }
   for (int c = 0; c < K; ++c) {
