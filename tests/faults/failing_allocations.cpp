@@ -19,9 +19,8 @@ std::atomic<long> until_failure{never};
 std::atomic<bool> goes_on{false};
 std::atomic<long> live{0}, made{0}, live_bytes{0}, peak_bytes{0};
 
-/// The OpenMP runtime ends the process where it is refused memory, and minizip writes to what it did not get: whoever calls
-/// them tries beforehand whether there is memory.
-constexpr std::array fatal_libraries{"/libgomp", "/libminizip"};
+/// minizip writes to what it did not get: whoever calls it tries beforehand whether there is memory.
+constexpr std::array fatal_libraries{"/libminizip"};
 
 struct Range {
   std::uintptr_t begin = 0, end = 0;

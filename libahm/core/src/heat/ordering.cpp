@@ -15,6 +15,8 @@ namespace ahm {
 namespace {
 
 constexpr const char* out_of_memory = "symbolic analysis: out of memory in the ordering";
+constexpr const char* no_order =
+    "symbolic analysis: METIS ended without an order: out of memory, or interrupted by a signal";
 
 std::vector<std::int32_t> by_minimum_degree(const SparseUpper& pattern) {
   if (pattern.rows.size() > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()))
@@ -74,7 +76,7 @@ std::vector<std::int32_t> by_nested_dissection(const SparseUpper& pattern) {
   if (common.get()->status == CHOLMOD_OUT_OF_MEMORY) throw ResourceExhausted(out_of_memory);
   if (!done || common.get()->status < 0)
     throw Error("symbolic analysis: METIS failed with status " + std::to_string(common.get()->status));
-  if (!is_permutation(order)) throw ResourceExhausted(out_of_memory);  // METIS had no memory, and CHOLMOD does not ask
+  if (!is_permutation(order)) throw ResourceExhausted(no_order);  // CHOLMOD does not ask how METIS ended
   return {order.begin(), order.end()};
 }
 
