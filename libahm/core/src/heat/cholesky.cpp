@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -54,6 +55,8 @@ double largest(const std::vector<double>& v) {
 
 std::vector<std::int32_t> blown_up(const std::vector<std::int32_t>& order, int width) {
   std::vector<std::int32_t> result;
+  if (order.size() > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max() / width))
+    throw ResourceExhausted("symbolic analysis: the matrix is too large for its index type");
   result.reserve(order.size() * static_cast<std::size_t>(width));
   for (const std::int32_t row : order)
     for (int a = 0; a < width; ++a) result.push_back(row * width + a);
@@ -62,20 +65,22 @@ std::vector<std::int32_t> blown_up(const std::vector<std::int32_t>& order, int w
 
 }  // namespace
 
+SymbolicCholesky::SymbolicCholesky(SymbolicAnalysis analysis)
+    : pattern_(std::make_shared<const SupernodalPattern>(std::move(analysis.pattern))),
+      entries_(std::move(analysis.entries)) {}
+
 SymbolicCholesky::SymbolicCholesky(const SparseUpper& pattern, Ordering ordering)
-    : pattern_(std::make_shared<const SupernodalPattern>(
-          supernodal_pattern(pattern, elimination_order(pattern, ordering)))) {}
+    : SymbolicCholesky(analyze(pattern, elimination_order(pattern, ordering))) {}
 
 SymbolicCholesky::SymbolicCholesky(const SparseUpper& blocks, const SymbolicCholesky& scalar, int width)
-    : pattern_(std::make_shared<const SupernodalPattern>(
-          supernodal_pattern(blocks, blown_up(scalar.pattern_->permutation, width)))) {}
+    : SymbolicCholesky(analyze(blocks, blown_up(scalar.pattern_->permutation, width))) {}
 
 CholeskyFactor::CholeskyFactor(const SparseUpper& matrix, const SymbolicCholesky& symbolic, const char* name,
                                unsigned threads)
     : pattern_(symbolic.pattern_), is_complex_(matrix.is_complex) {
   const OneBlasThread one_thread;
   auto values = std::make_unique_for_overwrite<double[]>(static_cast<std::size_t>(nonzeros()) * (is_complex_ ? 2 : 1));
-  const Offset good = factor_by_fronts(matrix, *pattern_, values.get(), threads);
+  const Offset good = factor_by_fronts(matrix, *pattern_, symbolic.entries_, values.get(), threads);
   values_ = std::move(values);
   check_pivots(good, name);
   check_residual(matrix, name);

@@ -28,7 +28,10 @@ class SymbolicCholesky {
 
  private:
   friend class CholeskyFactor;
-  std::shared_ptr<const SupernodalPattern> pattern_;
+  explicit SymbolicCholesky(SymbolicAnalysis analysis);
+
+  std::shared_ptr<const SupernodalPattern> pattern_;  ///< also of the factors
+  FactorEntries entries_;
 };
 
 /// An LL^T factor. Immutable; `solve` may be called from many threads at once.

@@ -1,5 +1,6 @@
 #include "heat/heat_system.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <mutex>
 #include <optional>
@@ -163,8 +164,9 @@ std::unique_ptr<const HeatSystem> factored_system(const TangentGraph& graph, std
   options.progress.step("factor", 0.0);
 
   double lost = 0;
+  const unsigned for_B = std::max(2u, detail::thread_count(options.threads)) - 1;  // one is for A
   detail::run_both(
-      options.threads, [&] { system->B.emplace(matrices.B, of_B, name_B, options.threads); },
+      options.threads, [&] { system->B.emplace(matrices.B, of_B, name_B, for_B); },
       [&] {
         system->A.emplace(matrices.A, analysis.of_A(), name_A);
         lost = lost_heat(*system, graph, graph.size());

@@ -32,9 +32,11 @@ struct Waiting {
 template <int W>
 class Multifrontal {
  public:
-  Multifrontal(const SparseUpper& matrix, const SupernodalPattern& pattern, double* values, unsigned threads)
+  Multifrontal(const SparseUpper& matrix, const SupernodalPattern& pattern, const FactorEntries& entries,
+               double* values, unsigned threads)
       : matrix_(matrix),
         pattern_(pattern),
+        entries_(entries),
         L_(pattern.factor(W == 2, values)),
         values_(values),
         threads_(threads),
@@ -110,7 +112,7 @@ class Multifrontal {
 
     void add_entries(const Supernode<W>& s, double* L) const {
       for (Offset j = 0; j < s.columns; ++j, L += s.rows * W)
-        for (const auto& [row, source] : all_.pattern_.entries.of_column(s.first + j)) {
+        for (const auto& [row, source] : all_.entries_.of_column(s.first + j)) {
           const double* value = all_.matrix_.values.data() + (source < 0 ? ~source : source) * W;
           double* entry = L + places_[row] * W;
           entry[0] += value[0];
@@ -171,6 +173,7 @@ class Multifrontal {
 
   const SparseUpper& matrix_;
   const SupernodalPattern& pattern_;
+  const FactorEntries& entries_;
   SupernodalFactor L_;
   double* values_;
   unsigned threads_;
@@ -179,9 +182,10 @@ class Multifrontal {
 
 }  // namespace
 
-Offset factor_by_fronts(const SparseUpper& matrix, const SupernodalPattern& pattern, double* values, unsigned threads) {
-  return matrix.is_complex ? Multifrontal<2>(matrix, pattern, values, threads).run()
-                           : Multifrontal<1>(matrix, pattern, values, threads).run();
+Offset factor_by_fronts(const SparseUpper& matrix, const SupernodalPattern& pattern, const FactorEntries& entries,
+                        double* values, unsigned threads) {
+  return matrix.is_complex ? Multifrontal<2>(matrix, pattern, entries, values, threads).run()
+                           : Multifrontal<1>(matrix, pattern, entries, values, threads).run();
 }
 
 }  // namespace ahm

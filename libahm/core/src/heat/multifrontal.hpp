@@ -10,6 +10,7 @@ namespace ahm {
 /// @param values   of L, pattern.numbers() of them, which need not be initialized
 /// @param threads  among which groups are shared; the same bits on any number
 /// @return the first column, in the order of elimination, whose pivot is not positive and finite; the number of rows if all are
-Offset factor_by_fronts(const SparseUpper& matrix, const SupernodalPattern& pattern, double* values, unsigned threads);
+Offset factor_by_fronts(const SparseUpper& matrix, const SupernodalPattern& pattern, const FactorEntries& entries,
+                        double* values, unsigned threads);
 
 }  // namespace ahm

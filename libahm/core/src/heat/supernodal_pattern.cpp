@@ -1,11 +1,8 @@
 #include "heat/supernodal_pattern.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <numeric>
 #include <utility>
-
-#include "ahm/error.hpp"
 
 namespace ahm {
 namespace {
@@ -196,9 +193,7 @@ void find_indices(SupernodalPattern& pattern, const Numbers& supernode_of, const
 
 }  // namespace
 
-SupernodalPattern supernodal_pattern(const SparseUpper& matrix, Numbers order) {
-  if (matrix.size() > std::numeric_limits<std::int32_t>::max())
-    throw ResourceExhausted("symbolic analysis: the matrix is too large for its index type");
+SymbolicAnalysis analyze(const SparseUpper& matrix, const Numbers& order) {
   const auto n = static_cast<std::int32_t>(matrix.size());
   const Before before(matrix, inverse(order));
   Numbers parent = elimination_tree(before, n);
@@ -209,8 +204,8 @@ SupernodalPattern supernodal_pattern(const SparseUpper& matrix, Numbers order) {
   Numbers tree(parent.size(), -1);
   for (std::int32_t k = 0; k < n; ++k)
     if (parent[k] >= 0) tree[place[k]] = place[parent[k]];
-  pattern.entries = entries_of(matrix, inverse(pattern.permutation));
-  const ColumnCounts columns(pattern.entries, tree);
+  FactorEntries entries = entries_of(matrix, inverse(pattern.permutation));
+  const ColumnCounts columns(entries, tree);
   for (const double count : columns.counts) pattern.operations += count * count;
 
   pattern.super = pattern.row_begin = pattern.value_begin = {0};
@@ -228,7 +223,7 @@ SupernodalPattern supernodal_pattern(const SparseUpper& matrix, Numbers order) {
   pattern.tree.find_children();
   find_indices(pattern, supernode_of, before, post, place);
   pattern.groups = solve_groups(pattern.factor(false, nullptr), pattern.tree);
-  return pattern;
+  return {std::move(pattern), std::move(entries)};
 }
 
 }  // namespace ahm

@@ -32,7 +32,6 @@ struct SupernodalPattern {
   std::vector<Offset> super, row_begin, value_begin;
   SupernodeTree tree;
   std::shared_ptr<const SolveGroups> groups;  ///< null: supernodes go one after the other
-  FactorEntries entries;
   double operations = 0;  ///< of real numbers, that a factorization without the zeros in supernodes takes
 
   SupernodalFactor factor(bool is_complex, const double* values) const {
@@ -48,10 +47,15 @@ struct SupernodalPattern {
   Offset numbers() const { return value_begin.back(); }
 };
 
+struct SymbolicAnalysis {
+  SupernodalPattern pattern;
+  FactorEntries entries;  ///< asked for while a matrix is factored
+};
+
 /// Column counts by skeletons [GNP94], supernodes as in CHOLMOD [CDHR08]: columns of the same rows, and small ones joined at the
 /// price of some zeros.
-/// @param order  of elimination; that of the pattern goes along its elimination tree in postorder, and leaves the same fill
+/// @param order  of elimination, a row each; that of the pattern goes along its elimination tree in postorder, and leaves the same fill
 /// @throws ResourceExhausted
-SupernodalPattern supernodal_pattern(const SparseUpper& matrix, std::vector<std::int32_t> order);
+SymbolicAnalysis analyze(const SparseUpper& matrix, const std::vector<std::int32_t>& order);
 
 }  // namespace ahm
