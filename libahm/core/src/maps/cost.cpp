@@ -42,17 +42,17 @@ Cost global(double n, int d, double numbers, const Times& times) {
     return {times.count * 140 * numbers * std::pow(n, 4.0 / 3.0), times.count * 3.4e-10 * numbers * n * n,
             times.count * 3e-7 * numbers * n};
   const double share = numbers / 3;  // 1 real and 1 complex number per entry
-  return {share * (times.count * 100 * n * std::log2(n + 1) + 900 * n),
-          share * times.count * (2.5e-6 * n + 2e-8 * std::pow(n, 1.5)),
+  return {share * (times.count * 92 * n * std::log2(n + 1) + 850 * n),
+          share * times.count * (1.2e-6 * n + 1.3e-8 * std::pow(n, 1.5)),
           share * times.count * 3e-8 * n * std::log2(n + 1)};
 }
 
 /// Linear, but for the band at hand, whose depth grows with the root of the diffusion time, and on two threads and more the next
 /// one's heat.
 Cost march(double n, int d, double numbers, const Times& times, bool looks_ahead) {
-  const double seconds = times.count * (d > 2 ? 1.5e-6 : 3.3e-6) * numbers * n, depth = std::sqrt(times.longest);
+  const double seconds = times.count * (d > 2 ? 1.5e-6 : 2e-6) * numbers * n, depth = std::sqrt(times.longest);
   const double band = d > 2 ? 150 * numbers * std::min(n, depth * 60 * std::pow(n, 2.0 / 3.0))
-                            : (looks_ahead ? 7.2e4 : 4e4) * numbers * std::min(depth * std::sqrt(n), n / 60);
+                            : (looks_ahead ? 6.4e4 : 3.6e4) * numbers * std::min(depth * std::sqrt(n), n / 60);
   return {8 * (numbers + 4 * d + 5) * n + (d > 2 ? 0 : 180 * n) + band, seconds, seconds};
 }
 
@@ -71,7 +71,7 @@ class CostOf {
   double workspace_bytes(const SystemSize& s) const {
     // 64-bit row numbers and values of A and B; B of blocks has a row number for each value.
     const double entry = 16 + (is_complex_ ? 24 : 16 * width_);
-    return 1.4 * entry * entries(s) + 600 * s.vertices;
+    return 1.4 * entry * entries(s) + 500 * s.vertices;
   }
   /// Of the next band, whose heat is found beside the rest of one: the factor of A, matrices, the graph.
   double next_band_bytes(const SystemSize& s) const {
@@ -82,9 +82,10 @@ class CostOf {
   double system_seconds(const SystemSize& s) const {
     // Complex operations are four real ones.
     const double operations = 1 + (is_complex_ ? 4 : std::pow(d_, 3));
-    return 3.1e-7 * numbers() * entries(s) + 4e-11 * operations * s.operations + (is_delaunay_ ? 0 : 1e-6 * s.vertices);
+    return 1.95e-7 * numbers() * entries(s) + 2.5e-11 * operations * s.operations +
+           (is_delaunay_ ? 0 : 6e-7 * s.vertices);
   }
-  double solve_seconds(const SystemSize& s) const { return 1e-8 * numbers() * s.nonzeros; }
+  double solve_seconds(const SystemSize& s) const { return 7e-9 * numbers() * s.nonzeros; }
   /// The front that unfolds distances, four times the work where triangles are halved.
   double front_bytes(double halved) const { return is_delaunay_ ? 1450 * halved : 0; }
   double front_seconds(double reached, double halved) const {
