@@ -49,7 +49,8 @@ void expect_factor(Offset rows, Offset columns) {
   const Offset below = rows - columns;
   const Matrix<W> own = Eigen::LLT<Matrix<W>>(K.topRows(columns)).matrixL();
   Matrix<W> under = K.bottomRows(below).adjoint();
-  own.template triangularView<Eigen::Lower>().solveInPlace(under);
+  if (below > 0)
+    own.template triangularView<Eigen::Lower>().solveInPlace(under);  // Eigen takes a reference to the first number
   const Matrix<W> left = -(under.adjoint() * under);
 
   Matrix<W> L = K, update = Matrix<W>::Constant(below, below, NAN);
