@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "ahm/error.hpp"
+#include "heat/blas_control.hpp"
 #include "heat/cholesky.hpp"
 #include "heat/front_factor.hpp"
 
@@ -67,6 +68,7 @@ void expect_factor(Offset rows, Offset columns) {
 }
 
 TEST(FactorFront, IsEigensOfEverySmallFrontAndOfLargeOnes) {
+  const OneBlasThread one_thread;
   for (Offset rows = 1; rows <= 23; ++rows)
     for (Offset columns = 1; columns <= rows; ++columns) {
       expect_factor<1>(rows, columns);
@@ -83,6 +85,7 @@ TEST(FactorFront, IsEigensOfEverySmallFrontAndOfLargeOnes) {
 }
 
 TEST(FactorFront, TellsHowManyPivotsAreGood) {
+  const OneBlasThread one_thread;
   for (const Offset columns : {9, 320})
     for (const Offset bad : {Offset{0}, Offset{5}, columns - 1})
       for (const double pivot : {-1.0, 0.0, static_cast<double>(NAN)}) {

@@ -1,5 +1,5 @@
 /// \file
-/// What of the BLAS and LAPACK is called. Only where a `BlasBuffer` lives.
+/// What of the BLAS and LAPACK is called. Only where a `OneBlasThread` and a `BlasBuffer` live.
 #pragma once
 
 // NOLINTBEGIN(readability-identifier-naming)
