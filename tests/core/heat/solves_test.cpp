@@ -153,10 +153,9 @@ struct TreeFactor {
   std::vector<std::int32_t> permutation, indices;
   std::vector<Offset> super{0}, row_begin{0}, value_begin{0};
   std::vector<double> values;
-  SupernodeTree tree;
+  std::vector<Offset> parent;
 
   explicit TreeFactor(int depth) {
-    std::vector<Offset> parent;
     number(depth, parent);
     const auto supernodes = static_cast<Offset>(parent.size());
     for (Offset s = 0; s < supernodes; ++s) super.push_back(n += 3 + s % 2);
@@ -172,8 +171,6 @@ struct TreeFactor {
           values.push_back(r < j ? 0 : r == j ? 3.0 : 0.1 * std::sin(1.0 + static_cast<double>(s + 3 * r + 7 * j)));
     }
     for (Offset k = 0; k < n; ++k) permutation.push_back(static_cast<std::int32_t>(k));
-    tree.parent = std::move(parent);
-    tree.find_children();
   }
   SupernodalFactor view() const {
     return {n, false, permutation, super, row_begin, value_begin, indices, values.data()};
@@ -192,7 +189,7 @@ struct TreeFactor {
 TEST(SolveGroups, AreSubtreesAndWhatIsAboveThem) {
   const TreeFactor factor(12);
   const SupernodalFactor L = factor.view();
-  const auto groups = solve_groups(L, factor.tree);
+  const auto groups = solve_groups(L, factor.parent);
   ASSERT_NE(groups, nullptr);
   std::vector<int> seen(factor.super.size() - 1, 0);
   for (const Offset s : groups->top) ++seen[s];
@@ -220,7 +217,7 @@ TEST(SolveGroups, AreSubtreesAndWhatIsAboveThem) {
 
 TEST(SolveGroups, GiveTheSolutionOfOneThreadAfterTheOther) {
   const TreeFactor factor(12);
-  const auto groups = solve_groups(factor.view(), factor.tree);
+  const auto groups = solve_groups(factor.view(), factor.parent);
   ASSERT_NE(groups, nullptr);
   for (Offset columns = 1; columns <= max_narrow_columns; ++columns)
     for (const bool is_point : {false, true}) {
@@ -241,7 +238,7 @@ TEST(SolveGroups, GiveTheSolutionOfOneThreadAfterTheOther) {
 
 TEST(SolveGroups, AreNotMadeWhereTheyDoNotPay) {
   const TreeFactor factor(4);
-  EXPECT_EQ(solve_groups(factor.view(), factor.tree), nullptr);
+  EXPECT_EQ(solve_groups(factor.view(), factor.parent), nullptr);
 }
 
 TEST(OneBlasThread, MayBeNestedAndSaysWhatTheBlasIs) {

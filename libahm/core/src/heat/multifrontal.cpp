@@ -95,7 +95,7 @@ class Multifrontal {
       if (const Offset good = factor(s, L, left.numbers.get()); good < s.columns) return s.first + good;
       if (below == 0) return all_.L_.size;
       for (const Update& update : waiting.updates) add<false>(update, s, below, left.numbers.get());
-      leave(all_.pattern_.tree.parent[number], std::move(left));
+      leave(all_.pattern_.parent[number], std::move(left));
       return all_.L_.size;
     }
 
@@ -112,7 +112,7 @@ class Multifrontal {
 
     void add_entries(const Supernode<W>& s, double* L) const {
       for (Offset j = 0; j < s.columns; ++j, L += s.rows * W)
-        for (const auto& [row, source] : all_.entries_.of_column(s.first + j)) {
+        for (const auto& [row, source] : all_.entries_.of(s.first + j)) {
           const double* value = all_.matrix_.values.data() + (source < 0 ? ~source : source) * W;
           double* entry = L + places_[row] * W;
           entry[0] += value[0];

@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
-#include <queue>
-#include <tuple>
-#include <utility>
+#include <vector>
 
 namespace ahm {
 namespace {
@@ -20,14 +18,14 @@ struct Subtrees {
   std::vector<Offset> numbers;  ///< of the factor
 };
 
-Subtrees subtrees_of(const SupernodalFactor& L, const SupernodeTree& tree) {
+Subtrees subtrees_of(const SupernodalFactor& L, std::span<const Offset> parents) {
   Subtrees subtrees;
-  subtrees.first.resize(tree.parent.size());
+  subtrees.first.resize(parents.size());
   std::iota(subtrees.first.begin(), subtrees.first.end(), Offset{0});
-  subtrees.numbers.resize(tree.parent.size());
-  for (std::size_t s = 0; s < tree.parent.size(); ++s) {
+  subtrees.numbers.resize(parents.size());
+  for (std::size_t s = 0; s < parents.size(); ++s) {
     subtrees.numbers[s] += L.value_begin[s + 1] - L.value_begin[s];
-    const Offset parent = tree.parent[s];
+    const Offset parent = parents[s];
     if (parent < 0) continue;
     subtrees.first[parent] = std::min(subtrees.first[parent], subtrees.first[s]);
     subtrees.numbers[parent] += subtrees.numbers[s];
@@ -35,42 +33,19 @@ Subtrees subtrees_of(const SupernodalFactor& L, const SupernodeTree& tree) {
   return subtrees;
 }
 
-/// The roots of the subtrees that are left when those larger than a group should be are taken apart, largest first.
-std::vector<Offset> roots_below_top(const SupernodeTree& tree, const std::vector<Offset>& numbers,
-                                    std::vector<bool>& is_top) {
-  std::priority_queue<std::pair<Offset, Offset>> waiting;  // numbers, supernode
-  Offset all = 0;
-  for (std::size_t s = 0; s < tree.parent.size(); ++s)
-    if (tree.parent[s] < 0) waiting.emplace(numbers[s], static_cast<Offset>(s)), all += numbers[s];
-  while (!waiting.empty() && waiting.top().first > all / static_cast<Offset>(groups)) {
-    const Offset root = waiting.top().second;
-    waiting.pop();
-    is_top[root] = true;
-    for (const Offset child : tree.children_of(root)) waiting.emplace(numbers[child], child);
-  }
-  std::vector<Offset> roots;
-  for (; !waiting.empty(); waiting.pop()) roots.push_back(waiting.top().second);
-  return roots;
-}
-
 }  // namespace
 
-void SupernodeTree::find_children() {
-  child_begin.assign(parent.size() + 1, 0);
-  for (const Offset p : parent)
-    if (p >= 0) ++child_begin[p + 1];
-  std::partial_sum(child_begin.begin(), child_begin.end(), child_begin.begin());
-  children.resize(static_cast<std::size_t>(child_begin.back()));
-  std::vector<Offset> next(child_begin.begin(), child_begin.end() - 1);
-  for (std::size_t s = 0; s < parent.size(); ++s)
-    if (parent[s] >= 0) children[next[parent[s]]++] = static_cast<Offset>(s);
-}
-
-std::unique_ptr<const SolveGroups> solve_groups(const SupernodalFactor& L, const SupernodeTree& tree) {
-  if (L.value_begin.back() < least_numbers) return nullptr;
-  const Subtrees subtrees = subtrees_of(L, tree);
-  std::vector<bool> is_top(tree.parent.size(), false);
-  const std::vector<Offset> roots = roots_below_top(tree, subtrees.numbers, is_top);
+std::unique_ptr<const SolveGroups> solve_groups(const SupernodalFactor& L, std::span<const Offset> parent) {
+  const Offset all = L.value_begin.back();
+  if (all < least_numbers) return nullptr;
+  const Subtrees subtrees = subtrees_of(L, parent);
+  const auto is_top = [&](Offset s) { return subtrees.numbers[s] > all / static_cast<Offset>(groups); };
+  const auto supernodes = static_cast<Offset>(parent.size());
+  std::vector<Offset> roots;  // of the subtrees below the top, the largest first
+  for (Offset s = supernodes; s-- > 0;)
+    if (!is_top(s) && (parent[s] < 0 || is_top(parent[s]))) roots.push_back(s);
+  std::stable_sort(roots.begin(), roots.end(),
+                   [&](Offset a, Offset b) { return subtrees.numbers[a] > subtrees.numbers[b]; });
 
   std::vector<std::vector<Offset>> of_group(groups);
   std::vector<Offset> work(groups, 0);
@@ -87,9 +62,9 @@ std::unique_ptr<const SolveGroups> solve_groups(const SupernodalFactor& L, const
     result->begin.push_back(result->subtrees.size());
   }
   result->place.assign(static_cast<std::size_t>(L.size), -1);
-  for (std::size_t s = 0; s < is_top.size(); ++s) {
-    if (!is_top[s]) continue;
-    result->top.push_back(static_cast<Offset>(s));
+  for (Offset s = 0; s < supernodes; ++s) {
+    if (!is_top(s)) continue;
+    result->top.push_back(s);
     for (Offset row = L.super[s]; row < L.super[s + 1]; ++row)
       result->place[row] = static_cast<std::int32_t>(result->top_rows++);
   }

@@ -13,19 +13,6 @@
 
 namespace ahm {
 
-/// The elimination tree of supernodes.
-struct SupernodeTree {
-  std::vector<Offset> parent;  ///< the supernode of the first row below; -1: of a root
-  /// Of each supernode its children, ascending: children[child_begin[s]] to children[child_begin[s + 1]].
-  std::vector<Offset> child_begin, children;
-
-  std::span<const Offset> children_of(Offset s) const {
-    return std::span(children).subspan(child_begin[s], child_begin[s + 1] - child_begin[s]);
-  }
-  /// From the parents.
-  void find_children();
-};
-
 /// Subtrees of the elimination tree, in groups of about the same work, and the supernodes above them all. On the way down
 /// groups touch rows of their own, and add to those of the top; on the way up they read the top. The groups are the same on any
 /// number of threads, and so are the sums.
@@ -44,7 +31,8 @@ struct SolveGroups {
   std::size_t bytes() const { return place.size() * sizeof(std::int32_t); }
 };
 
-/// Null where they would not pay, for small factors. Supernodes are in postorder.
-std::unique_ptr<const SolveGroups> solve_groups(const SupernodalFactor& L, const SupernodeTree& tree);
+/// Null where they would not pay, for small factors.
+/// @param parent  of each supernode, which are in postorder; -1: of a root
+std::unique_ptr<const SolveGroups> solve_groups(const SupernodalFactor& L, std::span<const Offset> parent);
 
 }  // namespace ahm

@@ -2,6 +2,7 @@
 /// A Cholesky factor by supernodes: columns of the same rows, stored as dense blocks.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 
@@ -18,6 +19,14 @@ struct SupernodalFactor {
   std::span<const Offset> super, row_begin, value_begin;
   std::span<const std::int32_t> indices;
   const double* values;  ///< complex: interleaved pairs
+
+  Offset supernodes() const { return static_cast<Offset>(super.size()) - 1; }
+  /// Rows of the largest supernode.
+  Offset most_rows() const {
+    Offset most = 0;
+    for (Offset s = 0; s < supernodes(); ++s) most = std::max(most, row_begin[s + 1] - row_begin[s]);
+    return most;
+  }
 };
 
 /// One supernode of a factor of real (W = 1) or complex (W = 2) numbers.

@@ -4,6 +4,8 @@
 #include <numeric>
 #include <utility>
 
+#include "ahm/util/buckets.hpp"
+
 namespace ahm {
 namespace {
 
@@ -15,32 +17,42 @@ Numbers inverse(const Numbers& order) {
   return place;
 }
 
-/// Calls visit(i, j, p) for each entry p of the matrix, with its row and column in the order of elimination.
-template <class Visit>
-void for_each_entry(const SparseUpper& matrix, const Numbers& place, const Visit& visit) {
-  for (Offset j = 0; j < matrix.size(); ++j)
-    for (Offset p = matrix.column_begin[j]; p < matrix.column_begin[j + 1]; ++p)
-      visit(place[matrix.rows[p]], place[j], p);
+/// The entries of a matrix by one of their two places in the order of elimination.
+/// @param key     key(i, j) of the entry with its row at place i and its column at place j
+/// @param member  member(i, j, p) of entry p, which is kept
+template <class Member, class Key, class MemberOf>
+EntriesBy<Member> entries_by(const SparseUpper& matrix, const Numbers& place, const Key& key, const MemberOf& member) {
+  const auto for_each_entry = [&](const auto& visit) {
+    for (Offset j = 0; j < matrix.size(); ++j)
+      for (Offset p = matrix.column_begin[j]; p < matrix.column_begin[j + 1]; ++p)
+        visit(place[matrix.rows[p]], place[j], p);
+  };
+  EntriesBy<Member> result;
+  result.begin.assign(static_cast<std::size_t>(matrix.size()) + 1, 0);
+  for_each_entry([&](std::int32_t i, std::int32_t j, Offset) { ++result.begin[key(i, j) + 1]; });
+  result.begin = detail::starts_of(std::move(result.begin));
+  result.members.resize(matrix.rows.size());
+  std::vector<Offset> next(result.begin.begin(), result.begin.end() - 1);
+  for_each_entry(
+      [&](std::int32_t i, std::int32_t j, Offset p) { result.members[next[key(i, j)]++] = member(i, j, p); });
+  return result;
 }
 
-/// Of each row the columns before it, in the order of elimination.
-struct Before {
-  std::vector<Offset> begin;
-  Numbers columns;
+/// Of each row the columns before it, and itself.
+using Before = EntriesBy<std::int32_t>;
 
-  Before(const SparseUpper& matrix, const Numbers& place) : begin(static_cast<std::size_t>(matrix.size()) + 1, 0) {
-    for_each_entry(matrix, place, [&](std::int32_t i, std::int32_t j, Offset) { begin[std::max(i, j) + 1] += i != j; });
-    std::partial_sum(begin.begin(), begin.end(), begin.begin());
-    columns.resize(static_cast<std::size_t>(begin.back()));
-    std::vector<Offset> next(begin.begin(), begin.end() - 1);
-    for_each_entry(matrix, place, [&](std::int32_t i, std::int32_t j, Offset) {
-      if (i != j) columns[next[std::max(i, j)]++] = std::min(i, j);
-    });
-  }
-  std::span<const std::int32_t> of(std::int32_t row) const {
-    return std::span(columns).subspan(begin[row], begin[row + 1] - begin[row]);
-  }
-};
+Before columns_before(const SparseUpper& matrix, const Numbers& place) {
+  const auto later = [](std::int32_t i, std::int32_t j) { return std::max(i, j); };
+  return entries_by<std::int32_t>(matrix, place, later,
+                                  [](std::int32_t i, std::int32_t j, Offset) { return std::min(i, j); });
+}
+
+FactorEntries factor_entries(const SparseUpper& matrix, const Numbers& place) {
+  const auto earlier = [](std::int32_t i, std::int32_t j) { return std::min(i, j); };
+  return entries_by<FactorEntry>(matrix, place, earlier, [](std::int32_t i, std::int32_t j, Offset p) {
+    return FactorEntry{std::max(i, j), i < j ? ~p : p};
+  });
+}
 
 /// The elimination tree of columns [Liu90]; -1: a root.
 Numbers elimination_tree(const Before& before, std::int32_t n) {
@@ -80,19 +92,6 @@ Numbers postorder(const Numbers& parent) {
   return order;
 }
 
-FactorEntries entries_of(const SparseUpper& matrix, const Numbers& place) {
-  FactorEntries result;
-  result.begin.assign(static_cast<std::size_t>(matrix.size()) + 1, 0);
-  result.entries.resize(matrix.rows.size());
-  for_each_entry(matrix, place, [&](std::int32_t i, std::int32_t j, Offset) { ++result.begin[std::min(i, j) + 1]; });
-  std::partial_sum(result.begin.begin(), result.begin.end(), result.begin.begin());
-  std::vector<Offset> next(result.begin.begin(), result.begin.end() - 1);
-  for_each_entry(matrix, place, [&](std::int32_t i, std::int32_t j, Offset p) {
-    result.entries[next[std::min(i, j)]++] = {std::max(i, j), i < j ? ~p : p};
-  });
-  return result;
-}
-
 /// Rows of each column of the factor, the diagonal among them; columns are in postorder [GNP94].
 class ColumnCounts {
  public:
@@ -107,7 +106,7 @@ class ColumnCounts {
     }
     for (std::int32_t j = 0; j < n; ++j) {
       if (parent[j] != -1) --counts[parent[j]];
-      for (const auto& entry : entries.of_column(j)) add_leaf(entry.row, j);
+      for (const auto& entry : entries.of(j)) add_leaf(entry.row, j);
       if (parent[j] != -1) ancestor_[j] = parent[j];
     }
     for (std::int32_t j = 0; j < n; ++j)
@@ -184,7 +183,7 @@ void find_indices(SupernodalPattern& pattern, const Numbers& supernode_of, const
   for (std::int32_t row = 0; row < n; ++row) {
     seen[supernode_of[row]] = row;
     for (const std::int32_t column : before.of(post[row]))
-      for (Offset s = supernode_of[place[column]]; seen[s] != row; s = pattern.tree.parent[s]) {
+      for (Offset s = supernode_of[place[column]]; seen[s] != row; s = pattern.parent[s]) {
         seen[s] = row;
         pattern.indices[next[s]++] = row;
       }
@@ -195,7 +194,7 @@ void find_indices(SupernodalPattern& pattern, const Numbers& supernode_of, const
 
 SymbolicAnalysis analyze(const SparseUpper& matrix, const Numbers& order) {
   const auto n = static_cast<std::int32_t>(matrix.size());
-  const Before before(matrix, inverse(order));
+  const Before before = columns_before(matrix, inverse(order));
   Numbers parent = elimination_tree(before, n);
   const Numbers post = postorder(parent), place = inverse(post);
 
@@ -204,7 +203,7 @@ SymbolicAnalysis analyze(const SparseUpper& matrix, const Numbers& order) {
   Numbers tree(parent.size(), -1);
   for (std::int32_t k = 0; k < n; ++k)
     if (parent[k] >= 0) tree[place[k]] = place[parent[k]];
-  FactorEntries entries = entries_of(matrix, inverse(pattern.permutation));
+  FactorEntries entries = factor_entries(matrix, inverse(pattern.permutation));
   const ColumnCounts columns(entries, tree);
   for (const double count : columns.counts) pattern.operations += count * count;
 
@@ -218,11 +217,10 @@ SymbolicAnalysis analyze(const SparseUpper& matrix, const Numbers& order) {
   }
   for (std::size_t s = 0; s + 1 < pattern.super.size(); ++s) {
     const std::int32_t above = tree[pattern.super[s + 1] - 1];
-    pattern.tree.parent.push_back(above < 0 ? -1 : supernode_of[above]);
+    pattern.parent.push_back(above < 0 ? -1 : supernode_of[above]);
   }
-  pattern.tree.find_children();
   find_indices(pattern, supernode_of, before, post, place);
-  pattern.groups = solve_groups(pattern.factor(false, nullptr), pattern.tree);
+  pattern.groups = solve_groups(pattern.factor(false, nullptr), pattern.parent);
   return {std::move(pattern), std::move(entries)};
 }
 

@@ -13,24 +13,28 @@
 
 namespace ahm {
 
-/// Where the entries of a matrix lie in its factor.
-struct FactorEntries {
-  struct Entry {
-    std::int32_t row;     ///< in the order of elimination
-    std::int64_t source;  ///< among the values of the matrix; ~source: its conjugate
-  };
-  std::vector<Offset> begin;  ///< of the columns, in the order of elimination
-  std::vector<Entry> entries;
+/// The entries of a matrix by places in the order of elimination.
+template <class Member>
+struct EntriesBy {
+  std::vector<Offset> begin;  ///< places + 1
+  std::vector<Member> members;
 
-  std::span<const Entry> of_column(Offset column) const {
-    return std::span(entries).subspan(begin[column], begin[column + 1] - begin[column]);
+  std::span<const Member> of(Offset place) const {
+    return std::span(members).subspan(begin[place], begin[place + 1] - begin[place]);
   }
 };
+
+struct FactorEntry {
+  std::int32_t row;     ///< in the order of elimination
+  std::int64_t source;  ///< among the values of the matrix; ~source: its conjugate
+};
+/// Where the entries of a matrix lie in its factor, by its columns.
+using FactorEntries = EntriesBy<FactorEntry>;
 
 struct SupernodalPattern {
   std::vector<std::int32_t> permutation, indices;  ///< as in `SupernodalFactor`, and so are the next three
   std::vector<Offset> super, row_begin, value_begin;
-  SupernodeTree tree;
+  std::vector<Offset> parent;  ///< in the elimination tree of supernodes: that of the first row below; -1: of a root
   std::shared_ptr<const SolveGroups> groups;  ///< null: supernodes go one after the other
   double operations = 0;  ///< of real numbers, that a factorization without the zeros in supernodes takes
 

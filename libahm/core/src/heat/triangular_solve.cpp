@@ -1,11 +1,11 @@
 #include "heat/triangular_solve.hpp"
 
 #include <algorithm>
-#include <memory>
 #include <span>
 #include <vector>
 
 #include "ahm/util/parallel.hpp"
+#include "heat/permuted_columns.hpp"
 #include "heat/solve_groups.hpp"
 #include "heat/supernode_kernels.hpp"
 
@@ -17,33 +17,27 @@ template <int W, int K>
 class NarrowSolve {
  public:
   NarrowSolve(const SupernodalFactor& L, const SolveGroups* groups, unsigned threads)
-      : L_(L),
-        groups_(groups),
-        threads_(threads),
-        x_(std::make_unique_for_overwrite<double[]>(static_cast<std::size_t>(L.size) * W * K)) {
-    for (std::size_t s = 0; s + 1 < L.row_begin.size(); ++s)
-      longest_ = std::max(longest_, L.row_begin[s + 1] - L.row_begin[s]);
-  }
+      : L_(L), groups_(groups), threads_(threads), x_(L, K), longest_(L.most_rows()) {}
 
   void solve(std::span<double> X) {
-    permute<true>(X);
+    const unsigned threads = groups_ ? threads_ : 1;
+    x_.template permute<true>(X, K, threads);
     if (groups_)
       solve_by_groups();
     else
       solve_in_order();
-    permute<false>(X);
+    x_.template permute<false>(X, K, threads);
   }
 
  private:
   using Buffer = std::vector<double>;
   Buffer rows(Offset count) const { return Buffer(static_cast<std::size_t>(count) * W * K); }
-  double* at(int column, Offset row) const { return x_.get() + (column * L_.size + row) * W; }
+  double* at(int column, Offset row) const { return x_.at(column, row); }
 
   void solve_in_order() {
     Buffer y = rows(longest_);
-    const auto supernodes = static_cast<Offset>(L_.super.size()) - 1;
-    for (Offset s = 0; s < supernodes; ++s) forward(Supernode<W>(L_, s), y, in_x());
-    for (Offset s = supernodes; s-- > 0;) backward(Supernode<W>(L_, s), y);
+    for (Offset s = 0; s < L_.supernodes(); ++s) forward(Supernode<W>(L_, s), y, in_x());
+    for (Offset s = L_.supernodes(); s-- > 0;) backward(Supernode<W>(L_, s), y);
   }
 
   void solve_by_groups() {
@@ -81,36 +75,15 @@ class NarrowSolve {
     });
   }
 
-  template <bool In>
-  void permute(std::span<double> X) {
-    detail::parallel_chunks(L_.size, 1 << 15, groups_ ? threads_ : 1, [&](Offset begin, Offset end) {
-      for (int c = 0; c < K; ++c)
-        for (Offset k = begin; k < end; ++k)
-          for (int w = 0; w < W; ++w) {
-            double& outside = X[(c * L_.size + L_.permutation[k]) * W + w];
-            double& inside = at(c, k)[w];
-            In ? inside = outside : outside = inside;
-          }
-    });
-  }
-
   auto in_x() const {
     return [this](int column, Offset row) { return at(column, row); };
-  }
-
-  bool is_zero(const Supernode<W>& s) const {
-    const auto none = [](double value) { return value == 0; };
-    for (int c = 0; c < K; ++c)
-      if (!std::all_of(at(c, s.first), at(c, s.first + s.columns), none)) return false;
-    return true;
   }
 
   /// L y = x
   /// @param target  target(column, row): what a row below is taken from
   template <class Target>
   void forward(const Supernode<W>& s, Buffer& y, const Target& target) {
-    // A point source is zero almost everywhere, and stays so outside its path to the root of the elimination tree.
-    if (is_zero(s)) return;
+    if (x_.is_zero(s, K)) return;
     for (int c = 0; c < K; ++c) {
       double* column = y.data() + c * s.rows * W;
       std::copy(at(c, s.first), at(c, s.first + s.columns), column);
@@ -144,8 +117,8 @@ class NarrowSolve {
   const SolveGroups* groups_;
   unsigned threads_;
   SupernodeKernels<W> kernels_ = supernode_kernels<W, K>();
-  std::unique_ptr<double[]> x_;
-  Offset longest_ = 0;
+  PermutedColumns<W> x_;
+  Offset longest_;
 };
 
 template <int W>
