@@ -44,7 +44,7 @@ std::vector<TiledMapOptions> all_options() {
   all[1].heat.variant = Variant::localized;
   all[1].memory = 1 << 14;  // tiles of the map come and go
   all[2].coordinates = false;
-  all[3].radius = 250;
+  all[3].radius = 330;
   return all;
 }
 

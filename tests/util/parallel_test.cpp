@@ -54,6 +54,23 @@ TEST(ParallelChunks, PassOnTheFirstErrorAndStop) {
   EXPECT_THROW(detail::parallel_chunks(1000, 1, 4, body), std::runtime_error);
 }
 
+/// The first chunk fails when a later one has.
+TEST(ParallelChunks, PassOnTheErrorOfTheFirstChunkWhateverFailsBefore) {
+  std::atomic<bool> later{false};
+  const auto body = [&](Offset begin, Offset) {
+    if (begin == 0) later.wait(false);
+    later = true;
+    later.notify_all();
+    throw std::runtime_error(begin == 0 ? "first" : "later");
+  };
+  try {
+    detail::parallel_chunks(2, 1, 2, body);
+    FAIL() << "no error";
+  } catch (const std::runtime_error& error) {
+    EXPECT_STREQ(error.what(), "first");
+  }
+}
+
 TEST(ForEachIndex, VisitsEachOnce) {
   std::vector<int> visits(40000, 0);
   detail::for_each_index(visits.size(), 4, [&](std::size_t i) { ++visits[i]; });

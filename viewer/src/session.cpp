@@ -16,6 +16,7 @@
 #include "channels.hpp"
 #include "command.hpp"
 #include "exported.hpp"
+#include "info.hpp"
 #include "makers.hpp"
 #include "map_settings.hpp"
 #include "requests.hpp"
@@ -347,39 +348,9 @@ struct Session::Impl {
     return {200, "application/octet-stream", exported(format, write)};
   }
 
-  json point_as_json(const SurfacePoint& point) const {
-    if (const auto* row = std::get_if<Row>(&point)) return {{"row", row->index}};
-    const auto& face = std::get<FacePoint>(point);
-    return {{"face", face.face}, {"weights", face.barycentric}};
-  }
-
-  Answer answer_info() const {
-    const std::size_t faces = surface.faces().size(), rows = geometry.points.size();
-    const auto counted = [](std::size_t n, const char* what) {
-      std::string digits = std::to_string(n);
-      for (auto k = static_cast<std::ptrdiff_t>(digits.size()) - 3; k > 0; k -= 3)
-        digits.insert(static_cast<std::size_t>(k), ",");
-      return digits + " " + what;
-    };
-    json variants = json::array();
-    for (const Variant variant : all_variants) variants.push_back(to_string(variant));
-    const Settings& usual = options.settings;
-    json info = {{"about", faces > 0 ? counted(rows, "vertices, ") + counted(faces, "faces") : counted(rows, "points")},
-                 {"has_faces", faces > 0},
-                 {"variants", variants},
-                 {"formats", options.formats},
-                 {"method", to_string(usual.method)},
-                 {"variant", to_string(usual.variant)},
-                 {"order", usual.order},
-                 {"t_coef", usual.t_coef}};
-    if (usual.radius) info["radius"] = *usual.radius;
-    if (options.source) info["source"] = point_as_json(standing_for(surface, *options.source));
-    return answer_of(info);
-  }
-
   Answer answer(std::string_view name, std::string_view body) {
     if (name == "surface") return {200, "application/octet-stream", page.bundle()};
-    if (name == "info") return answer_info();
+    if (name == "info") return answer_of(session_info(surface, geometry, options));
     const Request request(body);
     if (name == "map") return answer_map(request);
     if (name == "stroke") return answer_stroke(request);

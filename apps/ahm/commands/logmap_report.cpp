@@ -7,6 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "ahm/util/quantile.hpp"
 #include "cli/system_info.hpp"
 #include "output/results.hpp"
 #include "output/summary.hpp"
@@ -32,10 +33,7 @@ double largest_distance(const RowLogMap& rows) {
 /// Of the numbers that are not NaN.
 double median(std::vector<double> values) {
   std::erase_if(values, [](double v) { return std::isnan(v); });
-  if (values.empty()) return NAN;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  return values.empty() ? NAN : detail::median(values);
 }
 
 nlohmann::ordered_json source_as_json(const LogmapRun& run) {

@@ -9,6 +9,7 @@
 
 #include "ahm/error.hpp"
 #include "ahm/surface/exact/flat_triangles.hpp"
+#include "ahm/util/quantile.hpp"
 #include "ahm/util/vec.hpp"
 #include "output/wording.hpp"
 
@@ -16,9 +17,7 @@ namespace ahm::app {
 namespace {
 
 double quantile(std::vector<double>& values, double q) {
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(q * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
+  return detail::value_at(values, static_cast<std::size_t>(q * static_cast<double>(values.size() - 1)));
 }
 
 /// Between the faces of every edge inside.

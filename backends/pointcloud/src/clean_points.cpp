@@ -9,25 +9,19 @@
 
 #include "ahm/error.hpp"
 #include "ahm/util/parallel.hpp"
+#include "ahm/util/quantile.hpp"
 #include "ahm/util/text.hpp"
 #include "ahm/util/vec.hpp"
 
 namespace ahm::pointcloud {
 namespace {
 
-/// The value in the middle when sorted; reorders.
-double median(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 Vec3 scaled(const Vec3& p, int exponent) {
   return {std::scalbn(p[0], exponent), std::scalbn(p[1], exponent), std::scalbn(p[2], exponent)};
 }
 
 /// What brings the points to order one. Medians, since a single stray point must not make the others small.
-Placement placement_of(const std::vector<Vec3>& points) {
+Placement placement_of(const std::vector<Vec3>& points, unsigned threads) {
   Placement result;
   double largest = 0;
   for (const Vec3& p : points)
@@ -38,13 +32,13 @@ Placement placement_of(const std::vector<Vec3>& points) {
   for (int axis = 0; axis < 3 && !points.empty(); ++axis) {
     std::transform(points.begin(), points.end(), values.begin(),
                    [&](const Vec3& p) { return std::scalbn(p[axis], -first); });
-    middle[axis] = median(values);
+    middle[axis] = detail::median(values, threads);
   }
   std::transform(points.begin(), points.end(), values.begin(), [&](const Vec3& point) {
     const Vec3 p = scaled(point, -first) - middle;
     return std::max({std::abs(p[0]), std::abs(p[1]), std::abs(p[2])});
   });
-  const double spread = points.empty() ? 0.0 : median(values);
+  const double spread = points.empty() ? 0.0 : detail::median(values, threads);
   result.exponent = first + (spread > 0 ? std::ilogb(spread) : 0);
   return result;
 }
@@ -139,7 +133,7 @@ CleanPoints clean_points(std::span<const Vec3> input, const std::function<Index(
     throw InvalidGeometry("the cloud has " + std::to_string(input.size()) + " points; at most 2^30 are supported");
   std::vector<Index> kept;
   std::vector<Vec3> placed = finite_points(input, row, options, kept, report);
-  const Placement placement = placement_of(placed);
+  const Placement placement = placement_of(placed, options.threads);
   detail::for_each_index(placed.size(), options.threads,
                          [&](std::size_t i) { placed[i] = placement.place(placed[i]); });
   CleanPoints clean;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "ahm/util/parallel.hpp"
+#include "ahm/util/quantile.hpp"
 #include "ahm/util/vec.hpp"
 #include "edge_unfolding.hpp"
 #include "points_per_task.hpp"
@@ -35,11 +36,7 @@ struct Fit {
 };
 
 /// The value of the best third.
-double third(std::span<double> values) {
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 3);
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
+double third(std::span<double> values) { return detail::value_at(values, values.size() / 3); }
 
 /// How well a field of normals fits the points around point i. Between two planes that are right, a neighbour lies in their
 /// mean plane, whatever the curvature: slopes over it, and angles between the planes, in radians, of the best third of the

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "ahm/util/parallel.hpp"
+#include "ahm/util/quantile.hpp"
 #include "ahm/util/vec.hpp"
 #include "edge_unfolding.hpp"
 #include "points_per_task.hpp"
@@ -53,15 +54,12 @@ std::span<const double> of_point(const std::vector<double>& offsets, Index point
   return std::span(offsets).subspan(static_cast<std::size_t>(point) * nearest_few, nearest_few);
 }
 
-double take_median(std::vector<double>& values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+double median_or_zero(std::span<double> values, unsigned threads) {
+  return values.empty() ? 0 : detail::median(values, threads);
 }
 
-Noise noise_of(NeighborOffsets offsets) {
-  const double all = take_median(offsets.all), largest = take_median(offsets.largest);
+Noise noise_of(NeighborOffsets offsets, unsigned threads) {
+  const double all = median_or_zero(offsets.all, threads), largest = median_or_zero(offsets.largest, threads);
   offsets.counts.alike = count_alike(offsets.largest, largest);
   return noise_of(offsets.counts, all, largest);
 }
@@ -111,7 +109,8 @@ Noise noise_of(const OffsetCounts& counts, double all, double largest) {
 
 Noise offset_noise(const CleanPoints& cloud, const Neighborhoods& neighborhoods, const TangentPlanes& planes,
                    unsigned threads) {
-  return noise_of(neighbor_offsets(cloud, neighborhoods, planes, 0, static_cast<Index>(cloud.points.size()), threads));
+  const auto n = static_cast<Index>(cloud.points.size());
+  return noise_of(neighbor_offsets(cloud, neighborhoods, planes, 0, n, threads), threads);
 }
 
 std::vector<Noise> offset_noise(const CleanPoints& cloud, const Neighborhoods& neighborhoods,
@@ -123,7 +122,7 @@ std::vector<Noise> offset_noise(const CleanPoints& cloud, const Neighborhoods& n
   for (const auto& points : parts) {
     NeighborOffsets offsets;
     for (const Index i : points) offsets.add(of_point(all, i), neighborhoods.radius[i]);
-    noise.push_back(noise_of(std::move(offsets)));
+    noise.push_back(noise_of(std::move(offsets), threads));
   }
   return noise;
 }

@@ -1,11 +1,13 @@
 #include "orientation.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <numeric>
 #include <optional>
 #include <utility>
 
+#include "ahm/util/buckets.hpp"
 #include "ahm/util/parallel.hpp"
 #include "ahm/util/vec.hpp"
 
@@ -61,14 +63,29 @@ SignedForest flattest_forest(Index n, std::vector<Bridge> bridges) {
 }
 
 /// Any spanning forest, where no loop of edges disagrees with itself: the signs relative to the roots are those of all spanning
-/// forests then. Nothing where one does.
-std::optional<SignedForest> undisputed_forest(Index n, const WeightedEdges& edges, const TangentPlanes& planes) {
+/// forests then. Nothing where one does. Trees of several ranges of points grow at once, and what lies between ranges joins them.
+std::optional<SignedForest> undisputed_forest(Index n, const WeightedEdges& edges, const TangentPlanes& planes,
+                                              unsigned threads) {
   SignedForest forest(n);
-  for (std::size_t e = 0; e < edges.tails.size(); ++e) {
-    const Index a = edges.tails[e], b = edges.heads[e];
+  std::atomic<bool> disputed{false};
+  std::vector<char> is_between(edges.tails.size(), 0);  // ranges
+  const auto join = [&](Index a, Index b) {
     const signed char sign = relative_sign(planes.normals[a], planes.normals[b]);
-    if (!forest.join(a, b, sign) && forest.find(a).sign * forest.find(b).sign != sign) return std::nullopt;
-  }
+    if (!forest.join(a, b, sign) && forest.find(a).sign * forest.find(b).sign != sign) disputed = true;
+  };
+  detail::for_key_ranges(n, threads, [&](Offset from, Offset to) {
+    for (std::size_t e = 0; e < edges.tails.size() && !disputed; ++e) {
+      const Index a = edges.tails[e], b = edges.heads[e];
+      if (!(from <= a && a < to)) continue;
+      if (from <= b && b < to)
+        join(a, b);
+      else
+        is_between[e] = 1;
+    }
+  });
+  for (std::size_t e = 0; e < edges.tails.size() && !disputed; ++e)
+    if (is_between[e] != 0) join(edges.tails[e], edges.heads[e]);
+  if (disputed) return std::nullopt;
   return forest;
 }
 
@@ -153,7 +170,7 @@ std::vector<Index> orient_normals(const CleanPoints& cloud, const WeightedEdges&
                                   const CloudParts& parts, const std::vector<char>& kept, unsigned threads,
                                   TangentPlanes& planes) {
   const auto n = static_cast<Index>(cloud.points.size());
-  std::optional<SignedForest> undisputed = undisputed_forest(n, edges, planes);
+  std::optional<SignedForest> undisputed = undisputed_forest(n, edges, planes, threads);
   SignedForest forest = undisputed ? *std::move(undisputed) : flattest_forest(n, bridges(edges, planes, threads));
   std::vector<Index> tree(static_cast<std::size_t>(n));  // of each point
   std::vector<Evidence> evidence;

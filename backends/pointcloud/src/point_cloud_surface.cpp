@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <new>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -222,17 +223,23 @@ PointCloudSurface PointCloudSurface::build(std::span<const Vec3> input, std::spa
   CsrGraphData data = tangent_edges(cloud, planes, edges, vertex_of_clean, details.vertices, per_part(*parts, trusted),
                                     noise, options.threads, details);
   fill_vertex_data(data, points, cloud, planes, edges, vertex_of_clean, details.vertices, options.threads);
-  CsrGraph graph(std::move(data));
-  details.components = connected_components(graph).count;
-
-  std::vector<RowVertex> pairs;
-  for (std::size_t i = 0; i < points.size(); ++i)
-    if (const Index clean = cloud.clean_of_input[i]; clean >= 0 && vertex_of_clean[clean] >= 0)
-      pairs.push_back({kept.row(i), Vertex(vertex_of_clean[clean])});
-  RowMap rows(details.points, details.vertices, pairs);
+  std::optional<CsrGraph> graph;
+  std::optional<RowMap> rows;
+  const auto find_components = [&] {
+    graph.emplace(std::move(data));
+    details.components = connected_components(*graph).count;
+  };
+  const auto pair_rows = [&] {
+    std::vector<RowVertex> pairs;
+    for (std::size_t i = 0; i < points.size(); ++i)
+      if (const Index clean = cloud.clean_of_input[i]; clean >= 0 && vertex_of_clean[clean] >= 0)
+        pairs.push_back({kept.row(i), Vertex(vertex_of_clean[clean])});
+    rows.emplace(details.points, details.vertices, pairs);
+  };
+  detail::run_both(options.threads, find_components, pair_rows);
   options.progress.step("graph", 1.0);
   details.seconds_graph = stopwatch.lap();
-  return PointCloudSurface(std::move(graph), std::move(details), std::move(rows), input, options.rows);
+  return PointCloudSurface(*std::move(graph), std::move(details), *std::move(rows), input, options.rows);
 } catch (const std::bad_alloc&) {
   throw ResourceExhausted("out of memory while building the graph of a cloud of " + std::to_string(input.size()) +
                           " points");

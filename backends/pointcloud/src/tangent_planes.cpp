@@ -13,6 +13,7 @@
 #include "ahm/error.hpp"
 #include "ahm/pointcloud/plane_fit.hpp"
 #include "ahm/util/parallel.hpp"
+#include "ahm/util/quantile.hpp"
 #include "ahm/util/vec.hpp"
 #include "given_planes.hpp"
 #include "plane_axes.hpp"
@@ -269,9 +270,7 @@ double spacing(const Neighborhoods& neighborhoods, std::span<const Index> points
   std::vector<double> spacings;
   spacings.reserve(points.size());
   for (const Index i : points) spacings.push_back(spacing_at(neighborhoods, i));
-  const auto middle = spacings.begin() + static_cast<std::ptrdiff_t>(spacings.size() / 2);
-  std::nth_element(spacings.begin(), middle, spacings.end());
-  return *middle;
+  return detail::median(spacings);
 }
 
 double spacing(const Neighborhoods& neighborhoods) {

@@ -191,6 +191,19 @@ TEST(CholeskyFactor, SolvesAsEigensFromOneRowToManyGroups) {
     }
 }
 
+TEST(CholeskyFactor, IsToldFromThoseOfOtherMatrices) {
+  for (const bool is_complex : {false, true}) {
+    const SparseUpper K = grid(40, is_complex);
+    const CholeskyFactor factor(K, SymbolicCholesky(K, Ordering::amd), "K");
+    EXPECT_NO_THROW(factor.check(K, "K"));
+    for (const double by : {1.001, 1e9, 1e300, std::numeric_limits<double>::quiet_NaN()}) {
+      SparseUpper other = K;
+      other.values[other.values.size() / 2] *= by;
+      EXPECT_THROW(factor.check(other, "K"), NotPositiveDefinite) << by;
+    }
+  }
+}
+
 TEST(CholeskyFactor, NamesTheSameColumnOnAnyNumberOfThreads) {
   SparseUpper K = grid(160, false);
   for (const Offset bad : {Offset{3}, Offset{9000}, Offset{20001}})

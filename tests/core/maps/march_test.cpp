@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <string>
 
 #include "ahm/error.hpp"
 #include "ahm/fields/vector_heat.hpp"
@@ -63,10 +64,10 @@ TEST(March, AgreesWithTheGlobalSolve) {
 }
 
 TEST(March, TakesSeveralBands) {
-  const CsrGraph graph(sphere_graph(20000));
+  const CsrGraph graph(sphere_graph(40000));
   const LogMap map = LogMapSolver(graph, marching).solve(Source::at_vertex(Vertex{0}));
   EXPECT_GT(map.march().bands, 4);
-  EXPECT_LT(map.march().largest_band, 15000);
+  EXPECT_LT(map.march().largest_band, 30000);
   EXPECT_LT(difference(LogMapSolver(graph, global).solve(Source::at_vertex(Vertex{0})), map), 1e-9);
 }
 
@@ -209,6 +210,22 @@ TEST(March, DoesNotDependOnThreads) {
       ASSERT_EQ(one[s].coordinates()[k], single.coordinates()[k]);
     }
   }
+}
+
+/// Where the diffusion time is too long for the digits there are.
+TEST(March, RefusesTheSameAsTheGlobalSolveOnAnyNumberOfThreads) {
+  const CsrGraph graph(sphere_graph(20000));
+  const auto told = [&](Strategy strategy, unsigned threads) {
+    try {
+      LogMapSolver(graph, {.t_coef = 1e14, .strategy = strategy})
+          .solve(Source::at_vertex(Vertex{0}), {.threads = threads});
+    } catch (const NotPositiveDefinite& error) {
+      return std::string(error.fault());
+    }
+    return std::string("nothing");
+  };
+  for (const unsigned threads : {1u, 2u, 4u}) EXPECT_EQ(told(Strategy::march, threads), "heat_lost") << threads;
+  EXPECT_EQ(told(Strategy::global, 1), "heat_lost");
 }
 
 TEST(March, CanBeStopped) {

@@ -101,7 +101,7 @@ struct OneBand final : MarchKeeper {
 
 /// From the end of any band on, all that is left comes out as if the march had never ended.
 TEST(StreamedLogMap, GoesOnFromTheEndOfAnyBand) {
-  for (const CsrGraphData& data : {sphere_graph(6000), as_blocks(sphere_graph(6000)), bent_lattice(16)})
+  for (const CsrGraphData& data : {sphere_graph(10000), as_blocks(sphere_graph(10000)), bent_lattice(16)})
     for (MarchGoal goal : {MarchGoal::map, MarchGoal::distances}) {
       const CsrGraph graph = telling(data);
       const Source source = Source::at_vertex(Vertex{5});

@@ -1,7 +1,7 @@
 #include "heat/assemble.hpp"
 
 #include <algorithm>
-#include <numeric>
+#include <utility>
 #include <vector>
 
 namespace ahm {
@@ -48,20 +48,15 @@ class ColumnWriter {
  private:
   /// Sums parallel edges: columns_ the neighbours j < i ascending, scalar_ the entries A_ji, blocks_ the entries B_ji.
   void gather(Index i, const Star& star) {
-    order_.resize(star.degree());
-    std::iota(order_.begin(), order_.end(), 0);
-    // As a stable sort, which would allocate a buffer for every row.
-    std::sort(order_.begin(), order_.end(), [&](int a, int b) {
-      return star.neighbors[a] < star.neighbors[b] || (star.neighbors[a] == star.neighbors[b] && a < b);
-    });
+    order_.clear();
+    for (std::size_t e = 0; e < star.degree(); ++e)
+      if (star.neighbors[e] < i && star.weights[e] != 0) order_.emplace_back(star.neighbors[e], e);
+    std::sort(order_.begin(), order_.end());
     columns_.clear();
     scalar_.clear();
     blocks_.clear();
     const std::size_t width = layout_.width();
-    for (int e : order_) {
-      const Index j = star.neighbors[e];
-      if (j >= i) break;
-      if (star.weights[e] == 0) continue;
+    for (const auto& [j, e] : order_) {
       if (columns_.empty() || columns_.back() != j) {
         columns_.push_back(j);
         scalar_.push_back(0);
@@ -101,7 +96,7 @@ class ColumnWriter {
   std::span<const double> tau_;
   double scaling_;
   SparseUpper A_, B_;
-  std::vector<int> order_;
+  std::vector<std::pair<Index, std::size_t>> order_;  ///< edges, by where they lead
   std::vector<Offset> columns_;
   std::vector<double> scalar_, blocks_;
 };

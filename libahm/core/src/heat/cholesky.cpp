@@ -83,7 +83,6 @@ CholeskyFactor::CholeskyFactor(const SparseUpper& matrix, const SymbolicCholesky
   const Offset good = factor_by_fronts(matrix, *pattern_, symbolic.entries_, values.get(), threads);
   values_ = std::move(values);
   check_pivots(good, name);
-  check_residual(matrix, name);
 }
 
 /// @param good  columns that could be eliminated
@@ -97,22 +96,26 @@ void CholeskyFactor::check_pivots(Offset good, const char* name) const {
                             "each other");
 }
 
-/// Of one solve with a known right-hand side.
-void CholeskyFactor::check_residual(const SparseUpper& matrix, const char* name) const {
-  std::vector<double> x(pattern_->permutation.size() * (is_complex_ ? 2 : 1));
+void CholeskyFactor::check(const SparseUpper& matrix, const char* name) const {
+  std::vector<double> b(pattern_->permutation.size() * (is_complex_ ? 2 : 1));
   std::uint32_t state = 12345;
-  for (double& value : x) value = ((state = state * 1664525u + 1013904223u) >> 8) * 0x1p-23 - 1.0;
-  const std::vector<double> b = multiply(matrix, x);
-  const double scale = largest(matrix.values) * largest(x) + largest(b);
-  x = b;
+  for (double& value : b) value = ((state = state * 1664525u + 1013904223u) >> 8) * 0x1p-23 - 1.0;
+  checked_solve(matrix, std::move(b), name);
+}
+
+std::vector<double> CholeskyFactor::checked_solve(const SparseUpper& matrix, std::vector<double> b,
+                                                  const char* name) const {
+  std::vector<double> x = b;
   solve(x, 1);
+  const double scale = largest(matrix.values) * largest(x) + largest(b);
   std::vector<double> residual = multiply(matrix, x);
   for (std::size_t i = 0; i < b.size(); ++i) residual[i] -= b[i];
-  if (!(largest(residual) <= 1e-10 * scale))
+  if (!std::isfinite(scale) || !(largest(residual) <= 1e-10 * scale))
     throw NotPositiveDefinite("ill_conditioned",
                               std::string("operator ") + name + ": the factorization fails its residual check (" +
                                   detail::number(largest(residual) / scale) + " relative)",
                               "the graph is too ill-conditioned");
+  return x;
 }
 
 void CholeskyFactor::solve(std::span<double> X, Offset columns, unsigned threads) const {

@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "ahm/heat/heat_operators.hpp"
 #include "ahm/types.hpp"
@@ -37,7 +38,7 @@ class SymbolicCholesky {
 /// An LL^T factor. Immutable; `solve` may be called from many threads at once.
 class CholeskyFactor {
  public:
-  /// Factorizes and checks the result: every pivot finite and positive, and the residual of one solve small.
+  /// Factorizes and checks that every pivot is finite and positive.
   /// @param name     of the operator, for messages
   /// @param threads  that share the work; the same bits on any number
   /// @throws NotPositiveDefinite, ResourceExhausted
@@ -46,6 +47,12 @@ class CholeskyFactor {
   /// X <- K^-1 X, column major; complex vectors as interleaved pairs.
   /// @param threads  that share a large factor among up to `max_narrow_columns` columns; the same bits on any number
   void solve(std::span<double> X, Offset columns, unsigned threads = 1) const;
+  /// One column by `solve`, and the check that its residual is small, which a factor passes or not.
+  /// @param matrix  K
+  /// @throws NotPositiveDefinite
+  std::vector<double> checked_solve(const SparseUpper& matrix, std::vector<double> b, const char* name) const;
+  /// The check alone, by numbers all over [-1, 1).
+  void check(const SparseUpper& matrix, const char* name) const;
 
   Offset nonzeros() const noexcept { return pattern_->numbers(); }
   std::size_t bytes() const noexcept;
@@ -53,7 +60,6 @@ class CholeskyFactor {
  private:
   SupernodalFactor factor() const { return pattern_->factor(is_complex_, values_.get()); }
   void check_pivots(Offset good, const char* name) const;
-  void check_residual(const SparseUpper& matrix, const char* name) const;
 
   std::shared_ptr<const SupernodalPattern> pattern_;
   bool is_complex_;

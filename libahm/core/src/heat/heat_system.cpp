@@ -52,33 +52,26 @@ class Analysis {
   std::optional<SymbolicCholesky> blocks_;
 };
 
-/// B's factor, made when it is first solved with.
-class LateFactor {
- public:
-  LateFactor(SparseUpper B, Analysis analysis, int dimension)
-      : B_(std::move(B)), analysis_(std::move(analysis)), dimension_(dimension) {}
+/// c m
+std::vector<double> scaled_masses(const TangentGraph& graph, double scaling) {
+  std::vector<double> masses(static_cast<std::size_t>(graph.size()));
+  for (Index i = 0; i < graph.size(); ++i) masses[i] = scaling * graph.mass(i);
+  return masses;
+}
 
-  void solve(std::span<double> X, Offset columns, unsigned threads) const {
-    std::call_once(once_, [&] {
-      factor_.emplace(B_, analysis_->of_B(B_, dimension_), name_B);
-      B_ = {};
-      analysis_.reset();
-    });
-    factor_->solve(X, columns, threads);
-  }
-  static Offset nonzeros() { return 0; }
-  static std::size_t bytes() { return 0; }
+double farthest_from_one(std::span<const double> values) {
+  double worst = 0;
+  for (const double x : values) worst = std::isfinite(x) ? std::max(worst, std::abs(x - 1)) : INFINITY;
+  return worst;
+}
 
- private:
-  mutable std::once_flag once_;
-  mutable SparseUpper B_;
-  mutable std::optional<Analysis> analysis_;
-  mutable std::optional<CholeskyFactor> factor_;
-  int dimension_;
-};
+/// Both checks by one solve. @param masses  scaled
+void check_A(const CholeskyFactor& A, const SparseUpper& matrix, std::vector<double> masses) {
+  check_lost_heat(farthest_from_one(A.checked_solve(matrix, std::move(masses), name_A)));
+}
 
-/// A and B as two objects that solve: CholeskyFactor, LateFactor or ConjugateGradient.
-template <class Solver, class SolverOfB = Solver>
+/// A and B as two objects that solve: CholeskyFactor or ConjugateGradient.
+template <class Solver>
 class SystemOf final : public HeatSystem {
  public:
   SystemOf(std::vector<double> tau, double scaling) : HeatSystem(std::move(tau), scaling) {}
@@ -87,16 +80,48 @@ class SystemOf final : public HeatSystem {
   void solve_B(std::span<double> X, Offset columns, unsigned threads) const override { B->solve(X, columns, threads); }
 
   FactorStatistics& statistics_to_fill() { return statistics_; }
-  /// @param lost  heat, by A
-  void finish(double lost) {
-    check_lost_heat(lost);
+  void finish() {
     statistics_.bytes = A->bytes() + B->bytes();
     statistics_.nonzeros_A = A->nonzeros();
     statistics_.nonzeros_B = B->nonzeros();
   }
 
-  std::optional<Solver> A;
-  std::optional<SolverOfB> B;
+  std::optional<Solver> A, B;
+};
+
+/// A factored, and what is left to do until it is.
+class HeatFirstSystem final : public HeatSystem {
+ public:
+  HeatFirstSystem(const TangentGraph& graph, std::vector<double> tau, const HeatOptions& options)
+      : HeatSystem(std::move(tau), mass_scaling(mean_mass(graph))),
+        dimension_(graph.dimension()),
+        masses_(scaled_masses(graph, scaling_)),
+        matrices_(assemble(graph, tau_, scaling_)),
+        analysis_(std::in_place, matrices_, options),
+        threads_(options.threads),
+        A_(matrices_.A, analysis_->of_A(), name_A, threads_) {}
+
+  void solve_A(std::span<double> X, Offset columns, unsigned threads) const override { A_.solve(X, columns, threads); }
+  void solve_B(std::span<double> X, Offset columns, unsigned threads) const override {
+    std::call_once(once_, [&] {
+      check_A(A_, matrices_.A, std::move(masses_));
+      B_.emplace(matrices_.B, analysis_->of_B(matrices_.B, dimension_), name_B, threads_);
+      B_->check(matrices_.B, name_B);
+      matrices_ = {};
+      analysis_.reset();
+    });
+    B_->solve(X, columns, threads);
+  }
+
+ private:
+  int dimension_;
+  mutable std::once_flag once_;
+  mutable std::vector<double> masses_;
+  mutable AssembledOperators matrices_;
+  mutable std::optional<Analysis> analysis_;
+  unsigned threads_;
+  CholeskyFactor A_;
+  mutable std::optional<CholeskyFactor> B_;
 };
 
 /// The checks and the assembly that every system begins with.
@@ -120,12 +145,9 @@ double mass_scaling(double mean_mass) {
 }
 
 double lost_heat(const HeatSystem& system, const TangentGraph& graph, Index own) {
-  std::vector<double> x(static_cast<std::size_t>(graph.size()));
-  for (Index i = 0; i < graph.size(); ++i) x[i] = system.scaling() * graph.mass(i);
-  system.solve_A(x, 1);
-  double worst = 0;
-  for (Index i = 0; i < own; ++i) worst = std::isfinite(x[i]) ? std::max(worst, std::abs(x[i] - 1)) : INFINITY;
-  return worst;
+  std::vector<double> heat = scaled_masses(graph, system.scaling());
+  system.solve_A(heat, 1);
+  return farthest_from_one(std::span(heat).first(static_cast<std::size_t>(own)));
 }
 
 void check_lost_heat(double lost) {
@@ -163,31 +185,26 @@ std::unique_ptr<const HeatSystem> factored_system(const TangentGraph& graph, std
   system->statistics_to_fill().analyze_seconds = stopwatch.lap();
   options.progress.step("factor", 0.0);
 
-  double lost = 0;
   const unsigned for_B = std::max(2u, detail::thread_count(options.threads)) - 1;  // one is for A
   detail::run_both(
-      options.threads, [&] { system->B.emplace(matrices.B, of_B, name_B, for_B); },
+      options.threads,
       [&] {
         system->A.emplace(matrices.A, analysis.of_A(), name_A);
-        lost = lost_heat(*system, graph, graph.size());
+        check_A(*system->A, matrices.A, scaled_masses(graph, system->scaling()));
+      },
+      [&] {
+        system->B.emplace(matrices.B, of_B, name_B, for_B);
+        system->B->check(matrices.B, name_B);
       });
   system->statistics_to_fill().factor_seconds = stopwatch.lap();
   options.progress.step("factor", 1.0);
-  system->finish(lost);
+  system->finish();
   return system;
 }
 
 std::unique_ptr<const HeatSystem> heat_first_system(const TangentGraph& graph, std::vector<double> tau,
                                                     const HeatOptions& options) {
-  using System = SystemOf<CholeskyFactor, LateFactor>;
-  std::pair<std::unique_ptr<System>, AssembledOperators> begun = begin<System>(graph, std::move(tau), options);
-  std::unique_ptr<System>& system = begun.first;
-  AssembledOperators& matrices = begun.second;
-  Analysis analysis(matrices, options);
-  system->A.emplace(matrices.A, analysis.of_A(), name_A);
-  system->B.emplace(std::move(matrices.B), std::move(analysis), graph.dimension());
-  system->finish(lost_heat(*system, graph, graph.size()));
-  return std::move(system);
+  return std::make_unique<HeatFirstSystem>(graph, std::move(tau), options);
 }
 
 std::unique_ptr<const HeatSystem> iterative_system(const TangentGraph& graph, std::vector<double> tau,
@@ -195,7 +212,8 @@ std::unique_ptr<const HeatSystem> iterative_system(const TangentGraph& graph, st
   auto [system, matrices] = begin<SystemOf<ConjugateGradient>>(graph, std::move(tau), options);
   system->A.emplace(matrices.A, name_A);
   system->B.emplace(matrices.B, name_B);
-  system->finish(lost_heat(*system, graph, graph.size()));
+  check_lost_heat(lost_heat(*system, graph, graph.size()));
+  system->finish();
   return std::move(system);
 }
 

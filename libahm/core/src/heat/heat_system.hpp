@@ -50,7 +50,7 @@ void check_lost_heat(double lost);
 std::unique_ptr<const HeatSystem> factored_system(const TangentGraph& graph, std::vector<double> tau,
                                                   const HeatOptions& options);
 
-/// The same, but B is factored when it is first solved with; statistics are those of A.
+/// The same, but A's factor is checked, and B factored, when B is first solved with. Its statistics are empty.
 /// @throws as `HeatOperators`; and so does the first `solve_B`
 std::unique_ptr<const HeatSystem> heat_first_system(const TangentGraph& graph, std::vector<double> tau,
                                                     const HeatOptions& options);

@@ -76,8 +76,9 @@ SystemSize system_size(const TangentGraph& graph, const HeatOptions& options) {
 MarchWork march_work(const TangentGraph& graph, const Source& source, const MarchScales& scales, double radius,
                      const HeatOptions& options) {
   const auto heat_way = [&](Index i, const Star& star, std::size_t e) {
-    return std::max(0.0, edge_heat_distance(length(star.log(e)), star.weights[e], scales.tau(i),
-                                            [&] { return heat_diagonal(graph, i, scales.tau(i)); }));
+    const double tau = scales.tau(i);
+    return std::max(0.0, edge_heat_distance(length(star.log(e)), star.weights[e], tau, std::sqrt(tau),
+                                            [&] { return heat_diagonal(graph, i, tau); }));
   };
   const std::vector<double> levels = ways_from(source, graph, std::numeric_limits<double>::max(), heat_way);
   double last = 0, farthest = 0;  // where the march ends, and the graph

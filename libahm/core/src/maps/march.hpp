@@ -155,7 +155,6 @@ class March {
   std::vector<Index> search(const Source* source);
   void find_edge(Band& band);
   bool may_be_nearer(Index vertex, double distance) const;
-  double heat_distance_along(const Ahead& edge) const;
   std::optional<std::vector<Index>> near_part(const Band& band, std::int64_t size,
                                               std::span<const double> lambda) const;
   static std::vector<Index> numbers_behind(const Solve& solve);

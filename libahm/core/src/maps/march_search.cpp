@@ -42,8 +42,10 @@ std::vector<Index> March::search(const Source* source) {
   ShortestPaths<float, Tentative> paths(tentative, far_away);
   std::vector<Ahead> ahead;
   std::vector<Crossing> leaving;
-  auto offer = [&](const Ahead& edge, double distance) {
-    const double along = heat_distance_along(edge);  // negative weights may ask for less than nothing, and for ever
+  auto offer = [&](const Ahead& edge, double distance, double tau, double root_tau) {
+    const double along = edge_heat_distance(edge.length, edge.weight, tau, root_tau,
+                                            [&] { return heat_diagonal(graph_, edge.vertex, tau); });
+    // Negative weights may ask for less than nothing, and for ever.
     paths.offer(edge.vertex, static_cast<float>(std::min(distance + (along < 0 ? 0 : along), farthest)));
   };
   auto spread = [&](Index from, double distance) {
@@ -52,15 +54,19 @@ std::vector<Index> March::search(const Source* source) {
     for (std::size_t e = 0; e < star.degree(); ++e)
       if (star.weights[e] != 0 && may_be_nearer(star.neighbors[e], distance))
         ahead.push_back({star.neighbors[e], star.weights[e], length(star.log(e))});
+    const double tau = this->tau(from), root_tau = std::sqrt(tau);  // as at the edges' other ends
     for (const Ahead& edge : ahead)
       if (team_.owns(edge.vertex))
-        offer(edge, distance);
+        offer(edge, distance, tau, root_tau);
       else
         leaving.push_back({edge.vertex, distance, edge.length, edge.weight});
   };
   auto cross = [&] {
     if (team_.sum(static_cast<std::int64_t>(leaving.size())) == 0) return false;
-    for (const Crossing& edge : team_.cross(leaving)) offer({edge.vertex, edge.weight, edge.length}, edge.distance);
+    for (const Crossing& edge : team_.cross(leaving)) {
+      const double tau = this->tau(edge.vertex);
+      offer({edge.vertex, edge.weight, edge.length}, edge.distance, tau, std::sqrt(tau));
+    }
     leaving.clear();
     return true;
   };
@@ -98,12 +104,6 @@ bool March::may_be_nearer(Index vertex, double distance) const {
   const Index number = numbers_.find(vertex);
   if (number < 0) return number != ReachedNumbers::forgotten;
   return !ways_[number]->accepted && !(ways_[number]->tentative <= distance);
-}
-
-/// How much of the decay of heat an edge brings.
-double March::heat_distance_along(const Ahead& edge) const {
-  return edge_heat_distance(edge.length, edge.weight, tau(edge.vertex),
-                            [&] { return heat_diagonal(graph_, edge.vertex, tau(edge.vertex)); });
 }
 
 /// The places in the band next to vertices that are neither behind the front nor in the band.

@@ -20,11 +20,12 @@ inline unsigned thread_count(unsigned requested) {
 }
 
 /// Calls body(begin, end) on consecutive chunks of [0, n), each at most `chunk` long. Chunks do not depend on the
-/// number of threads. The first exception stops the loop and is rethrown.
+/// number of threads. An exception stops the loop; of several that of the first chunk is rethrown, the same on any number of threads.
 template <class Body>
 void parallel_chunks(Offset n, Offset chunk, unsigned threads, const Body& body) {
   const Offset chunks = (n + chunk - 1) / chunk;
   std::atomic<Offset> next{0};
+  Offset failed = chunks;
   std::exception_ptr error;
   std::mutex error_mutex;
   auto work = [&] {
@@ -32,7 +33,10 @@ void parallel_chunks(Offset n, Offset chunk, unsigned threads, const Body& body)
         body(c * chunk, std::min(n, (c + 1) * chunk));
       } catch (...) {
         std::scoped_lock lock(error_mutex);
-        if (!error) error = std::current_exception();
+        if (c < failed) {
+          failed = c;
+          error = std::current_exception();
+        }
         next = chunks;
       }
   };
@@ -70,8 +74,8 @@ void parallel_sort(std::vector<T>& values, unsigned threads, const Less& less) {
     });
 }
 
-/// Runs two tasks at once on two threads or more (0: one per core), else one after the other; the first exception is rethrown when
-/// both ended.
+/// Runs two tasks at once on two threads or more (0: one per core), else one after the other; the first one's exception is rethrown when
+/// both ended, or else the second's.
 template <class First, class Second>
 void run_both(unsigned threads, const First& first, const Second& second) {
   parallel_chunks(2, 1, threads, [&](Offset begin, Offset) { begin == 0 ? first() : second(); });
