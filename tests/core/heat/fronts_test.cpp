@@ -82,6 +82,24 @@ TEST(FactorFront, IsEigensOfEverySmallFrontAndOfLargeOnes) {
   ASSERT_TRUE(is_large_front(500, 320));
   expect_factor<1>(500, 320);
   expect_factor<2>(500, 320);
+  expect_factor<1>(700, 45);  // several blocks of rows below
+  expect_factor<2>(700, 45);
+}
+
+TEST(FactorFront, IsTheSameOnAnyNumberOfThreads) {
+  const OneBlasThread one_thread;
+  constexpr Offset rows = 700, columns = 45;
+  ASSERT_TRUE(is_large_front(rows, columns));
+  const Matrix<2> K = front_of<2>(rows, columns), unset = Matrix<2>::Zero(rows - columns, rows - columns);
+  const auto numbers = [](Matrix<2>& matrix) { return reinterpret_cast<double*>(matrix.data()); };
+  Matrix<2> L = K, update = unset;
+  factor_front<2>(numbers(L), rows, columns, numbers(update));
+  for (const unsigned threads : {2u, 3u, 8u}) {
+    Matrix<2> shared = K, shared_update = unset;
+    factor_front<2>(numbers(shared), rows, columns, numbers(shared_update), threads);
+    EXPECT_EQ(shared.bottomRows(rows - columns), L.bottomRows(rows - columns)) << threads;
+    EXPECT_EQ(shared_update, update) << threads;
+  }
 }
 
 TEST(FactorFront, TellsHowManyPivotsAreGood) {

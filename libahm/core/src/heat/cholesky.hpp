@@ -24,6 +24,8 @@ class SymbolicCholesky {
 
   /// Numbers that the factor will hold.
   Offset nonzeros() const noexcept { return pattern_->numbers(); }
+  /// Whether threads share the making of a factor.
+  bool is_shared() const noexcept { return pattern_->groups != nullptr; }
   /// Floating-point operations that its making takes, of real numbers.
   double operations() const noexcept { return pattern_->operations; }
 

@@ -2,7 +2,9 @@
 
 #include <cmath>
 
+#include "ahm/util/parallel.hpp"
 #include "heat/blas.hpp"
+#include "heat/blas_control.hpp"
 #include "heat/four.hpp"
 
 namespace ahm {
@@ -169,28 +171,45 @@ Offset factor_small_anywhere(double* L, Offset rows, Offset columns, double* upd
   return factor_small<W>(L, rows, columns, update);
 }
 
+/// Rows below that are finished, and columns of their update that are made, at a time.
+constexpr Offset below_at_once = 128;
+
 template <int W>
-Offset factor_large(double* L, Offset all_rows, Offset all_columns, double* update) {
+Offset factor_large(double* L, Offset all_rows, Offset all_columns, double* update, unsigned threads) {
   const int rows = static_cast<int>(all_rows), columns = static_cast<int>(all_columns), below = rows - columns;
-  const double one[2] = {1, 0}, zero = 0, minus = -1;
+  const double one[2] = {1, 0}, minus[2] = {-1, 0}, zero[2] = {0, 0};
   int failed = 0;
-  (W == 1 ? dpotrf_ : zpotrf_)("L", &columns, L, &rows, &failed);
+  {
+    const BlasBuffer buffer;
+    (W == 1 ? dpotrf_ : zpotrf_)("L", &columns, L, &rows, &failed);
+  }
   if (failed > 0) return failed - 1;
   for (Offset j = 0; j < all_columns; ++j)  // OpenBLAS does not stop at NaN
     if (!std::isfinite(L[j * (all_rows + 1) * W])) return j;
-  if (below > 0) {
-    double* L_below = L + all_columns * W;
-    (W == 1 ? dtrsm_ : ztrsm_)("R", "L", "C", "N", &below, &columns, one, L, &rows, L_below, &rows);
-    (W == 1 ? dsyrk_ : zherk_)("L", "N", &below, &columns, &minus, L_below, &rows, &zero, update, &below);
-  }
+  double* L_below = L + all_columns * W;
+  detail::parallel_chunks(below, below_at_once, threads, [&](Offset begin, Offset end) {
+    const int some = static_cast<int>(end - begin);
+    const BlasBuffer buffer;
+    (W == 1 ? dtrsm_ : ztrsm_)("R", "L", "C", "N", &some, &columns, one, L, &rows, L_below + begin * W, &rows);
+  });
+  detail::parallel_chunks(below, below_at_once, threads, [&](Offset begin, Offset end) {
+    const int some = static_cast<int>(end - begin), rest = below - static_cast<int>(end);
+    const double *own = L_below + begin * W, *under = L_below + end * W;
+    double* out = update + begin * below * W;
+    const BlasBuffer buffer;
+    (W == 1 ? dsyrk_ : zherk_)("L", "N", &some, &columns, minus, own, &rows, zero, out + begin * W, &below);
+    if (rest > 0)
+      (W == 1 ? dgemm_ : zgemm_)("N", "C", &rest, &some, &columns, minus, under, &rows, own, &rows, zero, out + end * W,
+                                 &below);
+  });
   return all_columns;
 }
 
 }  // namespace
 
 template <int W>
-Offset factor_front(double* L, Offset rows, Offset columns, double* update) {
-  if (is_large_front(rows, columns)) return factor_large<W>(L, rows, columns, update);
+Offset factor_front(double* L, Offset rows, Offset columns, double* update, unsigned threads) {
+  if (is_large_front(rows, columns)) return factor_large<W>(L, rows, columns, update, threads);
 #ifdef __x86_64__
   static const bool fast = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
   if (fast) return factor_small_avx2<W>(L, rows * W, columns, update);
@@ -198,7 +217,7 @@ Offset factor_front(double* L, Offset rows, Offset columns, double* update) {
   return factor_small_anywhere<W>(L, rows * W, columns, update);
 }
 
-template Offset factor_front<1>(double*, Offset, Offset, double*);
-template Offset factor_front<2>(double*, Offset, Offset, double*);
+template Offset factor_front<1>(double*, Offset, Offset, double*, unsigned);
+template Offset factor_front<2>(double*, Offset, Offset, double*, unsigned);
 
 }  // namespace ahm

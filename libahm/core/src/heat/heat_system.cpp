@@ -104,9 +104,10 @@ class HeatFirstSystem final : public HeatSystem {
   void solve_A(std::span<double> X, Offset columns, unsigned threads) const override { A_.solve(X, columns, threads); }
   void solve_B(std::span<double> X, Offset columns, unsigned threads) const override {
     std::call_once(once_, [&] {
-      check_A(A_, matrices_.A, std::move(masses_));
+      check_A(A_, matrices_.A, masses_);
       B_.emplace(matrices_.B, analysis_->of_B(matrices_.B, dimension_), name_B, threads_);
       B_->check(matrices_.B, name_B);
+      masses_ = {};
       matrices_ = {};
       analysis_.reset();
     });
@@ -185,17 +186,15 @@ std::unique_ptr<const HeatSystem> factored_system(const TangentGraph& graph, std
   system->statistics_to_fill().analyze_seconds = stopwatch.lap();
   options.progress.step("factor", 0.0);
 
-  const unsigned for_B = std::max(2u, detail::thread_count(options.threads)) - 1;  // one is for A
+  // Threads share each of two large factors, or take one of two small ones.
+  const bool in_turn = of_B.is_shared();
+  const unsigned each = in_turn ? options.threads : 1;
   detail::run_both(
-      options.threads,
-      [&] {
-        system->A.emplace(matrices.A, analysis.of_A(), name_A);
-        check_A(*system->A, matrices.A, scaled_masses(graph, system->scaling()));
-      },
-      [&] {
-        system->B.emplace(matrices.B, of_B, name_B, for_B);
-        system->B->check(matrices.B, name_B);
-      });
+      in_turn ? 1 : options.threads, [&] { system->A.emplace(matrices.A, analysis.of_A(), name_A, each); },
+      [&] { system->B.emplace(matrices.B, of_B, name_B, each); });
+  detail::run_both(
+      options.threads, [&] { check_A(*system->A, matrices.A, scaled_masses(graph, system->scaling())); },
+      [&] { system->B->check(matrices.B, name_B); });
   system->statistics_to_fill().factor_seconds = stopwatch.lap();
   options.progress.step("factor", 1.0);
   system->finish();

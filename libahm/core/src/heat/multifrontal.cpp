@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "ahm/util/parallel.hpp"
-#include "heat/blas_control.hpp"
 #include "heat/front_factor.hpp"
 
 namespace ahm {
@@ -54,7 +53,7 @@ class Multifrontal {
         failed[group] = branch.in_order(groups.subtrees[k].first, groups.subtrees[k].last);
     });
     if (const Offset first = *std::min_element(failed.begin(), failed.end()); first < L_.size) return first;
-    Branch top(*this);
+    Branch top(*this, nullptr, threads_);
     for (std::size_t k = 0; k < groups.top.size(); ++k) {
       Waiting& all = waiting_[groups.top[k]];
       for (auto& of_group : for_top)
@@ -65,12 +64,13 @@ class Multifrontal {
   }
 
  private:
-  /// Supernodes that are eliminated by one thread.
+  /// Supernodes that are eliminated one after the other.
   class Branch {
    public:
     /// @param for_top  takes what leaves a group, for each supernode of the top
-    explicit Branch(Multifrontal& all, std::vector<Waiting>* for_top = nullptr)
-        : all_(all), for_top_(for_top), places_(static_cast<std::size_t>(all.L_.size)) {}
+    /// @param threads  that share what is large
+    explicit Branch(Multifrontal& all, std::vector<Waiting>* for_top = nullptr, unsigned threads = 1)
+        : all_(all), for_top_(for_top), threads_(threads), places_(static_cast<std::size_t>(all.L_.size)) {}
 
     /// @return as `factor_by_fronts`
     Offset in_order(Offset first, Offset last) {
@@ -92,7 +92,8 @@ class Multifrontal {
       Update left{{s.index + s.columns, s.index + s.rows}, nullptr};
       if (below > 0)
         left.numbers = std::make_unique_for_overwrite<double[]>(static_cast<std::size_t>(below * below * W));
-      if (const Offset good = factor(s, L, left.numbers.get()); good < s.columns) return s.first + good;
+      if (const Offset good = factor_front<W>(L, s.rows, s.columns, left.numbers.get(), threads_); good < s.columns)
+        return s.first + good;
       if (below == 0) return all_.L_.size;
       for (const Update& update : waiting.updates) add<false>(update, s, below, left.numbers.get());
       leave(all_.pattern_.parent[number], std::move(left));
@@ -102,12 +103,6 @@ class Multifrontal {
    private:
     void place(const Supernode<W>& s) {
       for (Offset r = 0; r < s.rows; ++r) places_[s.index[r]] = static_cast<std::int32_t>(r);
-    }
-
-    static Offset factor(const Supernode<W>& s, double* L, double* update) {
-      if (!is_large_front(s.rows, s.columns)) return factor_front<W>(L, s.rows, s.columns, update);
-      const BlasBuffer buffer;
-      return factor_front<W>(L, s.rows, s.columns, update);
     }
 
     void add_entries(const Supernode<W>& s, double* L) const {
@@ -132,12 +127,18 @@ class Multifrontal {
     /// @param skipped  rows of the front before those of `to`
     void add_columns(const Update& update, Offset begin, Offset end, Offset skipped, Offset rows, double* to) const {
       const std::span<const std::int32_t> index = update.index;
-      for (Offset j = begin; j < end; ++j) {
-        const double* from = update.numbers.get() + j * update.size() * W;
-        double* column = to + (places_[index[j]] - skipped) * rows * W;
-        for (Offset i = j; i < update.size(); ++i)
-          for (int w = 0; w < W; ++w) column[(places_[index[i]] - skipped) * W + w] += from[i * W + w];
-      }
+      const auto add = [&](Offset first, Offset last) {
+        for (Offset j = begin + first; j < begin + last; ++j) {
+          const double* from = update.numbers.get() + j * update.size() * W;
+          double* column = to + (places_[index[j]] - skipped) * rows * W;
+          for (Offset i = j; i < update.size(); ++i)
+            for (int w = 0; w < W; ++w) column[(places_[index[i]] - skipped) * W + w] += from[i * W + w];
+        }
+      };
+      if (threads_ != 1 && update.size() * update.size() > least_shared)
+        detail::parallel_chunks(end - begin, columns_at_once, threads_, add);
+      else
+        add(0, end - begin);
     }
 
     Waiting& waiting_for(Offset number) {
@@ -165,11 +166,14 @@ class Multifrontal {
 
     Multifrontal& all_;
     std::vector<Waiting>* for_top_;
+    unsigned threads_;
     std::vector<std::int32_t> places_;  ///< of rows in the front at hand
     Offset last_ = 0;                   ///< of the subtree at hand
   };
 
-  static constexpr Offset most_waiting = 4;  ///< fronts
+  static constexpr Offset most_waiting = 4;        ///< fronts
+  static constexpr Offset least_shared = 1 << 16;  ///< numbers of an update that threads share
+  static constexpr Offset columns_at_once = 64;    ///< of such an update
 
   const SparseUpper& matrix_;
   const SupernodalPattern& pattern_;
