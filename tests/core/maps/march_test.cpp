@@ -228,6 +228,35 @@ TEST(March, RefusesTheSameAsTheGlobalSolveOnAnyNumberOfThreads) {
   EXPECT_EQ(told(Strategy::global, 1), "heat_lost");
 }
 
+/// What a strip conducts and weighs, up to a column and from there on.
+struct Halves {
+  Index column;
+  double weights[2], masses[2], t_coef;
+};
+
+/// A band that loses heat is too thin, too: it counts on one thread, where factors are checked when they are made, and on several,
+/// where they are checked later.
+TEST(March, RefusesBandsThatAreTooThinOnAnyNumberOfThreads) {
+  for (const Halves& halves :
+       {Halves{1445, {5.1e14, 8.02e9}, {1, 6.12e5}, 0.00107}, Halves{333, {8.93e12, 2.67e9}, {1, 1.65e5}, 0.00392}}) {
+    CsrGraphData data = strip(1900).data;
+    const auto half = [&](Index i) { return i / 3 < halves.column ? 0 : 1; };
+    for (Index i = 0; i < 5700; ++i) {
+      data.masses[i] = halves.masses[half(i)];
+      for (Offset e = data.row_begin[i]; e < data.row_begin[i + 1]; ++e)
+        data.weights[e] = std::min(halves.weights[half(i)], halves.weights[half(data.neighbors[e])]);
+    }
+    const CsrGraph graph(data);
+    for (const unsigned threads : {1u, 2u, 3u}) try {
+        LogMapSolver(graph, {.t_coef = halves.t_coef, .strategy = Strategy::march, .threads = threads})
+            .solve(Source::at_vertex(Vertex{1}));
+        ADD_FAILURE() << "a map, on " << threads << " threads";
+      } catch (const NotPositiveDefinite& error) {
+        EXPECT_EQ(error.fault(), "heat_lost") << threads;
+      }
+  }
+}
+
 TEST(March, CanBeStopped) {
   const CsrGraph graph(sphere_graph(5000));
   std::stop_source stop;

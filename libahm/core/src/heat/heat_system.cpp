@@ -103,8 +103,8 @@ class HeatFirstSystem final : public HeatSystem {
 
   void solve_A(std::span<double> X, Offset columns, unsigned threads) const override { A_.solve(X, columns, threads); }
   void solve_B(std::span<double> X, Offset columns, unsigned threads) const override {
-    std::call_once(once_, [&] {
-      check_A(A_, matrices_.A, masses_);
+    std::call_once(made_, [&] {
+      check();
       B_.emplace(matrices_.B, analysis_->of_B(matrices_.B, dimension_), name_B, threads_);
       B_->check(matrices_.B, name_B);
       masses_ = {};
@@ -113,10 +113,13 @@ class HeatFirstSystem final : public HeatSystem {
     });
     B_->solve(X, columns, threads);
   }
+  void check() const override {
+    std::call_once(checked_, [&] { check_A(A_, matrices_.A, masses_); });
+  }
 
  private:
   int dimension_;
-  mutable std::once_flag once_;
+  mutable std::once_flag checked_, made_;
   mutable std::vector<double> masses_;
   mutable AssembledOperators matrices_;
   mutable std::optional<Analysis> analysis_;

@@ -21,6 +21,9 @@ class HeatSystem {
   /// X <- (c B)^-1 X, column major; complex numbers as interleaved pairs.
   virtual void solve_B(std::span<double> X, Offset columns, unsigned threads = 1) const = 0;
 
+  /// What was not checked when the system was made. @throws NotPositiveDefinite
+  virtual void check() const {}
+
   /// Of each vertex.
   std::span<const double> tau() const noexcept { return tau_; }
   double scaling() const noexcept { return scaling_; }
@@ -50,7 +53,8 @@ void check_lost_heat(double lost);
 std::unique_ptr<const HeatSystem> factored_system(const TangentGraph& graph, std::vector<double> tau,
                                                   const HeatOptions& options);
 
-/// The same, but A's factor is checked, and B factored, when B is first solved with. Its statistics are empty.
+/// The same, but A's factor is checked, and B factored, when B is first solved with: whoever goes by what A tells and never solves
+/// with B calls `check`. Its statistics are empty.
 /// @throws as `HeatOperators`; and so does the first `solve_B`
 std::unique_ptr<const HeatSystem> heat_first_system(const TangentGraph& graph, std::vector<double> tau,
                                                     const HeatOptions& options);

@@ -71,6 +71,7 @@ struct March::Solve {
   std::vector<Link> links;
   CsrGraph patch;
   std::optional<HeatOperators> operators;
+  const HeatSystem* system = nullptr;  ///< of these
   std::optional<AffineHeat> heat;
   HeatExponents exponents;
   std::vector<Index> near;     ///< places of what is accepted
@@ -99,6 +100,7 @@ void March::march(const Source* source) {
     if (!next) {
       front_.clear();
     } else if (!accept_near(*next)) {
+      next->system->check();
       depth_ *= 1.4;  // and stays so: where one band was too thin, the next ones would be
       continue;
     } else if (looks_ahead_) {
@@ -137,9 +139,10 @@ std::unique_ptr<March::Solve> March::solve_heat(const Source* source) {
       if (static_cast<std::size_t>(j) >= band.own) times[j] = times[k];
   }
   auto solve = std::make_unique<Solve>(
-      Solve{source != nullptr, std::move(band), size, std::move(links), std::move(patch), {}, {}, {}, {}, {}});
-  solve->operators.emplace(team_.system({solve->patch, solve->band.halo, std::move(times)}, options_), solve->patch,
-                           Components{});
+      Solve{source != nullptr, std::move(band), size, std::move(links), std::move(patch), {}, {}, {}, {}, {}, {}});
+  auto system = team_.system({solve->patch, solve->band.halo, std::move(times)}, options_);
+  solve->system = system.get();
+  solve->operators.emplace(std::move(system), solve->patch, Components{});
 
   RightHandSide right_hand_side;
   if (source) {

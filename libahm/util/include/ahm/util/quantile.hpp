@@ -31,21 +31,26 @@ inline double value_at(std::span<double> values, std::size_t at, unsigned thread
     const double high = near + around < looked_at ? sample[near + around] : infinity;
     const auto n = static_cast<Offset>(values.size());
     std::vector<std::vector<double>> between(static_cast<std::size_t>((n + chunk - 1) / chunk));
-    std::atomic<std::size_t> below{0};
+    std::atomic<std::size_t> below{0}, within{0};
     parallel_chunks(n, chunk, threads, [&](Offset begin, Offset end) {
-      std::size_t smaller = 0;
+      std::size_t smaller = 0, some = 0;
       for (Offset k = begin; k < end; ++k) {
         const double value = values[static_cast<std::size_t>(k)];
-        if (value < low)
+        if (value < low) {
           ++smaller;
-        else if (value <= high)
-          between[static_cast<std::size_t>(begin / chunk)].push_back(value);
+        } else if (value <= high) {
+          ++some;
+          if (low < high) between[static_cast<std::size_t>(begin / chunk)].push_back(value);
+        }
       }
       below += smaller;
+      within += some;
     });
-    std::vector<double> all;
-    for (const auto& part : between) all.insert(all.end(), part.begin(), part.end());
-    if (below <= at && at < below + all.size()) {
+    if (below <= at && at < below + within) {
+      if (low == high) return low;
+      std::vector<double> all;
+      all.reserve(within);
+      for (const auto& part : between) all.insert(all.end(), part.begin(), part.end());
       const auto place = all.begin() + static_cast<std::ptrdiff_t>(at - below);
       std::nth_element(all.begin(), place, all.end());
       return *place;
