@@ -3,11 +3,13 @@
 
 #include <cmath>
 #include <numbers>
+#include <string>
 
 #include "ahm/error.hpp"
 #include "ahm/heat/heat_operators.hpp"
 #include "ahm/maps/log_map_solver.hpp"
 #include "ahm/testing/curved_graphs.hpp"
+#include "ahm/testing/flat_graphs.hpp"
 #include "ahm/testing/graph_changes.hpp"
 #include "ahm/testing/triangle_meshes.hpp"
 #include "ahm/trimesh/triangle_mesh_surface.hpp"
@@ -71,6 +73,22 @@ TEST(HeatOperators, RefuseAnIndefiniteOperator) {
   for (double& w : g.weights) w = -w;
   const CsrGraph graph(g);
   EXPECT_THROW(HeatOperators{graph}, NotPositiveDefinite);
+}
+
+/// Where digits do not reach, B's pivots may fail, too: what is wrong with A is told.
+TEST(HeatOperators, TellOfLostHeatBeforeB) {
+  for (const Index side : {20, 40, 60, 150}) {
+    const CsrGraph graph(planar_triangulation(side).data);
+    for (const double t_coef : {1e16, 1e17, 1e18, 1e19})
+      for (const unsigned threads : {1u, 2u}) try {
+          const HeatOperators heat(graph, {.t_coef = t_coef, .threads = threads});
+          ADD_FAILURE() << side << ", " << t_coef;
+        } catch (const NotPositiveDefinite& error) {
+          const bool is_of_A =
+              error.fault() == "heat_lost" || std::string(error.what()).find(" A ") != std::string::npos;
+          EXPECT_TRUE(is_of_A) << error.what();
+        }
+  }
 }
 
 TEST(HeatOperators, RefuseABrokenGraphBeforeFactoring) {

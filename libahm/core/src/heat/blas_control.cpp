@@ -61,9 +61,9 @@ bool there_is_room_for(std::size_t bytes) {
 /// Makes OpenBLAS keep one buffer more, if there is room. Callers at work may hold buffers or not, so as many as there are
 /// are held at once here, and there must be room for all callers to be at work.
 bool add_buffer(void* (*take)(int), void (*give_back)(void*)) {
-  if (!there_is_room_for((static_cast<std::size_t>(buffers_taken) + 1) * buffer_bytes + room_for_others)) return false;
-  std::vector<void*> held;
+  std::vector<void*> held;  // takes room itself
   held.reserve(static_cast<std::size_t>(buffers) + 1);
+  if (!there_is_room_for((static_cast<std::size_t>(buffers_taken) + 1) * buffer_bytes + room_for_others)) return false;
   while (held.size() <= static_cast<std::size_t>(buffers)) held.push_back(take(0));
   for (void* buffer : held) give_back(buffer);
   ++buffers;

@@ -96,17 +96,17 @@ void CholeskyFactor::check_pivots(Offset good, const char* name) const {
                             "each other");
 }
 
-void CholeskyFactor::check(const SparseUpper& matrix, const char* name) const {
+void CholeskyFactor::check(const SparseUpper& matrix, const char* name, unsigned threads) const {
   std::vector<double> b(pattern_->permutation.size() * (is_complex_ ? 2 : 1));
   std::uint32_t state = 12345;
   for (double& value : b) value = ((state = state * 1664525u + 1013904223u) >> 8) * 0x1p-23 - 1.0;
-  checked_solve(matrix, std::move(b), name);
+  checked_solve(matrix, std::move(b), name, threads);
 }
 
-std::vector<double> CholeskyFactor::checked_solve(const SparseUpper& matrix, std::vector<double> b,
-                                                  const char* name) const {
+std::vector<double> CholeskyFactor::checked_solve(const SparseUpper& matrix, std::vector<double> b, const char* name,
+                                                  unsigned threads) const {
   std::vector<double> x = b;
-  solve(x, 1);
+  solve(x, 1, threads);
   const double scale = largest(matrix.values) * largest(x) + largest(b);
   std::vector<double> residual = multiply(matrix, x);
   for (std::size_t i = 0; i < b.size(); ++i) residual[i] -= b[i];

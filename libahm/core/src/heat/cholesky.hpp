@@ -52,9 +52,10 @@ class CholeskyFactor {
   /// One column by `solve`, and the check that its residual is small, which a factor passes or not.
   /// @param matrix  K
   /// @throws NotPositiveDefinite
-  std::vector<double> checked_solve(const SparseUpper& matrix, std::vector<double> b, const char* name) const;
+  std::vector<double> checked_solve(const SparseUpper& matrix, std::vector<double> b, const char* name,
+                                    unsigned threads = 1) const;
   /// The check alone, by numbers all over [-1, 1).
-  void check(const SparseUpper& matrix, const char* name) const;
+  void check(const SparseUpper& matrix, const char* name, unsigned threads = 1) const;
 
   Offset nonzeros() const noexcept { return pattern_->numbers(); }
   std::size_t bytes() const noexcept;

@@ -66,8 +66,8 @@ double farthest_from_one(std::span<const double> values) {
 }
 
 /// Both checks by one solve. @param masses  scaled
-void check_A(const CholeskyFactor& A, const SparseUpper& matrix, std::vector<double> masses) {
-  check_lost_heat(farthest_from_one(A.checked_solve(matrix, std::move(masses), name_A)));
+void check_A(const CholeskyFactor& A, const SparseUpper& matrix, std::vector<double> masses, unsigned threads) {
+  check_lost_heat(farthest_from_one(A.checked_solve(matrix, std::move(masses), name_A, threads)));
 }
 
 /// A and B as two objects that solve: CholeskyFactor or ConjugateGradient.
@@ -106,7 +106,7 @@ class HeatFirstSystem final : public HeatSystem {
     std::call_once(made_, [&] {
       check();
       B_.emplace(matrices_.B, analysis_->of_B(matrices_.B, dimension_), name_B, threads_);
-      B_->check(matrices_.B, name_B);
+      B_->check(matrices_.B, name_B, threads_);
       masses_ = {};
       matrices_ = {};
       analysis_.reset();
@@ -114,7 +114,7 @@ class HeatFirstSystem final : public HeatSystem {
     B_->solve(X, columns, threads);
   }
   void check() const override {
-    std::call_once(checked_, [&] { check_A(A_, matrices_.A, masses_); });
+    std::call_once(checked_, [&] { check_A(A_, matrices_.A, masses_, threads_); });
   }
 
  private:
@@ -193,11 +193,15 @@ std::unique_ptr<const HeatSystem> factored_system(const TangentGraph& graph, std
   const bool in_turn = of_B.is_shared();
   const unsigned each = in_turn ? options.threads : 1;
   detail::run_both(
-      in_turn ? 1 : options.threads, [&] { system->A.emplace(matrices.A, analysis.of_A(), name_A, each); },
-      [&] { system->B.emplace(matrices.B, of_B, name_B, each); });
-  detail::run_both(
-      options.threads, [&] { check_A(*system->A, matrices.A, scaled_masses(graph, system->scaling())); },
-      [&] { system->B->check(matrices.B, name_B); });
+      in_turn ? 1 : options.threads,
+      [&] {
+        system->A.emplace(matrices.A, analysis.of_A(), name_A, each);
+        check_A(*system->A, matrices.A, scaled_masses(graph, system->scaling()), each);
+      },
+      [&] {
+        system->B.emplace(matrices.B, of_B, name_B, each);
+        system->B->check(matrices.B, name_B, each);
+      });
   system->statistics_to_fill().factor_seconds = stopwatch.lap();
   options.progress.step("factor", 1.0);
   system->finish();

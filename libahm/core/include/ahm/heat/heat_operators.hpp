@@ -38,7 +38,7 @@ class HeatSystem;
 class HeatOperators {
  public:
   /// Assembles and factorizes A and B, for one diffusion time.
-  /// @param options  t_coef, ordering, check_graph, threads (1: A and B one after the other), progress
+  /// @param options  t_coef, ordering, check_graph, threads, progress
   /// @throws InvalidGraph, InvalidArgument (t_coef), NotPositiveDefinite (an operator is not positive definite, or
   /// fails
   ///         its residual check), ResourceExhausted (memory), Cancelled
