@@ -9,6 +9,7 @@
 
 #include "ahm/error.hpp"
 #include "ahm/testing/closed_forms.hpp"
+#include "ahm/util/quantile.hpp"
 #include "ahm/util/shortest_paths.hpp"
 
 namespace ahm::bench {
@@ -141,9 +142,7 @@ std::vector<int> rings(std::span<const double> lengths, int count) {
 Cell known(double number) { return std::isfinite(number) ? Cell(number) : Cell(); }
 
 double quantile(std::vector<double> values, double q) {
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(q * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
+  return detail::value_at(values, static_cast<std::size_t>(q * static_cast<double>(values.size() - 1)));
 }
 
 double mean(std::span<const double> values) {

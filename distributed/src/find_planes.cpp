@@ -1,8 +1,8 @@
-#include <algorithm>
 #include <cmath>
 #include <string>
 
 #include "ahm/error.hpp"
+#include "ahm/util/quantile.hpp"
 #include "ahm/util/text.hpp"
 #include "ahm/util/vec.hpp"
 #include "around_file.hpp"
@@ -34,9 +34,8 @@ double typical_radius(const TileFolder& folder, std::size_t tile) {
     const Index found = search->nearest(own[i], indices, squared);
     radii.push_back(std::sqrt(squared[found - 1]));
   }
-  const auto most = radii.begin() + static_cast<std::ptrdiff_t>(radii.size() * 9 / 10);
-  std::nth_element(radii.begin(), most, radii.end());
-  return *most > 0 ? *most : 1e-3;
+  const double most = detail::value_at(radii, radii.size() * 9 / 10);
+  return most > 0 ? most : 1e-3;
 }
 
 /// Whether all is there that the tile and a margin around it depend on.

@@ -1,9 +1,9 @@
 #include <sys/stat.h>
 
 #include <clocale>
-#include <locale>
 
 #include "ahm/io/formats.hpp"
+#include "comma_locale.hpp"
 #include "files.hpp"
 
 namespace ahm::io::test {
@@ -83,14 +83,8 @@ TEST_F(ReadsInEveryLocale, OfTheCLibrary) {
 }
 
 TEST_F(ReadsInEveryLocale, OfCpp) {
-  struct Comma : std::numpunct<char> {
-    char do_decimal_point() const override { return ','; }
-    char do_thousands_sep() const override { return '.'; }
-    std::string do_grouping() const override { return "\3"; }
-  };
-  const std::locale before = std::locale::global(std::locale(std::locale::classic(), new Comma));
+  const CommaLocale locale;
   expect_right_numbers();
-  std::locale::global(before);
 }
 
 }  // namespace

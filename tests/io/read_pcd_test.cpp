@@ -1,8 +1,8 @@
 #include <cmath>
 #include <cstring>
-#include <locale>
 
 #include "ahm/io/write.hpp"
+#include "comma_locale.hpp"
 #include "files.hpp"
 #include "streamed.hpp"
 #include "table.hpp"
@@ -235,15 +235,12 @@ TEST_F(ReadPcd, RefusesHeadersItCannotTrust) {
 }
 
 TEST_F(ReadPcd, ReadsTheSameInALocaleWithCommas) {
-  struct Comma : std::numpunct<char> {
-    char do_decimal_point() const override { return ','; }
-    char do_thousands_sep() const override { return '.'; }
-    std::string do_grouping() const override { return "\3"; }
-  };
-  const std::locale before = std::locale::global(std::locale(std::locale::classic(), new Comma));
-  const Geometry g = read_bytes("l.pcd", doubles(1, "ascii") + "1.5 -2.25 1234567.5\n");
-  write(path("out.pcd"), Result().table());
-  std::locale::global(before);
+  Geometry g;
+  {
+    const CommaLocale locale;
+    g = read_bytes("l.pcd", doubles(1, "ascii") + "1.5 -2.25 1234567.5\n");
+    write(path("out.pcd"), Result().table());
+  }
   EXPECT_EQ(g.points[0], (Vec3{1.5, -2.25, 1234567.5}));
   EXPECT_EQ(read(path("out.pcd")).points.size(), 4u);
 }

@@ -6,12 +6,12 @@
 #include <clocale>
 #include <cmath>
 #include <cstring>
-#include <locale>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <vector>
 
 #include "ahm/io/formats.hpp"
+#include "comma_locale.hpp"
 #include "files.hpp"
 #include "table.hpp"
 
@@ -155,12 +155,10 @@ TEST_F(Write, CsvSpellsEveryNanAlike) {
 TEST_F(Write, CsvIsTheSameInALocaleWithCommas) {
   const Result result;
   write(path("a.csv"), result.table());
-  struct Comma : std::numpunct<char> {
-    char do_decimal_point() const override { return ','; }
-  };
-  const std::locale before = std::locale::global(std::locale(std::locale::classic(), new Comma));
-  write(path("b.csv"), result.table());
-  std::locale::global(before);
+  {
+    const CommaLocale locale;
+    write(path("b.csv"), result.table());
+  }
   EXPECT_EQ(contents(path("a.csv")), contents(path("b.csv")));
 }
 

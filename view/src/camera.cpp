@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "ahm/error.hpp"
+#include "ahm/util/quantile.hpp"
 #include "direction.hpp"
 
 namespace ahm::view {
@@ -37,9 +38,7 @@ struct Range {
 /// scan).
 Range robust_range(std::vector<double> values) {
   const auto quantile = [&](double q) {
-    const auto k = static_cast<std::ptrdiff_t>(std::lround(q * static_cast<double>(values.size() - 1)));
-    std::nth_element(values.begin(), values.begin() + k, values.end());
-    return values[k];
+    return detail::value_at(values, static_cast<std::size_t>(std::lround(q * static_cast<double>(values.size() - 1))));
   };
   const double low = quantile(0), trimmed_low = quantile(0.01), trimmed_high = quantile(0.99), high = quantile(1);
   const double slack = 0.15 * (trimmed_high - trimmed_low);

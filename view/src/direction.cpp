@@ -8,6 +8,8 @@
 #include <optional>
 #include <vector>
 
+#include "ahm/util/quantile.hpp"
+
 namespace ahm::view {
 namespace {
 
@@ -84,8 +86,7 @@ Tube thin_tube(const Scene& scene, const std::vector<Index>& shown, const Camera
   }
   if (squares.empty()) return {};
   const std::size_t k = std::min(around, squares.size()) - 1;
-  std::nth_element(squares.begin(), squares.begin() + static_cast<std::ptrdiff_t>(k), squares.end());
-  const double radius = std::sqrt(squares[k]);
+  const double radius = std::sqrt(detail::value_at(squares, k));
   return {2 * radius, radius};
 }
 

@@ -15,50 +15,49 @@
 
 namespace ahm::detail {
 
-/// The value that would be at place `at` if the values, none of them NaN, were sorted; they may be reordered. Of many values most are
-/// told to be smaller or larger by two of a sample, on several threads.
-inline double value_at(std::span<double> values, std::size_t at, unsigned threads = 1) {
-  constexpr std::size_t few = 1 << 15, looked_at = 1 << 10, around = looked_at / 16;
-  constexpr Offset chunk = 1 << 16;
-  if (values.size() > few) {
-    std::array<double, looked_at> sample;
-    for (std::size_t k = 0; k < looked_at; ++k) sample[k] = values[k * (values.size() / looked_at)];
-    std::sort(sample.begin(), sample.end());
-    const auto near =
-        static_cast<std::size_t>(static_cast<double>(at) / static_cast<double>(values.size()) * looked_at);
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    const double low = near < around ? -infinity : sample[near - around];
-    const double high = near + around < looked_at ? sample[near + around] : infinity;
-    const auto n = static_cast<Offset>(values.size());
-    std::vector<std::vector<double>> between(static_cast<std::size_t>((n + chunk - 1) / chunk));
-    std::atomic<std::size_t> below{0}, within{0};
-    parallel_chunks(n, chunk, threads, [&](Offset begin, Offset end) {
-      std::size_t smaller = 0, some = 0;
-      for (Offset k = begin; k < end; ++k) {
-        const double value = values[static_cast<std::size_t>(k)];
-        if (value < low) {
-          ++smaller;
-        } else if (value <= high) {
-          ++some;
-          if (low < high) between[static_cast<std::size_t>(begin / chunk)].push_back(value);
-        }
-      }
-      below += smaller;
-      within += some;
-    });
-    if (below <= at && at < below + within) {
-      if (low == high) return low;
-      std::vector<double> all;
-      all.reserve(within);
-      for (const auto& part : between) all.insert(all.end(), part.begin(), part.end());
-      const auto place = all.begin() + static_cast<std::ptrdiff_t>(at - below);
-      std::nth_element(all.begin(), place, all.end());
-      return *place;
-    }
-  }
+/// The value that would be at place `at` if the values, none of them NaN, were sorted; they are reordered.
+inline double nth_value(std::span<double> values, std::size_t at) {
   const auto place = values.begin() + static_cast<std::ptrdiff_t>(at);
   std::nth_element(values.begin(), place, values.end());
   return *place;
+}
+
+/// The same; of many values most are told to be smaller or larger by two of a sample, on several threads.
+inline double value_at(std::span<double> values, std::size_t at, unsigned threads = 1) {
+  constexpr std::size_t few = 1 << 15, looked_at = 1 << 10, around = looked_at / 16;
+  constexpr Offset chunk = 1 << 16;
+  if (values.size() <= few) return nth_value(values, at);
+  std::array<double, looked_at> sample;
+  for (std::size_t k = 0; k < looked_at; ++k) sample[k] = values[k * (values.size() / looked_at)];
+  std::sort(sample.begin(), sample.end());
+  const auto near = static_cast<std::size_t>(static_cast<double>(at) / static_cast<double>(values.size()) * looked_at);
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  const double low = near < around ? -infinity : sample[near - around];
+  const double high = near + around < looked_at ? sample[near + around] : infinity;
+
+  const auto n = static_cast<Offset>(values.size());
+  std::vector<std::vector<double>> between(static_cast<std::size_t>((n + chunk - 1) / chunk));
+  std::atomic<std::size_t> below{0}, within{0};
+  parallel_chunks(n, chunk, threads, [&](Offset begin, Offset end) {
+    std::size_t smaller = 0, some = 0;
+    for (Offset k = begin; k < end; ++k) {
+      const double value = values[static_cast<std::size_t>(k)];
+      if (value < low) {
+        ++smaller;
+      } else if (value <= high) {
+        ++some;
+        if (low < high) between[static_cast<std::size_t>(begin / chunk)].push_back(value);
+      }
+    }
+    below += smaller;
+    within += some;
+  });
+  if (at < below || at >= below + within) return nth_value(values, at);  // the sample has misled
+  if (low == high) return low;
+  std::vector<double> all;
+  all.reserve(within);
+  for (const auto& part : between) all.insert(all.end(), part.begin(), part.end());
+  return nth_value(all, at - below);
 }
 
 /// Of two in the middle the larger one; of at least one value.

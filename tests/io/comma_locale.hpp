@@ -1,0 +1,26 @@
+/// \file
+/// While an object lives, C++ writes and reads 1.234,5 where nobody asks it for another locale.
+#pragma once
+
+#include <locale>
+#include <string>
+
+namespace ahm::io::test {
+
+class CommaLocale {
+ public:
+  CommaLocale() : before_(std::locale::global(std::locale(std::locale::classic(), new Comma))) {}
+  ~CommaLocale() { std::locale::global(before_); }
+  CommaLocale(const CommaLocale&) = delete;
+  CommaLocale& operator=(const CommaLocale&) = delete;
+
+ private:
+  struct Comma : std::numpunct<char> {
+    char do_decimal_point() const override { return ','; }
+    char do_thousands_sep() const override { return '.'; }
+    std::string do_grouping() const override { return "\3"; }
+  };
+  std::locale before_;
+};
+
+}  // namespace ahm::io::test
