@@ -12,6 +12,17 @@ if(BUILD_SHARED_LIBS)
   check_linker_flag(CXX "LINKER:--version-script=${AHM_EXPORTED_SYMBOLS}" AHM_LINKER_KNOWS_VERSION_SCRIPTS)
 endif()
 
+# A distribution's PCL is built for the baseline processor. Memory that Eigen aligns for AVX cannot be handed to it, so sources that
+# do stay at the baseline even when the rest of the build is tuned (-march=native).
+set(AHM_PCL_ALIGNMENT "")
+if(AHM_WITH_PCL AND CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|i[3-6]86)$")
+  include(CheckCXXCompilerFlag)
+  check_cxx_compiler_flag(-mno-avx AHM_COMPILER_HAS_MNO_AVX)
+  if(AHM_COMPILER_HAS_MNO_AVX)
+    set(AHM_PCL_ALIGNMENT -mno-avx)
+  endif()
+endif()
+
 # Where programs and libraries find their modules, for the sources that include ahm/util/module.hpp.
 file(RELATIVE_PATH AHM_LIBDIR_IN_PREFIX "${CMAKE_INSTALL_PREFIX}" "${CMAKE_INSTALL_FULL_LIBDIR}")
 set(AHM_MODULE_DEFINITIONS AHM_MODULE_LIBDIR="${AHM_LIBDIR_IN_PREFIX}" AHM_MODULE_DIR="${CMAKE_INSTALL_FULL_LIBDIR}/ahm")
