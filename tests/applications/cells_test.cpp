@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <string>
 #include <vector>
 
 #include "ahm/error.hpp"
@@ -208,6 +209,22 @@ TEST(FarthestPoints, AreTheFirstOfThoseFarthestFromAllBefore) {
     expected.push_back(farthest);
   }
   EXPECT_EQ(farthest_points(graph, Vertex{3}, 200), expected);
+}
+
+TEST(FarthestPoints, LeaveAFrontFromWhichCellsGoOn) {
+  const CsrGraph graph(planar_triangulation(30).data);
+  for (Index count : {1, 2, 25}) {
+    UnfoldingFront front(graph);
+    const std::vector<Vertex> points = farthest_points(front, Vertex{17}, count);
+    EXPECT_EQ(points, farthest_points(graph, Vertex{17}, count));
+    EXPECT_EQ(front.points(), count - 1);
+    const VoronoiCells cells = voronoi_cells(front, points), fresh = voronoi_cells(graph, points);
+    EXPECT_EQ(cells.labels, fresh.labels) << count;
+    for (std::size_t i = 0; i < fresh.distances.size(); ++i)
+      ASSERT_NEAR(cells.distances[i], fresh.distances[i], 1e-13) << count;
+    expect_error<InvalidArgument>([&] { farthest_points(front, Vertex{17}, 2); },
+                                  "'front' comes from " + std::to_string(count) + " points already");
+  }
 }
 
 // Of refined polygons each is the farthest of the rows, although vertices inside of faces lie farther.

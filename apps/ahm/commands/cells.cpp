@@ -59,9 +59,10 @@ std::vector<Vertex> vertices_of(const Input& input, const std::vector<SourceSpec
   return result;
 }
 
-/// @param geodesics  none: by unfolding the graph
+/// @param geodesics  none: by the front
 std::vector<Vertex> spread(const CellsOptions& options, const Input& input,
-                           const std::optional<ExactGeodesics>& geodesics, Journal& journal) {
+                           const std::optional<ExactGeodesics>& geodesics, std::optional<UnfoldingFront>& front,
+                           Journal& journal) {
   journal.start("spread");
   const std::vector<Vertex> among = vertices_with_rows(input.surface().rows());
   if (options.count > std::ssize(among))
@@ -70,7 +71,7 @@ std::vector<Vertex> spread(const CellsOptions& options, const Input& input,
   const Vertex first =
       options.start ? vertex_at(input, *options.start, "--start") : first_vertex(input.surface().rows());
   return geodesics ? farthest_points(*geodesics, first, options.count, exact_options(options.solve, journal), among)
-                   : farthest_points(input.graph(), first, options.count, journal.progress(), among);
+                   : farthest_points(*front, first, options.count, journal.progress(), among);
 }
 
 /// What is known of every row of the input.
@@ -165,12 +166,16 @@ void run(const CellsOptions& options) {
   std::vector<Vertex> sources = vertices_of(input, options.sources);
   comment_on_positions(input, options.sources, "--sources", journal);
   std::optional<ExactGeodesics> geodesics;
-  if (options.solve.method == Method::exact) geodesics.emplace(input.surface());
-  if (options.count > 0) sources = spread(options, input, geodesics, journal);
+  std::optional<UnfoldingFront> front;
+  if (options.solve.method == Method::exact)
+    geodesics.emplace(input.surface());
+  else
+    front.emplace(graph, options.count > 0 ? UnfoldingFront::stars(graph) : nullptr);
+  if (options.count > 0) sources = spread(options, input, geodesics, front, journal);
 
   journal.start("cells");
   const VoronoiCells cells = geodesics ? voronoi_cells(*geodesics, sources, exact_options(options.solve, journal))
-                                       : voronoi_cells(graph, sources);
+                                       : voronoi_cells(*front, sources);
   const CellRows rows = rows_of(input, cells);
   comment_on_statuses(rows.status, options.input.path, journal);
 

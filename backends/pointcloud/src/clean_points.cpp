@@ -113,6 +113,19 @@ std::vector<Vec3> finite_points(std::span<const Vec3> input, const std::function
   return points;
 }
 
+/// @param points  placed, in units of half of them
+/// @throws InvalidGeometry where squares of lengths would overflow
+void check_reach(const std::vector<Vec3>& points, const std::function<Index(std::size_t)>& row,
+                 const std::vector<Index>& kept) {
+  constexpr double farthest = 1e150;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    for (const double x : points[i])
+      if (std::abs(x) > farthest)
+        throw InvalidGeometry("point " + std::to_string(row(static_cast<std::size_t>(kept[i]))) + " is " +
+                              detail::number(std::abs(x)) +
+                              " times as far off as half of the points; it must be less than 1e150");
+}
+
 }  // namespace
 
 Vec3 Placement::place(const Vec3& point) const { return scaled(point, -exponent); }
@@ -136,6 +149,7 @@ CleanPoints clean_points(std::span<const Vec3> input, const std::function<Index(
   const Placement placement = placement_of(placed, options.threads);
   detail::for_each_index(placed.size(), options.threads,
                          [&](std::size_t i) { placed[i] = placement.place(placed[i]); });
+  check_reach(placed, row, kept);
   CleanPoints clean;
   clean.unit = placement.unit();
 

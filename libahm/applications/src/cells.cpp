@@ -103,9 +103,18 @@ VoronoiCells voronoi_cells(const ExactGeodesics& geodesics, std::span<const Vert
 std::vector<Vertex> farthest_points(const TangentGraph& graph, Vertex first, Index count, const Progress& progress,
                                     std::span<const Vertex> among) {
   return detail::with_memory_check("spreading points", [&] {
-    Farthest farthest(candidates(graph.size(), first, count, among));
-    std::vector<Vertex> points{first};
     UnfoldingFront front(graph, UnfoldingFront::stars(graph));
+    return farthest_points(front, first, count, progress, among);
+  });
+}
+
+std::vector<Vertex> farthest_points(UnfoldingFront& front, Vertex first, Index count, const Progress& progress,
+                                    std::span<const Vertex> among) {
+  return detail::with_memory_check("spreading points", [&] {
+    if (front.points() > 0)
+      throw InvalidArgument("'front' comes from " + std::to_string(front.points()) + " points already");
+    Farthest farthest(candidates(front.graph().size(), first, count, among));
+    std::vector<Vertex> points{first};
     while (points.size() < static_cast<std::size_t>(count)) {
       progress.step("farthest points", static_cast<double>(points.size()) / count);
       front.add(Source::at_vertex(points.back()));

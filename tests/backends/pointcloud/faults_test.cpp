@@ -162,6 +162,14 @@ TEST(CloudFaults, AStrayPointFarAwayCostsTheOthersNoDigit) {
   }
 }
 
+TEST(CloudFaults, APointTooFarAwayForSquaresOfLengthsIsRefused) {
+  for (double far : {1e160, 1e300}) {
+    Cloud cloud = flat_cloud(100);
+    cloud.points.insert(cloud.points.begin() + 7, Vec3{0, -far, 0});
+    expect_error<InvalidGeometry>(cloud.points, "point 7 is ");
+  }
+}
+
 TEST(CloudFaults, AMapOfAnotherGraphIsRefused) {
   const Solved one(flat_cloud(100)), two(flat_cloud(120));
   const LogMap map = one.solver.solve(one.graph.source(Row(0)).source);

@@ -46,6 +46,11 @@ VoronoiCells voronoi_cells(const ExactGeodesics& geodesics, std::span<const Vert
 /// @throws InvalidArgument (index, count not in [1, n], n of those to choose from), ResourceExhausted, Cancelled
 std::vector<Vertex> farthest_points(const TangentGraph& graph, Vertex first, Index count, const Progress& progress = {},
                                     std::span<const Vertex> among = {});
+/// The same by a front that has not come from anywhere; it has come from all of them but the last then, so that `voronoi_cells` goes on
+/// from there.
+/// @throws as above; InvalidArgument (a front with points)
+std::vector<Vertex> farthest_points(UnfoldingFront& front, Vertex first, Index count, const Progress& progress = {},
+                                    std::span<const Vertex> among = {});
 /// The same by exact distances over the flat faces; of equally far vertices the first.
 /// @param options  tolerance; progress, as above. Points spread over everything, whatever the radius
 /// @throws as above, as `ExactGeodesics::log_map`
