@@ -304,6 +304,10 @@ TEST_F(ReadVtk, RefusesByNameWhatItCannotTrust) {
   expect_refused("a.vtk", head + "POINTS 1 double\n0 0 1,5", {"'1,5'", "decimals take a point"});
   expect_refused("a.vtk", head + "POINTS 1 double\n0 0 1e400", {"'1e400'"});
   expect_refused("a.vtk", head + "POINTS 1 bit\n0 0 1", {"'bit'"});
+  expect_refused("a.vtk", points + "POINT_DATA 3\nCOLOR_SCALARS c 3\n1 0 0 0 1 0 0 0 1\nPOINTS 1 double\n0 0 0\n",
+                 {"POINTS", "a second time"});
+  expect_refused("a.vtk", head + "POINT_DATA 0\nSCALARS s int\nPOINTS 1 double\n0 0 0\n",
+                 {"POINT_DATA", "before POINTS"});
   expect_refused("a.vtk", points + "POLYGONS 1 4\n3 0 1 3\n", {"polygon 0", "vertex number 3", "3 vertices"});
   expect_refused("a.vtk", points + "POLYGONS 1 4\n4 0 1 2\n", {"cell 0 of 1"});
   expect_refused("a.vtk", points + "POLYGONS 1 4\n2 0 1 2\n", {"cells end before"});

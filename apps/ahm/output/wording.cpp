@@ -36,6 +36,7 @@ constexpr Advice advices[] = {
     {"windows_without_end", "repair the mesh, or use --method heat"},
     {"windows_lost", "repair the needles there, or use --tolerance 1e-9 or --method heat"},
     {"polygons_not_refined", "use --discretization refined, or --method heat"},
+    {"polygons_too_large", "use --discretization refined"},
     {"no_bending_direction", "give the axis as X,Y,Z"},
     {"row_left_out", "--voxel, --outliers, --drop-nan or --local removed it; choose another one, or write x,y,z"},
 };

@@ -77,6 +77,7 @@ class VtkReader {
     if (is("metadata")) return skip_metadata();
     if (!polydata_) fail_here("expected DATASET, found " + in_quotes(keyword));
     if (is("points")) {
+      if (std::exchange(has_points_, true)) fail_here("POINTS stands there a second time");
       piece_.points = count("the number of points");
       check_vertex_count(in_, piece_.points);
       piece_.positions = numbers(word_or_fail("the type of the points"), piece_.points, 3, "points").values;
@@ -92,6 +93,7 @@ class VtkReader {
       by_point_ = is("point_data");
       tuples_ = count("the number of values");
       piece_.has_cell_data = piece_.has_cell_data || !by_point_;
+      if (by_point_ && !has_points_) fail_here("POINT_DATA stands before POINTS");
       if (by_point_ && tuples_ != piece_.points)
         fail_here("there are values for " + std::to_string(tuples_) + " points, but there are " +
                   std::to_string(piece_.points) + " points");
@@ -260,6 +262,7 @@ class VtkReader {
   const Input& in_;
   std::string_view rest_;
   bool binary_ = false, offsets_ = false, polydata_ = false;
+  bool has_points_ = false;
   bool by_point_ = false;  ///< what follows belongs to the points
   std::uint64_t tuples_ = 0;
   VtkPiece piece_;
