@@ -86,6 +86,39 @@ TEST(FactorFront, IsEigensOfEverySmallFrontAndOfLargeOnes) {
   expect_factor<2>(700, 45);
 }
 
+/// What a front leaves whose own block is the identity and whose entries below are tiny.
+template <int W>
+Matrix<W> left_of_tiny(Offset rows, Offset columns, unsigned threads) {
+  Matrix<W> L = Matrix<W>::Constant(rows, columns, Number<W>(1e-160));
+  L.topRows(columns).setIdentity();
+  Matrix<W> update = Matrix<W>::Constant(rows - columns, rows - columns, NAN);
+  const auto numbers = [](Matrix<W>& matrix) { return reinterpret_cast<double*>(matrix.data()); };
+  EXPECT_EQ(factor_front<W>(numbers(L), rows, columns, numbers(update), threads), columns);
+  return update;
+}
+
+template <int W>
+void expect_zeros(Offset rows, Offset columns, unsigned threads) {
+  const Matrix<W> update = left_of_tiny<W>(rows, columns, threads);
+  for (Offset j = 0; j < update.cols(); ++j)
+    for (Offset i = j; i < update.rows(); ++i) ASSERT_EQ(update(i, j), Number<W>(0)) << rows << ": " << i << ", " << j;
+}
+
+TEST(FactorFront, KeepsNoNumbersBelowTheNormalOnes) {
+#ifndef __SSE2__
+  GTEST_SKIP() << "for x86";
+#endif
+  const OneBlasThread one_thread;
+  expect_zeros<1>(23, 7, 1);
+  expect_zeros<2>(23, 7, 1);
+  for (const unsigned threads : {1, 3}) {
+    expect_zeros<1>(700, 45, threads);
+    expect_zeros<2>(700, 45, threads);
+  }
+  volatile double tiny = 1e-160;
+  EXPECT_GT(tiny * tiny, 0) << "only the front's";
+}
+
 TEST(FactorFront, IsTheSameOnAnyNumberOfThreads) {
   const OneBlasThread one_thread;
   constexpr Offset rows = 700, columns = 45;

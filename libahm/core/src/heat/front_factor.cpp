@@ -5,6 +5,7 @@
 #include "ahm/util/parallel.hpp"
 #include "heat/blas.hpp"
 #include "heat/blas_control.hpp"
+#include "heat/flush_subnormals.hpp"
 #include "heat/four.hpp"
 
 namespace ahm {
@@ -180,6 +181,7 @@ Offset factor_large(double* L, Offset all_rows, Offset all_columns, double* upda
   const double one[2] = {1, 0}, minus[2] = {-1, 0}, zero[2] = {0, 0};
   int failed = 0;
   {
+    const FlushSubnormals flush;
     const BlasBuffer buffer;
     (W == 1 ? dpotrf_ : zpotrf_)("L", &columns, L, &rows, &failed);
   }
@@ -189,6 +191,7 @@ Offset factor_large(double* L, Offset all_rows, Offset all_columns, double* upda
   double* L_below = L + all_columns * W;
   detail::parallel_chunks(below, below_at_once, threads, [&](Offset begin, Offset end) {
     const int some = static_cast<int>(end - begin);
+    const FlushSubnormals flush;
     const BlasBuffer buffer;
     (W == 1 ? dtrsm_ : ztrsm_)("R", "L", "C", "N", &some, &columns, one, L, &rows, L_below + begin * W, &rows);
   });
@@ -196,6 +199,7 @@ Offset factor_large(double* L, Offset all_rows, Offset all_columns, double* upda
     const int some = static_cast<int>(end - begin), rest = below - static_cast<int>(end);
     const double *own = L_below + begin * W, *under = L_below + end * W;
     double* out = update + begin * below * W;
+    const FlushSubnormals flush;
     const BlasBuffer buffer;
     (W == 1 ? dsyrk_ : zherk_)("L", "N", &some, &columns, minus, own, &rows, zero, out + begin * W, &below);
     if (rest > 0)
@@ -210,6 +214,7 @@ Offset factor_large(double* L, Offset all_rows, Offset all_columns, double* upda
 template <int W>
 Offset factor_front(double* L, Offset rows, Offset columns, double* update, unsigned threads) {
   if (is_large_front(rows, columns)) return factor_large<W>(L, rows, columns, update, threads);
+  const FlushSubnormals flush;
 #ifdef __x86_64__
   static const bool fast = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
   if (fast) return factor_small_avx2<W>(L, rows * W, columns, update);
