@@ -91,6 +91,12 @@ TEST_F(ReadPcd, RefusesTextWithAZeroByte) {
   expect_refused("z.pcd", text + std::string(3, '\0') + "\n3 4 5\n", {"line"});
 }
 
+// To PCL these are parts of a number, and it leaves the point out.
+TEST_F(ReadPcd, RefusesTextWithVerticalTabs) {
+  for (const char* apart : {"\v", " \v", "\v\t\v", "\f"})
+    expect_refused("v.pcd", doubles(2, "ascii") + "0 1" + apart + "2\n3 4 5\n", {"line", "spaces or tabs"});
+}
+
 TEST_F(ReadPcd, ReadsAnEmptyCloud) { EXPECT_TRUE(read_bytes("e.pcd", doubles(0, "ascii")).points.empty()); }
 
 TEST_F(ReadPcd, ReadsWholeNumberFieldsAndOrganisedClouds) {
