@@ -204,7 +204,7 @@ void read_pcd_text(const Input& in, const PcdHeader& header, Lines& lines,
   while (lines.next_filled()) {
     if (point++ == header.points)
       fail_at_line(in, lines.number(), "more lines than the " + std::to_string(header.points) + " points");
-    if (lines.line().find_first_of("\v\f") != std::string_view::npos)  // no blanks to PCL, which would leave the point out
+    if (lines.line().find_first_of("\v\f") != std::string_view::npos)  // no blanks to PCL, which leaves the point out
       fail_at_line(in, lines.number(), "numbers must stand apart by spaces or tabs");
     split_words(lines.line(), words);
     for (std::string_view word : words) real_or_fail(in, lines.number(), word);
