@@ -129,16 +129,20 @@ TEST(Cells, ContainTheirSourcesAndAreConnected) {
   }
 }
 
+/// By a front that goes on as by a new one.
+void expect_fresh_cells(UnfoldingFront& front, std::span<const Vertex> sources) {
+  const VoronoiCells fresh = voronoi_cells(front.graph(), sources), cells = voronoi_cells(front, sources);
+  EXPECT_EQ(cells.labels, fresh.labels) << sources.size();
+  for (std::size_t i = 0; i < fresh.distances.size(); ++i)
+    ASSERT_NEAR(cells.distances[i], fresh.distances[i], 1e-13) << sources.size();
+}
+
 TEST(Cells, AreTheSameByAFrontThatGoesOn) {
   const CsrGraph graph(planar_triangulation(30).data);
   const std::vector<Vertex> sources = farthest_points(graph, Vertex{17}, 24);
   UnfoldingFront front(graph);
   for (std::size_t count : {1, 2, 7, 24}) {
-    const VoronoiCells fresh = voronoi_cells(graph, std::span(sources).first(count));
-    const VoronoiCells cells = voronoi_cells(front, std::span(sources).first(count));
-    EXPECT_EQ(cells.labels, fresh.labels) << count;
-    for (std::size_t i = 0; i < fresh.distances.size(); ++i)
-      ASSERT_NEAR(cells.distances[i], fresh.distances[i], 1e-13) << count;
+    expect_fresh_cells(front, std::span(sources).first(count));
   }
   expect_error<InvalidArgument>([&] { voronoi_cells(front, std::span(sources).first(5)); },
                                 "24 points, more than the 5");
@@ -218,10 +222,7 @@ TEST(FarthestPoints, LeaveAFrontFromWhichCellsGoOn) {
     const std::vector<Vertex> points = farthest_points(front, Vertex{17}, count);
     EXPECT_EQ(points, farthest_points(graph, Vertex{17}, count));
     EXPECT_EQ(front.points(), count - 1);
-    const VoronoiCells cells = voronoi_cells(front, points), fresh = voronoi_cells(graph, points);
-    EXPECT_EQ(cells.labels, fresh.labels) << count;
-    for (std::size_t i = 0; i < fresh.distances.size(); ++i)
-      ASSERT_NEAR(cells.distances[i], fresh.distances[i], 1e-13) << count;
+    expect_fresh_cells(front, points);
     expect_error<InvalidArgument>([&] { farthest_points(front, Vertex{17}, 2); },
                                   "'front' comes from " + std::to_string(count) + " points already");
   }

@@ -22,6 +22,11 @@ template <int W>
 using Matrix = Eigen::Matrix<Number<W>, Eigen::Dynamic, Eigen::Dynamic>;
 
 template <int W>
+double* numbers(Matrix<W>& matrix) {
+  return reinterpret_cast<double*>(matrix.data());
+}
+
+template <int W>
 Number<W> some_number(double seed) {
   if constexpr (W == 1)
     return std::sin(seed);
@@ -55,8 +60,7 @@ void expect_factor(Offset rows, Offset columns) {
   const Matrix<W> left = -(under.adjoint() * under);
 
   Matrix<W> L = K, update = Matrix<W>::Constant(below, below, NAN);
-  const auto numbers = [](Matrix<W>& matrix) { return reinterpret_cast<double*>(matrix.data()); };
-  ASSERT_EQ(factor_front<W>(numbers(L), rows, columns, numbers(update)), columns);
+  ASSERT_EQ(factor_front<W>(numbers<W>(L), rows, columns, numbers<W>(update)), columns);
   const double near = 1e-13 * std::sqrt(static_cast<double>(rows));
   for (Offset j = 0; j < columns; ++j)
     for (Offset i = j; i < rows; ++i)
@@ -86,20 +90,13 @@ TEST(FactorFront, IsEigensOfEverySmallFrontAndOfLargeOnes) {
   expect_factor<2>(700, 45);
 }
 
-/// What a front leaves whose own block is the identity and whose entries below are tiny.
+/// Of a front whose own block is the identity and whose entries below are tiny nothing is left.
 template <int W>
-Matrix<W> left_of_tiny(Offset rows, Offset columns, unsigned threads) {
+void expect_zeros(Offset rows, Offset columns, unsigned threads) {
   Matrix<W> L = Matrix<W>::Constant(rows, columns, Number<W>(1e-160));
   L.topRows(columns).setIdentity();
   Matrix<W> update = Matrix<W>::Constant(rows - columns, rows - columns, NAN);
-  const auto numbers = [](Matrix<W>& matrix) { return reinterpret_cast<double*>(matrix.data()); };
-  EXPECT_EQ(factor_front<W>(numbers(L), rows, columns, numbers(update), threads), columns);
-  return update;
-}
-
-template <int W>
-void expect_zeros(Offset rows, Offset columns, unsigned threads) {
-  const Matrix<W> update = left_of_tiny<W>(rows, columns, threads);
+  EXPECT_EQ(factor_front<W>(numbers<W>(L), rows, columns, numbers<W>(update), threads), columns);
   for (Offset j = 0; j < update.cols(); ++j)
     for (Offset i = j; i < update.rows(); ++i) ASSERT_EQ(update(i, j), Number<W>(0)) << rows << ": " << i << ", " << j;
 }
@@ -124,12 +121,11 @@ TEST(FactorFront, IsTheSameOnAnyNumberOfThreads) {
   constexpr Offset rows = 700, columns = 45;
   ASSERT_TRUE(is_large_front(rows, columns));
   const Matrix<2> K = front_of<2>(rows, columns), unset = Matrix<2>::Zero(rows - columns, rows - columns);
-  const auto numbers = [](Matrix<2>& matrix) { return reinterpret_cast<double*>(matrix.data()); };
   Matrix<2> L = K, update = unset;
-  factor_front<2>(numbers(L), rows, columns, numbers(update));
+  factor_front<2>(numbers<2>(L), rows, columns, numbers<2>(update));
   for (const unsigned threads : {2u, 3u, 8u}) {
     Matrix<2> shared = K, shared_update = unset;
-    factor_front<2>(numbers(shared), rows, columns, numbers(shared_update), threads);
+    factor_front<2>(numbers<2>(shared), rows, columns, numbers<2>(shared_update), threads);
     EXPECT_EQ(shared.bottomRows(rows - columns), L.bottomRows(rows - columns)) << threads;
     EXPECT_EQ(shared_update, update) << threads;
   }

@@ -181,7 +181,6 @@ Offset factor_large(double* L, Offset all_rows, Offset all_columns, double* upda
   const double one[2] = {1, 0}, minus[2] = {-1, 0}, zero[2] = {0, 0};
   int failed = 0;
   {
-    const FlushSubnormals flush;
     const BlasBuffer buffer;
     (W == 1 ? dpotrf_ : zpotrf_)("L", &columns, L, &rows, &failed);
   }
@@ -213,8 +212,8 @@ Offset factor_large(double* L, Offset all_rows, Offset all_columns, double* upda
 
 template <int W>
 Offset factor_front(double* L, Offset rows, Offset columns, double* update, unsigned threads) {
-  if (is_large_front(rows, columns)) return factor_large<W>(L, rows, columns, update, threads);
   const FlushSubnormals flush;
+  if (is_large_front(rows, columns)) return factor_large<W>(L, rows, columns, update, threads);
 #ifdef __x86_64__
   static const bool fast = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
   if (fast) return factor_small_avx2<W>(L, rows * W, columns, update);
