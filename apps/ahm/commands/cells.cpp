@@ -170,7 +170,7 @@ void run(const CellsOptions& options) {
   if (options.solve.method == Method::exact)
     geodesics.emplace(input.surface());
   else
-    front.emplace(graph, options.count > 0 ? UnfoldingFront::stars(graph) : nullptr);
+    front.emplace(graph, options.count > 0 ? UnfoldingFront::stars(graph, options.input.threads) : nullptr);
   if (options.count > 0) sources = spread(options, input, geodesics, front, journal);
 
   journal.start("cells");

@@ -16,6 +16,7 @@
 #include "ahm/testing/graph_changes.hpp"
 #include "ahm/testing/triangle_meshes.hpp"
 #include "ahm/trimesh/triangle_mesh_surface.hpp"
+#include "ahm/util/small_math.hpp"
 
 namespace ahm::test {
 namespace {
@@ -186,6 +187,33 @@ TEST(UnfoldingFront, TellsTheNearestOfManyAndGoesOnFromThere) {
     for (const UnfoldingFront* front : {&at_once, &in_turn}) {
       ASSERT_NEAR(front->distance(Vertex(i)), least, 1e-10) << "vertex " << i;
       ASSERT_NEAR(alone[front->nearest(Vertex(i))][i], least, 1e-10) << "vertex " << i;
+    }
+  }
+}
+
+// More of them near every vertex than it keeps.
+TEST(UnfoldingFront, FromManyPointsInTurnIsThatFromTheNearest) {
+  const Index side = 24;
+  const FlatGraph plane = planar_triangulation(side), space = lattice3(8);
+  for (const FlatGraph* flat : {&plane, &space}) {
+    const CsrGraph graph(flat->data);
+    UnfoldingFront front(graph, nullptr, true);
+    std::vector<Index> points;
+    for (Index k = 0; k < 80; ++k) {
+      points.push_back(k * 97 % flat->size());
+      front.add(Source::at_vertex(Vertex(points.back())));
+      front.run();
+    }
+    for (Index i = 0; i < flat->size(); ++i) {
+      const Index row = i / side, column = i % side;
+      if (flat == &plane && (std::min(row, column) < 2 || std::max(row, column) > side - 3)) continue;
+      double least = INFINITY;
+      for (const Index point : points) least = std::min(least, length(flat->exact(point, i)));
+      ASSERT_NEAR(front.distance(Vertex(i)), least, 1e-9) << "vertex " << i;
+      const auto exact = flat->exact(points[front.nearest(Vertex(i))], i);
+      ASSERT_NEAR(length(exact), least, 1e-9) << "vertex " << i;
+      for (int a = 0; front.has_directions() && least > 0 && a < 2; ++a)
+        ASSERT_NEAR(front.distance(Vertex(i)) * front.direction(Vertex(i))[a], exact[a], 1e-9) << "vertex " << i;
     }
   }
 }

@@ -9,6 +9,8 @@
 #include <utility>
 
 #include "ahm/graph/components.hpp"
+#include "ahm/util/buckets.hpp"
+#include "ahm/util/parallel.hpp"
 #include "ahm/util/small_math.hpp"
 #include "ahm/util/vec.hpp"
 
@@ -292,16 +294,31 @@ class UnfoldingFront::Stars::Halving {
   std::vector<Index> middle_;  ///< the midpoint of an edge
 };
 
-UnfoldingFront::Stars::Stars(const TangentGraph& graph, std::vector<std::uint8_t> halved, bool all)
+UnfoldingFront::Stars::Stars(const TangentGraph& graph, std::vector<std::uint8_t> halved, bool all, unsigned threads)
     : vertices_(graph.size()), size_(vertices_) {
   const bool any = std::find(halved.begin(), halved.end(), 1) != halved.end();
   if ((!any && !all) || graph.dimension() != 2) return;
-  begin_.push_back(0);
-  std::vector<Neighbor> neighbors;
-  for (Index i = 0; i < size_; ++i) {
-    if (all || halved[i]) append_corners(graph, i, neighbors, corners_);
-    begin_.push_back(static_cast<Offset>(corners_.size()));
-    curvatures_.push_back(keeps(i) ? curvature_of(of(i)) : 0);
+  constexpr Offset chunk = 1 << 12;
+  std::vector<std::vector<Corner>> parts(static_cast<std::size_t>(vertices_ / chunk) + 1);
+  begin_.assign(static_cast<std::size_t>(vertices_) + 1, 0);
+  curvatures_.assign(static_cast<std::size_t>(vertices_), 0.0);
+  detail::parallel_chunks(vertices_, chunk, threads, [&](Offset begin, Offset end) {
+    std::vector<Corner>& corners = parts[begin / chunk];
+    std::vector<Neighbor> neighbors;
+    for (auto i = static_cast<Index>(begin); i < end; ++i) {
+      if (!all && !halved[i]) continue;
+      const std::size_t before = corners.size();
+      append_corners(graph, i, neighbors, corners);
+      const std::span<const Corner> own = std::span(corners).subspan(before);
+      begin_[i + 1] = std::ssize(own);
+      if (!own.empty()) curvatures_[i] = curvature_of(own);
+    }
+  });
+  begin_ = detail::starts_of(std::move(begin_));
+  corners_.reserve(static_cast<std::size_t>(begin_.back()));
+  for (std::vector<Corner>& part : parts) {
+    corners_.insert(corners_.end(), part.begin(), part.end());
+    part = {};
   }
   if (!any) return;
   std::vector<Offset> begin;
@@ -336,9 +353,9 @@ void UnfoldingFront::Stars::find_cut_edges(Index vertex, std::vector<CutEdge>& e
   edges.erase(kept, edges.end());
 }
 
-std::shared_ptr<const UnfoldingFront::Stars> UnfoldingFront::stars(const TangentGraph& graph) {
+std::shared_ptr<const UnfoldingFront::Stars> UnfoldingFront::stars(const TangentGraph& graph, unsigned threads) {
   if (graph.dimension() != 2) return nullptr;
-  return std::make_shared<const Stars>(graph, halved_vertices(graph), true);
+  return std::make_shared<const Stars>(graph, halved_vertices(graph), true, threads);
 }
 
 }  // namespace ahm

@@ -20,7 +20,7 @@ class UnfoldingFront::Stars {
   /// @param halved  of every vertex, whether its triangles are cut; one per connected component. Left whole are flat components
   ///                and those with a triangle in doubt: too thin, one-sided, two equally long edges between the same vertices
   /// @param all     whether to keep the corners of the other vertices, too. None are kept in other dimensions than 2
-  Stars(const TangentGraph& graph, std::vector<std::uint8_t> halved, bool all);
+  Stars(const TangentGraph& graph, std::vector<std::uint8_t> halved, bool all, unsigned threads = 1);
 
   /// Vertices and, after them, midpoints.
   Index size() const noexcept { return size_; }

@@ -99,7 +99,8 @@ struct LogMapSolver::Impl {
     if (!graph.is_delaunay()) return nullptr;
     std::call_once(looked_around, [&] {
       kept_stars = std::make_shared<const UnfoldingFront::Stars>(
-          graph, halved_vertices(scales.components.of_vertex, scales.sizes), strategy == Strategy::global);
+          graph, halved_vertices(scales.components.of_vertex, scales.sizes), strategy == Strategy::global,
+          options.threads);
     });
     return kept_stars;
   }

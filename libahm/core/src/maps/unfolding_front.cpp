@@ -25,18 +25,15 @@ constexpr double least_gain = 1e-12;
 /// rounding does not choose between ways through the same flat faces.
 constexpr double same_length = 1e-10, same_focusing = 1e-6;
 /// An entry is bettered no more often: where triangles contradict each other they could go on for ever.
-constexpr Index most_gains = 40;
+constexpr std::uint8_t most_gains = 40;
 /// Points whose distances a vertex knows, and how many of these are the nearest ones: the samples of a curve are many, and all but
 /// equally near.
-constexpr Index most_points = 8, most_of_curve = 12, nearest_of_curve = 4;
+constexpr std::size_t most_points = 8, most_of_curve = 12, nearest_of_curve = 4;
 /// A line may miss the side by this share of it, and is taken to pass its end. Where edges are no triangulation, as between points that lie
 /// in squares, it may pass between two triangles that bend away from it, and seen from neither leave only edges.
 constexpr double missed = 1e-9, missed_between = 1e-3;
 /// Stars that are kept until others take their place: those ahead of the front are asked for several times.
 constexpr std::size_t most_seen = 2048;
-/// A way that bends at the boundary by no more than this angle, all in all, goes straight on: boundaries of surfaces are not
-/// straight to the last bit.
-constexpr float straight_on = 0.5F;
 
 /// Whether a front at this distance, so focused, comes before another one.
 bool comes_before(double distance, double focusing, double other, double other_focusing) {
@@ -60,8 +57,8 @@ UnfoldingFront::UnfoldingFront(const TangentGraph& graph, std::shared_ptr<const 
       directions_(directions && d_ == 2),
       stars_(stars || !graph.is_delaunay() ? std::move(stars)
                                            : std::make_shared<const Stars>(graph, halved_vertices(graph), false)) {
-  head_.assign(static_cast<std::size_t>(stars_ ? stars_->size() : graph.size()), none);
-  entries_.reserve(head_.size());
+  first_.assign(static_cast<std::size_t>(stars_ ? stars_->size() : graph.size()), none);
+  entries_.reserve(first_.size());
 }
 
 Index UnfoldingFront::add(const Source& source) {
@@ -146,40 +143,16 @@ void UnfoldingFront::run(double radius) {
   while (!queue_.empty() && next() <= radius) {
     const auto [distance, vertex, point] = queue_.top();
     queue_.pop();
+    if (stars_ && !queue_.empty())  // most likely the next one: of many corners few are in the cache
+      for (const Corner& corner : stars_->of(queue_.top().vertex)) __builtin_prefetch(&corner);
     if (const Entry* entry = find(vertex, point); entry && entry->distance == distance) spread(vertex, point, distance);
   }
 }
 
-double UnfoldingFront::distance(Vertex vertex) const {
-  const Index head = head_[vertex.index];
-  return head == none ? std::numeric_limits<double>::infinity() : entries_[head].distance * graph_.length_unit();
-}
-
-Vec2 UnfoldingFront::direction(Vertex vertex) const {
-  const Index head = head_[vertex.index];
-  return head == none || !directions_ ? Vec2{NAN, NAN} : ways_[head].direction;
-}
-
-bool UnfoldingFront::is_bent(Vertex vertex) const {
-  const Index head = head_[vertex.index];
-  return head != none && directions_ && ways_[head].turned > straight_on;
-}
-
-Index UnfoldingFront::nearest(Vertex vertex) const {
-  const Index head = head_[vertex.index];
-  return head == none ? none : entries_[head].point;
-}
-
-const UnfoldingFront::Entry* UnfoldingFront::find(Index vertex, Index point) const {
-  for (Index e = head_[vertex]; e != none; e = entries_[e].next)
-    if (entries_[e].point == point) return &entries_[e];
-  return nullptr;
-}
-
-/// Gives the entry of another point to this one; none where all others count for more. The nearest count, and of the others, samples
-/// of a curve, those whose numbers are multiples of larger powers of two: neighbours keep the same ones then, some near and some far
-/// apart, whether samples are closer together than vertices or not.
-Index UnfoldingFront::replace_least(Index vertex, Index point, double distance) {
+/// The entry of a vertex that a further point takes; none where all count for more than it. The nearest count, and of the others,
+/// samples of a curve, those whose numbers are multiples of larger powers of two: neighbours keep the same ones then, some near and
+/// some far apart, whether samples are closer together than vertices or not.
+Index UnfoldingFront::entry_to_take(Index vertex, Index point, double distance) {
   struct Kept {
     double distance;
     Index entry, point;
@@ -195,42 +168,31 @@ Index UnfoldingFront::replace_least(Index vertex, Index point, double distance) 
   };
   std::array<Kept, most_of_curve + 1> all{{{distance, none, point}}};
   std::size_t count = 1;
-  for (Index e = head_[vertex]; e != none; e = entries_[e].next)
-    all[count++] = {entries_[e].distance, e, entries_[e].point};
+  for (const Entry& entry : entries_of(vertex))
+    all[count++] = {entry.distance, static_cast<Index>(&entry - entries_.data()), entry.point};
   const auto end = all.begin() + static_cast<std::ptrdiff_t>(count),
              others = all.begin() + (of_curve_ ? nearest_of_curve : 0);
   if (of_curve_) std::nth_element(all.begin(), others, end, comes_before);
-  const Kept least = *std::min_element(others, end, counts_less);
-  if (least.entry == none) return none;
-  entries_[least.entry].point = point;
-  entries_[least.entry].gains = 0;
-  return least.entry;
+  return std::min_element(others, end, counts_less)->entry;
 }
 
 /// Keeps a distance if it is the least from its point, and that point the nearest or nearly so.
 void UnfoldingFront::offer(Index vertex, Index point, double distance, double slack,
                            std::span<const double> displacement, const Way& way, double focusing) {
-  Index own = head_[vertex], before = none;
-  const double nearest = own == none ? std::numeric_limits<double>::infinity() : entries_[own].distance;
+  const std::span<const Entry> entries = entries_of(vertex);
+  const double nearest = entries.empty() ? std::numeric_limits<double>::infinity() : entries.front().distance;
   if (!(distance <= nearest + slack)) return;
-  Index points = 0;
-  while (own != none && entries_[own].point != point) before = own, own = entries_[own].next, ++points;
-  if (own == none && points >= (of_curve_ ? most_of_curve : most_points)) {
-    own = replace_least(vertex, point, distance);
-    if (own == none) return;
-    before = none;
-    for (Index e = head_[vertex]; e != own; e = entries_[e].next) before = e;
-  } else if (own == none) {
-    own = static_cast<Index>(entries_.size());
-    entries_.push_back({distance, focusing, point, head_[vertex], 0});
-    if (d_ != 2) displacements_.resize(displacements_.size() + d_);
-    if (directions_) ways_.emplace_back();
-    head_[vertex] = own;
-  } else if (!comes_before(distance, focusing, entries_[own].distance, entries_[own].focusing) ||
-             entries_[own].gains == most_gains) {
-    return;
+  Index own;
+  if (const Entry* known = find(vertex, point)) {
+    if (!comes_before(distance, focusing, known->distance, known->focusing) || known->gains == most_gains) return;
+    distance = std::min(distance, known->distance);
+    own = static_cast<Index>(known - entries_.data());
   } else {
-    distance = std::min(distance, entries_[own].distance);
+    const bool is_full = entries.size() >= (of_curve_ ? most_of_curve : most_points);
+    own = is_full ? entry_to_take(vertex, point, distance) : append(vertex);
+    if (own == none) return;
+    entries_[own].point = point;
+    entries_[own].gains = 0;
   }
   ++entries_[own].gains;
   entries_[own].distance = distance;
@@ -238,25 +200,16 @@ void UnfoldingFront::offer(Index vertex, Index point, double distance, double sl
   if (directions_) ways_[own] = way;
   if (d_ != 2)
     std::copy(displacement.begin(), displacement.end(), displacements_.begin() + static_cast<std::ptrdiff_t>(own * d_));
-  // The nearest comes first.
-  if (own == head_[vertex]) {
-    if (const Index second = entries_[own].next; second != none && entries_[second].distance < distance) {
-      entries_[own].next = entries_[second].next;
-      entries_[second].next = own;
-      head_[vertex] = second;
-    }
-  } else if (distance < nearest) {
-    entries_[before].next = entries_[own].next;
-    entries_[own].next = head_[vertex];
-    head_[vertex] = own;
-  }
+  const Index first = first_[vertex];
+  const auto least = std::ranges::min_element(entries_of(vertex), {}, &Entry::distance);
+  if (const auto k = static_cast<Index>(&*least - &entries_[first]); k > 0) swap_entries(first, first + k);
   queue_.push({distance, vertex, point});
 }
 
 /// Valid until the corners of another vertex are asked for.
 std::span<const UnfoldingFront::Corner> UnfoldingFront::around(Index vertex) {
   if (stars_ && stars_->keeps(vertex)) return stars_->of(vertex);
-  if (seen_.empty()) seen_.resize(std::min(most_seen, head_.size()));
+  if (seen_.empty()) seen_.resize(std::min(most_seen, first_.size()));
   Seen& seen = seen_[static_cast<std::size_t>(vertex) % seen_.size()];
   if (seen.vertex != vertex) {
     seen.vertex = vertex;

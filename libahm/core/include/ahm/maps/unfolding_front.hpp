@@ -10,6 +10,8 @@
 /// \endcode
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -44,7 +46,8 @@ class UnfoldingFront {
  public:
   /// The triangles around every vertex, made once for many fronts: about 200 bytes a vertex.
   class Stars;
-  static std::shared_ptr<const Stars> stars(const TangentGraph& graph);
+  /// @param threads  0: one per core
+  static std::shared_ptr<const Stars> stars(const TangentGraph& graph, unsigned threads = 1);
 
   struct Agreement {
     /// Of the triangles that vertices see between their neighbours, the share that the other two corners see, too: 1 of a
@@ -92,10 +95,13 @@ class UnfoldingFront {
   Index nearest(Vertex vertex) const;
 
  private:
-  /// A distance from one point. Beside a border between points both sides are known, so that both can unfold across it.
+  /// A distance from one point. Beside a border between points both sides are known, so that both can unfold across it. Those
+  /// of a vertex lie side by side, the nearest first, in rows of 1, 2, 4, 8 or 16.
   struct Entry {
-    double distance, focusing;
-    Index point, next, gains;
+    double distance = 0, focusing = 0;
+    Index point = -1;
+    std::uint8_t gains = 0;
+    std::uint8_t count = 0;  ///< of the vertex' entries, in the first of them
   };
   /// How the way of an entry leaves its point, in the frame of the source.
   struct Way {
@@ -143,7 +149,18 @@ class UnfoldingFront {
     }
   };
 
-  const Entry* find(Index vertex, Index point) const;
+  std::span<const Entry> entries_of(Index vertex) const {
+    const Index first = first_[vertex];
+    return first < 0 ? std::span<const Entry>() : std::span(&entries_[first], entries_[first].count);
+  }
+  const Entry* find(Index vertex, Index point) const {
+    for (const Entry& entry : entries_of(vertex))
+      if (entry.point == point) return &entry;
+    return nullptr;
+  }
+  Index append(Index vertex);
+  Index new_row(std::size_t size);
+  void swap_entries(Index a, Index b);
   /// A vertex whose place beside a point is known, in the frame of the source.
   struct Given {
     Index vertex, point;
@@ -155,7 +172,7 @@ class UnfoldingFront {
   void offer_midpoints(std::vector<Given>& given);
   void offer(Index vertex, Index point, double distance, double slack, std::span<const double> displacement,
              const Way& way, double focusing = 0);
-  Index replace_least(Index vertex, Index point, double distance);
+  Index entry_to_take(Index vertex, Index point, double distance);
   void spread(Index from, Index point, double distance);
   void carry(Index from, Index point, double distance);
   double factor_at(Index vertex, Index point, std::span<const double> displacement, double distance);
@@ -168,9 +185,10 @@ class UnfoldingFront {
 
   const TangentGraph& graph_;
   std::size_t d_;
-  std::vector<Index> head_;  ///< of the entries of a vertex or midpoint, nearest first; -1: none
+  std::vector<Index> first_;  ///< entry of a vertex or midpoint; -1: none
   std::vector<Entry> entries_;
-  std::vector<double> displacements_;  ///< d per entry, from the vertex to the point in its frame; d = 2: empty
+  std::array<std::vector<Index>, 4> free_;  ///< rows of 1, 2, 4 and 8 entries that are no longer in use
+  std::vector<double> displacements_;       ///< d per entry, from the vertex to the point in its frame; d = 2: empty
   double longest_ = 0;  ///< edge of what was passed: no straight way within a radius crosses a side farther beyond it
   double missed_;       ///< share of a side by which a line may miss it
   bool is_curved_;      ///< whether the curvature of the surface counts: on Delaunay triangulations
