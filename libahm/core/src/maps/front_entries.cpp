@@ -45,8 +45,9 @@ Index UnfoldingFront::append(Index vertex) {
     first = new_row(1);
   } else if (std::has_single_bit(count)) {
     const Index row = new_row(2 * count);
+    free_[std::bit_width(count) - 1].push_back(first);
     for (std::size_t k = 0; k < count; ++k) swap_entries(first + static_cast<Index>(k), row + static_cast<Index>(k));
-    free_[std::bit_width(count) - 1].push_back(std::exchange(first, row));
+    first = row;
   }
   entries_[first].count = static_cast<std::uint8_t>(count + 1);
   return first + static_cast<Index>(count);
