@@ -183,13 +183,14 @@ void UnfoldingFront::offer(Index vertex, Index point, double distance, double sl
   const double nearest = entries.empty() ? std::numeric_limits<double>::infinity() : entries.front().distance;
   if (!(distance <= nearest + slack)) return;
   Index own;
+  bool is_added = false;
   if (const Entry* known = find(vertex, point)) {
     if (!comes_before(distance, focusing, known->distance, known->focusing) || known->gains == most_gains) return;
     distance = std::min(distance, known->distance);
     own = static_cast<Index>(known - entries_.data());
   } else {
-    const bool is_full = entries.size() >= (of_curve_ ? most_of_curve : most_points);
-    own = is_full ? entry_to_take(vertex, point, distance) : append(vertex);
+    is_added = entries.size() < (of_curve_ ? most_of_curve : most_points);
+    own = is_added ? append(vertex) : entry_to_take(vertex, point, distance);
     if (own == none) return;
     entries_[own].point = point;
     entries_[own].gains = 0;
@@ -200,9 +201,14 @@ void UnfoldingFront::offer(Index vertex, Index point, double distance, double sl
   if (directions_) ways_[own] = way;
   if (d_ != 2)
     std::copy(displacement.begin(), displacement.end(), displacements_.begin() + static_cast<std::ptrdiff_t>(own * d_));
+  // The nearest comes first, of equally near ones one that was added.
   const Index first = first_[vertex];
-  const auto least = std::ranges::min_element(entries_of(vertex), {}, &Entry::distance);
-  if (const auto k = static_cast<Index>(&*least - &entries_[first]); k > 0) swap_entries(first, first + k);
+  Index least = first;
+  if (own == first)
+    least = static_cast<Index>(&*std::ranges::min_element(entries_of(vertex), {}, &Entry::distance) - entries_.data());
+  else if (distance < nearest || (is_added && distance == nearest))
+    least = own;
+  if (least != first) swap_entries(first, least);
   queue_.push({distance, vertex, point});
 }
 
