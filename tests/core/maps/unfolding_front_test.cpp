@@ -218,6 +218,27 @@ TEST(UnfoldingFront, FromManyPointsInTurnIsThatFromTheNearest) {
   }
 }
 
+// More samples than a vertex keeps, most of them on one vertex: those of others take the place of its first one.
+TEST(UnfoldingFront, FromACurveThatCrowdsIsThatFromItsNearestSample) {
+  const Index around = 9, crowded = 40;
+  const CsrGraph graph(tube(12, around));
+  for (Index crowd = 8; crowd < 20; ++crowd)
+    for (Index aside = 0; aside < 16; ++aside) {
+      Source curve(2);
+      std::vector<Index> samples(static_cast<std::size_t>(crowd), crowded);
+      for (Index k = 0; k < aside; ++k) {
+        samples.insert(samples.begin(), crowded + k % 3);
+        samples.push_back(k % 2 ? crowded + around : crowded - around);
+      }
+      for (std::size_t k = 0; k < samples.size(); ++k) {
+        const std::array at{0.1 * static_cast<double>(k), 0.0};
+        curve.add(Vertex(samples[k]), 1, at, {}, {static_cast<Index>(k), 0, at});
+      }
+      const auto away = distances(graph, curve);
+      for (const Index sample : samples) ASSERT_EQ(away[sample], 0) << crowd << ", " << aside << ": " << sample;
+    }
+}
+
 TEST(UnfoldingFront, IsTheSameWithStarsThatAreKept) {
   const CsrGraph graph(sphere_graph(600));
   UnfoldingFront kept(graph, UnfoldingFront::stars(graph)), looked_up(graph);

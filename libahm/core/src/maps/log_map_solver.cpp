@@ -95,12 +95,12 @@ struct LogMapSolver::Impl {
   void check_memory_of_factors() const;
   void check_memory_of_maps(std::size_t count, const MapSettings& map) const;
   /// Kept by solvers that make many maps.
-  std::shared_ptr<const UnfoldingFront::Stars> stars() const {
+  std::shared_ptr<const UnfoldingFront::Stars> stars(unsigned threads) const {
     if (!graph.is_delaunay()) return nullptr;
     std::call_once(looked_around, [&] {
-      kept_stars = std::make_shared<const UnfoldingFront::Stars>(
-          graph, halved_vertices(scales.components.of_vertex, scales.sizes), strategy == Strategy::global,
-          options.threads);
+      std::vector<std::uint8_t> halved = halved_vertices(scales.components.of_vertex, scales.sizes);
+      kept_stars = std::make_shared<const UnfoldingFront::Stars>(graph, std::move(halved), strategy == Strategy::global,
+                                                                 threads);
     });
     return kept_stars;
   }
@@ -246,7 +246,7 @@ std::vector<LogMap> LogMapSolver::Impl::solve_block(std::size_t time, std::span<
     if (unfolded.empty())
       for (const Source& source : sources)
         unfolded.push_back(map.distances
-                               ? unfolded_from(source, graph, stars(), map.spread, map.radius, map.progress.stop)
+                               ? unfolded_from(source, graph, stars(threads), map.spread, map.radius, map.progress.stop)
                                : Unfolded{});
   };
   if (strategy == Strategy::march) {

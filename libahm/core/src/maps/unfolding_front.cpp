@@ -157,9 +157,9 @@ Index UnfoldingFront::entry_to_take(Index vertex, Index point, double distance) 
     double distance;
     Index entry, point;
   };
-  // Of equally far ones the new one goes.
+  // Of equally far ones that with the largest number goes.
   const auto comes_before = [](const Kept& a, const Kept& b) {
-    return a.distance != b.distance ? a.distance < b.distance : a.entry > b.entry;
+    return a.distance != b.distance ? a.distance < b.distance : a.point < b.point;
   };
   const auto counts_less = [&](const Kept& a, const Kept& b) {
     const int level_a = std::countr_zero(static_cast<unsigned>(a.point)),
