@@ -204,8 +204,6 @@ void read_pcd_text(const Input& in, const PcdHeader& header, Lines& lines,
   while (lines.next_filled()) {
     if (point++ == header.points)
       fail_at_line(in, lines.number(), "more lines than the " + std::to_string(header.points) + " points");
-    if (lines.line().find_first_of("\v\f") != std::string_view::npos)  // no blanks to PCL, which leaves the point out
-      fail_at_line(in, lines.number(), "numbers must stand apart by spaces or tabs");
     split_words(lines.line(), words);
     for (std::string_view word : words) real_or_fail(in, lines.number(), word);
     if (words.size() != per_point) {
@@ -220,17 +218,21 @@ void read_pcd_text(const Input& in, const PcdHeader& header, Lines& lines,
   }
 }
 
-PcdHeader check_pcd(const Input& in) {
-  PcdHeader header = parse_pcd_header(in);
+CheckedPcd check_pcd(const Input& in) {
+  CheckedPcd checked{parse_pcd_header(in), {}};
+  const PcdHeader& header = checked.header;
   if (header.data == PcdData::ascii) {
     Lines lines(std::string_view(in.bytes).substr(header.body), header.body_line);
-    read_pcd_text(in, header, lines, [](const Words&) {});
+    read_pcd_text(in, header, lines, [&](const Words& words) {
+      for (std::string_view word : words) (checked.text += word) += ' ';
+      checked.text.back() = '\n';
+    });
   } else if (header.data == PcdData::binary) {
     check_pcd_size(in, header);
   } else {
     pcd_sizes(in, header);
   }
-  return header;
+  return checked;
 }
 
 std::string full_header(const PcdHeader& header) {

@@ -47,11 +47,16 @@ void read_pcd_text(const Input& in, const PcdHeader& header, Lines& lines,
 /// @throws IoError naming the byte, where they do not fit the header or the file
 std::array<std::uint32_t, 2> pcd_sizes(const Input& in, const PcdHeader& header);
 
+/// What is safe to hand on.
+struct CheckedPcd {
+  PcdHeader header;
+  std::string text;  ///< of a file of text, a line for each point: readers do not agree on other blanks than these
+};
+
 /// Reads the header and checks everything a PCD reader would have to believe: fields and counts against each other and
-/// against the size of the file, the sizes of compressed data, and in text every line and word. What passes is safe to
-/// hand on.
+/// against the size of the file, the sizes of compressed data, and in text every line and word.
 /// @throws IoError naming the line or byte
-PcdHeader check_pcd(const Input& in);
+CheckedPcd check_pcd(const Input& in);
 
 /// The header in full, as text of a PCD file: what a reader should make of it.
 std::string full_header(const PcdHeader& header);

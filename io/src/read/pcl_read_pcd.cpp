@@ -1,5 +1,5 @@
 // PCL reads PCD: its format. PCL trusts the header and reads "1,5" as 1, so check_pcd goes first; PCL then works on what
-// check_pcd made of the header, and on the same bytes in memory, never on the file again. This file must not be compiled with -march flags: PCL's Eigen types
+// check_pcd made of the header and of text, or on the same bytes in memory, never on the file again. This file must not be compiled with -march flags: PCL's Eigen types
 // cross the border.
 #include "read/pcl_read_pcd.hpp"
 
@@ -11,6 +11,8 @@
 #include <cstring>
 #include <span>
 #include <sstream>
+#include <string>
+#include <utility>
 
 #include "read/pcd_header.hpp"
 #include "read/pcl_quiet.hpp"
@@ -62,7 +64,8 @@ double load_value(const Input& in, const PCLPointField& field, const std::uint8_
   }
 }
 
-PCLPointCloud2 read_with_pcl(const Input& in, const PcdHeader& header) {
+/// @param text  of the points, taken
+PCLPointCloud2 read_with_pcl(const Input& in, const PcdHeader& header, std::string&& text) {
   const PclQuiet quiet;
   pcl::PCDReader reader;
   PCLPointCloud2 cloud;
@@ -77,7 +80,7 @@ PCLPointCloud2 read_with_pcl(const Input& in, const PcdHeader& header) {
   if (error == 0 && (cloud.point_step != header.point_size || cloud.data.size() != header.points * header.point_size))
     error = -1;
   if (error == 0 && header.data == PcdData::ascii) {
-    std::istringstream body(in.bytes.substr(header.body));
+    std::istringstream body(std::move(text));
     body.imbue(std::locale::classic());
     error = reader.readBodyASCII(body, cloud, version);
   } else if (error == 0) {
@@ -165,7 +168,7 @@ void read_colors(const PCLPointCloud2& cloud, Geometry& g) {
 }  // namespace
 
 Geometry read_pcd(const Input& in) {
-  const PcdHeader header = check_pcd(in);
+  auto [header, text] = check_pcd(in);
   Geometry g;
   g.format = header.data == PcdData::ascii    ? "PCD text"
              : header.data == PcdData::binary ? "PCD binary"
@@ -173,7 +176,7 @@ Geometry read_pcd(const Input& in) {
   const auto& from = header.viewpoint;
   g.acquisition = {header.width, header.height, {from[0], from[1], from[2]}, {from[3], from[4], from[5], from[6]}};
   if (header.points == 0) return g;
-  const PCLPointCloud2 cloud = read_with_pcl(in, header);
+  const PCLPointCloud2 cloud = read_with_pcl(in, header, std::move(text));
   check_result(in, header, cloud);
   read_vectors(in, cloud, {"x", "y", "z"}, g.points);
   read_vectors(in, cloud, {"normal_x", "normal_y", "normal_z"}, g.normals);
