@@ -168,8 +168,7 @@ Index UnfoldingFront::entry_to_take(Index vertex, Index point, double distance) 
   };
   std::array<Kept, most_of_curve + 1> all{{{distance, none, point}}};
   std::size_t count = 1;
-  for (const Entry& entry : entries_of(vertex))
-    all[count++] = {entry.distance, static_cast<Index>(&entry - entries_.data()), entry.point};
+  for (const Entry& entry : entries_of(vertex)) all[count++] = {entry.distance, number(entry), entry.point};
   const auto end = all.begin() + static_cast<std::ptrdiff_t>(count),
              others = all.begin() + (of_curve_ ? nearest_of_curve : 0);
   if (of_curve_) std::nth_element(all.begin(), others, end, comes_before);
@@ -187,7 +186,7 @@ void UnfoldingFront::offer(Index vertex, Index point, double distance, double sl
   if (const Entry* known = find(vertex, point)) {
     if (!comes_before(distance, focusing, known->distance, known->focusing) || known->gains == most_gains) return;
     distance = std::min(distance, known->distance);
-    own = static_cast<Index>(known - entries_.data());
+    own = number(*known);
   } else {
     is_added = entries.size() < (of_curve_ ? most_of_curve : most_points);
     own = is_added ? append(vertex) : entry_to_take(vertex, point, distance);
@@ -205,7 +204,7 @@ void UnfoldingFront::offer(Index vertex, Index point, double distance, double sl
   const Index first = first_[vertex];
   Index least = first;
   if (own == first)
-    least = static_cast<Index>(&*std::ranges::min_element(entries_of(vertex), {}, &Entry::distance) - entries_.data());
+    least = number(*std::ranges::min_element(entries_of(vertex), {}, &Entry::distance));
   else if (distance < nearest || (is_added && distance == nearest))
     least = own;
   if (least != first) swap_entries(first, least);
@@ -256,7 +255,7 @@ void UnfoldingFront::spread(Index from, Index point, double distance) {
   const std::size_t degree = corners.size();
   known_.resize(degree);
   double longest = 0;
-  const auto way_of = [&](const Entry* entry) { return ways_[entry - entries_.data()]; };
+  const auto way_of = [&](const Entry* entry) { return ways_[number(*entry)]; };
   const Entry* const here = find(from, point);
   const Way own = directions_ ? way_of(here) : Way{};
   const double focusing = here->focusing, curvature_here = distance > 0 ? curvature(from) : 0;

@@ -158,6 +158,7 @@ class UnfoldingFront {
       if (entry.point == point) return &entry;
     return nullptr;
   }
+  Index number(const Entry& entry) const { return static_cast<Index>(&entry - entries_.data()); }
   Index append(Index vertex);
   Index new_row(std::size_t size);
   void swap_entries(Index a, Index b);
@@ -177,7 +178,7 @@ class UnfoldingFront {
   void carry(Index from, Index point, double distance);
   double factor_at(Index vertex, Index point, std::span<const double> displacement, double distance);
   std::span<const double> displacement(const Entry& entry) const {
-    return std::span(displacements_).subspan(static_cast<std::size_t>(&entry - entries_.data()) * d_, d_);
+    return std::span(displacements_).subspan(number(entry) * d_, d_);
   }
   std::span<const Corner> around(Index vertex);
   static double reflex_angle(std::span<const Corner> corners);
