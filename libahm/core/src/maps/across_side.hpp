@@ -56,10 +56,16 @@ inline Vec2 turned_with(const Vec2& v, const Vec2& from, const Vec2& to, double 
   return {(v[0] * along - v[1] * across) / by, (v[1] * along + v[0] * across) / by};
 }
 
+/// A direction at a point of which two neighbors have given an estimate each.
+struct DirectionAcross {
+  Vec2 direction;
+  double difference;  ///< of the two estimates, radians
+};
+
 /// The direction at the point of the ray to c, from those of the rays to a and b: what both say, by how near it crosses the
 /// side; of two ways that of the nearer end.
 /// @param side  1: a, b, c counterclockwise; -1: clockwise
-inline Vec2 direction_across(const Across& point, double ab, double cx, double cy, const Vec2& to_a, const Vec2& to_b,
+inline DirectionAcross direction_across(const Across& point, double ab, double cx, double cy, const Vec2& to_a, const Vec2& to_b,
                              double side) {
   // Rays to a and b that differ by more than this many times the angle at which the side is seen come along two ways, as around
   // a tube, and there is none between them.
@@ -67,12 +73,13 @@ inline Vec2 direction_across(const Across& point, double ab, double cx, double c
   const double x = point.x, depth = point.depth, share = point.share;
   const Vec2 a{-x, depth}, b{ab - x, depth}, c{cx - x, cy + depth};
   const Vec2 by_a = turned_with(to_a, a, c, side), by_b = turned_with(to_b, b, c, side);
-  if (!(length(a) > least_ray * ab) || std::isnan(to_a[0])) return by_b;
-  if (!(length(b) > least_ray * ab) || std::isnan(to_b[0])) return by_a;
-  if (length(Vec2{by_a[0] - by_b[0], by_a[1] - by_b[1]}) > two_ways * ab / length(c)) return share < 0.5 ? by_a : by_b;
+  if (!(length(a) > least_ray * ab) || std::isnan(to_a[0])) return {by_b, 0};
+  if (!(length(b) > least_ray * ab) || std::isnan(to_b[0])) return {by_a, 0};
+  const double difference = length(Vec2{by_a[0] - by_b[0], by_a[1] - by_b[1]});
+  if (difference > two_ways * ab / length(c)) return {share < 0.5 ? by_a : by_b, difference};
   const Vec2 sum{(1 - share) * by_a[0] + share * by_b[0], (1 - share) * by_a[1] + share * by_b[1]};
   const double size = length(sum);
-  return size > 0 ? Vec2{sum[0] / size, sum[1] / size} : by_a;
+  return {size > 0 ? Vec2{sum[0] / size, sum[1] / size} : by_a, difference};
 }
 
 }  // namespace ahm

@@ -27,6 +27,11 @@ Vec2 UnfoldingFront::direction(Vertex vertex) const {
   return first < 0 || !directions_ ? Vec2{NAN, NAN} : ways_[first].direction;
 }
 
+double UnfoldingFront::doubt(Vertex vertex) const {
+  const Index first = first_[vertex.index];
+  return first < 0 || !directions_ ? NAN : std::sqrt(ways_[first].doubt);
+}
+
 bool UnfoldingFront::is_bent(Vertex vertex) const {
   const Index first = first_[vertex.index];
   return first >= 0 && directions_ && ways_[first].turned > straight_on;

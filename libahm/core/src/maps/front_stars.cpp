@@ -353,9 +353,11 @@ void UnfoldingFront::Stars::find_cut_edges(Index vertex, std::vector<CutEdge>& e
   edges.erase(kept, edges.end());
 }
 
-std::shared_ptr<const UnfoldingFront::Stars> UnfoldingFront::stars(const TangentGraph& graph, unsigned threads) {
+std::shared_ptr<const UnfoldingFront::Stars> UnfoldingFront::stars(const TangentGraph& graph, unsigned threads,
+                                                                    bool midpoints) {
   if (graph.dimension() != 2) return nullptr;
-  return std::make_shared<const Stars>(graph, halved_vertices(graph), true, threads);
+  std::vector<std::uint8_t> halved = midpoints ? halved_vertices(graph) : std::vector<std::uint8_t>();
+  return std::make_shared<const Stars>(graph, std::move(halved), true, threads);
 }
 
 }  // namespace ahm

@@ -24,7 +24,17 @@ std::string_view to_string(Status status) noexcept {
   return "unknown";
 }
 
-std::string_view to_string(Method method) noexcept { return method == Method::heat ? "heat" : "exact"; }
+std::string_view to_string(Method method) noexcept {
+  switch (method) {
+    case Method::heat:
+      return "heat";
+    case Method::polar:
+      return "polar";
+    case Method::exact:
+      return "exact";
+  }
+  return "unknown";
+}
 
 std::string_view to_string(Strategy strategy) noexcept {
   switch (strategy) {

@@ -109,7 +109,7 @@ Index UnfoldingFront::add(const Source& source) {
   }
   // Also where another point is nearer by less: what lies on this one's side of the border between them comes from there.
   for (const Given& one : given)
-    offer(one.vertex, one.point, one.distance, 4 * longest_, {}, {unit_vector(one.offset), one.mirrored});
+    offer(one.vertex, one.point, one.distance, 4 * longest_, {}, {.direction = unit_vector(one.offset), .mirrored = one.mirrored});
   if (stars_) offer_midpoints(given);
   return first;
 }
@@ -133,9 +133,36 @@ void UnfoldingFront::offer_midpoints(std::vector<Given>& given) {
         const double squared = 0.5 * (a * a + b * b) - edge.half * edge.half;
         const Vec2 between{one.offset[0] + other->offset[0], one.offset[1] + other->offset[1]};
         offer(edge.midpoint, one.point, std::sqrt(std::max(0.0, squared)), 4 * longest_, {},
-              {unit_vector(between), one.mirrored});
+              {.direction = unit_vector(between), .mirrored = one.mirrored});
       }
     }
+  }
+}
+
+void UnfoldingFront::restart(std::span<const Seed> seeds) {
+  struct Start {
+    Index vertex;
+    double distance, focusing;
+    Way way;
+  };
+  std::vector<Start> starts;
+  starts.reserve(seeds.size());
+  for (const Seed& seed : seeds) {
+    const Entry* const found = find(seed.vertex.index, 0);
+    if (!found) continue;
+    Way way = ways_[number(*found)];
+    way.doubt = 0;
+    if (!std::isnan(seed.direction[0])) way.direction = seed.direction;
+    starts.push_back({seed.vertex.index, seed.distance / graph_.length_unit(), found->focusing, way});
+  }
+  std::ranges::fill(first_, none);
+  entries_.clear();
+  ways_.clear();
+  for (std::vector<Index>& rows : free_) rows.clear();
+  queue_ = {};
+  for (const Start& start : starts) {
+    offer(start.vertex, 0, start.distance, 0, {}, start.way, start.focusing);
+    entries_[first_[start.vertex]].gains = most_gains;  // nothing replaces it
   }
 }
 
@@ -243,6 +270,19 @@ double UnfoldingFront::curvature(Index vertex) {
   return known;
 }
 
+/// From where a way arrives at a vertex, in its frame, unit length: where it crosses the last side; {0, 0} of what is no vertex.
+Vec2 UnfoldingFront::back_direction(Index vertex, const Way& way) const {
+  if (way.back != Vec2{} || vertex >= graph_.size()) return way.back;
+  const Star star = graph_.star(vertex);
+  std::array<Vec2, 2> ends{};
+  for (std::size_t e = star.degree(); e-- > 0;)
+    for (std::size_t k = 0; k < 2; ++k)
+      if (star.neighbors[e] == way.last[k]) ends[k] = {star.logs[2 * e], star.logs[2 * e + 1]};
+  const Vec2 crossing = (1.0 - way.share) * ends[0] + static_cast<double>(way.share) * ends[1];
+  const double away = length(crossing);
+  return away > 0 ? (1 / away) * crossing : Vec2{};
+}
+
 /// Along the edges of a vertex, and across the triangles of its star: from its own distance and that of one neighbour to
 /// the other.
 void UnfoldingFront::spread(Index from, Index point, double distance) {
@@ -273,7 +313,8 @@ void UnfoldingFront::spread(Index from, Index point, double distance) {
     known.distance = known.is_new ? along : before;
     known.along = along;
     known.focusing = known.is_new ? focusing_along(corners[k], along) : entry->focusing;
-    if (directions_) known.way = known.is_new ? Way{own.direction, false, turned} : way_of(entry);
+    if (directions_)
+      known.way = known.is_new ? Way{own.direction, {}, {from, from}, 0, own.doubt, false, turned} : way_of(entry);
     longest = std::max(longest, corners[k].length);
   }
   for (std::size_t k = 0; k < degree; ++k) {
@@ -308,8 +349,15 @@ void UnfoldingFront::spread(Index from, Index point, double distance) {
       found.focusing = bent_by;
       found.is_new = true;
       if (!directions_) return;
-      found.way.direction = direction_across(across, base_length, cx, cy, own.direction, other.way.direction,
-                                             own.mirrored ? -side : side);
+      const double turn = own.mirrored ? -side : side;
+      const auto [direction, difference] =
+          direction_across(across, base_length, cx, cy, own.direction, other.way.direction, turn);
+      found.way.direction = direction;
+      found.way.doubt = static_cast<float>((1 - across.share) * own.doubt + across.share * other.way.doubt +
+                                           difference * difference);
+      found.way.back = {};
+      found.way.last = {from, corners[base].neighbor};
+      found.way.share = static_cast<float>(across.share);
       found.way.turned = std::max(own.turned, other.way.turned);
     };
     unfold(k, right.length, next, left.length, 1);

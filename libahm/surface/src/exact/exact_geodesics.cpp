@@ -204,6 +204,7 @@ LabelledLogMap ExactGeodesics::log_map(const Placed& from, Source source, const 
   exact::ExactOptions exact_options;
   exact_options.radius = options.radius / flat_.length_unit;
   exact_options.tolerance = options.tolerance;
+  exact_options.most_windows = options.most_windows;
   exact_options.progress = options.progress;
   const exact::ExactMap exact = exact::exact_map(flat_.surface, from.points, exact_options);
 

@@ -36,10 +36,9 @@ Found propagate(const PolyhedralSurface& surface, std::span<const MeshPoint> sou
                 std::span<const MeshPoint> targets, const ExactOptions& options) {
   std::unique_ptr<Propagation> windows;
   if (options.tolerance > 0)
-    windows =
-        std::make_unique<MergedPropagation>(surface, options.radius, targets, options.only_targets, options.tolerance);
+    windows = std::make_unique<MergedPropagation>(surface, options, targets);
   else
-    windows = std::make_unique<ExactPropagation>(surface, options.radius, targets, options.only_targets);
+    windows = std::make_unique<ExactPropagation>(surface, options, targets);
   for (const MeshPoint& p : sources) windows->add_source(p);
   windows->run(options.progress);
   return std::move(*windows).found();

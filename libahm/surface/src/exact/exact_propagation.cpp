@@ -19,9 +19,9 @@ constexpr double wedge_margin = 1e-12;
 
 }  // namespace
 
-ExactPropagation::ExactPropagation(const PolyhedralSurface& surface, double radius, std::span<const MeshPoint> targets,
-                                   bool only_targets)
-    : Propagation(surface, radius, targets, only_targets),
+ExactPropagation::ExactPropagation(const PolyhedralSurface& surface, const ExactOptions& options,
+                                   std::span<const MeshPoint> targets)
+    : Propagation(surface, options, targets),
       sighting_(3 * static_cast<std::size_t>(surface.face_count()), Sighting{infinity, 0}),
       windows_(bucket_width * surface.mean_length()),
       bends_(bucket_width * surface.mean_length()) {}

@@ -9,8 +9,7 @@ namespace ahm::exact {
 
 class ExactPropagation final : public Propagation {
  public:
-  ExactPropagation(const PolyhedralSurface& surface, double radius, std::span<const MeshPoint> targets,
-                   bool only_targets);
+  ExactPropagation(const PolyhedralSurface& surface, const ExactOptions& options, std::span<const MeshPoint> targets);
 
   void run(const Progress& progress) override;
 

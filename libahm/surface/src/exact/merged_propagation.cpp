@@ -39,10 +39,10 @@ void turn_over(FrontPiece& piece, double length) {
 
 }  // namespace
 
-MergedPropagation::MergedPropagation(const PolyhedralSurface& surface, double radius,
-                                     std::span<const MeshPoint> targets, bool only_targets, double tolerance)
-    : Propagation(surface, radius, targets, only_targets),
-      tolerance_(2 * tolerance),
+MergedPropagation::MergedPropagation(const PolyhedralSurface& surface, const ExactOptions& options,
+                                     std::span<const MeshPoint> targets)
+    : Propagation(surface, options, targets),
+      tolerance_(2 * options.tolerance),
       upper_(distance_.size() + targets.size(), infinity),
       lists_(3 * static_cast<std::size_t>(surface.face_count()), Lists{none, none, infinity}),
       free_(none),

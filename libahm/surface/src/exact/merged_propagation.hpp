@@ -21,9 +21,8 @@ namespace ahm::exact {
 
 class MergedPropagation final : public Propagation {
  public:
-  /// @param tolerance  of the distances, relative; > 0
-  MergedPropagation(const PolyhedralSurface& surface, double radius, std::span<const MeshPoint> targets,
-                    bool only_targets, double tolerance);
+  /// @param options  with a tolerance > 0
+  MergedPropagation(const PolyhedralSurface& surface, const ExactOptions& options, std::span<const MeshPoint> targets);
 
   void run(const Progress& progress) override;
 

@@ -19,11 +19,12 @@ double most_windows(double faces) { return 1e6 + faces * faces; }
 
 }  // namespace
 
-Propagation::Propagation(const PolyhedralSurface& surface, double radius, std::span<const MeshPoint> targets,
-                         bool only_targets)
+Propagation::Propagation(const PolyhedralSurface& surface, const ExactOptions& options,
+                         std::span<const MeshPoint> targets)
     : surface_(surface),
-      horizon_(radius),
-      only_targets_(only_targets),
+      horizon_(options.radius),
+      only_targets_(options.only_targets),
+      most_windows_(options.most_windows),
       distance_(static_cast<std::size_t>(surface.vertex_count()), infinity),
       target_distance_(targets.size(), infinity),
       reached_(distance_.size() + targets.size()) {

@@ -55,7 +55,7 @@ inline bool on_line(const Place& from, double length) { return !(-from[1] > 1e-1
 /// One run from a set of sources. Sources first, then `run`, then what it found.
 class Propagation {
  public:
-  Propagation(const PolyhedralSurface& surface, double radius, std::span<const MeshPoint> targets, bool only_targets);
+  Propagation(const PolyhedralSurface& surface, const ExactOptions& options, std::span<const MeshPoint> targets);
   virtual ~Propagation() = default;
   Propagation(const Propagation&) = delete;
   Propagation& operator=(const Propagation&) = delete;
@@ -131,6 +131,7 @@ class Propagation {
   const PolyhedralSurface& surface_;
   double horizon_;
   bool only_targets_;
+  Offset most_windows_;  ///< 0: no limit
   std::size_t sources_ = 0;
   std::vector<double> distance_, target_distance_;
   std::vector<Reached> reached_;
@@ -162,6 +163,10 @@ void Propagation::drain(Vertices& vertices, const AtVertex& at_vertex, Windows& 
     if (windows.key() > horizon_) break;
     if (only_targets_) horizon_ = std::min(horizon_, farthest_target());
     if (windows.key() > horizon_) break;
+    if (most_windows_ > 0 && made_ >= most_windows_) {
+      horizon_ = windows.key();
+      break;
+    }
     while (!windows.bucket_empty() || !vertices.bucket_empty()) {
       while (!vertices.bucket_empty()) vertices.drain_chunk(at_vertex);
       if (windows.bucket_empty()) continue;

@@ -31,6 +31,7 @@ struct MarchStatistics {
 /// How a map was made.
 enum class Method {
   heat,   ///< by diffusion (`LogMapSolver`)
+  polar,  ///< geodesic polar coordinates of a front (`PolarMapSolver`, `polar_map`)
   exact,  ///< by straight lines over the flat triangles of a mesh (`ExactGeodesics`)
 };
 

@@ -46,8 +46,9 @@ class UnfoldingFront {
  public:
   /// The triangles around every vertex, made once for many fronts: about 200 bytes a vertex.
   class Stars;
-  /// @param threads  0: one per core
-  static std::shared_ptr<const Stars> stars(const TangentGraph& graph, unsigned threads = 1);
+  /// @param threads    0: one per core
+  /// @param midpoints  whether triangles of small components are cut at the midpoints of their sides
+  static std::shared_ptr<const Stars> stars(const TangentGraph& graph, unsigned threads = 1, bool midpoints = true);
 
   struct Agreement {
     /// Of the triangles that vertices see between their neighbours, the share that the other two corners see, too: 1 of a
@@ -73,6 +74,18 @@ class UnfoldingFront {
   /// How many points were added.
   Index points() const noexcept { return points_; }
   const TangentGraph& graph() const noexcept { return graph_; }
+
+  /// Polar coordinates of a vertex that are known better than the front computes them: from exact windows around the source.
+  struct Seed {
+    Vertex vertex;
+    double distance;  ///< world units
+    Vec2 direction;   ///< as `direction`
+  };
+  /// Replaces all that the front has found by these seeds, whose values it keeps. The next `run` computes the other vertices anew. A
+  /// seed keeps the curvature that the front has found at its vertex, and is ignored where the front has not arrived. For fronts
+  /// from a single point, with directions.
+  void restart(std::span<const Seed> seeds);
+
   /// Lets the front go on until all that is nearer than `radius` (world units) has its distance; what lies beyond may have one
   /// or not, perhaps too long a one. May be called again after `add`: only what is nearer to the new points changes.
   void run(double radius = std::numeric_limits<double>::infinity());
@@ -88,6 +101,7 @@ class UnfoldingFront {
   /// geodesic polar coordinates [MR12]. NaN where the front did not come, and at the point itself.
   Vec2 direction(Vertex vertex) const;
   bool has_directions() const noexcept { return directions_; }
+  double doubt(Vertex vertex) const;
   /// Whether the way bends at the boundary, around a hole or in a notch, by more than half a radian in all. Known with
   /// directions.
   bool is_bent(Vertex vertex) const;
@@ -106,8 +120,12 @@ class UnfoldingFront {
   /// How the way of an entry leaves its point, in the frame of the source.
   struct Way {
     Vec2 direction;
-    bool mirrored = false;  ///< whether the frame of the vertex is turned over against it
-    float turned = 0;       ///< angle by which it bends at the boundary, all in all
+    Vec2 back{};  ///< the direction from which it arrives, in the frame of the vertex; {0, 0}: between `last`
+    std::array<Index, 2> last{-1, -1};  ///< the ends of the side that it crosses last, or one of them twice
+    float share = 0;                    ///< of that side, from the first end to where it crosses
+    float doubt = 0;
+    bool mirrored = false;              ///< whether the frame of the vertex is turned over against that of the source
+    float turned = 0;                   ///< angle by which it bends at the boundary, all in all
   };
   /// A neighbour of a vertex, and the angle from it to the next one counterclockwise.
   struct Corner {
@@ -174,6 +192,7 @@ class UnfoldingFront {
   void offer(Index vertex, Index point, double distance, double slack, std::span<const double> displacement,
              const Way& way, double focusing = 0);
   Index entry_to_take(Index vertex, Index point, double distance);
+  Vec2 back_direction(Index vertex, const Way& way) const;
   void spread(Index from, Index point, double distance);
   void carry(Index from, Index point, double distance);
   double factor_at(Index vertex, Index point, std::span<const double> displacement, double distance);

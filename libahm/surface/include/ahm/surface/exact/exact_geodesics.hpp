@@ -35,7 +35,8 @@ struct ExactMapOptions {
   /// of vertices (`exact::ExactOptions`); directions may be off by about sqrt(2 tolerance), as those of paths that much
   /// longer are, and are any of those of two ways that differ by less.
   double tolerance = 0;
-  bool frames = false;  ///< fill `LogMap::frames`
+  Offset most_windows = 0;  ///< as of `exact::ExactOptions`
+  bool frames = false;      ///< fill `LogMap::frames`
   Progress progress;
   unsigned threads = 0;  ///< of what makes several maps; 0: one per core
 };
