@@ -7,6 +7,8 @@
 
 #include "ahm/error.hpp"
 #include "ahm/maps/unfolding_front.hpp"
+#include "ahm/util/small_math.hpp"
+#include "ahm/util/vec.hpp"
 
 namespace ahm {
 namespace {
@@ -14,6 +16,8 @@ namespace {
 /// A way that bends at the boundary by no more than this angle, all in all, goes straight on: boundaries of surfaces are not
 /// straight to the last bit.
 constexpr float straight_on = 0.5F;
+/// The two estimates of a direction lie on both sides of it, so that it is off by half their difference (docs/accuracy.md).
+constexpr double share_of_difference = 0.5;
 
 }  // namespace
 
@@ -27,9 +31,31 @@ Vec2 UnfoldingFront::direction(Vertex vertex) const {
   return first < 0 || !directions_ ? Vec2{NAN, NAN} : ways_[first].direction;
 }
 
-double UnfoldingFront::doubt(Vertex vertex) const {
+double UnfoldingFront::direction_error(Vertex vertex) const {
   const Index first = first_[vertex.index];
-  return first < 0 || !directions_ ? NAN : std::sqrt(ways_[first].doubt);
+  return first < 0 || !directions_ ? NAN : share_of_difference * std::sqrt(ways_[first].variance);
+}
+
+Vec2 UnfoldingFront::arrival(Vertex vertex) const {
+  const Index first = first_[vertex.index];
+  if (first < 0 || !directions_) return {NAN, NAN};
+  const Way& way = ways_[first];
+  if (way.arrival != Vec2{}) return way.arrival;  // also where it is NaN
+  const Star star = graph_.star(vertex.index);
+  std::array<Vec2, 2> ends{};
+  for (std::size_t k = 0; k < 2; ++k)
+    if (const auto end = std::ranges::find(star.neighbors, way.last[k]); end != star.neighbors.end()) {
+      const std::span<const double> log = star.log(static_cast<std::size_t>(end - star.neighbors.begin()));
+      ends[k] = {log[0], log[1]};
+    }
+  const Vec2 crossing = (1.0 - way.share) * ends[0] + static_cast<double>(way.share) * ends[1];
+  const double away = length(crossing);
+  return (-1 / away) * crossing;
+}
+
+bool UnfoldingFront::is_mirrored(Vertex vertex) const {
+  const Index first = first_[vertex.index];
+  return first >= 0 && directions_ && ways_[first].mirrored;
 }
 
 bool UnfoldingFront::is_bent(Vertex vertex) const {

@@ -11,7 +11,7 @@
 #include "ahm/util/small_math.hpp"
 #include "ahm/util/text.hpp"
 #include "ahm/util/vec.hpp"
-#include "maps/source_vertices.hpp"
+#include "maps/right_hand_side.hpp"
 
 namespace ahm {
 namespace {
@@ -40,40 +40,80 @@ std::vector<double> jumps(const TangentGraph& graph, std::span<const double> coo
   return jump;
 }
 
+/// The source's axes, carried along the path to a vertex: what turns the direction of departure to that of arrival, row major.
+std::array<double, 4> carried_axes(const Vec2& departure, const Vec2& arrival, bool mirrored) {
+  const double side = mirrored ? -1 : 1;
+  // rotation(arrival) diag(1, side) rotation(-departure)
+  const Vec2 u{arrival[0] * departure[0] + side * arrival[1] * departure[1],
+               arrival[1] * departure[0] - side * arrival[0] * departure[1]};
+  return {u[0], -side * u[1], u[1], side * u[0]};
+}
+
+/// One per vertex, row major: the source's axes at its own vertices, elsewhere those of the vertex.
+std::vector<double> source_axes(const Source& source, std::size_t n) {
+  std::vector<double> axes(4 * n, 0);
+  for (std::size_t i = 0; i < n; ++i) axes[4 * i] = axes[4 * i + 3] = 1;
+  for (std::size_t k = 0; k < source.vertices().size() && !source.axes().empty(); ++k)
+    std::ranges::copy(source.axes().subspan(4 * k, 4), axes.begin() + 4 * std::ptrdiff_t{source.vertices()[k].index});
+  return axes;
+}
+
+std::vector<Status> statuses(const UnfoldingFront& front, const Source& source, double radius) {
+  const TangentGraph& graph = front.graph();
+  std::vector<Status> status(static_cast<std::size_t>(graph.size()), Status::disconnected);
+  for (Index i = 0; i < graph.size(); ++i)
+    if (const double distance = front.distance(Vertex(i)); std::isfinite(distance) && distance <= radius)
+      status[i] = Status::ok;
+  if (std::isinf(radius)) return status;  // the front has reached all that is connected
+  const Components components = connected_components(graph);
+  const SourceComponents reached(source, components.of_vertex);
+  for (Index i = 0; i < graph.size(); ++i)
+    if (status[i] != Status::ok && reached.hold(i)) status[i] = Status::beyond_radius;
+  return status;
+}
+
+void check(const UnfoldingFront& front, const Source& source, const PolarMapOptions& options) {
+  if (!(options.radius > 0))
+    throw InvalidArgument("radius is " + detail::number(options.radius) + "; it must be > 0 (infinity: the whole graph)");
+  if (!front.has_directions())
+    throw InvalidArgument("front_without_directions", "polar_map: the front has no directions",
+                          "construct it with `directions`, on a graph of dimension 2");
+  if (source.is_curve()) throw InvalidArgument("polar_map: the source is a curve; polar coordinates start at points");
+}
+
 }  // namespace
 
 LogMap polar_map(const UnfoldingFront& front, const Source& source, const PolarMapOptions& options) {
-  if (!(options.radius > 0))
-    throw InvalidArgument("radius is " + detail::number(options.radius) + "; it must be > 0 (infinity: the whole graph)");
-  if (!front.has_directions()) throw InvalidArgument("polar_map: the front has no directions; make it with them");
-  if (source.is_curve()) throw InvalidArgument("polar_map: the source is a curve; polar coordinates are from points");
+  check(front, source, options);
   const TangentGraph& graph = front.graph();
   const auto n = static_cast<std::size_t>(graph.size());
   std::vector<double> coordinates(2 * n, nan);
-  std::vector<Status> status(n);
+  std::vector<Status> status = statuses(front, source, options.radius);
   MapExtras extras;
   extras.method = Method::polar;
   extras.radius = options.radius;
   extras.distances.assign(n, nan);
   extras.error_estimate.assign(n, nan);
+  if (options.frames) extras.frames = source_axes(source, n);
+  if (front.points() > 1) extras.nearest.assign(n, -1);
   for (std::size_t i = 0; i < n; ++i) {
-    const double distance = front.distance(Vertex(i));
-    status[i] = distance <= options.radius ? Status::ok : Status::beyond_radius;
-    if (!std::isfinite(distance)) {
-      status[i] = std::isfinite(options.radius) ? Status::beyond_radius : Status::disconnected;
-      continue;
-    }
     if (status[i] != Status::ok) continue;
-    const Vec2 direction = front.direction(Vertex(i));
-    extras.distances[i] = distance;
-    extras.error_estimate[i] = distance * front.doubt(Vertex(i));
+    const Vertex vertex(static_cast<Index>(i));
+    const double distance = extras.distances[i] = front.distance(vertex);
+    if (!extras.nearest.empty()) extras.nearest[i] = front.nearest(vertex);
+    const Vec2 direction = front.direction(vertex);
     coordinates[2 * i] = distance > 0 ? distance * direction[0] : 0;
     coordinates[2 * i + 1] = distance > 0 ? distance * direction[1] : 0;
+    if (!options.frames) continue;
+    const Vec2 arrival = front.arrival(vertex);
+    if (!std::isnan(arrival[0]) && !std::isnan(direction[0]))
+      std::ranges::copy(carried_axes(direction, arrival, front.is_mirrored(vertex)), extras.frames.data() + 4 * i);
   }
-  for (const auto& [vertex, known] : SourceVertices(source, 2))
-    if (!known.vector.empty() && status[vertex] == Status::ok)
-      std::ranges::copy(known.vector, coordinates.begin() + 2 * static_cast<std::ptrdiff_t>(vertex));
   extras.spread = jumps(graph, coordinates, status);
+  for (std::size_t i = 0; i < n; ++i)
+    if (status[i] == Status::ok)
+      extras.error_estimate[i] =
+          std::hypot(extras.distances[i] * front.direction_error(Vertex(i)), extras.spread[i]);
   return LogMap(2, Variant::adaptive, Strategy::automatic, source, std::move(coordinates), std::move(status),
                 std::move(extras));
 }

@@ -15,7 +15,6 @@
 #include "ahm/util/small_math.hpp"
 #include "ahm/util/vec.hpp"
 #include "heat/component_scales.hpp"
-#include "maps/run_front.hpp"
 
 namespace ahm {
 namespace {
@@ -206,7 +205,7 @@ QualityFront::QualityFront(const TangentGraph& graph, const Source& source, doub
   if (graph.is_delaunay()) return;
   front_.emplace(graph, nullptr, true);
   front_->add(source);
-  run_front(*front_, graph, reach * radius, stop);
+  front_->run(reach * radius, stop);
 }
 
 ComparedQuality map_quality(const TangentGraph& graph, const LogMap& map, const QualityFront& front, unsigned threads) {

@@ -16,7 +16,6 @@
 #include "maps/heat_distance.hpp"
 #include "maps/march.hpp"
 #include "maps/right_hand_side.hpp"
-#include "maps/run_front.hpp"
 #include "maps/source_vertices.hpp"
 #include "maps/team_log_map.hpp"
 #include "maps/vertex_row.hpp"
@@ -51,7 +50,7 @@ class Rows final : public MarchSink, public KnownDistances {
       progress.step("unfold", 0);
       front_.emplace(graph);
       front_->add(source);
-      run_front(*front_, graph, radius, progress.stop);
+      front_->run(radius, progress.stop);
     }
   }
 

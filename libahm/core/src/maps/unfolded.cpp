@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "maps/heat_distance.hpp"
-#include "maps/run_front.hpp"
 
 namespace ahm {
 
@@ -13,7 +12,7 @@ Unfolded unfolded_from(const Source& source, const TangentGraph& graph,
   if (!unfolds(graph, source)) return {};
   UnfoldingFront front(graph, stars, directions && graph.is_delaunay());
   front.add(source);
-  run_front(front, graph, radius, stop);
+  front.run(radius, stop);
   const auto n = static_cast<std::size_t>(graph.size());
   Unfolded found;
   found.distances.resize(n);

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <tuple>
 
+#include "ahm/error.hpp"
 #include "ahm/util/scratch.hpp"
 #include "ahm/util/small_math.hpp"
 #include "ahm/util/vec.hpp"
@@ -89,7 +90,8 @@ Index UnfoldingFront::add(const Source& source) {
       continue;
     }
     const bool mirrored = !axes.empty() && axes[0] * axes[3] < axes[1] * axes[2];
-    given.push_back({vertex, first + point, away / unit, {offset.data()[0], offset.data()[1]}, mirrored});
+    given.push_back({vertex, first + point, away / unit, {offset.data()[0], offset.data()[1]},
+                     unit_vector({-back.data()[0], -back.data()[1]}), mirrored});
     const auto is_of_point = [&, point = point](std::size_t other) {
       return other < source.vertices().size() && source.place(other).point == point;
     };
@@ -103,13 +105,15 @@ Index UnfoldingFront::add(const Source& source) {
       const Vec2 from{star.log(e)[0] - back.data()[0], star.log(e)[1] - back.data()[1]};
       const Vec2 there =
           axes.empty() ? from : Vec2{axes[0] * from[0] + axes[2] * from[1], axes[1] * from[0] + axes[3] * from[1]};
-      given.push_back({star.neighbors[e], first + point, std::hypot(from[0], from[1]), there,
+      Vec2 arrival{};
+      star.transport(e).apply_inverse(from.data(), arrival.data());
+      given.push_back({star.neighbors[e], first + point, std::hypot(from[0], from[1]), there, unit_vector(arrival),
                        mirrored != (may_reflect && star.transport(e).reflects())});
     }
   }
   // Also where another point is nearer by less: what lies on this one's side of the border between them comes from there.
   for (const Given& one : given)
-    offer(one.vertex, one.point, one.distance, 4 * longest_, {}, {.direction = unit_vector(one.offset), .mirrored = one.mirrored});
+    offer(one.vertex, one.point, one.distance, 4 * longest_, {}, {.direction = unit_vector(one.offset), .arrival = one.arrival, .mirrored = one.mirrored});
   if (stars_) offer_midpoints(given);
   return first;
 }
@@ -141,33 +145,39 @@ void UnfoldingFront::offer_midpoints(std::vector<Given>& given) {
 
 void UnfoldingFront::restart(std::span<const Seed> seeds) {
   struct Start {
-    Index vertex;
-    double distance, focusing;
-    Way way;
+    double focusing = 0;
+    bool mirrored = false;
   };
   std::vector<Start> starts;
   starts.reserve(seeds.size());
   for (const Seed& seed : seeds) {
-    const Entry* const found = find(seed.vertex.index, 0);
-    if (!found) continue;
-    Way way = ways_[number(*found)];
-    way.doubt = 0;
-    if (!std::isnan(seed.direction[0])) way.direction = seed.direction;
-    starts.push_back({seed.vertex.index, seed.distance / graph_.length_unit(), found->focusing, way});
+    const Entry* const found = find(seed.vertex.index, seed.point);
+    starts.push_back(found ? Start{found->focusing, ways_[number(*found)].mirrored} : Start{});
   }
   std::ranges::fill(first_, none);
   entries_.clear();
   ways_.clear();
   for (std::vector<Index>& rows : free_) rows.clear();
+  for (std::size_t k = 0; k < seeds.size(); ++k) {
+    const Index vertex = seeds[k].vertex.index;
+    offer(vertex, seeds[k].point, seeds[k].distance / graph_.length_unit(), 0, {},
+          {.direction = seeds[k].direction, .arrival = seeds[k].arrival, .mirrored = starts[k].mirrored},
+          starts[k].focusing);
+    entries_[first_[vertex]].gains = most_gains;  // nothing replaces it
+  }
+  // Those inside have no one to spread to.
   queue_ = {};
-  for (const Start& start : starts) {
-    offer(start.vertex, 0, start.distance, 0, {}, start.way, start.focusing);
-    entries_[first_[start.vertex]].gains = most_gains;  // nothing replaces it
+  for (const Seed& seed : seeds) {
+    const Index vertex = seed.vertex.index;
+    const auto is_free = [&](const Corner& corner) { return first_[corner.neighbor] == none; };
+    if (std::ranges::any_of(around(vertex), is_free)) queue_.push({entries_[first_[vertex]].distance, vertex, seed.point});
   }
 }
 
-void UnfoldingFront::run(double radius) {
-  while (!queue_.empty() && next() <= radius) {
+void UnfoldingFront::run(double radius, const std::stop_token& stop) {
+  constexpr std::uint32_t between_looks = 4096;
+  for (std::uint32_t taken = 0; !queue_.empty() && next() <= radius; ++taken) {
+    if (taken % between_looks == 0 && stop.stop_requested()) throw Cancelled("cancelled during unfold");
     const auto [distance, vertex, point] = queue_.top();
     queue_.pop();
     if (stars_ && !queue_.empty())  // most likely the next one: of many corners few are in the cache
@@ -270,19 +280,6 @@ double UnfoldingFront::curvature(Index vertex) {
   return known;
 }
 
-/// From where a way arrives at a vertex, in its frame, unit length: where it crosses the last side; {0, 0} of what is no vertex.
-Vec2 UnfoldingFront::back_direction(Index vertex, const Way& way) const {
-  if (way.back != Vec2{} || vertex >= graph_.size()) return way.back;
-  const Star star = graph_.star(vertex);
-  std::array<Vec2, 2> ends{};
-  for (std::size_t e = star.degree(); e-- > 0;)
-    for (std::size_t k = 0; k < 2; ++k)
-      if (star.neighbors[e] == way.last[k]) ends[k] = {star.logs[2 * e], star.logs[2 * e + 1]};
-  const Vec2 crossing = (1.0 - way.share) * ends[0] + static_cast<double>(way.share) * ends[1];
-  const double away = length(crossing);
-  return away > 0 ? (1 / away) * crossing : Vec2{};
-}
-
 /// Along the edges of a vertex, and across the triangles of its star: from its own distance and that of one neighbour to
 /// the other.
 void UnfoldingFront::spread(Index from, Index point, double distance) {
@@ -314,7 +311,7 @@ void UnfoldingFront::spread(Index from, Index point, double distance) {
     known.along = along;
     known.focusing = known.is_new ? focusing_along(corners[k], along) : entry->focusing;
     if (directions_)
-      known.way = known.is_new ? Way{own.direction, {}, {from, from}, 0, own.doubt, false, turned} : way_of(entry);
+      known.way = known.is_new ? Way{own.direction, {}, {from, from}, 0, own.variance, turned} : way_of(entry);
     longest = std::max(longest, corners[k].length);
   }
   for (std::size_t k = 0; k < degree; ++k) {
@@ -353,9 +350,9 @@ void UnfoldingFront::spread(Index from, Index point, double distance) {
       const auto [direction, difference] =
           direction_across(across, base_length, cx, cy, own.direction, other.way.direction, turn);
       found.way.direction = direction;
-      found.way.doubt = static_cast<float>((1 - across.share) * own.doubt + across.share * other.way.doubt +
-                                           difference * difference);
-      found.way.back = {};
+      found.way.variance = static_cast<float>((1 - across.share) * own.variance + across.share * other.way.variance +
+                                              difference * difference);
+      found.way.arrival = {};
       found.way.last = {from, corners[base].neighbor};
       found.way.share = static_cast<float>(across.share);
       found.way.turned = std::max(own.turned, other.way.turned);

@@ -33,12 +33,16 @@ Vec2 side_between(const exact::PolyhedralSurface& surface, const exact::MeshPoin
   return surface.place(to) - surface.place(from);
 }
 
-/// The frame that leads from the map's coordinates at a vertex to the direction in which its path arrives.
-Axes arriving(const exact::PolyhedralSurface& surface, const exact::Arrival& in, const Vec2& phi) {
+/// The angle in the frame of a vertex at which its path arrives.
+double arrival_angle(const exact::PolyhedralSurface& surface, const exact::Arrival& in) {
   const exact::HalfRecord& record = surface.record(in.half);
   const double back = exact::angle_at_vertex(surface, exact::previous(in.half), exact::in_previous(record, in.from));
-  const double ahead = std::numbers::pi + back * surface.angle_scale(record.apex);
-  return axes_at(ahead - std::atan2(phi[1], phi[0]));
+  return std::numbers::pi + back * surface.angle_scale(record.apex);
+}
+
+/// Coordinates in the axes of a source, of those in its face or about its vertex.
+Vec2 in_axes(const Axes& axes, const Vec2& w) {
+  return {axes[0] * w[0] + axes[2] * w[1], axes[1] * w[0] + axes[3] * w[1]};
 }
 
 }  // namespace
@@ -191,8 +195,46 @@ LogMap ExactGeodesics::log_map(const SurfacePoint& source, const std::optional<V
 }
 
 LogMap ExactGeodesics::log_map(Vertex source, const ExactMapOptions& options) const {
-  const Placed from{{flat_.surface.vertex_point(source)}, {Axes{1, 0, 0, 1}}, {}, {Vec2{}}};
-  return log_map(from, Source::at_vertex(source), options).map;
+  return log_map(at_vertex(flat_, source), Source::at_vertex(source), options).map;
+}
+
+ExactGeodesics::Placed ExactGeodesics::at_vertex(const FlatTriangles& flat, Vertex source) {
+  return {{flat.surface.vertex_point(source)}, {Axes{1, 0, 0, 1}}, {}, {Vec2{}}};
+}
+
+std::vector<UnfoldingFront::Seed> ExactGeodesics::seeds(const SurfacePoint& source, const std::optional<Vec3>& u_axis,
+                                                        const ExactMapOptions& options) const {
+  const ExactSource one{source, u_axis};
+  return seeds(placed(std::span(&one, 1)), options);
+}
+
+std::vector<UnfoldingFront::Seed> ExactGeodesics::seeds(Vertex source, const ExactMapOptions& options) const {
+  return seeds(at_vertex(flat_, source), options);
+}
+
+std::vector<UnfoldingFront::Seed> ExactGeodesics::seeds(const Placed& from, const ExactMapOptions& options) const {
+  const exact::ExactMap exact = exact_map(from, options);
+  std::vector<UnfoldingFront::Seed> seeds;
+  for (Index i = 0; i < exact.size(); ++i) {
+    const Vertex v(i);
+    if (exact.status(v) != Status::ok) continue;
+    const exact::Arrival& in = exact.arrival(v);
+    const double angle = options.frames && in.half >= 0 ? arrival_angle(flat_.surface, in) : NAN;
+    const double departure = exact.distance(v) > 0 ? exact.direction(v) : NAN;
+    seeds.push_back({v, flat_.length_unit * exact.distance(v),
+                     in_axes(from.axes[exact.source(v)], {std::cos(departure), std::sin(departure)}),
+                     {std::cos(angle), std::sin(angle)}, exact.source(v)});
+  }
+  return seeds;
+}
+
+exact::ExactMap ExactGeodesics::exact_map(const Placed& from, const ExactMapOptions& options) const {
+  exact::ExactOptions exact_options;
+  exact_options.radius = options.radius / flat_.length_unit;
+  exact_options.tolerance = options.tolerance;
+  exact_options.most_windows = options.most_windows;
+  exact_options.progress = options.progress;
+  return exact::exact_map(flat_.surface, from.points, exact_options);
 }
 
 LabelledLogMap ExactGeodesics::log_map(std::span<const ExactSource> sources, const ExactMapOptions& options) const {
@@ -201,13 +243,7 @@ LabelledLogMap ExactGeodesics::log_map(std::span<const ExactSource> sources, con
 }
 
 LabelledLogMap ExactGeodesics::log_map(const Placed& from, Source source, const ExactMapOptions& options) const {
-  exact::ExactOptions exact_options;
-  exact_options.radius = options.radius / flat_.length_unit;
-  exact_options.tolerance = options.tolerance;
-  exact_options.most_windows = options.most_windows;
-  exact_options.progress = options.progress;
-  const exact::ExactMap exact = exact::exact_map(flat_.surface, from.points, exact_options);
-
+  const exact::ExactMap exact = exact_map(from, options);
   std::vector<double> coordinates;
   std::vector<Index> labels;
   MapExtras extras;
@@ -223,7 +259,7 @@ LabelledLogMap ExactGeodesics::log_map(const Placed& from, Source source, const 
     const Index label = exact.source(v);
     const Axes a = label < 0 ? Axes{1, 0, 0, 1} : from.axes[label];
     const Vec2 w = flat_.length_unit * exact.coordinates(v);
-    const Vec2 phi{a[0] * w[0] + a[2] * w[1], a[1] * w[0] + a[3] * w[1]};
+    const Vec2 phi = in_axes(a, w);
     const Vec2 start = label < 0 ? Vec2{} : from.positions[label];
     coordinates.insert(coordinates.end(), {start[0] + phi[0], start[1] + phi[1]});
     extras.distances.push_back(flat_.length_unit * exact.distance(v));
@@ -231,7 +267,9 @@ LabelledLogMap ExactGeodesics::log_map(const Placed& from, Source source, const 
     if (!options.frames) continue;
     Axes frame{1, 0, 0, 1};
     if (exact.status(v) == Status::ok)
-      frame = exact.arrival(v).half >= 0 ? arriving(flat_.surface, exact.arrival(v), phi) : a;
+      frame = exact.arrival(v).half >= 0
+                  ? axes_at(arrival_angle(flat_.surface, exact.arrival(v)) - std::atan2(phi[1], phi[0]))
+                  : a;
     extras.frames.insert(extras.frames.end(), frame.begin(), frame.end());
   }
   extras.spread = jumps(coordinates, labels, source.is_curve());

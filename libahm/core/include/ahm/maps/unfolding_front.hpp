@@ -17,6 +17,7 @@
 #include <memory>
 #include <queue>
 #include <span>
+#include <stop_token>
 #include <vector>
 
 #include "ahm/graph/tangent_graph.hpp"
@@ -75,20 +76,22 @@ class UnfoldingFront {
   Index points() const noexcept { return points_; }
   const TangentGraph& graph() const noexcept { return graph_; }
 
-  /// Polar coordinates of a vertex that are known better than the front computes them: from exact windows around the source.
+  /// Exact polar coordinates of one vertex, for example from exact windows around the source.
   struct Seed {
     Vertex vertex;
     double distance;  ///< world units
     Vec2 direction;   ///< as `direction`
+    Vec2 arrival;     ///< as `arrival`; NaN: not known
+    Index point = 0;  ///< number of the source point
   };
-  /// Replaces all that the front has found by these seeds, whose values it keeps. The next `run` computes the other vertices anew. A
-  /// seed keeps the curvature that the front has found at its vertex, and is ignored where the front has not arrived. For fronts
-  /// from a single point, with directions.
+  /// Discards what the front has found and starts again from the seeds, whose values stay as they are. A seed keeps the focusing that
+  /// the front has found at its vertex, if any, so run the front over them first. Requires directions.
   void restart(std::span<const Seed> seeds);
 
   /// Lets the front go on until all that is nearer than `radius` (world units) has its distance; what lies beyond may have one
   /// or not, perhaps too long a one. May be called again after `add`: only what is nearer to the new points changes.
-  void run(double radius = std::numeric_limits<double>::infinity());
+  /// @throws Cancelled when a stop is requested
+  void run(double radius = std::numeric_limits<double>::infinity(), const std::stop_token& stop = {});
   /// All that is nearer than this has its distance, world units; infinity at the front's end.
   double next() const {
     return queue_.empty() ? std::numeric_limits<double>::infinity()
@@ -101,7 +104,14 @@ class UnfoldingFront {
   /// geodesic polar coordinates [MR12]. NaN where the front did not come, and at the point itself.
   Vec2 direction(Vertex vertex) const;
   bool has_directions() const noexcept { return directions_; }
-  double doubt(Vertex vertex) const;
+  /// Expected error of the direction, radians: half the root of the sum of squares by which the two estimates differed at each side
+  /// that the path crosses. 0 at a seed, NaN where the front did not come.
+  double direction_error(Vertex vertex) const;
+  /// The direction in which the path arrives at a vertex, in the vertex' frame, unit length; NaN at the source and where the front
+  /// did not come. With `direction` it is the parallel transport along the path.
+  Vec2 arrival(Vertex vertex) const;
+  /// Whether the frame of the vertex is a mirror image of the source's, carried along the path.
+  bool is_mirrored(Vertex vertex) const;
   /// Whether the way bends at the boundary, around a hole or in a notch, by more than half a radian in all. Known with
   /// directions.
   bool is_bent(Vertex vertex) const;
@@ -120,12 +130,12 @@ class UnfoldingFront {
   /// How the way of an entry leaves its point, in the frame of the source.
   struct Way {
     Vec2 direction;
-    Vec2 back{};  ///< the direction from which it arrives, in the frame of the vertex; {0, 0}: between `last`
-    std::array<Index, 2> last{-1, -1};  ///< the ends of the side that it crosses last, or one of them twice
+    Vec2 arrival{};                     ///< {0, 0}: that from `last`; NaN: unknown
+    std::array<Index, 2> last{-1, -1};  ///< ends of the side that it crosses last, or one of them twice
     float share = 0;                    ///< of that side, from the first end to where it crosses
-    float doubt = 0;
-    bool mirrored = false;              ///< whether the frame of the vertex is turned over against that of the source
+    float variance = 0;                 ///< of the direction: sum of squares of the differences at the sides crossed
     float turned = 0;                   ///< angle by which it bends at the boundary, all in all
+    bool mirrored = false;              ///< whether the frame of the vertex is turned over against that of the source
   };
   /// A neighbour of a vertex, and the angle from it to the next one counterclockwise.
   struct Corner {
@@ -184,7 +194,7 @@ class UnfoldingFront {
   struct Given {
     Index vertex, point;
     double distance;
-    Vec2 offset;
+    Vec2 offset, arrival;
     bool mirrored;
   };
 
@@ -192,7 +202,6 @@ class UnfoldingFront {
   void offer(Index vertex, Index point, double distance, double slack, std::span<const double> displacement,
              const Way& way, double focusing = 0);
   Index entry_to_take(Index vertex, Index point, double distance);
-  Vec2 back_direction(Index vertex, const Way& way) const;
   void spread(Index from, Index point, double distance);
   void carry(Index from, Index point, double distance);
   double factor_at(Index vertex, Index point, std::span<const double> displacement, double distance);

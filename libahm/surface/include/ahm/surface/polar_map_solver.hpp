@@ -18,31 +18,43 @@
 
 namespace ahm {
 
+struct PolarSolverOptions {
+  /// Number of exact windows around the source per map; 0: none, the front starts at the source. Not set: 8 per vertex and no fewer
+  /// than 131,072, which take about as long as the front.
+  std::optional<Offset> windows = {};
+  unsigned threads = 0;  ///< for the one-rings; 0: one per core. No result depends on it
+};
+
 /// A surface prepared for polar maps: its one-rings and, where it has flat faces, its triangles. Immutable; all members may be
 /// called from many threads at once. Refers to the surface, which has to stay where it is.
 ///
-/// Around the source, exact windows give distances and directions; from there a front carries them on (`UnfoldingFront`), from the
-/// source itself on surfaces without faces. The windows end after a number that takes about as long as the front.
+/// Exact windows around the source (`ExactGeodesics`) compute distances and directions there. A front carries them on
+/// (`UnfoldingFront`). Without flat triangles (clouds, grids, faces without area), and where windows get lost in needles, the
+/// front starts at the source; `LogMap::error_estimate` is larger then.
 class PolarMapSolver {
  public:
-  /// @param threads  for the one-rings; 0: one per core
-  explicit PolarMapSolver(const Surface& surface, unsigned threads = 0);
-  explicit PolarMapSolver(Surface&&, unsigned = 0) = delete;
+  /// @throws ResourceExhausted
+  explicit PolarMapSolver(const Surface& surface, const PolarSolverOptions& options = {});
+  explicit PolarMapSolver(Surface&&, const PolarSolverOptions& = {}) = delete;
 
   const Surface& surface() const noexcept { return *surface_; }
 
+  /// The map from a point of the surface.
   /// @param u_axis  as of `Surface::source`
   /// @throws InvalidArgument (as `Surface::source`, `polar_map`), ResourceExhausted, Cancelled
   LogMap log_map(const SurfacePoint& source, const std::optional<Vec3>& u_axis = {},
                  const PolarMapOptions& options = {}) const;
-
-  double windows_per_vertex = 4;
-  bool pin = true;
+  /// The map from a vertex of the graph, in the axes of its frame. @throws as above
+  LogMap log_map(Vertex source, const PolarMapOptions& options = {}) const;
 
  private:
+  template <class Seeds>
+  LogMap log_map(const Source& source, const PolarMapOptions& options, const Seeds& seeds) const;
+
   const Surface* surface_;
   std::shared_ptr<const UnfoldingFront::Stars> stars_;
-  std::optional<ExactGeodesics> geodesics_;  ///< none: the surface has no flat faces
+  std::optional<ExactGeodesics> geodesics_;  ///< none: no flat triangles, or no windows wanted
+  Offset windows_;
 };
 
 }  // namespace ahm

@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "ahm/maps/log_map.hpp"
+#include "ahm/maps/unfolding_front.hpp"
 #include "ahm/progress.hpp"
 #include "ahm/surface/exact/flat_triangles.hpp"
 #include "ahm/surface/exact/geodesic_path.hpp"
@@ -85,6 +86,13 @@ class ExactGeodesics {
   /// @throws InvalidArgument (no source), as above
   LabelledLogMap log_map(std::span<const ExactSource> sources, const ExactMapOptions& options = {}) const;
 
+  /// The same polar coordinates, of the vertices that the options let the windows reach: where a front can go on from.
+  /// @param options  frames: whether the arrivals are wanted, too
+  /// @throws as above
+  std::vector<UnfoldingFront::Seed> seeds(const SurfacePoint& source, const std::optional<Vec3>& u_axis = {},
+                                          const ExactMapOptions& options = {}) const;
+  std::vector<UnfoldingFront::Seed> seeds(Vertex source, const ExactMapOptions& options = {}) const;
+
   /// The shortest path through points in their order. Its length is in world units; `position` tells where its points lie.
   /// @throws InvalidArgument (fewer than two points; as `Surface::source`)
   exact::GeodesicPath path(std::span<const SurfacePoint> stops, bool closed = false) const;
@@ -121,7 +129,10 @@ class ExactGeodesics {
     std::vector<Source> sources;
     std::vector<Vec2> positions;
   };
+  static Placed at_vertex(const FlatTriangles& flat, Vertex source);
+  exact::ExactMap exact_map(const Placed& from, const ExactMapOptions& options) const;
   LabelledLogMap log_map(const Placed& from, Source source, const ExactMapOptions& options) const;
+  std::vector<UnfoldingFront::Seed> seeds(const Placed& from, const ExactMapOptions& options) const;
   Placed placed(std::span<const ExactSource> sources) const;
   static Source joined(std::span<const ExactSource> given, const Placed& placed);
   std::vector<double> jumps(std::span<const double> coordinates, std::span<const Index> labels, bool of_curve) const;
