@@ -1,6 +1,7 @@
 #include "ahm/surface/polar_map_solver.hpp"
 
 #include <algorithm>
+#include <string>
 #include <vector>
 
 #include "ahm/error.hpp"
@@ -15,10 +16,19 @@ constexpr Offset windows_per_vertex = 8, least_windows = Offset{1} << 17;
 
 }  // namespace
 
+PolarMapSolver::PolarMapSolver(const TangentGraph& graph, const PolarSolverOptions& options) : graph_(&graph) {
+  if (graph.dimension() != 2)
+    throw InvalidArgument("dimension_not_2",
+                          "a polar map needs a graph of dimension 2; this one has dimension " +
+                              std::to_string(graph.dimension()),
+                          "map it by heat");
+  stars_ = UnfoldingFront::stars(graph, options.threads, false);
+}
+
 PolarMapSolver::PolarMapSolver(const Surface& surface, const PolarSolverOptions& options)
-    : surface_(&surface),
-      stars_(UnfoldingFront::stars(surface.graph(), options.threads, false)),
-      windows_(options.windows.value_or(std::max(least_windows, windows_per_vertex * surface.graph().size()))) {
+    : PolarMapSolver(surface.graph(), options) {
+  surface_ = &surface;
+  windows_ = options.windows.value_or(std::max(least_windows, windows_per_vertex * graph_->size()));
   if (windows_ <= 0 || surface.faces().size() == 0) return;
   try {
     geodesics_.emplace(surface);
@@ -27,47 +37,48 @@ PolarMapSolver::PolarMapSolver(const Surface& surface, const PolarSolverOptions&
   }
 }
 
-/// @param seeds  seeds(geodesics, options): exact polar coordinates around the source
+/// @param seeds  seeds(options): exact polar coordinates around the source
 template <class Seeds>
-LogMap PolarMapSolver::log_map(const Source& source, const PolarMapOptions& options, const Seeds& seeds) const {
-  const TangentGraph& graph = surface_->graph();
-  UnfoldingFront front(graph, stars_, true);
-  front.add(source);
-  if (geodesics_) {
+LogMap PolarMapSolver::seeded_map(const Source& source, const PolarMapOptions& options, const Seeds& seeds) const {
+  return detail::with_memory_check("a polar map", [&] {
+    UnfoldingFront front(*graph_, stars_, true);
+    front.add(source);
     std::vector<UnfoldingFront::Seed> exact;
     try {
-      exact = seeds(*geodesics_, ExactMapOptions{.radius = options.radius,
-                                                 .most_windows = windows_,
-                                                 .frames = options.frames,
-                                                 .progress = options.progress});
+      exact = seeds(ExactMapOptions{.radius = options.radius,
+                                    .most_windows = windows_,
+                                    .frames = options.frames,
+                                    .progress = options.progress});
     } catch (const InvalidGeometry&) {  // windows got lost in needles: from the source, then
     }
-    double farthest = 0;
-    for (const UnfoldingFront::Seed& seed : exact) farthest = std::max(farthest, seed.distance);
-    // Where the front goes on it needs its focusing; and orientation where that is not the same everywhere.
-    const bool goes_on = exact.size() < static_cast<std::size_t>(graph.size());
-    if (goes_on || graph.transport_layout().may_reflect()) front.run(farthest, options.progress.stop);
-    if (!exact.empty()) front.restart(exact);
-  }
-  front.run(options.radius, options.progress.stop);
-  return polar_map(front, source, options);
+    if (!exact.empty()) {
+      // Where the front goes on it needs its focusing, and its orientation where that may differ.
+      const double farthest = std::ranges::max_element(exact, {}, &UnfoldingFront::Seed::distance)->distance;
+      const bool goes_on = exact.size() < static_cast<std::size_t>(graph_->size());
+      if (goes_on || graph_->transport_layout().may_reflect()) front.run(farthest, options.progress.stop);
+      front.restart(exact);
+    }
+    front.run(options.radius, options.progress.stop);
+    return polar_map(front, source, options);
+  });
 }
 
 LogMap PolarMapSolver::log_map(const SurfacePoint& source, const std::optional<Vec3>& u_axis,
                                const PolarMapOptions& options) const {
-  const auto seeds = [&](const ExactGeodesics& geodesics, const ExactMapOptions& exact) {
-    return geodesics.seeds(source, u_axis, exact);
-  };
-  return detail::with_memory_check("a polar map",
-                                   [&] { return log_map(surface_->source(source, u_axis).source, options, seeds); });
+  if (surface_ == nullptr) throw InvalidArgument("the solver is for a graph; a point of a surface needs its surface");
+  return seeded_map(surface_->source(source, u_axis).source, options, [&](const ExactMapOptions& exact) {
+    return geodesics_ ? geodesics_->seeds(source, u_axis, exact) : std::vector<UnfoldingFront::Seed>();
+  });
 }
 
 LogMap PolarMapSolver::log_map(Vertex source, const PolarMapOptions& options) const {
-  const auto seeds = [&](const ExactGeodesics& geodesics, const ExactMapOptions& exact) {
-    return geodesics.seeds(source, exact);
-  };
-  return detail::with_memory_check("a polar map",
-                                   [&] { return log_map(Source::at_vertex(source), options, seeds); });
+  return seeded_map(Source::at_vertex(source), options, [&](const ExactMapOptions& exact) {
+    return geodesics_ ? geodesics_->seeds(source, exact) : std::vector<UnfoldingFront::Seed>();
+  });
+}
+
+LogMap PolarMapSolver::log_map(const Source& source, const PolarMapOptions& options) const {
+  return seeded_map(source, options, [](const ExactMapOptions&) { return std::vector<UnfoldingFront::Seed>(); });
 }
 
 }  // namespace ahm

@@ -19,6 +19,8 @@ inline constexpr double least_ray = 1e-6;
 struct Across {
   double squared, x, depth, share;
   bool found;
+
+  double length() const { return std::sqrt(squared); }
 };
 
 /// Of a point at distances `from_a` and `from_b` below the side ab; not found where c is no nearer than the root of `limit`, or
@@ -62,21 +64,23 @@ struct DirectionAcross {
   double difference;  ///< of the two estimates, radians
 };
 
-/// The direction at the point of the ray to c, from those of the rays to a and b: what both say, by how near it crosses the
-/// side; of two ways that of the nearer end.
-/// @param side  1: a, b, c counterclockwise; -1: clockwise
-inline DirectionAcross direction_across(const Across& point, double ab, double cx, double cy, const Vec2& to_a, const Vec2& to_b,
-                             double side) {
+/// The direction at the point of a ray that crosses the side, from those of the rays to a and b: of two ways that of the nearer
+/// end, else the mean of the two estimates, weighted by how near the ray crosses.
+/// @param share    of the side where the ray crosses
+/// @param towards  a place on the ray, in the layout of the triangle
+/// @param side     1: a, b, c counterclockwise; -1: clockwise
+inline DirectionAcross direction_across(const Across& point, double share, const Vec2& towards, double ab,
+                                        const Vec2& to_a, const Vec2& to_b, double side) {
   // Rays to a and b that differ by more than this many times the angle at which the side is seen come along two ways, as around
   // a tube, and there is none between them.
   constexpr double two_ways = 6;
-  const double x = point.x, depth = point.depth, share = point.share;
-  const Vec2 a{-x, depth}, b{ab - x, depth}, c{cx - x, cy + depth};
+  const double x = point.x, depth = point.depth;
+  const Vec2 a{-x, depth}, b{ab - x, depth}, c{towards[0] - x, towards[1] + depth};
   const Vec2 by_a = turned_with(to_a, a, c, side), by_b = turned_with(to_b, b, c, side);
   if (!(length(a) > least_ray * ab) || std::isnan(to_a[0])) return {by_b, 0};
   if (!(length(b) > least_ray * ab) || std::isnan(to_b[0])) return {by_a, 0};
   const double difference = length(Vec2{by_a[0] - by_b[0], by_a[1] - by_b[1]});
-  if (difference > two_ways * ab / length(c)) return {share < 0.5 ? by_a : by_b, difference};
+  if (difference > two_ways * ab / point.length()) return {share < 0.5 ? by_a : by_b, difference};
   const Vec2 sum{(1 - share) * by_a[0] + share * by_b[0], (1 - share) * by_a[1] + share * by_b[1]};
   const double size = length(sum);
   return {size > 0 ? Vec2{sum[0] / size, sum[1] / size} : by_a, difference};

@@ -33,15 +33,28 @@ inline double focusing_after(double focusing, double from, double to, double cur
   return std::isfinite(bent) ? bent : 0;  // lengths beyond the squares of numbers
 }
 
-/// By how much the distance of a point on a side is more than on the circle through its ends.
-/// @param distance      of the point
-/// @param share         of the side, from one end to the point
-/// @param squared_sine  of the angle between the way and the side
-inline double beyond_circle(double focusing, double distance, double side, double share, double squared_sine) {
+/// By how much the curvature of a front is less than that of the circle, times the length of a side.
+/// @param distance  of the front
+inline double bend_along(double side, double focusing, double distance) {
   if (!(distance > 0)) return 0;
   const double most = most_bent * std::min(1.0, distance / side);
-  const double bend = std::clamp(focusing / (distance * distance) * side, -most, most);
+  return std::clamp(focusing / (distance * distance) * side, -most, most);
+}
+
+/// By how much the distance of a point on a side is more than on the circle through its ends.
+/// @param bend          `bend_along` the side
+/// @param share         of the side, from one end to the point
+/// @param squared_sine  of the angle between the way and the side
+inline double beyond_circle(double bend, double side, double share, double squared_sine) {
   return 0.5 * share * (1 - share) * squared_sine * side * bend;
+}
+
+/// Where the ray to a point beyond a side crosses it, as a share of the side: a front that is less bent than the circle has rays
+/// that diverge less, and this one crosses farther from the middle.
+/// @param share   where the ray from the center of the circle crosses
+/// @param beyond  length of the ray beyond the side
+inline double bent_crossing(double share, double bend, double side, double beyond) {
+  return std::clamp(share + (share - 0.5) * bend * beyond / side, 0.0, 1.0);
 }
 
 }  // namespace ahm

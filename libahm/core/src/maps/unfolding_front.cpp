@@ -329,16 +329,17 @@ void UnfoldingFront::spread(Index from, Index point, double distance) {
       if (found.distance <= distance && is_beyond(distance, other.distance, base_length, cx, cy, limit)) return;
       const Across across = across_side(distance, other.distance, base_length, cx, cy, limit, missed_);
       if (!across.found) return;
-      double length = std::sqrt(across.squared), bent_by = 0;
+      double length = across.length(), bent_by = 0, crossing = across.share;
       if (is_curved_) {
         const auto between = [&](double a, double b) { return (1 - across.share) * a + across.share * b; };
         const double height = cy + across.depth, to_side = across.depth / height * length;
         const double at_side = between(focusing, other.focusing);
-        const double bent =
-            length + beyond_circle(at_side, to_side, base_length, across.share, height * height / across.squared);
+        const double bend = bend_along(base_length, at_side, to_side), squared_sine = height * height / across.squared;
+        const double bent = length + beyond_circle(bend, base_length, across.share, squared_sine);
         if (!(bent <= found.distance * (1 + same_length))) return;
         const double curved = between(curvature_here, curvature(corners[base].neighbor));
         bent_by = focusing_after(at_side, to_side, length, 0.5 * (curved + curvature(corners[target].neighbor)));
+        crossing = bent_crossing(across.share, bend, base_length, length - to_side);
         length = bent;
       }
       if (!comes_before(length, bent_by, found.distance, found.focusing)) return;
@@ -346,15 +347,16 @@ void UnfoldingFront::spread(Index from, Index point, double distance) {
       found.focusing = bent_by;
       found.is_new = true;
       if (!directions_) return;
-      const double turn = own.mirrored ? -side : side;
+      const Vec2 towards = crossing == across.share ? Vec2{cx, cy} : Vec2{crossing * base_length, 0};
       const auto [direction, difference] =
-          direction_across(across, base_length, cx, cy, own.direction, other.way.direction, turn);
+          direction_across(across, crossing, towards, base_length, own.direction, other.way.direction,
+                           own.mirrored ? -side : side);
       found.way.direction = direction;
-      found.way.variance = static_cast<float>((1 - across.share) * own.variance + across.share * other.way.variance +
+      found.way.variance = static_cast<float>((1 - crossing) * own.variance + crossing * other.way.variance +
                                               difference * difference);
       found.way.arrival = {};
       found.way.last = {from, corners[base].neighbor};
-      found.way.share = static_cast<float>(across.share);
+      found.way.share = static_cast<float>(crossing);
       found.way.turned = std::max(own.turned, other.way.turned);
     };
     unfold(k, right.length, next, left.length, 1);

@@ -26,7 +26,7 @@ struct PolarSolverOptions {
 };
 
 /// A surface prepared for polar maps: its one-rings and, where it has flat faces, its triangles. Immutable; all members may be
-/// called from many threads at once. Refers to the surface, which has to stay where it is.
+/// called from many threads at once. Refers to the surface or graph, which has to stay where it is.
 ///
 /// Exact windows around the source (`ExactGeodesics`) compute distances and directions there. A front carries them on
 /// (`UnfoldingFront`). Without flat triangles (clouds, grids, faces without area), and where windows get lost in needles, the
@@ -36,25 +36,33 @@ class PolarMapSolver {
   /// @throws ResourceExhausted
   explicit PolarMapSolver(const Surface& surface, const PolarSolverOptions& options = {});
   explicit PolarMapSolver(Surface&&, const PolarSolverOptions& = {}) = delete;
+  /// For a graph of dimension 2 that belongs to no surface: its fronts start at the source.
+  /// @throws InvalidArgument (dimension), ResourceExhausted
+  explicit PolarMapSolver(const TangentGraph& graph, const PolarSolverOptions& options = {});
+  explicit PolarMapSolver(TangentGraph&&, const PolarSolverOptions& = {}) = delete;
 
-  const Surface& surface() const noexcept { return *surface_; }
+  const TangentGraph& graph() const noexcept { return *graph_; }
 
   /// The map from a point of the surface.
   /// @param u_axis  as of `Surface::source`
-  /// @throws InvalidArgument (as `Surface::source`, `polar_map`), ResourceExhausted, Cancelled
+  /// @throws InvalidArgument (a solver for a graph; as `Surface::source`, `polar_map`), ResourceExhausted, Cancelled
   LogMap log_map(const SurfacePoint& source, const std::optional<Vec3>& u_axis = {},
                  const PolarMapOptions& options = {}) const;
   /// The map from a vertex of the graph, in the axes of its frame. @throws as above
   LogMap log_map(Vertex source, const PolarMapOptions& options = {}) const;
+  /// The map from a source in any form, a curve excepted: without windows. Of several points the nearest counts
+  /// (`LogMap::nearest`). @throws as above
+  LogMap log_map(const Source& source, const PolarMapOptions& options = {}) const;
 
  private:
   template <class Seeds>
-  LogMap log_map(const Source& source, const PolarMapOptions& options, const Seeds& seeds) const;
+  LogMap seeded_map(const Source& source, const PolarMapOptions& options, const Seeds& seeds) const;
 
-  const Surface* surface_;
+  const TangentGraph* graph_;
+  const Surface* surface_ = nullptr;
   std::shared_ptr<const UnfoldingFront::Stars> stars_;
   std::optional<ExactGeodesics> geodesics_;  ///< none: no flat triangles, or no windows wanted
-  Offset windows_;
+  Offset windows_ = 0;
 };
 
 }  // namespace ahm
