@@ -230,21 +230,17 @@ def radial(rows):
 
 
 def trust(rows):
-    """Of the right vectors those that are trusted, over the wrong ones that are, mesh by mesh."""
-    rows = only(rows, **{"as": "triangles", "variant": "adaptive"})
-    rows = [row for row in rows if row["area under curve"]]
-    figure, axes = panels(len(rows), width=1.7, height=1.7, columns=6)
-    for axis, row in zip(axes, rows):
-        for name, by, place in (("quality", "", 0), ("by length alone", ", by length", 1)):
-            points = [(0.0, 0.0), (1.0, 1.0)]
-            for column, value in row.items():
-                if column.startswith("right at ") and column.endswith("of wrong" + by):
-                    points.append((float(column.split()[2]), float(value)))
-            axis.plot(*zip(*sorted(points)), label=name, **(look(name, place) | {"markersize": 2}))
-        axis.set(title=row["mesh"], xlim=(0, 1), ylim=(0, 1.02), xticks=(0, 0.5, 1), yticks=(0, 0.5, 1))
-        axis.title.set_fontsize(8)
-    legend(figure, axes)
-    return figure
+    """The 95th percentile of the vectors' errors, mesh by mesh."""
+    kinds = values(rows, "as")
+    figure, axes = panels(len(kinds), width=3.6)
+    for axis, kind in zip(axes, kinds):
+        chosen = only(rows, **{"as": kind})
+        meshes = values(chosen, "mesh")
+        for place, method in enumerate(values(chosen, "method")):
+            errors = [float(row["vector 95%"]) for row in only(chosen, method=method)]
+            axis.plot(sorted(errors), range(1, len(errors) + 1), label=method, **look(method, place))
+        axis.set(title=kind, xscale="log", xlabel="vector error at 95 %, of the distance", ylabel="meshes", ylim=(0, len(meshes) + 1))
+    return legend(figure, axes)
 
 
 def discretizations(rows):

@@ -79,7 +79,7 @@ std::span<const Experiment> experiments() {
                  "On anisotropic meshes affine diffusion gives a more isotropic radial field than vector diffusion.",
                  radial},
       Experiment{
-          "trust", "after Fig. 20", "Distances and quality against exact maps",
+          "trust", "after Fig. 20", "Polar maps and heat against exact maps",
           "Distances are accurate near the source and too short at cut loci; exact vectors are not in the paper.",
           trust},
       Experiment{"clouds", "after Fig. 15", "Distances on clouds against exact ones of meshes",

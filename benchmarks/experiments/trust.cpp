@@ -1,4 +1,4 @@
-// Distances and vectors against exact ones, and how well the quality tells the right vectors from the wrong ones.
+// Vectors and distances of polar maps and of maps by heat against exact ones, and whether vectors that are trusted are right.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,6 +9,7 @@
 #include <numbers>
 #include <numeric>
 #include <optional>
+#include <random>
 
 #include "ahm/error.hpp"
 #include "ahm/maps/log_map_solver.hpp"
@@ -17,22 +18,26 @@
 #include "ahm/polymesh/polygon_mesh_surface.hpp"
 #include "ahm/surface/exact/exact_map.hpp"
 #include "ahm/surface/exact/flat_triangles.hpp"
+#include "ahm/surface/polar_map_solver.hpp"
 #include "ahm/testing/triangle_meshes.hpp"
 #include "experiments/comparison.hpp"
+#include "measure.hpp"
 
 namespace ahm::bench {
 namespace {
 
 using Complex = std::complex<double>;
-constexpr int source_count = 3;
+constexpr int source_count = 5;
+constexpr Index largest_mesh = 200'000;
 /// A vector is right when it is off by less than this share of the distance.
 constexpr double right = 0.1;
+/// Offset of noisy points, in mean edge lengths.
+constexpr double noise = 0.2;
 
-/// Of all vertices and sources together.
+/// The errors of one map: one entry per vertex that is compared.
 struct Found {
-  std::vector<double> length_error, distance_error;  ///< relative: |phi|, and the distance
-  std::vector<double> quality, by_length;            ///< the second compares |phi| with the distance instead of vectors
-  std::vector<char> is_right;
+  std::vector<double> vector_error, distance_error;  ///< relative to the distance
+  std::vector<double> quality;
 };
 
 /// Where exact maps run, and which of its vertices are compared.
@@ -44,29 +49,36 @@ struct Ground {
   std::vector<Vertex> vertices;
 };
 
-/// A graph of the same surface, and which of its vertices is the k-th that is compared.
+/// A discretization of the same surface, and which of its rows is the k-th vertex that is compared.
 struct View {
   std::string name;
-  const TangentGraph& graph;
-  std::function<Vertex(Index k)> vertex;
+  const ahm::Surface& surface;
+  std::function<Row(Index k)> row;
+
+  Vertex vertex(Index k) const { return surface.vertex(row(k)); }
 };
 
-/// Vertices nearer than two edges are left out: there the vectors are short and the edges few.
-void compare(const Ground& ground, const exact::ExactMap& truth, const View& view, const LogMap& map, Found& found) {
-  const double unit = ground.unit, near = 2 * ground.mean_edge;
-  const std::vector<double> quality = map_quality(view.graph, map);
+/// Left out are vertices nearer than two edges or 3 % of the largest distance: there the vectors are short and the edges few.
+Found compare(const Ground& ground, const exact::ExactMap& truth, const View& view, const LogMap& map) {
+  const std::vector<double> quality = map_quality(view.surface.graph(), map);
+  double farthest = 0;
+  for (const Vertex v : ground.vertices)
+    if (truth.status(v) == Status::ok) farthest = std::max(farthest, ground.unit * truth.distance(v));
+  const double near = std::max(2 * ground.mean_edge, 0.03 * farthest);
   std::vector<Complex> exact, ours;
-  std::vector<std::size_t> vertices;
+  std::vector<double> away;
+  Found found;
   for (Index k = 0; k < std::ssize(ground.vertices); ++k) {
     const Vertex own = ground.vertices[k], v = view.vertex(k);
-    if (map.status(v) != Status::ok || !(truth.distance(own) * unit > near)) continue;
-    vertices.push_back(static_cast<std::size_t>(v.index));
-    exact.emplace_back(unit * truth.coordinates(own)[0], unit * truth.coordinates(own)[1]);
+    const double d = ground.unit * truth.distance(own);
+    if (map.status(v) != Status::ok || !(d > near)) continue;
+    exact.emplace_back(ground.unit * truth.coordinates(own)[0], ground.unit * truth.coordinates(own)[1]);
     ours.emplace_back(map.coordinates(v)[0], map.coordinates(v)[1]);
+    away.push_back(d);
+    found.distance_error.push_back(std::abs(map.distance(v) - d) / d);
+    found.quality.push_back(quality[v.index]);
   }
-  // The axes of the two differ by a turn, and those of points perhaps by a reflection: what fits best near the source.
-  std::vector<double> away;
-  for (Complex z : exact) away.push_back(std::abs(z));
+  // The axes of the two differ by a rotation, and those of points perhaps by a reflection: what fits best near the source.
   const double third = away.empty() ? 0 : quantile(away, 0.3);
   Complex turn = 0, turn_back = 0;
   for (std::size_t k = 0; k < exact.size(); ++k) {
@@ -79,100 +91,96 @@ void compare(const Ground& ground, const exact::ExactMap& truth, const View& vie
     for (Complex& z : exact) z = std::conj(z);
   }
   turn /= std::abs(turn);
-  for (std::size_t k = 0; k < exact.size(); ++k) {
-    found.length_error.push_back(std::abs(std::abs(ours[k]) - away[k]) / away[k]);
-    found.distance_error.push_back(std::abs(map.distances()[vertices[k]] - away[k]) / away[k]);
-    found.quality.push_back(quality[vertices[k]]);
-    const double d = map.distances()[vertices[k]],
-                 by_length = std::hypot(map.spread()[vertices[k]] / 0.3, (std::abs(ours[k]) - d) / 0.1) / d;
-    found.by_length.push_back(1 / (1 + by_length * by_length));
-    found.is_right.push_back(std::abs(ours[k] - turn * exact[k]) < right * away[k]);
-  }
+  for (std::size_t k = 0; k < exact.size(); ++k)
+    found.vector_error.push_back(std::abs(ours[k] - turn * exact[k]) / away[k]);
+  return found;
 }
 
-/// Shares of the wrong ones that are trusted, at which the curve of the right ones is told.
-constexpr std::array wrong_shares{0.01, 0.02, 0.05, 0.1, 0.2, 0.4, 0.7};
+/// How often a right vector has the higher quality of a pair with a wrong one; nothing where all are of one kind.
+std::optional<double> area_under_curve(const Found& found) {
+  std::vector<std::size_t> order(found.quality.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](auto a, auto b) { return found.quality[a] > found.quality[b]; });
+  double above = 0, wrong = 0, right_ones = 0;
+  for (std::size_t k : order) {
+    if (found.vector_error[k] < right)
+      ++right_ones, above += wrong;
+    else
+      ++wrong;
+  }
+  return right_ones > 0 && wrong > 0 ? std::optional(1 - above / (right_ones * wrong)) : std::nullopt;
+}
 
-/// Receiver operating characteristic of a quality: of the right ones, those that are trusted where so many of the wrong ones are.
-struct Curve {
-  double area;                                      ///< how often a right vertex has the higher quality of a pair
-  std::array<double, wrong_shares.size()> trusted;  ///< shares of the right ones
+/// Shares of the vectors that are right, are trusted, and are right among those that are trusted.
+struct Shares {
+  double right, trusted, right_among_trusted;
 };
 
-/// Nothing where all are of one kind.
-std::optional<Curve> curve_of(std::span<const double> quality, const Found& found) {
-  std::vector<std::size_t> order(quality.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(), [&](auto a, auto b) { return quality[a] > quality[b]; });
-  const auto all = static_cast<double>(order.size());
-  const auto all_right = static_cast<double>(std::count(found.is_right.begin(), found.is_right.end(), 1));
-  if (all_right == 0 || all_right == all) return std::nullopt;
-  Curve curve{};
-  double above = 0, wrong = 0, right_ones = 0;
-  std::size_t share = 0;
-  for (std::size_t k : order) {
-    if (found.is_right[k]) {
-      ++right_ones;
-      above += all - all_right - wrong;
-      continue;
-    }
-    ++wrong;
-    while (share < wrong_shares.size() && wrong > wrong_shares[share] * (all - all_right))
-      curve.trusted[share++] = right_ones / all_right;
+Shares shares_of(const Found& found) {
+  double right_ones = 0, trusted = 0, both = 0;
+  for (std::size_t k = 0; k < found.quality.size(); ++k) {
+    const bool is_right = found.vector_error[k] < right, is_trusted = found.quality[k] >= trusted_quality;
+    right_ones += is_right, trusted += is_trusted, both += is_right && is_trusted;
   }
-  curve.area = above / (all_right * (all - all_right));
-  return curve;
+  const auto all = static_cast<double>(found.quality.size());
+  return {right_ones / all, trusted / all, trusted > 0 ? both / trusted : 1};
+}
+
+void append(Found& all, const Found& one) {
+  all.vector_error.insert(all.vector_error.end(), one.vector_error.begin(), one.vector_error.end());
+  all.distance_error.insert(all.distance_error.end(), one.distance_error.begin(), one.distance_error.end());
+  all.quality.insert(all.quality.end(), one.quality.begin(), one.quality.end());
 }
 
 void measure(const Ground& ground, const View& view, Table& table) {
+  const PolarMapSolver polar(view.surface);
+  const LogMapSolver heat(view.surface.graph());
   const auto size = static_cast<Index>(ground.vertices.size());
-  for (Variant variant : all_variants) {
-    const LogMapSolver solver(view.graph, {.variant = variant});
-    Found found;
+  for (const Method method : {Method::polar, Method::heat}) {
+    Found all;
+    double worst = 1, time = 0;
     for (int s = 0; s < source_count; ++s) {
       const Index source = size / 11 + s * (size / source_count);
-      compare(ground, exact::exact_map(ground.polyhedral, ground.polyhedral.vertex_point(ground.vertices[source])),
-              view, solver.solve(Source::at_vertex(view.vertex(source))), found);
+      const exact::ExactMap truth =
+          exact::exact_map(ground.polyhedral, ground.polyhedral.vertex_point(ground.vertices[source]));
+      std::optional<LogMap> map;
+      time += seconds([&] {
+        map = method == Method::polar ? polar.log_map(view.row(source))
+                                      : heat.solve(view.surface.source(view.row(source)).source, {.threads = 1});
+      });
+      const Found found = compare(ground, truth, view, *map);
+      if (found.quality.empty()) continue;
+      worst = std::min(worst, shares_of(found).right_among_trusted);
+      append(all, found);
     }
-    const auto count = static_cast<double>(found.quality.size());
-    const double all_right = static_cast<double>(std::count(found.is_right.begin(), found.is_right.end(), 1));
-    std::vector<Cell> row{ground.name,
-                          view.name,
-                          size,
-                          std::string(to_string(variant)),
-                          mean(found.distance_error),
-                          quantile(found.distance_error, 0.95),
-                          quantile(found.distance_error, 1),
-                          mean(found.length_error),
-                          quantile(found.length_error, 0.95),
-                          quantile(found.length_error, 1),
-                          all_right / count};
-    for (const auto* quality : {&found.quality, &found.by_length}) {
-      double trusted = 0, right_trusted = 0;
-      for (std::size_t k = 0; k < quality->size(); ++k) {
-        const bool is_trusted = (*quality)[k] >= trusted_quality;
-        trusted += is_trusted;
-        right_trusted += is_trusted && found.is_right[k];
-      }
-      const auto curve = curve_of(*quality, found);
-      row.push_back(curve ? Cell(curve->area) : Cell());
-      row.push_back(trusted / count);
-      row.push_back(trusted > 0 ? Cell(right_trusted / trusted) : Cell());
-      for (std::size_t k = 0; k < wrong_shares.size(); ++k) row.push_back(curve ? Cell(curve->trusted[k]) : Cell());
-    }
-    table.add(std::move(row));
+    if (all.quality.empty()) continue;
+    const auto [is_right, trusted, right_among_trusted] = shares_of(all);
+    const auto area = area_under_curve(all);
+    table.add({ground.name, view.name, size, std::string(to_string(method)), quantile(all.vector_error, 0.5),
+               quantile(all.vector_error, 0.95), quantile(all.distance_error, 0.95), is_right,
+               area ? Cell(*area) : Cell(), trusted, right_among_trusted, worst, 1e3 * time / source_count});
   }
 }
 
-/// As triangles, and where no vertex is dropped or joined to another, its vertices as points.
+/// The vertices as points where none is dropped or joined to another.
+void measure_points(const Ground& ground, std::string name, std::span<const Vec3> points, Table& table) {
+  const auto cloud = pointcloud::PointCloudSurface::build(points);
+  if (cloud.graph().size() != std::ssize(points)) return;
+  measure(ground, {std::move(name), cloud, [](Index k) { return Row(k); }}, table);
+}
+
 void measure(const Surface& surface, Table& table) {
   const exact::PolyhedralSurface polyhedral = surface.polyhedron();
   Ground ground{surface.name(), polyhedral, surface.graph().length_unit(), surface.mean_edge(), {}};
   for (Index i = 0; i < surface.size(); ++i) ground.vertices.emplace_back(i);
-  measure(ground, {"triangles", surface.graph(), [](Index k) { return Vertex(k); }}, table);
-  const auto cloud = pointcloud::PointCloudSurface::build(surface.points());
-  if (cloud.graph().size() != surface.size()) return;
-  measure(ground, {"points", cloud.graph(), [&](Index k) { return *cloud.rows().vertex(Row(k)); }}, table);
+  measure(ground, {"triangles", surface.mesh(), [&](Index k) { return *surface.mesh().rows().row(Vertex(k)); }}, table);
+  measure_points(ground, "points", surface.points(), table);
+  std::mt19937_64 random(7);
+  std::normal_distribution<double> off(0, noise * surface.mean_edge());
+  std::vector<Vec3> noisy(surface.points().begin(), surface.points().end());
+  for (Vec3& p : noisy)
+    for (double& x : p) x += off(random);
+  measure_points(ground, fmt::format("points, noise {}", noise), noisy, table);
 }
 
 /// Refined, and as polygons. Exact maps run over the triangles of the refinement.
@@ -196,21 +204,14 @@ void measure(const NamedPolygons& mesh, Table& table) {
       ground.vertices.push_back(*vertex);
     }
   for (const auto& [name, surface] : {std::pair{"refined", &refined}, std::pair{"polygons", &polygons}})
-    measure(ground, {name, surface->graph(), [&](Index k) { return *surface->rows().vertex(rows[k]); }}, table);
+    measure(ground, {name, *surface, [&](Index k) { return rows[k]; }}, table);
 }
 
 }  // namespace
 
 Table trust(const Settings& settings) {
-  std::vector<std::string> columns{"mesh",          "as",           "vertices",     "variant",
-                                   "distance mean", "distance 95%", "distance max", "|phi| mean",
-                                   "|phi| 95%",     "|phi| max",    "right"};
-  for (const char* by : {"", ", by length"}) {
-    for (const char* name : {"area under curve", "trusted", "right among trusted"})
-      columns.push_back(fmt::format("{}{}", name, by));
-    for (double share : wrong_shares) columns.push_back(fmt::format("right at {} of wrong{}", share, by));
-  }
-  Table table(columns);
+  Table table({"mesh", "as", "vertices", "method", "vector 50%", "vector 95%", "distance 95%", "right",
+               "area under curve", "trusted", "right among trusted", "the same in the worst map", "ms a map"});
   const Index n = settings.toy ? 640 : 10000;
   measure(Surface("sphere", test::split_icosphere(n)), table);
   measure(Surface("torus", torus(n)), table);
@@ -221,14 +222,20 @@ Table trust(const Settings& settings) {
   }
   measure(NamedPolygons{test::cube_sphere(static_cast<Index>(std::sqrt(n / 6.0))), "sphere of quads"}, table);
   measure(NamedPolygons{test::voronoi_sphere(n / 2), "sphere of Voronoi cells"}, table);
-  for_user_surfaces(settings, 60000, [&](const Surface& surface) { measure(surface, table); });
-  for (const NamedPolygons& mesh : user_polygons(settings, 60000)) try {
+  for_user_surfaces(settings, largest_mesh, [&](const Surface& surface) { measure(surface, table); });
+  for (const NamedPolygons& mesh : user_polygons(settings, largest_mesh)) try {
       measure(mesh, table);
     } catch (const Error& e) {
       fmt::print(stderr, "left out: {}: {}\n", mesh.name, e.what());
     }
-  table.seen = fmt::format("95th percentile of the relative error, medians over meshes: distance {:.3f}, |phi| {:.2f}.",
-                           quantile(table.numbers("distance 95%"), 0.5), quantile(table.numbers("|phi| 95%"), 0.5));
+  const auto median = [&](const char* as, const char* method) {
+    return quantile(table.where("as", as).where("method", method).numbers("vector 95%"), 0.5);
+  };
+  table.seen = fmt::format(
+      "95th percentile of the vectors' relative error, median over meshes: polar {:.2g} on triangles and {:.2g} on "
+      "their vertices "
+      "as points, heat {:.2g} and {:.2g}.",
+      median("triangles", "polar"), median("points", "polar"), median("triangles", "heat"), median("points", "heat"));
   return table;
 }
 

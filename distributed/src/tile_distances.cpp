@@ -4,10 +4,10 @@
 #include <cmath>
 #include <limits>
 
+#include "ahm/maps/unfolding_front.hpp"
 #include "map_summary.hpp"
 #include "map_writer.hpp"
 #include "maps/edge_paths.hpp"
-#include "maps/run_front.hpp"
 
 namespace ahm::distributed {
 
@@ -25,7 +25,7 @@ void find_distances(const TiledGraph& graph, const Source& source, double radius
     progress.step("unfold", 0);
     UnfoldingFront front(graph);
     front.add(source);
-    run_front(front, graph, radius, progress.stop);
+    front.run(radius, progress.stop);
     for (Index i = 0; i < graph.size(); ++i) put(i, front.distance(Vertex(i)));
   } else {
     edge_paths(graph, source, radius, progress, put);

@@ -27,7 +27,7 @@ from ._inputs import read, surface
 from ._local_maps import LocalMaps, LocalStroke, PaddedMaps, local_maps, local_stroke
 from ._maps import InverseMap, InversePoints, LogMap, MapSource, Status
 from ._meshes import PolygonMesh, TriangleMesh
-from ._solvers import ExactGeodesics, LogMapSolver, log_map
+from ._solvers import ExactGeodesics, LogMapSolver, PolarMapSolver, log_map
 from ._surfaces import ClosestPoints, Surface, TangentGraph
 from ._textures import Atlas, Coverage, Decal, atlas, coverage, decal, decal_coordinates
 
@@ -39,7 +39,8 @@ __all__ = [
     "Atlas", "Cancelled", "Cells", "Center", "ClosestPoints", "Coverage", "Curvature", "Decal", "DistanceField",
     "Error", "ExactGeodesics", "Graph", "Grid", "InvalidArgument", "InvalidGeometry", "InvalidGraph", "InverseMap",
     "InversePoints", "IoError", "LocalMaps", "LocalStroke", "LogMap", "LogMapSolver", "MapSource",
-    "NotPositiveDefinite", "Operators", "PaddedMaps", "Path", "PointCloud", "PolygonMesh", "ResourceExhausted",
+    "NotPositiveDefinite", "Operators", "PaddedMaps", "Path", "PointCloud", "PolarMapSolver", "PolygonMesh",
+    "ResourceExhausted",
     "Status", "Stroke", "Surface", "TangentGraph", "TriangleMesh", "atlas", "cells", "coverage", "curvature", "decal",
     "decal_coordinates", "distance", "distance_and_gradient", "distance_and_nearest", "extend", "farthest_points",
     "geodesic_loop", "geodesic_path", "geodesic_paths", "geometric_median", "karcher_mean", "local_maps",

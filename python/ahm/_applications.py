@@ -13,7 +13,7 @@ from ._fields import distance_and_nearest
 from ._maps import LogMap
 from ._options import checked
 from ._progress import Progress, reporting
-from ._solvers import ExactGeodesics, Maker, as_body, as_maker, tolerance_of
+from ._solvers import ExactGeodesics, Maker, PolarMapSolver, as_body, as_maker, tolerance_of
 
 
 class Stroke(NamedTuple):
@@ -49,6 +49,8 @@ def stroke(solver: Any, points: Any, *, closed: bool = False, shape: str = "line
     Raises ValueError naming argument, index and value.
     """
     made = as_maker(solver, method, tolerance=tolerance)
+    if isinstance(made, PolarMapSolver):
+        raise ValueError("method: polar maps start at points; a stroke takes 'heat' or 'exact'")
     at = places.points(points, "points", made.surface)
     arguments.choice(shape, "shape", ("line", "circle"))
     uv = np.empty((0, 2))
@@ -170,7 +172,7 @@ def karcher_mean(solver: Any, points: Any, weights: Any = None, *, start: Any = 
     points : k points: rows, positions, `(faces, barycentric)`, `(edges, t)`.
     weights : (k,) >= 0, or None: all equal.
     start : where the search begins, the row nearest to this point; None: near the point of the largest weight.
-    method : of a surface: "heat" (default), or "exact" over the flat triangles of a mesh.
+    method : of a surface: "heat" (default), "polar", or "exact" over the flat triangles of a mesh.
     tolerance : of exact maps, as of `ExactGeodesics`.
     max_maps : >= 1; each step is one log map. radius : of the maps, world units; it must reach from the center and the start to
         every point. progress : as of `LogMapSolver`.

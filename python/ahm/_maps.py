@@ -101,7 +101,7 @@ class LogMap:
 
     @property
     def error_estimate(self) -> Optional[np.ndarray]:
-        """(n,) estimate of |error of uv|, world units, with order=2; else None."""
+        """(n,) estimate of |error of uv|, world units, of polar maps and with order=2; else None."""
         found = self._map.error_estimate()
         return found if len(found) else None
 
@@ -154,7 +154,7 @@ class LogMap:
 
     @property
     def method(self) -> str:
-        """"heat" or "exact"."""
+        """"polar", "heat" or "exact"."""
         return self._map.method
 
     def sample(self, points: Any) -> np.ndarray:

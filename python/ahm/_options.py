@@ -40,6 +40,7 @@ CHECKS: Dict[str, Callable[[Any, str], Any]] = {
     "accuracy": _positive,
     "ordering": _one_of("amd", "nested_dissection"),
     "threads": _whole(0, 4096),
+    "windows": _whole(0, 2**62),
     "radius": _radius,
     "tolerance": _tolerance,
     "frames": arguments.flag,

@@ -1,4 +1,4 @@
-"""Who makes log maps: diffusion, or exact geodesics."""
+"""What makes log maps: diffusion, polar fronts, or exact geodesics."""
 
 from __future__ import annotations
 
@@ -169,6 +169,75 @@ def _solver_again(on: Surface, options: Dict[str, Any]) -> LogMapSolver:
     return LogMapSolver(on, **options)
 
 
+class PolarMapSolver(_Maker):
+    """Log maps in geodesic polar coordinates: the length of the shortest path to each row times the direction in which it leaves
+    the source. Nothing is factored. On meshes exact windows around the source start a front; elsewhere it starts at the source.
+
+    Can be used wherever a `LogMapSolver` can: `cells`, `karcher_mean`, `geometric_median`, `atlas`. Shared by threads.
+
+    surface : a `Surface` of dimension 2, or what `ahm.surface` takes.
+    windows : exact windows around the source per map; None: 8 per vertex and no fewer than 131,072; 0: none.
+    threads : 0: one per core. No result depends on it.
+    progress : None, True (a bar), or a callable (stage, fraction).
+
+    Raises ValueError where the dimension is not 2.
+
+    >>> import ahm
+    >>> solver = ahm.PolarMapSolver(ahm.shapes.sphere(3))
+    >>> solver
+    <ahm.PolarMapSolver: on <ahm.TriangleMesh: 642 vertices, 1280 faces>>
+    >>> [bool(abs(m.distance.max() - 3.1416) < 0.02) for m in solver.log_maps([0, 7, 12])]
+    [True, True, True]
+    """
+
+    def __init__(self, surface: Any, *, windows: Optional[int] = None, threads: int = 0, progress: Progress = None) -> None:
+        self.surface = as_surface(surface)
+        self.options = checked(windows=windows, threads=threads)
+        with reporting(progress) as report:
+            self._core = _core.PolarSolver(self.surface._body, self.options.get("windows"), self.options["threads"], report)
+
+    @property
+    def _maker(self) -> Any:
+        return self._core
+
+    def log_map(self, source: Any, *, u_axis: Any = None, radius: Optional[float] = None, frames: bool = True,
+                progress: Progress = None) -> LogMap:
+        """The polar map of one source. Arguments and errors as of `LogMapSolver.log_map`.
+
+        >>> import ahm
+        >>> m = ahm.PolarMapSolver(ahm.shapes.plane(4, 3)).log_map(((0, 1), 0.5), u_axis=[1, 0, 0])
+        >>> m.uv[[0, 11]].round(9).tolist()
+        [[-0.5, 0.0], [2.5, 2.0]]
+        """
+        at = places.point(source, "source", self.surface)
+        return self._solve(at, u_axis, progress, radius=radius, frames=frames)[0]
+
+    def log_maps(self, sources: Any, *, u_axis: Any = None, radius: Optional[float] = None, frames: bool = False,
+                 threads: Optional[int] = None, progress: Progress = None) -> List[LogMap]:
+        """One map for each source, several at a time, and the same numbers. Arguments and errors as of `log_map` and
+        `LogMapSolver.log_maps`.
+
+        >>> import ahm
+        >>> [m.method for m in ahm.PolarMapSolver(ahm.shapes.plane(4, 3)).log_maps([0, 7])]
+        ['polar', 'polar']
+        """
+        at = places.points(sources, "sources", self.surface)
+        return self._solve(at, u_axis, progress, radius=radius, frames=frames, threads=threads)
+
+    def _found(self, at: tuple, axis: Any, options: Dict[str, Any], report: Any) -> list:
+        return self._core.maps(at, axis, options, report)
+
+    def __reduce__(self) -> tuple:
+        return _polar_again, (self.surface, self.options)
+
+    def __repr__(self) -> str:
+        return f"<ahm.PolarMapSolver: on {self.surface!r}>"
+
+
+def _polar_again(on: Surface, options: Dict[str, Any]) -> PolarMapSolver:
+    return PolarMapSolver(on, **options)
+
+
 class ExactGeodesics(_Maker):
     """Log maps by straight lines over the flat triangles of a mesh, exact up to rounding; laid out once for many maps.
 
@@ -243,19 +312,21 @@ def _geodesics_again(on: Surface, tolerance: float) -> ExactGeodesics:
     return ExactGeodesics(on, tolerance=tolerance)
 
 
-Maker = Union[LogMapSolver, ExactGeodesics]
+Maker = Union[LogMapSolver, PolarMapSolver, ExactGeodesics]
 
 
-def log_map(surface: Any, source: Any, *, method: Optional[str] = None, u_axis: Any = None, radius: Optional[float] = None,
+def log_map(surface: Any, source: Any, *, method: str = "auto", u_axis: Any = None, radius: Optional[float] = None,
             tolerance: Optional[float] = None, frames: bool = True, progress: Progress = None, **options: Any) -> LogMap:
-    """The log map of one source. For many sources on one surface make a `LogMapSolver` or `ExactGeodesics`.
+    """The log map of one source. For many sources on one surface make a `LogMapSolver`, `PolarMapSolver` or `ExactGeodesics`.
 
     surface : a `Surface`, or what `ahm.surface` takes.
     source : a row, a position, `(face, barycentric)`, or `((row, row), t)` on an edge.
-    method : "heat" (default): by diffusion, on any surface; "exact": by straight lines over the flat triangles of a mesh.
+    method : "auto" (default): "polar", or "heat" on noisy clouds, in other dimensions than 2 and with options of heat.
+        "polar": length and direction of the shortest path, by a front, on any surface; "heat": the affine heat method, smooth
+        across noise; "exact": straight lines over the flat triangles of a mesh. `LogMap.method` is the one that was used.
     tolerance : of exact distances, as of `ExactGeodesics`.
     u_axis, radius, frames, progress : as of `LogMapSolver.log_map`.
-    options : of `LogMapSolver`, for method "heat": order, t_coef, variant, threads, ...
+    options : threads; of `LogMapSolver`, for method "heat": order, t_coef, variant, ...
 
     >>> import ahm
     >>> m = ahm.log_map(ahm.shapes.sphere(3), 0, method="exact")
@@ -264,8 +335,19 @@ def log_map(surface: Any, source: Any, *, method: Optional[str] = None, u_axis: 
 
     Raises ValueError naming argument, index and value; NotPositiveDefinite, ResourceExhausted.
     """
-    maker = as_maker(surface, method, dict(expected_maps=1, progress=progress, **options), tolerance)
+    arguments.choice(method, "method", ("auto", "polar", "heat", "exact"))
+    by: Optional[str] = method
+    if method == "auto":
+        by = None if isinstance(surface, (LogMapSolver, PolarMapSolver, ExactGeodesics)) else _chosen(surface, options, tolerance)
+    maker = as_maker(surface, by, dict(expected_maps=1, progress=progress, **options), tolerance)
     return maker.log_map(source, u_axis=u_axis, radius=radius, frames=frames, progress=progress)
+
+
+def _chosen(surface: Any, options: Dict[str, Any], tolerance: Optional[float]) -> str:
+    """The method for a surface, its options given."""
+    if tolerance is not None or set(options) - {"threads"}:
+        return "heat"  # which has these options, or refuses them
+    return _core.choose_method(as_body(surface)._body)
 
 
 def as_maker(thing: Any, method: Optional[str] = None, options: Optional[Dict[str, Any]] = None,
@@ -273,19 +355,21 @@ def as_maker(thing: Any, method: Optional[str] = None, options: Optional[Dict[st
     """What makes maps by this method, made from a surface where it is not made yet. None: by heat, or by what is given.
     With a tolerance of its own, where one is given."""
     if method is not None:
-        arguments.choice(method, "method", ("heat", "exact"))
+        arguments.choice(method, "method", ("polar", "heat", "exact"))
     given = options or {}
-    made = {LogMapSolver: "heat", ExactGeodesics: "exact"}.get(type(thing))
+    made = {LogMapSolver: "heat", PolarMapSolver: "polar", ExactGeodesics: "exact"}.get(type(thing))
     ready = made is not None and method in (None, made)
-    exact = method == "exact" or (made == "exact" and ready)
-    unknown = sorted(set(given) - {"expected_maps", "progress", "threads"}) if ready or exact else []
+    by = made if ready else method or "heat"
+    unknown = sorted(set(given) - {"expected_maps", "progress", "threads"}) if ready or by != "heat" else []
     if unknown:
-        raise TypeError(f"{unknown[0]}: " + ("the solver has its options already" if ready else "method 'exact' has no such option"))
-    within = tolerance_of(thing, "exact" if exact else "heat", tolerance)
+        raise TypeError(f"{unknown[0]}: " + ("the solver has its options already" if ready else f"method {by!r} has no such option"))
+    within = tolerance_of(thing, by or "heat", tolerance)
     if ready and tolerance is None:
         return thing
-    if exact:
+    if by == "exact":
         return ExactGeodesics(as_body(thing), tolerance=within, progress=given.get("progress"))
+    if by == "polar":
+        return PolarMapSolver(as_body(thing), threads=given.get("threads") or 0, progress=given.get("progress"))
     return LogMapSolver(as_body(thing), **given)
 
 
@@ -304,4 +388,4 @@ def as_solver(thing: Any) -> LogMapSolver:
 
 
 def as_body(thing: Any) -> Surface:
-    return thing.surface if isinstance(thing, (LogMapSolver, ExactGeodesics)) else as_surface(thing)
+    return thing.surface if isinstance(thing, (LogMapSolver, PolarMapSolver, ExactGeodesics)) else as_surface(thing)

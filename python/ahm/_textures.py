@@ -139,7 +139,7 @@ def atlas(solver: Any, sources: Any = None, *, charts: int = 20, max_distortion:
     solver : a `LogMapSolver` or `ExactGeodesics`, or a mesh or cloud.
     sources : k points; charts start at rows, so that of any other point the nearest row counts; None: `charts` rows spread
         evenly.
-    method : of a surface: "heat" (default), or "exact" over the flat triangles of a mesh: cells and charts.
+    method : of a surface: "heat" (default), "polar", or "exact" over the flat triangles of a mesh: cells and charts.
     tolerance : of exact maps, as of `ExactGeodesics`.
     max_distortion : > 1: adds sources until the charts are as good as that; None: keeps to the sources.
     size, margin : texels of a side of the square, and free around each chart.

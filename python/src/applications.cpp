@@ -120,9 +120,13 @@ void place(const Maker& by, std::span<const Source> points, double radius, Found
   ExactMapOptions exact = by.exact();
   exact.radius = radius;
   exact.frames = true;
-  const LogMap map = by.solver() != nullptr
-                         ? by.solver()->solver.solve(source, {.radius = radius, .frames = true, .spread = false})
-                         : body.geodesics().log_map(point.value(), {}, exact);
+  const auto map = [&] {
+    if (by.solver() != nullptr)
+      return by.solver()->solver.solve(source, {.radius = radius, .frames = true, .spread = false});
+    if (by.polar() == nullptr) return body.geodesics().log_map(point.value(), {}, exact);
+    const PolarMapOptions options{.radius = radius, .frames = true};
+    return point ? by.polar()->solver.log_map(*point, {}, options) : by.polar()->solver.log_map(source, options);
+  }();
   for (const Source& p : points)
     for (double z : map.coordinates(p)) found.seen.push_back(z);
 }

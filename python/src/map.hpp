@@ -10,6 +10,7 @@
 #include "ahm/applications/map_maker.hpp"
 #include "ahm/applications/surface_curve.hpp"
 #include "ahm/maps/log_map_solver.hpp"
+#include "ahm/surface/polar_map_solver.hpp"
 #include "ahm/surface/row_log_map.hpp"
 #include "body.hpp"
 
@@ -21,22 +22,36 @@ struct Solver {
 };
 using SolverPtr = std::shared_ptr<Solver>;
 
-/// Who makes maps for an application: a solver, or the exact geodesics of a body.
+struct PolarSolver {
+  BodyPtr body;
+  PolarMapSolver solver;
+  unsigned threads;
+};
+using PolarSolverPtr = std::shared_ptr<PolarSolver>;
+
+/// What makes maps for an application: a solver, or the exact geodesics of a body.
 class Maker {
  public:
-  /// @param given  a Solver, or a Body and the tolerance of its exact maps
+  /// @param given  a Solver, a PolarSolver, or a Body and the tolerance of its exact maps
   explicit Maker(const py::object& given);
 
-  const BodyPtr& body() const { return solver_ ? solver_->body : body_; }
-  /// Null where maps are exact.
+  const BodyPtr& body() const { return solver_ ? solver_->body : polar_ ? polar_->body : body_; }
+  /// Null where maps are polar or exact.
   const Solver* solver() const { return solver_.get(); }
+  /// Null where maps are by heat or exact.
+  const PolarSolver* polar() const { return polar_.get(); }
   /// @throws as `Body::geodesics`
-  MapMaker maps() const { return solver_ ? MapMaker(solver_->solver) : MapMaker(body_->geodesics(), exact()); }
+  MapMaker maps() const {
+    if (solver_) return {solver_->solver};
+    if (polar_) return {polar_->solver, polar_->threads};
+    return {body_->geodesics(), exact()};
+  }
   /// Of exact maps: the tolerance.
   ExactMapOptions exact() const { return {.tolerance = tolerance_, .progress = {}}; }
 
  private:
   SolverPtr solver_;
+  PolarSolverPtr polar_;
   BodyPtr body_;
   double tolerance_ = 0;
 };

@@ -34,6 +34,8 @@ Map::Map(BodyPtr on, PlacedSource from, LogMap made, unsigned threads, std::opti
 Maker::Maker(const py::object& given) {
   if (py::isinstance<Solver>(given))
     solver_ = given.cast<SolverPtr>();
+  else if (py::isinstance<PolarSolver>(given))
+    polar_ = given.cast<PolarSolverPtr>();
   else
     std::tie(body_, tolerance_) = given.cast<std::pair<BodyPtr, double>>();
 }
@@ -103,23 +105,51 @@ py::list heat_maps(const SolverPtr& solver, const py::tuple& sources, const py::
 }
 
 /// One map for each source, several at a time.
-std::vector<MapPtr> solve_exactly(const BodyPtr& body, const Places& from, const std::optional<Vec3>& axis,
-                                  ExactMapOptions options, unsigned threads) {
-  const ExactGeodesics& geodesics = body->geodesics();
+/// @param make  make(place, options): one of them
+template <class Options, class Make>
+std::vector<MapPtr> make_each(const Places& from, Options options, unsigned threads, const char* stage,
+                              const Make& make) {
   const Progress progress = options.progress;
   if (from.size() > 1) options.progress.report = {};  // each would begin anew
   std::vector<MapPtr> result(from.size());
   std::atomic<std::size_t> done = 0;
   detail::parallel_chunks(static_cast<Offset>(from.size()), 1, threads, [&](Offset k, Offset) {
-    naming(from.where(static_cast<std::size_t>(k)), [&] {
-      const SurfacePoint point = body->point(from.places[k]);
-      result[k] = std::make_shared<Map>(body, body->surface()->source(point, axis),
-                                        geodesics.log_map(point, axis, options), threads);
-    });
+    naming(from.where(static_cast<std::size_t>(k)), [&] { result[k] = make(from.places[k], options); });
     const auto share = static_cast<double>(++done) / static_cast<double>(from.size());
-    if (from.size() > 1) progress.step("exact maps", share);
+    if (from.size() > 1) progress.step(stage, share);
   });
   return result;
+}
+
+PolarSolverPtr make_polar_solver(const BodyPtr& body, const std::optional<Offset>& windows, unsigned threads,
+                                 const py::object& report) {
+  return compute(report, py::none(), [=](const Progress&) {
+    const PolarSolverOptions options{.windows = windows, .threads = threads};
+    return body->surface() != nullptr
+               ? std::make_shared<PolarSolver>(PolarSolver{body, PolarMapSolver(*body->surface(), options), threads})
+               : std::make_shared<PolarSolver>(PolarSolver{body, PolarMapSolver(body->graph(), options), threads});
+  });
+}
+
+py::list polar_maps(const PolarSolverPtr& solver, const py::tuple& sources, const py::object& u_axis,
+                    const py::dict& options, const py::object& report) {
+  PolarMapOptions o;
+  read(options, "radius", o.radius);
+  read(options, "frames", o.frames);
+  unsigned threads = solver->threads;
+  read(options, "threads", threads);
+  const Places from = places(sources);
+  const auto axis = optional_vector(u_axis);
+  return listed(compute(report, py::none(), [=](const Progress& progress) mutable {
+    o.progress = progress;
+    const BodyPtr& body = solver->body;
+    return make_each(from, o, threads, "polar maps", [&](const Place& place, const PolarMapOptions& options) {
+      PlacedSource placed = body->source(place, axis);
+      LogMap map = body->surface() != nullptr ? solver->solver.log_map(body->point(place), axis, options)
+                                              : solver->solver.log_map(placed.source, options);
+      return std::make_shared<Map>(body, std::move(placed), std::move(map), threads);
+    });
+  }));
 }
 
 py::list exact_maps(const BodyPtr& body, const py::tuple& sources, const py::object& u_axis, const py::dict& options,
@@ -134,7 +164,12 @@ py::list exact_maps(const BodyPtr& body, const py::tuple& sources, const py::obj
   const auto axis = optional_vector(u_axis);
   return listed(compute(report, py::none(), [=](const Progress& progress) mutable {
     o.progress = progress;
-    return solve_exactly(body, from, axis, o, threads);
+    const ExactGeodesics& geodesics = body->geodesics();
+    return make_each(from, o, threads, "exact maps", [&](const Place& place, const ExactMapOptions& options) {
+      const SurfacePoint point = body->point(place);
+      return std::make_shared<Map>(body, body->surface()->source(point, axis), geodesics.log_map(point, axis, options),
+                                   threads);
+    });
   }));
 }
 
@@ -270,6 +305,9 @@ void add_maps(py::module_& module) {
       .def("maps", &heat_maps)
       .def_property_readonly(
           "strategy", [](const Solver& s) { return s.solver.strategy() == Strategy::march ? "march" : "global"; });
+  py::class_<PolarSolver, PolarSolverPtr>(module, "PolarSolver")
+      .def(py::init(&make_polar_solver))
+      .def("maps", &polar_maps);
   py::class_<Map, MapPtr>(module, "Map")
       .def_property_readonly("dimension", [](const Map& m) { return m.map.dimension(); })
       .def_property_readonly("method", [](const Map& m) { return std::string(to_string(m.map.method())); })
@@ -289,6 +327,9 @@ void add_maps(py::module_& module) {
       .def("corners", &corners)
       .def("sample", &sample);
   module.def("exact_maps", &exact_maps);
+  module.def("choose_method", [](const BodyPtr& body) {
+    return std::string(to_string(compute([body] { return choose_method(body->graph()); })));
+  });
 }
 
 }  // namespace ahm::python

@@ -132,7 +132,9 @@ AtlasAndFaces make(const Maker& by, const std::vector<Vertex>& sources, const Re
   const Surface& surface = body.surface_for("an atlas");
   const MapMaker maps = by.maps();
   AtlasAndFaces result;
-  result.faces = by.solver() != nullptr ? surface_faces(surface, by.solver()->solver, sources) : surface_faces(surface);
+  result.faces = by.solver() != nullptr  ? surface_faces(surface, by.solver()->solver, sources)
+                 : by.polar() != nullptr ? surface_faces(surface, by.polar()->solver, sources)
+                                         : surface_faces(surface);
   const SurfaceFaces& faces = result.faces;
   std::vector<Vec3> positions(static_cast<std::size_t>(body.graph().size()));
   for (std::size_t c = 0; c < faces.corner_vertices.size(); ++c)

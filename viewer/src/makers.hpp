@@ -10,6 +10,7 @@
 #include "ahm/error.hpp"
 #include "ahm/maps/log_map_solver.hpp"
 #include "ahm/surface/exact/exact_geodesics.hpp"
+#include "ahm/surface/polar_map_solver.hpp"
 #include "ahm/viewer/session.hpp"
 
 namespace ahm::viewer {
@@ -45,6 +46,11 @@ class Makers {
     return kept_.front().solver;
   }
 
+  const PolarMapSolver& polar() {
+    if (!polar_) polar_.emplace(surface_, PolarSolverOptions{.threads = threads_});
+    return *polar_;
+  }
+
   /// @throws InvalidArgument: no faces
   const ExactGeodesics& geodesics() {
     if (surface_.faces().size() == 0)
@@ -77,6 +83,7 @@ class Makers {
   const Surface& surface_;
   unsigned threads_;
   std::list<Kept> kept_;
+  std::optional<PolarMapSolver> polar_;
   std::optional<ExactGeodesics> geodesics_;
   std::exception_ptr refusal_;  ///< why there are none
 };

@@ -19,6 +19,7 @@ inline Settings of_patch(Settings settings) {
 /// Without what curves have no option for.
 inline Settings of_curve(Settings settings) {
   settings.order = 1;
+  if (settings.method == Method::polar) settings.method = Method::heat;
   settings.u_axis.reset();
   return settings;
 }

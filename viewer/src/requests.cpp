@@ -134,7 +134,10 @@ std::string Request::word(const char* name, const std::vector<std::string>& allo
 
 Settings Request::settings(const Settings& usual) const {
   Settings out = usual;
-  if (has("method")) out.method = word("method", {"heat", "exact"}) == "exact" ? Method::exact : Method::heat;
+  if (has("method")) {
+    const std::string name = word("method", {"polar", "heat", "exact"});
+    out.method = name == "polar" ? Method::polar : name == "exact" ? Method::exact : Method::heat;
+  }
   if (has("variant")) {
     std::vector<std::string> names;
     for (const Variant variant : all_variants) names.emplace_back(to_string(variant));

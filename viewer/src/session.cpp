@@ -117,7 +117,17 @@ struct Session::Impl {
   void prepare(const std::stop_token& stop) {
     const std::lock_guard lock(work);
     try {
-      options.settings.method == Method::heat ? void(makers.solver(options.settings, stop)) : void(makers.geodesics());
+      switch (options.settings.method) {
+        case Method::heat:
+          makers.solver(options.settings, stop);
+          break;
+        case Method::polar:
+          makers.polar();
+          break;
+        case Method::exact:
+          makers.geodesics();
+          break;
+      }
     } catch (const std::exception&) {  // NOLINT(bugprone-empty-catch)
     }
   }
@@ -140,12 +150,13 @@ struct Session::Impl {
   LogMap map(const SurfacePoint& source, const PlacedSource& placed, const Settings& settings,
              const std::stop_token& stop, bool frames = false) {
     const double radius = radius_of(settings);
-    if (settings.method == Method::exact) {
-      const auto u_axis = placed.frame ? std::optional(placed.frame->x) : std::nullopt;
+    const auto u_axis = placed.frame ? std::optional(placed.frame->x) : std::nullopt;
+    if (settings.method == Method::polar)
+      return makers.polar().log_map(source, u_axis, {.radius = radius, .frames = frames, .progress = until(stop)});
+    if (settings.method == Method::exact)
       return makers.geodesics().log_map(
           source, u_axis,
           {.radius = radius, .tolerance = settings.tolerance, .frames = frames, .progress = until(stop)});
-    }
     MapOptions heat = heat_options(settings, radius, stop);
     heat.frames = frames;
     return makers.solver(settings, stop).solve(placed.source, heat);

@@ -199,20 +199,35 @@ void add_repair_options(CLI::App& app, InputOptions& o) {
   app.add_flag("--orient", o.repair.orient, "Turn faces over so that closed parts look outwards")->group(group);
 }
 
-CLI::Option* add_method(CLI::App& app, SolveOptions& o) {
+CLI::Option* add_method(CLI::App& app, SolveOptions& o, std::vector<Method> methods, bool chosen) {
+  if (chosen) o.method.reset();
   app.parse_complete_callback([&app, &o] {
-    if (o.method == Method::heat && o.tolerance > 0)
+    if (o.tolerance > 0 && o.method != Method::exact)
       throw CLI::ValidationError("--tolerance", "belongs to --method exact");
     if (o.method == Method::heat) return;
     for (const char* name :
-         {"--variant", "--order", "--strategy", "--t-coef", "--ordering", "--accuracy", "--estimate"})
-      if (const CLI::Option* option = app.get_option_no_throw(name); option != nullptr && option->count() > 0)
-        throw CLI::ValidationError("--method", fmt::format("exact has no {}: that belongs to heat", name));
+         {"--variant", "--order", "--strategy", "--t-coef", "--ordering", "--accuracy", "--estimate"}) {
+      const CLI::Option* option = app.get_option_no_throw(name);
+      if (option == nullptr || option->count() == 0) continue;
+      if (o.method)
+        throw CLI::ValidationError("--method",
+                                   fmt::format("{} has no {}: that belongs to heat", to_string(*o.method), name));
+      o.method = Method::heat;
+      return;
+    }
   });
-  return add_parsed(app, "--method", o.method, choice_of<Method>({{"heat", Method::heat}, {"exact", Method::exact}}),
-                    "NAME",
-                    "heat (default), or exact: straight lines over the faces of a mesh, best on coarse and\n"
-                    "sharp-edged ones, and around holes");
+  std::vector<std::pair<std::string, std::optional<Method>>> choices{{"heat", Method::heat}};
+  if (chosen) choices.insert(choices.begin(), {"auto", std::nullopt});
+  for (const Method method : methods) choices.emplace_back(to_string(method), method);
+  const auto offers = [&](Method method) { return std::ranges::find(methods, method) != methods.end(); };
+  std::string help = chosen ? "auto (default): polar, or heat on noisy clouds and with options of heat.\n" : "";
+  if (offers(Method::polar))
+    help +=
+        "polar: length and direction of the shortest path, by a front; right to a few percent, nothing is factored.\n";
+  help += fmt::format("heat{}: the affine heat method, smooth across noise", chosen ? "" : " (default)");
+  if (offers(Method::exact))
+    help += ".\nexact: straight lines over the faces of a mesh, best on coarse and sharp-edged ones, and around holes";
+  return add_parsed(app, "--method", o.method, choice_of<std::optional<Method>>(choices), "NAME", help);
 }
 
 CLI::Option* add_tolerance(CLI::App& app, SolveOptions& o) {

@@ -92,8 +92,11 @@ void add_repair_options(CLI::App& app, InputOptions& o);
 /// --no-flips, --non-manifold, --discretization, and those of repairs
 void add_mesh_options(CLI::App& app, InputOptions& o);
 
-/// --method; with exact, what the subcommand offers of heat's options is refused.
-CLI::Option* add_method(CLI::App& app, SolveOptions& o);
+/// --method; options of heat are refused with another one.
+/// @param methods  that the subcommand offers besides heat
+/// @param chosen   whether the method that suits the surface is the default; options of heat choose heat. Else heat is
+CLI::Option* add_method(CLI::App& app, SolveOptions& o, std::vector<Method> methods = {Method::polar, Method::exact},
+                        bool chosen = false);
 CLI::Option* add_tolerance(CLI::App& app, SolveOptions& o);
 CLI::Option* add_variant(CLI::App& app, SolveOptions& o);
 CLI::Option* add_strategy(CLI::App& app, SolveOptions& o);

@@ -43,7 +43,7 @@ struct InputOptions {
 
 /// How maps are computed.
 struct SolveOptions : HeatOptions {
-  Method method = Method::heat;
+  std::optional<Method> method = Method::heat;  ///< none: the one that suits the surface
   std::optional<double> radius;
   double tolerance = 0;  ///< of exact maps
 };

@@ -178,8 +178,9 @@ void run(const AtlasCommandOptions& options) {
   journal.start("sources");
   const std::vector<Vertex> sources = choose_sources(options, input);
   comment_on_positions(input, options.sources, "--sources", journal);
-  const SurfaceFaces faces =
-      maps.solver ? surface_faces(input.surface(), *maps.solver, sources) : surface_faces(input.surface());
+  const SurfaceFaces faces = maps.solver  ? surface_faces(input.surface(), *maps.solver, sources)
+                             : maps.polar ? surface_faces(input.surface(), *maps.polar, sources)
+                                          : surface_faces(input.surface());
   const std::vector<Vec3> positions = vertex_positions(faces, graph.size());
   journal.start("charts");
   RefineOptions refine;

@@ -204,7 +204,7 @@ void offer(CLI::App& app, CellsOptions& o) {
       throw CLI::ValidationError("--sources", "give either --sources or --count");
   });
   add_table_output(app, o.output)->required();
-  add_method(app, o.solve)
+  add_method(app, o.solve, {Method::exact})
       ->description("heat (default): by unfolding the graph, or exact: by straight lines over the faces of a mesh");
   add_tolerance(app, o.solve);
   add_backend(app, o.input);

@@ -25,14 +25,15 @@ constexpr const char* logmap_footer =
     "SOURCES is a list of these between blanks, or a file with one on each line.\n"
     "\n"
     "OUTPUT  .csv, .jsonl, .ply, .pcd or .vtp, or - (standard output); one row per vertex of INPUT, in its order:\n"
-    "          index,x,y,z,u,v,distance,angle,status,quality,spread, with --order 2 also error_estimate,\n"
+    "          index,x,y,z,u,v,distance,angle,status,quality,spread,error_estimate,bounded,\n"
     "          with --gradient also gx,gy,gz: unit vector in space, away from the source along the surface\n"
-    "        u,v        the log map of heat: where heat comes along several ways they cancel, and behind a hole\n"
-    "                   it is the straight line\n"
-    "        distance   along the surface, not |(u, v)|: on meshes round holes too; on clouds and with\n"
-    "                   --discretization polygons straight behind them, where quality is low\n"
-    "        quality    in (0, 1]; below 0.5 do not trust u,v: a cut locus, a shadow, or too coarse\n"
-    "        spread     standard deviation of (u, v) over the ways by which heat came\n"
+    "        u,v             the log map. Polar and exact: length and direction of the shortest path. Heat: the\n"
+    "                        mean over the paths of heat, which cancel at the cut locus; straight behind holes\n"
+    "        distance        along the surface; by heat it is not |(u, v)|\n"
+    "        quality         in (0, 1]; below 0.5 expect u,v to be wrong by more than a tenth of the distance\n"
+    "        spread          large at the cut locus, where neighbors lie far apart in the map\n"
+    "        error_estimate  expected error of (u, v); polar, and with --order 2\n"
+    "        bounded         1 where distance is only a lower bound, the straight line in space; not for exact\n"
     "        The numbers are nan where status is not ok:\n"
     "          disconnected  from the source                beyond_radius  farther than --radius\n"
     "          unreached     too far for double precision  removed        dropped, replaced, or in no face\n"
@@ -136,7 +137,7 @@ void run(const LogmapCommand& command) {
 
 void offer_method(CLI::App& app, LogmapOptions& o) {
   const char* group = "Method";
-  add_method(app, o.solve)->group(group);
+  add_method(app, o.solve, {Method::polar, Method::exact}, true)->group(group);
   add_tolerance(app, o.solve)->group(group);
   add_variant(app, o.solve)->group(group);
   add_backend(app, o.input)->group(group);

@@ -71,6 +71,7 @@ nlohmann::ordered_json as_json(const LogmapRun& run, const OutputOptions& output
   j["largest_distance"] = largest_distance(run.rows);
   for (Status s : all_statuses) j["status"][std::string(to_string(s))] = count(run.rows, s);
   j["untrusted"] = untrusted(run.quality);
+  if (!run.rows.bounded.empty()) j["bounded"] = std::ranges::count(run.rows.bounded, 1);
   if (!run.rows.error_estimate.empty()) j["median_error_estimate"] = median(run.rows.error_estimate);
   j["source"] = source_as_json(run);
   j[std::string(run.input.backend->name)] = app::as_json(run.input.built.report);
@@ -93,7 +94,10 @@ std::string as_text(const LogmapRun& run) {
                       largest_distance(run.rows), run.input.mean_edge_length());
   text += quality_as_text(run.quality);
   if (!run.rows.error_estimate.empty())
-    text += fmt::format(", median error of the diffusion times about {:.2g}", median(run.rows.error_estimate));
+    text += fmt::format(", median error of (u, v) about {:.2g}", median(run.rows.error_estimate));
+  if (const auto bounded = std::ranges::count(run.rows.bounded, 1); bounded > 0)
+    text += fmt::format(", {} only a bound (the straight line)",
+                        bounded == 1 ? "1 distance is" : fmt::format("{} distances are", bounded));
   return text + "\n";
 }
 

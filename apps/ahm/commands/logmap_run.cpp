@@ -92,18 +92,13 @@ void map_from_source(const LogmapOptions& options, const Input& input, std::opti
   detail::run_both(options.solve.threads, solve, unfold);
   const LogMap& map = *solved;
   RowLogMap rows = input.surface().on_rows(map, options.solve.threads);
-  const auto [of_vertices, compared] = front ? map_quality(input.graph(), map, *front, options.solve.threads)
-                                             : ComparedQuality{map_quality(input.graph(), map, options.solve.threads)};
-  const std::vector<double> quality = on_rows(rows, of_vertices);
+  const std::vector<double> quality =
+      on_rows(rows, front ? map_quality(input.graph(), map, *front, options.solve.threads)
+                          : map_quality(input.graph(), map, options.solve.threads));
   front.reset();
   if (options.input.around_source) settle_left_out(input, source, *options.solve.radius, rows);
   comment_on_statuses(rows.status, options.input.path, journal);
   comment_on_quality(quality, "keep to what is near with --radius, or start elsewhere", journal);
-  if (compared < 0.5)
-    journal.add_warning(fmt::format(
-        "at {:.0f} % of the mapped vertices neighbours leave gaps (noise, clumps, a small --k, holes) on the way: "
-        "there quality tells of distances, and less of directions",
-        100 * (1 - compared)));
 
   Results results(options.output, input, options.input);
   const std::vector<Vec3> away =

@@ -83,11 +83,18 @@ LogMap solve(const SolveOptions& options, const LogMapSolver& solver, const Sour
 
 Maps::Maps(const SolveOptions& options, const Input& input, Journal& journal, int count)
     : exact(exact_options(options, journal)) {
-  if (options.method == Method::heat) {
-    solver.emplace(make_solver(options, input.graph(), journal, count));
-  } else {
-    journal.start("layout");
-    geodesics.emplace(input.surface());
+  switch (options.method.value_or(choose_method(input.graph()))) {
+    case Method::heat:
+      solver.emplace(make_solver(options, input.graph(), journal, count));
+      break;
+    case Method::polar:
+      journal.start("layout");
+      polar.emplace(input.surface(), PolarSolverOptions{.threads = options.threads});
+      break;
+    case Method::exact:
+      journal.start("layout");
+      geodesics.emplace(input.surface());
+      break;
   }
 }
 
@@ -97,7 +104,10 @@ LogMap Maps::map(const SolveOptions& options, const Input& input, const SourceSp
   journal.start("solve");
   // From the point and along the axis of the source that was found for the user.
   const auto u_axis = source.frame ? std::optional(source.frame->x) : std::nullopt;
-  return geodesics->log_map(point_of(input, spec), u_axis, exact_options(options, journal));
+  if (geodesics) return geodesics->log_map(point_of(input, spec), u_axis, exact_options(options, journal));
+  const MapOptions map = map_options(options);
+  return polar->log_map(point_of(input, spec), u_axis,
+                        {.radius = map.radius, .frames = map.frames, .progress = journal.progress()});
 }
 
 LogMap solve(const SolveOptions& options, const Input& input, const SourceSpec& spec, const PlacedSource& source,

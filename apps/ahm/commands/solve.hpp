@@ -32,9 +32,12 @@ struct Maps {
   /// One of them. @param source  of `spec`. @throws as `solve`
   LogMap map(const SolveOptions& options, const Input& input, const SourceSpec& spec, const PlacedSource& source,
              Journal& journal) const;
-  MapMaker maker() const { return solver ? MapMaker(*solver) : MapMaker(*geodesics, exact); }
+  MapMaker maker() const {
+    return solver ? MapMaker(*solver) : polar ? MapMaker(*polar, exact.threads) : MapMaker(*geodesics, exact);
+  }
 
   std::optional<LogMapSolver> solver;
+  std::optional<PolarMapSolver> polar;
   std::optional<ExactGeodesics> geodesics;
   ExactMapOptions exact;
 };

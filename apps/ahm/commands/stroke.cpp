@@ -187,7 +187,7 @@ void offer(CLI::App& app, StrokeCommandOptions& o) {
   });
   add_parsed(app, "--radius", o.solve.radius, parse_positive, "R",
              "Leave out everything farther than this from the curve; what lies beyond costs nothing");
-  add_method(app, o.solve);
+  add_method(app, o.solve, {Method::exact});
   add_tolerance(app, o.solve);
   add_graph_options(app, o.input, o.solve);
   add_map_results(app, o.output);

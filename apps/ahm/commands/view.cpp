@@ -56,7 +56,7 @@ viewer::SessionOptions session_options(const ViewOptions& options, const Input& 
   session.title = std::filesystem::path(options.input.path).filename().string();
   session.input = detail::shell_word(options.input.path);
   session.input_options = fmt::format("{}", fmt::join(words(options.input), " "));
-  session.settings = {options.solve.method,
+  session.settings = {options.solve.method.value_or(choose_method(input.graph())),
                       options.solve.variant,
                       options.solve.order,
                       options.solve.t_coef,
@@ -130,7 +130,7 @@ void offer(CLI::App& app, ViewOptions& o) {
       "Where the first map starts (default: in the middle of the picture)");
   app.add_flag("--no-browser", o.no_browser, "Print the address only");
   add_parsed(app, "--port", o.port, integer_parser(0, 65535), "N", "Of 127.0.0.1 (default 0: any that is free)");
-  add_method(app, o.solve);
+  add_method(app, o.solve, {Method::polar, Method::exact}, true);
   add_tolerance(app, o.solve);
   add_parsed(app, "--radius", o.solve.radius, parse_positive, "R",
              "Leave out everything farther than this from the source");

@@ -100,9 +100,9 @@ Results::Results(const OutputOptions& output, const Input& input, const InputOpt
 
 std::string input_column(const std::string& name) {
   constexpr std::string_view own[] = {
-      "index", "x",  "y",  "z",     "nx",       "ny",    "nz",     "red",     "green",  "blue",
-      "u",     "v",  "s",  "t",     "distance", "angle", "status", "quality", "spread", "error_estimate",
-      "gx",    "gy", "gz", "label", "point"};
+      "index",   "x",  "y",  "z",  "nx",       "ny",    "nz",     "red",     "green",  "blue",
+      "u",       "v",  "s",  "t",  "distance", "angle", "status", "quality", "spread", "error_estimate",
+      "bounded", "gx", "gy", "gz", "label",    "point"};
   return std::ranges::find(own, name) == std::end(own) ? name : "input_" + name;
 }
 
@@ -127,6 +127,7 @@ void add_map(io::Table& table, const RowLogMap& rows, const std::vector<double>&
   table.add("quality", quality);
   table.add("spread", rows.spread);
   if (!rows.error_estimate.empty()) table.add("error_estimate", rows.error_estimate);
+  if (!rows.bounded.empty()) table.add("bounded", std::vector<double>(rows.bounded.begin(), rows.bounded.end()));
 }
 
 io::Table Results::table() const {

@@ -87,8 +87,9 @@ TEST(OrdersExperiment, TheSecondIsNearerOnTheSphereAndNowhereMuchWorse) {
 
 TEST(TrustExperiment, VectorsThatAreTrustedAreRight) {
   const Table& table = toy("trust");
-  EXPECT_GE(table.smallest("area under curve"), 0.9);
-  EXPECT_GE(table.smallest("right among trusted"), 0.9);
+  EXPECT_GE(table.where("as", "triangles").smallest("area under curve"), 0.9);
+  EXPECT_GE(table.where("as", "triangles").smallest("right among trusted"), 0.95);
+  EXPECT_LE(table.where("as", "triangles").where("method", "polar").largest("vector 95%"), 0.05);
 }
 
 TEST(CloudsExperiment, HeatHasTheDistancesOfTheCleanSphere) {

@@ -14,6 +14,7 @@ namespace ahm {
 LogMap MapMaker::map(Vertex source, double radius, bool frames) const {
   if (solver_ != nullptr)
     return solver_->solve(Source::at_vertex(source), {.radius = radius, .frames = frames, .spread = false});
+  if (polar_ != nullptr) return polar_->log_map(source, {.radius = radius, .frames = frames});
   return geodesics_->log_map(source, {.radius = radius, .tolerance = tolerance_, .frames = frames, .progress = {}});
 }
 
@@ -65,7 +66,7 @@ std::vector<double> MapMaker::coordinates_of_whole(std::span<const Vertex> sourc
 }
 
 double MapMaker::longest_way(const FaceList& faces) const {
-  if (solver_ != nullptr) return std::numeric_limits<double>::infinity();
+  if (geodesics_ == nullptr) return std::numeric_limits<double>::infinity();
   double side = 0;
   const FlatTriangles& flat = geodesics_->triangles();
   for (exact::Half h = 0; h < 3 * flat.surface.face_count(); ++h) side = std::max(side, flat.surface.record(h).length);
@@ -76,8 +77,8 @@ double MapMaker::longest_way(const FaceList& faces) const {
 }
 
 VoronoiCells MapMaker::cells(std::span<const Vertex> sources) const {
-  return solver_ != nullptr ? voronoi_cells(solver_->graph(), sources)
-                            : voronoi_cells(*geodesics_, sources, {.tolerance = tolerance_, .progress = {}});
+  return geodesics_ == nullptr ? voronoi_cells(graph(), sources)
+                               : voronoi_cells(*geodesics_, sources, {.tolerance = tolerance_, .progress = {}});
 }
 
 }  // namespace ahm

@@ -13,15 +13,19 @@ namespace {
 /// At 8 windows per vertex the median map of real meshes is right to 0.02 of the distance at the 95th percentile (docs/accuracy.md). The
 /// least number takes about 15 ms: up to some thousand vertices windows cover the surface.
 constexpr Offset windows_per_vertex = 8, least_windows = Offset{1} << 17;
+/// Where a smaller share of the triangles is agreed on, maps by heat are as near (docs/accuracy.md).
+constexpr double least_agreement = 0.8;
+/// Vertices whose one-rings are compared.
+constexpr Index compared_vertices = 1000;
 
 }  // namespace
 
 PolarMapSolver::PolarMapSolver(const TangentGraph& graph, const PolarSolverOptions& options) : graph_(&graph) {
   if (graph.dimension() != 2)
-    throw InvalidArgument("dimension_not_2",
-                          "a polar map needs a graph of dimension 2; this one has dimension " +
-                              std::to_string(graph.dimension()),
-                          "map it by heat");
+    throw InvalidArgument(
+        "dimension_not_2",
+        "a polar map needs a graph of dimension 2; this one has dimension " + std::to_string(graph.dimension()),
+        "map it by heat");
   stars_ = UnfoldingFront::stars(graph, options.threads, false);
 }
 
@@ -45,10 +49,8 @@ LogMap PolarMapSolver::seeded_map(const Source& source, const PolarMapOptions& o
     front.add(source);
     std::vector<UnfoldingFront::Seed> exact;
     try {
-      exact = seeds(ExactMapOptions{.radius = options.radius,
-                                    .most_windows = windows_,
-                                    .frames = options.frames,
-                                    .progress = options.progress});
+      exact = seeds(ExactMapOptions{
+          .radius = options.radius, .most_windows = windows_, .frames = options.frames, .progress = options.progress});
     } catch (const InvalidGeometry&) {  // windows got lost in needles: from the source, then
     }
     if (!exact.empty()) {
@@ -79,6 +81,14 @@ LogMap PolarMapSolver::log_map(Vertex source, const PolarMapOptions& options) co
 
 LogMap PolarMapSolver::log_map(const Source& source, const PolarMapOptions& options) const {
   return seeded_map(source, options, [](const ExactMapOptions&) { return std::vector<UnfoldingFront::Seed>(); });
+}
+
+Method choose_method(const TangentGraph& graph) {
+  if (graph.dimension() != 2) return Method::heat;
+  if (graph.is_delaunay()) return Method::polar;
+  std::vector<Vertex> some;
+  for (Index i = 0; i < graph.size(); i += graph.size() / compared_vertices + 1) some.emplace_back(i);
+  return UnfoldingFront::agreement(graph, some) >= least_agreement ? Method::polar : Method::heat;
 }
 
 }  // namespace ahm

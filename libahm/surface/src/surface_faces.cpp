@@ -10,9 +10,9 @@
 namespace ahm {
 namespace {
 
-/// A map from the first source of every component, with frames.
-LogMap map_of_all(const LogMapSolver& solver, std::span<const Vertex> sources) {
-  const Components components = connected_components(solver.graph());
+/// The first source of every component.
+Source source_of_each_component(const TangentGraph& graph, std::span<const Vertex> sources) {
+  const Components components = connected_components(graph);
   std::vector<bool> has_source(components.count, false);
   Source source(2);
   constexpr double offset[] = {0, 0}, axes[] = {1, 0, 0, 1};
@@ -21,9 +21,7 @@ LogMap map_of_all(const LogMapSolver& solver, std::span<const Vertex> sources) {
     if (!has_source[component]) source.add(vertex, 1, offset, axes);
     has_source[component] = true;
   }
-  MapOptions options;
-  options.frames = true;
-  return solver.solve(source, options);
+  return source;
 }
 
 SurfaceFaces found_triangles(const TangentGraph& graph, const LogMap& map) {
@@ -70,7 +68,14 @@ SurfaceFaces surface_faces(const Surface& surface) {
 
 SurfaceFaces surface_faces(const Surface& surface, const LogMapSolver& solver, std::span<const Vertex> sources) {
   if (surface.faces().size() > 0) return surface_faces(surface);
-  return found_triangles(surface.graph(), map_of_all(solver, sources));
+  const Source source = source_of_each_component(surface.graph(), sources);
+  return found_triangles(surface.graph(), solver.solve(source, {.frames = true}));
+}
+
+SurfaceFaces surface_faces(const Surface& surface, const PolarMapSolver& solver, std::span<const Vertex> sources) {
+  if (surface.faces().size() > 0) return surface_faces(surface);
+  const Source source = source_of_each_component(surface.graph(), sources);
+  return found_triangles(surface.graph(), solver.log_map(source, {.frames = true}));
 }
 
 std::vector<Triangle> turned_triangles(const Surface& surface, std::span<const Vec3> normals) {

@@ -36,10 +36,11 @@ struct Best {
 RowLogMap Surface::on_rows(const LogMap& map, unsigned threads) const {
   check_map(map);
   // Distances that are not exact may be below the straight line, which no way on the surface is.
-  const auto source = map.method() == Method::heat ? start_of_lines(graph(), map.source()) : std::nullopt;
+  const auto source = map.method() != Method::exact ? start_of_lines(graph(), map.source()) : std::nullopt;
   const auto n = static_cast<std::size_t>(rows().row_count());
   const std::vector<double> none(n, nan);
-  RowLogMap result{none, none, none, none, none, {}, std::vector<Status>(n, Status::removed), {}};
+  RowLogMap result{none, none, none, none, none, {}, {}, std::vector<Status>(n, Status::removed), {}};
+  if (map.method() != Method::exact) result.bounded.assign(n, 0);
   result.vertex.resize(n);
   const std::span<const double> error = map.error_estimate();
   if (!error.empty()) result.error_estimate = none;
@@ -59,6 +60,7 @@ RowLogMap Surface::on_rows(const LogMap& map, unsigned threads) const {
     result.u[r] = phi[0];
     result.v[r] = phi[1];
     result.distance[r] = away;
+    if (!result.bounded.empty()) result.bounded[r] = away > map.distance(v);
     if (!map.spread().empty()) result.spread[r] = map.spread()[v.index];
     result.angle[r] = std::atan2(phi[1], phi[0]);
     if (!error.empty()) result.error_estimate[r] = error[v.index];

@@ -78,7 +78,7 @@ void expect_identity(const Mesh& mesh, bool flips, const std::string& name) {
         const PlaneErrors errors(mesh, surface.on_rows(map), plane);
         EXPECT_LT(errors.coordinates, 1e-9 * mesh.diameter()) << name << ", " << where << ", order " << order;
         EXPECT_LT(errors.distance, 1e-9 * mesh.diameter()) << name << ", " << where << ", order " << order;
-        EXPECT_GT(std::ranges::min(map_quality(surface.graph(), map)), 0.99) << name << ", " << where;
+        EXPECT_GT(std::ranges::min(map_quality(surface.graph(), map)), 0.9) << name << ", " << where;
       }
   }
 }

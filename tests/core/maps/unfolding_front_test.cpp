@@ -111,30 +111,6 @@ TEST(UnfoldingFront, KnowsTheDirectionsOnBothSidesOfACutLocus) {
     }
 }
 
-// Along the sides of a square ways go straight on; around a hole they do not.
-TEST(UnfoldingFront, BendsAtTheBoundaryByItsAnglesOnly) {
-  const Index side = 41;
-  for (const double hole : {0.0, 8.0}) {
-    std::vector<Vec3> positions;
-    std::vector<Triangle> faces;
-    for (Index i = 0; i < side * side; ++i) positions.push_back({1.0 * (i % side), 1.0 * (i / side), 0});
-    for (Index y = 0; y + 1 < side; ++y)
-      for (Index x = 0; x + 1 < side; ++x) {
-        const Index i = y * side + x;
-        if (std::hypot(x + 0.5 - side / 2, y + 0.5 - side / 2) < hole) continue;
-        faces.push_back({i, i + 1, i + side + 1});
-        faces.push_back({i, i + side + 1, i + side});
-      }
-    const auto surface = trimesh::TriangleMeshSurface::build(positions, faces);
-    UnfoldingFront front(surface.graph(), nullptr, true);
-    front.add(surface.source(Row(side / 2)).source);
-    front.run();
-    int bent = 0;
-    for (Index i = 0; i < surface.graph().size(); ++i) bent += front.is_bent(Vertex(i));
-    EXPECT_TRUE(hole > 0 ? bent > 50 : bent == 0) << bent;
-  }
-}
-
 // Two points in one face of a coarse surface, crossed by the midpoints of its edges: the distances and directions of each alone.
 TEST(UnfoldingFront, FromPointsInOneFaceIsThatFromEach) {
   const Mesh mesh = torus(4000);
@@ -163,10 +139,8 @@ TEST(UnfoldingFront, AgreesWithItselfWhereEdgesAreATriangulation) {
   const CsrGraph graph(planar_triangulation(20).data);
   std::vector<Vertex> all;
   for (Index i = 0; i < 280; ++i) all.emplace_back(i);
-  EXPECT_GT(UnfoldingFront::agreement(graph, all).agreed, 0.95);
-  EXPECT_EQ(UnfoldingFront::agreement(CsrGraph(line_graph(300).data), all).agreed, 1);
-  EXPECT_EQ(UnfoldingFront::agreement(grid::GridGraph({.shape = {7, 8, 9}, .spacing = {1, 2, 0.3}}), all).agreed, 1);
-  EXPECT_EQ(UnfoldingFront::agreement(CsrGraph(lattice3(7).data), all).agreed, 0);
+  EXPECT_GT(UnfoldingFront::agreement(graph, all), 0.95);
+  EXPECT_EQ(UnfoldingFront::agreement(grid::GridGraph({.shape = {17, 20}, .spacing = {1, 1}}), all), 1);
 }
 
 TEST(UnfoldingFront, TellsTheNearestOfManyAndGoesOnFromThere) {

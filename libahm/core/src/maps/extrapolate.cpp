@@ -201,6 +201,7 @@ LogMap extrapolate(const TangentGraph& graph, const ComponentScales& scales, dou
   if (with_distances) {
     extras.distances = std::move(distances);
     extras.directions.assign(first.directions().begin(), first.directions().end());
+    extras.direction_errors.assign(first.direction_errors().begin(), first.direction_errors().end());
     extras.nearest.assign(first.nearest().begin(), first.nearest().end());
   }
   if (with_spread) extras.spread.assign(first.spread().begin(), first.spread().end());

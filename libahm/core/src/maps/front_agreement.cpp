@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "maps/eikonal.hpp"
 #include "maps/front_stars.hpp"
 
 namespace ahm {
@@ -18,16 +17,10 @@ constexpr double same_side = 0.01;
 /// diagonal will do, and stars may choose differently.
 constexpr double same_circle = 0.05;
 
-double share_of(Offset some, Offset all) { return all > 0 ? static_cast<double>(some) / static_cast<double>(all) : 0; }
-
 }  // namespace
 
-UnfoldingFront::Agreement UnfoldingFront::agreement(const TangentGraph& graph, std::span<const Vertex> vertices) {
-  if (graph.dimension() != 2) {
-    std::vector<std::size_t> axis;
-    const auto lies_along_axes = [&](Vertex vertex) { return find_axes(graph.star(vertex.index), axis); };
-    return {share_of(std::ranges::count_if(vertices, lies_along_axes), std::ssize(vertices))};
-  }
+double UnfoldingFront::agreement(const TangentGraph& graph, std::span<const Vertex> vertices) {
+  if (graph.dimension() != 2) return 0;
   std::vector<Neighbor> neighbors;
   std::vector<Corner> corners, others;
   const auto next = [](const std::vector<Corner>& around, std::size_t k) -> const Corner& {
@@ -76,13 +69,11 @@ UnfoldingFront::Agreement UnfoldingFront::agreement(const TangentGraph& graph, s
     return false;
   };
   const auto is_asked = [&](Index vertex) { return graph.star(vertex).degree() <= most_neighbors; };
-  Offset seen = 0, agreed = 0, stars = 0, open = 0;
+  Offset seen = 0, agreed = 0;
   for (const Vertex vertex : vertices) {
     if (!is_asked(vertex.index)) continue;
     corners.clear();
     Stars::append_corners(graph, vertex.index, neighbors, corners);
-    ++stars;
-    open += std::ranges::any_of(corners, [](const Corner& corner) { return std::isnan(corner.cosine); });
     for (std::size_t k = 0; k < corners.size(); ++k) {
       if (std::isnan(corners[k].cosine)) continue;
       const Corner &right = corners[k], &left = next(corners, k);
@@ -91,7 +82,7 @@ UnfoldingFront::Agreement UnfoldingFront::agreement(const TangentGraph& graph, s
       agreed += agree(vertex.index, right, left);
     }
   }
-  return {share_of(agreed, seen), share_of(open, stars)};
+  return seen > 0 ? static_cast<double>(agreed) / static_cast<double>(seen) : 0;
 }
 
 }  // namespace ahm

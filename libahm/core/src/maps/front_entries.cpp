@@ -13,9 +13,6 @@
 namespace ahm {
 namespace {
 
-/// A way that bends at the boundary by no more than this angle, all in all, goes straight on: boundaries of surfaces are not
-/// straight to the last bit.
-constexpr float straight_on = 0.5F;
 /// The two estimates of a direction lie on both sides of it, so that it is off by half their difference (docs/accuracy.md).
 constexpr double share_of_difference = 0.5;
 
@@ -56,11 +53,6 @@ Vec2 UnfoldingFront::arrival(Vertex vertex) const {
 bool UnfoldingFront::is_mirrored(Vertex vertex) const {
   const Index first = first_[vertex.index];
   return first >= 0 && directions_ && ways_[first].mirrored;
-}
-
-bool UnfoldingFront::is_bent(Vertex vertex) const {
-  const Index first = first_[vertex.index];
-  return first >= 0 && directions_ && ways_[first].turned > straight_on;
 }
 
 Index UnfoldingFront::nearest(Vertex vertex) const {

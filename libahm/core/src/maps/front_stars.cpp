@@ -354,7 +354,7 @@ void UnfoldingFront::Stars::find_cut_edges(Index vertex, std::vector<CutEdge>& e
 }
 
 std::shared_ptr<const UnfoldingFront::Stars> UnfoldingFront::stars(const TangentGraph& graph, unsigned threads,
-                                                                    bool midpoints) {
+                                                                   bool midpoints) {
   if (graph.dimension() != 2) return nullptr;
   std::vector<std::uint8_t> halved = midpoints ? halved_vertices(graph) : std::vector<std::uint8_t>();
   return std::make_shared<const Stars>(graph, std::move(halved), true, threads);

@@ -182,6 +182,7 @@ LogMap LogMapSolver::Impl::map_of(const Values& values, Strategy how, const Marc
   if (map.distances) extras.distances.resize(n);
   if (map.spread) extras.spread.resize(n);
   extras.directions = unfolded.directions;
+  extras.direction_errors = unfolded.direction_errors;
   extras.nearest = unfolded.nearest;
   extras.radius = map.radius;
   if (map.frames) extras.frames.resize(n * d * d);

@@ -74,7 +74,8 @@ std::vector<Status> statuses(const UnfoldingFront& front, const Source& source, 
 
 void check(const UnfoldingFront& front, const Source& source, const PolarMapOptions& options) {
   if (!(options.radius > 0))
-    throw InvalidArgument("radius is " + detail::number(options.radius) + "; it must be > 0 (infinity: the whole graph)");
+    throw InvalidArgument("radius is " + detail::number(options.radius) +
+                          "; it must be > 0 (infinity: the whole graph)");
   if (!front.has_directions())
     throw InvalidArgument("front_without_directions", "polar_map: the front has no directions",
                           "construct it with `directions`, on a graph of dimension 2");
@@ -102,6 +103,7 @@ LogMap polar_map(const UnfoldingFront& front, const Source& source, const PolarM
     const double distance = extras.distances[i] = front.distance(vertex);
     if (!extras.nearest.empty()) extras.nearest[i] = front.nearest(vertex);
     const Vec2 direction = front.direction(vertex);
+    extras.error_estimate[i] = distance * front.direction_error(vertex);
     coordinates[2 * i] = distance > 0 ? distance * direction[0] : 0;
     coordinates[2 * i + 1] = distance > 0 ? distance * direction[1] : 0;
     if (!options.frames) continue;
@@ -110,10 +112,6 @@ LogMap polar_map(const UnfoldingFront& front, const Source& source, const PolarM
       std::ranges::copy(carried_axes(direction, arrival, front.is_mirrored(vertex)), extras.frames.data() + 4 * i);
   }
   extras.spread = jumps(graph, coordinates, status);
-  for (std::size_t i = 0; i < n; ++i)
-    if (status[i] == Status::ok)
-      extras.error_estimate[i] =
-          std::hypot(extras.distances[i] * front.direction_error(Vertex(i)), extras.spread[i]);
   return LogMap(2, Variant::adaptive, Strategy::automatic, source, std::move(coordinates), std::move(status),
                 std::move(extras));
 }

@@ -16,8 +16,9 @@ namespace ahm {
 /// Per vertex, world units; empty: distances are measured by heat.
 struct Unfolded final : KnownDistances {
   std::vector<double> distances;
-  std::vector<double> directions;  ///< 2 per vertex; empty where they are not wanted
-  std::vector<Index> nearest;      ///< sample of a curve
+  std::vector<double> directions;        ///< 2 per vertex; empty where they are not wanted
+  std::vector<double> direction_errors;  ///< of these, radians
+  std::vector<Index> nearest;            ///< sample of a curve
 
   double of(Index vertex) const override { return distances[vertex]; }
 };

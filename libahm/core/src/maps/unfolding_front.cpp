@@ -90,8 +90,12 @@ Index UnfoldingFront::add(const Source& source) {
       continue;
     }
     const bool mirrored = !axes.empty() && axes[0] * axes[3] < axes[1] * axes[2];
-    given.push_back({vertex, first + point, away / unit, {offset.data()[0], offset.data()[1]},
-                     unit_vector({-back.data()[0], -back.data()[1]}), mirrored});
+    given.push_back({vertex,
+                     first + point,
+                     away / unit,
+                     {offset.data()[0], offset.data()[1]},
+                     unit_vector({-back.data()[0], -back.data()[1]}),
+                     mirrored});
     const auto is_of_point = [&, point = point](std::size_t other) {
       return other < source.vertices().size() && source.place(other).point == point;
     };
@@ -113,7 +117,8 @@ Index UnfoldingFront::add(const Source& source) {
   }
   // Also where another point is nearer by less: what lies on this one's side of the border between them comes from there.
   for (const Given& one : given)
-    offer(one.vertex, one.point, one.distance, 4 * longest_, {}, {.direction = unit_vector(one.offset), .arrival = one.arrival, .mirrored = one.mirrored});
+    offer(one.vertex, one.point, one.distance, 4 * longest_, {},
+          {.direction = unit_vector(one.offset), .arrival = one.arrival, .mirrored = one.mirrored});
   if (stars_) offer_midpoints(given);
   return first;
 }
@@ -170,7 +175,8 @@ void UnfoldingFront::restart(std::span<const Seed> seeds) {
   for (const Seed& seed : seeds) {
     const Index vertex = seed.vertex.index;
     const auto is_free = [&](const Corner& corner) { return first_[corner.neighbor] == none; };
-    if (std::ranges::any_of(around(vertex), is_free)) queue_.push({entries_[first_[vertex]].distance, vertex, seed.point});
+    if (std::ranges::any_of(around(vertex), is_free))
+      queue_.push({entries_[first_[vertex]].distance, vertex, seed.point});
   }
 }
 
@@ -261,15 +267,6 @@ std::span<const UnfoldingFront::Corner> UnfoldingFront::around(Index vertex) {
   return seen.corners;
 }
 
-/// By how much the angle of a star with a gap, at a boundary, exceeds a straight one: no way along the boundary bends by more.
-double UnfoldingFront::reflex_angle(std::span<const Corner> corners) {
-  if (std::ranges::none_of(corners, [](const Corner& c) { return std::isnan(c.cosine); })) return 0;
-  double angle = 0;
-  for (const Corner& c : corners)
-    if (!std::isnan(c.cosine)) angle += std::atan2(c.sine, c.cosine);
-  return std::max(0.0, angle - std::numbers::pi);
-}
-
 /// Gaussian curvature; 0 where it does not count.
 double UnfoldingFront::curvature(Index vertex) {
   if (!is_curved_) return 0;
@@ -296,7 +293,6 @@ void UnfoldingFront::spread(Index from, Index point, double distance) {
   const Entry* const here = find(from, point);
   const Way own = directions_ ? way_of(here) : Way{};
   const double focusing = here->focusing, curvature_here = distance > 0 ? curvature(from) : 0;
-  const auto turned = directions_ && distance > 0 ? static_cast<float>(own.turned + reflex_angle(corners)) : 0.0F;
   const auto focusing_along = [&](const Corner& edge, double along) {
     if (!is_curved_) return 0.0;
     return focusing_after(focusing, distance, along, 0.5 * (curvature_here + curvature(edge.neighbor)));
@@ -310,8 +306,7 @@ void UnfoldingFront::spread(Index from, Index point, double distance) {
     known.distance = known.is_new ? along : before;
     known.along = along;
     known.focusing = known.is_new ? focusing_along(corners[k], along) : entry->focusing;
-    if (directions_)
-      known.way = known.is_new ? Way{own.direction, {}, {from, from}, 0, own.variance, turned} : way_of(entry);
+    if (directions_) known.way = known.is_new ? Way{own.direction, {}, {from, from}, 0, own.variance} : way_of(entry);
     longest = std::max(longest, corners[k].length);
   }
   for (std::size_t k = 0; k < degree; ++k) {
@@ -348,16 +343,14 @@ void UnfoldingFront::spread(Index from, Index point, double distance) {
       found.is_new = true;
       if (!directions_) return;
       const Vec2 towards = crossing == across.share ? Vec2{cx, cy} : Vec2{crossing * base_length, 0};
-      const auto [direction, difference] =
-          direction_across(across, crossing, towards, base_length, own.direction, other.way.direction,
-                           own.mirrored ? -side : side);
+      const auto [direction, difference] = direction_across(across, crossing, towards, base_length, own.direction,
+                                                            other.way.direction, own.mirrored ? -side : side);
       found.way.direction = direction;
-      found.way.variance = static_cast<float>((1 - crossing) * own.variance + crossing * other.way.variance +
-                                              difference * difference);
+      found.way.variance =
+          static_cast<float>((1 - crossing) * own.variance + crossing * other.way.variance + difference * difference);
       found.way.arrival = {};
       found.way.last = {from, corners[base].neighbor};
       found.way.share = static_cast<float>(crossing);
-      found.way.turned = std::max(own.turned, other.way.turned);
     };
     unfold(k, right.length, next, left.length, 1);
     unfold(next, left.length, k, right.length, -1);

@@ -221,9 +221,11 @@ std::vector<UnfoldingFront::Seed> ExactGeodesics::seeds(const Placed& from, cons
     const exact::Arrival& in = exact.arrival(v);
     const double angle = options.frames && in.half >= 0 ? arrival_angle(flat_.surface, in) : NAN;
     const double departure = exact.distance(v) > 0 ? exact.direction(v) : NAN;
-    seeds.push_back({v, flat_.length_unit * exact.distance(v),
+    seeds.push_back({v,
+                     flat_.length_unit * exact.distance(v),
                      in_axes(from.axes[exact.source(v)], {std::cos(departure), std::sin(departure)}),
-                     {std::cos(angle), std::sin(angle)}, exact.source(v)});
+                     {std::cos(angle), std::sin(angle)},
+                     exact.source(v)});
   }
   return seeds;
 }

@@ -41,6 +41,7 @@ struct MapExtras {
   std::vector<double> distances;
   std::vector<double> spread;
   std::vector<double> directions;
+  std::vector<double> direction_errors;
   std::vector<Index> nearest;
   std::vector<double> frames;
   std::vector<double> error_estimate;
@@ -85,8 +86,9 @@ class LogMap {
   /// With MapOptions::frames: the source's axes carried to every vertex (Eq. 11 and 12), n x d x d, row major: column a is
   /// source axis a in the frame of the vertex. Identity where no heat arrived.
   std::span<const double> frames() const noexcept { return extras_.frames; }
-  /// With HeatOptions::order = 2: an estimate of |error of phi_i| in world units, from the disagreement of the
-  /// diffusion times; NaN where not ok. Good to a factor of about three inside the cut locus (docs/accuracy.md).
+  /// An estimate of |error of phi_i| in world units; NaN where not ok (docs/accuracy.md). Of polar maps it is the distance
+  /// times the expected error of the direction (`UnfoldingFront::direction_error`). With HeatOptions::order = 2 it is the disagreement of the
+  /// diffusion times, good to a factor of about three inside the cut locus. Empty elsewhere.
   std::span<const double> error_estimate() const noexcept { return extras_.error_estimate; }
   /// That was asked for, world units; infinite: none.
   double radius() const noexcept { return extras_.radius; }
@@ -110,14 +112,16 @@ class LogMap {
   double distance(Vertex vertex) const { return extras_.distances[vertex.index]; }
   std::span<const double> distances() const noexcept { return extras_.distances; }
   /// sqrt(q_i / lambda_i - |phi_i|^2), the standard deviation of the coordinates over the ways by which heat arrives, world
-  /// units: 0 on flat graphs, small inside the cut locus, about the distance on it. NaN where not ok; of an exact map half
-  /// of the longest jump to a neighbour, beyond the length of the side; empty without MapOptions::spread. From a curve it is over its
+  /// units: 0 on flat graphs, small inside the cut locus, about the distance on it. NaN where not ok; of polar and exact maps half
+  /// of the longest jump to a neighbor, beyond the length of the side; empty without MapOptions::spread. From a curve it is over its
   /// points, too: 0 on flat graphs beside a straight one, about the distance where a bent one's normals meet.
   std::span<const double> spread() const noexcept { return extras_.spread; }
   /// Where distances are unfolded, the unit vectors in which the ways to the vertices leave the source (`UnfoldingFront`), n x 2 in
   /// its frame: beside phi, which `map_quality` compares with them; from a curve, of the ways from its nearest sample. NaN at the
   /// source itself. Empty elsewhere and without MapOptions::spread.
   std::span<const double> directions() const noexcept { return extras_.directions; }
+  /// The expected errors of these directions, radians (`UnfoldingFront::direction_error`); empty where there are none.
+  std::span<const double> direction_errors() const noexcept { return extras_.direction_errors; }
   /// From a curve, the number of the sample nearest to each vertex (`Source::Place::point`), -1 where none is; empty of other
   /// sources.
   std::span<const Index> nearest() const noexcept { return extras_.nearest; }

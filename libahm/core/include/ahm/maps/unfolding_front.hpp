@@ -51,16 +51,10 @@ class UnfoldingFront {
   /// @param midpoints  whether triangles of small components are cut at the midpoints of their sides
   static std::shared_ptr<const Stars> stars(const TangentGraph& graph, unsigned threads = 1, bool midpoints = true);
 
-  struct Agreement {
-    /// Of the triangles that vertices see between their neighbours, the share that the other two corners see, too: 1 of a
-    /// triangulation, less of a cloud with noise, where stars contradict each other. So do the corners of squares without
-    /// diagonals, as in grids, and those with an edge of the right length opposite, as where diagonals of polygons cross; 0 where
-    /// there are no triangles. In other dimensions than 2 the share of vertices whose edges lie along orthogonal axes.
-    double agreed = 0;
-    /// Of the stars, the share with a gap: those at boundaries, and inside those that noise or few neighbours open (d = 2).
-    double open = 0;
-  };
-  static Agreement agreement(const TangentGraph& graph, std::span<const Vertex> vertices);
+  /// The share of the triangles in the one-rings of these vertices that are also in the one-rings of their other two corners, d = 2: 1
+  /// on a triangulation, less on a cloud with noise, where one-rings contradict each other. Squares without diagonals, as in grids, and
+  /// crossing diagonals of polygons count as triangles. 0 where there are no triangles.
+  static double agreement(const TangentGraph& graph, std::span<const Vertex> vertices);
 
   /// @param graph       must outlive the front
   /// @param stars       of this graph; none: looked up vertex by vertex
@@ -112,9 +106,6 @@ class UnfoldingFront {
   Vec2 arrival(Vertex vertex) const;
   /// Whether the frame of the vertex is a mirror image of the source's, carried along the path.
   bool is_mirrored(Vertex vertex) const;
-  /// Whether the way bends at the boundary, around a hole or in a notch, by more than half a radian in all. Known with
-  /// directions.
-  bool is_bent(Vertex vertex) const;
   /// The number of the nearest point; -1 where the front did not come. Of equally near ones any.
   Index nearest(Vertex vertex) const;
 
@@ -134,7 +125,6 @@ class UnfoldingFront {
     std::array<Index, 2> last{-1, -1};  ///< ends of the side that it crosses last, or one of them twice
     float share = 0;                    ///< of that side, from the first end to where it crosses
     float variance = 0;                 ///< of the direction: sum of squares of the differences at the sides crossed
-    float turned = 0;                   ///< angle by which it bends at the boundary, all in all
     bool mirrored = false;              ///< whether the frame of the vertex is turned over against that of the source
   };
   /// A neighbour of a vertex, and the angle from it to the next one counterclockwise.
@@ -209,7 +199,6 @@ class UnfoldingFront {
     return std::span(displacements_).subspan(number(entry) * d_, d_);
   }
   std::span<const Corner> around(Index vertex);
-  static double reflex_angle(std::span<const Corner> corners);
   double curvature(Index vertex);
 
   const TangentGraph& graph_;

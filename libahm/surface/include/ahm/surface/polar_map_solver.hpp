@@ -65,4 +65,8 @@ class PolarMapSolver {
   Offset windows_ = 0;
 };
 
+/// The method for log maps on a graph: polar on Delaunay triangulations and where the one-rings agree on their triangles
+/// (`UnfoldingFront::agreement` at some hundred vertices), else heat: on noisy clouds, and in other dimensions than 2.
+Method choose_method(const TangentGraph& graph);
+
 }  // namespace ahm

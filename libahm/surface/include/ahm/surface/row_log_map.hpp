@@ -2,6 +2,7 @@
 /// A log map on the rows of the input: what people want to see and files hold.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -13,11 +14,14 @@ namespace ahm {
 
 /// One entry per row of the input, in its order; NaN where the status is not ok.
 struct RowLogMap {
-  std::vector<double> u, v;                   ///< world units
-  std::vector<double> distance;               ///< `LogMap::distance`, world units, but no less than the straight line
-  std::vector<double> angle;                  ///< atan2(v, u), in (-pi, pi]; empty from a curve
-  std::vector<double> spread;                 ///< `LogMap::spread`, world units
-  std::vector<double> error_estimate;         ///< of order 2 (`LogMap::error_estimate`), else empty
+  std::vector<double> u, v;            ///< world units
+  std::vector<double> distance;        ///< `LogMap::distance`, world units, but no less than the straight line
+  std::vector<double> angle;           ///< atan2(v, u), in (-pi, pi]; empty from a curve
+  std::vector<double> spread;          ///< `LogMap::spread`, world units
+  std::vector<double> error_estimate;  ///< of order 2 (`LogMap::error_estimate`), else empty
+  /// 1 where the distance is only a bound: what the map has was shorter than the straight line, which stands for it. Empty for exact
+  /// maps and curves.
+  std::vector<std::uint8_t> bounded;
   std::vector<Status> status;                 ///< `removed` for rows without a vertex
   std::vector<std::optional<Vertex>> vertex;  ///< that the numbers are from
 };

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "ahm/maps/log_map_solver.hpp"
+#include "ahm/surface/polar_map_solver.hpp"
 #include "ahm/surface/surface.hpp"
 
 namespace ahm {
@@ -29,6 +30,7 @@ struct SurfaceFaces {
 /// @param sources  without faces: at least one for every component to be covered; at most one of each counts
 /// @throws InvalidArgument, without faces: as `LogMapSolver::solve`, `star_triangles`
 SurfaceFaces surface_faces(const Surface& surface, const LogMapSolver& solver, std::span<const Vertex> sources);
+SurfaceFaces surface_faces(const Surface& surface, const PolarMapSolver& solver, std::span<const Vertex> sources);
 
 /// The faces of the input; none of a cloud.
 SurfaceFaces surface_faces(const Surface& surface);
