@@ -164,8 +164,8 @@ TEST(PolarMap, IsTheExactMapWhereWindowsReach) {
     const auto surface = built(mesh);
     const ExactGeodesics geodesics(surface);
     const Vec3 axis{0.1, 0.2, 0.9};
-    for (const SurfacePoint& source :
-         {SurfacePoint{Row(10)}, SurfacePoint{FacePoint{33, {0.2, 0.3, 0.5}}}, SurfacePoint{FacePoint{50, {0.5, 0, 0.5}}}}) {
+    for (const SurfacePoint& source : {SurfacePoint{Row(10)}, SurfacePoint{FacePoint{33, {0.2, 0.3, 0.5}}},
+                                       SurfacePoint{FacePoint{50, {0.5, 0, 0.5}}}}) {
       const LogMap polar = PolarMapSolver(surface).log_map(source, axis, {.frames = true}),
                    exact = geodesics.log_map(source, axis, {.frames = true});
       EXPECT_LT(difference(exact, polar), 1e-12);
@@ -257,7 +257,9 @@ TEST(PolarMap, MasksOtherPartsAndWhatIsBeyondTheRadius) {
     const Vertex v(i);
     const bool here = i < one.vertices();
     EXPECT_EQ(whole.status(v), here ? Status::ok : Status::disconnected);
-    EXPECT_EQ(near.status(v), !here ? Status::disconnected : whole.distance(v) <= 1 ? Status::ok : Status::beyond_radius);
+    EXPECT_EQ(near.status(v), !here                    ? Status::disconnected
+                              : whole.distance(v) <= 1 ? Status::ok
+                                                       : Status::beyond_radius);
     EXPECT_EQ(std::isnan(near.coordinates(v)[0]), near.status(v) != Status::ok);
     EXPECT_EQ(std::isnan(near.error_estimate()[i]), near.status(v) != Status::ok);
   }

@@ -127,7 +127,7 @@ void add_map(io::Table& table, const RowLogMap& rows, const std::vector<double>&
   table.add("quality", quality);
   table.add("spread", rows.spread);
   if (!rows.error_estimate.empty()) table.add("error_estimate", rows.error_estimate);
-  if (!rows.bounded.empty()) table.add("bounded", std::vector<double>(rows.bounded.begin(), rows.bounded.end()));
+  if (!rows.bounded.empty()) table.add("bounded", rows.bounded);
 }
 
 io::Table Results::table() const {

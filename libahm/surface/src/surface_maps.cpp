@@ -40,7 +40,7 @@ RowLogMap Surface::on_rows(const LogMap& map, unsigned threads) const {
   const auto n = static_cast<std::size_t>(rows().row_count());
   const std::vector<double> none(n, nan);
   RowLogMap result{none, none, none, none, none, {}, {}, std::vector<Status>(n, Status::removed), {}};
-  if (map.method() != Method::exact) result.bounded.assign(n, 0);
+  if (map.method() != Method::exact) result.bounded = none;
   result.vertex.resize(n);
   const std::span<const double> error = map.error_estimate();
   if (!error.empty()) result.error_estimate = none;
@@ -60,7 +60,7 @@ RowLogMap Surface::on_rows(const LogMap& map, unsigned threads) const {
     result.u[r] = phi[0];
     result.v[r] = phi[1];
     result.distance[r] = away;
-    if (!result.bounded.empty()) result.bounded[r] = away > map.distance(v);
+    if (!result.bounded.empty()) result.bounded[r] = away > map.distance(v) ? 1 : 0;
     if (!map.spread().empty()) result.spread[r] = map.spread()[v.index];
     result.angle[r] = std::atan2(phi[1], phi[0]);
     if (!error.empty()) result.error_estimate[r] = error[v.index];

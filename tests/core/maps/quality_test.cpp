@@ -64,7 +64,7 @@ TEST(MapQuality, IsOneOnFlatGeometry) {
     for (Index i = 0; i < graph.size(); ++i) {
       if (front.distance(Vertex(i)) > (1 + 1e-9) * map.distance(Vertex(i))) continue;
       ++straight;
-      ASSERT_NEAR(quality[i], 1.0, 1e-9) << i;
+      ASSERT_NEAR(quality[i], 1.0, 1e-6) << i;
     }
     EXPECT_GT(straight, 0.9 * graph.size());
   }

@@ -17,9 +17,8 @@ namespace {
 
 using trimesh::TriangleMeshSurface;
 
-// Behind a hole the ways come around it, so directions of heat are wrong there. The quality tells on a bowl; on a flat sheet, where
-// heat goes straight on, the length of the way does alone.
-TEST(MapQuality, SeesDirectionsTurnedByHolesOfCurvedSurfaces) {
+// Behind a hole shortest paths come around it, so directions of heat are wrong there, also on a flat sheet, where they are straight.
+TEST(MapQuality, SeesDirectionsTurnedByHoles) {
   for (const double depth : {0.0, 0.5}) {
     const Index side = 41;
     std::vector<Vec3> positions;
@@ -50,7 +49,8 @@ TEST(MapQuality, SeesDirectionsTurnedByHolesOfCurvedSurfaces) {
       right += is_right && quality[v] >= trusted_quality;
     }
     EXPECT_GT(turned, 0.15 * heat.size());
-    EXPECT_GT(depth > 0 ? right / trusted : trusted / heat.size(), 0.97);
+    EXPECT_GT(right / trusted, 0.97);
+    EXPECT_GT(trusted, 0.4 * heat.size());
   }
 }
 

@@ -2,7 +2,6 @@
 /// A log map on the rows of the input: what people want to see and files hold.
 #pragma once
 
-#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -21,7 +20,7 @@ struct RowLogMap {
   std::vector<double> error_estimate;  ///< of order 2 (`LogMap::error_estimate`), else empty
   /// 1 where the distance is only a bound: what the map has was shorter than the straight line, which stands for it. Empty for exact
   /// maps and curves.
-  std::vector<std::uint8_t> bounded;
+  std::vector<double> bounded;
   std::vector<Status> status;                 ///< `removed` for rows without a vertex
   std::vector<std::optional<Vertex>> vertex;  ///< that the numbers are from
 };
