@@ -127,6 +127,47 @@ TEST(ExactMethod, UnfoldsACube) {
   EXPECT_FALSE(json.contains("variant") || json.contains("strategy") || json.contains("t_coef"));
 }
 
+TEST(PolarMethod, IsTheDefaultWhereTrianglesAgree) {
+  Folder folder;
+  const std::string input = folder.write("sphere.off", off(icosphere(12)));
+  const Words words{"logmap", input, "--source", "0", "-o", folder / "map.csv", "--json", folder / "map.json"};
+  const auto map = [&](const Words& more) {
+    const Outcome outcome = run(with(words, more));
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return read_json(folder / "map.json");
+  };
+  EXPECT_EQ(map({"--method", "exact"}).at("method"), "exact");
+  const auto exact = read_numbers(folder / "map.csv");
+  const auto chosen = map({});
+  EXPECT_EQ(chosen.at("method"), "polar");
+  EXPECT_EQ(chosen.at("bounded"), 0);
+  EXPECT_FALSE(chosen.contains("variant") || chosen.contains("strategy"));
+  auto polar = read_numbers(folder / "map.csv");
+  for (std::size_t i = 0; i < polar.size(); ++i) {
+    for (const char* name : {"u", "v", "distance"}) EXPECT_NEAR(polar[i][name], exact[i].at(name), 1e-9);
+    EXPECT_EQ(polar[i]["error_estimate"], 0);  // windows cover so small a mesh
+  }
+  EXPECT_EQ(map({"--method", "polar"}).at("method"), "polar");
+  EXPECT_EQ(map({"--method", "heat"}).at("method"), "heat");
+  EXPECT_EQ(map({"--order", "2"}).at("method"), "heat");
+  EXPECT_EQ(map({"--backend", "pointcloud"}).at("method"), "polar");
+  const Outcome outcome = run(with(words, {"--method", "polar", "--order", "2"}));
+  EXPECT_NE(outcome.status, 0);
+  EXPECT_NE(outcome.err.find("polar has no --order"), std::string::npos) << outcome.err;
+}
+
+TEST(PolarMethod, MakesAnAtlasAndACenter) {
+  Folder folder;
+  const std::string input = folder.write("sphere.off", off(icosphere(12)));
+  for (const Words& backend : {Words{}, Words{"--backend", "pointcloud"}}) {
+    const Outcome atlas =
+        run(with({"atlas", input, "--charts", "12", "--method", "polar", "-o", folder / "atlas.obj"}, backend));
+    EXPECT_EQ(atlas.status, 0) << atlas.err;
+    const Outcome center = run(with({"center", input, "--points", "3 40 77", "--method", "polar"}, backend));
+    EXPECT_EQ(center.status, 0) << center.err;
+  }
+}
+
 TEST(ExactMethod, TakesATolerance) {
   Folder folder;
   const std::string input = folder.write("sphere.off", off(icosphere(12)));

@@ -22,8 +22,8 @@ TEST_P(Interrupt, EndsTheRunInAnyStageAndLeavesNothingHalfDone) {
   const auto input = folder.write("sphere.xyz", xyz(sphere(60000)));
   int interrupted = 0;
   for (const char* stage : {"read", "graph", "factor", "solve"}) {
-    const Running running =
-        start({"logmap", input, "--source", "0", "-o", folder / "map.csv", "--json", folder / "map.json", "--verbose"});
+    const Running running = start({"logmap", input, "--source", "0", "--method", "heat", "-o", folder / "map.csv",
+                                   "--json", folder / "map.json", "--verbose"});
     const std::string said = read_until(running, stage);  // it has just ended, the next one runs
     EXPECT_NE(said.find(stage), std::string::npos) << said;
     kill(running.pid, GetParam());

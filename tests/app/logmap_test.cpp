@@ -195,7 +195,8 @@ TEST(Logmap, DoesNotDependOnThreads) {
 TEST(Json, TellsWhatWasDone) {
   Folder folder;
   const auto input = folder.write("sphere.xyz", xyz(sphere(1000)));
-  const auto result = run({"logmap", input, "--source", "3", "-o", folder / "map.csv", "--json", folder / "map.json"});
+  const auto result = run(
+      {"logmap", input, "--source", "3", "--method", "heat", "-o", folder / "map.csv", "--json", folder / "map.json"});
   ASSERT_EQ(result.status, 0) << result.err;
   const auto json = read_json(folder / "map.json");
   EXPECT_EQ(json.at("n"), 1000);
@@ -222,7 +223,8 @@ TEST(Json, TellsWhatWasDone) {
 TEST(Json, GoesAloneToStandardOutput) {
   Folder folder;
   const auto input = folder.write("sphere.xyz", xyz(sphere(500)));
-  const auto result = run({"logmap", input, "--source", "0", "-o", folder / "map.csv", "--json", "-", "--verbose"});
+  const auto result =
+      run({"logmap", input, "--source", "0", "--method", "heat", "-o", folder / "map.csv", "--json", "-", "--verbose"});
   ASSERT_EQ(result.status, 0) << result.err;
   EXPECT_EQ(nlohmann::json::parse(result.out).at("n"), 500);
   EXPECT_NE(result.err.find("500 vertices"), std::string::npos) << result.err;

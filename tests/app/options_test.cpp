@@ -114,9 +114,13 @@ TEST(Options, NormalsAreUsedAsTold) {
 TEST(Options, VerbosePrintsTheStages) {
   Folder folder;
   const auto input = folder.write("sphere.xyz", xyz(sphere(500)));
-  const auto outcome = run({"logmap", input, "--source", "0", "-o", folder / "map.csv", "--verbose"});
-  for (const char* word : {"read", "graph", "factor", "solve", "write", "memory"})
-    EXPECT_NE(outcome.err.find(word), std::string::npos) << outcome.err;
+  const auto expect_stages = [&](const std::string& method, const std::vector<std::string>& words) {
+    const auto outcome =
+        run({"logmap", input, "--source", "0", "--method", method, "-o", folder / "map.csv", "--verbose"});
+    for (const std::string& word : words) EXPECT_NE(outcome.err.find(word), std::string::npos) << outcome.err;
+  };
+  expect_stages("heat", {"read", "graph", "factor", "solve", "write", "memory"});
+  expect_stages("polar", {"read", "graph", "layout", "solve", "write", "memory"});
 }
 
 TEST(Options, StrategiesGiveTheSameMap) {

@@ -223,7 +223,8 @@ CLI::Option* add_method(CLI::App& app, SolveOptions& o, std::vector<Method> meth
   std::string help = chosen ? "auto (default): polar, or heat on noisy clouds and with options of heat.\n" : "";
   if (offers(Method::polar))
     help +=
-        "polar: length and direction of the shortest path, by a front; right to a few percent, nothing is factored.\n";
+        "polar: length and direction of the shortest path, by a front; right to a few percent,\n"
+        "and nothing is factored.\n";
   help += fmt::format("heat{}: the affine heat method, smooth across noise", chosen ? "" : " (default)");
   if (offers(Method::exact))
     help += ".\nexact: straight lines over the faces of a mesh, best on coarse and sharp-edged ones, and around holes";
