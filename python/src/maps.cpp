@@ -121,8 +121,9 @@ std::vector<MapPtr> make_each(const Places& from, Options options, unsigned thre
   return result;
 }
 
-PolarSolverPtr make_polar_solver(const BodyPtr& body, const std::optional<Offset>& windows, unsigned threads,
+PolarSolverPtr make_polar_solver(const BodyPtr& body, const py::object& wanted, unsigned threads,
                                  const py::object& report) {
+  const auto windows = wanted.is_none() ? std::nullopt : std::optional(wanted.cast<Offset>());
   return compute(report, py::none(), [=](const Progress&) {
     const PolarSolverOptions options{.windows = windows, .threads = threads};
     return body->surface() != nullptr

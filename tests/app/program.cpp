@@ -169,13 +169,14 @@ std::vector<Row> read_csv(const std::string& path) {
   std::string line;
   std::getline(lines, line);
   EXPECT_TRUE(line.starts_with("index,x,y,z,u,v,distance,angle,status,quality,spread")) << line;
+  const std::ptrdiff_t columns = 1 + std::ranges::count(line, ',');
   std::vector<Row> rows;
   while (std::getline(lines, line)) {
     std::vector<std::string> fields;
     std::istringstream stream(line);
     for (std::string field; std::getline(stream, field, ',');) fields.push_back(field);
-    if (fields.size() != 11 && fields.size() != 12) {
-      ADD_FAILURE() << "not eleven or twelve fields: " << line;
+    if (std::ssize(fields) != columns) {
+      ADD_FAILURE() << "not " << columns << " fields: " << line;
       break;
     }
     const auto number = [&](std::size_t i) { return std::strtod(fields[i].c_str(), nullptr); };
