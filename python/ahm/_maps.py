@@ -55,7 +55,7 @@ class LogMap:
     >>> mesh = ahm.TriangleMesh(*ahm.shapes.plane(4, 3))
     >>> m = ahm.log_map(mesh, 0, u_axis=[1, 0, 0])
     >>> m
-    <ahm.LogMap: heat, 12 rows, 12 ok, from row 0>
+    <ahm.LogMap: polar, 12 rows, 12 ok, from row 0>
     >>> m.uv[11].round(9).tolist(), round(float(m.distance[11]) ** 2, 9)
     ([3.0, 2.0], 13.0)
     """

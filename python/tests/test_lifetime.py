@@ -326,7 +326,7 @@ def test_graphs_keep_their_frames_to_themselves(flat_surfaces):
 
 def test_reprs_tell_what_things_are(sphere):
     assert repr(ahm.LogMapSolver(sphere)) == "<ahm.LogMapSolver: global, on <ahm.TriangleMesh: 642 vertices, 1280 faces>>"
-    assert repr(ahm.log_map(sphere, 4)) == "<ahm.LogMap: heat, 642 rows, 642 ok, from row 4>"
+    assert repr(ahm.log_map(sphere, 4)) == "<ahm.LogMap: polar, 642 rows, 642 ok, from row 4>"
     assert repr(ahm.Grid((3, 4, 5))) == "<ahm.Grid: 3 x 4 x 5 vertices>"
     assert repr(ahm.potpourri3d.GeodesicTracer(sphere.points, sphere.faces)) == f"<ahm.potpourri3d.GeodesicTracer: on {sphere!r}>"
     assert "LocalMaps: 642 sources" in repr(ahm.local_maps(sphere, 0.2))

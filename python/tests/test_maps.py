@@ -63,7 +63,7 @@ def test_distances_on_the_sphere_are_great_circles(sphere):
     for m in (ahm.log_map(sphere, 0), ahm.log_map(sphere, 0, order=2)):
         assert np.abs(m.distance - truth)[truth < 2.5].max() < 0.03
     second = ahm.log_map(sphere, 0, order=2)
-    assert second.error_estimate.shape == (642,) and ahm.log_map(sphere, 0).error_estimate is None
+    assert second.error_estimate.shape == (642,) and ahm.log_map(sphere, 0, method="heat").error_estimate is None
 
 
 def test_batches_are_the_same_maps(sphere):
@@ -102,7 +102,7 @@ def test_rows_beyond_the_radius_or_the_component_say_so():
 def test_axes_are_the_sources_axes_carried_over_the_plane(flat_surfaces):
     for kind in ("triangles", "polygons", "cloud"):
         m = ahm.log_map(flat_surfaces[kind], SOURCE, u_axis=[1, 0, 0])
-        np.testing.assert_allclose(m.axes, np.broadcast_to(m.source.axes[:2], (143, 2, 3)), atol=1e-9)
+        np.testing.assert_allclose(m.axes, np.broadcast_to(m.source.axes[:2], (143, 2, 3)), atol=1e-7)
         assert m.frames.shape == (143, 2, 2)
         radial = m.uv[:, :1] * m.axes[:, 0] + m.uv[:, 1:] * m.axes[:, 1]
         np.testing.assert_allclose(m.gradient * m.distance[:, None], radial, atol=1e-9)
@@ -201,7 +201,7 @@ def test_a_surfaces_graph_makes_the_same_maps(sphere):
     g = sphere.graph
     again = ahm.Graph(g.indptr, g.indices, g.weights, g.logs, g.transports, g.masses, length_unit=g.length_unit,
                       is_delaunay=True, frames=g.frames)
-    np.testing.assert_allclose(ahm.log_map(again, 3).uv, ahm.log_map(sphere, 3).uv, atol=1e-12)
+    np.testing.assert_allclose(ahm.log_map(again, 3, method="heat").uv, ahm.log_map(sphere, 3, method="heat").uv, atol=1e-12)
 
 
 def test_strategies_and_variants_agree_on_the_plane(plane):

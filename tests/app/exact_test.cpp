@@ -150,7 +150,8 @@ TEST(PolarMethod, IsTheDefaultWhereTrianglesAgree) {
   EXPECT_EQ(map({"--method", "polar"}).at("method"), "polar");
   EXPECT_EQ(map({"--method", "heat"}).at("method"), "heat");
   EXPECT_EQ(map({"--order", "2"}).at("method"), "heat");
-  EXPECT_EQ(map({"--backend", "pointcloud"}).at("method"), "polar");
+  EXPECT_EQ(map({"--backend", "pointcloud"}).at("method"), "heat");
+  EXPECT_EQ(map({"--backend", "pointcloud", "--method", "polar"}).at("method"), "polar");
   const Outcome outcome = run(with(words, {"--method", "polar", "--order", "2"}));
   EXPECT_NE(outcome.status, 0);
   EXPECT_NE(outcome.err.find("polar has no --order"), std::string::npos) << outcome.err;

@@ -73,10 +73,10 @@ std::string offered(const Folder& folder, const std::string& words) {
 TEST(Completion, OffersTheWordsThatAnOptionTakes) {
   if (std::system("bash -c 'type compgen' >/dev/null 2>&1") != 0) GTEST_SKIP() << "there is no bash";
   const Folder folder;
-  EXPECT_EQ(offered(folder, "ahm logmap --method \"\""), "heat exact");
+  EXPECT_EQ(offered(folder, "ahm logmap --method \"\""), "auto heat polar exact");
   EXPECT_EQ(offered(folder, "ahm logmap --method e"), "exact");
   EXPECT_EQ(offered(folder, "ahm logmap --method = e"), "exact");
-  EXPECT_EQ(offered(folder, "ahm logmap --method ="), "heat exact");
+  EXPECT_EQ(offered(folder, "ahm logmap --method ="), "auto heat polar exact");
   EXPECT_EQ(offered(folder, "ahm coverage --pattern s"), "spiral");
   EXPECT_EQ(offered(folder, "ahm logmap --output ahm"), "ahm.bash");
   EXPECT_EQ(offered(folder, "ahm logm"), "logmap");

@@ -15,12 +15,13 @@ std::string number(double x) {
 
 namespace {
 
-std::vector<std::string> words(const Settings& settings) {
+/// @param chosen  whether the command chooses its method unless it is given one
+std::vector<std::string> words(const Settings& settings, bool chosen) {
   const Settings usual;
   std::vector<std::string> out;
   const auto add = [&](const char* name, std::string value) { out.insert(out.end(), {name, std::move(value)}); };
   const bool heat = settings.method == Method::heat;
-  add("--method", std::string(to_string(settings.method)));
+  if (!heat || chosen) add("--method", std::string(to_string(settings.method)));
   if (settings.method == Method::exact && settings.tolerance > 0) add("--tolerance", number(settings.tolerance));
   if (heat && settings.variant != usual.variant) add("--variant", std::string(to_string(settings.variant)));
   if (heat && settings.order != usual.order) add("--order", std::to_string(settings.order));
@@ -36,7 +37,7 @@ std::vector<std::string> words(const Settings& settings) {
 std::string command(const SessionOptions& session, const std::string& name, const std::vector<std::string>& arguments,
                     const Settings& settings) {
   std::string out = "ahm " + name + " " + session.input;
-  for (const auto& list : {arguments, words(settings)})
+  for (const auto& list : {arguments, words(settings, name == "logmap")})
     for (const std::string& word : list) out.append(" ").append(detail::shell_word(word));
   if (!session.input_options.empty()) out.append(" ").append(session.input_options);
   return out;

@@ -99,7 +99,7 @@ void offer(CLI::App& app, InverseCommandOptions& o) {
   add_table_output(app, o.output)->required();
   add_min_quality(app, o.min_quality);
   add_u_axis(app, o.source);
-  add_method(app, o.solve);
+  add_method(app, o.solve, {Method::polar, Method::exact}, true);
   add_tolerance(app, o.solve);
   add_strategy(app, o.solve);
   add_order(app, o.solve);

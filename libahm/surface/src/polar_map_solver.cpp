@@ -13,10 +13,6 @@ namespace {
 /// At 8 windows per vertex the median map of real meshes is right to 0.02 of the distance at the 95th percentile (docs/accuracy.md). The
 /// least number takes about 15 ms: up to some thousand vertices windows cover the surface.
 constexpr Offset windows_per_vertex = 8, least_windows = Offset{1} << 17;
-/// Where a smaller share of the triangles is agreed on, maps by heat are as near (docs/accuracy.md).
-constexpr double least_agreement = 0.8;
-/// Vertices whose one-rings are compared.
-constexpr Index compared_vertices = 1000;
 
 }  // namespace
 
@@ -83,12 +79,6 @@ LogMap PolarMapSolver::log_map(const Source& source, const PolarMapOptions& opti
   return seeded_map(source, options, [](const ExactMapOptions&) { return std::vector<UnfoldingFront::Seed>(); });
 }
 
-Method choose_method(const TangentGraph& graph) {
-  if (graph.dimension() != 2) return Method::heat;
-  if (graph.is_delaunay()) return Method::polar;
-  std::vector<Vertex> some;
-  for (Index i = 0; i < graph.size(); i += graph.size() / compared_vertices + 1) some.emplace_back(i);
-  return UnfoldingFront::agreement(graph, some) >= least_agreement ? Method::polar : Method::heat;
-}
+Method choose_method(const TangentGraph& graph) { return graph.is_delaunay() ? Method::polar : Method::heat; }
 
 }  // namespace ahm

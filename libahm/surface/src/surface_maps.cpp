@@ -40,7 +40,7 @@ RowLogMap Surface::on_rows(const LogMap& map, unsigned threads) const {
   const auto n = static_cast<std::size_t>(rows().row_count());
   const std::vector<double> none(n, nan);
   RowLogMap result{none, none, none, none, none, {}, {}, std::vector<Status>(n, Status::removed), {}};
-  if (map.method() != Method::exact) result.bounded = none;
+  if (map.method() != Method::exact && !map.source().is_curve()) result.bounded = none;
   result.vertex.resize(n);
   const std::span<const double> error = map.error_estimate();
   if (!error.empty()) result.error_estimate = none;

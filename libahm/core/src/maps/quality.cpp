@@ -61,7 +61,8 @@ double error_of_heat(const LogMap& map, const UnfoldingFront* front, Index verte
                      double d, double h) {
   if (const auto [psi, error] = polar_of(map, front, vertex); !std::isnan(psi[0])) {
     const double apart = std::hypot(phi[0] - psi[0], phi[1] - psi[1]);
-    return std::hypot(map.source().is_curve() ? std::max(0.0, apart - h / 4) : apart, error);
+    if (!map.source().is_curve()) return std::hypot(apart, error);
+    return std::max(0.0, std::hypot(apart, error) - (front == nullptr ? h / 4 : h));
   }
   const double off = std::abs(length(phi) - d);
   if (front == nullptr || map.dimension() == 2) return off;

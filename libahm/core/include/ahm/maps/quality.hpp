@@ -30,8 +30,8 @@ inline constexpr double trusted_quality = 0.5;
 /// the same source and the error that this one expects: sqrt(|phi - psi|^2 + error(psi)^2). In other dimensions than 2 it is
 /// the difference of |phi| and the distance. The spread marks the cut locus.
 ///
-/// Curves (d = 2): phi and psi count from the coordinates of the nearest sample, and a quarter of an edge is ignored, since samples are
-/// half an edge apart.
+/// Curves (d = 2): phi and psi count from the coordinates of the nearest sample. Samples are half an edge apart, so a quarter of an
+/// edge is ignored on triangulations, and a whole one elsewhere.
 /// @param threads  0: one per core
 /// @return n numbers in (0, 1]; NaN where the map is not ok
 /// @throws InvalidArgument when the map belongs to another graph, was made without its spread, or is from a curve and d is not 2

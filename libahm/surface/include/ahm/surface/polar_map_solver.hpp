@@ -65,8 +65,8 @@ class PolarMapSolver {
   Offset windows_ = 0;
 };
 
-/// The method for log maps on a graph: polar on Delaunay triangulations and where the one-rings agree on their triangles
-/// (`UnfoldingFront::agreement` at some hundred vertices), else heat: on noisy clouds, and in other dimensions than 2.
+/// The method for log maps on a graph: polar on Delaunay triangulations (meshes of triangles, refined polygons), else heat: at the
+/// ragged boundary of a flat cloud the paths of a front bend, where heat is exact.
 Method choose_method(const TangentGraph& graph);
 
 }  // namespace ahm
