@@ -95,9 +95,10 @@ TEST_F(ViewerSession, HonoursEverySetting) {
                                                        {"u_axis", {0, 0.3, 1}}}));
   ASSERT_EQ(answer.status, 200) << answer.body;
   expect_same(expected, Unpacked(answer.body), scale_of(session));
-  EXPECT_EQ(Unpacked(answer.body).meta.at("command"),
-            "ahm logmap sphere.ply --source 7 -o map.csv --method heat --variant localized --order 2 --t-coef 2 --radius 1 "
-            "--u-axis=0,0.3,1");
+  EXPECT_EQ(
+      Unpacked(answer.body).meta.at("command"),
+      "ahm logmap sphere.ply --source 7 -o map.csv --method heat --variant localized --order 2 --t-coef 2 --radius 1 "
+      "--u-axis=0,0.3,1");
 }
 
 TEST_F(ViewerSession, NullIsNoRadiusWhateverTheUsualOne) {
