@@ -47,7 +47,7 @@ def test_mypy_finds_nothing(check, tmp_path):
     pytest.importorskip("mypy")
     settings, passed = tmp_path / "mypy.ini", tmp_path / "allowed"
     settings.write_text("[mypy]\nignore_missing_imports = true\ncache_dir = /dev/null\n")
-    passed.write_text(r"ahm\._core\.(Body|Inverse|Map|Solver)(\.__init__)?" + "\n")
+    passed.write_text(r"ahm\._core\.(Body|Inverse|Map|PolarSolver|Solver)(\.__init__)?" + "\n")
     command = {"types": ["mypy", "--config-file", settings, "-p", "ahm"],
                "stubs": ["mypy.stubtest", "ahm._core", "--mypy-config-file", settings, "--allowlist", passed, "--ignore-unused-allowlist"]}
     home = str(Path(ahm.__file__).parents[1])
