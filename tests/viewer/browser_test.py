@@ -180,7 +180,7 @@ class Page(unittest.TestCase):
         source = self.text("spec")
         self.assertTrue(source.startswith("face:"), source)
         self.expect_map(self.library_rows(source))
-        self.assertEqual(self.text("command"), f"ahm logmap {self.mesh} --source {source} -o map.csv")
+        self.assertEqual(self.text("command"), f"ahm logmap {self.mesh} --source {source} -o map.csv --method polar")
         self.shot("mesh_polar")
 
     def test_hover_tells_the_row_under_the_pointer(self):
