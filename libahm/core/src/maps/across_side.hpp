@@ -64,8 +64,8 @@ struct DirectionAcross {
   double difference;  ///< of the two estimates, radians
 };
 
-/// The direction at the point of a ray that crosses the side, from those of the rays to a and b: of two ways that of the nearer
-/// end, else the mean of the two estimates, weighted by how near the ray crosses.
+/// The direction at the point of a ray that crosses the side, from those of the rays to a and b: the mean of the
+/// two estimates, weighted by how near the ray crosses; that of the nearer end where they differ too much to be of one front.
 /// @param share    of the side where the ray crosses
 /// @param towards  a place on the ray, in the layout of the triangle
 /// @param side     1: a, b, c counterclockwise; -1: clockwise

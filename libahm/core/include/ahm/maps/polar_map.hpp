@@ -27,8 +27,8 @@ struct PolarMapOptions {
 
 /// The polar coordinates that a front has found: phi_i = distance times direction, `LogMap::method` is polar. Its spread is half
 /// of what the longest edge of a vertex has too much in the map: large at the cut locus, as of exact maps.
-/// @param source  the only one of the front; no curve
-/// @throws InvalidArgument (a front without directions or from several points, a curve, radius)
+/// @param source  the only one of the front; no curve. Of several points the nearest counts (`LogMap::nearest`)
+/// @throws InvalidArgument (a front without directions, a curve, radius)
 LogMap polar_map(const UnfoldingFront& front, const Source& source, const PolarMapOptions& options = {});
 
 }  // namespace ahm

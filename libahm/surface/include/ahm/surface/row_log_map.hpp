@@ -17,7 +17,7 @@ struct RowLogMap {
   std::vector<double> distance;        ///< `LogMap::distance`, world units, but no less than the straight line
   std::vector<double> angle;           ///< atan2(v, u), in (-pi, pi]; empty from a curve
   std::vector<double> spread;          ///< `LogMap::spread`, world units
-  std::vector<double> error_estimate;  ///< of order 2 (`LogMap::error_estimate`), else empty
+  std::vector<double> error_estimate;  ///< `LogMap::error_estimate`; empty where the map has none
   /// 1 where the distance is only a bound: what the map has was shorter than the straight line, which stands for it. Empty for exact
   /// maps and curves.
   std::vector<double> bounded;
