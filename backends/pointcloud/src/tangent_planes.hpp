@@ -40,6 +40,10 @@ struct TangentPlanes {
 Neighborhoods find_neighborhoods(const CleanPoints& cloud, const NeighborSearch& search, Index k,
                                  const CloudOptions& options);
 
+/// Searches again the neighbors of some points, ascending; those of the others stay.
+void refill_neighborhoods(const CleanPoints& cloud, const NeighborSearch& search, std::span<const Index> points,
+                          const CloudOptions& options, Neighborhoods& neighborhoods);
+
 /// Distance of neighbours on an even surface of the density at a point: the root of the area per point ...
 double spacing_at(const Neighborhoods& neighborhoods, Index i);
 /// ... and its median, over all or some.
