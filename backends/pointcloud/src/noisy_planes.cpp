@@ -19,8 +19,9 @@ void find_noise(const CleanPoints& cloud, const CloudOptions& options, NoisyPlan
   detail::run_both(
       options.threads, [&] { whole = offset_noise(cloud, result.neighborhoods, result.planes, options.threads); },
       [&] {
-        result.parts = options.parts_apart ? std::make_unique<const CloudParts>(result.neighborhoods)
-                                           : std::make_unique<const CloudParts>(static_cast<Index>(cloud.points.size()));
+        result.parts = options.parts_apart
+                           ? std::make_unique<const CloudParts>(result.neighborhoods)
+                           : std::make_unique<const CloudParts>(static_cast<Index>(cloud.points.size()));
       });
   result.noise = whole.deviation;
   result.typical_noise = whole;
@@ -54,7 +55,7 @@ NoisyPlanes find_noisy_planes(CleanPoints& cloud, std::span<const Vec3> normals,
   quiet.progress.report = nullptr;
   const int rounds = options.smooth ? 1 : most_rounds;
   for (int round = 0; round < rounds; ++round) {
-    const std::vector<char> noisy = find_noisy_parts(result, options);
+    const std::vector<char> noisy = find_noisy_parts(cloud, result, *search, options);
     if (std::find(noisy.begin(), noisy.end(), 1) == noisy.end() ||
         !smooth_points(cloud, result, noisy, *search, options))
       break;

@@ -40,9 +40,6 @@ void check_arguments(std::span<const Vec3> points, const CloudOptions& options) 
   if (options.smooth && !(*options.smooth >= 0 && std::isfinite(*options.smooth)))
     throw InvalidArgument("smooth is " + detail::number(*options.smooth) +
                           "; give a radius in world units, 0 for none, or nothing for an automatic choice");
-  if (!(options.merge >= 0 && options.merge <= 0.5))
-    throw InvalidArgument("merge is " + detail::number(options.merge) +
-                          "; give a share of the spacing from 0 to 0.5 (default 0.03)");
 }
 
 /// The points to build from, and their rows in the input.
@@ -171,8 +168,9 @@ std::vector<Index> number_vertices(const CleanPoints& cloud, const WeightedEdges
   return vertex_of_clean;
 }
 
-void fill_vertex_data(CsrGraphData& g, const CleanPoints& cloud, const TangentPlanes& planes, const WeightedEdges& edges,
-                      const std::vector<Index>& vertex_of_clean, Index vertices, unsigned threads) {
+void fill_vertex_data(CsrGraphData& g, const CleanPoints& cloud, const TangentPlanes& planes,
+                      const WeightedEdges& edges, const std::vector<Index>& vertex_of_clean, Index vertices,
+                      unsigned threads) {
   g.length_unit = cloud.unit;
   g.masses.resize(static_cast<std::size_t>(vertices));
   g.frames.resize(g.masses.size());
@@ -210,7 +208,8 @@ PointCloudSurface PointCloudSurface::build(std::span<const Vec3> input, std::spa
   if (!search) throw InvalidArgument("options.search made no neighbour search; default: nanoflann_search");
   options.progress.step("neighbours", 0.0);
   details.k_asked = options.k.value_or(default_neighbors);
-  auto [neighborhoods, planes, parts, noise, typical_noise, merged] = find_noisy_planes(cloud, normals, search, options);
+  auto [neighborhoods, planes, parts, noise, typical_noise, merged] =
+      find_noisy_planes(cloud, normals, search, options);
   details.k = neighborhoods.k;
   details.near_duplicates = merged;
   details.smoothed = static_cast<Index>(std::count(cloud.smoothed.begin(), cloud.smoothed.end(), 1));

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <numeric>
 #include <optional>
 
+#include "ahm/pointcloud/plane_fit.hpp"
 #include "ahm/util/parallel.hpp"
 #include "ahm/util/vec.hpp"
 #include "edge_unfolding.hpp"
@@ -16,12 +16,20 @@
 namespace ahm::pointcloud {
 namespace {
 
-/// Points are noisy where the deviation of neighbors' offsets is more than this share of the spacing: that of two noisy ends, so that
-/// each is off by 0.18 spacings. Clean scans and meshes of real shapes have 0.1 at most; less noise changes no distance.
+/// Parts are noisy where the deviation of neighbors' offsets is more than this share of the spacing: that of two noisy ends, so that
+/// each is off by 0.18 spacings. Clean scans and meshes of real shapes have 0.1 at most; less noise hardly changes distances.
 constexpr double noisy_share = 0.25;
+/// In noisy parts, neighborhoods are quiet below this share: points at rest beside moved ones make a step.
+constexpr double quiet_share = 0.12;
 
 /// A quadric has six coefficients; fewer neighbors are not averaged.
 constexpr std::size_t least_fitted = 10;
+
+/// Of these many points of a part, both neighborhoods and wider ones are as thick as wide: at 85 % at most on surfaces with noise of a
+/// whole spacing, at all in volumes of seven spacings and more.
+constexpr std::size_t samples = 256;
+constexpr Index wider_by = 4;
+constexpr double thick_in_volumes = 0.95;
 
 /// Standard deviation of the Gaussian weights, and the farthest that a point moves, as shares of the radius.
 constexpr double weight_width = 0.5, farthest_move = 1;
@@ -87,18 +95,32 @@ void find_within(const CleanPoints& cloud, Index i, double radius, const Neighbo
   std::erase(found, i);
 }
 
+/// Whether neighborhoods are as thick as wide almost everywhere, narrow and wide ones: what fills a volume is not noise.
+bool is_volume(const CleanPoints& cloud, const Neighborhoods& neighborhoods, std::span<const Index> points,
+               const NeighborSearch& search) {
+  std::vector<Index> wide(std::min(static_cast<std::size_t>(wider_by * neighborhoods.k), cloud.points.size()));
+  std::vector<double> squared(wide.size());
+  Index thick = 0, count = 0;
+  for (std::size_t at = 0; at < points.size(); at += (points.size() + samples - 1) / samples) {
+    const Index i = points[at];
+    search.nearest(cloud.points[i], wide, squared);
+    thick += fit_plane(cloud.points, i, neighborhoods.of(i)).thickness > thick_ratio &&
+             fit_plane(cloud.points, i, wide).thickness > thick_ratio;
+    ++count;
+  }
+  return thick > thick_in_volumes * count;
+}
+
 }  // namespace
 
-std::vector<char> find_noisy_parts(const NoisyPlanes& planes, const CloudOptions& options) {
+std::vector<char> find_noisy_parts(const CleanPoints& cloud, const NoisyPlanes& planes, const NeighborSearch& search,
+                                   const CloudOptions& options) {
   std::vector<char> noisy(static_cast<std::size_t>(planes.parts->count), options.smooth && *options.smooth > 0);
   if (options.smooth) return noisy;
-  if (planes.parts->count == 1) {
-    noisy[0] = planes.noise.at(0) > noisy_share * spacing(planes.neighborhoods);
-    return noisy;
-  }
   const auto points = planes.parts->points();
   for (std::size_t part = 0; part < points.size(); ++part)
-    noisy[part] = planes.noise.at(points[part].front()) > noisy_share * spacing(planes.neighborhoods, points[part]);
+    noisy[part] = planes.noise.at(points[part].front()) > noisy_share * spacing(planes.neighborhoods, points[part]) &&
+                  (!cloud.smoothed.empty() || !is_volume(cloud, planes.neighborhoods, points[part], search));
   return noisy;
 }
 
@@ -108,13 +130,15 @@ bool smooth_points(CleanPoints& cloud, const NoisyPlanes& planes, const std::vec
   const std::vector<double> noise = neighborhood_noise(cloud, planes.neighborhoods, planes.planes, options.threads);
   const QuadricFit quadric(cloud, planes.planes);
   std::vector<Vec3> points = cloud.points;
+  const bool again = !cloud.smoothed.empty();
   cloud.smoothed.resize(points.size(), 0);
   std::atomic<bool> any{false};
   detail::parallel_chunks(n, points_per_task, options.threads, [&](Offset begin, Offset end) {
     std::vector<Index> within;
     for (auto i = static_cast<Index>(begin); i < end; ++i) {
-      if (!noisy_parts[planes.parts->of_point[i]] || !planes.planes.has_plane(i)) continue;
-      if (!options.smooth && !(noise[i] > noisy_share * spacing_at(planes.neighborhoods, i))) continue;
+      if ((again && !cloud.smoothed[i]) || !noisy_parts[planes.parts->of_point[i]] || !planes.planes.has_plane(i))
+        continue;
+      if (!options.smooth && !(noise[i] > quiet_share * spacing_at(planes.neighborhoods, i))) continue;
       std::span<const Index> neighbors = planes.neighborhoods.of(i);
       double radius = planes.neighborhoods.radius[i];
       if (options.smooth) {

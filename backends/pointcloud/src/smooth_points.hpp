@@ -8,9 +8,10 @@
 
 namespace ahm::pointcloud {
 
-/// Which parts are noisy: where neighbors' offsets deviate by more than a share of the spacing. None when the caller turned
-/// smoothing off.
-std::vector<char> find_noisy_parts(const NoisyPlanes& planes, const CloudOptions& options);
+/// Which parts are noisy surfaces: neighbors' offsets deviate by more than a share of the spacing. With a radius of the caller all
+/// are, with smoothing turned off none.
+std::vector<char> find_noisy_parts(const CleanPoints& cloud, const NoisyPlanes& planes, const NeighborSearch& search,
+                                   const CloudOptions& options);
 
 /// Moves the points of noisy parts along the normals of their planes, and marks them in `cloud.smoothed`: where the noise of the
 /// neighborhood is large; with a radius of the caller everywhere.

@@ -32,9 +32,6 @@ constexpr double bent_ratio = 0.05;
 /// Fewer points tell no curve from a plane.
 constexpr std::size_t least_on_curve = 8;
 
-/// Neighbours are as thick as wide when their third principal variance is above this share of the second.
-constexpr double thick_ratio = 0.25;
-
 /// Fewer neighbours than half of these make no star of triangles.
 constexpr std::size_t least_neighbors = 8;
 

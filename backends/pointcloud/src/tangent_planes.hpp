@@ -14,6 +14,9 @@ namespace ahm::pointcloud {
 /// Dropping neighbours shrinks a neighbourhood, which may drop others; what is left after these rounds is not joined either.
 inline constexpr int reach_rounds = 3;
 
+/// Neighbours are as thick as wide when their third principal variance is above this share of the second.
+inline constexpr double thick_ratio = 0.25;
+
 struct Neighborhoods {
   Index k = 0;                         ///< neighbours per point, but for points that needed more or reach fewer
   std::vector<Offset> begin;           ///< n + 1

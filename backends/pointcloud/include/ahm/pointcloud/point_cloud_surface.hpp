@@ -41,8 +41,6 @@ struct CloudOptions {
   /// Smoothing of the points, before the graph is built, by moving least squares. None: where the noise is larger than a fourth of the
   /// spacing, over the k neighbors. 0: off. Else the radius of the neighborhoods, world units, everywhere.
   std::optional<double> smooth;
-  /// Points nearer to each other than this share of the spacing around them are one vertex. 0: equal points only.
-  double merge = 0.03;
   /// Whether noise, and with it smoothing, is measured for each part that shares no neighbours with the rest,
   /// so that a part does not depend on what else is in the file. Else for all as one, as clouds in tiles are built.
   bool parts_apart = true;
@@ -84,8 +82,8 @@ struct CloudDetails {
   Index lines = 0;             ///< points in parts without a point that others surround: lines, and no surface
   Index turned = 0;            ///< given normals that pointed to the other side than the majority around them
   bool oriented = false;       ///< given normals fix which side is up, everywhere
-  double noise = 0;      ///< standard deviation of neighbours' offsets across the surface before smoothing, world units;
-                         ///< of several parts that of the largest
+  double noise = 0;  ///< standard deviation of neighbours' offsets across the surface before smoothing, world units;
+                     ///< of several parts that of the largest
   double layer_gap = 0;  ///< of layers nearer than neighbours that nearly all points there lie in, world units; 0: none
   double mollification = 0;  ///< length added to every edge of the tufted cover, world units; the largest of the parts
   double seconds_normals = 0;    ///< neighbours and tangent planes
