@@ -132,14 +132,15 @@ std::vector<char> orient(const CleanPoints& cloud, const WeightedEdges& edges, s
   return trusted;
 }
 
-/// The vertex of the nearest neighbor that has a mass; -1: none near.
-Index nearest_vertex(const CleanPoints& cloud, Index point, const WeightedEdges& edges, const NeighborSearch& search,
-                     const std::vector<Index>& vertex_of_clean) {
+/// The nearest neighbor that has a mass, if smoothing took it or the point for noisy; -1: none.
+Index smoothed_neighbor(const CleanPoints& cloud, Index point, const WeightedEdges& edges,
+                        const NeighborSearch& search) {
+  if (cloud.smoothed.empty()) return -1;
   std::vector<Index> near(std::min<std::size_t>(default_neighbors, cloud.points.size()));
   std::vector<double> squared(near.size());
   search.nearest(cloud.points[point], near, squared);
   const auto found = std::find_if(near.begin(), near.end(), [&](Index j) { return edges.masses[j] > 0; });
-  return found == near.end() ? -1 : vertex_of_clean[*found];
+  return found != near.end() && (cloud.smoothed[point] || cloud.smoothed[*found]) ? *found : -1;
 }
 
 /// Numbers the points that have a mass; lists the rows of points that have none. A smoothed point without one shares the vertex of
@@ -152,8 +153,8 @@ std::vector<Index> number_vertices(const CleanPoints& cloud, const WeightedEdges
   std::vector<Row> removed;
   for (std::size_t i = 0; i < cloud.points.size(); ++i) {
     if (edges.masses[i] > 0) continue;
-    if (!cloud.smoothed.empty() && cloud.smoothed[i])
-      vertex_of_clean[i] = nearest_vertex(cloud, static_cast<Index>(i), edges, search, vertex_of_clean);
+    if (const Index near = smoothed_neighbor(cloud, static_cast<Index>(i), edges, search); near >= 0)
+      vertex_of_clean[i] = vertex_of_clean[near];
     if (vertex_of_clean[i] < 0) removed.push_back(kept.row(static_cast<std::size_t>(cloud.input[i])));
   }
   report.degenerate = static_cast<Index>(removed.size());
