@@ -18,8 +18,10 @@ class PointCloud(Surface):
 
     points : (n, 3) positions, world units; equal points share one vertex.
     normals : (n, 3) of any length > 0, or None: estimated.
-    k : neighbours per point; None: 30, and more on noisy clouds.
+    k : neighbours per point; None: 30.
     normal_signs : what the signs of given normals mean: "automatic", "oriented" (trusted one by one), "unoriented".
+    smooth : the points are smoothed before the graph is built (`points` stay as given). None: where there is noise; 0: not;
+        else everywhere, over neighbourhoods of this radius, world units.
     max_edge_ratio : points are joined only up to this multiple of the distance to the k-th neighbour.
     drop_non_finite : leave rows with NaN or infinity out (status `removed`) instead of raising.
     rows : build from these rows only, ascending; the others are `removed`.
@@ -34,13 +36,13 @@ class PointCloud(Surface):
     """
 
     def __init__(self, points: Any, normals: Any = None, *, k: Optional[int] = None, normal_signs: str = "automatic",
-                 max_edge_ratio: float = 3.0, drop_non_finite: bool = False, rows: Any = None, threads: int = 0,
-                 progress: Progress = None) -> None:
+                 smooth: Optional[float] = None, max_edge_ratio: float = 3.0, drop_non_finite: bool = False,
+                 rows: Any = None, threads: int = 0, progress: Progress = None) -> None:
         given = arguments.floats(points, "points", (None, 3))
         self._normals = None
         if normals is not None:
             self._normals = np.array(arguments.floats(normals, "normals", (len(given), 3)))
-        self._options = checked(k=k, normal_signs=normal_signs, max_edge_ratio=max_edge_ratio,
+        self._options = checked(k=k, normal_signs=normal_signs, smooth=smooth, max_edge_ratio=max_edge_ratio,
                                 drop_non_finite=drop_non_finite, threads=threads)
         if rows is not None:
             self._options["rows"] = chosen = np.array(arguments.rows(rows, "rows", len(given)))

@@ -63,6 +63,7 @@ BodyPtr point_cloud(const Doubles& points, const py::object& normals, const py::
   pointcloud::CloudOptions o;
   if (Index k = 0; read(options, "k", k)) o.k = k;
   if (Indices rows; read(options, "rows", rows)) o.rows.emplace(numbers(rows).begin(), numbers(rows).end());
+  if (double smooth = 0; read(options, "smooth", smooth)) o.smooth = smooth;
   read(options, "max_edge_ratio", o.max_edge_ratio);
   read(options, "drop_non_finite", o.drop_non_finite);
   read(options, "threads", o.threads);

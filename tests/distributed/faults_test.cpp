@@ -249,7 +249,7 @@ TEST(TileFaults, NoiseThatAsksForMoreNeighboursIsNamed) {
   TiledCloud wider(points, {.tile_points = 1500, .k = 60});
   wider.build();
   expect_same_graph(TiledGraph(wider.tiles, 1 << 20),
-                    pointcloud::PointCloudSurface::build(points, {}, {.k = 60, .parts_apart = false}));
+                    pointcloud::PointCloudSurface::build(points, {}, {.k = 60, .smooth = 0.0, .parts_apart = false}));
 }
 
 TEST(TileFaults, ATileThatDoesNotFitIntoMemoryIsNamed) {

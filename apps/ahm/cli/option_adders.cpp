@@ -37,6 +37,12 @@ void add_input_format(CLI::App& app, InputOptions& o) {
              "Of INPUT, whatever its name: ply, xyz, ... (default: by the name, of - by the first bytes)");
 }
 
+/// None: automatic, 0: off.
+std::optional<double> parse_smoothing(const std::string& text) {
+  if (text == "auto") return {};
+  return text == "off" ? 0.0 : parse_positive(text);
+}
+
 }  // namespace
 
 std::function<Index(const std::string&)> integer_parser(std::int64_t low, std::int64_t high) {
@@ -137,12 +143,16 @@ void add_cloud_options(CLI::App& app, InputOptions& o) {
   app.add_flag("--outliers", o.outliers, "Remove statistical outliers first")->group(group);
   add_drop_nan(app, o)->group(group);
   add_parsed(app, "--k", o.k, integer_parser(3), "N",
-             "Neighbours per point, at least 3 (default 30, more on noisy clouds)")
+             "Neighbours per point, at least 3 (default 30)")
       ->group(group);
   add_parsed(app, "--knn", o.knn, choice({"nanoflann", "flann", "pcl"}), "NAME",
              "Neighbour search: nanoflann (default), flann or pcl")
       ->group(group);
   add_normals(app, o)->group(group);
+  add_parsed(app, "--smooth", o.smooth, parse_smoothing, "auto|off|RADIUS",
+             "Smooth the points before the map: auto (default) where there is noise, off, or everywhere\n"
+             "over neighbourhoods of this radius")
+      ->group(group);
 }
 
 CLI::Option* add_normals(CLI::App& app, InputOptions& o) {

@@ -82,7 +82,7 @@ void add_inputs(CLI::App& app, InputOptions& o, std::vector<std::string>& paths)
 CLI::Option* add_backend(CLI::App& app, InputOptions& o);
 CLI::Option* add_drop_nan(CLI::App& app, InputOptions& o);
 CLI::Option* add_non_manifold(CLI::App& app, InputOptions& o);
-/// How points become a graph: --voxel, --outliers, --drop-nan, --k, --knn, --normals.
+/// How points become a graph: --voxel, --outliers, --drop-nan, --k, --knn, --normals, --smooth.
 void add_cloud_options(CLI::App& app, InputOptions& o);
 CLI::Option* add_normals(CLI::App& app, InputOptions& o);
 /// --local. @param radius  how far they reach, at the beginning of the help: "With --radius"

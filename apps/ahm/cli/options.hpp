@@ -32,6 +32,7 @@ struct InputOptions {
   std::optional<Index> k;
   std::string knn = "nanoflann";  ///< nanoflann, flann, pcl
   std::string normals = "auto";   ///< auto, oriented, unoriented, estimate
+  std::optional<double> smooth;   ///< radius, 0: off; none: where there is noise
 
   // Meshes
   bool flips = true;                    ///< intrinsic Delaunay triangulation

@@ -35,7 +35,7 @@ void offer(CLI::App& app, InfoOptions& o) {
   add_input(app, o.input);
   add_parsed(app, "--json", o.output.json, non_empty, "FILE|-", "Write the same for programs; -: to standard output");
   add_parsed(app, "--k", o.input.k, integer_parser(3), "N",
-             "Neighbours per point when looking for components (default 30, more on noisy clouds)");
+             "Neighbours per point when looking for components (default 30)");
   add_threads(app, o.input);
 }
 

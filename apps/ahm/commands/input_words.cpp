@@ -19,6 +19,7 @@ std::vector<std::string> words(const InputOptions& o) {
   if (o.k) add("--k", *o.k);
   if (o.knn != usual.knn) add("--knn", o.knn);
   if (o.normals != usual.normals) add("--normals", o.normals);
+  if (o.smooth) add("--smooth", *o.smooth > 0 ? fmt::format("{}", *o.smooth) : "off");
   if (!o.flips) out.emplace_back("--no-flips");
   if (o.non_manifold != usual.non_manifold) add("--non-manifold", o.non_manifold);
   if (o.discretization != usual.discretization) add("--discretization", o.discretization);

@@ -14,10 +14,10 @@ void check_mesh_input(const std::string& backend, const io::Geometry& input, con
         fmt::format("--backend {}: the input has no faces; --backend pointcloud maps its points", backend));
   const InputOptions defaults;
   if (options.voxel || options.outliers || options.drop_nan || options.k || options.knn != defaults.knn ||
-      options.normals != defaults.normals)
+      options.normals != defaults.normals || options.smooth)
     throw InvalidArgument(
-        "--voxel, --outliers, --drop-nan, --k, --knn and --normals are for point clouds; add --backend pointcloud to "
-        "map the vertices as one");
+        "--voxel, --outliers, --drop-nan, --k, --knn, --normals and --smooth are for point clouds; add --backend "
+        "pointcloud to map the vertices as one");
   if (source) position_in(input, *source, "--source");
 }
 

@@ -32,6 +32,7 @@ CloudOptions cloud_options(const InputOptions& options, const Progress& progress
   result.search = search_factory(options.knn);
   if (options.normals == "oriented") result.normal_signs = NormalSigns::oriented;
   if (options.normals == "unoriented") result.normal_signs = NormalSigns::unoriented;
+  result.smooth = options.smooth;
   result.threads = options.threads;
   result.progress = progress;
   return result;

@@ -28,6 +28,7 @@ struct CleanPoints {
   std::vector<Vec3> points;           ///< distinct, along the Morton curve, input / unit
   std::vector<Index> input;           ///< first input point at each
   std::vector<Index> clean_of_input;  ///< -1: dropped
+  std::vector<char> smoothed;         ///< whether the point was in noise that was smoothed; empty: none
   double unit = 1.0;                  ///< power of two
 };
 

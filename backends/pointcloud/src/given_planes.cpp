@@ -61,6 +61,20 @@ bool contradicts(const Fit& given, const Fit& fitted) {
          given.disagreement > std::max(least_disagreement, disagreement * fitted.disagreement);
 }
 
+/// Marks points, too, most of whose neighbors are marked: noisy normals are right by chance at some points, and not to be trusted
+/// there either.
+std::vector<char> by_majority(const Neighborhoods& neighborhoods, const std::vector<char>& marked, unsigned threads) {
+  std::vector<char> result = marked;
+  detail::parallel_chunks(static_cast<Offset>(marked.size()), points_per_task, threads, [&](Offset begin, Offset end) {
+    for (auto i = static_cast<Index>(begin); i < end; ++i) {
+      const auto neighbors = neighborhoods.of(i);
+      const auto count = std::ranges::count_if(neighbors, [&](Index j) { return marked[j] != 0; });
+      result[i] |= static_cast<char>(2 * count > static_cast<Offset>(neighbors.size()));
+    }
+  });
+  return result;
+}
+
 /// Whether the given plane of point i meets that of a neighbour in such a crease. The fitted planes, which are half way between both
 /// sides of one, tell which sides of the given ones belong together; not so in thin walls, where they are of both sheets.
 bool is_beside_crease(const CleanPoints& cloud, const Neighborhoods& neighborhoods, std::span<const Vec3> given,
@@ -94,10 +108,11 @@ std::vector<char> take_given_planes(const CleanPoints& cloud, const Neighborhood
       beside_crease[i] = !contradicted[i] && is_beside_crease(cloud, neighborhoods, given, planes.normals, point);
     }
   });
+  contradicted = by_majority(neighborhoods, contradicted, threads);
   for (Offset i = 0; i < n; ++i) {
     planes.estimated += missing[i];
-    planes.contradicted += contradicted[i];
     if (missing[i]) continue;
+    planes.contradicted += contradicted[i];
     if (!contradicted[i] && !beside_crease[i])
       planes.normals[i] = given[i];
     else if (dot(planes.normals[i], given[i]) < 0)

@@ -1,5 +1,5 @@
 /// \file
-/// Neighbours, tangent planes and noise of a cloud, each of its parts as if it were alone.
+/// Neighbors, tangent planes and noise of a cloud, each of its parts as if it were alone.
 #pragma once
 
 #include <memory>
@@ -18,14 +18,14 @@ struct NoisyPlanes {
   TangentPlanes planes;
   std::unique_ptr<const CloudParts> parts;
   PerPart noise;        ///< its deviation
-  Index k = 0;          ///< the largest number of neighbours asked for in a part ...
-  Noise typical_noise;  ///< ... and the noise there: that of the largest of such parts
+  Noise typical_noise;  ///< of the largest part, before smoothing
+  Index merged = 0;     ///< points merged into a near one
 };
 
-/// Neighbours and planes. Where nobody fixed their number, noisy parts get more neighbours, since the error of a plane is
-/// that of its points over the number of them; but only as long as that makes neighbourhoods flatter, which sets noise apart
-/// from branches and volumes.
-NoisyPlanes find_noisy_planes(const CleanPoints& cloud, std::span<const Vec3> normals, const NeighborSearch& search,
-                              const CloudOptions& options);
+/// Neighbors and planes of distinct points: merges near points, smooths noisy parts, and finds all again, until smoothing makes
+/// no more parts quiet.
+/// @param cloud, search  changed where points merge or move
+NoisyPlanes find_noisy_planes(CleanPoints& cloud, std::span<const Vec3> normals,
+                              std::unique_ptr<NeighborSearch>& search, const CloudOptions& options);
 
 }  // namespace ahm::pointcloud

@@ -18,6 +18,9 @@ constexpr Index nearest_few = 6;  ///< neighbours per point that noise is measur
 /// median of the largest of six.
 constexpr double deviation_of_median = 1 / 0.6744897501960817, deviation_of_largest = 1 / 1.449;
 
+/// Median of the mean squared offset of six normal points from a seventh, over its expectation (by simulation).
+constexpr double median_of_mean_square = 0.745;
+
 /// Offsets of this share of the radius of a neighbourhood and less are rounding.
 constexpr double least_offset = 1e-6;
 /// In layers nearly all points have neighbours in another one, and of the offsets hardly any is between these shares of the
@@ -125,6 +128,28 @@ std::vector<Noise> offset_noise(const CleanPoints& cloud, const Neighborhoods& n
     noise.push_back(noise_of(std::move(offsets), threads));
   }
   return noise;
+}
+
+std::vector<double> neighborhood_noise(const CleanPoints& cloud, const Neighborhoods& neighborhoods,
+                                       const TangentPlanes& planes, unsigned threads) {
+  const auto n = static_cast<Index>(cloud.points.size());
+  const std::vector<double> offsets = offsets_of(cloud, neighborhoods, planes, 0, n, threads);
+  std::vector<double> mean_square(cloud.points.size(), 0.0), result = mean_square;
+  for (Index i = 0; i < n; ++i) {
+    double sum = 0, count = 0;
+    for (const double offset : of_point(offsets, i))
+      if (offset >= 0) sum += offset * offset, ++count;
+    if (count > 0) mean_square[i] = sum / count;
+  }
+  detail::parallel_chunks(n, points_per_task, threads, [&](Offset begin, Offset end) {
+    std::vector<double> around;
+    for (auto i = static_cast<Index>(begin); i < end; ++i) {
+      around.assign(1, mean_square[i]);
+      for (const Index j : neighborhoods.of(i)) around.push_back(mean_square[j]);
+      result[i] = std::sqrt(detail::value_at(std::span(around), around.size() / 2) / median_of_mean_square);
+    }
+  });
+  return result;
 }
 
 }  // namespace ahm::pointcloud

@@ -53,4 +53,9 @@ std::vector<Noise> offset_noise(const CleanPoints& cloud, const Neighborhoods& n
                                 const TangentPlanes& planes, const std::vector<std::vector<Index>>& parts,
                                 unsigned threads);
 
+/// Deviation of offsets around each point, in units of the clean points: the median over its neighborhood, which a crease or another
+/// sheet beside it does not move.
+std::vector<double> neighborhood_noise(const CleanPoints& cloud, const Neighborhoods& neighborhoods,
+                                       const TangentPlanes& planes, unsigned threads);
+
 }  // namespace ahm::pointcloud

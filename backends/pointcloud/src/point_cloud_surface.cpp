@@ -37,6 +37,9 @@ void check_arguments(std::span<const Vec3> points, const CloudOptions& options) 
   if (!(options.max_edge_ratio >= 1))
     throw InvalidArgument("max_edge_ratio is " + detail::number(options.max_edge_ratio) +
                           "; it must be at least 1 (default 3)");
+  if (options.smooth && !(*options.smooth >= 0 && std::isfinite(*options.smooth)))
+    throw InvalidArgument("smooth is " + detail::number(*options.smooth) +
+                          "; give a radius in world units, 0 for none, or nothing for an automatic choice");
 }
 
 /// The points to build from, and their rows in the input.
@@ -129,16 +132,30 @@ std::vector<char> orient(const CleanPoints& cloud, const WeightedEdges& edges, s
   return trusted;
 }
 
-/// Numbers the points that have a mass; lists the rows of points that have none.
-std::vector<Index> number_vertices(const CleanPoints& cloud, const WeightedEdges& edges, const KeptPoints& kept,
-                                   CloudDetails& report) {
+/// The nearest neighbor that has a mass, if smoothing took it or the point for noisy; -1: none.
+Index smoothed_neighbor(const CleanPoints& cloud, Index point, const WeightedEdges& edges,
+                        const NeighborSearch& search) {
+  if (cloud.smoothed.empty()) return -1;
+  std::vector<Index> near(std::min<std::size_t>(default_neighbors, cloud.points.size()));
+  std::vector<double> squared(near.size());
+  search.nearest(cloud.points[point], near, squared);
+  const auto found = std::find_if(near.begin(), near.end(), [&](Index j) { return edges.masses[j] > 0; });
+  return found != near.end() && (cloud.smoothed[point] || cloud.smoothed[*found]) ? *found : -1;
+}
+
+/// Numbers the points that have a mass; lists the rows of points that have none. A smoothed point without one shares the vertex of
+/// its neighbor.
+std::vector<Index> number_vertices(const CleanPoints& cloud, const WeightedEdges& edges, const NeighborSearch& search,
+                                   const KeptPoints& kept, CloudDetails& report) {
   std::vector<Index> vertex_of_clean(cloud.points.size(), -1);
+  for (std::size_t i = 0; i < cloud.points.size(); ++i)
+    if (edges.masses[i] > 0) vertex_of_clean[i] = report.vertices++;
   std::vector<Row> removed;
   for (std::size_t i = 0; i < cloud.points.size(); ++i) {
-    if (edges.masses[i] > 0)
-      vertex_of_clean[i] = report.vertices++;
-    else
-      removed.push_back(kept.row(static_cast<std::size_t>(cloud.input[i])));
+    if (edges.masses[i] > 0) continue;
+    if (const Index near = smoothed_neighbor(cloud, static_cast<Index>(i), edges, search); near >= 0)
+      vertex_of_clean[i] = vertex_of_clean[near];
+    if (vertex_of_clean[i] < 0) removed.push_back(kept.row(static_cast<std::size_t>(cloud.input[i])));
   }
   report.degenerate = static_cast<Index>(removed.size());
   std::sort(removed.begin(), removed.end());
@@ -152,17 +169,17 @@ std::vector<Index> number_vertices(const CleanPoints& cloud, const WeightedEdges
   return vertex_of_clean;
 }
 
-void fill_vertex_data(CsrGraphData& g, std::span<const Vec3> input, const CleanPoints& cloud,
-                      const TangentPlanes& planes, const WeightedEdges& edges,
-                      const std::vector<Index>& vertex_of_clean, Index vertices, unsigned threads) {
+void fill_vertex_data(CsrGraphData& g, const CleanPoints& cloud, const TangentPlanes& planes,
+                      const WeightedEdges& edges, const std::vector<Index>& vertex_of_clean, Index vertices,
+                      unsigned threads) {
   g.length_unit = cloud.unit;
   g.masses.resize(static_cast<std::size_t>(vertices));
   g.frames.resize(g.masses.size());
   detail::for_each_index(cloud.points.size(), threads, [&](std::size_t i) {
-    if (vertex_of_clean[i] < 0) return;
+    if (!(edges.masses[i] > 0)) return;
     const PlaneAxes axes(planes.normals[i]);
     g.masses[vertex_of_clean[i]] = edges.masses[i];
-    g.frames[vertex_of_clean[i]] = {input[cloud.input[i]], axes.x, axes.y, planes.normals[i]};
+    g.frames[vertex_of_clean[i]] = {cloud.unit * cloud.points[i], axes.x, axes.y, planes.normals[i]};
   });
 }
 
@@ -188,12 +205,15 @@ PointCloudSurface PointCloudSurface::build(std::span<const Vec3> input, std::spa
   detail::Stopwatch stopwatch;
   CleanPoints cloud = clean_points(
       points, [&](std::size_t i) { return kept.row(i).index; }, options, details);
-  const auto search = options.search ? options.search(cloud.points) : nullptr;
+  auto search = options.search ? options.search(cloud.points) : nullptr;
   if (!search) throw InvalidArgument("options.search made no neighbour search; default: nanoflann_search");
   options.progress.step("neighbours", 0.0);
   details.k_asked = options.k.value_or(default_neighbors);
-  auto [neighborhoods, planes, parts, noise, k, typical_noise] = find_noisy_planes(cloud, normals, *search, options);
-  details.k = k;
+  auto [neighborhoods, planes, parts, noise, typical_noise, merged] =
+      find_noisy_planes(cloud, normals, search, options);
+  details.k = neighborhoods.k;
+  details.near_duplicates = merged;
+  details.smoothed = static_cast<Index>(std::count(cloud.smoothed.begin(), cloud.smoothed.end(), 1));
   details.noise = typical_noise.deviation * cloud.unit;
   details.layer_gap = typical_noise.layer_gap * cloud.unit;
   if (!normals.empty()) details.estimated = planes.estimated;
@@ -218,11 +238,11 @@ PointCloudSurface PointCloudSurface::build(std::span<const Vec3> input, std::spa
   options.progress.step("laplacian", 1.0);
   details.seconds_laplacian = stopwatch.lap();
 
-  const std::vector<Index> vertex_of_clean = number_vertices(cloud, edges, kept, details);
+  const std::vector<Index> vertex_of_clean = number_vertices(cloud, edges, *search, kept, details);
   const std::vector<char> trusted = orient(cloud, edges, normals, *parts, cut, options, planes, details);
   CsrGraphData data = tangent_edges(cloud, planes, edges, vertex_of_clean, details.vertices, per_part(*parts, trusted),
                                     noise, options.threads, details);
-  fill_vertex_data(data, points, cloud, planes, edges, vertex_of_clean, details.vertices, options.threads);
+  fill_vertex_data(data, cloud, planes, edges, vertex_of_clean, details.vertices, options.threads);
   std::optional<CsrGraph> graph;
   std::optional<RowMap> rows;
   const auto find_components = [&] {
@@ -263,6 +283,8 @@ Report PointCloudSurface::report() const {
           {"vertices", d.vertices},
           {"non_finite", d.non_finite},
           {"duplicates", d.duplicates},
+          {"near_duplicates", d.near_duplicates},
+          {"smoothed", d.smoothed},
           {"degenerate", d.degenerate},
           {"k", d.k},
           {"components", d.components},
@@ -304,9 +326,10 @@ std::vector<Warning> PointCloudSurface::warnings() const {
     result.push_back(
         {"k_reduced", {static_cast<double>(d.k_asked), static_cast<double>(d.k), static_cast<double>(d.k + 1)}, {}});
   if (d.layer_gap > 0 && d.rejected_normals == 0) result.push_back({"layers", {d.layer_gap}, {}});
-  if (d.k > d.k_asked) result.push_back({"k_raised", {static_cast<double>(d.k), d.noise}, {}});
+  if (d.smoothed > 0) result.push_back({"smoothed", {static_cast<double>(d.smoothed), d.noise}, {}});
   warn("non_finite", d.non_finite);
   warn("duplicates", d.duplicates);
+  warn("near_duplicates", d.near_duplicates);
   warn("thin_walls", d.rejected_normals);
   warn("reflections", d.reflections);
   if (d.components > 1) warn("cloud_components", d.components);

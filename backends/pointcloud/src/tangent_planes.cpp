@@ -32,9 +32,6 @@ constexpr double bent_ratio = 0.05;
 /// Fewer points tell no curve from a plane.
 constexpr std::size_t least_on_curve = 8;
 
-/// Neighbours are as thick as wide when their third principal variance is above this share of the second.
-constexpr double thick_ratio = 0.25;
-
 /// Fewer neighbours than half of these make no star of triangles.
 constexpr std::size_t least_neighbors = 8;
 
@@ -186,7 +183,7 @@ void replace(Neighborhoods& neighborhoods, const std::vector<WiderNeighborhood>&
     std::span<const Index> neighbors = neighborhoods.of(i);
     if (next != wider.end() && next->point == i) {
       neighbors = next++->neighbors;
-      result.radius[i] = norm(points[neighbors.back()] - points[i]);
+      if (!neighbors.empty()) result.radius[i] = norm(points[neighbors.back()] - points[i]);
     }
     result.indices.insert(result.indices.end(), neighbors.begin(), neighbors.end());
     result.begin.push_back(static_cast<Offset>(result.indices.size()));
@@ -259,6 +256,26 @@ Neighborhoods find_neighborhoods(const CleanPoints& cloud, const NeighborSearch&
   compact(counts, result);
   options.progress.step("neighbours", 1.0);
   return result;
+}
+
+void refill_neighborhoods(const CleanPoints& cloud, const NeighborSearch& search, std::span<const Index> points,
+                          const CloudOptions& options, Neighborhoods& neighborhoods) {
+  std::vector<WiderNeighborhood> found(points.size());
+  detail::parallel_chunks(
+      static_cast<Offset>(points.size()), points_per_task, options.threads, [&](Offset begin, Offset end) {
+        QueryBuffers buffers;
+        for (Offset m = begin; m < end; ++m) {
+          const Index i = points[m];
+          const auto neighbors =
+              before_gap(cloud.points, i, neighbors_of(cloud.points, i, search, neighborhoods.k, buffers),
+                         neighborhoods.k, options.max_edge_ratio);
+          found[m].point = i;
+          std::copy_if(neighbors.begin(), neighbors.end(), std::back_inserter(found[m].neighbors), [&](Index j) {
+            return norm(cloud.points[j] - cloud.points[i]) <= options.max_edge_ratio * neighborhoods.radius[j];
+          });
+        }
+      });
+  replace(neighborhoods, found, cloud.points);
 }
 
 double spacing_at(const Neighborhoods& neighborhoods, Index i) {

@@ -14,6 +14,9 @@ namespace ahm::pointcloud {
 /// Dropping neighbours shrinks a neighbourhood, which may drop others; what is left after these rounds is not joined either.
 inline constexpr int reach_rounds = 3;
 
+/// Neighbours are as thick as wide when their third principal variance is above this share of the second.
+inline constexpr double thick_ratio = 0.25;
+
 struct Neighborhoods {
   Index k = 0;                         ///< neighbours per point, but for points that needed more or reach fewer
   std::vector<Offset> begin;           ///< n + 1
@@ -39,6 +42,10 @@ struct TangentPlanes {
 /// is made of, and an island takes nothing from the next one.
 Neighborhoods find_neighborhoods(const CleanPoints& cloud, const NeighborSearch& search, Index k,
                                  const CloudOptions& options);
+
+/// Searches again the neighbors of some points, ascending; those of the others stay.
+void refill_neighborhoods(const CleanPoints& cloud, const NeighborSearch& search, std::span<const Index> points,
+                          const CloudOptions& options, Neighborhoods& neighborhoods);
 
 /// Distance of neighbours on an even surface of the density at a point: the root of the area per point ...
 double spacing_at(const Neighborhoods& neighborhoods, Index i);

@@ -123,7 +123,7 @@ TEST(Normals, WithNoiseAreNoWorseThanNone) {
     };
     const double estimated = angle(points, false);
     RecordProperty("points " + std::to_string(points_noise), std::to_string(estimated));
-    for (double noise : {0.02, 0.05, 0.1, 0.2}) {
+    for (double noise : {0.02, 0.05, 0.1, 0.2, 0.5}) {
       const double given = angle(with_noisy_normals(points, noise), true);
       RecordProperty("points " + std::to_string(points_noise) + " normals " + std::to_string(noise),
                      std::to_string(given));

@@ -31,14 +31,17 @@ enum class NormalSigns {
 };
 
 struct CloudOptions {
-  /// Neighbours per point, the point itself not counted; clamped to n - 1 and reported. None: 30, and more on noisy clouds.
+  /// Neighbours per point, the point itself not counted; clamped to n - 1 and reported. None: 30.
   std::optional<Index> k;
   NeighborSearchFactory search = nanoflann_search;
   NormalSigns normal_signs = NormalSigns::automatic;
   /// Two points are joined only if their distance is at most this multiple of the distance to the k-th neighbour of
   /// either.
   double max_edge_ratio = 3.0;
-  /// Whether noise, and with it the number of neighbours, is measured for each part that shares no neighbours with the rest,
+  /// Smoothing of the points, before the graph is built, by moving least squares. None: where the noise is larger than a fourth of the
+  /// spacing, over the k neighbors. 0: off. Else the radius of the neighborhoods, world units, everywhere.
+  std::optional<double> smooth;
+  /// Whether noise, and with it smoothing, is measured for each part that shares no neighbours with the rest,
   /// so that a part does not depend on what else is in the file. Else for all as one, as clouds in tiles are built.
   bool parts_apart = true;
   /// The points to build from, ascending, after whatever filters a caller applied; none: all. Other rows are `removed`, and
@@ -58,10 +61,12 @@ struct CloudDetails {
   Index vertices = 0;                 ///< vertices of the graph
   Index non_finite = 0;               ///< points dropped because a coordinate is NaN or infinite
   Index duplicates = 0;               ///< points merged into an equal one
+  Index near_duplicates = 0;          ///< points merged into one much nearer than the spacing
+  Index smoothed = 0;                 ///< points moved because of noise
   Index degenerate = 0;               ///< points without a tangent plane or without a triangle, removed
   std::vector<Row> first_degenerate;  ///< the first ten of them
   Index k_asked = 0;                  ///< neighbours asked for, 30 by default
-  Index k = 0;                        ///< neighbours used, where it differs by part the largest
+  Index k = 0;                        ///< neighbours used
   Index components = 0;               ///< connected components of the graph
   Offset triangles = 0;               ///< of the union of the local Delaunay triangulations
   Offset flips = 0;                   ///< edge flips to the intrinsic Delaunay triangulation of the tufted cover
@@ -77,8 +82,8 @@ struct CloudDetails {
   Index lines = 0;             ///< points in parts without a point that others surround: lines, and no surface
   Index turned = 0;            ///< given normals that pointed to the other side than the majority around them
   bool oriented = false;       ///< given normals fix which side is up, everywhere
-  double noise = 0;      ///< standard deviation of neighbours' offsets across the surface, world units; of several
-                         ///< parts that of the largest which got k neighbours
+  double noise = 0;  ///< standard deviation of neighbours' offsets across the surface before smoothing, world units;
+                     ///< of several parts that of the largest
   double layer_gap = 0;  ///< of layers nearer than neighbours that nearly all points there lie in, world units; 0: none
   double mollification = 0;  ///< length added to every edge of the tufted cover, world units; the largest of the parts
   double seconds_normals = 0;    ///< neighbours and tangent planes
@@ -88,14 +93,14 @@ struct CloudDetails {
 };
 
 /// A point cloud as a surface. Rows are the points given; vertices are sorted along a space-filling curve, equal points
-/// share one. The closest point to a position lies in the tangent plane of the row nearest to it; at a row without an
+/// and near duplicates share one. `positions()` are the points given, the origins of the frames the smoothed ones. The closest point to a position lies in the tangent plane of the row nearest to it; at a row without an
 /// axis, u is x of `graph().frame(vertex)`.
 ///
-/// Its report: points, vertices, non_finite, duplicates, degenerate, k, components, triangles, flips, rejected_long,
+/// Its report: points, vertices, non_finite, duplicates, near_duplicates, smoothed, degenerate, k, components, triangles, flips, rejected_long,
 /// rejected_normals, rejected_steep, reflections, normals_given, contradicted, thick, lines, oriented, noise, layer_gap, mollification, seconds.normals, seconds.delaunay,
 /// seconds.laplacian, seconds.graph.
 /// Its warnings, each with a count unless said otherwise: normals_estimated; normals_contradicted; cover_not_delaunay (no number);
-/// degenerate (with rows); normals_turned; k_reduced (asked for, used, distinct points); k_raised (used, noise); layers (gap); no_surface (points as
+/// degenerate (with rows); normals_turned; k_reduced (asked for, used, distinct points); smoothed (points, noise); near_duplicates; layers (gap); no_surface (points as
 /// thick as wide, vertices); lines (points); non_finite; duplicates; thin_walls (pairs of
 /// neighbours not joined); reflections (edges); cloud_components (of more than one).
 /// Faults of a row: row_left_out (by `CloudOptions::rows`), row_removed (not finite, no tangent plane, no triangle).
