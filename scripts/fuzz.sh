@@ -1,22 +1,22 @@
 #!/usr/bin/env bash
 # Fuzzes: fuzz.sh SECONDS [NAME ...], each NAME of tests/fuzz (all without) for SECONDS of time on one core, as many at once as
-# there are cores. A finding ends it and is left in build/fuzz/findings; build/fuzz/bin/fuzz_NAME FILE runs it again. Starts from
-# generated seeds and tests/fuzz/corpus; what is new is kept in build/fuzz/corpus. FUZZ_SEED other than 0 makes the same choices
+# there are cores. A finding ends it and is left in build/asan/findings; build/asan/bin/fuzz_NAME FILE runs it again. Starts from
+# generated seeds and tests/fuzz/corpus; what is new is kept in build/asan/corpus. FUZZ_SEED other than 0 makes the same choices
 # each time.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 seconds="${1:?fuzz.sh SECONDS [NAME ...]}"
 shift
 
-cmake --preset fuzz >/dev/null
+cmake --preset asan >/dev/null
 if [ "$#" -eq 0 ]; then
-  cmake --build --preset fuzz
-  mapfile -t names < <(cd build/fuzz/bin && printf '%s\n' fuzz_* | sed 's/^fuzz_//')
+  cmake --build build/asan --target fuzzers
+  mapfile -t names < <(cd build/asan/bin && printf '%s\n' fuzz_* | sed 's/^fuzz_//')
 else
   names=("$@")
-  cmake --build build/fuzz --target make_seeds "${names[@]/#/fuzz_}"
+  cmake --build build/asan --target make_seeds "${names[@]/#/fuzz_}"
 fi
-cd build/fuzz
+cd build/asan
 bin/make_seeds seeds
 mkdir -p findings
 fuzz() {

@@ -279,7 +279,6 @@ def test_processes_share_work_by_pickles(sphere):
     np.testing.assert_array_equal(found, ahm.distance(sphere, 7))
 
 
-@pytest.mark.skipif("asan" in os.environ.get("LD_PRELOAD", ""), reason="the sanitizer needs the address space")
 def test_running_out_of_memory_is_a_memory_error():
     """With 1 GB of address space left: an array that does not fit, then something that does."""
     result = run_python("""
@@ -296,7 +295,6 @@ def test_running_out_of_memory_is_a_memory_error():
     assert result.stdout == "True\n" * 2, (result.stdout, result.stderr)
 
 
-@pytest.mark.skipif("asan" in os.environ.get("LD_PRELOAD", ""), reason="the sanitizer needs the address space")
 def test_maps_that_cannot_fit_are_refused_at_once():
     """Far larger than 4 GB, and by the hundred million vertices that nobody should wait for."""
     result = run_python("""

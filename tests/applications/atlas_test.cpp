@@ -20,8 +20,8 @@ namespace ahm::test {
 namespace {
 
 /// A mesh, its solver, and its faces as the atlas wants them.
-struct Surface {
-  explicit Surface(const Mesh& mesh) : positions(mesh.positions), solved(mesh) {
+struct MeshAndFaces {
+  explicit MeshAndFaces(const Mesh& mesh) : positions(mesh.positions), solved(mesh) {
     for (const Triangle& t : mesh.faces) {
       begin.push_back(static_cast<Offset>(vertices.size()));
       vertices.insert(vertices.end(), t.begin(), t.end());
@@ -89,7 +89,7 @@ void expect_partition(const Atlas& atlas, const FaceList& faces) {
 }
 
 TEST(Atlas, OfAPlaneIsIsometricWhateverTheTriangles) {
-  const Surface surface(sliver_square(500));
+  const MeshAndFaces surface(sliver_square(500));
   for (Index count : {1, 7}) {
     const Atlas atlas =
         make_atlas(surface.solver(), farthest_points(surface.solver().graph(), Vertex{3}, count), surface.faces());
@@ -102,7 +102,7 @@ TEST(Atlas, OfAPlaneIsIsometricWhateverTheTriangles) {
 }
 
 TEST(Atlas, CoordinatesAreTheLogMapsOfTheirSources) {
-  const Surface surface(icosphere(12));
+  const MeshAndFaces surface(icosphere(12));
   const auto sources = farthest_points(surface.solver().graph(), Vertex{0}, 9);
   const Atlas atlas = make_atlas(surface.solver(), sources, surface.faces());
   expect_partition(atlas, surface.faces());
@@ -117,7 +117,7 @@ TEST(Atlas, CoordinatesAreTheLogMapsOfTheirSources) {
 }
 
 TEST(Atlas, GivesFacesToTheSourceNearestToTheirMiddle) {
-  const Surface surface(icosphere(16));
+  const MeshAndFaces surface(icosphere(16));
   const auto sources = farthest_points(surface.solver().graph(), Vertex{5}, 12);
   const Atlas atlas = make_atlas(surface.solver(), sources, surface.faces());
   std::vector<LogMap> maps;
@@ -141,7 +141,7 @@ TEST(Atlas, GivesFacesToTheSourceNearestToTheirMiddle) {
 }
 
 TEST(Atlas, OfASphereIsAsGoodAsItsCellsAreSmall) {
-  const Surface surface(icosphere(20));
+  const MeshAndFaces surface(icosphere(20));
   double before = std::numeric_limits<double>::infinity();
   for (Index count : {4, 12, 40}) {
     const auto sources = farthest_points(surface.solver().graph(), Vertex{0}, count);
@@ -212,7 +212,7 @@ TEST(Atlas, LeavesOutComponentsWithoutASource) {
     two.positions.push_back({p[0] + 3, p[1], p[2]});
   }
   for (const Triangle& t : faces) two.faces.push_back({t[0] + n, t[1] + n, t[2] + n});
-  const Surface surface(two);
+  const MeshAndFaces surface(two);
   const Atlas atlas = make_atlas(surface.solver(), std::array{Vertex{0}, Vertex{7}}, surface.faces());
   expect_partition(atlas, surface.faces());
   for (std::size_t f = 0; f < two.faces.size(); ++f) EXPECT_EQ(atlas.chart_of_face[f] >= 0, f < faces.size());
@@ -225,7 +225,7 @@ TEST(Atlas, LeavesOutComponentsWithoutASource) {
 }
 
 TEST(AtlasRefinement, OpensATubeAndKeepsTheSourcesGiven) {
-  const Surface surface(tube_mesh(60, 24));
+  const MeshAndFaces surface(tube_mesh(60, 24));
   const std::array source{Vertex{24 * 30}};
   const Atlas closed = make_atlas(surface.solver(), source, surface.faces());
   const AtlasDistortion bad = distortion(closed, surface.faces(), surface.positions);
@@ -247,7 +247,7 @@ TEST(AtlasRefinement, OpensATubeAndKeepsTheSourcesGiven) {
 }
 
 TEST(AtlasRefinement, AddsNothingToAGoodAtlasAndNoMoreThanAllowed) {
-  const Surface plane(sliver_square(300)), tube(tube_mesh(60, 24));
+  const MeshAndFaces plane(sliver_square(300)), tube(tube_mesh(60, 24));
   EXPECT_EQ(
       make_atlas(plane.solver(), std::array{Vertex{4}}, plane.faces(), plane.positions, RefineOptions{}).sources.size(),
       1U);
@@ -258,13 +258,13 @@ TEST(AtlasRefinement, AddsNothingToAGoodAtlasAndNoMoreThanAllowed) {
 }
 
 TEST(ChartBoxes, AreRefusedForOtherFaces) {
-  const Surface surface(icosphere(4)), other(icosphere(3));
+  const MeshAndFaces surface(icosphere(4)), other(icosphere(3));
   const Atlas atlas = make_atlas(surface.solver(), std::array{Vertex{0}}, surface.faces());
   EXPECT_THROW(chart_boxes(atlas, other.faces()), InvalidArgument);
 }
 
 TEST(ChartBoxes, AreTheLeastOfAllTurns) {
-  const Surface surface(icosphere(10));
+  const MeshAndFaces surface(icosphere(10));
   const Atlas atlas =
       make_atlas(surface.solver(), farthest_points(surface.solver().graph(), Vertex{0}, 8), surface.faces());
   const auto boxes = chart_boxes(atlas, surface.faces());
@@ -294,7 +294,7 @@ TEST(ChartBoxes, AreTheLeastOfAllTurns) {
 }
 
 TEST(Atlas, RefusesBadArguments) {
-  const Surface surface(icosphere(2));
+  const MeshAndFaces surface(icosphere(2));
   const std::array source{Vertex{0}}, outside{Vertex{1000}};
   const auto refuse = [&](std::span<const Vertex> sources, const FaceList& faces) {
     EXPECT_THROW(make_atlas(surface.solver(), sources, faces), InvalidArgument);

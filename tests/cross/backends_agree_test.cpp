@@ -18,8 +18,8 @@ namespace {
 using Map = std::vector<double>;
 
 /// A graph surface z = f(x, y) over a jittered grid of `side` x `side` points of the unit square.
-struct Surface {
-  explicit Surface(Index side) : side(side), h(1.0 / (side - 1)) {
+struct WavySquare {
+  explicit WavySquare(Index side) : side(side), h(1.0 / (side - 1)) {
     std::mt19937_64 random(1);
     std::uniform_real_distribution<double> jitter(-0.2, 0.2);
     for (Index j = 0; j < side; ++j)
@@ -47,7 +47,7 @@ Map pack(const Values& values) {
   return map;
 }
 
-Map on_triangles(const Surface& s, const MapOptions& options) {
+Map on_triangles(const WavySquare& s, const MapOptions& options) {
   std::vector<Triangle> faces;
   std::mt19937 random(2);
   for (Index j = 0; j + 1 < s.side; ++j)
@@ -63,14 +63,14 @@ Map on_triangles(const Surface& s, const MapOptions& options) {
   return pack(mesh.on_rows(solver.solve(mesh.source(Row(s.source()), Vec3{1, 0, 0}).source, options)));
 }
 
-Map on_points(const Surface& s, const MapOptions& options) {
+Map on_points(const WavySquare& s, const MapOptions& options) {
   const auto cloud = pointcloud::PointCloudSurface::build(s.points, s.normals);
   const LogMapSolver solver(cloud.graph());
   return pack(cloud.on_rows(solver.solve(cloud.source(Row(s.source()), Vec3{1, 0, 0}).source, options)));
 }
 
 /// The same grid as quads, some of them joined to hexagons.
-Map on_polygons(const Surface& s, const MapOptions& options) {
+Map on_polygons(const WavySquare& s, const MapOptions& options) {
   std::vector<Offset> begin{0};
   std::vector<Index> corners;
   std::mt19937 random(3);
@@ -92,7 +92,7 @@ Map on_polygons(const Surface& s, const MapOptions& options) {
 struct Discretization {
   const char* name;
   double order;  ///< of the difference to a better one
-  Map (*solve)(const Surface&, const MapOptions&);
+  Map (*solve)(const WavySquare&, const MapOptions&);
 };
 const Discretization discretizations[] = {
     {"triangles", 1.8, on_triangles}, {"polygons", 0.85, on_polygons}, {"points", 1.8, on_points}};
@@ -104,7 +104,7 @@ double rms_difference(const Map& a, const Map& b) {
 }
 
 /// Largest difference at vertices farther than 0.1 from the border.
-double largest_difference_inside(const Surface& s, const Map& a, const Map& b) {
+double largest_difference_inside(const WavySquare& s, const Map& a, const Map& b) {
   double worst = 0;
   for (std::size_t i = 0; i < s.points.size(); ++i) {
     const auto& [x, y, z] = s.points[i];
@@ -122,7 +122,7 @@ TEST_P(Cross, MapsOfTheSameVerticesApproachEachOther) {
   };
   std::vector<Difference> coarser;
   for (Index side : {21, 41, 81}) {
-    const Surface surface(side);
+    const WavySquare surface(side);
     std::vector<Map> maps;
     for (const Discretization& d : discretizations) maps.push_back(d.solve(surface, {.variant = GetParam()}));
     std::vector<Difference> differences;

@@ -18,10 +18,6 @@ using distributed::ArrayFile;
 using distributed::Manifest;
 using distributed::TiledGraph;
 
-bool same_bits(const std::vector<double>& a, std::span<const double> b) {
-  return test::same_bits(std::span<const double>(a), b);
-}
-
 void expect_same_map(const TiledCloud& cloud, Row row, Variant variant, double radius) {
   const auto surface = pointcloud::PointCloudSurface::build(cloud.points, {}, {.parts_apart = false});
   const Vertex vertex = surface.rows().vertex(row).value();
@@ -39,9 +35,9 @@ void expect_same_map(const TiledCloud& cloud, Row row, Variant variant, double r
     EXPECT_EQ(summary.releases > 0, memory < 1 << 20);
     EXPECT_EQ(summary.spills > 0, memory < 1 << 20);
     const MapRows rows(graph, folder);
-    EXPECT_TRUE(same_bits(rows.coordinates, expected.coordinates()));
-    EXPECT_TRUE(same_bits(rows.distance, expected.distances()));
-    EXPECT_TRUE(same_bits(rows.spread, expected.spread()));
+    EXPECT_TRUE(same_bits<double>(rows.coordinates, expected.coordinates()));
+    EXPECT_TRUE(same_bits<double>(rows.distance, expected.distances()));
+    EXPECT_TRUE(same_bits<double>(rows.spread, expected.spread()));
     EXPECT_TRUE(std::equal(rows.status.begin(), rows.status.end(), expected.status().begin(), expected.status().end()));
   }
 }
@@ -71,9 +67,9 @@ TEST(TiledLogMap, OfSecondOrderHasTheBitsOfTheMapInMemory) {
       EXPECT_EQ(summary.march.bands, expected.march().bands);
       EXPECT_EQ(summary.ok, expected.count(Status::ok));
       const MapRows rows(graph, folder);
-      EXPECT_TRUE(same_bits(rows.coordinates, expected.coordinates()));
-      EXPECT_TRUE(same_bits(rows.distance, expected.distances()));
-      EXPECT_TRUE(same_bits(rows.error, expected.error_estimate()));
+      EXPECT_TRUE(same_bits<double>(rows.coordinates, expected.coordinates()));
+      EXPECT_TRUE(same_bits<double>(rows.distance, expected.distances()));
+      EXPECT_TRUE(same_bits<double>(rows.error, expected.error_estimate()));
       EXPECT_TRUE(
           std::equal(rows.status.begin(), rows.status.end(), expected.status().begin(), expected.status().end()));
       for (const auto& [name, bytes] : contents(folder))

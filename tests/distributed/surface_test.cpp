@@ -37,7 +37,7 @@ using distributed::TiledGraph;
 using polymesh::PolygonMeshSurface;
 using trimesh::TriangleMeshSurface;
 
-constexpr double everything = std::numeric_limits<double>::infinity();
+constexpr double no_limit = std::numeric_limits<double>::infinity();
 
 /// A surface and its tiles.
 struct TiledSurface {
@@ -87,7 +87,7 @@ void expect_rows(const TiledSurface& tiled, const RowLogMap& expected, bool seco
 
 /// Maps from a row, of all variants; then by two ranks.
 void expect_same_maps(const Surface& surface, Index tile_points, std::size_t least_tiles, Row row,
-                      double radius = everything) {
+                      double radius = no_limit) {
   const TiledSurface tiled(surface, tile_points);
   const TiledGraph graph(tiled.tiles, 1 << 24);
   EXPECT_GE(graph.tiles(), least_tiles);

@@ -7,7 +7,7 @@ namespace {
 
 using ReadOff = Files;
 
-const std::string points = "0 0 0\n1 0 0\n0 1 0\n1 1 0\n";
+const std::string four_points = "0 0 0\n1 0 0\n0 1 0\n1 1 0\n";
 
 TEST_F(ReadOff, ReadsPolygonsAcrossLinesWithCommentsAndColors) {
   const Geometry g =
@@ -21,7 +21,7 @@ TEST_F(ReadOff, ReadsPolygonsAcrossLinesWithCommentsAndColors) {
 }
 
 TEST_F(ReadOff, ReadsCountsOnTheKeywordsLineAndWithoutEdges) {
-  EXPECT_EQ(read_bytes("a.off", "OFF 4 1\n" + points + "3 0 1 2\n").points.size(), 4u);
+  EXPECT_EQ(read_bytes("a.off", "OFF 4 1\n" + four_points + "3 0 1 2\n").points.size(), 4u);
 }
 
 TEST_F(ReadOff, ReadsNormalsOfNoff) {
@@ -37,16 +37,18 @@ TEST_F(ReadOff, PassesNanThrough) {
 
 TEST_F(ReadOff, RefusesCountsBeyondTheFile) {
   for (const char* count : {"5", "4294967295", "9223372036854775807", "99999999999999999999", "-1"}) {
-    EXPECT_THROW(read_bytes("c.off", std::string("OFF\n") + count + " 1 0\n" + points + "3 0 1 2\n"), IoError) << count;
+    EXPECT_THROW(read_bytes("c.off", std::string("OFF\n") + count + " 1 0\n" + four_points + "3 0 1 2\n"), IoError)
+        << count;
     if (std::string(count) == "5") continue;
-    EXPECT_THROW(read_bytes("c.off", std::string("OFF\n4 ") + count + " 0\n" + points + "3 0 1 2\n"), IoError) << count;
-    EXPECT_THROW(read_bytes("c.off", "OFF\n4 1 0\n" + points + count + " 0 1 2\n"), IoError) << count;
+    EXPECT_THROW(read_bytes("c.off", std::string("OFF\n4 ") + count + " 0\n" + four_points + "3 0 1 2\n"), IoError)
+        << count;
+    EXPECT_THROW(read_bytes("c.off", "OFF\n4 1 0\n" + four_points + count + " 0 1 2\n"), IoError) << count;
   }
-  expect_refused("c.off", "OFF\n400000000 1 0\n" + points, {"line 2", "400000000"});
+  expect_refused("c.off", "OFF\n400000000 1 0\n" + four_points, {"line 2", "400000000"});
 }
 
 TEST_F(ReadOff, RefusesEveryTruncation) {
-  const std::string whole = "OFF\n4 2 0\n" + points + "3 0 1 2\n3 1 3 2";
+  const std::string whole = "OFF\n4 2 0\n" + four_points + "3 0 1 2\n3 1 3 2";
   for (std::size_t size = 1; size < whole.size(); ++size) {
     EXPECT_THROW(read_bytes("cut.off", whole.substr(0, size)), IoError) << size;
   }
@@ -55,7 +57,7 @@ TEST_F(ReadOff, RefusesEveryTruncation) {
 
 TEST_F(ReadOff, RefusesVertexNumbersOutOfRange) {
   for (const char* index : {"4", "-1", "4294967296", "1.5"}) {
-    expect_refused("i.off", "OFF\n4 1 0\n" + points + "3 0 1 " + index + "\n", {"line 7", index});
+    expect_refused("i.off", "OFF\n4 1 0\n" + four_points + "3 0 1 " + index + "\n", {"line 7", index});
   }
 }
 
@@ -90,7 +92,7 @@ TEST_F(ReadOff, ReadsColorsAsLevelsAndAsFractions) {
 
 TEST_F(ReadOff, ReadsTheKeywordInAnyCaseAndWithoutIt) {
   for (const char* keyword : {"OFF", "off", "Off", "COFF", "coff", "STOFF", ""})
-    EXPECT_EQ(read_bytes("k.off", std::string(keyword) + "\n4 1 0\n" + points + "3 0 1 2\n").face_vertices,
+    EXPECT_EQ(read_bytes("k.off", std::string(keyword) + "\n4 1 0\n" + four_points + "3 0 1 2\n").face_vertices,
               (std::vector<Index>{0, 1, 2}))
         << keyword;
   EXPECT_EQ(read_bytes("k.off", "noff\n1 0 0\n1 2 3 0 0 1\n").normals[0], (Vec3{0, 0, 1}));

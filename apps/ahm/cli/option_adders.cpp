@@ -142,9 +142,7 @@ void add_cloud_options(CLI::App& app, InputOptions& o) {
       ->group(group);
   app.add_flag("--outliers", o.outliers, "Remove statistical outliers first")->group(group);
   add_drop_nan(app, o)->group(group);
-  add_parsed(app, "--k", o.k, integer_parser(3), "N",
-             "Neighbours per point, at least 3 (default 30)")
-      ->group(group);
+  add_parsed(app, "--k", o.k, integer_parser(3), "N", "Neighbours per point, at least 3 (default 30)")->group(group);
   add_parsed(app, "--knn", o.knn, choice({"nanoflann", "flann", "pcl"}), "NAME",
              "Neighbour search: nanoflann (default), flann or pcl")
       ->group(group);

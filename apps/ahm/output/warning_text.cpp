@@ -75,7 +75,8 @@ constexpr Sentence sentences[] = {
      "{0:.0f} given [normal points|normals point] to the other side than the majority around and [was|were] turned"},
     {"k_reduced", "k = {0:.0f} was reduced to {1:.0f}: the cloud has only {2:.0f} distinct [point|points]"},
     {"smoothed",
-     "noise of {1:.4g} across the surface: {0:.0f} [point was|points were] smoothed for the map (--smooth off: as given)"},
+     "noise of {1:.4g} across the surface: {0:.0f} [point was|points were] smoothed for the map (--smooth off: as "
+     "given)"},
     {"near_duplicates", "{0:.0f} [point was|points were] merged with one much nearer than the spacing"},
     {"layers",
      "the points lie in layers {0:.3g} apart, nearer than neighbours, and are mapped as one surface: right for scans "

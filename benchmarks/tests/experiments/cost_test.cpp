@@ -17,34 +17,6 @@ Table run(std::string_view name, const Settings& settings) {
   throw std::logic_error("no experiment " + std::string(name));
 }
 
-TEST(BackendsExperiment, FinerIsNearerAndLarger) {
-  const Table table = run("backends", {.toy = true}).where("part", "backend");
-  for (const char* shape : {"sphere", "torus", "bumpy sphere"})
-    for (const char* as : {"triangles", "quads", "points"}) {
-      const Table rows = table.where("shape", shape).where("as", as);
-      for (const char* error : {"mean error", "median error"}) {
-        const std::vector<double> errors = rows.numbers(error);
-        ASSERT_EQ(errors.size(), 2u) << shape << " " << as;
-        EXPECT_LT(errors[1], errors[0]) << shape << " " << as << " " << error;
-      }
-      const std::vector<double> bytes = rows.numbers("factors MB");
-      EXPECT_LT(bytes[0], bytes[1]) << shape << " " << as;
-    }
-}
-
-TEST(BackendsExperiment, AllComeAboutAsNearOnTheSphere) {
-  const Table sphere = run("backends", {.toy = true}).where("part", "backend").where("shape", "sphere");
-  const std::vector<double> triangles = sphere.where("as", "triangles").numbers("vector error");
-  for (const char* as : {"quads", "points"}) {
-    const std::vector<double> other = sphere.where("as", as).numbers("vector error");
-    ASSERT_EQ(other.size(), triangles.size());
-    for (std::size_t k = 0; k < other.size(); ++k) {
-      EXPECT_LT(other[k], 1.5 * triangles[k]) << as;
-      EXPECT_GT(other[k], triangles[k] / 1.5) << as;
-    }
-  }
-}
-
 void write_off(const Mesh& mesh, const std::filesystem::path& path) {
   std::ofstream file(path);
   file << "OFF\n" << mesh.positions.size() << ' ' << mesh.faces.size() << " 0\n";

@@ -19,7 +19,7 @@ using pointcloud::PointCloudSurface;
 
 constexpr Index n = 5000;
 
-double spacing() { return std::sqrt(4 * std::numbers::pi / n); }
+double sphere_spacing() { return std::sqrt(4 * std::numbers::pi / n); }
 
 Vec3 origin(const PointCloudSurface& cloud, Index row) {
   return cloud.graph().frame(cloud.vertex(Row(row)).index)->origin;
@@ -38,7 +38,7 @@ double distance_from_sphere(const PointCloudSurface& cloud) {
 
 TEST(Smoothing, MovesNoisyPointsOntoTheSphereAndKeepsEveryRow) {
   for (const auto& [share, left] : {std::pair(0.25, 0.6), {0.5, 0.5}, {1.0, 0.4}}) {
-    const double noise = share * spacing();
+    const double noise = share * sphere_spacing();
     const Cloud noisy = with_noise(random_sphere(n), noise);
     const auto cloud = PointCloudSurface::build(noisy.points);
     EXPECT_LT(distance_from_sphere(cloud), left * noise) << share;
@@ -56,7 +56,7 @@ TEST(Smoothing, LeavesCleanCloudsAloneAndCanBeTurnedOff) {
     EXPECT_EQ(built.details().smoothed, 0);
     EXPECT_FALSE(has_warning(built, "smoothed"));
   }
-  const Cloud noisy = with_noise(random_sphere(n), spacing());
+  const Cloud noisy = with_noise(random_sphere(n), sphere_spacing());
   const auto off = PointCloudSurface::build(noisy.points, {}, {.smooth = 0.0});
   EXPECT_EQ(off.details().smoothed, 0);
   for (Index i = 0; i < n; ++i) ASSERT_EQ(origin(off, i), noisy.points[i]);
@@ -67,9 +67,9 @@ TEST(Smoothing, ByARadiusFitsQuadrics) {
   const Cloud flat = flat_cloud(2000);
   const auto cloud = PointCloudSurface::build(flat.points, {}, {.smooth = 0.1});
   for (Index i = 0; i < 2000; ++i) ASSERT_LT(norm(origin(cloud, i) - flat.points[i]), 1e-13);
-  const Cloud noisy = with_noise(random_sphere(n), 0.3 * spacing());
-  EXPECT_LT(distance_from_sphere(PointCloudSurface::build(noisy.points, {}, {.smooth = 5 * spacing()})),
-            0.3 * 0.3 * spacing());
+  const Cloud noisy = with_noise(random_sphere(n), 0.3 * sphere_spacing());
+  EXPECT_LT(distance_from_sphere(PointCloudSurface::build(noisy.points, {}, {.smooth = 5 * sphere_spacing()})),
+            0.3 * 0.3 * sphere_spacing());
 }
 
 TEST(Smoothing, DoesNotReachAnotherSheet) {

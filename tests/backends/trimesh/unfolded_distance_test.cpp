@@ -68,11 +68,11 @@ TEST(UnfoldedDistance, IsWithinAHundredthOrSoOnAPrism) {
 
 // Both crossed by the midpoints, or neither.
 TEST(UnfoldedDistance, IsOfSecondOrder) {
-  for (const auto& [coarse, factor] : {std::pair{16, 1.0}, {8, 2.0}}) {
-    const auto error = [&](int side) {
+  for (const auto& [coarse, stretch] : {std::pair{16, 1.0}, {8, 2.0}}) {
+    const auto error = [factor = stretch](int side) {
       return error_from(SolvedMesh(stretched(icosphere(side), factor)), {Row(0), Row(200)});
     };
-    EXPECT_LT(error(2 * coarse), error(coarse) / 3) << factor;
+    EXPECT_LT(error(2 * coarse), error(coarse) / 3) << stretch;
   }
 }
 

@@ -21,11 +21,11 @@
 namespace ahm::test {
 namespace {
 
-const HeatOptions global{.strategy = Strategy::global}, marching{.strategy = Strategy::march};
+const HeatOptions by_factors{.strategy = Strategy::global}, by_march{.strategy = Strategy::march};
 
 TEST(MapFrames, AreTheParallelTransportOfTheSourcesAxes) {
   const CsrGraph graph(sphere_graph(3000));
-  const LogMapSolver solver(graph, global);
+  const LogMapSolver solver(graph, by_factors);
   const LogMap map = solver.solve(Source::at_vertex(Vertex{5}), {.frames = true});
   const VertexField carried = parallel_transport(solver, Source::at_vertex(Vertex{5}));
   ASSERT_EQ(map.frames().size(), carried.values.size());
@@ -35,8 +35,8 @@ TEST(MapFrames, AreTheParallelTransportOfTheSourcesAxes) {
 TEST(MapFrames, AreTheSameByMarch) {
   for (const CsrGraphData& data : {sphere_graph(6000), as_blocks(sphere_graph(3000)), bent_lattice(12)}) {
     const CsrGraph graph(data);
-    const LogMap expected = LogMapSolver(graph, global).solve(Source::at_vertex(Vertex{5}), {.frames = true});
-    const LogMap map = LogMapSolver(graph, marching).solve(Source::at_vertex(Vertex{5}), {.frames = true});
+    const LogMap expected = LogMapSolver(graph, by_factors).solve(Source::at_vertex(Vertex{5}), {.frames = true});
+    const LogMap map = LogMapSolver(graph, by_march).solve(Source::at_vertex(Vertex{5}), {.frames = true});
     ASSERT_EQ(map.frames().size(), expected.frames().size());
     double largest = 0;
     for (std::size_t k = 0; k < map.frames().size(); ++k)

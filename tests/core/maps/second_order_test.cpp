@@ -17,7 +17,8 @@
 namespace ahm::test {
 namespace {
 
-const HeatOptions global{.order = 2, .strategy = Strategy::global}, marching{.order = 2, .strategy = Strategy::march};
+const HeatOptions second_global{.order = 2, .strategy = Strategy::global},
+    second_marching{.order = 2, .strategy = Strategy::march};
 
 /// Largest difference of coordinates; the statuses must agree.
 double difference(const LogMap& a, const LogMap& b) {
@@ -34,7 +35,7 @@ double difference(const LogMap& a, const LogMap& b) {
 // Two times (n^(1/d) < 100) and three, by either strategy.
 TEST(SecondOrder, IsExactOnThePlaneAndKnowsIt) {
   for (Index side : {30, 120})
-    for (const HeatOptions& options : {global, marching}) {
+    for (const HeatOptions& options : {second_global, second_marching}) {
       const FlatGraph flat = planar_triangulation(side);
       const CsrGraph graph(flat.data);
       for (Variant variant : all_variants) {
@@ -51,7 +52,7 @@ TEST(SecondOrder, IsExactOnThePlaneAndKnowsIt) {
 TEST(SecondOrder, IsExactInSpace) {
   const FlatGraph flat = lattice3(9);
   const CsrGraph graph(flat.data);
-  const LogMap map = LogMapSolver(graph, global).solve(Source::at_vertex(Vertex{100}));
+  const LogMap map = LogMapSolver(graph, second_global).solve(Source::at_vertex(Vertex{100}));
   for (Index i = 0; i < flat.size(); ++i)
     for (int a = 0; a < 3; ++a)
       ASSERT_NEAR(map.coordinates(Vertex(i))[a], flat.exact(100, i)[a], 1e-10 * flat.diameter());
@@ -60,8 +61,8 @@ TEST(SecondOrder, IsExactInSpace) {
 TEST(SecondOrder, MarchesToTheSameMap) {
   for (const CsrGraphData& data : {sphere_graph(12000), as_blocks(sphere_graph(3000))}) {
     const CsrGraph graph(data);
-    const LogMap expected = LogMapSolver(graph, global).solve(Source::at_vertex(Vertex{5}));
-    const LogMap map = LogMapSolver(graph, marching).solve(Source::at_vertex(Vertex{5}));
+    const LogMap expected = LogMapSolver(graph, second_global).solve(Source::at_vertex(Vertex{5}));
+    const LogMap map = LogMapSolver(graph, second_marching).solve(Source::at_vertex(Vertex{5}));
     EXPECT_EQ(map.strategy(), Strategy::march);
     EXPECT_GT(map.march().bands, 0);
     EXPECT_LT(difference(expected, map), 1e-8);
@@ -72,7 +73,7 @@ TEST(SecondOrder, ExtrapolatesTwoMapsOfTheFirst) {
   const CsrGraph graph(sphere_graph(2000));
   const LogMap one = LogMapSolver(graph, {.t_coef = 1}).solve(Source::at_vertex(Vertex{5}));
   const LogMap two = LogMapSolver(graph, {.t_coef = 2}).solve(Source::at_vertex(Vertex{5}));
-  const LogMap map = LogMapSolver(graph, global).solve(Source::at_vertex(Vertex{5}));
+  const LogMap map = LogMapSolver(graph, second_global).solve(Source::at_vertex(Vertex{5}));
   const double h = graph.mean_edge_length(), step = (std::sqrt(2.0) - 1) * h;
   Index smooth = 0, kept = 0;
   for (Index i = 0; i < map.size(); ++i) {
@@ -106,12 +107,12 @@ TEST(SecondOrder, ExtrapolatesTwoMapsOfTheFirst) {
 
 TEST(SecondOrder, DoesNotDependOnUnitsOrOnTheBatch) {
   const CsrGraph graph(sphere_graph(3000)), large(scaled(sphere_graph(3000), 1024));
-  const LogMapSolver solver(graph, global);
+  const LogMapSolver solver(graph, second_global);
   const std::vector<Source> sources{Source::at_vertex(Vertex{5}), Source::at_vertex(Vertex{99}),
                                     Source::at_vertex(Vertex{1234})};
   const std::vector<LogMap> batch = solver.solve(sources);
   for (std::size_t s = 0; s < sources.size(); ++s) EXPECT_LT(difference(batch[s], solver.solve(sources[s])), 1e-11);
-  const LogMap scaled_map = LogMapSolver(large, global).solve(sources[0]);
+  const LogMap scaled_map = LogMapSolver(large, second_global).solve(sources[0]);
   for (Index i = 0; i < graph.size(); ++i)
     ASSERT_NEAR(scaled_map.distance(Vertex(i)), 1024 * batch[0].distance(Vertex(i)), 1e-9 * 1024);
 }
@@ -119,7 +120,7 @@ TEST(SecondOrder, DoesNotDependOnUnitsOrOnTheBatch) {
 TEST(SecondOrder, EndsAtTheRadius) {
   const FlatGraph flat = planar_triangulation(120);
   const CsrGraph graph(flat.data);
-  for (const HeatOptions& options : {global, marching}) {
+  for (const HeatOptions& options : {second_global, second_marching}) {
     const LogMap map = LogMapSolver(graph, options).solve(Source::at_vertex(Vertex{7300}), {.radius = 0.2});
     for (Index i = 0; i < flat.size(); ++i) {
       const double distance = std::hypot(flat.exact(7300, i)[0], flat.exact(7300, i)[1]);

@@ -32,7 +32,7 @@ Mesh bumps(Index side) {
   return mesh;
 }
 
-std::vector<Mesh> shapes() {
+std::vector<Mesh> tolerance_shapes() {
   return {split_icosphere(2500), torus(900),       bumps(25), sliver_square(300), holed_square(14), cone_patch(9, 4.0),
           moebius_mesh(30, 5),   folded_strip(11), maze(4),   icosphere(1)};
 }
@@ -62,7 +62,7 @@ double difference(const ExactMap& map, const ExactMap& exact) {
 }
 
 TEST(ExactTolerance, BoundsTheErrorsOfDistances) {
-  for (const Mesh& mesh : shapes()) {
+  for (const Mesh& mesh : tolerance_shapes()) {
     const Polyhedron solid(mesh);
     std::mt19937_64 random(3);
     std::vector<MeshPoint> targets;
@@ -81,7 +81,7 @@ TEST(ExactTolerance, BoundsTheErrorsOfDistances) {
 }
 
 TEST(ExactTolerance, BoundsTheErrorsFromSeveralSources) {
-  for (const Mesh& mesh : shapes()) {
+  for (const Mesh& mesh : tolerance_shapes()) {
     const Polyhedron solid(mesh);
     const std::vector<MeshPoint> sources = places(solid.surface);
     const ExactMap exact = exact::exact_map(solid.surface, sources);
