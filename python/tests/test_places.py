@@ -198,3 +198,9 @@ def test_local_maps_around_points_between_rows(flat_surfaces):
     assert len(ahm.local_maps(flat_surfaces["cloud"], 0.6, sources=[])) == 0
     on_edge = ahm.local_maps(flat_surfaces["triangles"], 0.3, sources=((17, 18), 0.5))
     np.testing.assert_allclose(on_edge.distance[:2], 0.125, atol=1e-9)
+
+
+def test_noisy_points_are_smoothed_unless_that_is_turned_off(sphere):
+    noisy = sphere.points * np.where(np.arange(len(sphere.points)) ** 2 % 7 < 3, 1.05, 0.95)[:, None]
+    smoothed = {s: any(w["id"] == "smoothed" for w in ahm.PointCloud(noisy, smooth=s).warnings) for s in (None, 0, 0.5)}
+    assert smoothed == {None: True, 0: False, 0.5: True}

@@ -187,7 +187,7 @@ TEST(Options, EstimateRunsNothing) {
 
 // Of small inputs the program itself is most. (A sanitizer would be more.)
 TEST(Options, EstimateKnowsTheMemoryOfSmallInputs) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef AHM_SANITIZED
   GTEST_SKIP() << "a sanitizer takes memory of its own";
 #endif
   Folder folder;

@@ -1,4 +1,4 @@
-// Clouds that --voxel thins: what is drawn, colored and named of them.
+// Clouds that --voxel thins: what is drawn, colored and named of them. Noisy ones, which are smoothed.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -116,6 +116,24 @@ TEST_F(ThinnedCloud, RefusesNamedRowsThatDoNotExist) {
   const Outcome outcome = run_thinned("path", {"--from", "0", "--to", "1600", "-o", folder / "out.csv"});
   EXPECT_EQ(outcome.status, 1);
   EXPECT_NE(outcome.err.find("--to 1600"), std::string::npos) << outcome.err;
+}
+
+// Each point half of the spacing inside or outside of the unit sphere.
+TEST(NoisyCloud, IsSmoothedWithAWordUnlessThatIsTurnedOff) {
+  Folder folder;
+  std::vector<Vec3> points = sphere(2000);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    for (double& x : points[i]) x *= i * i % 7 < 3 ? 1.03 : 0.97;
+  const std::string input = folder.write("noisy.xyz", xyz(points));
+  const auto map = [&](const Words& more) {
+    return run(joined({"logmap", input, "--source", "0", "-o", folder / "map.csv"}, more));
+  };
+  EXPECT_NE(map({}).err.find("points were smoothed"), std::string::npos) << map({}).err;
+  EXPECT_NE(map({"--smooth", "0.3"}).err.find("2000 points were smoothed"), std::string::npos);
+  EXPECT_EQ(map({"--smooth", "off"}).err.find("smoothed"), std::string::npos);
+  const Outcome refused = map({"--smooth", "on"});
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_NE(refused.err.find("'on' is neither auto, off nor a number > 0"), std::string::npos) << refused.err;
 }
 
 }  // namespace

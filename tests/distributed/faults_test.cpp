@@ -272,7 +272,7 @@ TEST(TilesProgram, NamesItsOwnOptions) {
 
 /// OpenBLAS' own threads then never end. From 200 MB on the system's loader and they have what they need to begin with.
 TEST(TilesProgram, EndsWhereAddressSpaceIsScarce) {
-#ifdef __SANITIZE_ADDRESS__
+#ifdef AHM_SANITIZED
   GTEST_SKIP() << "the address sanitizer takes more than any limit";
 #endif
   const TiledCloud cloud(hills(80), {.tile_points = 1500});

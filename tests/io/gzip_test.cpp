@@ -75,7 +75,7 @@ TEST_F(ReadGzip, RefusesEveryByteChangedInTheDataOrItsSums) {
 TEST_F(ReadGzip, RefusesContentsThatAreEmpty) { expect_refused("e.off.gz", gzip(""), {"empty", "unpacked"}); }
 
 TEST_F(ReadGzip, RefusesMoreThanAThirdOfTheFreeMemory) {
-#ifdef __SANITIZE_ADDRESS__
+#ifdef AHM_SANITIZED
   GTEST_SKIP() << "the sanitizer needs the whole address space";
 #endif
   std::string bomb;

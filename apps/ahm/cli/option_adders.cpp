@@ -40,7 +40,12 @@ void add_input_format(CLI::App& app, InputOptions& o) {
 /// None: automatic, 0: off.
 std::optional<double> parse_smoothing(const std::string& text) {
   if (text == "auto") return {};
-  return text == "off" ? 0.0 : parse_positive(text);
+  if (text == "off") return 0.0;
+  try {
+    return parse_positive(text);
+  } catch (const std::invalid_argument&) {
+    throw std::invalid_argument("'" + text + "' is neither auto, off nor a number > 0");
+  }
 }
 
 }  // namespace

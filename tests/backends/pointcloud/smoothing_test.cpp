@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "ahm/error.hpp"
+#include "ahm/surface/mapped_positions.hpp"
 #include "ahm/util/vec.hpp"
 #include "noisy_clouds.hpp"
 #include "solved_cloud.hpp"
@@ -45,6 +46,7 @@ TEST(Smoothing, MovesNoisyPointsOntoTheSphereAndKeepsEveryRow) {
     EXPECT_GT(cloud.details().smoothed, 0.5 * n) << share;
     EXPECT_TRUE(has_warning(cloud, "smoothed")) << share;
     EXPECT_TRUE(std::ranges::equal(cloud.positions(), noisy.points));
+    EXPECT_EQ(mapped_positions(cloud)[7], origin(cloud, 7)) << "pictures show the smoothed points";
     EXPECT_EQ(cloud.details().degenerate, 0) << share;
     for (Index i = 0; i < n; ++i) ASSERT_EQ(cloud.rows().vertices(Row(i)).size(), 1u) << share << " row " << i;
   }

@@ -95,7 +95,7 @@ TEST(MemoryLimits, AreNoneWithoutGroups) {
 }
 
 TEST(MemoryLimits, OfResourcesCountAsTheMachines) {
-#ifdef __SANITIZE_ADDRESS__
+#ifdef AHM_SANITIZED
   GTEST_SKIP() << "the address sanitizer takes more than any limit";
 #endif
   const double machine = machine_memory();
@@ -110,7 +110,7 @@ TEST(MemoryLimits, OfResourcesCountAsTheMachines) {
 }
 
 TEST(MemoryLimits, AreNotFilledByMapsThatAreKnownNotToFit) {
-#ifdef __SANITIZE_ADDRESS__
+#ifdef AHM_SANITIZED
   GTEST_SKIP() << "the address sanitizer takes more than any limit";
 #endif
   const CsrGraph graph(sphere_graph(20000));

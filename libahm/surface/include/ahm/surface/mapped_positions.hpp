@@ -12,8 +12,8 @@
 
 namespace ahm {
 
-/// The positions of the rows, NaN where a row has no vertex: in a cloud that was thinned, all but the points that stand
-/// for the others. Drawn beside these, the others would hide them.
+/// Where the graph has the rows: in a cloud with noise the smoothed points. NaN where a row has no vertex: in a cloud that was
+/// thinned, all but the points that stand for the others. Drawn beside these, the others would hide them.
 /// @return  rows x 3, world units; empty for a surface given by lengths alone
 std::vector<Vec3> mapped_positions(const Surface& surface);
 
