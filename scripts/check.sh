@@ -59,9 +59,13 @@ tidy-all() {
     run_tidy tidy-all --checks=-performance-unnecessary-value-param,-bugprone-suspicious-include
 }
 
-# Half a minute each under the sanitizers; others walk through the same lines.
-slow='CholeskyFactor.SolvesAsEigens*:LocalMaps.DoNotDependOnThreadsOrOnCompany:LocalMaps.RefuseWhatFillsTheMemory:March.AgreesWithTheGlobalSolve'
-slow+=':March.DoesNotDependOnThreads:March.EndsWhereHeatDistancesAreBeyondAllNumbers:March.HasNoHorizon:SecondOrder.IsExactOnThePlaneAndKnowsIt'
+# Half a minute and more each under the sanitizers; others walk through the same lines.
+slow=("CholeskyFactor.SolvesAsEigens*" ExactMap.GoesFarAlongTubes ExactMap.IsRefusedWhereNeedlesLoseWindows ExactMap.NamesMeshesOnWhichWindowsDoNotEnd
+  FactorFront.IsEigensOfEverySmallFrontAndOfLargeOnes LocalMaps.ApproachTheMapOfTheWholeGraphWithTheMargin
+  LocalMaps.DoNotDependOnThreadsOrOnCompany LocalMaps.RefuseWhatFillsTheMemory March.AgreesWithTheGlobalSolve March.DoesNotDependOnThreads
+  March.EndsWhereHeatDistancesAreBeyondAllNumbers March.HasNoHorizon March.TakesSeveralBands Normals.WithNoiseAreNoWorseThanNone
+  Renderer.DoesNotDependOnTheNumberOfThreads SecondOrder.IsExactOnThePlaneAndKnowsIt SphereCloud.ConvergesOnRandomPointsInBothVariants
+  StreamedLogMap.ForgetsWhatTheFrontHasPassed StreamedLogMap.GoesOnFromTheEndOfAnyBand)
 
 sanitizers() {
   echo "Sanitizers (build/asan) ..."
@@ -70,7 +74,7 @@ sanitizers() {
   local cores; cores="$(nproc)"
   for test in build/asan/bin/test_*; do
     for shard in $(seq 0 $((cores - 1))); do echo "GTEST_SHARD_INDEX=$shard $test"; done
-  done | GTEST_FILTER="-$slow" GTEST_TOTAL_SHARDS="$cores" xargs -P "$cores" -I '{}' sh -c 'echo {}; env {} --gtest_brief=1'
+  done | GTEST_FILTER="-$(IFS=:; echo "${slow[*]}")" GTEST_TOTAL_SHARDS="$cores" xargs -P "$cores" -I '{}' sh -c 'echo {}; env {} --gtest_brief=1'
 }
 
 threads() {
