@@ -155,7 +155,7 @@ bool smooth_points(CleanPoints& cloud, const NoisyPlanes& planes, const std::vec
     }
     if (options.progress.stop.stop_requested()) throw Cancelled("cancelled during smoothing");
   });
-  cloud.points = std::move(points);
+  if (any) cloud.points = std::move(points);  // the search refers to those of before
   return any;
 }
 
