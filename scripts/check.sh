@@ -30,12 +30,6 @@ run_tidy() {
 
 # Without precompiled headers: each source must include what it needs.
 tidy() {
-  cmake -S . -B build/tidy -G Ninja -DCMAKE_BUILD_TYPE=Debug -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON -DAHM_WITH_PCL=OFF \
-    -DAHM_BUILD_TESTS=OFF -DAHM_BUILD_EXAMPLES=OFF -DAHM_INSTALL=OFF >/dev/null
-  xargs -r -n 1 -P "$(nproc)" clang-tidy -p build/tidy --quiet --warnings-as-errors='*' "$@"
-}
-
-tidy() {
   echo "clang-tidy on what differs from main ..."
   configure_tidy tidy -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON
   local base changed; base="$(git merge-base HEAD main 2>/dev/null || git rev-parse HEAD)"

@@ -19,13 +19,6 @@ def _positive(value: Any, name: str) -> float:
     return arguments.real(value, name, positive=True)
 
 
-def _smoothing(value: Any, name: str) -> float:
-    radius = arguments.real(value, name)
-    if radius < 0:
-        raise ValueError(f"{name}: {radius} is less than 0")
-    return radius
-
-
 def _radius(value: Any, name: str) -> float:
     return arguments.real(value, name, positive=True, finite=False)
 
@@ -60,7 +53,7 @@ CHECKS: Dict[str, Callable[[Any, str], Any]] = {
     "non_manifold": _one_of("error", "split"),
     "discretization": _one_of("automatic", "polygons", "refined"),
     "normal_signs": _one_of("automatic", "oriented", "unoriented"),
-    "smooth": _smoothing,
+    "smooth": arguments.real,
     "max_edge_ratio": _positive,
     "drop_non_finite": arguments.flag,
     "max_maps": _whole(1),

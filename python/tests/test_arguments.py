@@ -154,7 +154,7 @@ TWISTED = [[0, 0, 0], [3, 2, 0], [4, 1, 0], [3, 0, 0], [0, 1, 0], [-1, 0.5, 0]] 
     (lambda f: ahm.PointCloud(f["cloud"].points, rows=[3, 2, 5]), r"rows\[1\]: 2 follows 3"),
     (lambda f: ahm.PointCloud(f["cloud"].points, k=2), r"k is 2"),
     (lambda f: ahm.PointCloud(f["cloud"].points, max_edge_ratio=0.5), r"max_edge_ratio is 0.5"),
-    (lambda f: ahm.PointCloud(f["cloud"].points, smooth=-0.5), r"smooth: -0.5 is less than 0"),
+    (lambda f: ahm.PointCloud(f["cloud"].points, smooth=-0.5), r"smooth is -0.5; give a radius in world units, 0 for none"),
     (lambda f: ahm.PointCloud([[0, 0, 0], [1, 0, 0], [2, 0, 0], [3, 0, 0]]), r"on a line"),
     (lambda f: ahm.LogMapSolver(f["triangles"], accuracy=0.5), r"accuracy is 0.5"),
     (lambda f: ahm.Grid((70000, 70000)), r"more vertices than can be numbered"),

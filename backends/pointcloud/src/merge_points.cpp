@@ -9,9 +9,10 @@
 namespace ahm::pointcloud {
 namespace {
 
-/// Points as near as this share of the spacing are equal for the graph wherever they occur ...
+/// Points nearer than this share of the spacing are one point for the graph wherever they occur.
 constexpr double equal_share = 1e-3;
-/// ... and as near as this if they occur on purpose: in clouds sampled at random, 0.4 % of the points have such a neighbor by chance.
+/// Points nearer than this share are one only if more than `most_by_chance` of all have such a neighbor: of points sampled at random
+/// 0.4 % have one.
 constexpr double near_share = 0.05, most_by_chance = 0.01;
 
 struct Representatives {

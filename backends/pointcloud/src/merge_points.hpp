@@ -1,5 +1,5 @@
 /// \file
-/// Points that are as good as equal.
+/// Points much nearer to each other than the spacing.
 #pragma once
 
 #include <memory>

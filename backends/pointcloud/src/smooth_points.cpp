@@ -80,10 +80,9 @@ class QuadricFit {
   bool has_sides_;
 };
 
-/// The points within a radius of point i, itself left out.
+/// The points within a radius of point i, itself left out. @param squared  room for squares of distances
 void find_within(const CleanPoints& cloud, Index i, double radius, const NeighborSearch& search,
-                 std::vector<Index>& found) {
-  std::vector<double> squared;
+                 std::vector<Index>& found, std::vector<double>& squared) {
   for (std::size_t count = 2 * default_neighbors;; count *= 2) {
     found.resize(std::min(count, cloud.points.size()));
     squared.resize(found.size());
@@ -135,6 +134,7 @@ bool smooth_points(CleanPoints& cloud, const NoisyPlanes& planes, const std::vec
   std::atomic<bool> any{false};
   detail::parallel_chunks(n, points_per_task, options.threads, [&](Offset begin, Offset end) {
     std::vector<Index> within;
+    std::vector<double> squared;
     for (auto i = static_cast<Index>(begin); i < end; ++i) {
       if ((again && !cloud.smoothed[i]) || !noisy_parts[planes.parts->of_point[i]] || !planes.planes.has_plane(i))
         continue;
@@ -143,7 +143,7 @@ bool smooth_points(CleanPoints& cloud, const NoisyPlanes& planes, const std::vec
       double radius = planes.neighborhoods.radius[i];
       if (options.smooth) {
         radius = *options.smooth / cloud.unit;
-        find_within(cloud, i, radius, search, within);
+        find_within(cloud, i, radius, search, within, squared);
         neighbors = within;
       }
       if (neighbors.size() < least_fitted) continue;

@@ -93,8 +93,9 @@ struct CloudDetails {
 };
 
 /// A point cloud as a surface. Rows are the points given; vertices are sorted along a space-filling curve, equal points
-/// and near duplicates share one. `positions()` are the points given, the origins of the frames the smoothed ones. The closest point to a position lies in the tangent plane of the row nearest to it; at a row without an
-/// axis, u is x of `graph().frame(vertex)`.
+/// and near duplicates share one. `positions()` are the points given, the origins of the frames the smoothed ones. The
+/// closest point to a position lies in the tangent plane of the row nearest to it; at a row without an axis, u is x of
+/// `graph().frame(vertex)`.
 ///
 /// Its report: points, vertices, non_finite, duplicates, near_duplicates, smoothed, degenerate, k, components, triangles, flips, rejected_long,
 /// rejected_normals, rejected_steep, reflections, normals_given, contradicted, thick, lines, oriented, noise, layer_gap, mollification, seconds.normals, seconds.delaunay,
