@@ -29,7 +29,7 @@ PolarMapSolver::PolarMapSolver(const Surface& surface, const PolarSolverOptions&
     : PolarMapSolver(surface.graph(), options) {
   surface_ = &surface;
   windows_ = options.windows.value_or(std::max(least_windows, windows_per_vertex * graph_->size()));
-  if (windows_ <= 0 || surface.faces().size() == 0) return;
+  if (windows_ <= 0) return;
   try {
     geodesics_.emplace(surface);
   } catch (const InvalidArgument&) {  // no flat triangles

@@ -122,20 +122,29 @@ class PointCloudSurface final : public Surface {
   std::vector<Warning> warnings() const override;
   const CloudDetails& details() const& noexcept { return details_; }
   void details() && = delete;
+  /// A manifold chosen from the local triangulations, made anew by each call: time O(n log n). Vertices that it does not use have no
+  /// exact map. @throws InvalidGeometry (no triangle is left)
+  FlatTriangles flat_triangles() const override;
+
+  ~PointCloudSurface() override;
+  PointCloudSurface(PointCloudSurface&&) noexcept;
+  PointCloudSurface& operator=(PointCloudSurface&&) noexcept;
 
  protected:
   Reason why_without_vertex(Row row) const override;
   double error_of_normals() const override;
 
  private:
+  struct Candidates;
   PointCloudSurface(CsrGraph graph, CloudDetails details, RowMap rows, std::span<const Vec3> points,
-                    std::optional<std::vector<Row>> kept);
+                    std::optional<std::vector<Row>> kept, std::unique_ptr<const Candidates> candidates);
 
   std::unique_ptr<const CsrGraph> graph_;
   CloudDetails details_;
   RowMap rows_;
   std::vector<Vec3> positions_;
   std::optional<std::vector<Row>> kept_;
+  std::unique_ptr<const Candidates> candidates_;
 };
 
 }  // namespace ahm::pointcloud
