@@ -1,7 +1,6 @@
 #include "flat_sheet.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -9,16 +8,12 @@
 #include "ahm/surface/gluing.hpp"
 #include "ahm/util/small_math.hpp"
 #include "ahm/util/vec.hpp"
-#include "edge_unfolding.hpp"
 
 namespace ahm::pointcloud {
 namespace {
 
 using exact::Corner;
 using exact::Half;
-
-/// A triangle whose longest side is shorter than the other two by less than this share of it is laid out by distances in space.
-constexpr double least_slack = 1e-9;
 
 /// Triangles glued along their edges, most of them counter-clockwise about their normals.
 struct GluedTriangles {
@@ -58,46 +53,12 @@ GluedTriangles glue_triangles(std::span<const Frame> frames, std::span<const Tri
   return result;
 }
 
-using Lengths = std::array<double, 3>;
-
-bool closes(const Lengths& l) {
-  const double sum = l[0] + l[1] + l[2], longest = std::max({l[0], l[1], l[2]});
-  return sum - 2 * longest > least_slack * longest;
-}
-
-/// Lengths of edges unfolded as in the graph; distances in space where a triangle would not close.
-std::vector<Lengths> side_lengths(const GluedTriangles& glued, std::span<const Frame> frames,
-                                  std::span<const double> noise, double unit) {
-  const auto edges = glued.edges();
-  const auto offset = [&](Half h) { return (1 / unit) * (frames[edges.head(h)].origin - frames[edges.tail[h]].origin); };
-  std::vector<Lengths> lengths(glued.tail.size() / 3);
-  for (Half h = 0; h < edges.size(); ++h) {
-    const Half twin = edges.twin[h];
-    if (twin >= 0 && twin < h) {
-      lengths[h / 3][h % 3] = lengths[twin / 3][twin % 3];
-      continue;
-    }
-    const Frame &tail = frames[edges.tail[h]], &head = frames[edges.head(h)];
-    const Vec3 log = unfolded_edge(tail.normal, head.normal, offset(h), noise[edges.tail[h]]);
-    lengths[h / 3][h % 3] = norm(log);
-  }
-  std::vector<Index> queue;
-  for (Index f = 0; f < static_cast<Index>(lengths.size()); ++f) queue.push_back(f);
-  std::vector<char> in_space(lengths.size(), 0);
-  while (!queue.empty()) {
-    const Index f = queue.back();
-    queue.pop_back();
-    if (in_space[f] || closes(lengths[f])) continue;
-    in_space[f] = 1;
-    for (Half h = 3 * f; h < 3 * f + 3; ++h) {
-      lengths[f][h % 3] = norm(offset(h));
-      if (const Half twin = edges.twin[h]; twin >= 0) {
-        lengths[twin / 3][twin % 3] = lengths[f][h % 3];
-        queue.push_back(twin / 3);
-      }
-    }
-  }
-  return lengths;
+/// A triangle in its own plane.
+exact::FaceSides lay_out(const GluedTriangles& glued, std::span<const Frame> frames, Index face, double unit) {
+  const auto corner = [&](int s) { return frames[glued.tail[3 * face + s]].origin; };
+  const Vec3 a = (1 / unit) * (corner(1) - corner(0)), b = (1 / unit) * (corner(2) - corner(0));
+  const double base = norm(a), along = dot(a, b) / base, height = norm(cross(a, b)) / base;
+  return {Vec2{base, 0}, Vec2{along - base, height}, Vec2{-along, -height}};
 }
 
 /// One half-edge that starts at each vertex; -1: none.
@@ -108,7 +69,7 @@ std::vector<Half> corners_of(const GluedTriangles& glued, std::size_t vertices) 
 }
 
 /// Finds the angle of direction 0 in the frame of a vertex: the mean, over its edges, of what their angles differ by.
-void fit_direction(FlatTriangles& flat, std::span<const Frame> frames, std::span<const double> noise, Index v) {
+void fit_direction(FlatTriangles& flat, std::span<const Frame> frames, Index v) {
   const Corner start = flat.surface.first_corner(v);
   if (start.half < 0) return;
   const Frame& frame = frames[v];
@@ -120,8 +81,7 @@ void fit_direction(FlatTriangles& flat, std::span<const Frame> frames, std::span
   Vec2 sum{};
   double turned = 0;
   const auto add = [&](Index w) {
-    const Vec3 log = unfolded_edge(frame.normal, frames[w].normal, to(w), noise[v]);
-    const double angle = std::atan2(dot(frame.y, log), dot(frame.x, log)) - side * scale * turned;
+    const double angle = std::atan2(dot(frame.y, to(w)), dot(frame.x, to(w))) - side * scale * turned;
     sum = sum + Vec2{std::cos(angle), std::sin(angle)};
   };
   for (Corner c = start;;) {
@@ -138,21 +98,20 @@ void fit_direction(FlatTriangles& flat, std::span<const Frame> frames, std::span
 
 }  // namespace
 
-FlatTriangles flat_sheet(const TangentGraph& graph, std::span<const Triangle> triangles, std::span<const double> noise) {
+FlatTriangles flat_sheet(const TangentGraph& graph, std::span<const Triangle> triangles) {
   std::vector<Frame> frames;
   frames.reserve(static_cast<std::size_t>(graph.size()));
   for (Index v = 0; v < graph.size(); ++v) frames.push_back(*graph.frame(v));
   const GluedTriangles glued = glue_triangles(frames, triangles);
-  FlatTriangles flat{exact::PolyhedralSurface::from_lengths(glued.edges(),
-                                                            side_lengths(glued, frames, noise, graph.length_unit()),
-                                                            corners_of(glued, frames.size())),
+  FlatTriangles flat{{glued.edges(), [&](Index f) { return lay_out(glued, frames, f, graph.length_unit()); },
+                      corners_of(glued, frames.size())},
                      {},
                      graph.length_unit()};
   flat.positions.reserve(frames.size());
   for (const Frame& frame : frames) flat.positions.push_back(frame.origin);
   flat.angles.assign(frames.size(), 0);
   flat.mirrored.assign(frames.size(), 0);
-  for (Index v = 0; v < graph.size(); ++v) fit_direction(flat, frames, noise, v);
+  for (Index v = 0; v < graph.size(); ++v) fit_direction(flat, frames, v);
   return flat;
 }
 

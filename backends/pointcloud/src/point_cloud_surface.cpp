@@ -191,34 +191,20 @@ void number_corners(std::vector<Triangle>& triangles, const std::vector<Index>& 
     for (Index& corner : t) corner = vertex_of_clean[corner];
 }
 
-std::vector<double> noise_at_vertices(const PerPart& noise, const WeightedEdges& edges, Index vertices) {
-  std::vector<double> result;
-  result.reserve(static_cast<std::size_t>(vertices));
-  for (std::size_t i = 0; i < edges.masses.size(); ++i)
-    if (edges.masses[i] > 0) result.push_back(noise.at(static_cast<Index>(i)));
-  return result;
-}
-
 }  // namespace
-
-/// What the flat triangles are made of.
-struct PointCloudSurface::Candidates {
-  LocalTriangles local;
-  std::vector<double> noise;  ///< per vertex, in units of the graph
-};
 
 PointCloudSurface::~PointCloudSurface() = default;
 PointCloudSurface::PointCloudSurface(PointCloudSurface&&) noexcept = default;
 PointCloudSurface& PointCloudSurface::operator=(PointCloudSurface&&) noexcept = default;
 
 PointCloudSurface::PointCloudSurface(CsrGraph graph, CloudDetails details, RowMap rows, std::span<const Vec3> points,
-                                     std::optional<std::vector<Row>> kept, std::unique_ptr<const Candidates> candidates)
+                                     std::optional<std::vector<Row>> kept, std::unique_ptr<const LocalTriangles> triangles)
     : graph_(std::make_unique<const CsrGraph>(std::move(graph))),
       details_(std::move(details)),
       rows_(std::move(rows)),
       positions_(points.begin(), points.end()),
       kept_(std::move(kept)),
-      candidates_(std::move(candidates)) {}
+      triangles_(std::move(triangles)) {}
 
 PointCloudSurface PointCloudSurface::build(std::span<const Vec3> input, std::span<const Vec3> input_normals,
                                            const CloudOptions& options) try {
@@ -251,10 +237,10 @@ PointCloudSurface PointCloudSurface::build(std::span<const Vec3> input, std::spa
   details.seconds_normals = stopwatch.lap();
 
   std::vector<char> inner;
-  auto candidates = std::make_unique<Candidates>();
-  std::vector<Triangle>& triangles = candidates->local.triangles;
+  auto local = std::make_unique<LocalTriangles>();
+  std::vector<Triangle>& triangles = local->triangles;
   triangles = local_delaunay(cloud, neighborhoods, planes, per_part(*parts, cut), noise, options, details, &inner,
-                             &candidates->local.votes);
+                             &local->votes);
   details.lines = points_on_lines(*parts, inner);
   details.seconds_delaunay = stopwatch.lap();
   neighborhoods = {};
@@ -272,7 +258,6 @@ PointCloudSurface PointCloudSurface::build(std::span<const Vec3> input, std::spa
                                     noise, options.threads, details);
   fill_vertex_data(data, cloud, planes, edges, vertex_of_clean, details.vertices, options.threads);
   number_corners(triangles, vertex_of_clean);
-  candidates->noise = noise_at_vertices(noise, edges, details.vertices);
   std::optional<CsrGraph> graph;
   std::optional<RowMap> rows;
   const auto find_components = [&] {
@@ -290,7 +275,7 @@ PointCloudSurface PointCloudSurface::build(std::span<const Vec3> input, std::spa
   options.progress.step("graph", 1.0);
   details.seconds_graph = stopwatch.lap();
   return PointCloudSurface(*std::move(graph), std::move(details), *std::move(rows), input, options.rows,
-                           std::move(candidates));
+                           std::move(local));
 } catch (const std::bad_alloc&) {
   throw ResourceExhausted("out of memory while building the graph of a cloud of " + std::to_string(input.size()) +
                           " points");
@@ -303,7 +288,7 @@ FlatTriangles PointCloudSurface::flat_triangles() const {
     points.push_back((1 / graph_->length_unit()) * frame.origin);
     normals.push_back(frame.normal);
   }
-  return flat_sheet(*graph_, sheet_triangles(points, normals, candidates_->local), candidates_->noise);
+  return flat_sheet(*graph_, sheet_triangles(points, normals, *triangles_));
 }
 
 Surface::Reason PointCloudSurface::why_without_vertex(Row row) const {

@@ -21,6 +21,8 @@
 
 namespace ahm::pointcloud {
 
+struct LocalTriangles;
+
 /// What the signs of given normals mean.
 enum class NormalSigns {
   /// The majority in each component fixes which side is up; others are turned. Neighbours that face away from each other are
@@ -135,16 +137,15 @@ class PointCloudSurface final : public Surface {
   double error_of_normals() const override;
 
  private:
-  struct Candidates;
   PointCloudSurface(CsrGraph graph, CloudDetails details, RowMap rows, std::span<const Vec3> points,
-                    std::optional<std::vector<Row>> kept, std::unique_ptr<const Candidates> candidates);
+                    std::optional<std::vector<Row>> kept, std::unique_ptr<const LocalTriangles> triangles);
 
   std::unique_ptr<const CsrGraph> graph_;
   CloudDetails details_;
   RowMap rows_;
   std::vector<Vec3> positions_;
   std::optional<std::vector<Row>> kept_;
-  std::unique_ptr<const Candidates> candidates_;
+  std::unique_ptr<const LocalTriangles> triangles_;  ///< what `flat_triangles` chooses from
 };
 
 }  // namespace ahm::pointcloud
