@@ -54,9 +54,9 @@ GluedTriangles glue_triangles(std::span<const Frame> frames, std::span<const Tri
 }
 
 /// A triangle in its own plane.
-exact::FaceSides lay_out(const GluedTriangles& glued, std::span<const Frame> frames, Index face, double unit) {
+exact::FaceSides lay_out(const GluedTriangles& glued, std::span<const Frame> frames, Index face) {
   const auto corner = [&](int s) { return frames[glued.tail[3 * face + s]].origin; };
-  const Vec3 a = (1 / unit) * (corner(1) - corner(0)), b = (1 / unit) * (corner(2) - corner(0));
+  const Vec3 a = corner(1) - corner(0), b = corner(2) - corner(0);
   const double base = norm(a), along = dot(a, b) / base, height = norm(cross(a, b)) / base;
   return {Vec2{base, 0}, Vec2{along - base, height}, Vec2{-along, -height}};
 }
@@ -74,7 +74,7 @@ void fit_direction(FlatTriangles& flat, std::span<const Frame> frames, Index v) 
   if (start.half < 0) return;
   const Frame& frame = frames[v];
   const exact::HalfRecord first = flat.surface.record(start.half);
-  const auto to = [&](Index w) { return (1 / flat.length_unit) * (frames[w].origin - frame.origin); };
+  const auto to = [&](Index w) { return frames[w].origin - frame.origin; };
   const bool is_up = dot(cross(to(first.head), to(first.apex)), frame.normal) > 0;
   flat.mirrored[v] = is_up != start.forward;
   const double scale = flat.surface.angle_scale(v), side = flat.mirrored[v] ? -1 : 1;
@@ -98,20 +98,17 @@ void fit_direction(FlatTriangles& flat, std::span<const Frame> frames, Index v) 
 
 }  // namespace
 
-FlatTriangles flat_sheet(const TangentGraph& graph, std::span<const Triangle> triangles) {
-  std::vector<Frame> frames;
-  frames.reserve(static_cast<std::size_t>(graph.size()));
-  for (Index v = 0; v < graph.size(); ++v) frames.push_back(*graph.frame(v));
+FlatTriangles flat_sheet(std::span<const Frame> frames, std::span<const Triangle> triangles, double length_unit) {
   const GluedTriangles glued = glue_triangles(frames, triangles);
-  FlatTriangles flat{{glued.edges(), [&](Index f) { return lay_out(glued, frames, f, graph.length_unit()); },
-                      corners_of(glued, frames.size())},
-                     {},
-                     graph.length_unit()};
+  FlatTriangles flat{
+      {glued.edges(), [&](Index f) { return lay_out(glued, frames, f); }, corners_of(glued, frames.size())},
+      {},
+      length_unit};
   flat.positions.reserve(frames.size());
-  for (const Frame& frame : frames) flat.positions.push_back(frame.origin);
+  for (const Frame& frame : frames) flat.positions.push_back(length_unit * frame.origin);
   flat.angles.assign(frames.size(), 0);
   flat.mirrored.assign(frames.size(), 0);
-  for (Index v = 0; v < graph.size(); ++v) fit_direction(flat, frames, v);
+  for (Index v = 0; v < static_cast<Index>(frames.size()); ++v) fit_direction(flat, frames, v);
   return flat;
 }
 

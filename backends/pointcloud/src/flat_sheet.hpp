@@ -10,8 +10,8 @@
 namespace ahm::pointcloud {
 
 /// Lengths are distances of the points: unfolded edges of the graph are farther from those of a mesh.
-/// @param graph      with frames, whose origins are the points
-/// @param triangles  of a manifold, of vertices of the graph; each vertex has one fan or none
-FlatTriangles flat_sheet(const TangentGraph& graph, std::span<const Triangle> triangles);
+/// @param frames     of the vertices of the graph, in units of `length_unit`
+/// @param triangles  of a manifold; each vertex has one fan or none
+FlatTriangles flat_sheet(std::span<const Frame> frames, std::span<const Triangle> triangles, double length_unit);
 
 }  // namespace ahm::pointcloud

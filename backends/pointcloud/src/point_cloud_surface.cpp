@@ -282,13 +282,13 @@ PointCloudSurface PointCloudSurface::build(std::span<const Vec3> input, std::spa
 }
 
 FlatTriangles PointCloudSurface::flat_triangles() const {
-  std::vector<Vec3> points, normals;
+  std::vector<Frame> frames;
+  frames.reserve(static_cast<std::size_t>(graph_->size()));
   for (Index v = 0; v < graph_->size(); ++v) {
-    const Frame frame = *graph_->frame(v);
-    points.push_back((1 / graph_->length_unit()) * frame.origin);
-    normals.push_back(frame.normal);
+    frames.push_back(*graph_->frame(v));
+    frames.back().origin = (1 / graph_->length_unit()) * frames.back().origin;
   }
-  return flat_sheet(*graph_, sheet_triangles(points, normals, *triangles_));
+  return flat_sheet(frames, sheet_triangles(frames, *triangles_), graph_->length_unit());
 }
 
 Surface::Reason PointCloudSurface::why_without_vertex(Row row) const {

@@ -8,7 +8,6 @@
 #include <optional>
 
 #include "ahm/util/vec.hpp"
-#include "plane_axes.hpp"
 
 namespace ahm::pointcloud {
 namespace {
@@ -19,7 +18,7 @@ using std::numbers::pi;
 constexpr std::size_t most_hole_edges = 12;
 /// A triangle flatter than this multiple of its longest side has no reliable angles.
 constexpr double least_height = 1e-6;
-/// Filling a hole may join two fans, dropping a fan may open a hole.
+/// Dropping a fan may open a hole; real shapes change no more after the second round.
 constexpr int fill_rounds = 3;
 
 /// The corner of a triangle at a vertex, in the tangent plane of the vertex: counter-clockwise from `right` to `left`.
@@ -41,8 +40,7 @@ bool overlap(const Wedge& a, const Wedge& b) {
 /// Triangles whose wedges at each vertex do not overlap. Then no edge has more than two triangles.
 class Sheet {
  public:
-  Sheet(std::span<const Vec3> points, std::span<const Vec3> normals)
-      : points_(points), normals_(normals), wedges_(points.size()) {}
+  explicit Sheet(std::span<const Frame> frames) : frames_(frames), wedges_(frames.size()) {}
 
   /// Adds a triangle, if it overlaps no other.
   bool add(const Triangle& t) {
@@ -121,25 +119,25 @@ class Sheet {
  private:
   /// Whether the corners agree, by their normals, on the side of the triangle that is up.
   bool has_one_side(const Triangle& t) const {
-    const Vec3 a = points_[t[1]] - points_[t[0]], b = points_[t[2]] - points_[t[0]], normal = cross(a, b);
+    const Vec3 a = frames_[t[1]].origin - frames_[t[0]].origin, b = frames_[t[2]].origin - frames_[t[0]].origin, normal = cross(a, b);
     const double longest = std::max({norm(a), norm(b), norm(b - a)});
     if (!(norm(normal) > least_height * longest * longest)) return false;
-    const bool up = dot(normal, normals_[t[0]]) > 0;
+    const bool up = dot(normal, frames_[t[0]].normal) > 0;
     for (int c = 1; c < 3; ++c) {
-      const bool agrees = dot(normals_[t[0]], normals_[t[c]]) > 0;
-      if ((dot(normal, normals_[t[c]]) > 0) != (up == agrees)) return false;
+      const bool agrees = dot(frames_[t[0]].normal, frames_[t[c]].normal) > 0;
+      if ((dot(normal, frames_[t[c]].normal) > 0) != (up == agrees)) return false;
     }
     return true;
   }
 
-  double angle(const PlaneAxes& axes, Index from, Index to) const {
-    const Vec3 offset = points_[to] - points_[from];
-    return std::atan2(dot(axes.y, offset), dot(axes.x, offset));
+  double angle(Index from, Index to) const {
+    const Frame& frame = frames_[from];
+    const Vec3 offset = frames_[to].origin - frame.origin;
+    return std::atan2(dot(frame.y, offset), dot(frame.x, offset));
   }
 
   std::optional<Wedge> wedge_of(Index v, Index a, Index b) const {
-    const PlaneAxes axes(normals_[v]);
-    const double at_a = angle(axes, v, a), at_b = angle(axes, v, b), turn = counter_clockwise(at_a, at_b),
+    const double at_a = angle(v, a), at_b = angle(v, b), turn = counter_clockwise(at_a, at_b),
                  back = counter_clockwise(at_b, at_a);
     const auto triangle = static_cast<Index>(triangles_.size());
     const Wedge wedge = turn < pi ? Wedge{triangle, a, b, at_a, turn} : Wedge{triangle, b, a, at_b, back};
@@ -186,7 +184,7 @@ class Sheet {
       const std::size_t m = loop.size();
       std::vector<std::size_t> ears(m);
       std::iota(ears.begin(), ears.end(), 0);
-      const auto chord = [&](std::size_t k) { return distance(points_[loop[(k + m - 1) % m]], points_[loop[(k + 1) % m]]); };
+      const auto chord = [&](std::size_t k) { return distance(frames_[loop[(k + m - 1) % m]].origin, frames_[loop[(k + 1) % m]].origin); };
       std::ranges::stable_sort(ears, {}, chord);
       const auto ear = std::ranges::find_if(
           ears, [&](std::size_t k) { return add({loop[(k + m - 1) % m], loop[k], loop[(k + 1) % m]}); });
@@ -226,25 +224,25 @@ class Sheet {
 
   /// Whether a vertex lies in a triangle in its own tangent plane, and the triangle does not stand on it.
   bool is_inside(Index v, const Triangle& t) const {
-    const Vec3& n = normals_[v];
-    const Vec3 a = points_[t[0]] - points_[v], b = points_[t[1]] - points_[v], c = points_[t[2]] - points_[v];
+    const Vec3& n = frames_[v].normal;
+    const Vec3 a = frames_[t[0]].origin - frames_[v].origin, b = frames_[t[1]].origin - frames_[v].origin, c = frames_[t[2]].origin - frames_[v].origin;
     const double ab = dot(n, cross(a, b)), bc = dot(n, cross(b, c)), ca = dot(n, cross(c, a));
     return (ab > 0 && bc > 0 && ca > 0) || (ab < 0 && bc < 0 && ca < 0);
   }
 
-  std::span<const Vec3> points_, normals_;
+  std::span<const Frame> frames_;
   std::vector<std::vector<Wedge>> wedges_;  ///< of each vertex, ascending angles
   std::vector<Triangle> triangles_;
   std::vector<char> dropped_;
 };
 
 /// Numbers of triangles, those with more votes first, then smaller ones.
-std::vector<std::size_t> by_votes(std::span<const Vec3> points, const LocalTriangles& candidates) {
+std::vector<std::size_t> by_votes(std::span<const Frame> frames, const LocalTriangles& candidates) {
   const std::vector<Triangle>& all = candidates.triangles;
   std::vector<double> longest(all.size());
   for (std::size_t t = 0; t < all.size(); ++t)
     for (int c = 0; c < 3; ++c)
-      longest[t] = std::max(longest[t], distance(points[all[t][c]], points[all[t][(c + 1) % 3]]));
+      longest[t] = std::max(longest[t], distance(frames[all[t][c]].origin, frames[all[t][(c + 1) % 3]].origin));
   std::vector<std::size_t> order(all.size());
   std::iota(order.begin(), order.end(), 0);
   std::ranges::sort(order, [&](std::size_t a, std::size_t b) {
@@ -266,10 +264,9 @@ void insert_uncovered(const LocalTriangles& candidates, Sheet& sheet) {
 
 }  // namespace
 
-std::vector<Triangle> sheet_triangles(std::span<const Vec3> points, std::span<const Vec3> normals,
-                                      const LocalTriangles& candidates) {
-  Sheet sheet(points, normals);
-  for (const std::size_t t : by_votes(points, candidates)) sheet.add(candidates.triangles[t]);
+std::vector<Triangle> sheet_triangles(std::span<const Frame> frames, const LocalTriangles& candidates) {
+  Sheet sheet(frames);
+  for (const std::size_t t : by_votes(frames, candidates)) sheet.add(candidates.triangles[t]);
   for (int round = 0; round < fill_rounds; ++round) {
     sheet.fill_holes();
     insert_uncovered(candidates, sheet);

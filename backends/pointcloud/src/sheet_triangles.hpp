@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "ahm/types.hpp"
+#include "ahm/graph/tangent_graph.hpp"
 
 namespace ahm::pointcloud {
 
@@ -19,8 +19,7 @@ struct LocalTriangles {
 /// Takes the triangles in the order of their votes, then of their size, where they overlap none taken before in the tangent planes
 /// of their corners. Small holes that are left are filled. Every edge of the result has at most two triangles, every vertex one
 /// fan or none. Time O(n log n).
-/// @param normals  unit normals of the points; neighbors' signs should agree
-std::vector<Triangle> sheet_triangles(std::span<const Vec3> points, std::span<const Vec3> normals,
-                                      const LocalTriangles& candidates);
+/// @param frames  of the points, in any unit of length; neighbors' normals should agree on the side
+std::vector<Triangle> sheet_triangles(std::span<const Frame> frames, const LocalTriangles& candidates);
 
 }  // namespace ahm::pointcloud
