@@ -103,7 +103,8 @@ FlatTriangles flat_sheet(std::span<const Frame> frames, std::span<const Triangle
   FlatTriangles flat{
       {glued.edges(), [&](Index f) { return lay_out(glued, frames, f); }, corners_of(glued, frames.size())},
       {},
-      length_unit};
+      length_unit,
+      true};
   flat.positions.reserve(frames.size());
   for (const Frame& frame : frames) flat.positions.push_back(length_unit * frame.origin);
   flat.angles.assign(frames.size(), 0);
