@@ -4,6 +4,7 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include "ahm/util/buckets.hpp"
@@ -141,8 +142,19 @@ class StarTriangulator {
   std::vector<Inverted> images_, hull_;
 };
 
+/// Counts in a sorted range how often each value is there, the counts in the order of the values from `first` on.
+void count_equal(const std::array<Index, 2>* values, Offset first, Offset last, std::vector<std::uint8_t>& times) {
+  Offset at = first - 1;
+  for (Offset t = first; t < last; ++t) {
+    if (t == first || values[t] != values[t - 1]) times[++at] = 0;
+    ++times[at];
+  }
+}
+
 /// Sorts and removes repetitions, first by counting the smallest corner.
-std::vector<Triangle> unique_triangles(const std::vector<std::vector<Triangle>>& parts, Index n, unsigned threads) {
+/// @param votes  filled, unless it is null: how often each triangle was there
+std::vector<Triangle> unique_triangles(const std::vector<std::vector<Triangle>>& parts, Index n, unsigned threads,
+                                       std::vector<std::uint8_t>* votes) {
   std::vector<Offset> begin(static_cast<std::size_t>(n) + 1, 0);
   const auto for_each_triangle = [&](const auto& body) {
     detail::for_key_ranges(n, threads, [&](Offset from, Offset to) {
@@ -154,19 +166,25 @@ std::vector<Triangle> unique_triangles(const std::vector<std::vector<Triangle>>&
   for_each_triangle([&](const Triangle& t) { ++begin[t[0] + 1]; });
   begin = detail::starts_of(std::move(begin));
   detail::UnsetVector<std::array<Index, 2>> rest(static_cast<std::size_t>(begin[n]));
+  std::vector<std::uint8_t> times(votes ? rest.size() : 0);
   std::vector<Offset> fill(begin.begin(), begin.end() - 1);
   for_each_triangle([&](const Triangle& t) { rest[fill[t[0]]++] = {t[1], t[2]}; });
   detail::parallel_chunks(n, points_per_task, threads, [&](Offset first, Offset last) {
     for (Offset i = first; i < last; ++i) {
       const auto bucket = rest.begin() + begin[i];
       std::sort(bucket, rest.begin() + begin[i + 1]);
+      if (votes) count_equal(rest.data(), begin[i], begin[i + 1], times);
       fill[i] = std::unique(bucket, rest.begin() + begin[i + 1]) - rest.begin();
     }
   });
   std::vector<Triangle> triangles;
   triangles.reserve(rest.size() / 2);
+  if (votes) votes->reserve(rest.size() / 2);
   for (Index i = 0; i < n; ++i)
-    for (Offset t = begin[i]; t < fill[i]; ++t) triangles.push_back({i, rest[t][0], rest[t][1]});
+    for (Offset t = begin[i]; t < fill[i]; ++t) {
+      triangles.push_back({i, rest[t][0], rest[t][1]});
+      if (votes) votes->push_back(times[t]);
+    }
   return triangles;
 }
 
@@ -174,7 +192,8 @@ std::vector<Triangle> unique_triangles(const std::vector<std::vector<Triangle>>&
 
 std::vector<Triangle> local_delaunay(const CleanPoints& cloud, const Neighborhoods& neighborhoods,
                                      const TangentPlanes& planes, const PerPart& oriented, const PerPart& noise,
-                                     const CloudOptions& options, CloudDetails& report, std::vector<char>* inner) {
+                                     const CloudOptions& options, CloudDetails& report, std::vector<char>* inner,
+                                     std::vector<std::uint8_t>* votes) {
   const auto n = static_cast<Offset>(cloud.points.size());
   std::vector<std::vector<Triangle>> parts(static_cast<std::size_t>((n + points_per_task - 1) / points_per_task));
   if (inner) inner->assign(static_cast<std::size_t>(n), 0);
@@ -193,7 +212,7 @@ std::vector<Triangle> local_delaunay(const CleanPoints& cloud, const Neighborhoo
   report.rejected_long = neighborhoods.unreachable + too_long;
   report.rejected_normals = other_sheet;
   report.rejected_steep = too_steep;
-  std::vector<Triangle> triangles = unique_triangles(parts, static_cast<Index>(n), options.threads);
+  std::vector<Triangle> triangles = unique_triangles(parts, static_cast<Index>(n), options.threads, votes);
   report.triangles = static_cast<Offset>(triangles.size());
   options.progress.step("triangulate", 1.0);
   return triangles;

@@ -15,10 +15,12 @@
 #include "ahm/util/stopwatch.hpp"
 #include "ahm/util/text.hpp"
 #include "clean_points.hpp"
+#include "flat_sheet.hpp"
 #include "local_delaunay.hpp"
 #include "noisy_planes.hpp"
 #include "orientation.hpp"
 #include "plane_axes.hpp"
+#include "sheet_triangles.hpp"
 #include "tangent_edges.hpp"
 #include "tufted_cover.hpp"
 
@@ -183,15 +185,26 @@ void fill_vertex_data(CsrGraphData& g, const CleanPoints& cloud, const TangentPl
   });
 }
 
+/// Numbers the corners of triangles as vertices; all of them have masses.
+void number_corners(std::vector<Triangle>& triangles, const std::vector<Index>& vertex_of_clean) {
+  for (Triangle& t : triangles)
+    for (Index& corner : t) corner = vertex_of_clean[corner];
+}
+
 }  // namespace
 
+PointCloudSurface::~PointCloudSurface() = default;
+PointCloudSurface::PointCloudSurface(PointCloudSurface&&) noexcept = default;
+PointCloudSurface& PointCloudSurface::operator=(PointCloudSurface&&) noexcept = default;
+
 PointCloudSurface::PointCloudSurface(CsrGraph graph, CloudDetails details, RowMap rows, std::span<const Vec3> points,
-                                     std::optional<std::vector<Row>> kept)
+                                     std::optional<std::vector<Row>> kept, std::unique_ptr<const LocalTriangles> triangles)
     : graph_(std::make_unique<const CsrGraph>(std::move(graph))),
       details_(std::move(details)),
       rows_(std::move(rows)),
       positions_(points.begin(), points.end()),
-      kept_(std::move(kept)) {}
+      kept_(std::move(kept)),
+      triangles_(std::move(triangles)) {}
 
 PointCloudSurface PointCloudSurface::build(std::span<const Vec3> input, std::span<const Vec3> input_normals,
                                            const CloudOptions& options) try {
@@ -224,8 +237,10 @@ PointCloudSurface PointCloudSurface::build(std::span<const Vec3> input, std::spa
   details.seconds_normals = stopwatch.lap();
 
   std::vector<char> inner;
-  std::vector<Triangle> triangles =
-      local_delaunay(cloud, neighborhoods, planes, per_part(*parts, cut), noise, options, details, &inner);
+  auto local = std::make_unique<LocalTriangles>();
+  std::vector<Triangle>& triangles = local->triangles;
+  triangles = local_delaunay(cloud, neighborhoods, planes, per_part(*parts, cut), noise, options, details, &inner,
+                             &local->votes);
   details.lines = points_on_lines(*parts, inner);
   details.seconds_delaunay = stopwatch.lap();
   neighborhoods = {};
@@ -233,7 +248,6 @@ PointCloudSurface PointCloudSurface::build(std::span<const Vec3> input, std::spa
   const WeightedEdges edges = triangles.empty()
                                   ? WeightedEdges{{}, {}, {}, std::vector<double>(cloud.points.size(), 0.0)}
                                   : tufted_laplacian(cloud, planes, triangles, *parts, options.threads, details);
-  triangles = {};
   details.mollification *= cloud.unit;
   options.progress.step("laplacian", 1.0);
   details.seconds_laplacian = stopwatch.lap();
@@ -243,6 +257,7 @@ PointCloudSurface PointCloudSurface::build(std::span<const Vec3> input, std::spa
   CsrGraphData data = tangent_edges(cloud, planes, edges, vertex_of_clean, details.vertices, per_part(*parts, trusted),
                                     noise, options.threads, details);
   fill_vertex_data(data, cloud, planes, edges, vertex_of_clean, details.vertices, options.threads);
+  number_corners(triangles, vertex_of_clean);
   std::optional<CsrGraph> graph;
   std::optional<RowMap> rows;
   const auto find_components = [&] {
@@ -259,10 +274,21 @@ PointCloudSurface PointCloudSurface::build(std::span<const Vec3> input, std::spa
   detail::run_both(options.threads, find_components, pair_rows);
   options.progress.step("graph", 1.0);
   details.seconds_graph = stopwatch.lap();
-  return PointCloudSurface(*std::move(graph), std::move(details), *std::move(rows), input, options.rows);
+  return PointCloudSurface(*std::move(graph), std::move(details), *std::move(rows), input, options.rows,
+                           std::move(local));
 } catch (const std::bad_alloc&) {
   throw ResourceExhausted("out of memory while building the graph of a cloud of " + std::to_string(input.size()) +
                           " points");
+}
+
+FlatTriangles PointCloudSurface::flat_triangles() const {
+  std::vector<Frame> frames;
+  frames.reserve(static_cast<std::size_t>(graph_->size()));
+  for (Index v = 0; v < graph_->size(); ++v) {
+    frames.push_back(*graph_->frame(v));
+    frames.back().origin = (1 / graph_->length_unit()) * frames.back().origin;
+  }
+  return flat_sheet(frames, sheet_triangles(frames, *triangles_), graph_->length_unit());
 }
 
 Surface::Reason PointCloudSurface::why_without_vertex(Row row) const {

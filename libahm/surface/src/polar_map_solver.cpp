@@ -1,6 +1,8 @@
 #include "ahm/surface/polar_map_solver.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -13,6 +15,16 @@ namespace {
 /// At 8 windows per vertex the median map of real meshes is right to 0.02 of the distance at the 95th percentile (docs/accuracy.md). The
 /// least number takes about 15 ms: up to some thousand vertices windows cover the surface.
 constexpr Offset windows_per_vertex = 8, least_windows = Offset{1} << 17;
+
+/// On the triangles of a noisy cloud the directions of windows and front have independent errors of about the same size. So each
+/// is expected to be off by the angle between them over the root of 2.
+void estimate_errors(const UnfoldingFront& front, std::vector<UnfoldingFront::Seed>& seeds) {
+  for (UnfoldingFront::Seed& seed : seeds) {
+    const Vec2 other = front.direction(seed.vertex);
+    const double apart = 2 * std::asin(std::min(1.0, std::hypot(seed.direction[0] - other[0], seed.direction[1] - other[1]) / 2));
+    if (std::isfinite(apart)) seed.error = apart / std::numbers::sqrt2;
+  }
+}
 
 }  // namespace
 
@@ -29,7 +41,7 @@ PolarMapSolver::PolarMapSolver(const Surface& surface, const PolarSolverOptions&
     : PolarMapSolver(surface.graph(), options) {
   surface_ = &surface;
   windows_ = options.windows.value_or(std::max(least_windows, windows_per_vertex * graph_->size()));
-  if (windows_ <= 0 || surface.faces().size() == 0) return;
+  if (windows_ <= 0) return;
   try {
     geodesics_.emplace(surface);
   } catch (const InvalidArgument&) {  // no flat triangles
@@ -53,7 +65,9 @@ LogMap PolarMapSolver::seeded_map(const Source& source, const PolarMapOptions& o
       // Where the front goes on it needs its focusing, and its orientation where that may differ.
       const double farthest = std::ranges::max_element(exact, {}, &UnfoldingFront::Seed::distance)->distance;
       const bool goes_on = exact.size() < static_cast<std::size_t>(graph_->size());
-      if (goes_on || graph_->transport_layout().may_reflect()) front.run(farthest, options.progress.stop);
+      const bool is_approximate = geodesics_->triangles().approximate;
+      if (goes_on || is_approximate || graph_->transport_layout().may_reflect()) front.run(farthest, options.progress.stop);
+      if (is_approximate) estimate_errors(front, exact);
       front.restart(exact);
     }
     front.run(options.radius, options.progress.stop);

@@ -166,7 +166,10 @@ void UnfoldingFront::restart(std::span<const Seed> seeds) {
   for (std::size_t k = 0; k < seeds.size(); ++k) {
     const Index vertex = seeds[k].vertex.index;
     offer(vertex, seeds[k].point, seeds[k].distance / graph_.length_unit(), 0, {},
-          {.direction = seeds[k].direction, .arrival = seeds[k].arrival, .mirrored = starts[k].mirrored},
+          {.direction = seeds[k].direction,
+           .arrival = seeds[k].arrival,
+           .variance = static_cast<float>(4 * seeds[k].error * seeds[k].error),
+           .mirrored = starts[k].mirrored},
           starts[k].focusing);
     entries_[first_[vertex]].gains = most_gains;  // nothing replaces it
   }

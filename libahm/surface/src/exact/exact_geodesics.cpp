@@ -34,10 +34,31 @@ Vec2 side_between(const exact::PolyhedralSurface& surface, const exact::MeshPoin
 }
 
 /// The angle in the frame of a vertex at which its path arrives.
-double arrival_angle(const exact::PolyhedralSurface& surface, const exact::Arrival& in) {
+double arrival_angle(const FlatTriangles& flat, const exact::Arrival& in) {
+  const exact::PolyhedralSurface& surface = flat.surface;
   const exact::HalfRecord& record = surface.record(in.half);
   const double back = exact::angle_at_vertex(surface, exact::previous(in.half), exact::in_previous(record, in.from));
-  return std::numbers::pi + back * surface.angle_scale(record.apex);
+  const double angle = std::numbers::pi + back * surface.angle_scale(record.apex);
+  if (flat.angles.empty()) return angle;
+  return flat.angles[record.apex] + (flat.mirrored[record.apex] ? -angle : angle);
+}
+
+/// Axes in the frame of a vertex, in the plane of its directions.
+Axes from_frame(const FlatTriangles& flat, Index vertex, const Axes& axes) {
+  if (flat.angles.empty()) return axes;
+  const double c = std::cos(flat.angles[vertex]), s = std::sin(flat.angles[vertex]),
+               side = flat.mirrored[vertex] ? -1 : 1;
+  return {c * axes[0] + s * axes[2], c * axes[1] + s * axes[3], side * (c * axes[2] - s * axes[0]),
+          side * (c * axes[3] - s * axes[1])};
+}
+
+/// The inverse of `from_frame`.
+Axes in_frame(const FlatTriangles& flat, Index vertex, const Axes& axes) {
+  if (flat.angles.empty()) return axes;
+  const double c = std::cos(flat.angles[vertex]), s = std::sin(flat.angles[vertex]),
+               side = flat.mirrored[vertex] ? -1 : 1;
+  return {c * axes[0] - s * side * axes[2], c * axes[1] - s * side * axes[3], s * axes[0] + c * side * axes[2],
+          s * axes[1] + c * side * axes[3]};
 }
 
 /// Coordinates in the axes of a source, of those in its face or about its vertex.
@@ -55,7 +76,8 @@ exact::MeshPoint ExactGeodesics::point(const SurfacePoint& point) const {
   if (const auto* row = std::get_if<Row>(&point)) return flat_.surface.vertex_point(surface_->vertex(*row));
   if (const auto* edge = std::get_if<EdgePoint>(&point)) return surface_->flat_point(*edge);
   if (const auto* inside = std::get_if<FacePoint>(&point)) return surface_->flat_point(*inside);
-  throw InvalidArgument("a point of a tangent plane lies in no triangle; name a row, an edge or a face");
+  const exact::TracedPath way = trace_to(surface_->source(point));
+  return way.points.back();
 }
 
 Vec3 ExactGeodesics::position(const exact::MeshPoint& point) const {
@@ -105,13 +127,35 @@ Axes ExactGeodesics::at_corner(exact::Half corner, double u) const {
   return axes_at(turned * surface.angle_scale(vertex) + (c.forward ? off : -off), !c.forward);
 }
 
+Axes ExactGeodesics::vertex_axes(const PlacedSource& placed) const {
+  const auto own = placed.source.axes();
+  return from_frame(flat_, placed.source.vertices()[0].index,
+                    own.empty() ? Axes{1, 0, 0, 1} : Axes{own[0], own[1], own[2], own[3]});
+}
+
+/// The straight line from the row of a source in a tangent plane to that source.
+exact::TracedPath ExactGeodesics::trace_to(const PlacedSource& placed) const {
+  const Axes a = vertex_axes(placed);
+  const std::span<const double> back = placed.source.offsets();
+  const Vec2 out{-(a[0] * back[0] + a[1] * back[1]), -(a[2] * back[0] + a[3] * back[1])};
+  return exact::trace(flat_.surface, flat_.surface.vertex_point(placed.source.vertices()[0]),
+                      std::atan2(out[1], out[0]), length(out) / flat_.length_unit);
+}
+
+/// The angle of the u axis of a source in a tangent plane, in the frame of side 0 of the face where that source lies.
+double ExactGeodesics::u_beyond_row(const PlacedSource& placed) const {
+  const std::span<const double> back = placed.source.offsets();
+  const Axes a = vertex_axes(placed);
+  const double side = a[0] * a[3] - a[1] * a[2] < 0 ? -1 : 1;
+  return trace_to(placed).direction - side * std::atan2(-back[1], -back[0]);
+}
+
 Axes ExactGeodesics::axes(const SurfacePoint& at, const PlacedSource& placed, const exact::MeshPoint& point) const {
   if (std::holds_alternative<Row>(at)) {
-    const auto own = placed.source.axes();
-    return own.empty() ? Axes{1, 0, 0, 1} : Axes{own[0], own[1], own[2], own[3]};
+    return vertex_axes(placed);
   }
   const exact::MeshPoint inside = exact::checked(flat_.surface, point, "source");
-  const double u = u_in_face(at, placed, inside.face);
+  const double u = std::holds_alternative<TangentPoint>(at) ? u_beyond_row(placed) : u_in_face(at, placed, inside.face);
   if (exact::vertex_of(flat_.surface, inside) < 0) return axes_at(u);
   const auto corner = std::max_element(inside.barycentric.begin(), inside.barycentric.end());
   return at_corner(static_cast<exact::Half>(3 * inside.face + (corner - inside.barycentric.begin())), u);
@@ -199,7 +243,7 @@ LogMap ExactGeodesics::log_map(Vertex source, const ExactMapOptions& options) co
 }
 
 ExactGeodesics::Placed ExactGeodesics::at_vertex(const FlatTriangles& flat, Vertex source) {
-  return {{flat.surface.vertex_point(source)}, {Axes{1, 0, 0, 1}}, {}, {Vec2{}}};
+  return {{flat.surface.vertex_point(source)}, {from_frame(flat, source.index, {1, 0, 0, 1})}, {}, {Vec2{}}};
 }
 
 std::vector<UnfoldingFront::Seed> ExactGeodesics::seeds(const SurfacePoint& source, const std::optional<Vec3>& u_axis,
@@ -219,7 +263,7 @@ std::vector<UnfoldingFront::Seed> ExactGeodesics::seeds(const Placed& from, cons
     const Vertex v(i);
     if (exact.status(v) != Status::ok) continue;
     const exact::Arrival& in = exact.arrival(v);
-    const double angle = options.frames && in.half >= 0 ? arrival_angle(flat_.surface, in) : NAN;
+    const double angle = options.frames && in.half >= 0 ? arrival_angle(flat_, in) : NAN;
     const double departure = exact.distance(v) > 0 ? exact.direction(v) : NAN;
     seeds.push_back({v,
                      flat_.length_unit * exact.distance(v),
@@ -270,8 +314,8 @@ LabelledLogMap ExactGeodesics::log_map(const Placed& from, Source source, const 
     Axes frame{1, 0, 0, 1};
     if (exact.status(v) == Status::ok)
       frame = exact.arrival(v).half >= 0
-                  ? axes_at(arrival_angle(flat_.surface, exact.arrival(v)) - std::atan2(phi[1], phi[0]))
-                  : a;
+                  ? axes_at(arrival_angle(flat_, exact.arrival(v)) - std::atan2(phi[1], phi[0]))
+                  : in_frame(flat_, i, a);
     extras.frames.insert(extras.frames.end(), frame.begin(), frame.end());
   }
   extras.spread = jumps(coordinates, labels, source.is_curve());

@@ -136,7 +136,7 @@ void PolyhedralSurface::check_lengths() const {
 }
 
 void PolyhedralSurface::set_fans(const HalfEdges& edges, std::span<const Half> corners) {
-  const Index vertices = std::ranges::max(edges.tail) + 1;
+  const Index vertices = std::max(std::ranges::max(edges.tail) + 1, static_cast<Index>(corners.size()));
   std::vector<Index> corners_at(vertices, 0);
   corner_.resize(corners_at.size());
   for (Half h = edges.size(); h-- > 0;) {
@@ -148,6 +148,10 @@ void PolyhedralSurface::set_fans(const HalfEdges& edges, std::span<const Half> c
   on_boundary_.resize(corner_.size());
   for (Index v = 0; v < vertices; ++v) {
     if (!corners.empty()) corner_[v].half = corners[v];
+    if (corner_[v].half < 0 && !corners.empty() && corners_at[v] == 0) {
+      on_boundary_[v] = 1;
+      continue;
+    }
     if (corner_[v].half < 0 || edges.tail[corner_[v].half] != v)
       throw InvalidGeometry("vertex " + std::to_string(v) + " has no face, or a corner of another vertex");
     corner_[v] = edges.rightmost(corner_[v]);
@@ -183,6 +187,9 @@ MeshPoint PolyhedralSurface::vertex_point(Vertex vertex) const {
     throw InvalidArgument("vertex " + std::to_string(vertex.index) + " is outside [0, " +
                           std::to_string(vertex_count()) + ")");
   const Half h = corner_[vertex.index].half;
+  if (h < 0)
+    throw InvalidGeometry("vertex_without_triangles", "vertex " + std::to_string(vertex.index) + " is in no triangle",
+                          "choose another one");
   MeshPoint point{h / 3, {0, 0, 0}};
   point.barycentric[h % 3] = 1;
   return point;

@@ -21,6 +21,8 @@
 
 namespace ahm::pointcloud {
 
+struct LocalTriangles;
+
 /// What the signs of given normals mean.
 enum class NormalSigns {
   /// The majority in each component fixes which side is up; others are turned. Neighbours that face away from each other are
@@ -123,6 +125,13 @@ class PointCloudSurface final : public Surface {
   std::vector<Warning> warnings() const override;
   const CloudDetails& details() const& noexcept { return details_; }
   void details() && = delete;
+  /// A manifold chosen from the local triangulations, made anew by each call: time O(n log n). Vertices that it does not use have no
+  /// exact map. @throws InvalidGeometry (no triangle is left)
+  FlatTriangles flat_triangles() const override;
+
+  ~PointCloudSurface() override;
+  PointCloudSurface(PointCloudSurface&&) noexcept;
+  PointCloudSurface& operator=(PointCloudSurface&&) noexcept;
 
  protected:
   Reason why_without_vertex(Row row) const override;
@@ -130,13 +139,14 @@ class PointCloudSurface final : public Surface {
 
  private:
   PointCloudSurface(CsrGraph graph, CloudDetails details, RowMap rows, std::span<const Vec3> points,
-                    std::optional<std::vector<Row>> kept);
+                    std::optional<std::vector<Row>> kept, std::unique_ptr<const LocalTriangles> triangles);
 
   std::unique_ptr<const CsrGraph> graph_;
   CloudDetails details_;
   RowMap rows_;
   std::vector<Vec3> positions_;
   std::optional<std::vector<Row>> kept_;
+  std::unique_ptr<const LocalTriangles> triangles_;  ///< what `flat_triangles` chooses from
 };
 
 }  // namespace ahm::pointcloud

@@ -77,6 +77,7 @@ class UnfoldingFront {
     Vec2 direction;   ///< as `direction`
     Vec2 arrival;     ///< as `arrival`; NaN: not known
     Index point = 0;  ///< number of the source point
+    double error = 0;  ///< expected, of the direction, radians
   };
   /// Discards what the front has found and starts again from the seeds, whose values stay as they are. A seed keeps the focusing that
   /// the front has found at its vertex, if any, so run the front over them first. Requires directions.
@@ -99,7 +100,7 @@ class UnfoldingFront {
   Vec2 direction(Vertex vertex) const;
   bool has_directions() const noexcept { return directions_; }
   /// Expected error of the direction, radians: half the root of the sum of squares by which the two estimates differed at each side
-  /// that the path crosses. 0 at a seed, NaN where the front did not come.
+  /// that the path crosses. That of the seed at a seed, NaN where the front did not come.
   double direction_error(Vertex vertex) const;
   /// The direction in which the path arrives at a vertex, in the vertex' frame, unit length; NaN at the source and where the front
   /// did not come. With `direction` it is the parallel transport along the path.

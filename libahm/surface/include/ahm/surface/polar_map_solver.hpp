@@ -25,12 +25,13 @@ struct PolarSolverOptions {
   unsigned threads = 0;  ///< for the one-rings; 0: one per core. No result depends on it
 };
 
-/// A surface prepared for polar maps: its one-rings and, where it has flat faces, its triangles. Immutable; all members may be
+/// A surface prepared for polar maps: its one-rings and, where it has any, its flat triangles. Immutable; all members may be
 /// called from many threads at once. Refers to the surface or graph, which has to stay where it is.
 ///
 /// Exact windows around the source (`ExactGeodesics`) compute distances and directions there. A front carries them on
-/// (`UnfoldingFront`). Without flat triangles (clouds, grids, faces without area), and where windows get lost in needles, the
-/// front starts at the source; `LogMap::error_estimate` is larger then.
+/// (`UnfoldingFront`). Without flat triangles (grids, faces without area), and where windows get lost in needles, the
+/// front starts at the source; `LogMap::error_estimate` is larger then. On clouds windows cross triangles that are chosen from the
+/// local triangulations; the error estimate there is that of the difference to a front from the source.
 class PolarMapSolver {
  public:
   /// @throws ResourceExhausted

@@ -87,8 +87,8 @@ class Surface {
   /// or so near to the normal, `normal_error`, that the normal's error decides where it points: fault "axis_along_normal")
   PlacedSource source(const SurfacePoint& point, const std::optional<Vec3>& u_axis = {}) const;
 
-  /// The faces as flat triangles, for exact geodesics (`ExactGeodesics`).
-  /// @throws InvalidArgument (fault "no_flat_triangles": a surface without flat faces), InvalidGeometry (a face of no area)
+  /// The surface as flat triangles, for exact geodesics (`ExactGeodesics`): its faces, or of a cloud a manifold triangulation.
+  /// @throws InvalidArgument (fault "no_flat_triangles": a surface without any), InvalidGeometry (a face of no area)
   virtual FlatTriangles flat_triangles() const;
   /// Where a point lies in these. @throws InvalidArgument (as `source`; as `flat_triangles`)
   exact::MeshPoint flat_point(const FacePoint& point) const;

@@ -114,7 +114,7 @@ class ExactGeodesics {
   exact::TracedPath trace(const SurfacePoint& from, const Vec3& direction, double length) const;
 
   /// A point of the surface as one of the triangles.
-  /// @throws InvalidArgument (a point that the surface does not have; a `TangentPoint`)
+  /// @throws InvalidArgument (a point that the surface does not have)
   exact::MeshPoint point(const SurfacePoint& point) const;
   /// Where a point of the triangles lies, world units. @throws InvalidArgument (no positions)
   Vec3 position(const exact::MeshPoint& point) const;
@@ -137,6 +137,9 @@ class ExactGeodesics {
   static Source joined(std::span<const ExactSource> given, const Placed& placed);
   std::vector<double> jumps(std::span<const double> coordinates, std::span<const Index> labels, bool of_curve) const;
   Axes axes(const SurfacePoint& at, const PlacedSource& placed, const exact::MeshPoint& point) const;
+  Axes vertex_axes(const PlacedSource& placed) const;
+  exact::TracedPath trace_to(const PlacedSource& placed) const;
+  double u_beyond_row(const PlacedSource& placed) const;
   double u_in_face(const SurfacePoint& at, const PlacedSource& placed, Index face) const;
   Axes at_corner(exact::Half corner, double u) const;
 

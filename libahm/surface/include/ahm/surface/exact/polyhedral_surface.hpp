@@ -50,7 +50,8 @@ class PolyhedralSurface {
  public:
   /// @param edges    of triangles
   /// @param sides    one per face; both faces of an edge give it the same length to 1e-9
-  /// @param corners  one half-edge that starts at each vertex, which is oriented like its face; empty: the lowest
+  /// @param corners  one half-edge that starts at each vertex, which is oriented like its face, -1 for a vertex without faces;
+  ///                 empty: the lowest
   /// @throws InvalidGeometry naming the face or half-edge: a side that is not finite or zero, a triangle flatter than
   ///         1e-13 of its longest side, sides that do not close, lengths that differ, twins that are not mutual or join
   ///         other vertices, a vertex with several fans or none
@@ -102,7 +103,7 @@ class PolyhedralSurface {
   /// The angle at a vertex from its first corner's right side to the right side of this corner.
   double turned(Corner corner) const;
 
-  /// @throws InvalidArgument (out of range)
+  /// @throws InvalidArgument (out of range), InvalidGeometry (fault "vertex_without_triangles")
   MeshPoint vertex_point(Vertex vertex) const;
   /// The point's place in the frame of side 0 of its face.
   Vec2 place(const MeshPoint& point) const;

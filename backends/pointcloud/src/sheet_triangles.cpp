@@ -1,0 +1,278 @@
+#include "sheet_triangles.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <optional>
+
+#include "ahm/util/vec.hpp"
+
+namespace ahm::pointcloud {
+namespace {
+
+using std::numbers::pi;
+
+/// Holes with more edges stay open: gaps in the sampling have longer boundaries.
+constexpr std::size_t most_hole_edges = 12;
+/// A triangle flatter than this multiple of its longest side has no reliable angles.
+constexpr double least_height = 1e-6;
+/// Dropping a fan may open a hole; real shapes change no more after the second round.
+constexpr int fill_rounds = 3;
+
+/// The corner of a triangle at a vertex, in the tangent plane of the vertex: counter-clockwise from `right` to `left`.
+struct Wedge {
+  Index triangle;
+  Index right, left;
+  double begin, extent;
+};
+
+double counter_clockwise(double from, double to) {
+  const double turn = to - from;
+  return turn < 0 ? turn + 2 * pi : turn;
+}
+
+bool overlap(const Wedge& a, const Wedge& b) {
+  return counter_clockwise(a.begin, b.begin) < a.extent || counter_clockwise(b.begin, a.begin) < b.extent;
+}
+
+/// Triangles whose wedges at each vertex do not overlap. Then no edge has more than two triangles.
+class Sheet {
+ public:
+  explicit Sheet(std::span<const Frame> frames) : frames_(frames), wedges_(frames.size()) {}
+
+  /// Adds a triangle, if it overlaps no other.
+  bool add(const Triangle& t) {
+    if (!has_one_side(t)) return false;
+    std::array<Wedge, 3> corners;
+    for (int c = 0; c < 3; ++c) {
+      const auto wedge = wedge_of(t[c], t[(c + 1) % 3], t[(c + 2) % 3]);
+      if (!wedge || std::ranges::any_of(wedges_[t[c]], [&](const Wedge& w) { return overlap(w, *wedge); })) return false;
+      corners[c] = *wedge;
+    }
+    for (int c = 0; c < 3; ++c) {
+      auto& at = wedges_[t[c]];
+      at.insert(std::ranges::upper_bound(at, corners[c].begin, {}, &Wedge::begin), corners[c]);
+    }
+    triangles_.push_back(t);
+    dropped_.push_back(0);
+    return true;
+  }
+
+  /// Triangulates the holes with few edges, ear by ear.
+  void fill_holes() {
+    for (Index v = 0; v < vertex_count(); ++v) {
+      std::vector<Index> starts;
+      for (std::size_t k = 0; k < wedges_[v].size(); ++k)
+        if (wedges_[v][k].left != following(v, k).right) starts.push_back(wedges_[v][k].left);
+      for (const Index first : starts)
+        if (has_gap_beyond(v, first)) fill(hole(v, first));
+    }
+  }
+
+  /// Keeps at each vertex the widest fan.
+  void drop_small_fans() {
+    std::vector<Index> queue(wedges_.size());
+    std::iota(queue.rbegin(), queue.rend(), 0);
+    while (!queue.empty()) {
+      const Index v = queue.back();
+      queue.pop_back();
+      for (const Index triangle : beside_widest_fan(v)) {
+        drop(triangle);
+        for (const Index corner : triangles_[triangle])
+          if (corner != v) queue.push_back(corner);
+      }
+    }
+  }
+
+  /// Splits a triangle in which a vertex without triangles lies.
+  /// @param near  vertices to look at
+  void insert(Index v, std::span<const Index> near) {
+    std::vector<Index> around;
+    for (const Index n : near)
+      for (const Wedge& w : wedges_[n])
+        if (is_inside(v, triangles_[w.triangle])) around.push_back(w.triangle);
+    std::ranges::sort(around);
+    around.erase(std::unique(around.begin(), around.end()), around.end());
+    for (const Index outer : around) {
+      const Triangle t = triangles_[outer];
+      drop(outer);
+      int added = 0;
+      while (added < 3 && add({t[added], t[(added + 1) % 3], v})) ++added;
+      if (added == 3) return;
+      for (; added > 0; --added) drop(static_cast<Index>(triangles_.size()) - added);
+      add(t);
+    }
+  }
+
+  bool is_covered(Index v) const { return !wedges_[v].empty(); }
+  Index vertex_count() const { return static_cast<Index>(wedges_.size()); }
+
+  std::vector<Triangle> triangles() const {
+    std::vector<Triangle> result;
+    for (std::size_t t = 0; t < triangles_.size(); ++t)
+      if (!dropped_[t]) result.push_back(triangles_[t]);
+    return result;
+  }
+
+ private:
+  /// Whether the corners agree, by their normals, on the side of the triangle that is up.
+  bool has_one_side(const Triangle& t) const {
+    const Vec3 a = frames_[t[1]].origin - frames_[t[0]].origin, b = frames_[t[2]].origin - frames_[t[0]].origin, normal = cross(a, b);
+    const double longest = std::max({norm(a), norm(b), norm(b - a)});
+    if (!(norm(normal) > least_height * longest * longest)) return false;
+    const bool up = dot(normal, frames_[t[0]].normal) > 0;
+    for (int c = 1; c < 3; ++c) {
+      const bool agrees = dot(frames_[t[0]].normal, frames_[t[c]].normal) > 0;
+      if ((dot(normal, frames_[t[c]].normal) > 0) != (up == agrees)) return false;
+    }
+    return true;
+  }
+
+  double angle(Index from, Index to) const {
+    const Frame& frame = frames_[from];
+    const Vec3 offset = frames_[to].origin - frame.origin;
+    return std::atan2(dot(frame.y, offset), dot(frame.x, offset));
+  }
+
+  std::optional<Wedge> wedge_of(Index v, Index a, Index b) const {
+    const double at_a = angle(v, a), at_b = angle(v, b), turn = counter_clockwise(at_a, at_b),
+                 back = counter_clockwise(at_b, at_a);
+    const auto triangle = static_cast<Index>(triangles_.size());
+    const Wedge wedge = turn < pi ? Wedge{triangle, a, b, at_a, turn} : Wedge{triangle, b, a, at_b, back};
+    return wedge.extent > least_height && wedge.extent < pi ? std::optional(wedge) : std::nullopt;
+  }
+
+  const Wedge& following(Index v, std::size_t k) const { return wedges_[v][(k + 1) % wedges_[v].size()]; }
+
+  bool has_gap_beyond(Index v, Index first) const {
+    for (std::size_t k = 0; k < wedges_[v].size(); ++k)
+      if (wedges_[v][k].left == first) return following(v, k).right != first;
+    return false;
+  }
+
+  /// The neighbor at the other end of the gap that begins at a boundary edge; -1: no boundary edge.
+  Index across_gap(Index v, Index neighbor) const {
+    const auto& at = wedges_[v];
+    for (std::size_t k = 0; k < at.size(); ++k) {
+      if (at[k].left == neighbor && following(v, k).right != neighbor) return following(v, k).right;
+      if (at[k].right != neighbor) continue;
+      const Wedge& before = at[(k + at.size() - 1) % at.size()];
+      if (before.left != neighbor) return before.left;
+    }
+    return -1;
+  }
+
+  /// The vertices around a hole, from its lowest on; empty where it is too long, touches itself or starts at another vertex.
+  std::vector<Index> hole(Index start, Index first) const {
+    std::vector<Index> loop{start};
+    const Index last = across_gap(start, first);
+    for (Index before = start, at = first;;) {
+      if (at <= start || loop.size() == most_hole_edges || std::ranges::find(loop, at) != loop.end()) return {};
+      loop.push_back(at);
+      const Index next = across_gap(at, before);
+      if (next < 0) return {};
+      if (next == start) return at == last ? loop : std::vector<Index>();
+      before = at;
+      at = next;
+    }
+  }
+
+  void fill(std::vector<Index> loop) {
+    while (loop.size() >= 3) {
+      const std::size_t m = loop.size();
+      std::vector<std::size_t> ears(m);
+      std::iota(ears.begin(), ears.end(), 0);
+      const auto chord = [&](std::size_t k) { return distance(frames_[loop[(k + m - 1) % m]].origin, frames_[loop[(k + 1) % m]].origin); };
+      std::ranges::stable_sort(ears, {}, chord);
+      const auto ear = std::ranges::find_if(
+          ears, [&](std::size_t k) { return add({loop[(k + m - 1) % m], loop[k], loop[(k + 1) % m]}); });
+      if (ear == ears.end() || m == 3) return;
+      loop.erase(loop.begin() + static_cast<std::ptrdiff_t>(*ear));
+    }
+  }
+
+  std::vector<Index> beside_widest_fan(Index v) const {
+    const auto& at = wedges_[v];
+    std::size_t start = 0;
+    while (start < at.size() && at[(start + at.size() - 1) % at.size()].left == at[start].right) ++start;
+    if (start == at.size()) return {};  // closed, or none
+    std::vector<Index> fan, widest, others;
+    double width = 0, most = 0;
+    for (std::size_t k = 0; k < at.size(); ++k) {
+      const Wedge& w = at[(start + k) % at.size()];
+      fan.push_back(w.triangle);
+      width += w.extent;
+      if (following(v, (start + k) % at.size()).right == w.left) continue;
+      if (width > most) {
+        std::swap(fan, widest);
+        most = width;
+      }
+      others.insert(others.end(), fan.begin(), fan.end());
+      fan.clear();
+      width = 0;
+    }
+    return others;
+  }
+
+  void drop(Index triangle) {
+    dropped_[triangle] = 1;
+    for (const Index corner : triangles_[triangle])
+      std::erase_if(wedges_[corner], [&](const Wedge& w) { return w.triangle == triangle; });
+  }
+
+  /// Whether a vertex lies in a triangle in its own tangent plane, and the triangle does not stand on it.
+  bool is_inside(Index v, const Triangle& t) const {
+    const Vec3& n = frames_[v].normal;
+    const Vec3 a = frames_[t[0]].origin - frames_[v].origin, b = frames_[t[1]].origin - frames_[v].origin, c = frames_[t[2]].origin - frames_[v].origin;
+    const double ab = dot(n, cross(a, b)), bc = dot(n, cross(b, c)), ca = dot(n, cross(c, a));
+    return (ab > 0 && bc > 0 && ca > 0) || (ab < 0 && bc < 0 && ca < 0);
+  }
+
+  std::span<const Frame> frames_;
+  std::vector<std::vector<Wedge>> wedges_;  ///< of each vertex, ascending angles
+  std::vector<Triangle> triangles_;
+  std::vector<char> dropped_;
+};
+
+/// Numbers of triangles, those with more votes first, then smaller ones.
+std::vector<std::size_t> by_votes(std::span<const Frame> frames, const LocalTriangles& candidates) {
+  const std::vector<Triangle>& all = candidates.triangles;
+  std::vector<double> longest(all.size());
+  for (std::size_t t = 0; t < all.size(); ++t)
+    for (int c = 0; c < 3; ++c)
+      longest[t] = std::max(longest[t], distance(frames[all[t][c]].origin, frames[all[t][(c + 1) % 3]].origin));
+  std::vector<std::size_t> order(all.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::ranges::sort(order, [&](std::size_t a, std::size_t b) {
+    if (candidates.votes[a] != candidates.votes[b]) return candidates.votes[a] > candidates.votes[b];
+    return longest[a] != longest[b] ? longest[a] < longest[b] : a < b;
+  });
+  return order;
+}
+
+/// Puts vertices that no triangle uses into the triangles they lie in.
+void insert_uncovered(const LocalTriangles& candidates, Sheet& sheet) {
+  std::vector<std::vector<Index>> near(static_cast<std::size_t>(sheet.vertex_count()));
+  for (const Triangle& t : candidates.triangles)
+    for (const Index v : t)
+      if (!sheet.is_covered(v)) near[v].insert(near[v].end(), t.begin(), t.end());
+  for (Index v = 0; v < sheet.vertex_count(); ++v)
+    if (!near[v].empty()) sheet.insert(v, near[v]);
+}
+
+}  // namespace
+
+std::vector<Triangle> sheet_triangles(std::span<const Frame> frames, const LocalTriangles& candidates) {
+  Sheet sheet(frames);
+  for (const std::size_t t : by_votes(frames, candidates)) sheet.add(candidates.triangles[t]);
+  for (int round = 0; round < fill_rounds; ++round) {
+    sheet.fill_holes();
+    insert_uncovered(candidates, sheet);
+    sheet.drop_small_fans();
+  }
+  return sheet.triangles();
+}
+
+}  // namespace ahm::pointcloud
