@@ -16,6 +16,7 @@
 #include "ahm/maps/quality.hpp"
 #include "ahm/pointcloud/point_cloud_surface.hpp"
 #include "ahm/polymesh/polygon_mesh_surface.hpp"
+#include "ahm/surface/exact/exact_geodesics.hpp"
 #include "ahm/surface/exact/exact_map.hpp"
 #include "ahm/surface/exact/flat_triangles.hpp"
 #include "ahm/surface/polar_map_solver.hpp"
@@ -40,21 +41,22 @@ struct Found {
   std::vector<double> quality;
 };
 
-/// Where exact maps run, and which of its vertices are compared.
+/// Where exact maps run.
 struct Ground {
   std::string name;
   const exact::PolyhedralSurface& polyhedral;
   double unit;       ///< of its lengths
   double mean_edge;  ///< world units
-  std::vector<Vertex> vertices;
 };
 
-/// A discretization of the same surface, and which of its rows is the k-th vertex that is compared.
+/// A discretization of the same surface: the points of the ground that are compared, and which of its rows is the k-th.
 struct View {
   std::string name;
   const ahm::Surface& surface;
+  const std::vector<exact::MeshPoint>& points;
   std::function<Row(Index k)> row;
 
+  Index size() const { return static_cast<Index>(points.size()); }
   Vertex vertex(Index k) const { return surface.vertex(row(k)); }
 };
 
@@ -62,17 +64,18 @@ struct View {
 Found compare(const Ground& ground, const exact::ExactMap& truth, const View& view, const LogMap& map) {
   const std::vector<double> quality = map_quality(view.surface.graph(), map);
   double farthest = 0;
-  for (const Vertex v : ground.vertices)
-    if (truth.status(v) == Status::ok) farthest = std::max(farthest, ground.unit * truth.distance(v));
+  for (std::size_t k = 0; k < truth.targets(); ++k)
+    if (truth.target_status(k) == Status::ok) farthest = std::max(farthest, ground.unit * truth.target_distance(k));
   const double near = std::max(2 * ground.mean_edge, 0.03 * farthest);
   std::vector<Complex> exact, ours;
   std::vector<double> away;
   Found found;
-  for (Index k = 0; k < std::ssize(ground.vertices); ++k) {
-    const Vertex own = ground.vertices[k], v = view.vertex(k);
-    const double d = ground.unit * truth.distance(own);
+  for (Index k = 0; k < view.size(); ++k) {
+    const Vertex v = view.vertex(k);
+    const double d = ground.unit * truth.target_distance(k);
     if (map.status(v) != Status::ok || !(d > near)) continue;
-    exact.emplace_back(ground.unit * truth.coordinates(own)[0], ground.unit * truth.coordinates(own)[1]);
+    const Vec2 vector = truth.target_coordinates(k);
+    exact.emplace_back(ground.unit * vector[0], ground.unit * vector[1]);
     ours.emplace_back(map.coordinates(v)[0], map.coordinates(v)[1]);
     away.push_back(d);
     found.distance_error.push_back(std::abs(map.distance(v) - d) / d);
@@ -135,14 +138,13 @@ void append(Found& all, const Found& one) {
 void measure(const Ground& ground, const View& view, Table& table) {
   const PolarMapSolver polar(view.surface);
   const LogMapSolver heat(view.surface.graph());
-  const auto size = static_cast<Index>(ground.vertices.size());
+  const Index size = view.size();
   for (const Method method : {Method::polar, Method::heat}) {
     Found all;
     double worst = 1, time = 0;
     for (int s = 0; s < source_count; ++s) {
       const Index source = size / 11 + s * (size / source_count);
-      const exact::ExactMap truth =
-          exact::exact_map(ground.polyhedral, ground.polyhedral.vertex_point(ground.vertices[source]));
+      const exact::ExactMap truth = exact::exact_map(ground.polyhedral, view.points[source], {.targets = view.points});
       std::optional<LogMap> map;
       time += seconds([&] {
         map = method == Method::polar ? polar.log_map(view.row(source))
@@ -162,25 +164,37 @@ void measure(const Ground& ground, const View& view, Table& table) {
   }
 }
 
-/// The vertices as points where none is dropped or joined to another.
-void measure_points(const Ground& ground, std::string name, std::span<const Vec3> points, Table& table) {
+/// Points as a cloud where none is dropped or joined to another.
+void measure_points(const Ground& ground, std::string name, std::span<const Vec3> points,
+                    const std::vector<exact::MeshPoint>& on_ground, Table& table) {
   const auto cloud = pointcloud::PointCloudSurface::build(points);
   if (cloud.graph().size() != std::ssize(points)) return;
-  measure(ground, {std::move(name), cloud, [](Index k) { return Row(k); }}, table);
+  measure(ground, {std::move(name), cloud, on_ground, [](Index k) { return Row(k); }}, table);
 }
 
-void measure(const Surface& surface, Table& table) {
-  const exact::PolyhedralSurface polyhedral = surface.polyhedron();
-  Ground ground{surface.name(), polyhedral, surface.graph().length_unit(), surface.mean_edge(), {}};
-  for (Index i = 0; i < surface.size(); ++i) ground.vertices.emplace_back(i);
-  measure(ground, {"triangles", surface.mesh(), [&](Index k) { return *surface.mesh().rows().row(Vertex(k)); }}, table);
-  measure_points(ground, "points", surface.points(), table);
+/// Noise moves points along the surface, too: what is true of them is so of the nearest point of the mesh.
+void measure_noisy_points(const Ground& ground, const Surface& surface, Table& table) {
   std::mt19937_64 random(7);
   std::normal_distribution<double> off(0, noise * surface.mean_edge());
   std::vector<Vec3> noisy(surface.points().begin(), surface.points().end());
   for (Vec3& p : noisy)
     for (double& x : p) x += off(random);
-  measure_points(ground, fmt::format("points, noise {}", noise), noisy, table);
+  const ExactGeodesics geodesics(surface.mesh());
+  std::vector<exact::MeshPoint> nearest;
+  for (const Vec3& p : noisy) nearest.push_back(geodesics.point(surface.mesh().closest_point(p).point));
+  measure_points(ground, fmt::format("points, noise {}", noise), noisy, nearest, table);
+}
+
+void measure(const Surface& surface, Table& table) {
+  const exact::PolyhedralSurface polyhedral = surface.polyhedron();
+  const Ground ground{surface.name(), polyhedral, surface.graph().length_unit(), surface.mean_edge()};
+  std::vector<exact::MeshPoint> vertices;
+  for (Index i = 0; i < surface.size(); ++i) vertices.push_back(polyhedral.vertex_point(Vertex(i)));
+  measure(ground,
+          {"triangles", surface.mesh(), vertices, [&](Index k) { return *surface.mesh().rows().row(Vertex(k)); }},
+          table);
+  measure_points(ground, "points", surface.points(), vertices, table);
+  measure_noisy_points(ground, surface, table);
 }
 
 /// Refined, and as polygons. Exact maps run over the triangles of the refinement.
@@ -192,19 +206,17 @@ void measure(const NamedPolygons& mesh, Table& table) {
   };
   const auto refined = build(Discretization::refined), polygons = build(Discretization::polygons);
   const FlatTriangles flat = refined.flat_triangles();
-  Ground ground{mesh.name,
-                flat.surface,
-                flat.length_unit,
-                refined.graph().mean_edge_length() * refined.graph().length_unit(),
-                {}};
+  const Ground ground{mesh.name, flat.surface, flat.length_unit,
+                      refined.graph().mean_edge_length() * refined.graph().length_unit()};
   std::vector<Row> rows;
+  std::vector<exact::MeshPoint> vertices;
   for (Index r = 0; r < mesh.vertices(); ++r)
     if (const auto vertex = refined.rows().vertex(Row(r)); vertex && polygons.rows().vertex(Row(r))) {
       rows.emplace_back(r);
-      ground.vertices.push_back(*vertex);
+      vertices.push_back(flat.surface.vertex_point(*vertex));
     }
   for (const auto& [name, surface] : {std::pair{"refined", &refined}, std::pair{"polygons", &polygons}})
-    measure(ground, {name, *surface, [&](Index k) { return rows[k]; }}, table);
+    measure(ground, {name, *surface, vertices, [&](Index k) { return rows[k]; }}, table);
 }
 
 }  // namespace

@@ -198,7 +198,8 @@ PointCloudSurface::PointCloudSurface(PointCloudSurface&&) noexcept = default;
 PointCloudSurface& PointCloudSurface::operator=(PointCloudSurface&&) noexcept = default;
 
 PointCloudSurface::PointCloudSurface(CsrGraph graph, CloudDetails details, RowMap rows, std::span<const Vec3> points,
-                                     std::optional<std::vector<Row>> kept, std::unique_ptr<const LocalTriangles> triangles)
+                                     std::optional<std::vector<Row>> kept,
+                                     std::unique_ptr<const LocalTriangles> triangles)
     : graph_(std::make_unique<const CsrGraph>(std::move(graph))),
       details_(std::move(details)),
       rows_(std::move(rows)),

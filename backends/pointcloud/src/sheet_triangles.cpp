@@ -48,7 +48,8 @@ class Sheet {
     std::array<Wedge, 3> corners;
     for (int c = 0; c < 3; ++c) {
       const auto wedge = wedge_of(t[c], t[(c + 1) % 3], t[(c + 2) % 3]);
-      if (!wedge || std::ranges::any_of(wedges_[t[c]], [&](const Wedge& w) { return overlap(w, *wedge); })) return false;
+      if (!wedge || std::ranges::any_of(wedges_[t[c]], [&](const Wedge& w) { return overlap(w, *wedge); }))
+        return false;
       corners[c] = *wedge;
     }
     for (int c = 0; c < 3; ++c) {
@@ -119,7 +120,8 @@ class Sheet {
  private:
   /// Whether the corners agree, by their normals, on the side of the triangle that is up.
   bool has_one_side(const Triangle& t) const {
-    const Vec3 a = frames_[t[1]].origin - frames_[t[0]].origin, b = frames_[t[2]].origin - frames_[t[0]].origin, normal = cross(a, b);
+    const Vec3 a = frames_[t[1]].origin - frames_[t[0]].origin, b = frames_[t[2]].origin - frames_[t[0]].origin,
+               normal = cross(a, b);
     const double longest = std::max({norm(a), norm(b), norm(b - a)});
     if (!(norm(normal) > least_height * longest * longest)) return false;
     const bool up = dot(normal, frames_[t[0]].normal) > 0;
@@ -184,10 +186,13 @@ class Sheet {
       const std::size_t m = loop.size();
       std::vector<std::size_t> ears(m);
       std::iota(ears.begin(), ears.end(), 0);
-      const auto chord = [&](std::size_t k) { return distance(frames_[loop[(k + m - 1) % m]].origin, frames_[loop[(k + 1) % m]].origin); };
+      const auto chord = [&](std::size_t k) {
+        return distance(frames_[loop[(k + m - 1) % m]].origin, frames_[loop[(k + 1) % m]].origin);
+      };
       std::ranges::stable_sort(ears, {}, chord);
-      const auto ear = std::ranges::find_if(
-          ears, [&](std::size_t k) { return add({loop[(k + m - 1) % m], loop[k], loop[(k + 1) % m]}); });
+      const auto ear = std::ranges::find_if(ears, [&](std::size_t k) {
+        return add({loop[(k + m - 1) % m], loop[k], loop[(k + 1) % m]});
+      });
       if (ear == ears.end() || m == 3) return;
       loop.erase(loop.begin() + static_cast<std::ptrdiff_t>(*ear));
     }
@@ -225,7 +230,8 @@ class Sheet {
   /// Whether a vertex lies in a triangle in its own tangent plane, and the triangle does not stand on it.
   bool is_inside(Index v, const Triangle& t) const {
     const Vec3& n = frames_[v].normal;
-    const Vec3 a = frames_[t[0]].origin - frames_[v].origin, b = frames_[t[1]].origin - frames_[v].origin, c = frames_[t[2]].origin - frames_[v].origin;
+    const Vec3 a = frames_[t[0]].origin - frames_[v].origin, b = frames_[t[1]].origin - frames_[v].origin,
+               c = frames_[t[2]].origin - frames_[v].origin;
     const double ab = dot(n, cross(a, b)), bc = dot(n, cross(b, c)), ca = dot(n, cross(c, a));
     return (ab > 0 && bc > 0 && ca > 0) || (ab < 0 && bc < 0 && ca < 0);
   }

@@ -16,7 +16,7 @@ namespace {
 /// From a vertex in the axes of its frame. What leads out of the surface at once goes along the boundary as far as it does.
 Vec3 end_of_trace(const ExactGeodesics& geodesics, const Center& center) {
   constexpr double pi = std::numbers::pi;
-  const auto& [surface, positions, unit] = geodesics.triangles();
+  const exact::PolyhedralSurface& surface = geodesics.triangles().surface;
   double direction = std::atan2(center.offset[1], center.offset[0]), far = length(center.offset);
   if (direction < 0) direction += 2 * pi;
   if (const double sum = surface.angle_sum(center.vertex.index);
@@ -25,7 +25,8 @@ Vec3 end_of_trace(const ExactGeodesics& geodesics, const Center& center) {
     far *= std::max(0.0, std::cos(std::min(left, right)));
     direction = left < right ? sum : 0;
   }
-  const exact::TracedPath way = exact::trace(surface, surface.vertex_point(center.vertex), direction, far / unit);
+  const exact::TracedPath way =
+      exact::trace(surface, surface.vertex_point(center.vertex), direction, far / geodesics.triangles().length_unit);
   return geodesics.position(way.points.back());
 }
 

@@ -8,6 +8,7 @@
 
 #include "ahm/error.hpp"
 #include "ahm/util/memory.hpp"
+#include "flat_graph.hpp"
 
 namespace ahm {
 namespace {
@@ -16,14 +17,24 @@ namespace {
 /// least number takes about 15 ms: up to some thousand vertices windows cover the surface.
 constexpr Offset windows_per_vertex = 8, least_windows = Offset{1} << 17;
 
-/// On the triangles of a noisy cloud the directions of windows and front have independent errors of about the same size. So each
-/// is expected to be off by the angle between them over the root of 2.
-void estimate_errors(const UnfoldingFront& front, std::vector<UnfoldingFront::Seed>& seeds) {
-  for (UnfoldingFront::Seed& seed : seeds) {
-    const Vec2 other = front.direction(seed.vertex);
-    const double apart = 2 * std::asin(std::min(1.0, std::hypot(seed.direction[0] - other[0], seed.direction[1] - other[1]) / 2));
-    if (std::isfinite(apart)) seed.error = apart / std::numbers::sqrt2;
+/// What a front over the triangles of a sheet has found, for a front over the graph. The triangles are as noisy as the points, so
+/// that nothing there is exact. Expected errors are those of another front, which started at the source without windows, and the
+/// difference to it over the root of 2, as of two estimates that are equally good.
+std::vector<UnfoldingFront::Seed> found_by(const UnfoldingFront& front, const UnfoldingFront& other, bool frames) {
+  std::vector<UnfoldingFront::Seed> seeds;
+  for (Index i = 0; i < front.graph().size(); ++i) {
+    const Vertex v(i);
+    const double distance = front.distance(v);
+    if (!std::isfinite(distance)) continue;
+    const Vec2 direction = front.direction(v), other_direction = other.direction(v);
+    const double share = other.distance(v) / distance;
+    const double apart =
+        std::hypot(direction[0] - share * other_direction[0], direction[1] - share * other_direction[1]);
+    const double error = std::hypot(apart / std::numbers::sqrt2, other.direction_error(v));
+    seeds.push_back({v, distance, direction, frames ? front.arrival(v) : Vec2{NAN, NAN}, front.nearest(v),
+                     std::isfinite(error) ? error : 0});
   }
+  return seeds;
 }
 
 }  // namespace
@@ -44,6 +55,9 @@ PolarMapSolver::PolarMapSolver(const Surface& surface, const PolarSolverOptions&
   if (windows_ <= 0) return;
   try {
     geodesics_.emplace(surface);
+    if (!geodesics_->triangles().approximate) return;
+    sheet_ = std::make_unique<const CsrGraph>(detail::flat_graph(geodesics_->triangles()));
+    sheet_stars_ = UnfoldingFront::stars(*sheet_, options.threads, false);
   } catch (const InvalidArgument&) {  // no flat triangles
   } catch (const InvalidGeometry&) {  // a face without area
   }
@@ -61,16 +75,24 @@ LogMap PolarMapSolver::seeded_map(const Source& source, const PolarMapOptions& o
           .radius = options.radius, .most_windows = windows_, .frames = options.frames, .progress = options.progress});
     } catch (const InvalidGeometry&) {  // windows got lost in needles: from the source, then
     }
-    if (!exact.empty()) {
-      // Where the front goes on it needs its focusing, and its orientation where that may differ.
-      const double farthest = std::ranges::max_element(exact, {}, &UnfoldingFront::Seed::distance)->distance;
-      const bool goes_on = exact.size() < static_cast<std::size_t>(graph_->size());
-      const bool is_approximate = geodesics_->triangles().approximate;
-      if (goes_on || is_approximate || graph_->transport_layout().may_reflect()) front.run(farthest, options.progress.stop);
-      if (is_approximate) estimate_errors(front, exact);
-      front.restart(exact);
+    const auto run_from = [&](UnfoldingFront& over) {
+      if (!exact.empty()) {
+        // Where the front goes on it needs its focusing, and its orientation where that may differ.
+        const double farthest = std::ranges::max_element(exact, {}, &UnfoldingFront::Seed::distance)->distance;
+        const bool goes_on = exact.size() < static_cast<std::size_t>(graph_->size());
+        if (goes_on || over.graph().transport_layout().may_reflect()) over.run(farthest, options.progress.stop);
+        over.restart(exact);
+      }
+      over.run(options.radius, options.progress.stop);
+    };
+    if (sheet_ && !exact.empty()) {
+      front.run(options.radius, options.progress.stop);
+      UnfoldingFront over(*sheet_, sheet_stars_, true);
+      over.add(source);
+      run_from(over);
+      exact = found_by(over, front, options.frames);
     }
-    front.run(options.radius, options.progress.stop);
+    run_from(front);
     return polar_map(front, source, options);
   });
 }

@@ -118,8 +118,8 @@ double area(const FlatTriangles& flat) {
 }
 
 TEST(Sheet, HasAtMostTwoTrianglesAtAnEdgeAndOneFanAtAVertex) {
-  for (const auto& points : {random_sphere(2000).points, noisy_sphere(2000), random_torus(2000, 1), moebius_cloud(900).points,
-                             flat_cloud(1000).points, rolled_cloud(20, 0.3).points}) {
+  for (const auto& points : {random_sphere(2000).points, noisy_sphere(2000), random_torus(2000, 1),
+                             moebius_cloud(900).points, flat_cloud(1000).points, rolled_cloud(20, 0.3).points}) {
     const auto cloud = PointCloudSurface::build(points);
     const FlatTriangles flat = cloud.flat_triangles();
     EXPECT_LE(count(flat).most, 2);
@@ -213,7 +213,8 @@ TEST(Sheet, KeepsTheFramesOfTheGraphWhereTheSurfaceIsOneSided) {
       if (map.status(w) != Status::ok) continue;
       const double unit = cloud.graph().length_unit();
       const Vec2 found{map.coordinates(w)[0] / unit, map.coordinates(w)[1] / unit};
-      EXPECT_LT(std::hypot(found[0] - log[0], found[1] - log[1]), 0.3 * std::hypot(log[0], log[1])) << v << " to " << w.index;
+      EXPECT_LT(std::hypot(found[0] - log[0], found[1] - log[1]), 0.3 * std::hypot(log[0], log[1]))
+          << v << " to " << w.index;
     }
   }
 }

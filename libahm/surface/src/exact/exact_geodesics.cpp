@@ -313,9 +313,8 @@ LabelledLogMap ExactGeodesics::log_map(const Placed& from, Source source, const 
     if (!options.frames) continue;
     Axes frame{1, 0, 0, 1};
     if (exact.status(v) == Status::ok)
-      frame = exact.arrival(v).half >= 0
-                  ? axes_at(arrival_angle(flat_, exact.arrival(v)) - std::atan2(phi[1], phi[0]))
-                  : in_frame(flat_, i, a);
+      frame = exact.arrival(v).half >= 0 ? axes_at(arrival_angle(flat_, exact.arrival(v)) - std::atan2(phi[1], phi[0]))
+                                         : in_frame(flat_, i, a);
     extras.frames.insert(extras.frames.end(), frame.begin(), frame.end());
   }
   extras.spread = jumps(coordinates, labels, source.is_curve());

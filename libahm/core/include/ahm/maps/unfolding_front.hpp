@@ -73,10 +73,10 @@ class UnfoldingFront {
   /// Exact polar coordinates of one vertex, for example from exact windows around the source.
   struct Seed {
     Vertex vertex;
-    double distance;  ///< world units
-    Vec2 direction;   ///< as `direction`
-    Vec2 arrival;     ///< as `arrival`; NaN: not known
-    Index point = 0;  ///< number of the source point
+    double distance;   ///< world units
+    Vec2 direction;    ///< as `direction`
+    Vec2 arrival;      ///< as `arrival`; NaN: not known
+    Index point = 0;   ///< number of the source point
     double error = 0;  ///< expected, of the direction, radians
   };
   /// Discards what the front has found and starts again from the seeds, whose values stay as they are. A seed keeps the focusing that

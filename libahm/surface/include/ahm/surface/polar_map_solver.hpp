@@ -12,6 +12,7 @@
 #include <memory>
 #include <optional>
 
+#include "ahm/graph/csr_graph.hpp"
 #include "ahm/maps/polar_map.hpp"
 #include "ahm/surface/exact/exact_geodesics.hpp"
 #include "ahm/surface/surface.hpp"
@@ -62,6 +63,9 @@ class PolarMapSolver {
   const TangentGraph* graph_;
   const Surface* surface_ = nullptr;
   std::shared_ptr<const UnfoldingFront::Stars> stars_;
+  std::unique_ptr<const CsrGraph>
+      sheet_;  ///< the edges of triangles that were chosen, as of clouds; null: the graph's own serve
+  std::shared_ptr<const UnfoldingFront::Stars> sheet_stars_;
   std::optional<ExactGeodesics> geodesics_;  ///< none: no flat triangles, or no windows wanted
   Offset windows_ = 0;
 };

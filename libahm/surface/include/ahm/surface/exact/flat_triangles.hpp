@@ -18,7 +18,8 @@ struct FlatTriangles {
   double length_unit = 1;            ///< a power of two
   bool approximate = false;          ///< the surface is no more than near the triangles, as of clouds
   std::vector<double> angles = {};   ///< of direction 0 in the frame of each vertex, radians; empty: 0
-  std::vector<std::uint8_t> mirrored = {};  ///< 1 where directions turn clockwise in the frame of a vertex; empty: nowhere
+  std::vector<std::uint8_t> mirrored =
+      {};  ///< 1 where directions turn clockwise in the frame of a vertex; empty: nowhere
 };
 
 }  // namespace ahm
