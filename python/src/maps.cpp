@@ -329,7 +329,7 @@ void add_maps(py::module_& module) {
       .def("sample", &sample);
   module.def("exact_maps", &exact_maps);
   module.def("choose_method", [](const BodyPtr& body) {
-    return std::string(to_string(compute([body] { return choose_method(body->graph()); })));
+    return std::string(to_string(compute([body] { return body->surface() ? body->surface()->suggested_method() : choose_method(body->graph()); })));
   });
 }
 

@@ -189,12 +189,12 @@ TEST(Info, AdvisesExactMapsWhereFacesAreCoarse) {
   EXPECT_EQ(coarse.at("advice"), "exact");
   EXPECT_GT(coarse.at("median_bend_degrees").get<double>(), 5);
   // Fine, flat, and without faces.
-  EXPECT_EQ(method("fine.obj", obj(icosphere(30))).at("advice"), "heat");
+  EXPECT_EQ(method("fine.obj", obj(icosphere(30))).at("advice"), "polar");
   const auto flat = method("flat.obj", obj(holed_square(20)));
-  EXPECT_EQ(flat.at("advice"), "heat");
+  EXPECT_EQ(flat.at("advice"), "polar");
   EXPECT_NEAR(flat.at("sharp_bend_degrees").get<double>(), 0, 1e-6);
   const auto cloud = method("cloud.xyz", xyz(sphere(500)));
-  EXPECT_EQ(cloud.at("advice"), "heat");
+  EXPECT_EQ(cloud.at("advice"), "polar");
   EXPECT_EQ(cloud.at("exact_possible"), false);
 }
 

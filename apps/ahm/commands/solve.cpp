@@ -83,7 +83,7 @@ LogMap solve(const SolveOptions& options, const LogMapSolver& solver, const Sour
 
 Maps::Maps(const SolveOptions& options, const Input& input, Journal& journal, int count)
     : exact(exact_options(options, journal)) {
-  switch (options.method.value_or(choose_method(input.graph()))) {
+  switch (options.method.value_or(input.surface().suggested_method())) {
     case Method::heat:
       solver.emplace(make_solver(options, input.graph(), journal, count));
       break;

@@ -56,7 +56,7 @@ viewer::SessionOptions session_options(const ViewOptions& options, const Input& 
   session.title = std::filesystem::path(options.input.path).filename().string();
   session.input = detail::shell_word(options.input.path);
   session.input_options = fmt::format("{}", fmt::join(words(options.input), " "));
-  session.settings = {options.solve.method.value_or(choose_method(input.graph())),
+  session.settings = {options.solve.method.value_or(input.surface().suggested_method()),
                       options.solve.variant,
                       options.solve.order,
                       options.solve.t_coef,

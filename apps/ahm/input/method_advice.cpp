@@ -41,7 +41,7 @@ std::vector<double> bends(const FlatTriangles& flat) {
 }  // namespace
 
 MethodAdvice method_advice(const Surface& surface) {
-  MethodAdvice advice;
+  MethodAdvice advice{.method = surface.suggested_method()};
   if (surface.faces().size() == 0) {
     advice.problem = "there are no faces";
     return advice;
@@ -62,17 +62,19 @@ MethodAdvice method_advice(const Surface& surface) {
 }
 
 std::string as_text(const MethodAdvice& advice) {
-  if (!advice.exact_possible) return fmt::format("heat; exact is not possible: {}", advice.problem);
+  if (!advice.exact_possible)
+    return fmt::format("{}; exact is not possible: {}", to_string(advice.method), advice.problem);
   const auto degrees = [](double angle) {
     const std::string number = angle < 10 ? fmt::format("{:.2g}", angle) : fmt::format("{:.0f}", angle);
     return number + (number == "1" ? " degree" : " degrees");
   };
   const std::string bend = fmt::format("half of the edges bend by at most {}, 5 % by at least {}",
                                        degrees(advice.median_bend), degrees(advice.sharp_bend));
-  if (advice.exact_first) return fmt::format("--method exact for a few maps, heat for many ({})", bend);
+  if (advice.exact_first)
+    return fmt::format("--method exact for a few maps, {} for many ({})", to_string(advice.method), bend);
   return fmt::format(
-      "heat; --method exact, on large meshes with --radius or --tolerance, where it has to follow every face ({})",
-      bend);
+      "{}; --method exact, on large meshes with --radius or --tolerance, where it has to follow every face ({})",
+      to_string(advice.method), bend);
 }
 
 }  // namespace ahm::app

@@ -1,5 +1,5 @@
 /// \file
-/// Which method suits a surface: heat or exact.
+/// Which method suits a surface.
 #pragma once
 
 #include <string>
@@ -8,8 +8,9 @@
 
 namespace ahm::app {
 
-/// What speaks for one or the other.
+/// The method, and what speaks for exact maps instead.
 struct MethodAdvice {
+  Method method = Method::heat;  ///< `Surface::suggested_method`
   bool exact_possible = false;
   std::string problem;  ///< why not
   /// Angles in degrees between the faces at an edge: half of the edges bend less, 5 % bend more.
@@ -17,8 +18,8 @@ struct MethodAdvice {
   bool exact_first = false;  ///< for single maps
 };
 
-/// By what docs/exact.md measures: exact maps cost no more than the first one by heat up to `exact_vertices`, and heat's
-/// vectors are as near on surfaces that are sampled finely and smoothly.
+/// Exact maps cost no more than a first one by heat up to `exact_vertices`, and other methods' vectors are as near on surfaces that
+/// are sampled finely and smoothly (docs/exact.md).
 MethodAdvice method_advice(const Surface& surface);
 
 inline constexpr Index exact_vertices = 50000;

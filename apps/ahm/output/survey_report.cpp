@@ -261,7 +261,8 @@ void add_surface(const Survey& s, nlohmann::ordered_json& j) {
   }
   j["central_point"] = surface.central_row;
   const MethodAdvice& method = surface.method;
-  j["method"] = {{"advice", method.exact_first ? "exact" : "heat"}, {"exact_possible", method.exact_possible}};
+  j["method"] = {{"advice", to_string(method.exact_first ? Method::exact : method.method)},
+                 {"exact_possible", method.exact_possible}};
   if (method.exact_possible) {
     j["method"]["median_bend_degrees"] = method.median_bend;
     j["method"]["sharp_bend_degrees"] = method.sharp_bend;

@@ -29,6 +29,9 @@ namespace {
 
 /// A cloud with more than this share of its points in neighbourhoods as thick as wide is no surface.
 constexpr double thick_share = 0.15;
+/// Beyond this share of the mean edge length the noise of offsets, that of points times the root of 2, makes vectors of polar maps
+/// worse than those of heat in the median (docs/accuracy.md).
+constexpr double noise_for_heat = 0.5;
 
 void check_arguments(std::span<const Vec3> points, const CloudOptions& options) {
   if (points.size() < 3)
@@ -185,6 +188,8 @@ void fill_vertex_data(CsrGraphData& g, const CleanPoints& cloud, const TangentPl
   });
 }
 
+bool is_surface(const CloudDetails& details) { return details.thick <= thick_share * details.vertices; }
+
 /// Numbers the corners of triangles as vertices; all of them have masses.
 void number_corners(std::vector<Triangle>& triangles, const std::vector<Index>& vertex_of_clean) {
   for (Triangle& t : triangles)
@@ -282,7 +287,12 @@ PointCloudSurface PointCloudSurface::build(std::span<const Vec3> input, std::spa
                           " points");
 }
 
-FlatTriangles PointCloudSurface::flat_triangles() const {
+Method PointCloudSurface::suggested_method() const {
+  const bool is_noisy = details_.noise > noise_for_heat * graph_->mean_edge_length() * graph_->length_unit();
+  return is_noisy || !is_surface(details_) ? Method::heat : Method::polar;
+}
+
+FlatTriangles PointCloudSurface::flat_approximation() const {
   std::vector<Frame> frames;
   frames.reserve(static_cast<std::size_t>(graph_->size()));
   for (Index v = 0; v < graph_->size(); ++v) {
@@ -344,7 +354,7 @@ std::vector<Warning> PointCloudSurface::warnings() const {
   warn("normals_estimated", d.estimated);
   if (d.flips_stopped) result.push_back({"cover_not_delaunay", {}, {}});
   warn("normals_contradicted", d.contradicted);
-  if (d.thick > thick_share * d.vertices)
+  if (!is_surface(d))
     result.push_back({"no_surface", {static_cast<double>(d.thick), static_cast<double>(d.vertices)}, {}});
   warn("lines", d.lines);
   warn("degenerate", d.degenerate, d.first_degenerate);

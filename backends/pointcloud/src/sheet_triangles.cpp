@@ -6,6 +6,7 @@
 #include <numbers>
 #include <numeric>
 #include <optional>
+#include <tuple>
 
 #include "ahm/util/vec.hpp"
 
@@ -18,6 +19,8 @@ using std::numbers::pi;
 constexpr std::size_t most_hole_edges = 12;
 /// A triangle flatter than this multiple of its longest side has no reliable angles.
 constexpr double least_height = 1e-6;
+/// Of most vertices.
+constexpr std::size_t usual_degree = 8;
 /// Dropping a fan may open a hole; real shapes change no more after the second round.
 constexpr int fill_rounds = 3;
 
@@ -54,6 +57,7 @@ class Sheet {
     }
     for (int c = 0; c < 3; ++c) {
       auto& at = wedges_[t[c]];
+      at.reserve(usual_degree);
       at.insert(std::ranges::upper_bound(at, corners[c].begin, {}, &Wedge::begin), corners[c]);
     }
     triangles_.push_back(t);
@@ -242,19 +246,29 @@ class Sheet {
   std::vector<char> dropped_;
 };
 
-/// Numbers of triangles, those with more votes first, then smaller ones.
-std::vector<std::size_t> by_votes(std::span<const Frame> frames, const LocalTriangles& candidates) {
-  const std::vector<Triangle>& all = candidates.triangles;
-  std::vector<double> longest(all.size());
-  for (std::size_t t = 0; t < all.size(); ++t)
-    for (int c = 0; c < 3; ++c)
-      longest[t] = std::max(longest[t], distance(frames[all[t][c]].origin, frames[all[t][(c + 1) % 3]].origin));
-  std::vector<std::size_t> order(all.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::ranges::sort(order, [&](std::size_t a, std::size_t b) {
-    if (candidates.votes[a] != candidates.votes[b]) return candidates.votes[a] > candidates.votes[b];
-    return longest[a] != longest[b] ? longest[a] < longest[b] : a < b;
+/// Numbers of triangles, those with more votes first. Those of all three corners hardly ever overlap, so that their order, that of
+/// memory, does not matter; of the others smaller ones come first.
+std::vector<Index> by_votes(std::span<const Frame> frames, const LocalTriangles& candidates) {
+  struct Disputed {
+    Index triangle;
+    int votes;
+    double longest;
+  };
+  std::vector<Index> order;
+  std::vector<Disputed> disputed;
+  for (Index t = 0; t < static_cast<Index>(candidates.triangles.size()); ++t) {
+    if (candidates.votes[t] == 3) {
+      order.push_back(t);
+      continue;
+    }
+    const auto& [a, b, c] = candidates.triangles[t];
+    const auto side = [&](Index i, Index j) { return distance(frames[i].origin, frames[j].origin); };
+    disputed.push_back({t, candidates.votes[t], std::max({side(a, b), side(b, c), side(c, a)})});
+  }
+  std::ranges::sort(disputed, [](const Disputed& a, const Disputed& b) {
+    return std::tuple(-a.votes, a.longest, a.triangle) < std::tuple(-b.votes, b.longest, b.triangle);
   });
+  for (const Disputed& d : disputed) order.push_back(d.triangle);
   return order;
 }
 
@@ -272,7 +286,7 @@ void insert_uncovered(const LocalTriangles& candidates, Sheet& sheet) {
 
 std::vector<Triangle> sheet_triangles(std::span<const Frame> frames, const LocalTriangles& candidates) {
   Sheet sheet(frames);
-  for (const std::size_t t : by_votes(frames, candidates)) sheet.add(candidates.triangles[t]);
+  for (const Index t : by_votes(frames, candidates)) sheet.add(candidates.triangles[t]);
   for (int round = 0; round < fill_rounds; ++round) {
     sheet.fill_holes();
     insert_uncovered(candidates, sheet);

@@ -16,7 +16,7 @@ struct LocalTriangles {
   std::vector<std::uint8_t> votes;  ///< per triangle, 1 to 3
 };
 
-/// Takes the triangles in the order of their votes, then of their size, where they overlap none taken before in the tangent planes
+/// Takes the triangles in the order of their votes, disputed ones then of their size, where they overlap none taken before in the tangent planes
 /// of their corners. Small holes that are left are filled. Every edge of the result has at most two triangles, every vertex one
 /// fan or none. Time O(n log n).
 /// @param frames  of the points, in any unit of length; neighbors' normals should agree on the side

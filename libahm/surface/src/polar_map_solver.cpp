@@ -54,7 +54,7 @@ PolarMapSolver::PolarMapSolver(const Surface& surface, const PolarSolverOptions&
   windows_ = options.windows.value_or(std::max(least_windows, windows_per_vertex * graph_->size()));
   if (windows_ <= 0) return;
   try {
-    geodesics_.emplace(surface);
+    geodesics_.emplace(surface, surface.flat_approximation());
     if (!geodesics_->triangles().approximate) return;
     sheet_ = std::make_unique<const CsrGraph>(detail::flat_graph(geodesics_->triangles()));
     sheet_stars_ = UnfoldingFront::stars(*sheet_, options.threads, false);

@@ -40,6 +40,8 @@ RepairedSurface::RepairedSurface(std::unique_ptr<const Surface> built, std::vect
 
 FlatTriangles RepairedSurface::flat_triangles() const { return built_->flat_triangles(); }
 
+FlatTriangles RepairedSurface::flat_approximation() const { return built_->flat_approximation(); }
+
 Report RepairedSurface::report() const {
   Report report = built_->report();
   const RepairCounts& c = mesh_.counts;

@@ -11,6 +11,7 @@
 #include "ahm/surface/directions.hpp"
 #include "ahm/surface/exact/flat_triangles.hpp"
 #include "ahm/surface/face_tree.hpp"
+#include "ahm/surface/polar_map_solver.hpp"
 #include "ahm/util/parallel.hpp"
 #include "ahm/util/small_math.hpp"
 #include "ahm/util/text.hpp"
@@ -198,6 +199,10 @@ FacePoint Surface::face_point(const EdgePoint& point) const {
   throw InvalidArgument("rows " + std::to_string(point.from.index) + " and " + std::to_string(point.to.index) +
                         " are not joined by an edge");
 }
+
+FlatTriangles Surface::flat_approximation() const { return flat_triangles(); }
+
+Method Surface::suggested_method() const { return choose_method(graph()); }
 
 FlatTriangles Surface::flat_triangles() const {
   throw InvalidArgument("no_flat_triangles", "exact geodesics need faces, which this surface does not have",

@@ -121,7 +121,7 @@ TEST(Sheet, HasAtMostTwoTrianglesAtAnEdgeAndOneFanAtAVertex) {
   for (const auto& points : {random_sphere(2000).points, noisy_sphere(2000), random_torus(2000, 1),
                              moebius_cloud(900).points, flat_cloud(1000).points, rolled_cloud(20, 0.3).points}) {
     const auto cloud = PointCloudSurface::build(points);
-    const FlatTriangles flat = cloud.flat_triangles();
+    const FlatTriangles flat = cloud.flat_approximation();
     EXPECT_LE(count(flat).most, 2);
     EXPECT_TRUE(have_one_fan(triangles_of(flat)));
   }
@@ -129,13 +129,13 @@ TEST(Sheet, HasAtMostTwoTrianglesAtAnEdgeAndOneFanAtAVertex) {
 
 TEST(Sheet, OfCleanClosedCloudsHasTheirEulerCharacteristic) {
   for (const auto& sphere : {random_sphere(3000), even_sphere(3000)}) {
-    const Counts counts = count(PointCloudSurface::build(sphere.points).flat_triangles());
+    const Counts counts = count(PointCloudSurface::build(sphere.points).flat_approximation());
     EXPECT_EQ(counts.euler(), 2);
     EXPECT_EQ(counts.open, 0);
     EXPECT_EQ(counts.vertices.size(), sphere.points.size());
   }
   for (const unsigned seed : {1u, 2u}) {
-    const Counts counts = count(PointCloudSurface::build(random_torus(4000, seed)).flat_triangles());
+    const Counts counts = count(PointCloudSurface::build(random_torus(4000, seed)).flat_approximation());
     EXPECT_EQ(counts.euler(), 0);
     EXPECT_EQ(counts.open, 0);
   }
@@ -143,7 +143,7 @@ TEST(Sheet, OfCleanClosedCloudsHasTheirEulerCharacteristic) {
 
 TEST(Sheet, OfAFlatCloudCoversItsConvexHull) {
   constexpr int side = 40;
-  const FlatTriangles flat = PointCloudSurface::build(jittered_square(side)).flat_triangles();
+  const FlatTriangles flat = PointCloudSurface::build(jittered_square(side)).flat_approximation();
   EXPECT_NEAR(area(flat), (side - 1.0) * (side - 1.0), 1e-9 * side * side);
   EXPECT_EQ(count(flat).euler(), 1);
   EXPECT_EQ(count(flat).open, 4 * (side - 1));
@@ -157,7 +157,7 @@ TEST(Sheet, DoesNotDependOnTheOrderOfTheRows) {
   std::vector<Vec3> shuffled;
   for (const Index i : order) shuffled.push_back(points[i]);
   const auto a = PointCloudSurface::build(points), b = PointCloudSurface::build(shuffled);
-  const FlatTriangles one = a.flat_triangles(), other = b.flat_triangles();
+  const FlatTriangles one = a.flat_approximation(), other = b.flat_approximation();
   EXPECT_EQ(one.positions, other.positions);
   EXPECT_EQ(triangles_of(one), triangles_of(other));
 }
@@ -166,7 +166,7 @@ TEST(Sheet, DoesNotDependOnThreads) {
   const std::vector<Vec3> points = noisy_sphere(3000);
   const auto a = PointCloudSurface::build(points, {}, {.threads = 1}),
              b = PointCloudSurface::build(points, {}, {.threads = 5});
-  EXPECT_EQ(triangles_of(a.flat_triangles()), triangles_of(b.flat_triangles()));
+  EXPECT_EQ(triangles_of(a.flat_approximation()), triangles_of(b.flat_approximation()));
 }
 
 TEST(Sheet, GivesExactPolarMapsOfAFlatCloud) {
@@ -188,7 +188,7 @@ TEST(Sheet, GivesExactMapsFromPointsBetweenTheRows) {
   constexpr int side = 20;
   const std::vector<Vec3> points = jittered_square(side);
   const auto cloud = PointCloudSurface::build(points);
-  const ExactGeodesics geodesics(cloud);
+  const ExactGeodesics geodesics(cloud, cloud.flat_approximation());
   const Vec3 at{9.3, 8.2, 0};
   for (const Vec3& axis : {Vec3{1, 0, 0}, Vec3{-0.6, 0.8, 0}}) {
     const auto source = cloud.closest_point(at + Vec3{0, 0, 0.1});
@@ -203,7 +203,7 @@ TEST(Sheet, GivesExactMapsFromPointsBetweenTheRows) {
 
 TEST(Sheet, KeepsTheFramesOfTheGraphWhereTheSurfaceIsOneSided) {
   const auto cloud = PointCloudSurface::build(moebius_cloud(1500).points);
-  const ExactGeodesics geodesics(cloud);
+  const ExactGeodesics geodesics(cloud, cloud.flat_approximation());
   for (Index v = 0; v < cloud.graph().size(); v += 101) {
     const LogMap map = geodesics.log_map(Vertex(v), {.radius = 0.3});
     const Star star = cloud.graph().star(v);

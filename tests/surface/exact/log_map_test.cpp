@@ -10,6 +10,7 @@
 #include "ahm/error.hpp"
 #include "ahm/maps/log_map_solver.hpp"
 #include "ahm/maps/quality.hpp"
+#include "ahm/pointcloud/point_cloud_surface.hpp"
 #include "ahm/polymesh/polygon_mesh_surface.hpp"
 #include "ahm/surface/exact/exact_geodesics.hpp"
 #include "ahm/testing/polygon_meshes.hpp"
@@ -275,6 +276,7 @@ TEST(ExactLogMap, ScalesWithTheSurface) {
 }
 
 TEST(ExactLogMap, IsRefusedWithoutFlatTriangles) {
+  const Mesh sphere = icosphere(8);
   const auto fault_of = [](const Surface& surface) {
     try {
       ExactGeodesics{surface};
@@ -283,6 +285,7 @@ TEST(ExactLogMap, IsRefusedWithoutFlatTriangles) {
     }
     return std::string();
   };
+  EXPECT_EQ(fault_of(pointcloud::PointCloudSurface::build(sphere.positions)), "no_flat_triangles");
   const Polygons cube = cube_sphere(6);
   EXPECT_EQ(fault_of(PolygonMeshSurface::build(cube.positions, cube.begin, cube.corners,
                                                {.discretization = Discretization::polygons})),

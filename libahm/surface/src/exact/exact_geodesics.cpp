@@ -72,6 +72,9 @@ ExactGeodesics::ExactGeodesics(const Surface& surface)
     : surface_(&surface),
       flat_(detail::with_memory_check("laying out triangles", [&] { return surface.flat_triangles(); })) {}
 
+ExactGeodesics::ExactGeodesics(const Surface& surface, FlatTriangles triangles)
+    : surface_(&surface), flat_(std::move(triangles)) {}
+
 exact::MeshPoint ExactGeodesics::point(const SurfacePoint& point) const {
   if (const auto* row = std::get_if<Row>(&point)) return flat_.surface.vertex_point(surface_->vertex(*row));
   if (const auto* edge = std::get_if<EdgePoint>(&point)) return surface_->flat_point(*edge);

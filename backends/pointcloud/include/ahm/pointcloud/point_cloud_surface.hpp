@@ -127,7 +127,11 @@ class PointCloudSurface final : public Surface {
   void details() && = delete;
   /// A manifold chosen from the local triangulations, made anew by each call: time O(n log n). Vertices that it does not use have no
   /// exact map. @throws InvalidGeometry (no triangle is left)
-  FlatTriangles flat_triangles() const override;
+  FlatTriangles flat_approximation() const override;
+
+  /// Polar, but heat where the noise is more than half of the mean edge length, which smoothing leaves too much of, and where the cloud
+  /// is no surface.
+  Method suggested_method() const override;
 
   ~PointCloudSurface() override;
   PointCloudSurface(PointCloudSurface&&) noexcept;
@@ -146,7 +150,7 @@ class PointCloudSurface final : public Surface {
   RowMap rows_;
   std::vector<Vec3> positions_;
   std::optional<std::vector<Row>> kept_;
-  std::unique_ptr<const LocalTriangles> triangles_;  ///< what `flat_triangles` chooses from
+  std::unique_ptr<const LocalTriangles> triangles_;  ///< what `flat_approximation` chooses from
 };
 
 }  // namespace ahm::pointcloud

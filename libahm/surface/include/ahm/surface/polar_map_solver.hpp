@@ -70,8 +70,8 @@ class PolarMapSolver {
   Offset windows_ = 0;
 };
 
-/// The method for log maps on a graph: polar on Delaunay triangulations (meshes of triangles, refined polygons), else heat: at the
-/// ragged boundary of a flat cloud the paths of a front bend, where heat is exact.
+/// The method for log maps on a graph that belongs to no surface (else `Surface::suggested_method`): polar on Delaunay
+/// triangulations, else heat.
 Method choose_method(const TangentGraph& graph);
 
 }  // namespace ahm

@@ -32,6 +32,8 @@ class RepairedSurface final : public Surface {
   FaceList faces() const override { return built_->faces(); }
   std::span<const Index> corner_vertices() const override { return built_->corner_vertices(); }
   FlatTriangles flat_triangles() const override;
+  FlatTriangles flat_approximation() const override;
+  Method suggested_method() const override { return built_->suggested_method(); }
   std::vector<Vec2> on_corners(const LogMap& map) const override { return built_->on_corners(map); }
   Report report() const override;
   std::vector<Warning> warnings() const override;

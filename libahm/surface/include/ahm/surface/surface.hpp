@@ -87,12 +87,18 @@ class Surface {
   /// or so near to the normal, `normal_error`, that the normal's error decides where it points: fault "axis_along_normal")
   PlacedSource source(const SurfacePoint& point, const std::optional<Vec3>& u_axis = {}) const;
 
-  /// The surface as flat triangles, for exact geodesics (`ExactGeodesics`): its faces, or of a cloud a manifold triangulation.
-  /// @throws InvalidArgument (fault "no_flat_triangles": a surface without any), InvalidGeometry (a face of no area)
+  /// The faces as flat triangles, for exact geodesics (`ExactGeodesics`).
+  /// @throws InvalidArgument (fault "no_flat_triangles": a surface without flat faces), InvalidGeometry (a face of no area)
   virtual FlatTriangles flat_triangles() const;
   /// Where a point lies in these. @throws InvalidArgument (as `source`; as `flat_triangles`)
   exact::MeshPoint flat_point(const FacePoint& point) const;
   exact::MeshPoint flat_point(const EdgePoint& point) const;
+  /// Flat triangles on the surface or near it, for polar maps (`PolarMapSolver`): `flat_triangles`, or of a cloud a manifold chosen
+  /// from its local triangulations. @throws as `flat_triangles`
+  virtual FlatTriangles flat_approximation() const;
+  /// The method for log maps: polar on Delaunay triangulations (meshes of triangles, refined polygons) and on clouds that are a surface
+  /// with little noise, else heat. docs/accuracy.md has the measurements.
+  virtual Method suggested_method() const;
 
   /// A map on the rows: of several vertices of a row the one nearest to the source counts.
   /// @param threads  0: one per core

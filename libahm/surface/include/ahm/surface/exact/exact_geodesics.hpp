@@ -65,6 +65,8 @@ class ExactGeodesics {
   /// @throws as `Surface::flat_triangles`
   explicit ExactGeodesics(const Surface& surface);
   explicit ExactGeodesics(Surface&&) = delete;
+  /// Over other triangles than the faces: `Surface::flat_approximation`, to which the maps are exact.
+  ExactGeodesics(const Surface& surface, FlatTriangles triangles);
 
   const Surface& surface() const noexcept { return *surface_; }
   const FlatTriangles& triangles() const noexcept { return flat_; }
