@@ -4,6 +4,7 @@
 
 namespace ahm::bench {
 
+Table applications(const Settings&);
 Table backends(const Settings&);
 Table boundary(const Settings&);
 Table cloud_scaling(const Settings&);
@@ -82,6 +83,8 @@ std::span<const Experiment> experiments() {
           "trust", "after Fig. 20", "Polar maps and heat against exact maps",
           "Distances are accurate near the source and too short at cut loci; exact vectors are not in the paper.",
           trust},
+      Experiment{"applications", "Fig. 18", "Decals, atlases, tool paths and means by each method",
+                 "Applications by the affine heat method; the paper gives pictures, no numbers.", applications},
       Experiment{"clouds", "after Fig. 15", "Distances on clouds against exact ones of meshes",
                  "Clouds work as meshes do; no distances are given.", clouds},
       Experiment{

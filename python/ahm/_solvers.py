@@ -321,7 +321,7 @@ def log_map(surface: Any, source: Any, *, method: str = "auto", u_axis: Any = No
 
     surface : a `Surface`, or what `ahm.surface` takes.
     source : a row, a position, `(face, barycentric)`, or `((row, row), t)` on an edge.
-    method : "auto" (default): "polar" on meshes; "heat" on clouds, grids and graphs, and with options of heat.
+    method : "auto" (default): "polar" on meshes and on clouds with little noise; else, and with options of heat, "heat".
         "polar": length and direction of the shortest path, by a front, on any surface; "heat": the affine heat method, smooth
         across noise; "exact": straight lines over the flat triangles of a mesh. `LogMap.method` is the one that was used.
     tolerance : of exact distances, as of `ExactGeodesics`.

@@ -16,6 +16,7 @@
 #include "ahm/testing/flat_graphs.hpp"
 #include "ahm/testing/graph_changes.hpp"
 #include "ahm/testing/vectors.hpp"
+#include "ahm/util/vec.hpp"
 #include "support/solved_mesh.hpp"
 
 namespace ahm::test {
@@ -138,8 +139,6 @@ Vec3 in_space(const TangentGraph& graph, const Center& center) {
   return p;
 }
 
-double apart(const Vec3& a, const Vec3& b) { return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]); }
-
 void expect_exact_mean(const TangentGraph& flat, double size) {
   const LogMapSolver solver(flat);
   const Points points = random_points(flat.size(), 9, 3);
@@ -148,11 +147,11 @@ void expect_exact_mean(const TangentGraph& flat, double size) {
     for (int a = 0; a < 3; ++a)
       expected[a] += points.weights[k] / points.total() * flat.frame(points.vertices[k].index)->origin[a];
   const Center mean = karcher_mean(solver, points.vertices, points.weights);
-  EXPECT_LT(apart(in_space(flat, mean), expected), 1e-11 * size);
+  EXPECT_LT(distance(in_space(flat, mean), expected), 1e-11 * size);
   // The surface seen from the mean.
   const LogMap map = solver.solve(source_at(mean));
   for (Index i = 0; i < flat.size(); ++i)
-    EXPECT_NEAR(map.distance(Vertex(i)), apart(flat.frame(i)->origin, expected), 1e-11 * size);
+    EXPECT_NEAR(map.distance(Vertex(i)), distance(flat.frame(i)->origin, expected), 1e-11 * size);
 }
 
 TEST(KarcherMean, IsExactOnFlatGeometryOfEveryBackend) {
@@ -215,7 +214,7 @@ TEST(Center, OfThreeCornersOfAnIcosahedronIsTheMiddleOfTheirFace) {
     const Vec3 p = mesh.positions[i];
     const double g = (1 + std::sqrt(5.0)) / 2, unit = std::hypot(1.0, g);
     for (const Vec3& c : {Vec3{-1, g, 0}, Vec3{-g, 0, 1}, Vec3{0, 1, g}})
-      if (apart(p, {c[0] / unit, c[1] / unit, c[2] / unit}) < 1e-9) corners.push_back(i);
+      if (distance(p, {c[0] / unit, c[1] / unit, c[2] / unit}) < 1e-9) corners.push_back(i);
   }
   ASSERT_EQ(corners.size(), 3);
   Vec3 middle{};
@@ -228,7 +227,7 @@ TEST(Center, OfThreeCornersOfAnIcosahedronIsTheMiddleOfTheirFace) {
   for (const FindCenter& find : {find_mean, find_median}) {
     const Center center = find(sphere.solver, std::vector<Vertex>(corners.begin(), corners.end()), {});
     EXPECT_TRUE(center.converged);
-    EXPECT_LT(apart(in_space(graph, center), middle), h);
+    EXPECT_LT(distance(in_space(graph, center), middle), h);
   }
 }
 
@@ -254,7 +253,7 @@ TEST(Center, IsThatOfTheExactLogarithmsOnTheSphereFromAnyStart) {
       for (Vertex start : {points[0], points[5]}) {
         const Center center = (median ? find_median : find_mean)(sphere.solver, points, {.start = start});
         EXPECT_TRUE(center.converged);
-        EXPECT_LT(apart(in_space(graph, center), exact), h) << (median ? "median " : "mean ") << trial;
+        EXPECT_LT(distance(in_space(graph, center), exact), h) << (median ? "median " : "mean ") << trial;
       }
     }
   }

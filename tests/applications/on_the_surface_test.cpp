@@ -17,13 +17,13 @@
 #include "ahm/testing/triangle_meshes.hpp"
 #include "ahm/testing/vectors.hpp"
 #include "ahm/trimesh/triangle_mesh_surface.hpp"
+#include "ahm/util/vec.hpp"
 
 namespace ahm::test {
 namespace {
 
 using trimesh::TriangleMeshSurface;
 
-double gap(const Vec3& a, const Vec3& b) { return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]); }
 Vec3 middle(const Vec3& a, const Vec3& b) { return {(a[0] + b[0]) / 2, (a[1] + b[1]) / 2, (a[2] + b[2]) / 2}; }
 
 TriangleMeshSurface sphere(Index n) {
@@ -43,7 +43,7 @@ void expect_on(const Surface& surface, const CoveragePath& path, double rounding
     }
     const CoveragePoint& last = path.points[k - 1];
     ASSERT_LT(surface.closest_point(middle(last.position, p.position)).distance, rounding) << k;
-    ASSERT_NEAR(p.arclength - last.arclength, gap(last.position, p.position), rounding);
+    ASSERT_NEAR(p.arclength - last.arclength, distance(last.position, p.position), rounding);
   }
 }
 
@@ -192,11 +192,11 @@ TEST(OnTheSurface, CentersWhoseOffsetLeadsOutLieOnTheBoundary) {
   };
   const Vec3 c = *corner;
   const auto at = [&](double x, double y) { return Vec3{c[0] + x, c[1] + y, c[2]}; };
-  EXPECT_LT(gap(position({0.1, 0.05, 0}), at(0.1, 0.05)), 1e-15);
-  EXPECT_LT(gap(position({0.1, -0.05, 0}), at(0.1, 0)), 1e-15);
-  EXPECT_LT(gap(position({-0.05, 0.1, 0}), at(0, 0.1)), 1e-15);
-  EXPECT_LT(gap(position({-0.1, -0.05, 0}), at(0, 0)), 1e-15);
-  EXPECT_LT(gap(position({-1e-17, 1e-18, 0}), at(0, 0)), 1e-15);
+  EXPECT_LT(distance(position({0.1, 0.05, 0}), at(0.1, 0.05)), 1e-15);
+  EXPECT_LT(distance(position({0.1, -0.05, 0}), at(0.1, 0)), 1e-15);
+  EXPECT_LT(distance(position({-0.05, 0.1, 0}), at(0, 0.1)), 1e-15);
+  EXPECT_LT(distance(position({-0.1, -0.05, 0}), at(0, 0)), 1e-15);
+  EXPECT_LT(distance(position({-1e-17, 1e-18, 0}), at(0, 0)), 1e-15);
   EXPECT_THROW(center_position(surface, {.vertex = Vertex(99), .offset = {0, 0}}), InvalidArgument);
 }
 

@@ -233,7 +233,10 @@ CLI::Option* add_method(CLI::App& app, SolveOptions& o, std::vector<Method> meth
   if (chosen) choices.insert(choices.begin(), {"auto", std::nullopt});
   for (const Method method : methods) choices.emplace_back(to_string(method), method);
   const auto offers = [&](Method method) { return std::ranges::find(methods, method) != methods.end(); };
-  std::string help = chosen ? "auto (default): polar on meshes; heat on clouds and with options of heat.\n" : "";
+  std::string help =
+      chosen
+          ? "auto (default): polar on meshes and on clouds with little noise; else, and with options of heat, heat.\n"
+          : "";
   if (offers(Method::polar))
     help +=
         "polar: length and direction of the shortest path, by a front; right to a few percent,\n"

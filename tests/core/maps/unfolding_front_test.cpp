@@ -135,14 +135,6 @@ TEST(UnfoldingFront, FromPointsInOneFaceIsThatFromEach) {
   }
 }
 
-TEST(UnfoldingFront, AgreesWithItselfWhereEdgesAreATriangulation) {
-  const CsrGraph graph(planar_triangulation(20).data);
-  std::vector<Vertex> all;
-  for (Index i = 0; i < 280; ++i) all.emplace_back(i);
-  EXPECT_GT(UnfoldingFront::agreement(graph, all), 0.95);
-  EXPECT_EQ(UnfoldingFront::agreement(grid::GridGraph({.shape = {17, 20}, .spacing = {1, 1}}), all), 1);
-}
-
 TEST(UnfoldingFront, TellsTheNearestOfManyAndGoesOnFromThere) {
   const CsrGraph graph(tube(40, 12));
   const std::array sources{Vertex{5}, Vertex{100}, Vertex{301}, Vertex{470}};

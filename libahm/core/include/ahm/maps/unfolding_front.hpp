@@ -51,11 +51,6 @@ class UnfoldingFront {
   /// @param midpoints  whether triangles of small components are cut at the midpoints of their sides
   static std::shared_ptr<const Stars> stars(const TangentGraph& graph, unsigned threads = 1, bool midpoints = true);
 
-  /// The share of the triangles in the one-rings of these vertices that are also in the one-rings of their other two corners, d = 2: 1
-  /// on a triangulation, less on a cloud with noise, where one-rings contradict each other. Squares without diagonals, as in grids, and
-  /// crossing diagonals of polygons count as triangles. 0 where there are no triangles.
-  static double agreement(const TangentGraph& graph, std::span<const Vertex> vertices);
-
   /// @param graph       must outlive the front
   /// @param stars       of this graph; none: looked up vertex by vertex
   /// @param directions  whether to keep `direction`, too (d = 2)
