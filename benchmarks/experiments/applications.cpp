@@ -15,6 +15,7 @@
 #include "ahm/error.hpp"
 #include "ahm/maps/log_map_solver.hpp"
 #include "ahm/surface/polar_map_solver.hpp"
+#include "ahm/util/vec.hpp"
 #include "experiments/comparison.hpp"
 #include "measure.hpp"
 
