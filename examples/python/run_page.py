@@ -1,4 +1,4 @@
-"""Runs the cells of docs/guides/python_tour.md in their order and makes its pictures.
+"""Runs the cells of docs/python_tour.md in their order and makes its pictures.
 
     python3 run_page.py [--page PAGE.md] [--pictures FOLDER] [--level N]
 
@@ -15,7 +15,7 @@ HOME = Path(__file__).resolve().parents[2]
 
 def cells(text):
     """(code, name of the picture or None)."""
-    for code, picture in re.findall(r"```python\n(.*?)```(?:\s*!\[[^\]]*\]\(\.\./images/([\w.]+)\))?", text, re.S):
+    for code, picture in re.findall(r"```python\n(.*?)```(?:\s*!\[[^\]]*\]\(images/([\w.]+)\))?", text, re.S):
         yield code, picture or None
 
 
@@ -31,7 +31,7 @@ def save(figure, path):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--page", type=Path, default=HOME / "docs/guides/python_tour.md")
+    parser.add_argument("--page", type=Path, default=HOME / "docs/python_tour.md")
     parser.add_argument("--pictures", type=Path, default=HOME / "docs/images")
     parser.add_argument("--level", type=int, help="of the shapes, instead of the page's own: less is quicker and coarser")
     options = parser.parse_args()

@@ -17,7 +17,7 @@ struct MethodAdvice {
   bool exact_first = false;  ///< for single maps
 };
 
-/// By what docs/guides/exact.md measures: exact maps cost no more than the first one by heat up to `exact_vertices`, and heat's
+/// By what docs/results/exact.md measures: exact maps cost no more than the first one by heat up to `exact_vertices`, and heat's
 /// vectors are as near on surfaces that are sampled finely and smoothly.
 MethodAdvice method_advice(const Surface& surface);
 
