@@ -106,7 +106,7 @@ class LogMap {
   std::span<const Status> status() const noexcept { return status_; }
   Status status(Vertex vertex) const { return status_[vertex.index]; }
   /// The geodesic distance from the source, world units; NaN where not ok. It is not |phi_i|, which is too short wherever
-  /// several ways lead to a vertex: on triangulations it is unfolded (`UnfoldingFront`), elsewhere sqrt(q_i / lambda_i), the
+  /// several paths reach a vertex: on triangulations it is unfolded (`UnfoldingFront`), elsewhere sqrt(q_i / lambda_i), the
   /// root mean square of what heat brings (docs/concepts/accuracy.md). Both are |phi_i| on flat graphs. From a curve: to its nearest
   /// sample. Of an exact map it is |phi_i|.
   double distance(Vertex vertex) const { return extras_.distances[vertex.index]; }
