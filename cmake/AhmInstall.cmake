@@ -58,7 +58,6 @@ endforeach()
 file(READ README.md readme)
 string(REGEX REPLACE "!\\[[^]]*\\]\\([^)]*\\)\n*" "" readme "${readme}")
 string(REGEX REPLACE "\\[([^]]*)\\]\\([^)]*\\)" "\\1" readme "${readme}")
-string(REPLACE "|  |  |\n|---|---|\n\n" "" readme "${readme}")  # the pictures' table
 file(WRITE ${CMAKE_CURRENT_BINARY_DIR}/README.md "${readme}")
 install(FILES LICENSE CHANGELOG.md ${CMAKE_CURRENT_BINARY_DIR}/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT dev)
 

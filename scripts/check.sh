@@ -1,9 +1,8 @@
 #!/usr/bin/env bash
-# What a compiler and the tests do not see: the format of every source, clang-tidy on what is ours, and the tests of the
-# libraries under the address and undefined-behaviour sanitizers; with threads what is parallel under the thread sanitizer. Installs what
-# these take.
-#   check.sh [format|tidy|tidy-all|sanitizers|threads ...]     format, tidy and sanitizers without a word
-# tidy looks at what differs from main and at what includes that; tidy-all at everything, without the one check that takes as long
+# Checks beyond the compiler and the tests: the format of every source, the wording of pages and comments, clang-tidy, and the tests
+# under the sanitizers. Installs what these need.
+#   check.sh [format|words|tidy|tidy-all|sanitizers|threads ...]     default: format, words, tidy and sanitizers
+# tidy checks what differs from main and the sources that include it; tidy-all everything, without the one check that takes as long
 # as all others.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -11,6 +10,11 @@ cd "$(dirname "$0")/.."
 format() {
   echo "Format (clang-format) ..."
   git ls-files -z '*.hpp' '*.cpp' | xargs -0 clang-format --dry-run -Werror
+}
+
+words() {
+  echo "Wording (scripts/banned_words.txt) ..."
+  python3 scripts/check_words.py
 }
 
 sources() {
@@ -78,15 +82,15 @@ threads() {
   build/tsan/bin/test_threads --gtest_brief=1
 }
 
-for check in "${@:-format tidy sanitizers}"; do
+for check in "${@:-format words tidy sanitizers}"; do
   for one in $check; do
     case "$one" in
-      format | tidy | tidy-all | sanitizers | threads) ;;
-      *) echo "error: check.sh [format|tidy|tidy-all|sanitizers|threads ...]" >&2; exit 2 ;;
+      format | words | tidy | tidy-all | sanitizers | threads) ;;
+      *) echo "error: check.sh [format|words|tidy|tidy-all|sanitizers|threads ...]" >&2; exit 2 ;;
     esac
   done
 done
 scripts/install_packages.sh checks
-for check in "${@:-format tidy sanitizers}"; do
+for check in "${@:-format words tidy sanitizers}"; do
   for one in $check; do "$one"; done
 done

@@ -8,8 +8,8 @@ set -euo pipefail
 
 program=(
   build-essential cmake ninja-build
-  libeigen3-dev libsuitesparse-dev libopenblas0-pthread       # linear algebra, with an optimised BLAS
-  libnanoflann-dev                                            # neighbour search
+  libeigen3-dev libsuitesparse-dev libopenblas0-pthread       # linear algebra, with an optimized BLAS
+  libnanoflann-dev                                            # neighbor search
   libcli11-dev nlohmann-json3-dev libfmt-dev                  # the program
   libstb-dev libjs-three                                      # pictures
   libcpp-httplib-dev pkgconf                                  # ahm view
@@ -19,7 +19,7 @@ program=(
 )
 tests=(
   "${program[@]}"
-  libflann-dev liblz4-dev                                     # neighbour search
+  libflann-dev liblz4-dev                                     # neighbor search
   libpcl-dev                                                  # PCD files, voxel grid, outlier removal
   libminizip-dev                                              # .npz files
   libgtest-dev libbenchmark-dev                               # tests and benchmarks

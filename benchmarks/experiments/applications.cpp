@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <optional>
 
@@ -61,6 +62,12 @@ class Applications {
     return result;
   }
 
+  LogMap map_of(const MapMaker& maps, Vertex source) const {
+    if (maps.method() == Method::heat)
+      return heat_.solve(Source::at_vertex(source), {.threads = 1, .frames = true});
+    return maps.map(source, std::numeric_limits<double>::infinity(), true);
+  }
+
   /// Of five points around the source.
   Center mean(const MapMaker& maps, Vertex source) const {
     const std::size_t s = std::ranges::find(sources_, source) - sources_.begin();
@@ -83,7 +90,7 @@ class Applications {
     std::vector<double> decals, flipped, spacings, covered, offsets, times;
     for (std::size_t s = 0; s < sources_.size(); ++s) {
       std::optional<LogMap> map;
-      times.push_back(1e3 * seconds([&] { map = maps.map(sources_[s], 4 * radius_[s], true); }));
+      times.push_back(1e3 * seconds([&] { map = map_of(maps, sources_[s]); }));
       const DistortionSummary found = decal(*map, s);
       decals.push_back(found.percentile_95);
       flipped.push_back(found.flipped_area);

@@ -17,7 +17,7 @@ namespace {
 using std::numbers::pi;
 constexpr int source_count = 4;
 
-/// The exact radial direction at q seen from p, not normalised; empty where q is too near or at the cut locus.
+/// The exact radial direction at q seen from p, not normalized; empty where q is too near or at the cut locus.
 using Radial = std::optional<Vec3> (*)(const Vec3& p, const Vec3& q);
 
 std::optional<Vec3> on_sphere(const Vec3& p, const Vec3& q) {

@@ -17,7 +17,7 @@
 
 namespace ahm::methods {
 
-/// Minimises sum_ij w_ij (f_j - f_i - <X, e_ij>)^2, where X along the edge is the mean of its two ends. Exact on a flat
+/// Minimizes sum_ij w_ij (f_j - f_i - <X, e_ij>)^2, where X along the edge is the mean of its two ends. Exact on a flat
 /// graph for the gradients of quadratic functions, whatever the weights.
 class EdgeIntegration {
  public:

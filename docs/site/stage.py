@@ -93,7 +93,8 @@ def headers():
 
 contents = (root / "docs/site/contents.md").read_text(encoding="utf-8")
 page(pathlib.Path("README.md"), pathlib.Path("index.md"), "\n" + contents)
-pages = ["CONTRIBUTING.md", "CHANGELOG.md", "SECURITY.md", *(f"docs/{p.name}" for p in (root / "docs").glob("*.md"))]
+pages = ["CONTRIBUTING.md", "CHANGELOG.md", "SECURITY.md", *(str(p.relative_to(root)) for p in (root / "docs").rglob("*.md"))]
+pages = [page for page in pages if not page.startswith("docs/site/")]
 pages += [str(p.relative_to(root)) for top in ("backends", "benchmarks") for p in (root / top).rglob("README.md")]
 for path in pages:
     orphan = not path.startswith("docs/") and path.endswith("README.md")

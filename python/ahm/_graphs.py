@@ -74,7 +74,7 @@ class Grid(Surface):
 
 
 class Graph(Surface):
-    """A tangent graph of your own, in compressed rows, whose tangent spaces are R^d (docs/graph_contract.md).
+    """A tangent graph of your own, in compressed rows, whose tangent spaces are R^d (docs/concepts/graph_contract.md).
 
     indptr : (n + 1,), indices : (e,) the neighbour of every directed edge; each edge has its reverse.
     weights : (e,) w_ij = w_ji.

@@ -21,7 +21,7 @@ class ClosestPoints(NamedTuple):
 
 
 class TangentGraph(NamedTuple):
-    """The graph under a surface, by vertices: arrays in compressed rows, in units of `length_unit` (docs/graph_contract.md)."""
+    """The graph under a surface, by vertices: arrays in compressed rows, in units of `length_unit` (docs/concepts/graph_contract.md)."""
 
     indptr: np.ndarray  #: (n + 1,) int64
     indices: np.ndarray  #: (e,) int32: the neighbour j of edge i -> j

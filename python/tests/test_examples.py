@@ -49,5 +49,5 @@ def test_the_tour_runs_and_has_its_pictures(tmp_path):
 
 def test_the_page_for_python_is_true(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    failed, tried = doctest.testfile(str(HOME / "docs/python.md"), module_relative=False)
+    failed, tried = doctest.testfile(str(HOME / "docs/guides/python.md"), module_relative=False)
     assert failed == 0 and tried > 20

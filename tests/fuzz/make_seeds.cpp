@@ -238,7 +238,7 @@ void add_las(const Seeds& seeds) {
   seeds.add("las", "two.las", las);
 }
 
-/// Two points with a colour: text, binary, and compressed, which here is one run of bytes as they are.
+/// Two points with a color: text, binary, and compressed, which here is one run of bytes as they are.
 void add_pcd(const Seeds& seeds) {
   const std::string head =
       "# .PCD v0.7\nVERSION 0.7\nFIELDS x y z rgb\nSIZE 4 4 4 4\nTYPE F F F U\nCOUNT 1 1 1 1\nWIDTH 2\nHEIGHT 1\n"

@@ -1,4 +1,4 @@
-// The worked example of docs/writing_a_backend.md quotes the source of this backend as it is.
+// The worked example of docs/guides/own_graphs.md quotes the source of this backend as it is.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -18,7 +18,7 @@ std::string read(const std::string& path) {
 
 TEST(WorkedExample, QuotesTheSourceAsItIs) {
   const std::string source = read(AHM_ROOT "/backends/grid/src/grid_graph.cpp"),
-                    page = read(AHM_ROOT "/docs/writing_a_backend.md"), opening = "```cpp grid_graph.cpp\n";
+                    page = read(AHM_ROOT "/docs/guides/own_graphs.md"), opening = "```cpp grid_graph.cpp\n";
   int quotations = 0;
   for (auto at = page.find(opening); at != std::string::npos; at = page.find(opening, at)) {
     at += opening.size();

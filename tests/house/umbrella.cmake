@@ -20,7 +20,9 @@ endif()
 
 file(GLOB_RECURSE headers "${ROOT}/libahm/*.hpp" "${ROOT}/backends/*.hpp" "${ROOT}/io/*.hpp" "${ROOT}/view/*.hpp" "${ROOT}/viewer/*.hpp"
   "${ROOT}/testing/*.hpp" "${ROOT}/distributed/*.hpp")
-file(GLOB pages "${ROOT}/*.md" "${ROOT}/docs/*.md")
+file(GLOB pages "${ROOT}/*.md")
+file(GLOB_RECURSE found "${ROOT}/docs/*.md")
+list(APPEND pages ${found})
 set(named 0)
 foreach(page IN LISTS pages)
   file(READ "${page}" text)

@@ -19,7 +19,7 @@ struct MethodAdvice {
 };
 
 /// Exact maps cost no more than a first one by heat up to `exact_vertices`, and other methods' vectors are as near on surfaces that
-/// are sampled finely and smoothly (docs/exact.md).
+/// are sampled finely and smoothly (docs/results/exact.md).
 MethodAdvice method_advice(const Surface& surface);
 
 inline constexpr Index exact_vertices = 50000;

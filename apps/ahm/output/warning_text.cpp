@@ -83,8 +83,8 @@ constexpr Sentence sentences[] = {
      "of the "
      "same side, wrong for the two sides of a thin wall, which only given normals tell apart"},
     {"no_surface",
-     "{0:.0f} of {1:.0f} points have neighbours as thick as wide: this is no surface there, and distances are not to "
-     "be trusted"},
+     "{0:.0f} of {1:.0f} points lie in a thick layer: the points do not form a surface there, and distances are not "
+     "reliable"},
     {"non_finite", "{0:.0f} [point|points] with NaN or infinite coordinates [was|were] removed"},
     {"duplicates", "{0:.0f} duplicate [point was|points were] merged"},
     {"thin_walls",
@@ -94,7 +94,7 @@ constexpr Sentence sentences[] = {
      "go straight across what a line surrounds; thin them along the lines (--voxel)"},
     {"reflections",
      "{0:.0f} [edge joins|edges join] oppositely oriented normals and [is treated as a reflection|are treated as "
-     "reflections]; where sheets are nearer to each other than six spacings, ways lead from one to the other there"},
+     "reflections]; sheets less than six spacings apart may be connected there"},
     {"cloud_components", "the cloud falls into {0:.0f} components; a map covers those that hold its source"},
 };
 

@@ -30,7 +30,7 @@ namespace {
 /// A cloud with more than this share of its points in neighbourhoods as thick as wide is no surface.
 constexpr double thick_share = 0.15;
 /// Beyond this share of the mean edge length the noise of offsets, that of points times the root of 2, makes vectors of polar maps
-/// worse than those of heat in the median (docs/accuracy.md).
+/// worse than those of heat in the median (docs/concepts/accuracy.md).
 constexpr double noise_for_heat = 0.5;
 
 void check_arguments(std::span<const Vec3> points, const CloudOptions& options) {

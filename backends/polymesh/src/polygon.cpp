@@ -16,7 +16,7 @@ using Eigen::Vector3d;
 /// Triangles thinner than this, relative to their longest side, count as this thin.
 constexpr double least_height = 1e-10;
 
-/// x with the smallest |x| among those that minimise |S x - b|, S symmetric positive semi-definite. Directions in which S
+/// x with the smallest |x| among those that minimize |S x - b|, S symmetric positive semi-definite. Directions in which S
 /// is smaller than `threshold` of its largest eigenvalue count as none.
 Vector3d solve_least(const Matrix3d& S, const Vector3d& b, double threshold) {
   const Eigen::SelfAdjointEigenSolver<Matrix3d> eigen(S);

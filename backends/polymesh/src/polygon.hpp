@@ -14,7 +14,7 @@ namespace ahm::polymesh {
 /// Work space for one polygon after the other. Lengths are in units of the mesh's `length_unit`.
 class Polygon {
  public:
-  /// Takes the corners of a face and finds its virtual vertex: the point p that minimises sum |(x_c - p) x (x_c+1 - p)|^2,
+  /// Takes the corners of a face and finds its virtual vertex: the point p that minimizes sum |(x_c - p) x (x_c+1 - p)|^2,
   /// as p = sum w_c x_c with sum w_c = 1 and the smallest sum w_c^2.
   void read(const PolygonMesh& mesh, Index face);
 

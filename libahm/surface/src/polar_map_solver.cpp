@@ -13,7 +13,7 @@
 namespace ahm {
 namespace {
 
-/// At 8 windows per vertex the median map of real meshes is right to 0.02 of the distance at the 95th percentile (docs/accuracy.md). The
+/// At 8 windows per vertex the median map of real meshes is right to 0.02 of the distance at the 95th percentile (docs/concepts/accuracy.md). The
 /// least number takes about 15 ms: up to some thousand vertices windows cover the surface.
 constexpr Offset windows_per_vertex = 8, least_windows = Offset{1} << 17;
 

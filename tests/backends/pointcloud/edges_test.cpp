@@ -44,7 +44,7 @@ std::vector<double> planar_errors(const Cloud& cloud, const Solved& solved, doub
   return errors;
 }
 
-/// The 95th percentile; mean, it and the largest go to the test's record (--gtest_output), for docs/point_clouds.md.
+/// The 95th percentile; mean, it and the largest go to the test's record (--gtest_output), for docs/guides/point_clouds.md.
 double percentile95(const std::vector<double>& sorted, const std::string& name) {
   const double mean = std::accumulate(sorted.begin(), sorted.end(), 0.0) / static_cast<double>(sorted.size());
   const double value = sorted[sorted.size() * 95 / 100];

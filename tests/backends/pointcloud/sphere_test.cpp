@@ -14,7 +14,7 @@ namespace ahm::test {
 namespace {
 
 TEST(SphereCloud, ConvergesOnEvenPoints) {
-  // Adaptive: bias of the diffusion time, proportional to h = n^-1/2 (docs/method.md).
+  // Adaptive: bias of the diffusion time, proportional to h = n^-1/2 (docs/concepts/method.md).
   const SphereError coarse = [] {
     const Cloud c = even_sphere(2500);
     const Solved s(c);

@@ -37,7 +37,7 @@ struct Acquisition {
 /// shape.
 struct Geometry {
   std::vector<Vec3> points;                         ///< n; NaN and infinity are passed through as stored
-  std::vector<Vec3> normals;                        ///< empty or n, not normalised
+  std::vector<Vec3> normals;                        ///< empty or n, not normalized
   std::vector<std::array<std::uint8_t, 3>> colors;  ///< empty or n; red, green, blue
   std::vector<Property> properties;
   std::optional<Acquisition> acquisition;  ///< width times height is n

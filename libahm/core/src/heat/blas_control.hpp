@@ -36,7 +36,7 @@ class BlasBuffer {
 /// Configuration string of OpenBLAS, else the file that provides `dgemm`.
 std::string blas_name();
 
-/// Whether the name is that of an optimised BLAS.
+/// Whether the name is that of an optimized BLAS.
 bool blas_is_optimized(const std::string& name);
 
 }  // namespace ahm

@@ -1,6 +1,6 @@
 /// \file
 /// Conjugate gradients, for matrices whose Cholesky factors would fill the memory (volumes). Not Eigen's, which take 1.3 to
-/// 2.3 times as long (docs/march.md).
+/// 2.3 times as long (docs/results/march.md).
 #pragma once
 
 #include <cstdint>

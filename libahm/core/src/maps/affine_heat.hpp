@@ -2,7 +2,7 @@
 /// The affine heat method for a block of right-hand sides: the steps between sources and coordinates, once for every caller.
 ///
 /// The paper's 3n x 3n systems are block triangular in the homogeneous coordinate lambda; eliminating it leaves solves
-/// with the two fixed operators A and B (docs/method.md):
+/// with the two fixed operators A and B (docs/concepts/method.md):
 ///
 ///     lambda = A^-1 b                                   b: source weights
 ///     U~     = B^-1 (b U_p),  U_i = U~_i / |U~_i|

@@ -21,7 +21,7 @@
 namespace ahm {
 namespace {
 
-/// Graphs of at least this many vertices are marched when only one map is wanted (docs/march.md has the measurements).
+/// Graphs of at least this many vertices are marched when only one map is wanted (docs/results/march.md has the measurements).
 constexpr Index march_from = 50'000, march_volumes_from = 10'000;
 
 /// The longest diffusion time of an order by its factor of t_coef, and how many there are (`DiffusionTimes`).

@@ -1,5 +1,5 @@
 /// \file
-/// Second order: maps of several diffusion times, extrapolated to time zero (docs/accuracy.md).
+/// Second order: maps of several diffusion times, extrapolated to time zero (docs/concepts/accuracy.md).
 #pragma once
 
 #include <array>

@@ -13,7 +13,7 @@
 namespace ahm {
 namespace {
 
-/// The two estimates of a direction lie on both sides of it, so that it is off by half their difference (docs/accuracy.md).
+/// The two estimates of a direction lie on both sides of it, so that it is off by half their difference (docs/concepts/accuracy.md).
 constexpr double share_of_difference = 0.5;
 
 }  // namespace

@@ -1,6 +1,6 @@
 /// \file
 /// The march, a banded solve: the affine heat method by thin bands in the order of heat distance, so that time and memory grow
-/// linearly and nothing underflows at any distance (docs/march.md).
+/// linearly and nothing underflows at any distance (docs/concepts/march.md).
 ///
 /// A band is the part of the graph just ahead of the front. It is cut out with its natural boundary and solved by the same
 /// operators and the same elimination as a whole graph; the accepted values behind the front enter as Dirichlet data. What

@@ -21,7 +21,7 @@
 namespace ahm::polymesh {
 
 /// A polygon mesh cut into triangles: every face of more than three corners gets a virtual vertex, the point that
-/// minimises the sum of the squared areas of the triangles around it ([BHKB20] Sec. 4). A face that hides one of its sides
+/// minimizes the sum of the squared areas of the triangles around it ([BHKB20] Sec. 4). A face that hides one of its sides
 /// from there, such as a U, is cut along diagonals instead.
 struct Refinement {
   std::vector<Vec3> positions;                  ///< of the mesh's vertices, then of the virtual ones

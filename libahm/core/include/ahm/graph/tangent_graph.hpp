@@ -52,7 +52,7 @@ struct Frame {
   Vec3 normal;  ///< x cross y
 };
 
-/// An immutable graph on n vertices whose tangent spaces are R^d (docs/graph_contract.md).
+/// An immutable graph on n vertices whose tangent spaces are R^d (docs/concepts/graph_contract.md).
 ///
 /// Lengths (edge logs, square root of masses in d = 2, mean edge length) are in units of `length_unit()`.
 /// `validate` lists the laws and checks them.

@@ -15,7 +15,7 @@
 
 namespace ahm {
 
-/// How the linear systems are solved (docs/march.md).
+/// How the linear systems are solved (docs/concepts/march.md).
 enum class Strategy {
   automatic,  ///< one of the others, as size, number of maps and memory suggest
   global,     ///< one factorization of the whole graph, which serves every source; reaches about 700 edges
@@ -31,7 +31,7 @@ enum class Ordering {
 struct HeatOptions {
   double t_coef = 1.0;  ///< tau = t_coef h^2; > 0
   Variant variant = Variant::adaptive;
-  /// 1: the method as published. 2: extrapolates from maps of two or three diffusion times (docs/accuracy.md), which take
+  /// 1: the method as published. 2: extrapolates from maps of two or three diffusion times (docs/concepts/accuracy.md), which take
   /// as many factorizations and solves; several times more accurate on smooth surfaces, with an error estimate per vertex.
   int order = 1;
 

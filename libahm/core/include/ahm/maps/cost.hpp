@@ -29,7 +29,7 @@ struct Cost {
   double next_map_seconds = 0;   ///< for each further source
 };
 
-/// From the size alone: of surfaces that are sampled evenly and as wide as long (good to a third, docs/march.md) and of regular
+/// From the size alone: of surfaces that are sampled evenly and as wide as long (good to a third, docs/results/estimates.md) and of regular
 /// volumes (to a factor of two). Scans whose density varies may take twice that by march, long tubes half.
 /// @param strategy  global or march
 /// @param order     of the maps, 1 or 2: two times a map's diffusion times of order 1 and more (`HeatOptions::order`)
@@ -38,7 +38,7 @@ struct Cost {
 Cost estimate_cost(const GraphSize& size, Strategy strategy, int order = 1, unsigned threads = 0);
 
 /// From the graph: by the symbolic analysis of what is factored, which is the graph or the bands of a march; these are cut where
-/// the ways along edges from the source say. Good to a third on surfaces (docs/march.md), in a tenth of a map's time.
+/// the ways along edges from the source say. Good to a third on surfaces (docs/results/estimates.md), in a tenth of a map's time.
 ///
 /// What a march within a radius takes where distances are not unfolded (clouds) cannot be known before: it goes on wherever vectors
 /// of heat are shorter than the radius, and in noise they are too short. This tells what it takes where they are not; it takes at

@@ -86,7 +86,7 @@ class LogMap {
   /// With MapOptions::frames: the source's axes carried to every vertex (Eq. 11 and 12), n x d x d, row major: column a is
   /// source axis a in the frame of the vertex. Identity where no heat arrived.
   std::span<const double> frames() const noexcept { return extras_.frames; }
-  /// An estimate of |error of phi_i| in world units; NaN where not ok (docs/accuracy.md). Of polar maps it is the distance
+  /// An estimate of |error of phi_i| in world units; NaN where not ok (docs/concepts/accuracy.md). Of polar maps it is the distance
   /// times the expected error of the direction (`UnfoldingFront::direction_error`). With HeatOptions::order = 2 it is the disagreement of the
   /// diffusion times, good to a factor of about three inside the cut locus. Empty elsewhere.
   std::span<const double> error_estimate() const noexcept { return extras_.error_estimate; }
@@ -106,8 +106,8 @@ class LogMap {
   std::span<const Status> status() const noexcept { return status_; }
   Status status(Vertex vertex) const { return status_[vertex.index]; }
   /// The geodesic distance from the source, world units; NaN where not ok. It is not |phi_i|, which is too short wherever
-  /// several ways lead to a vertex: on triangulations it is unfolded (`UnfoldingFront`), elsewhere sqrt(q_i / lambda_i), the
-  /// root mean square of what heat brings (docs/accuracy.md). Both are |phi_i| on flat graphs. From a curve: to its nearest
+  /// several paths reach a vertex: on triangulations it is unfolded (`UnfoldingFront`), elsewhere sqrt(q_i / lambda_i), the
+  /// root mean square of what heat brings (docs/concepts/accuracy.md). Both are |phi_i| on flat graphs. From a curve: to its nearest
   /// sample. Of an exact map it is |phi_i|.
   double distance(Vertex vertex) const { return extras_.distances[vertex.index]; }
   std::span<const double> distances() const noexcept { return extras_.distances; }

@@ -47,7 +47,7 @@ class LogMapSolver {
   LogMapSolver(LogMapSolver&&) noexcept;
   LogMapSolver& operator=(LogMapSolver&&) noexcept;
 
-  /// The log map of one source (Alg. 1 or Alg. 2 with the homogeneous coordinate eliminated, docs/method.md).
+  /// The log map of one source (Alg. 1 or Alg. 2 with the homogeneous coordinate eliminated, docs/concepts/method.md).
   ///
   /// Where a global solve leaves vertices beyond its reach, strategy `automatic` marches on from what it has reached.
   /// @throws InvalidArgument when the source does not fit the graph (index, dimension, a reflection on a `rotation2`

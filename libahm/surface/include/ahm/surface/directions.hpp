@@ -32,7 +32,7 @@ Vec2 projected(const Vec3& x, const Vec3& y, const Vec3& vector, const std::stri
 
 /// How far normals may be off, in degrees, and so how far from the normal a direction must be to tell where an axis points: of what
 /// lies nearer it is the normal's error that decides where the projection points. Of meshes and given normals, and of normals
-/// that are estimated from points (median 0.3 to 2.5 degrees, 95 % within 0.7 to 5.6; docs/point_clouds.md).
+/// that are estimated from points (median 0.3 to 2.5 degrees, 95 % within 0.7 to 5.6; docs/guides/point_clouds.md).
 inline constexpr double normal_error = 1, estimated_normal_error = 5;
 
 /// @param error  of the normal, degrees

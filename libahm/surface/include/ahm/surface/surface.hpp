@@ -97,7 +97,7 @@ class Surface {
   /// from its local triangulations. @throws as `flat_triangles`
   virtual FlatTriangles flat_approximation() const;
   /// The method for log maps: polar on Delaunay triangulations (meshes of triangles, refined polygons) and on clouds that are a surface
-  /// with little noise, else heat. docs/accuracy.md has the measurements.
+  /// with little noise, else heat. docs/concepts/accuracy.md has the measurements.
   virtual Method suggested_method() const;
 
   /// A map on the rows: of several vertices of a row the one nearest to the source counts.
