@@ -63,8 +63,7 @@ class Applications {
   }
 
   LogMap map_of(const MapMaker& maps, Vertex source) const {
-    if (maps.method() == Method::heat)
-      return heat_.solve(Source::at_vertex(source), {.threads = 1, .frames = true});
+    if (maps.method() == Method::heat) return heat_.solve(Source::at_vertex(source), {.threads = 1, .frames = true});
     return maps.map(source, std::numeric_limits<double>::infinity(), true);
   }
 

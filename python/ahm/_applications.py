@@ -13,7 +13,7 @@ from ._fields import distance_and_nearest
 from ._maps import LogMap
 from ._options import checked
 from ._progress import Progress, reporting
-from ._solvers import ExactGeodesics, Maker, PolarMapSolver, as_body, as_maker, tolerance_of
+from ._solvers import ExactGeodesics, Maker, PolarMapSolver, as_body, as_maker, chosen_maker, tolerance_of
 
 
 class Stroke(NamedTuple):
@@ -163,7 +163,7 @@ class Center(NamedTuple):
     point: Any  #: the center as functions take points: (face, barycentric) of a mesh, else the position, or None
 
 
-def karcher_mean(solver: Any, points: Any, weights: Any = None, *, start: Any = None, method: Optional[str] = None,
+def karcher_mean(solver: Any, points: Any, weights: Any = None, *, start: Any = None, method: str = "auto",
                  tolerance: Optional[float] = None, max_maps: int = 50, radius: Optional[float] = None,
                  progress: Progress = None) -> Center:
     """The Riemannian center of mass: where the weighted sum of squared distances is least, near the start [Kar77].
@@ -172,7 +172,7 @@ def karcher_mean(solver: Any, points: Any, weights: Any = None, *, start: Any = 
     points : k points: rows, positions, `(faces, barycentric)`, `(edges, t)`.
     weights : (k,) >= 0, or None: all equal.
     start : where the search begins, the row nearest to this point; None: near the point of the largest weight.
-    method : of a surface: "heat" (default), "polar", or "exact" over the flat triangles of a mesh.
+    method : of a surface: "auto" (default), "polar", "heat" or "exact", as of `log_map`.
     tolerance : of exact maps, as of `ExactGeodesics`.
     max_maps : >= 1; each step is one log map. radius : of the maps, world units; it must reach from the center and the start to
         every point. progress : as of `LogMapSolver`.
@@ -184,10 +184,10 @@ def karcher_mean(solver: Any, points: Any, weights: Any = None, *, start: Any = 
 
     Raises ValueError naming argument, index and value; points in different components have no mean.
     """
-    return _center(as_maker(solver, method, tolerance=tolerance), points, weights, False, start, max_maps, radius, progress)
+    return _center(chosen_maker(solver, method, tolerance=tolerance), points, weights, False, start, max_maps, radius, progress)
 
 
-def geometric_median(solver: Any, points: Any, weights: Any = None, *, start: Any = None, method: Optional[str] = None,
+def geometric_median(solver: Any, points: Any, weights: Any = None, *, start: Any = None, method: str = "auto",
                      tolerance: Optional[float] = None, max_maps: int = 50, radius: Optional[float] = None,
                      progress: Progress = None) -> Center:
     """Where the weighted sum of distances is least, near the start [FVJ09]. Result, arguments and errors as of `karcher_mean`.
@@ -196,7 +196,7 @@ def geometric_median(solver: Any, points: Any, weights: Any = None, *, start: An
     >>> ahm.geometric_median(ahm.shapes.plane(9, 9), [0, 8, 72], [3.0, 1.0, 1.0]).row
     0
     """
-    return _center(as_maker(solver, method, tolerance=tolerance), points, weights, True, start, max_maps, radius, progress)
+    return _center(chosen_maker(solver, method, tolerance=tolerance), points, weights, True, start, max_maps, radius, progress)
 
 
 def _center(made: Maker, points: Any, weights: Any, median: bool, start: Any, max_maps: int, radius: Optional[float],

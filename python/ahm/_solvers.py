@@ -335,19 +335,20 @@ def log_map(surface: Any, source: Any, *, method: str = "auto", u_axis: Any = No
 
     Raises ValueError naming argument, index and value; NotPositiveDefinite, ResourceExhausted.
     """
-    arguments.choice(method, "method", ("auto", "polar", "heat", "exact"))
-    by: Optional[str] = method
-    if method == "auto":
-        by = None if isinstance(surface, (LogMapSolver, PolarMapSolver, ExactGeodesics)) else _chosen(surface, options, tolerance)
-    maker = as_maker(surface, by, dict(expected_maps=1, progress=progress, **options), tolerance)
+    maker = chosen_maker(surface, method, dict(expected_maps=1, progress=progress, **options), tolerance)
     return maker.log_map(source, u_axis=u_axis, radius=radius, frames=frames, progress=progress)
 
 
-def _chosen(surface: Any, options: Dict[str, Any], tolerance: Optional[float]) -> str:
-    """The method for a surface, its options given."""
-    if tolerance is not None or set(options) - {"threads"}:
-        return "heat"  # which has these options, or refuses them
-    return _core.choose_method(as_body(surface)._body)
+def chosen_maker(thing: Any, method: str, options: Optional[Dict[str, Any]] = None, tolerance: Optional[float] = None) -> Maker:
+    """As `as_maker`, with "auto" for the method that suits the surface; for heat where it is given what only heat has."""
+    arguments.choice(method, "method", ("auto", "polar", "heat", "exact"))
+    if method != "auto":
+        return as_maker(thing, method, options, tolerance)
+    if isinstance(thing, (LogMapSolver, PolarMapSolver, ExactGeodesics)):
+        return as_maker(thing, None, options, tolerance)
+    if tolerance is not None or set(options or {}) - {"expected_maps", "progress", "threads"}:
+        return as_maker(thing, "heat", options, tolerance)
+    return as_maker(thing, _core.choose_method(as_body(thing)._body), options)
 
 
 def as_maker(thing: Any, method: Optional[str] = None, options: Optional[Dict[str, Any]] = None,

@@ -115,7 +115,7 @@ void offer(CLI::App& app, CenterCommandOptions& o) {
   add_parsed(app, "--weights", o.weights, parse_weights, "WEIGHTS", "List or file (default: all equal)");
   app.add_flag("--median", o.median, "Least sum of distances instead of squared distances");
   add_parsed(app, "--start", o.start, parse_source, "SPEC", "Where to begin (default: the heaviest point)");
-  add_method(app, o.solve);
+  add_method(app, o.solve, {Method::polar, Method::exact}, true);
   add_tolerance(app, o.solve);
   add_graph_options(app, o.input, o.solve);
   add_json(app, o.output);

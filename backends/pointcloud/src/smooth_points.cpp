@@ -17,10 +17,10 @@ namespace ahm::pointcloud {
 namespace {
 
 /// Parts are noisy where the deviation of neighbors' offsets is more than this share of the spacing: that of two noisy ends, so that
-/// each is off by 0.18 spacings. Clean scans and meshes of real shapes have 0.1 at most; less noise hardly changes distances.
-constexpr double noisy_share = 0.25;
+/// each is off by 0.085 spacings. Detail of clean shapes has 0.1 at most.
+constexpr double noisy_share = 0.12;
 /// In noisy parts, neighborhoods are quiet below this share: points at rest beside moved ones make a step.
-constexpr double quiet_share = 0.12;
+constexpr double quiet_share = 0.06;
 
 /// A quadric has six coefficients; fewer neighbors are not averaged.
 constexpr std::size_t least_fitted = 10;

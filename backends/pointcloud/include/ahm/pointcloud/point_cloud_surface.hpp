@@ -40,7 +40,7 @@ struct CloudOptions {
   /// Two points are joined only if their distance is at most this multiple of the distance to the k-th neighbour of
   /// either.
   double max_edge_ratio = 3.0;
-  /// Smoothing of the points, before the graph is built, by moving least squares. None: where the noise is larger than a fourth of the
+  /// Smoothing of the points, before the graph is built, by moving least squares. None: where the noise is larger than an eighth of the
   /// spacing, over the k neighbors. 0: off. Else the radius of the neighborhoods, world units, everywhere.
   std::optional<double> smooth;
   /// Whether noise, and with it smoothing, is measured for each part that shares no neighbours with the rest,
