@@ -41,7 +41,8 @@ std::vector<double> bends(const FlatTriangles& flat) {
 }  // namespace
 
 MethodAdvice method_advice(const Surface& surface) {
-  MethodAdvice advice{.method = surface.suggested_method()};
+  MethodAdvice advice;
+  advice.method = surface.suggested_method();
   if (surface.faces().size() == 0) {
     advice.problem = "there are no faces";
     return advice;
