@@ -62,7 +62,7 @@ slow=("CholeskyFactor.SolvesAsEigens*" ExactMap.GoesFarAlongTubes ExactMap.IsRef
   FactorFront.IsEigensOfEverySmallFrontAndOfLargeOnes LocalMaps.ApproachTheMapOfTheWholeGraphWithTheMargin
   LocalMaps.DoNotDependOnThreadsOrOnCompany LocalMaps.RefuseWhatFillsTheMemory March.AgreesWithTheGlobalSolve March.DoesNotDependOnThreads
   March.EndsWhereHeatDistancesAreBeyondAllNumbers March.HasNoHorizon March.TakesSeveralBands Normals.WithNoiseAreNoWorseThanNone
-  Renderer.DoesNotDependOnTheNumberOfThreads SecondOrder.IsExactOnThePlaneAndKnowsIt SphereCloud.ConvergesOnRandomPointsInBothVariants
+  Renderer.DoesNotDependOnTheNumberOfThreads SphereCloud.ConvergesOnRandomPointsInBothVariants
   StreamedLogMap.ForgetsWhatTheFrontHasPassed StreamedLogMap.GoesOnFromTheEndOfAnyBand)
 
 sanitizers() {

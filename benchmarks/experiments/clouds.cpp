@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -28,7 +27,6 @@ struct Found {
   std::vector<double> error;  ///< relative, of the distance
   double bounded = 0;         ///< distances no longer than the straight line in space
   std::vector<double> trusted_error;
-  std::vector<double> mean_of_source;  ///< of `error`; not finite where nothing is so far from a source
 };
 
 /// The points, each moved by `noise` mean edges in a random direction.
@@ -54,7 +52,6 @@ void compare(const pointcloud::PointCloudSurface& cloud, std::span<const double>
              std::span<const double> quality, const std::vector<double>& truth, Index source, double near,
              Found& found) {
   const auto points = cloud.positions();
-  const auto before = static_cast<std::ptrdiff_t>(found.error.size());
   for (std::size_t i = 0; i < distances.size(); ++i) {
     if (!std::isfinite(distances[i]) || !(truth[i] > near) || !std::isfinite(truth[i])) continue;
     const double line = distance(points[i], points[source]), error = std::abs(std::max(distances[i], line) - truth[i]);
@@ -63,33 +60,16 @@ void compare(const pointcloud::PointCloudSurface& cloud, std::span<const double>
     if (quality.empty() || !(quality[i] >= trusted_quality)) continue;
     found.trusted_error.push_back(found.error.back());
   }
-  found.mean_of_source.push_back(std::accumulate(found.error.begin() + before, found.error.end(), 0.0) /
-                                 static_cast<double>(found.error.size() - static_cast<std::size_t>(before)));
 }
 
-/// Errors below this are rounding, or how far the points lie beside the faces: their ratios tell nothing.
-constexpr double least_error = 1e-4;
-
-/// Largest ratio of the mean error from one source to that of another map from it.
-double worst_ratio(const Found& found, const Found& other) {
-  double worst = 0;
-  for (std::size_t s = 0; s < found.mean_of_source.size(); ++s)
-    if (other.mean_of_source[s] > least_error)
-      worst = std::max(worst, found.mean_of_source[s] / other.mean_of_source[s]);
-  return worst;
-}
-
-/// @param first  of order 1, where `found` is of order 2
-void add_row(const Surface& surface, double noise, std::string_view variant, Cell order, const Found& found,
-             const Found* first, Table& table) {
+void add_row(const Surface& surface, double noise, std::string_view variant, const Found& found, Table& table) {
   const auto count = static_cast<double>(found.error.size());
   const double sum = std::accumulate(found.error.begin(), found.error.end(), 0.0);
   const bool trusts = !found.trusted_error.empty();
-  table.add({surface.name(), surface.size(), noise, variant, std::move(order), sum / count, quantile(found.error, 0.95),
+  table.add({surface.name(), surface.size(), noise, variant, sum / count, quantile(found.error, 0.95),
              quantile(found.error, 1), found.bounded / count,
              trusts ? Cell(static_cast<double>(found.trusted_error.size()) / count) : Cell(),
-             trusts ? Cell(quantile(found.trusted_error, 0.95)) : Cell(),
-             first ? Cell(worst_ratio(found, *first)) : Cell()});
+             trusts ? Cell(quantile(found.trusted_error, 0.95)) : Cell()});
 }
 
 void measure(const Surface& surface, double noise, Table& table) {
@@ -110,28 +90,23 @@ void measure(const Surface& surface, double noise, Table& table) {
       if (const auto vertex = cloud.rows().vertex(Row(static_cast<Index>(i)))) found[i] = front.distance(*vertex);
     compare(cloud, found, {}, truth.back(), source, near, unfolded);
   }
-  add_row(surface, noise, "unfolded", {}, unfolded, nullptr, table);
+  add_row(surface, noise, "unfolded", unfolded, table);
   for (Variant variant : all_variants) {
-    std::array<Found, 2> of_order;
-    for (int order : {1, 2}) {
-      const LogMapSolver solver(cloud.graph(), {.variant = variant, .order = order});
-      Found& found = of_order[order - 1];
-      for (int s = 0; s < source_count; ++s) {
-        const LogMap map = solver.solve(cloud.source(Row(sources[s])).source);
-        const RowLogMap rows = cloud.on_rows(map);
-        compare(cloud, rows.distance, on_rows(rows, map_quality(cloud.graph(), map)), truth[s], sources[s], near,
-                found);
-      }
-      add_row(surface, noise, to_string(variant), order, found, order == 2 ? of_order.data() : nullptr, table);
+    const LogMapSolver solver(cloud.graph(), {.variant = variant});
+    Found found;
+    for (int s = 0; s < source_count; ++s) {
+      const LogMap map = solver.solve(cloud.source(Row(sources[s])).source);
+      const RowLogMap rows = cloud.on_rows(map);
+      compare(cloud, rows.distance, on_rows(rows, map_quality(cloud.graph(), map)), truth[s], sources[s], near, found);
     }
+    add_row(surface, noise, to_string(variant), found, table);
   }
 }
 
 }  // namespace
 
 Table clouds(const Settings& settings) {
-  Table table({"cloud", "points", "noise", "variant", "order", "mean", "95%", "max", "bounded", "trusted",
-               "95% of trusted", "worst source over order 1"});
+  Table table({"cloud", "points", "noise", "variant", "mean", "95%", "max", "bounded", "trusted", "95% of trusted"});
   const Index n = settings.toy ? 640 : 10000;
   for (double noise : {0.0, 0.3}) {
     measure(Surface("sphere", test::split_icosphere(n)), noise, table);
@@ -142,10 +117,8 @@ Table clouds(const Settings& settings) {
     return quantile(table.where("noise", "0").where("variant", variant).numbers("95%"), 0.5);
   };
   table.seen = fmt::format(
-      "Without noise, 95th percentile of the relative error, median over clouds: unfolded {:.3f}, heat {:.3f}. Means "
-      "of order 2 are at most {:.2f} times those of order 1 from any source.",
-      median("unfolded"), median("adaptive"),
-      quantile(table.where("order", "2").numbers("worst source over order 1"), 1));
+      "Without noise, 95th percentile of the relative error, median over clouds: unfolded {:.3f}, heat {:.3f}.",
+      median("unfolded"), median("adaptive"));
   return table;
 }
 

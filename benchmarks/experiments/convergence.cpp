@@ -12,7 +12,6 @@ namespace {
 constexpr NamedMethod methods[] = {
     {"AHM_a", [](const TangentGraph& g) { return methods::affine_heat(g, Variant::adaptive); }},
     {"AHM_l", [](const TangentGraph& g) { return methods::affine_heat(g, Variant::localized); }},
-    {"AHM_a, order 2", [](const TangentGraph& g) { return methods::affine_heat(g, Variant::adaptive, 1.0, 2); }},
     {"VHM_log", [](const TangentGraph& g) { return methods::vector_heat_log(g); }},
     {"SEM", [](const TangentGraph& g) { return methods::smoothed_exponential(g); }}};
 

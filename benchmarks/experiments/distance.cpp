@@ -21,7 +21,6 @@ struct DistanceMethod {
 constexpr DistanceMethod methods[] = {
     {"AHM_a", [](const Surface& s) { return methods::affine_heat(s.graph(), Variant::adaptive); }},
     {"AHM_l", [](const Surface& s) { return methods::affine_heat(s.graph(), Variant::localized); }},
-    {"AHM_a, order 2", [](const Surface& s) { return methods::affine_heat(s.graph(), Variant::adaptive, 1.0, 2); }},
     {"unfolded", [](const Surface& s) { return methods::unfolded_distance(s.graph()); }},
     {"HM", [](const Surface& s) { return methods::heat_distance(s.mesh().mesh()); }},
     {"HM (graph)", [](const Surface& s) { return methods::heat_distance(s.graph()); }},

@@ -67,10 +67,10 @@ struct HeatRow {
   std::vector<double> errors;
 };
 
-HeatRow with_heat(const Surface& surface, std::span<const Vertex> sources, std::span<const LogMap> exact, int order) {
+HeatRow with_heat(const Surface& surface, std::span<const Vertex> sources, std::span<const LogMap> exact) {
   HeatRow row;
   std::optional<LogMapSolver> solver;
-  row.first = cpu_seconds([&] { solver.emplace(surface.graph(), HeatOptions{.order = order}); });
+  row.first = cpu_seconds([&] { solver.emplace(surface.graph()); });
   for (std::size_t s = 0; s < sources.size(); ++s) {
     std::optional<LogMap> map;
     row.further = cpu_seconds([&] { map.emplace(solver->solve(Source::at_vertex(sources[s]))); });
@@ -141,7 +141,7 @@ void measure(const Surface& surface, Table& table) {
     sources.emplace_back(surface.size() / 11 + s * (surface.size() / source_count));
     map_seconds += cpu_seconds([&] { exact.push_back(geodesics->log_map(sources.back())); }) / source_count;
   }
-  const HeatRow first = with_heat(surface, sources, exact, 1), second = with_heat(surface, sources, exact, 2);
+  const HeatRow heat = with_heat(surface, sources, exact);
   const Against against = cgal(surface, sources[0], exact[0]);
   const Tolerant tolerant = with_tolerance(surface, *geodesics, sources, exact);
   const Paths paths = fast_paths(surface, *geodesics, sources, exact);
@@ -155,17 +155,12 @@ void measure(const Surface& surface, Table& table) {
              quantile(tolerant.vectors, 0.95),
              against.seconds,
              against.difference,
-             first.first,
-             first.further,
-             quantile(first.errors, 0.5),
-             mean(first.errors),
-             quantile(first.errors, 0.95),
-             quantile(first.errors, 1),
-             second.first,
-             quantile(second.errors, 0.5),
-             mean(second.errors),
-             quantile(second.errors, 0.95),
-             quantile(second.errors, 1),
+             heat.first,
+             heat.further,
+             quantile(heat.errors, 0.5),
+             mean(heat.errors),
+             quantile(heat.errors, 0.95),
+             quantile(heat.errors, 1),
              paths.milliseconds,
              quantile(paths.longer, 0.5),
              mean(paths.longer),
@@ -192,11 +187,6 @@ Table exact_compared(const Settings& settings) {
                "vector mean",
                "vector 95%",
                "vector max",
-               "order 2 first map s",
-               "order 2 vector median",
-               "order 2 vector mean",
-               "order 2 vector 95%",
-               "order 2 vector max",
                "fast path ms",
                "fast path longer median",
                "fast path longer mean",
@@ -209,13 +199,11 @@ Table exact_compared(const Settings& settings) {
   for_user_surfaces(settings, 50000, [&](const Surface& surface) { measure(surface, table); });
   table.seen = fmt::format(
       "Exact maps take n^{:.2f} on all shapes, {:.2f} of the first map by heat (median), with a tolerance of 1e-3 "
-      "n^{:.2f}. Vectors of heat are off by "
-      "{:.3f} of the "
-      "distance, of order 2 by {:.3f} (medians of the medians).",
+      "n^{:.2f}. Vectors of heat are off by {:.3f} of the distance (median of the medians).",
       fitted_order(table.numbers("vertices"), table.numbers("exact map s")),
       quantile(table.numbers("exact map s"), 0.5) / quantile(table.numbers("first heat map s"), 0.5),
       fitted_order(table.numbers("vertices"), table.numbers("map at 1e-3 s")),
-      quantile(table.numbers("vector median"), 0.5), quantile(table.numbers("order 2 vector median"), 0.5));
+      quantile(table.numbers("vector median"), 0.5));
   return table;
 }
 

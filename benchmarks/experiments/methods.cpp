@@ -59,7 +59,6 @@ void measure_all(std::string_view shape, const TangentGraph& graph, Table& table
   auto add = [&](const char* name, const auto& make) { measure(shape, name, graph, table, make); };
   add("AHM_a", [&] { return affine_heat(graph, Variant::adaptive); });
   add("AHM_l", [&] { return affine_heat(graph, Variant::localized); });
-  add("AHM_a, order 2", [&] { return affine_heat(graph, Variant::adaptive, 1.0, 2); });
   add("VHM_log", [&] { return vector_heat_log(graph); });
   add("VHM_log, radial at the source", [&] { return vector_heat_log(graph, {.radial_at_source = true}); });
   add("SEM", [&] { return smoothed_exponential(graph); });

@@ -16,12 +16,11 @@ matplotlib.rcParams.update({"svg.fonttype": "none", "svg.hashsalt": "ahm", "font
 import matplotlib.pyplot as plt
 
 # Okabe and Ito's colors, and a marker each, so that nothing hangs on color alone.
-LOOKS = {"AHM_a": ("#0072B2", "o"), "AHM_l": ("#56B4E9", "s"), "AHM_a, order 2": ("#000000", "D"),
-         "VHM_log": ("#D55E00", "^"), "SEM": ("#CC79A7", "v"), "DEM": ("#E69F00", "P"), "HM": ("#009E73", "X"),
-         "HM (graph)": ("#009E73", "x"), "SHM": ("#E69F00", "d"), "DEM, along the path": ("#D55E00", ">"),
-         "DEM, averaged": ("#CC79A7", "<"), "exact": ("#888888", "."), "affine": ("#0072B2", "o"),
-         "vector": ("#D55E00", "^"), "intrinsic Delaunay": ("#0072B2", "o"), "as given": ("#D55E00", "^"),
-         "as given, negative weights": ("#888888", "s"), "triangles": ("#000000", "o"),
+LOOKS = {"AHM_a": ("#0072B2", "o"), "AHM_l": ("#56B4E9", "s"), "VHM_log": ("#D55E00", "^"), "SEM": ("#CC79A7", "v"),
+         "DEM": ("#E69F00", "P"), "HM": ("#009E73", "X"), "HM (graph)": ("#009E73", "x"), "SHM": ("#E69F00", "d"),
+         "DEM, along the path": ("#D55E00", ">"), "DEM, averaged": ("#CC79A7", "<"), "exact": ("#888888", "."),
+         "affine": ("#0072B2", "o"), "vector": ("#D55E00", "^"), "intrinsic Delaunay": ("#0072B2", "o"),
+         "as given": ("#D55E00", "^"), "as given, negative weights": ("#888888", "s"), "triangles": ("#000000", "o"),
          "points of the icosphere": ("#888888", "x"), "random points": ("#E69F00", "^"),
          "points on a spiral": ("#CC79A7", "v"), "quads": ("#0072B2", "s"), "quads, refined": ("#0072B2", "s"),
          "hexagons": ("#009E73", "D"), "hexagons, refined": ("#009E73", "D"), "Voronoi cells": ("#D55E00", "P"),
@@ -254,7 +253,7 @@ def discretizations(rows):
 def polygons(rows):
     figure, axes = panels(2, width=4.6)
     for axis, how in zip(axes, ("refined", "polygons")):
-        lines(axis, only(rows, discretization=how, order="1", variant="adaptive"), "vertices", "rms", "mesh", logx=True,
+        lines(axis, only(rows, discretization=how, variant="adaptive"), "vertices", "rms", "mesh", logx=True,
               logy=True, title=how)
     return legend(figure, axes)
 

@@ -105,14 +105,11 @@ void measure(const char* name, const Polygons& mesh, Table& table) {
   for (Discretization how : {Discretization::refined, Discretization::polygons}) {
     const auto surface =
         polymesh::PolygonMeshSurface::build(mesh.positions, mesh.begin, mesh.corners, {.discretization = how});
-    for (int order : {1, 2}) {
-      const LogMapSolver solver(surface.graph(), {.order = order});
-      for (Variant variant : {Variant::adaptive, Variant::localized}) {
-        const Errors e = errors(mesh, surface, solver, variant);
-        table.add({name, mesh.vertices(), how == Discretization::refined ? "refined" : "polygons", order,
-                   to_string(variant), e.vectors.rms, e.vectors.hemisphere, e.distance_rms, e.distance_hemisphere,
-                   e.vectors.missing});
-      }
+    const LogMapSolver solver(surface.graph());
+    for (Variant variant : {Variant::adaptive, Variant::localized}) {
+      const Errors e = errors(mesh, surface, solver, variant);
+      table.add({name, mesh.vertices(), how == Discretization::refined ? "refined" : "polygons", to_string(variant),
+                 e.vectors.rms, e.vectors.hemisphere, e.distance_rms, e.distance_hemisphere, e.vectors.missing});
     }
   }
 }
@@ -120,7 +117,7 @@ void measure(const char* name, const Polygons& mesh, Table& table) {
 }  // namespace
 
 Table polygons(const Settings& settings) {
-  Table table({"mesh", "vertices", "discretization", "order", "variant", "rms", "largest, hemisphere", "distance rms",
+  Table table({"mesh", "vertices", "discretization", "variant", "rms", "largest, hemisphere", "distance rms",
                "distance, hemisphere", "missing"});
   for (Index k : settings.toy ? std::vector<Index>{1} : std::vector<Index>{2, 4, 8}) {
     measure("quads", test::cube_sphere(10 * k), table);

@@ -26,7 +26,6 @@ Table mazes(const Settings&);
 Table direct(const Settings&);
 Table mesh_scaling(const Settings&);
 Table methods_compared(const Settings&);
-Table orders(const Settings&);
 Table polygons(const Settings&);
 Table radial(const Settings&);
 Table runtime(const Settings&);
@@ -91,8 +90,6 @@ std::span<const Experiment> experiments() {
           "exact", "none", "Exact maps, and heat's against them",
           "On coarse meshes exact maps cost no more than the first by heat; vectors of heat are off by percents.",
           exact_compared},
-      Experiment{"orders", "after Fig. 24", "Order 2 against order 1",
-                 "Maps are of first order in h; the paper does not extrapolate.", orders},
       Experiment{
           "runtime", "Fig. 22", "Run time",
           "AHM_l is 27 % slower than VHM_log, AHM_a 70 %; further maps are 7 to 30 (AHM_l) and 3 to 10 (AHM_a) times "

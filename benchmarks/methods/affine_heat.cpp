@@ -9,8 +9,8 @@ namespace {
 
 class AffineHeat final : public Baseline {
  public:
-  AffineHeat(const TangentGraph& graph, Variant variant, double t_coef, int order)
-      : solver_(graph, {.t_coef = t_coef, .order = order}), variant_(variant) {}
+  AffineHeat(const TangentGraph& graph, Variant variant, double t_coef)
+      : solver_(graph, {.t_coef = t_coef}), variant_(variant) {}
 
   std::string_view name() const noexcept override { return variant_ == Variant::adaptive ? "AHM_a" : "AHM_l"; }
 
@@ -29,8 +29,8 @@ class AffineHeat final : public Baseline {
 
 }  // namespace
 
-Method affine_heat(const TangentGraph& graph, Variant variant, double t_coef, int order) {
-  return std::make_unique<AffineHeat>(graph, variant, t_coef, order);
+Method affine_heat(const TangentGraph& graph, Variant variant, double t_coef) {
+  return std::make_unique<AffineHeat>(graph, variant, t_coef);
 }
 
 }  // namespace ahm::methods

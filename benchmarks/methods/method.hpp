@@ -45,7 +45,7 @@ using Method = std::unique_ptr<const Baseline>;
 
 /// The affine heat method itself, for comparison.
 /// @throws as `LogMapSolver`
-Method affine_heat(const TangentGraph& graph, Variant variant, double t_coef = 1.0, int order = 1);
+Method affine_heat(const TangentGraph& graph, Variant variant, double t_coef = 1.0);
 
 /// The front that unfolds distances across triangles (`UnfoldingFront`): `LogMap::distance` of meshes. Distances alone.
 Method unfolded_distance(const TangentGraph& graph);

@@ -29,7 +29,6 @@ struct MapArguments {
   std::size_t memory = std::size_t{2} << 30;
   unsigned threads = 0;
   Index checkpoint = TiledMapOptions().checkpoint;
-  int order = 1;
 };
 
 struct LocalArguments {
@@ -81,10 +80,6 @@ inline void add_map_options(CLI::App& app, MapArguments& a) {
   app.add_option_function<std::string>("--variant", take, "of the diffusion")
       ->check(CLI::IsMember(named))
       ->default_str(std::string(to_string(a.variant)));
-  app.add_option("--order", a.order,
-                 "1, or 2: extrapolate from maps of several diffusion times, with an estimate of the error")
-      ->check(CLI::IsMember({1, 2}))
-      ->capture_default_str();
 }
 
 inline void add_local_options(CLI::App& app, LocalArguments& a) {
@@ -164,7 +159,6 @@ inline TiledMapOptions map_options(const MapArguments& a, bool coordinates) {
   options.heat.t_coef = a.t_coef;
   options.heat.threads = a.threads;
   options.heat.variant = a.variant;
-  options.heat.order = a.order;
   return options;
 }
 

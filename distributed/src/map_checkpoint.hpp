@@ -27,17 +27,16 @@ class MapCheckpoint final : public MarchKeeper {
 
   /// Whose tiles are kept.
   void keep(MapWriter& writer) { writer_ = &writer; }
-  /// Says in march.json that the map is being made. Called by all members, as the following.
-  void record();
   std::optional<MarchState> begin() override;
   void end_band(const March& march) override;
   /// Bands after which the run goes on, 0: from the source.
   Index begun_at() const { return begun_at_; }
-  /// The map is finished.
+  /// The map is finished. Called by all members.
   void remove();
 
  private:
   void read_record();
+  void record();
   std::filesystem::path record_file() const { return folder_ / "march.json"; }
   std::filesystem::path state_file(int slot, int rank) const;
   ArrayFile open_state(int rank) const;

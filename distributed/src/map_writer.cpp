@@ -25,7 +25,6 @@ MapTile::MapTile(const std::filesystem::path& path, MarchGoal goal) : is_saved(t
   if (goal == MarchGoal::distances) return;
   take(coordinates, "coordinates");
   take(spread, "spread");
-  if (file.has("error")) take(error, "error");
 }
 
 void MapTile::write(const std::filesystem::path& path) const {
@@ -34,7 +33,6 @@ void MapTile::write(const std::filesystem::path& path) const {
   if (has_map) arrays.push_back(array("coordinates", coordinates));
   arrays.push_back(array("distance", distance));
   if (has_map) arrays.push_back(array("spread", spread));
-  if (!error.empty()) arrays.push_back(array("error", error));
   arrays.push_back(array("status", status));
   write_arrays(path, kind, arrays);
 }

@@ -28,7 +28,6 @@ struct MapTile {
 
   std::vector<double> coordinates, spread;  ///< empty where distances are all there is
   std::vector<double> distance;
-  std::vector<double> error;  ///< of second order; else empty
   std::vector<std::uint8_t> status;
   std::int64_t used = 0;
   bool is_saved = false;

@@ -7,7 +7,6 @@
 #include "ahm/maps/unfolding_front.hpp"
 #include "map_summary.hpp"
 #include "map_writer.hpp"
-#include "maps/edge_paths.hpp"
 
 namespace ahm::distributed {
 
@@ -20,17 +19,11 @@ void find_distances(const TiledGraph& graph, const Source& source, double radius
   std::filesystem::create_directories(folder);
   const TileOwners alone{0, 1, std::vector<int>(graph.tiles(), 0)};
   MapWriter writer(graph, folder, MarchGoal::distances, memory, alone);
-  const auto put = [&](Index vertex, double distance) { writer.put(vertex, {Status::ok, {}, distance, NAN}); };
-  if (graph.is_delaunay()) {
-    progress.step("unfold", 0);
-    UnfoldingFront front(graph);
-    front.add(source);
-    front.run(radius, progress.stop);
-    for (Index i = 0; i < graph.size(); ++i) put(i, front.distance(Vertex(i)));
-  } else {
-    edge_paths(graph, source, radius, progress, put);
-    writer.finish(source, radius);
-  }
+  progress.step("unfold", 0);
+  UnfoldingFront front(graph);
+  front.add(source);
+  front.run(radius, progress.stop);
+  for (Index i = 0; i < graph.size(); ++i) writer.put(i, {Status::ok, {}, front.distance(Vertex(i)), NAN});
   write_finished(folder, {{"identity", identity}});
 }
 

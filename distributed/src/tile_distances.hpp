@@ -15,9 +15,8 @@
 
 namespace ahm::distributed {
 
-/// Writes distances from a source as tiles like those of maps of distances, unfolded where the graph `is_delaunay`, else along
-/// edges; and, last of all, map.json. Where they are there they are not made again. Unfolding takes 30 bytes per vertex of the
-/// graph; ways along edges no more than the front.
+/// Unfolds distances from a source on a Delaunay triangulation and writes them as tiles like those of maps of distances; and, last of
+/// all, map.json. Where they are there they are not made again. Takes 30 bytes per vertex of the graph.
 /// @param radius    how far, world units
 /// @param memory    bytes of tiles of distances at a time
 /// @param identity  of the graph and the source

@@ -23,7 +23,7 @@ def main():
     options = parser.parse_args()
 
     mesh = ahm.TriangleMesh(*panel(options.size))
-    m = ahm.log_map(mesh, [0.0, 0.0, 0.0], u_axis=[1, 0, 0], order=2)
+    m = ahm.log_map(mesh, [0.0, 0.0, 0.0], u_axis=[1, 0, 0])
     path = ahm.coverage(m, radius=0.8, spacing=0.05)
     length = sum(np.linalg.norm(np.diff(path.position[path.piece == k], axis=0), axis=1).sum() for k in range(path.pieces))
     bends = np.count_nonzero(path.between)

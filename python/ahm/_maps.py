@@ -101,7 +101,7 @@ class LogMap:
 
     @property
     def error_estimate(self) -> Optional[np.ndarray]:
-        """(n,) estimate of |error of uv|, world units, of polar maps and with order=2; else None."""
+        """(n,) estimate of |error of uv|, world units, of polar maps; None for heat and exact maps."""
         found = self._map.error_estimate()
         return found if len(found) else None
 

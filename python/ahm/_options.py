@@ -33,7 +33,6 @@ def _tolerance(value: Any, name: str) -> float:
 CHECKS: Dict[str, Callable[[Any, str], Any]] = {
     "t_coef": _positive,
     "variant": _one_of("adaptive", "localized"),
-    "order": _whole(1, 2),
     "strategy": _one_of("automatic", "global", "march"),
     "expected_maps": _whole(0),
     "memory": _whole(0, 2**62),

@@ -77,7 +77,6 @@ class LogMapSolver(_Maker):
     surface : a `Surface`, or what `ahm.surface` takes.
     t_coef : tau = t_coef h^2, the diffusion time; > 0.
     variant : "adaptive" (Alg. 2) or "localized" (Alg. 1) of [SS25].
-    order : 1, or 2: extrapolates from two or three diffusion times, with an error estimate.
     strategy : "automatic", "global" (one factorization) or "march" (band by band, any size and distance).
     expected_maps : for "automatic": the number of maps to be made; 0: many.
     memory : for "automatic": bytes that factors may take; 0: half of the machine's memory.
@@ -95,13 +94,12 @@ class LogMapSolver(_Maker):
     >>> maps = solver.log_maps([0, 7, 12])
     """
 
-    def __init__(self, surface: Any, *, t_coef: float = 1.0, variant: str = "adaptive", order: int = 1,
+    def __init__(self, surface: Any, *, t_coef: float = 1.0, variant: str = "adaptive",
                  strategy: str = "automatic", expected_maps: int = 0, memory: int = 0, accuracy: float = 1e-9,
                  ordering: str = "amd", threads: int = 0, progress: Progress = None) -> None:
         self.surface = as_surface(surface)
-        self.options = checked(t_coef=t_coef, variant=variant, order=order, strategy=strategy,
-                               expected_maps=expected_maps, memory=memory, accuracy=accuracy, ordering=ordering,
-                               threads=threads)
+        self.options = checked(t_coef=t_coef, variant=variant, strategy=strategy, expected_maps=expected_maps,
+                               memory=memory, accuracy=accuracy, ordering=ordering, threads=threads)
         with reporting(progress) as report:
             self._core = _core.Solver(self.surface._body, self.options, report)
 
@@ -326,7 +324,7 @@ def log_map(surface: Any, source: Any, *, method: str = "auto", u_axis: Any = No
         across noise; "exact": straight lines over the flat triangles of a mesh. `LogMap.method` is the one that was used.
     tolerance : of exact distances, as of `ExactGeodesics`.
     u_axis, radius, frames, progress : as of `LogMapSolver.log_map`.
-    options : threads; of `LogMapSolver`, for method "heat": order, t_coef, variant, ...
+    options : threads; of `LogMapSolver`, for method "heat": t_coef, variant, ...
 
     >>> import ahm
     >>> m = ahm.log_map(ahm.shapes.sphere(3), 0, method="exact")

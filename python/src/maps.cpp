@@ -43,11 +43,11 @@ Maker::Maker(const py::object& given) {
 namespace {
 
 /// @throws ResourceExhausted where maps would take far more memory than there is, before any of it is taken
-void check_memory(const TangentGraph& graph, int order) {
+void check_memory(const TangentGraph& graph) {
   const GraphSize size{graph.size(), graph.dimension(), graph.transport_kind()};
   const double machine = machine_memory();
   const double least =
-      std::min(estimate_cost(size, Strategy::global, order).bytes, estimate_cost(size, Strategy::march, order).bytes);
+      std::min(estimate_cost(size, Strategy::global).bytes, estimate_cost(size, Strategy::march).bytes);
   constexpr double trust = 2;  // of the estimate
   if (machine > 0 && least > trust * machine)
     throw ResourceExhausted("maps on " + std::to_string(size.vertices) + " vertices take about " +
@@ -57,7 +57,7 @@ void check_memory(const TangentGraph& graph, int order) {
 
 SolverPtr make_solver(const BodyPtr& body, const py::dict& options, const py::object& report) {
   HeatOptions o = heat_options(options);
-  check_memory(body->graph(), o.order);
+  check_memory(body->graph());
   return compute(report, py::none(), [body, o](const Progress& progress) mutable {
     o.progress = progress;
     return std::make_shared<Solver>(Solver{body, LogMapSolver(body->graph(), o)});
@@ -329,7 +329,8 @@ void add_maps(py::module_& module) {
       .def("sample", &sample);
   module.def("exact_maps", &exact_maps);
   module.def("choose_method", [](const BodyPtr& body) {
-    return std::string(to_string(compute([body] { return body->surface() ? body->surface()->suggested_method() : choose_method(body->graph()); })));
+    return std::string(to_string(compute(
+        [body] { return body->surface() ? body->surface()->suggested_method() : choose_method(body->graph()); })));
   });
 }
 

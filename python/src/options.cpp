@@ -14,7 +14,6 @@ HeatOptions heat_options(const py::dict& options) {
   HeatOptions o;
   read(options, "t_coef", o.t_coef);
   read_variant(options, o.variant);
-  read(options, "order", o.order);
   read_choice(options, "strategy", o.strategy,
               {{"automatic", Strategy::automatic}, {"global", Strategy::global}, {"march", Strategy::march}});
   read(options, "expected_maps", o.expected_maps);

@@ -148,13 +148,16 @@ TEST(PolarMethod, IsTheDefaultWhereTrianglesAgree) {
     EXPECT_EQ(polar[i]["error_estimate"], 0);  // windows cover so small a mesh
   }
   EXPECT_EQ(map({"--method", "polar"}).at("method"), "polar");
-  EXPECT_EQ(map({"--method", "heat"}).at("method"), "heat");
-  EXPECT_EQ(map({"--order", "2"}).at("method"), "heat");
+  EXPECT_TRUE(chosen.contains("median_error_estimate"));
+  const auto heat = map({"--method", "heat"});
+  EXPECT_EQ(heat.at("method"), "heat");
+  EXPECT_FALSE(heat.contains("median_error_estimate"));
+  EXPECT_EQ(map({"--t-coef", "2"}).at("method"), "heat");
   EXPECT_EQ(map({"--backend", "pointcloud"}).at("method"), "heat");
   EXPECT_EQ(map({"--backend", "pointcloud", "--method", "polar"}).at("method"), "polar");
-  const Outcome outcome = run(with(words, {"--method", "polar", "--order", "2"}));
+  const Outcome outcome = run(with(words, {"--method", "polar", "--t-coef", "2"}));
   EXPECT_NE(outcome.status, 0);
-  EXPECT_NE(outcome.err.find("polar has no --order"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("polar has no --t-coef"), std::string::npos) << outcome.err;
 }
 
 TEST(PolarMethod, MakesAnAtlasAndACenter) {
@@ -239,7 +242,6 @@ TEST(ExactMethod, RefusesTheOptionsOfHeat) {
   Folder folder;
   const std::string input = folder.write("square.off", off(flat_square(9)));
   for (const Words& option : std::vector<Words>{{"--variant", "adaptive"},
-                                                {"--order", "1"},
                                                 {"--strategy", "auto"},
                                                 {"--t-coef", "1"},
                                                 {"--ordering", "amd"},

@@ -85,9 +85,9 @@ double farthest_back(const std::vector<std::string>& there, const std::vector<st
 
 TEST(InverseCommand, GoesBackWhereALogmapOfTheSameOptionsCameFrom) {
   for (const std::vector<std::string>& options :
-       {std::vector<std::string>{}, {"--order", "2"}, {"--strategy", "march"}, {"--variant", "localized"}})
+       {std::vector<std::string>{}, {"--t-coef", "4"}, {"--strategy", "march"}, {"--variant", "localized"}})
     EXPECT_LT(farthest_back(options, options), 1e-5);
-  EXPECT_GT(farthest_back({"--order", "2"}, {}), 1e-3);
+  EXPECT_GT(farthest_back({"--t-coef", "4"}, {}), 1e-3);
 }
 
 TEST(InverseCommand, RefusesNonsense) {
@@ -98,7 +98,7 @@ TEST(InverseCommand, RefusesNonsense) {
   EXPECT_EQ(run({"inverse", input, "-s", "0", "--at", "1,nan", "-o", folder / "o.csv"}).status, 2);
   EXPECT_EQ(run({"inverse", input, "-s", "0", "--at", "0,0", "-o", folder / "o.obj"}).status, 1);
   EXPECT_EQ(
-      run({"inverse", input, "-s", "0", "--at", "0,0", "-o", folder / "o.csv", "--method", "exact", "--order", "2"})
+      run({"inverse", input, "-s", "0", "--at", "0,0", "-o", folder / "o.csv", "--method", "exact", "--t-coef", "2"})
           .status,
       2);
 }

@@ -127,7 +127,7 @@ void expect_same_at_all_scales(const Words& command, const std::function<Words(d
 
 TEST(Scales, DoNotMatterToMaps) {
   expect_same_at_all_scales({"logmap", "--source", "40"}, [](double) { return Words{}; });
-  expect_same_at_all_scales({"logmap", "--order", "2", "--source", "40"}, [](double s) {
+  expect_same_at_all_scales({"logmap", "--method", "heat", "--source", "40"}, [](double s) {
     return Words{"--radius", words(s, {0.5})};
   });
   expect_same_at_all_scales({"logmap", "--strategy", "march", "--gradient"}, [](double s) {

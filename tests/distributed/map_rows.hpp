@@ -17,12 +17,10 @@ struct MapRows {
       for (double x : file.get<double>("coordinates")) coordinates.push_back(x);
       for (double x : file.get<double>("distance")) distance.push_back(x);
       for (double x : file.get<double>("spread")) spread.push_back(x);
-      if (file.has("error"))
-        for (double x : file.get<double>("error")) error.push_back(x);
       for (std::uint8_t s : file.get<std::uint8_t>("status")) status.push_back(static_cast<Status>(s));
     }
   }
-  std::vector<double> coordinates, distance, spread, error;
+  std::vector<double> coordinates, distance, spread;
   std::vector<Status> status;
 };
 

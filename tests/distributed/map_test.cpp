@@ -51,58 +51,6 @@ TEST(TiledLogMap, HasTheBitsOfTheMapInMemory) {
   expect_same_map(cloud, Row(130 * 65 + 65), Variant::adaptive, 40);
 }
 
-/// By two times, and by three where parts are large enough.
-TEST(TiledLogMap, OfSecondOrderHasTheBitsOfTheMapInMemory) {
-  for (const Index side : {70, 130}) {
-    const TiledCloud cloud(two_hills(side, 40), {.tile_points = 1500});
-    cloud.build();
-    const auto surface = pointcloud::PointCloudSurface::build(cloud.points, {}, {.parts_apart = false});
-    const Source source = Source::at_vertex(surface.rows().vertex(Row(side * side / 2)).value());
-    const TiledGraph graph(cloud.tiles, 1 << 22);
-    const LogMapSolver solver(surface.graph(), {.order = 2, .strategy = Strategy::march});
-    for (const double radius : {std::numeric_limits<double>::infinity(), 25.0}) {
-      const LogMap expected = solver.solve(source, {.radius = radius});
-      const auto folder = cloud.folder.directory() / "map", csv = cloud.folder.directory() / "map.csv";
-      const auto summary = write_log_map(graph, source, folder, {.heat = {.order = 2}, .radius = radius});
-      EXPECT_EQ(summary.march.bands, expected.march().bands);
-      EXPECT_EQ(summary.ok, expected.count(Status::ok));
-      const MapRows rows(graph, folder);
-      EXPECT_TRUE(same_bits<double>(rows.coordinates, expected.coordinates()));
-      EXPECT_TRUE(same_bits<double>(rows.distance, expected.distances()));
-      EXPECT_TRUE(same_bits<double>(rows.error, expected.error_estimate()));
-      EXPECT_TRUE(
-          std::equal(rows.status.begin(), rows.status.end(), expected.status().begin(), expected.status().end()));
-      for (const auto& [name, bytes] : contents(folder))
-        EXPECT_TRUE(name == "map.json" || name.ends_with(".map")) << name;
-      write_rows(graph, folder, csv);
-      const auto lines = csv_lines(csv, "row,u,v,distance,spread,error_estimate,status");
-      const RowLogMap on_rows = surface.on_rows(expected);
-      for (const auto& [row, line] : lines) {
-        double number[5];
-        const auto r = static_cast<std::size_t>(row);
-        if (on_rows.status[r] != Status::ok) continue;
-        ASSERT_EQ(std::sscanf(line.c_str(), ",%lf,%lf,%lf,%lf,%lf,ok", number, number + 1, number + 2, number + 3,
-                              number + 4),
-                  5)
-            << line;
-        EXPECT_EQ(number[3], on_rows.spread[r]);
-        EXPECT_EQ(number[4], on_rows.error_estimate[r]);
-      }
-    }
-  }
-}
-
-TEST(TiledLogMap, OfSecondOrderHasCoordinates) {
-  const TiledCloud cloud(hills(20), {.tile_points = 400});
-  cloud.build();
-  const TiledGraph graph(cloud.tiles, 1 << 30);
-  const auto make = [&](const distributed::TiledMapOptions& options) {
-    write_log_map(graph, Source::at_vertex(Vertex{0}), cloud.folder.directory() / "map", options);
-  };
-  expect_error<InvalidArgument>([&] { make({.heat = {.order = 2}, .coordinates = false}); }, "order 1");
-  expect_error<InvalidArgument>([&] { make({.heat = {.order = 3}}); }, "order is 3");
-}
-
 /// Of distances alone: those of the localized map, to the bit, and nothing else on disk.
 TEST(TiledLogMap, DistancesAloneAreThoseOfTheLocalizedMap) {
   const TiledCloud cloud(two_hills(70, 40), {.tile_points = 600});

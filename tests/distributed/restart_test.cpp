@@ -74,26 +74,6 @@ TEST(MapRestart, AfterAnyBandEndsWithTheSameBytes) {
   for (const TiledMapOptions& options : all_options()) expect_same_bytes(cloud, options, 3, 5);
 }
 
-/// In the map of either time, and in what is found before.
-TEST(MapRestart, OfSecondOrderEndsWithTheSameBytes) {
-  const Strip cloud;
-  const auto whole = cloud.folder.directory() / "whole", folder = cloud.folder.directory() / "map";
-  TiledMapOptions options{.heat = {.order = 2}, .checkpoint = 3};
-  const Index bands = make(cloud, whole, options).march.bands;
-  const auto expected = contents(whole);
-  for (Index band = 1; band <= bands; band += 4) {
-    EXPECT_THROW(make(cloud, folder, options, band), Ended);
-    EXPECT_FALSE(std::filesystem::exists(folder / "map.json"));
-    expect_error<InvalidArgument>([&] { make(cloud, folder, {}); }, "not finished, of other");
-    const auto summary = make(cloud, folder, options);
-    EXPECT_LE(summary.begun_at, band - 1);
-    EXPECT_GE(summary.begun_at, band - options.checkpoint);
-    EXPECT_EQ(summary.march.bands, bands);
-    ASSERT_TRUE(contents(folder) == expected) << "ended in band " << band;
-    std::filesystem::remove_all(folder);
-  }
-}
-
 TEST(MapRestart, AgainAndAgainEndsWithTheSameBytes) {
   const Strip cloud;
   const auto whole = cloud.folder.directory() / "whole", folder = cloud.folder.directory() / "map";

@@ -117,7 +117,6 @@ void solve_in_turn(const HeatOptions& options, std::vector<Index> rows = {0, 3, 
 
 TEST(AllocationsFail, WhileASolverSolves) { solve_in_turn({.threads = 1}); }
 TEST(AllocationsFail, WhileASolverMarches) { solve_in_turn({.strategy = Strategy::march, .threads = 1}, {12}); }
-TEST(AllocationsFail, WhileASolverExtrapolates) { solve_in_turn({.order = 2, .threads = 1}); }
 TEST(AllocationsFail, OnManyThreads) { solve_in_turn({.threads = 4}); }
 
 TEST(AllocationsFail, WhileOperatorsAreFactoredInAnyOrder) {

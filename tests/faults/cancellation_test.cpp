@@ -69,7 +69,7 @@ TEST(Cancellation, AtAnyStepLeavesWhatItStoodOnAsItWas) {
       (void)trimesh::TriangleMeshSurface::build(mesh.positions, mesh.faces, {.threads = threads, .progress = progress});
     });
     steps += cancel_in_turn([&](const Progress& progress) {
-      (void)LogMapSolver(surface.graph(), {.order = 2, .threads = threads, .progress = progress});
+      (void)LogMapSolver(surface.graph(), {.threads = threads, .progress = progress});
     });
     LocalMapOptions local{.radius = 0.3};
     local.heat.threads = threads;

@@ -76,7 +76,7 @@ void ask_from_eight_threads(const HeatOptions& options) {
 
 TEST(Threads, EightOnOneSolverGetWhatOneGets) {
   ask_from_eight_threads({});
-  ask_from_eight_threads({.variant = Variant::localized, .order = 2});
+  ask_from_eight_threads({.variant = Variant::localized});
   ask_from_eight_threads({.strategy = Strategy::march});
 }
 

@@ -297,7 +297,7 @@ void add_gltf(const Seeds& seeds) {
 void add_command_lines(const Seeds& seeds) {
   const char* lines[] = {
       "logmap\nscan.ply\n--source\n0\n-o\nmap.csv\n--view\nmap.png",
-      "logmap\nq.obj\n--source\nface:7:.2,.3,.3,.2\n--u-axis\n1,0,0\n--order\n2\n-o\nmap.ply",
+      "logmap\nq.obj\n--source\nface:7:.2,.3,.3,.2\n--u-axis\n1,0,0\n--t-coef\n2\n-o\nmap.ply",
       "path\nmesh.obj\n--from\n7\n--to\n0.1,0.2,1.4\n-o\npath.obj\n--fast",
       "local-maps\nscan.ply\n--radius\n0.02\n--k\n32\n--pad\n--float32\n-o\nn.npz",
       "coverage\nscan.ply\n--source\n7\n--radius\n0.2\n--spacing\n0.01\n-o\npath.csv",

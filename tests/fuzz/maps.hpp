@@ -37,7 +37,6 @@ inline void solve(const TangentGraph& graph, Bytes& bytes) {
   HeatOptions options{.threads = 1};
   const std::uint8_t way = bytes.byte();
   options.variant = (way & 1) != 0 ? Variant::localized : Variant::adaptive;
-  options.order = (way & 2) != 0 ? 2 : 1;
   options.strategy = (way & 4) != 0 ? Strategy::march : Strategy::global;
   options.ordering = (way & 16) != 0 ? Ordering::nested_dissection : Ordering::amd;
   if ((way & 32) != 0) options.t_coef = bytes.coordinate((way & 64) != 0);

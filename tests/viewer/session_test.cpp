@@ -80,25 +80,21 @@ TEST_F(ViewerSession, GivesExactSourcesInFaces) {
 TEST_F(ViewerSession, HonoursEverySetting) {
   HeatOptions heat;
   heat.t_coef = 2;
-  heat.order = 2;
   const LogMapSolver solver(sphere.surface.graph(), heat);
   MapOptions options;
   options.variant = Variant::localized;
   options.radius = 1;
   const Vec3 axis{0, 0.3, 1};
   const auto expected = sphere.surface.on_rows(solver.solve(sphere.surface.source(Row{7}, axis).source, options));
-  const Answer answer = session.answer("map", request({{"source", {{"row", 7}}},
-                                                       {"variant", "localized"},
-                                                       {"order", 2},
-                                                       {"t_coef", 2},
-                                                       {"radius", 1},
-                                                       {"u_axis", {0, 0.3, 1}}}));
+  const Answer answer = session.answer(
+      "map",
+      request(
+          {{"source", {{"row", 7}}}, {"variant", "localized"}, {"t_coef", 2}, {"radius", 1}, {"u_axis", {0, 0.3, 1}}}));
   ASSERT_EQ(answer.status, 200) << answer.body;
   expect_same(expected, Unpacked(answer.body), scale_of(session));
-  EXPECT_EQ(
-      Unpacked(answer.body).meta.at("command"),
-      "ahm logmap sphere.ply --source 7 -o map.csv --method heat --variant localized --order 2 --t-coef 2 --radius 1 "
-      "--u-axis=0,0.3,1");
+  EXPECT_EQ(Unpacked(answer.body).meta.at("command"),
+            "ahm logmap sphere.ply --source 7 -o map.csv --method heat --variant localized --t-coef 2 --radius 1 "
+            "--u-axis=0,0.3,1");
 }
 
 TEST_F(ViewerSession, NullIsNoRadiusWhateverTheUsualOne) {
@@ -210,8 +206,8 @@ TEST_F(ViewerSession, RefusesWhatItCannotAnswer) {
        {json{{"source", {{"row", 1000000}}}}, json{{"source", {{"row", -1}}}}, json{{"source", {{"row", 1.5}}}},
         json{{"source", "7"}}, json::object(), json{{"source", {{"face", 3}, {"weights", {1, 1, 1}}}}},
         json{{"source", {{"face", 3}, {"weights", {1}}}}}, json{{"source", {{"row", 7}}}, {"method", "magic"}},
-        json{{"source", {{"row", 7}}}, {"t_coef", 0}}, json{{"source", {{"row", 7}}}, {"order", 3}},
-        json{{"source", {{"row", 7}}}, {"radius", -1}}, json{{"source", {{"row", 7}}}, {"u_axis", {0, 0, 0}}}}) {
+        json{{"source", {{"row", 7}}}, {"t_coef", 0}}, json{{"source", {{"row", 7}}}, {"radius", -1}},
+        json{{"source", {{"row", 7}}}, {"u_axis", {0, 0, 0}}}}) {
     const Answer answer = session.answer("map", request(bad));
     EXPECT_EQ(answer.status, 400) << bad;
     EXPECT_FALSE(error_of(answer).empty());

@@ -37,7 +37,6 @@ json session_info(const Surface& surface, const io::Geometry& geometry, const Se
                {"formats", options.formats},
                {"method", to_string(usual.method)},
                {"variant", to_string(usual.variant)},
-               {"order", usual.order},
                {"t_coef", usual.t_coef}};
   if (usual.radius) info["radius"] = *usual.radius;
   if (options.source) info["source"] = point_as_json(standing_for(surface, *options.source));

@@ -27,9 +27,7 @@ class Makers {
   /// factors, in time proportional to what they reach.
   const LogMapSolver& solver(const Settings& settings, const std::stop_token& stop) {
     const bool marched = settings.radius && is_large();
-    const auto fits = [&](const Kept& kept) {
-      return kept.t_coef == settings.t_coef && kept.order == settings.order && kept.marched == marched;
-    };
+    const auto fits = [&](const Kept& kept) { return kept.t_coef == settings.t_coef && kept.marched == marched; };
     const auto found = std::find_if(kept_.begin(), kept_.end(), fits);
     if (found != kept_.end()) {
       kept_.splice(kept_.begin(), kept_, found);
@@ -37,11 +35,10 @@ class Makers {
       if (kept_.size() >= 2) kept_.pop_back();
       HeatOptions heat;
       heat.t_coef = settings.t_coef;
-      heat.order = settings.order;
       heat.strategy = marched ? Strategy::march : Strategy::automatic;
       heat.threads = threads_;
       heat.progress.stop = stop;
-      kept_.push_front({settings.t_coef, settings.order, marched, LogMapSolver(surface_.graph(), heat)});
+      kept_.push_front({settings.t_coef, marched, LogMapSolver(surface_.graph(), heat)});
     }
     return kept_.front().solver;
   }
@@ -76,7 +73,6 @@ class Makers {
  private:
   struct Kept {
     double t_coef;
-    int order;
     bool marched;
     LogMapSolver solver;
   };

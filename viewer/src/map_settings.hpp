@@ -12,13 +12,11 @@ namespace ahm::viewer {
 /// Without what decals and tool paths have no option for, or one of another meaning.
 inline Settings of_patch(Settings settings) {
   settings.radius.reset();
-  settings.order = 1;
   return settings;
 }
 
 /// Without what curves have no option for.
 inline Settings of_curve(Settings settings) {
-  settings.order = 1;
   if (settings.method == Method::polar) settings.method = Method::heat;
   settings.u_axis.reset();
   return settings;

@@ -145,10 +145,6 @@ Settings Request::settings(const Settings& usual) const {
     for (const Variant variant : all_variants)
       if (to_string(variant) == name) out.variant = variant;
   }
-  if (has("order")) {
-    out.order = index(at("order"), "order");
-    if (out.order != 1 && out.order != 2) refuse("order", "must be 1 or 2");
-  }
   if (has("t_coef")) out.t_coef = positive("t_coef");
   if (has("radius")) out.radius = positive("radius");
   if (const auto none = json_.find("radius"); none != json_.end() && none->is_null()) out.radius.reset();

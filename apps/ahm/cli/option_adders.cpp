@@ -218,8 +218,7 @@ CLI::Option* add_method(CLI::App& app, SolveOptions& o, std::vector<Method> meth
     if (o.tolerance > 0 && o.method != Method::exact)
       throw CLI::ValidationError("--tolerance", "belongs to --method exact");
     if (o.method == Method::heat) return;
-    for (const char* name :
-         {"--variant", "--order", "--strategy", "--t-coef", "--ordering", "--accuracy", "--estimate"}) {
+    for (const char* name : {"--variant", "--strategy", "--t-coef", "--ordering", "--accuracy", "--estimate"}) {
       const CLI::Option* option = app.get_option_no_throw(name);
       if (option == nullptr || option->count() == 0) continue;
       if (o.method)
@@ -273,11 +272,6 @@ CLI::Option* add_strategy(CLI::App& app, SolveOptions& o) {
       app, "--strategy", o.strategy,
       choice_of<Strategy>({{"auto", Strategy::automatic}, {"global", Strategy::global}, {"march", Strategy::march}}),
       "NAME", "auto (default), global: one factorization, or march: band by band, any size and distance");
-}
-
-CLI::Option* add_order(CLI::App& app, SolveOptions& o) {
-  return add_parsed(app, "--order", o.order, integer_parser(1, 2), "N",
-                    "1 (default), or 2: extrapolate from several diffusion times");
 }
 
 CLI::Option* add_t_coef(CLI::App& app, SolveOptions& o) {

@@ -100,7 +100,6 @@ CLI::Option* add_method(CLI::App& app, SolveOptions& o, std::vector<Method> meth
 CLI::Option* add_tolerance(CLI::App& app, SolveOptions& o);
 CLI::Option* add_variant(CLI::App& app, SolveOptions& o);
 CLI::Option* add_strategy(CLI::App& app, SolveOptions& o);
-CLI::Option* add_order(CLI::App& app, SolveOptions& o);
 CLI::Option* add_t_coef(CLI::App& app, SolveOptions& o);
 /// For the graph, and for maps on it where there are any.
 CLI::Option* add_threads(CLI::App& app, InputOptions& graph, SolveOptions* maps = nullptr);

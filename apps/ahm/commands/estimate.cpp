@@ -27,7 +27,7 @@ struct Estimate {
 constexpr BuildCost base{.bytes = 17e6, .seconds = 0.01};
 
 Estimate estimate(const GraphSize& size, Strategy strategy, const Backend& graph, const HeatOptions& heat) {
-  const Cost cost = estimate_cost(size, strategy, heat.order, heat.threads);
+  const Cost cost = estimate_cost(size, strategy, heat.threads);
   const double n = size.vertices;
   return {strategy, base.bytes + graph.cost.bytes * n + cost.bytes,
           base.seconds + graph.cost.seconds * n + cost.first_map_seconds};

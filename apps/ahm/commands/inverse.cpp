@@ -102,7 +102,6 @@ void offer(CLI::App& app, InverseCommandOptions& o) {
   add_method(app, o.solve, {Method::polar, Method::exact}, true);
   add_tolerance(app, o.solve);
   add_strategy(app, o.solve);
-  add_order(app, o.solve);
   add_graph_options(app, o.input, o.solve);
   add_local(app, o.input, "To the farthest of POINTS");
   add_json(app, o.output);

@@ -32,7 +32,7 @@ constexpr const char* logmap_footer =
     "        distance        along the surface; by heat it is not |(u, v)|\n"
     "        quality         in (0, 1]; below 0.5 expect u,v to be wrong by more than a tenth of the distance\n"
     "        spread          large at the cut locus, where neighbors lie far apart in the map\n"
-    "        error_estimate  expected error of (u, v); polar, and with --order 2\n"
+    "        error_estimate  expected error of (u, v); polar maps only\n"
     "        bounded         1 where distance is only a lower bound, the straight line in space; not for exact\n"
     "        The numbers are nan where status is not ok:\n"
     "          disconnected  from the source                beyond_radius  farther than --radius\n"
@@ -151,7 +151,6 @@ void offer_method(CLI::App& app, LogmapOptions& o) {
              "Of the factorization: amd (default) or nested-dissection")
       ->group(group);
   add_strategy(app, o.solve)->group(group);
-  add_order(app, o.solve)->group(group);
   add_parsed(app, "--accuracy", o.solve.accuracy, parse_positive, "A",
              "Of a march, against a global solve, relative (default 1e-9)")
       ->group(group);

@@ -64,7 +64,6 @@ nlohmann::ordered_json as_json(const LogmapRun& run, const OutputOptions& output
   if (run.map.method() == Method::heat) {
     j["variant"] = to_string(run.map.variant());
     j["strategy"] = to_string(run.map.strategy());
-    j["order"] = run.options.order;
     j["t_coef"] = run.options.t_coef;
   }
   j["mean_edge_length"] = run.input.mean_edge_length();

@@ -17,7 +17,7 @@ namespace {
 void check_memory_of_factors(const SolveOptions& options, const TangentGraph& graph) {
   if (options.strategy != Strategy::global) return;
   const GraphSize size{graph.size(), graph.dimension(), graph.transport_kind()};
-  const double wanted = estimate_cost(size, Strategy::global, options.order).bytes, memory = machine_memory();
+  const double wanted = estimate_cost(size, Strategy::global).bytes, memory = machine_memory();
   if (memory > 0 && wanted > memory)
     throw ResourceExhausted(fmt::format(
         "--strategy global: the factors would take about {}, this machine has {}; leave the choice to auto, which "
@@ -31,7 +31,7 @@ void check_memory_of_march(const SolveOptions& options, const TangentGraph& grap
   constexpr double worth_a_look = 0.4;
   const double memory = machine_memory();
   const GraphSize size{graph.size(), graph.dimension(), graph.transport_kind()};
-  const double quick = estimate_cost(size, Strategy::march, options.order, options.threads).bytes;
+  const double quick = estimate_cost(size, Strategy::march, options.threads).bytes;
   if (!(memory > 0 && quick > worth_a_look * memory)) return;
   const double radius = options.radius.value_or(std::numeric_limits<double>::infinity());
   check_memory(

@@ -58,7 +58,6 @@ viewer::SessionOptions session_options(const ViewOptions& options, const Input& 
   session.input_options = fmt::format("{}", fmt::join(words(options.input), " "));
   session.settings = {options.solve.method.value_or(input.surface().suggested_method()),
                       options.solve.variant,
-                      options.solve.order,
                       options.solve.t_coef,
                       first_radius(options, input.graph()),
                       {},
@@ -137,7 +136,6 @@ void offer(CLI::App& app, ViewOptions& o) {
   app.add_flag("--local", o.local,
                "Begin with maps of the surroundings of the source, 64 edges around it, where no --radius is\n"
                "given; always with more than 500,000 vertices, where the first map of all would take long");
-  add_parsed(app, "--order", o.solve.order, integer_parser(1, 2), "N", "1 (default) or 2, as in 'ahm logmap'");
   add_graph_options(app, o.input, o.solve);
   add_verbosity(app, o.verbosity);
 }

@@ -42,7 +42,7 @@ std::string input_column(const std::string& name);
 io::Table table_of(const io::Geometry& input, const std::vector<Vec3>& normals,
                    const std::vector<std::array<std::uint8_t, 3>>& colors);
 
-/// The columns of a map: u, v, distance, angle (not from a curve), status, quality, spread, error_estimate (of order 2).
+/// The columns of a map: u, v, distance, angle (not from a curve), status, quality, spread, error_estimate (of polar maps).
 void add_map(io::Table& table, const RowLogMap& rows, const std::vector<double>& quality);
 
 /// What a picture shows of a cloud: the points that its graph has, NaN in place of the others, which lie denser and would

@@ -21,7 +21,7 @@ LogMap MapMaker::map(Vertex source, double radius, bool frames) const {
 std::vector<double> MapMaker::coordinates(std::span<const Vertex> sources,
                                           std::span<const std::span<const Vertex>> regions,
                                           std::span<const double> reach) const {
-  if (solver_ == nullptr || solver_->options().order != 1) return coordinates_of_whole(sources, regions, reach);
+  if (solver_ == nullptr) return coordinates_of_whole(sources, regions, reach);
   std::vector<Source> starts;
   for (Vertex vertex : sources) starts.push_back(Source::at_vertex(vertex));
   HeatOptions heat = solver_->options();

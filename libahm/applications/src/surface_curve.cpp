@@ -145,8 +145,7 @@ RowLogMap rows_from_curve(const Surface& surface, const LogMap& map, const Surfa
     }
     if (!(rows.distance[i] > radius)) continue;
     rows.u[i] = rows.v[i] = rows.distance[i] = NAN;
-    for (std::vector<double>* more : {&rows.spread, &rows.error_estimate})
-      if (!more->empty()) (*more)[i] = NAN;
+    if (!rows.spread.empty()) rows.spread[i] = NAN;
     rows.status[i] = Status::beyond_radius;
     rows.vertex[i].reset();
   }

@@ -56,26 +56,6 @@ TEST(SphereCloud, ConvergesOnRandomPointsInBothVariants) {
   }
 }
 
-// Uneven points turn directions otherwise at each diffusion time, which extrapolation must not take for what vanishes with it.
-TEST(SphereCloud, OrderTwoIsNeverWorseOnRandomPoints) {
-  for (Index n : {3000, 8000}) {
-    const Cloud cloud = random_sphere(n);
-    const Solved first(cloud);
-    const LogMapSolver second(first.graph.graph(), {.order = 2});
-    for (Variant variant : all_variants) {
-      double one = 0, two = 0;
-      for (Index p : {5, n / 3, n / 2, n - 9}) {
-        const LogMap map = second.solve(first.graph.source(Row(p)).source, {.variant = variant});
-        const double before = sphere_error(cloud, first.graph, first.map(p, variant), p).rms,
-                     after = sphere_error(cloud, first.graph, first.graph.on_rows(map), p).rms;
-        EXPECT_LT(after, 1.1 * before) << n << " points, " << to_string(variant) << ", from " << p;
-        one += before, two += after;
-      }
-      EXPECT_LT(two, one) << n << " points, " << to_string(variant);
-    }
-  }
-}
-
 // Beyond five spacings, the antipode included, from some sources.
 TEST(SphereCloud, HasItsDistancesOutToTheAntipode) {
   std::vector<double> of_fine, of_coarse;

@@ -70,20 +70,18 @@ void expect_identity(const Mesh& mesh, bool flips, const std::string& name) {
   EXPECT_EQ(surface.details().mollification, 0) << name;
   EXPECT_FALSE(surface.details().flips_stopped) << name;
   EXPECT_NO_THROW(validate(surface.graph())) << name;
-  for (int order : {1, 2}) {
-    const LogMapSolver solver(surface.graph(), {.order = order});
-    for (Variant variant : all_variants)
-      for (const auto& [where, point, plane] : places(mesh)) {
-        const LogMap map = solver.solve(surface.source(point).source, {.variant = variant});
-        const PlaneErrors errors(mesh, surface.on_rows(map), plane);
-        EXPECT_LT(errors.coordinates, 1e-9 * mesh.diameter()) << name << ", " << where << ", order " << order;
-        EXPECT_LT(errors.distance, 1e-9 * mesh.diameter()) << name << ", " << where << ", order " << order;
-        // Fronts expect no errors where they cross triangles that flips made; across others they are rougher.
-        if (surface.graph().is_delaunay()) {
-          EXPECT_GT(std::ranges::min(map_quality(surface.graph(), map)), 0.9) << name << ", " << where;
-        }
+  const LogMapSolver solver(surface.graph());
+  for (Variant variant : all_variants)
+    for (const auto& [where, point, plane] : places(mesh)) {
+      const LogMap map = solver.solve(surface.source(point).source, {.variant = variant});
+      const PlaneErrors errors(mesh, surface.on_rows(map), plane);
+      EXPECT_LT(errors.coordinates, 1e-9 * mesh.diameter()) << name << ", " << where;
+      EXPECT_LT(errors.distance, 1e-9 * mesh.diameter()) << name << ", " << where;
+      // Fronts expect no errors where they cross triangles that flips made; across others they are rougher.
+      if (surface.graph().is_delaunay()) {
+        EXPECT_GT(std::ranges::min(map_quality(surface.graph(), map)), 0.9) << name << ", " << where;
       }
-  }
+    }
 }
 
 TEST(ThinFaces, LeaveThePlaneExact) {

@@ -44,38 +44,13 @@ TEST(Cost, OfBlocksIsThatOfTheirNumbers) {
   EXPECT_NEAR(blocks.bytes / rotations.bytes, 5.0 / 3.0, 1e-12);  // 1 + 4 numbers per entry instead of 1 + 2
 }
 
-TEST(Cost, OfOrderTwoIsThatOfItsTimes) {
-  for (const auto& [n, times] : {std::pair{2000, 2.0}, std::pair{5000, 3.0}}) {
-    const GraphSize size{n, 2, TransportKind::rotation2};
-    const Cost one = estimate_cost(size, Strategy::global), two = estimate_cost(size, Strategy::global, 2);
-    EXPECT_NEAR(two.first_map_seconds / one.first_map_seconds, times, 1e-12);
-    EXPECT_LT(two.bytes, times * one.bytes);  // the factors are kept, all else is used again
-    EXPECT_GT(two.bytes, one.bytes * (1 + (times - 1) / 2));
-    const Cost march = estimate_cost(size, Strategy::march), marches = estimate_cost(size, Strategy::march, 2);
-    EXPECT_NEAR(marches.first_map_seconds / march.first_map_seconds, times, 1e-12);
-    EXPECT_GE(marches.bytes, march.bytes);
-    if (times > 2)
-      EXPECT_GT(marches.bytes, march.bytes);  // the bands of longer times are deeper, but no larger than all
-  }
-}
-
 TEST(Cost, OfAMarchOnTwoThreadsIsThatOfTwoBands) {
   constexpr GraphSize size{100'000, 2, TransportKind::rotation2};
-  for (int order : {1, 2}) {
-    const Cost one = estimate_cost(size, Strategy::march, order, 1),
-               two = estimate_cost(size, Strategy::march, order, 2);
-    EXPECT_GT(two.bytes, 1.1 * one.bytes);
-    EXPECT_LT(two.bytes, 1.8 * one.bytes);
-    EXPECT_EQ(two.first_map_seconds, one.first_map_seconds);
-  }
-  EXPECT_EQ(estimate_cost(size, Strategy::global, 1, 1).bytes, estimate_cost(size, Strategy::global, 1, 2).bytes);
-}
-
-TEST(Cost, OfOrderTwoCountsForTheChoice) {
-  constexpr GraphSize size{200'000, 2, TransportKind::rotation2};
-  const auto memory = static_cast<std::size_t>(1.5 * estimate_cost(size, Strategy::global).bytes);
-  EXPECT_EQ(choose_strategy(size, {.order = 1, .memory = memory}), Strategy::global);
-  EXPECT_EQ(choose_strategy(size, {.order = 2, .memory = memory}), Strategy::march);
+  const Cost one = estimate_cost(size, Strategy::march, 1), two = estimate_cost(size, Strategy::march, 2);
+  EXPECT_GT(two.bytes, 1.1 * one.bytes);
+  EXPECT_LT(two.bytes, 1.8 * one.bytes);
+  EXPECT_EQ(two.first_map_seconds, one.first_map_seconds);
+  EXPECT_EQ(estimate_cost(size, Strategy::global, 1).bytes, estimate_cost(size, Strategy::global, 2).bytes);
 }
 
 CsrGraph sphere(Index n) { return CsrGraph(sphere_graph(n)); }
@@ -99,8 +74,7 @@ TEST(CostOfGraph, KnowsTheBandsOfAMarch) {
     const ComponentScales scales(graph);
     for (double t_coef : {1.0, 4.0}) {
       const HeatOptions options{.t_coef = t_coef, .strategy = Strategy::march};
-      const std::vector<double> tau{diffusion_time(t_coef, scales.edge_length[0])};
-      const MarchWork work = march_work(graph, source, ComponentTimes(scales, tau), INFINITY, options);
+      const MarchWork work = march_work(graph, source, ComponentTimes(scales, t_coef), INFINITY, options);
       const MarchStatistics found = LogMapSolver(graph, options).solve(source).march();
       EXPECT_NEAR(work.largest.vertices / found.largest_band, 1, 0.1) << n;
       EXPECT_NEAR(work.solved / static_cast<double>(found.solved), 1, 0.2) << n;
@@ -112,36 +86,30 @@ TEST(CostOfGraph, KnowsTheBandsOfAMarch) {
 TEST(CostOfGraph, GrowsWithTheRadiusUpToTheWholeGraph) {
   const CsrGraph graph = sphere(30000);
   const Source source = Source::at_vertex(Vertex(7));
-  for (int order : {1, 2}) {
-    const HeatOptions options{.order = order};
-    Cost last;
-    for (double radius : {0.2, 0.6, 1.2, 2.0}) {
-      const Cost cost = estimate_cost(graph, source, Strategy::march, options, radius);
-      EXPECT_GE(cost.bytes, last.bytes);
-      EXPECT_GT(cost.first_map_seconds, last.first_map_seconds);
-      last = cost;
-    }
-    const Cost whole = estimate_cost(graph, source, Strategy::march, options);
-    EXPECT_LE(last.bytes, whole.bytes);
-    EXPECT_LT(last.first_map_seconds, whole.first_map_seconds);
-    if (order == 1)  // bands of longer times are deeper than that
-      EXPECT_LT(estimate_cost(graph, source, Strategy::march, options, 0.2).bytes, 0.7 * whole.bytes);
-    EXPECT_EQ(estimate_cost(graph, source, Strategy::global, options, 0.2).bytes,
-              estimate_cost(graph, source, Strategy::global, options).bytes);
+  Cost last;
+  for (double radius : {0.2, 0.6, 1.2, 2.0}) {
+    const Cost cost = estimate_cost(graph, source, Strategy::march, {}, radius);
+    EXPECT_GE(cost.bytes, last.bytes);
+    EXPECT_GT(cost.first_map_seconds, last.first_map_seconds);
+    last = cost;
   }
+  const Cost whole = estimate_cost(graph, source, Strategy::march);
+  EXPECT_LE(last.bytes, whole.bytes);
+  EXPECT_LT(last.first_map_seconds, whole.first_map_seconds);
+  EXPECT_LT(estimate_cost(graph, source, Strategy::march, {}, 0.2).bytes, 0.7 * whole.bytes);
+  EXPECT_EQ(estimate_cost(graph, source, Strategy::global, {}, 0.2).bytes,
+            estimate_cost(graph, source, Strategy::global).bytes);
 }
 
 TEST(CostOfGraph, IsThatOfTheSizeWhereASurfaceIsEven) {
   for (unsigned threads : {1u, 2u})
     for (Index n : {3000, 30000}) {
       const CsrGraph graph = sphere(n);
-      for (Strategy strategy : {Strategy::global, Strategy::march})
-        for (int order : {1, 2}) {
-          const Cost by_size = estimate_cost({n, 2, graph.transport_kind()}, strategy, order, threads),
-                     by_graph = estimate_cost(graph, Source::at_vertex(Vertex(0)), strategy,
-                                              {.order = order, .threads = threads});
-          EXPECT_NEAR(by_size.bytes / by_graph.bytes, 1, 0.5) << n << " " << to_string(strategy) << order;
-        }
+      for (Strategy strategy : {Strategy::global, Strategy::march}) {
+        const Cost by_size = estimate_cost({n, 2, graph.transport_kind()}, strategy, threads),
+                   by_graph = estimate_cost(graph, Source::at_vertex(Vertex(0)), strategy, {.threads = threads});
+        EXPECT_NEAR(by_size.bytes / by_graph.bytes, 1, 0.5) << n << " " << to_string(strategy);
+      }
     }
 }
 
@@ -150,7 +118,6 @@ TEST(CostOfGraph, RefusesWhatCannotBeSolved) {
   const Source source = Source::at_vertex(Vertex(7));
   EXPECT_THROW(estimate_cost(graph, source, Strategy::automatic), InvalidArgument);
   EXPECT_THROW(estimate_cost(graph, source, Strategy::march, {}, 0), InvalidArgument);
-  EXPECT_THROW(estimate_cost(graph, source, Strategy::march, {.order = 3}), InvalidArgument);
   EXPECT_THROW(estimate_cost(graph, source, Strategy::march, {.t_coef = 0}), InvalidArgument);
   EXPECT_THROW(estimate_cost(graph, Source::at_vertex(Vertex(100)), Strategy::global), InvalidArgument);
 }

@@ -109,7 +109,6 @@ TEST(LocalCoordinates, RefuseWhatDoesNotFit) {
   const std::vector<std::span<const Vertex>> regions{region}, beyond{outside};
   EXPECT_THROW(local_coordinates(graph, sources, {}), InvalidArgument);
   EXPECT_THROW(local_coordinates(graph, sources, beyond), InvalidArgument);
-  EXPECT_THROW(local_coordinates(graph, sources, regions, {.order = 2}), InvalidArgument);
   EXPECT_THROW(local_coordinates(graph, sources, regions, {.t_coef = -1}), InvalidArgument);
   EXPECT_THROW(local_coordinates(graph, sources, regions, {}, NAN), InvalidArgument);
   EXPECT_TRUE(local_coordinates(graph, {}, {}).empty());

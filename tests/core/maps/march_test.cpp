@@ -183,17 +183,13 @@ TEST(March, ComesToAllThatIsWithinTheRadius) {
   for (int k = 0; k < 30; ++k) spec.blocked[40 * 12 + k] = spec.blocked[40 * 27 + 39 - k] = 1;
   const grid::GridGraph graph(spec);
   const Source source = Source::at_vertex(Vertex{50});
-  for (const int order : {1, 2}) {
-    HeatOptions of_order = marching;
-    of_order.order = order;
-    const LogMapSolver march(graph, of_order);
-    const LogMap whole = march.solve(source);
-    for (const double radius : {10.0, 25.0, 40.0, 60.0, 80.0}) {
-      const LogMap local = march.solve(source, {.radius = radius});
-      for (Index i = 0; i < graph.size(); ++i)
-        ASSERT_EQ(local.status(Vertex(i)) == Status::ok, whole.distance(Vertex(i)) <= radius)
-            << i << " at " << whole.distance(Vertex(i)) << " within " << radius << ", order " << order;
-    }
+  const LogMapSolver march(graph, marching);
+  const LogMap whole = march.solve(source);
+  for (const double radius : {10.0, 25.0, 40.0, 60.0, 80.0}) {
+    const LogMap local = march.solve(source, {.radius = radius});
+    for (Index i = 0; i < graph.size(); ++i)
+      ASSERT_EQ(local.status(Vertex(i)) == Status::ok, whole.distance(Vertex(i)) <= radius)
+          << i << " at " << whole.distance(Vertex(i)) << " within " << radius;
   }
 }
 
@@ -299,8 +295,7 @@ TEST(March, TakesMemoryForWhatItReachesOnly) {
   const auto bytes = [](Index side) {
     const grid::GridGraph graph({.shape = {side, side}, .spacing = {1, 1}});
     const ComponentScales scales(graph);
-    const std::vector<double> tau{1.0};
-    const ComponentTimes times(scales, tau);
+    const ComponentTimes times(scales, 1);
     March march(graph, {}, times, Variant::adaptive, {20}, 1, {});
     march.run(Source::at_vertex(Vertex{side / 2 * side + side / 2}));
     EXPECT_TRUE(march.accepted(side / 2 * side + side / 2 + 15));

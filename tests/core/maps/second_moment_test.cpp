@@ -30,17 +30,15 @@ TEST(SecondMoment, IsTheDistanceOnFlatGraphs) {
     const CsrGraph graph(flat.data);
     ASSERT_FALSE(graph.is_delaunay());
     for (Strategy strategy : strategies)
-      for (int order : {1, 2})
-        for (Variant variant : all_variants) {
-          const LogMapSolver solver(graph, {.variant = variant, .order = order, .strategy = strategy});
-          const LogMap map = solver.solve(Source::at_vertex(Vertex{33}));
-          for (Index i = 0; i < graph.size(); ++i) {
-            ASSERT_NEAR(map.distance(Vertex(i)), length(flat.exact(33, i)),
-                        (order == 1 ? 1e-11 : 1e-10) * flat.diameter());
-            // A root of a difference keeps half the digits.
-            ASSERT_LT(map.spread()[i], 1e-5 * flat.diameter());
-          }
+      for (Variant variant : all_variants) {
+        const LogMapSolver solver(graph, {.variant = variant, .strategy = strategy});
+        const LogMap map = solver.solve(Source::at_vertex(Vertex{33}));
+        for (Index i = 0; i < graph.size(); ++i) {
+          ASSERT_NEAR(map.distance(Vertex(i)), length(flat.exact(33, i)), 1e-11 * flat.diameter());
+          // A root of a difference keeps half the digits.
+          ASSERT_LT(map.spread()[i], 1e-5 * flat.diameter());
         }
+      }
   }
 }
 
@@ -123,9 +121,8 @@ TEST(SecondMoment, MayBeLeftOut) {
   delaunay.is_delaunay = true;
   for (const CsrGraphData& data : {delaunay, tube(60, 9)}) {
     const CsrGraph graph(data);
-    for (const auto& [order, variant] :
-         {std::pair(1, Variant::adaptive), std::pair(1, Variant::localized), std::pair(2, Variant::adaptive)}) {
-      const LogMapSolver solver(graph, {.order = order, .strategy = Strategy::automatic});
+    const LogMapSolver solver(graph);
+    for (Variant variant : all_variants) {
       const LogMap all = solver.solve(Source::at_vertex(Vertex{7}), {.variant = variant});
       const LogMap map = solver.solve(Source::at_vertex(Vertex{7}), {.variant = variant, .spread = false});
       ASSERT_EQ(map.strategy(), all.strategy());
@@ -147,21 +144,19 @@ TEST(Distances, MayBeLeftOut) {
   delaunay.is_delaunay = true;
   for (const CsrGraphData& data : {delaunay, sphere_graph(900), bent_lattice(10)}) {
     const CsrGraph graph(data);
-    for (const Strategy strategy : {Strategy::automatic, Strategy::march})
-      for (const int order : {1, 2}) {
-        const LogMapSolver solver(graph, {.order = order, .strategy = strategy});
-        const Source source = Source::at_vertex(Vertex{7});
-        const LogMap all = solver.solve(source, {.frames = true});
-        const LogMap map = solver.solve(source, {.frames = true, .distances = false});
-        ASSERT_EQ(map.strategy(), all.strategy());
-        ASSERT_TRUE(std::ranges::equal(map.coordinates(), all.coordinates()));
-        ASSERT_TRUE(std::ranges::equal(map.status(), all.status()));
-        ASSERT_TRUE(std::ranges::equal(map.frames(), all.frames()));
-        ASSERT_TRUE(std::ranges::equal(map.error_estimate(), all.error_estimate()));
-        for (Index i = 0; i < graph.size(); ++i) ASSERT_EQ(map.distance(Vertex(i)), length(map.coordinates(Vertex(i))));
-        EXPECT_TRUE(map.spread().empty() && map.directions().empty());
-        EXPECT_THROW(map_quality(graph, map), InvalidArgument);
-      }
+    for (const Strategy strategy : {Strategy::automatic, Strategy::march}) {
+      const LogMapSolver solver(graph, {.strategy = strategy});
+      const Source source = Source::at_vertex(Vertex{7});
+      const LogMap all = solver.solve(source, {.frames = true});
+      const LogMap map = solver.solve(source, {.frames = true, .distances = false});
+      ASSERT_EQ(map.strategy(), all.strategy());
+      ASSERT_TRUE(std::ranges::equal(map.coordinates(), all.coordinates()));
+      ASSERT_TRUE(std::ranges::equal(map.status(), all.status()));
+      ASSERT_TRUE(std::ranges::equal(map.frames(), all.frames()));
+      for (Index i = 0; i < graph.size(); ++i) ASSERT_EQ(map.distance(Vertex(i)), length(map.coordinates(Vertex(i))));
+      EXPECT_TRUE(map.spread().empty() && map.directions().empty());
+      EXPECT_THROW(map_quality(graph, map), InvalidArgument);
+    }
   }
   const CsrGraph graph(sphere_graph(900));
   const LogMap near = LogMapSolver(graph).solve(Source::at_vertex(Vertex{7}), {.radius = 1, .distances = false});
@@ -171,34 +166,29 @@ TEST(Distances, MayBeLeftOut) {
                                                      : std::isnan(near.coordinates(Vertex(i))[0]));
 }
 
-TEST(Distances, AreZeroAtTheSourceInEveryOrder) {
+TEST(Distances, AreZeroAtTheSource) {
   const CsrGraph graph(sphere_graph(500));
-  for (int order : {1, 2})
-    for (Variant variant : all_variants)
-      EXPECT_EQ(LogMapSolver(graph, {.variant = variant, .order = order})
-                    .solve(Source::at_vertex(Vertex{9}))
-                    .distance(Vertex{9}),
-                0);
+  for (Variant variant : all_variants)
+    EXPECT_EQ(LogMapSolver(graph, {.variant = variant}).solve(Source::at_vertex(Vertex{9})).distance(Vertex{9}), 0);
 }
 
 // A component's numbers do not depend on what else is in the graph, whatever its scale.
 TEST(Components, HaveAMapOfTheirOwn) {
   const CsrGraphData one = sphere_graph(1500);
   const CsrGraph alone(one), with_a_large_one(joined(one, scaled(sphere_graph(900), 32)));
-  for (int order : {1, 2})
-    for (Strategy strategy : strategies)
-      for (Variant variant : all_variants) {
-        const HeatOptions options{.variant = variant, .order = order, .strategy = strategy};
-        const LogMap a = LogMapSolver(alone, options).solve(Source::at_vertex(Vertex{11})),
-                     b = LogMapSolver(with_a_large_one, options).solve(Source::at_vertex(Vertex{11}));
-        const auto quality_a = map_quality(alone, a), quality_b = map_quality(with_a_large_one, b);
-        for (Index i = 0; i < alone.size(); ++i) {
-          ASSERT_NEAR(a.distance(Vertex(i)), b.distance(Vertex(i)), 1e-9);
-          for (int c = 0; c < 2; ++c) ASSERT_NEAR(a.coordinates(Vertex(i))[c], b.coordinates(Vertex(i))[c], 1e-9);
-          ASSERT_NEAR(quality_a[i], quality_b[i], 1e-6);  // as the spread, a difference of squares
-        }
-        EXPECT_EQ(b.count(Status::disconnected), 900);
+  for (Strategy strategy : strategies)
+    for (Variant variant : all_variants) {
+      const HeatOptions options{.variant = variant, .strategy = strategy};
+      const LogMap a = LogMapSolver(alone, options).solve(Source::at_vertex(Vertex{11})),
+                   b = LogMapSolver(with_a_large_one, options).solve(Source::at_vertex(Vertex{11}));
+      const auto quality_a = map_quality(alone, a), quality_b = map_quality(with_a_large_one, b);
+      for (Index i = 0; i < alone.size(); ++i) {
+        ASSERT_NEAR(a.distance(Vertex(i)), b.distance(Vertex(i)), 1e-9);
+        for (int c = 0; c < 2; ++c) ASSERT_NEAR(a.coordinates(Vertex(i))[c], b.coordinates(Vertex(i))[c], 1e-9);
+        ASSERT_NEAR(quality_a[i], quality_b[i], 1e-6);  // as the spread, a difference of squares
       }
+      EXPECT_EQ(b.count(Status::disconnected), 900);
+    }
 }
 
 TEST(LocalMaps, HaveTheDistancesOfWholeMaps) {

@@ -11,7 +11,6 @@
 #include "ahm/testing/curved_graphs.hpp"
 #include "ahm/testing/flat_graphs.hpp"
 #include "ahm/testing/graph_changes.hpp"
-#include "maps/edge_paths.hpp"
 #include "maps/march.hpp"
 #include "maps/team_log_map.hpp"
 
@@ -157,39 +156,6 @@ TEST(StreamedLogMap, EndsAtTheRadius) {
 }
 
 /// Against rounds of relaxing all edges until nothing changes.
-TEST(StreamedLogMap, WaysAlongEdgesAreTheShortest) {
-  for (const CsrGraphData& data : {sphere_graph(1500), bent_lattice(8)}) {
-    const CsrGraph graph = telling(data);
-    std::vector<double> shortest(static_cast<std::size_t>(graph.size()), INFINITY);
-    shortest[5] = 0;
-    for (bool changes = true; changes;) {
-      changes = false;
-      for (Index i = 0; i < graph.size(); ++i) {
-        const Star star = graph.star(i);
-        for (std::size_t e = 0; e < star.degree(); ++e) {
-          double square = 0;
-          for (double x : star.log(e)) square += x * x;
-          const double way = shortest[i] + std::sqrt(square) * graph.length_unit();
-          double& there = shortest[star.neighbors[e]];
-          if (way < there * (1 - 1e-12)) there = way, changes = true;
-        }
-      }
-    }
-    const double farthest = *std::max_element(shortest.begin(), shortest.end());
-    for (const double longest : {static_cast<double>(INFINITY), 0.6 * farthest}) {
-      std::vector<int> told(shortest.size(), 0);
-      double last = 0;
-      edge_paths(graph, Source::at_vertex(Vertex{5}), longest, {}, [&](Index vertex, double length) {
-        ++told[vertex];
-        EXPECT_GE(length, last);
-        EXPECT_NEAR(length, shortest[vertex], 1e-12 * farthest);
-        last = length;
-      });
-      for (std::size_t i = 0; i < told.size(); ++i) EXPECT_EQ(told[i], shortest[i] <= longest ? 1 : 0);
-    }
-  }
-}
-
 TEST(StreamedLogMap, IsCancelledWhileDistancesAreUnfolded) {
   CsrGraphData data = sphere_graph(6000);
   data.is_delaunay = true;
@@ -213,7 +179,6 @@ TEST(StreamedLogMap, RefusesWhatNeedsTheWholeGraph) {
   Rows rows(graph);
   const Source source = Source::at_vertex(Vertex{5});
   EXPECT_THROW(stream_log_map(silent, source, {}, {}, rows), InvalidArgument);
-  EXPECT_THROW(stream_log_map(graph, source, {.order = 2}, {}, rows), InvalidArgument);
   EXPECT_THROW(stream_log_map(graph, source, {}, {.frames = true}, rows), InvalidArgument);
   EXPECT_THROW(stream_log_map(graph, source, {}, {.radius = 0}, rows), InvalidArgument);
   Source curve(2);
@@ -229,8 +194,7 @@ TEST(StreamedLogMap, ForgetsWhatTheFrontHasPassed) {
   const auto bytes = [](Index length) {
     const grid::GridGraph graph({.shape = {40, length}, .spacing = {1, 1}});
     const ComponentScales scales(graph);
-    const std::vector<double> tau{1.0};
-    const ComponentTimes times(scales, tau);
+    const ComponentTimes times(scales, 1);
     Count count;
     March march(graph, {}, times, Variant::adaptive, {}, 1, {}, &count);
     march.run(Source::at_vertex(Vertex{0}));

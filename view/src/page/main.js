@@ -169,7 +169,7 @@ Ahm.Viewer = class {
       return x;
     };
     const out = { method: text("method"), radius: number("radius") ?? null };
-    if (out.method === "heat") Object.assign(out, { variant: text("variant"), order: Number(text("order")), t_coef: number("t_coef") });
+    if (out.method === "heat") Object.assign(out, { variant: text("variant"), t_coef: number("t_coef") });
     if (text("u_axis") !== "") {
       out.u_axis = text("u_axis").split(/[\s,]+/).map(Number);
       if (out.u_axis.length !== 3 || !out.u_axis.every(Number.isFinite)) throw new Error("u axis: '" + text("u_axis") + "' is no direction X,Y,Z");
@@ -354,7 +354,6 @@ Ahm.Viewer = class {
     element("coverage_spacing").value = Ahm.number(0.1 * covered, 1);
     element("method").value = info.method;
     element("t_coef").value = info.t_coef;
-    element("order").value = info.order;
     if (info.radius) element("radius").value = info.radius;
     for (const button of element("tool").children) button.addEventListener("click", () => this.set_tool(button.dataset.tool));
     element("method").querySelector("option:last-child").disabled = !info.has_faces;
@@ -362,7 +361,7 @@ Ahm.Viewer = class {
       for (const row of document.querySelectorAll(".heat")) row.hidden = element("method").value !== "heat";
       this.ask_again();
     };
-    for (const id of ["method", "variant", "order", "t_coef", "radius", "u_axis"]) element(id).addEventListener("change", method_changed);
+    for (const id of ["method", "variant", "t_coef", "radius", "u_axis"]) element(id).addEventListener("change", method_changed);
     for (const id of ["coverage_radius", "coverage_spacing", "coverage_pattern"])
       element(id).addEventListener("change", () => this.attempt(() => this.ask_coverage()));
     for (const id of ["decal_size", "decal_turn"]) element(id).addEventListener("input", () => this.place_decal());

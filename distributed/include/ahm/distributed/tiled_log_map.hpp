@@ -35,16 +35,16 @@ struct TiledMapSummary {
 
 /// One map by march: tiles of the graph are loaded as the front reaches them, tiles of the map written when it has passed. The
 /// bits are those of a marching `LogMapSolver` on the same graph in memory. The folder gets a file per tile, NUMBER.map: arrays
-/// `coordinates` (2 per vertex), `distance`, `spread`, `status` (ahm::Status), of distances alone `distance` and `status`, of order 2
-/// also `error` (`LogMap::error_estimate`); and, last of all, map.json. Order 2 makes the maps of two or three times one after the
-/// other, in folders that go when they are put together. Where a run was killed, the next one with the same arguments goes on from its last checkpoint, and ends with the same bytes.
-/// @throws as `stream_log_map`; InvalidArgument (a folder with an unfinished map of something else; distances alone of order 2), IoError
+/// `coordinates` (2 per vertex), `distance`, `spread`, `status` (ahm::Status), of distances alone `distance` and `status`; and,
+/// last of all, map.json. Where a run was killed, the next one with the same arguments goes on from its last checkpoint, and ends with
+/// the same bytes.
+/// @throws as `stream_log_map`; InvalidArgument (a folder with an unfinished map of something else), IoError
 TiledMapSummary write_log_map(const TiledGraph& graph, const Source& source, const std::filesystem::path& folder,
                               const TiledMapOptions& options);
 
-/// The rows of the input as CSV: row, u, v, distance, spread, of order 2 error_estimate, status, or row, distance, status; tile by tile, in the order of the
-/// graph, without points that are not finite. As by `Surface::on_rows`, distances from one source are no less than the straight
-/// line in space, below which those of the tiles may be, and rows end at the radius of the map. @throws IoError
+/// The rows of the input as CSV: row, u, v, distance, spread, status, or row, distance, status; tile by tile, in the order of the graph,
+/// without points that are not finite. As by `Surface::on_rows`, distances from one source are no less than the straight line in
+/// space, below which those of the tiles may be, and rows end at the radius of the map. @throws IoError
 void write_rows(const TiledGraph& graph, const std::filesystem::path& folder, const std::filesystem::path& csv);
 
 }  // namespace ahm::distributed

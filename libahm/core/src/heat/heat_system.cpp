@@ -165,8 +165,6 @@ void check_lost_heat(double lost) {
 void check_heat_options(const TangentGraph& graph, const HeatOptions& options) {
   if (!(options.accuracy >= 1e-14 && options.accuracy <= 0.1))
     throw InvalidArgument("accuracy is " + detail::number(options.accuracy) + "; it must be in [1e-14, 0.1]");
-  if (options.order != 1 && options.order != 2)
-    throw InvalidArgument("order is " + std::to_string(options.order) + "; it must be 1 or 2");
   if (options.expected_maps < 0)
     throw InvalidArgument("expected_maps is " + std::to_string(options.expected_maps) + "; it must be >= 0 (0: many)");
   if (options.check_graph) {

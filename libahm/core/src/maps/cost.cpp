@@ -13,7 +13,6 @@
 #include "heat/check_options.hpp"
 #include "heat/component_scales.hpp"
 #include "heat/memory_limits.hpp"
-#include "maps/extrapolate.hpp"
 #include "maps/front_stars.hpp"
 #include "maps/map_work.hpp"
 #include "maps/right_hand_side.hpp"
@@ -24,35 +23,20 @@ namespace {
 /// Graphs of at least this many vertices are marched when only one map is wanted (docs/results/march.md has the measurements).
 constexpr Index march_from = 50'000, march_volumes_from = 10'000;
 
-/// The longest diffusion time of an order by its factor of t_coef, and how many there are (`DiffusionTimes`).
-struct Times {
-  Times(double n, int d, int order) {
-    if (order == 1) return;
-    const double c = middle_time(n, d);
-    count = c > 1 ? 3 : 2;
-    longest = 2 * c;
-  }
-  double count = 1, longest = 1;
-};
-
 /// Nested dissection theory with constants fitted: O(n log n) memory and O(n^1.5) time on surfaces, O(n^(4/3)) and O(n^2)
-/// in volumes. The factors of all times are kept.
-Cost global(double n, int d, double numbers, const Times& times) {
-  if (d > 2)
-    return {times.count * 140 * numbers * std::pow(n, 4.0 / 3.0), times.count * 3.4e-10 * numbers * n * n,
-            times.count * 3e-7 * numbers * n};
+/// in volumes.
+Cost global(double n, int d, double numbers) {
+  if (d > 2) return {140 * numbers * std::pow(n, 4.0 / 3.0), 3.4e-10 * numbers * n * n, 3e-7 * numbers * n};
   const double share = numbers / 3;  // 1 real and 1 complex number per entry
-  return {share * (times.count * 92 * n * std::log2(n + 1) + 850 * n),
-          share * times.count * (1.2e-6 * n + 1.3e-8 * std::pow(n, 1.5)),
-          share * times.count * 3e-8 * n * std::log2(n + 1)};
+  return {share * (92 * n * std::log2(n + 1) + 850 * n), share * (1.2e-6 * n + 1.3e-8 * std::pow(n, 1.5)),
+          share * 3e-8 * n * std::log2(n + 1)};
 }
 
-/// Linear, but for the band at hand, whose depth grows with the root of the diffusion time, and on two threads and more the next
-/// one's heat.
-Cost march(double n, int d, double numbers, const Times& times, bool looks_ahead) {
-  const double seconds = times.count * (d > 2 ? 1.5e-6 : 2e-6) * numbers * n, depth = std::sqrt(times.longest);
-  const double band = d > 2 ? 150 * numbers * std::min(n, depth * 60 * std::pow(n, 2.0 / 3.0))
-                            : (looks_ahead ? 6.4e4 : 3.6e4) * numbers * std::min(depth * std::sqrt(n), n / 60);
+/// Linear, but for the band at hand, and on two threads and more the next one's heat.
+Cost march(double n, int d, double numbers, bool looks_ahead) {
+  const double seconds = (d > 2 ? 1.5e-6 : 2e-6) * numbers * n;
+  const double band = d > 2 ? 150 * numbers * std::min(n, 60 * std::pow(n, 2.0 / 3.0))
+                            : (looks_ahead ? 6.4e4 : 3.6e4) * numbers * std::min(std::sqrt(n), n / 60);
   return {8 * (numbers + 4 * d + 5) * n + (d > 2 ? 0 : 180 * n) + band, seconds, seconds};
 }
 
@@ -119,8 +103,6 @@ Cost estimate_cost(const TangentGraph& graph, const Source& source, Strategy str
   check_heat_options(graph, unchecked);
   check_source(source, graph);
   const ComponentScales scales(graph);
-  const DiffusionTimes times(options.order, graph.dimension(), scales.sizes);
-  const auto count = static_cast<double>(times.count());
   const CostOf cost(graph);
   const double n = graph.size();
   double halved = 0;
@@ -128,40 +110,28 @@ Cost estimate_cost(const TangentGraph& graph, const Source& source, Strategy str
 
   if (strategy == Strategy::global) {
     const SystemSize s = system_size(graph, options);
-    const double next = count * cost.solve_seconds(s) + cost.front_seconds(n, halved) + row_seconds * n;
-    return {count * (cost.factor_bytes(s) + 140 * n) + cost.workspace_bytes(s) + cost.front_bytes(halved),
-            count * cost.system_seconds(s) + cost.front_seconds(n, halved) + row_seconds * n, next};
+    const double rest = cost.front_seconds(n, halved) + row_seconds * n;
+    return {cost.factor_bytes(s) + 140 * n + cost.workspace_bytes(s) + cost.front_bytes(halved),
+            cost.system_seconds(s) + rest, cost.solve_seconds(s) + rest};
   }
-  Cost result;
-  double reached = 0;
+  const MarchWork work = march_work(graph, source, ComponentTimes(scales, options.t_coef), radius, options);
+  const SystemSize& band = work.largest;
   const bool looks_ahead = detail::thread_count(options.threads) > 1 && std::isinf(radius);
-  for (std::size_t k = 0; k < times.count(); ++k) {
-    std::vector<double> tau;
-    for (Index c = 0; c < scales.components.count; ++c)
-      tau.push_back(diffusion_time(options.t_coef * times.factor(k, c), scales.edge_length[c]));
-    const double within = times.radius_of_each(radius, scales.edge_length, graph.length_unit());
-    const MarchWork work = march_work(graph, source, ComponentTimes(scales, tau), within, options);
-    const SystemSize& band = work.largest;
-    const double ahead = looks_ahead ? cost.next_band_bytes(band) : 0;
-    result.bytes = std::max(result.bytes, cost.factor_bytes(band) + cost.workspace_bytes(band) +
-                                              cost.patch_bytes(band) + ahead + 210 * work.reached);
-    result.first_map_seconds += cost.system_seconds(band) * work.solved / band.vertices;
-    reached = std::max(reached, work.reached);
-  }
-  result.bytes += count * 35 * n + cost.front_bytes(halved);
-  result.first_map_seconds += cost.front_seconds(reached, halved) + row_seconds * n;
-  result.next_map_seconds = result.first_map_seconds;
-  return result;
+  const double bytes = cost.factor_bytes(band) + cost.workspace_bytes(band) + cost.patch_bytes(band) +
+                       (looks_ahead ? cost.next_band_bytes(band) : 0) + 210 * work.reached + 35 * n +
+                       cost.front_bytes(halved);
+  const double seconds = cost.system_seconds(band) * work.solved / band.vertices +
+                         cost.front_seconds(work.reached, halved) + row_seconds * n;
+  return {bytes, seconds, seconds};
 }
 
-Cost estimate_cost(const GraphSize& size, Strategy strategy, int order, unsigned threads) {
+Cost estimate_cost(const GraphSize& size, Strategy strategy, unsigned threads) {
   if (strategy == Strategy::automatic) throw InvalidArgument("estimate_cost: strategy must be global or march");
   const double n = size.vertices;
   // Real numbers per entry of the operators A and B.
   const double numbers = 1.0 + static_cast<double>(TransportLayout{size.kind, size.dimension}.width());
-  const Times times(n, size.dimension, order);
-  return strategy == Strategy::global ? global(n, size.dimension, numbers, times)
-                                      : march(n, size.dimension, numbers, times, detail::thread_count(threads) > 1);
+  return strategy == Strategy::global ? global(n, size.dimension, numbers)
+                                      : march(n, size.dimension, numbers, detail::thread_count(threads) > 1);
 }
 
 Strategy choose_strategy(const GraphSize& size, const HeatOptions& options) {
@@ -169,8 +139,7 @@ Strategy choose_strategy(const GraphSize& size, const HeatOptions& options) {
   if (options.expected_maps == 1 && size.vertices >= (size.dimension > 2 ? march_volumes_from : march_from))
     return Strategy::march;
   const double memory = options.memory > 0 ? static_cast<double>(options.memory) : 0.5 * machine_memory();
-  return memory > 0 && estimate_cost(size, Strategy::global, options.order).bytes > memory ? Strategy::march
-                                                                                           : Strategy::global;
+  return memory > 0 && estimate_cost(size, Strategy::global).bytes > memory ? Strategy::march : Strategy::global;
 }
 
 double machine_memory() {

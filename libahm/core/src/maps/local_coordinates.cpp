@@ -23,7 +23,7 @@ void check(const TangentGraph& graph, std::span<const Source> sources, Regions r
   if (regions.size() != sources.size())
     throw InvalidArgument("there are " + std::to_string(regions.size()) + " regions, of " +
                           std::to_string(sources.size()) + " sources");
-  check_patches(graph, sources, heat, margin, "local coordinates");
+  check_patches(graph, sources, heat, margin);
   for (const auto region : regions)
     for (const auto [vertex] : region)
       if (vertex < 0 || vertex >= graph.size())

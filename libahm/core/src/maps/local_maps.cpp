@@ -37,7 +37,7 @@ void check(const TangentGraph& graph, std::span<const Source> sources, const Loc
   if (!by_number && (!(options.radius > 0) || !std::isfinite(options.radius)))
     throw InvalidArgument("radius is " + detail::number(options.radius) +
                           "; it must be finite and > 0, or 0 with a number of nearest neighbours");
-  check_patches(graph, sources, options.heat, options.margin, "local maps");
+  check_patches(graph, sources, options.heat, options.margin);
 }
 
 /// How far from each source its map goes, world units: the radius, or as far as its nearest neighbours are along edges,

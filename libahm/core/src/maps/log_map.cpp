@@ -48,13 +48,6 @@ std::string_view to_string(Strategy strategy) noexcept {
   return "unknown";
 }
 
-MarchStatistics& MarchStatistics::operator+=(const MarchStatistics& other) {
-  bands += other.bands;
-  largest_band = std::max(largest_band, other.largest_band);
-  solved += other.solved;
-  return *this;
-}
-
 LogMap::LogMap(int dimension, Variant variant, Strategy strategy, Source source, std::vector<double> coordinates,
                std::vector<Status> status, MapExtras extras)
     : dimension_(dimension),

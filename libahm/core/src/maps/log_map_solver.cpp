@@ -19,7 +19,6 @@
 #include "heat/heat_system.hpp"
 #include "heat/memory_limits.hpp"
 #include "maps/affine_heat.hpp"
-#include "maps/extrapolate.hpp"
 #include "maps/front_stars.hpp"
 #include "maps/heat_distance.hpp"
 #include "maps/march.hpp"
@@ -43,7 +42,6 @@ struct MapSettings {
   double radius;
   bool frames, spread, distances;
   Progress progress;
-  bool tells_beyond = false;  ///< the radius, where a solve came farther
 };
 
 MapSettings settings_of(const MapOptions& map, const HeatOptions& options) {
@@ -62,14 +60,6 @@ MarchGoal goal_of(const MapSettings& map) {
   return map.distances || std::isfinite(map.radius) ? MarchGoal::map : MarchGoal::coordinates;
 }
 
-/// One diffusion time.
-struct Time {
-  std::vector<double> tau;  ///< per component
-  std::optional<ComponentTimes> of_vertices;
-  std::once_flag factored;
-  std::optional<HeatOperators> operators;
-};
-
 }  // namespace
 
 struct LogMapSolver::Impl {
@@ -77,21 +67,22 @@ struct LogMapSolver::Impl {
   HeatOptions options;
   Strategy strategy;
   ComponentScales scales;
-  DiffusionTimes diffusion_times;
-  mutable std::vector<Time> times;
+  ComponentTimes times;
+  mutable std::once_flag factored;
+  mutable std::optional<HeatOperators> kept_operators;
   mutable std::once_flag looked_around;
   mutable std::shared_ptr<const UnfoldingFront::Stars> kept_stars;
 
   Impl(const TangentGraph& graph, const HeatOptions& options);
 
-  const HeatOperators& operators(std::size_t time) const {
-    std::call_once(times[time].factored, [&] {
+  const HeatOperators& operators() const {
+    std::call_once(factored, [&] {
       if (strategy == Strategy::march) check_memory_of_factors();
-      factor(time, {});
+      factor({});
     });
-    return *times[time].operators;
+    return *kept_operators;
   }
-  void factor(std::size_t time, const Progress& progress) const;
+  void factor(const Progress& progress) const;
   void check_memory_of_factors() const;
   void check_memory_of_maps(std::size_t count, const MapSettings& map) const;
   /// Kept by solvers that make many maps.
@@ -105,20 +96,18 @@ struct LogMapSolver::Impl {
     return kept_stars;
   }
 
-  March front(std::size_t time, const MapSettings& map, const Unfolded* unfolded, unsigned threads) const {
+  March front(const MapSettings& map, const Unfolded* unfolded, unsigned threads) const {
     const KnownDistances* known = unfolded && !unfolded->distances.empty() ? unfolded : nullptr;
-    return March(graph, options, *times[time].of_vertices, map.variant, {map.radius, known}, threads, map.progress,
-                 nullptr, nullptr, goal_of(map));
+    return March(graph, options, times, map.variant, {map.radius, known}, threads, map.progress, nullptr, nullptr,
+                 goal_of(map));
   }
   template <class Values>
   LogMap map_of(const Values& values, Strategy how, const MarchStatistics& march, const Source& source,
                 const Unfolded& unfolded, const MapSettings& map, unsigned threads) const;
   LogMap marched(const March& front, const Source& source, const Unfolded& unfolded, const MapSettings& map,
                  unsigned threads) const;
-  LogMap finished(AffineHeat& heat, std::size_t time, std::size_t s, const Source& source, const Unfolded& unfolded,
+  LogMap finished(AffineHeat& heat, std::size_t s, const Source& source, const Unfolded& unfolded,
                   const MapSettings& map, unsigned threads) const;
-  std::vector<LogMap> solve_block(std::size_t time, std::span<const Source> sources, std::vector<Unfolded>& unfolded,
-                                  const MapSettings& map, unsigned threads) const;
   std::vector<LogMap> solve_block(std::span<const Source> sources, const MapSettings& map, unsigned threads) const;
   unsigned threads_for(unsigned requested) const;
 };
@@ -145,25 +134,16 @@ LogMapSolver::Impl::Impl(const TangentGraph& graph, const HeatOptions& options)
       options(options),
       strategy(choose_strategy({graph.size(), graph.dimension(), graph.transport_kind()}, options)),
       scales(graph),
-      diffusion_times(options.order, graph.dimension(), scales.sizes),
-      times(diffusion_times.count()) {
-  for (std::size_t k = 0; k < times.size(); ++k) {
-    for (Index c = 0; c < scales.components.count; ++c)
-      times[k].tau.push_back(diffusion_time(options.t_coef * diffusion_times.factor(k, c), scales.edge_length[c]));
-    times[k].of_vertices.emplace(scales, times[k].tau);
-  }
-  if (strategy != Strategy::global) return;
-  for (std::size_t k = 0; k < times.size(); ++k)
-    std::call_once(times[k].factored, [&] { factor(k, options.progress); });
+      times(scales, options.t_coef) {
+  if (strategy == Strategy::global) std::call_once(factored, [&] { factor(options.progress); });
 }
 
-void LogMapSolver::Impl::factor(std::size_t time, const Progress& progress) const {
+void LogMapSolver::Impl::factor(const Progress& progress) const {
   detail::with_memory_check("factoring a graph of " + std::to_string(graph.size()) + " vertices", [&] {
-    std::vector<double> tau;
-    for (Index c : scales.components.of_vertex) tau.push_back(times[time].tau[c]);
     HeatOptions quiet = options;
     quiet.progress = progress;
-    times[time].operators.emplace(factored_system(graph, std::move(tau), quiet), graph, scales.components);
+    kept_operators.emplace(factored_system(graph, diffusion_times(scales, options.t_coef), quiet), graph,
+                           scales.components);
   });
 }
 
@@ -207,7 +187,7 @@ LogMap LogMapSolver::Impl::map_of(const Values& values, Strategy how, const Marc
   for (std::size_t i = 0; i < n; ++i) {
     const std::span phi = std::span(coordinates).subspan(i * d, d);
     const double distance = map.distances ? extras.distances[i] : length(phi);
-    if (status[i] == Status::ok && distance > map.radius && !map.tells_beyond) status[i] = Status::beyond_radius;
+    if (status[i] == Status::ok && distance > map.radius) status[i] = Status::beyond_radius;
     if (status[i] == Status::ok) continue;
     std::ranges::fill(phi, NAN);
     if (map.distances) extras.distances[i] = NAN;
@@ -224,25 +204,24 @@ LogMap LogMapSolver::Impl::marched(const March& front, const Source& source, con
 }
 
 /// Where a global solve leaves vertices beyond its reach, strategy `automatic` marches on.
-LogMap LogMapSolver::Impl::finished(AffineHeat& heat, std::size_t time, std::size_t s, const Source& source,
-                                    const Unfolded& unfolded, const MapSettings& map, unsigned threads) const {
+LogMap LogMapSolver::Impl::finished(AffineHeat& heat, std::size_t s, const Source& source, const Unfolded& unfolded,
+                                    const MapSettings& map, unsigned threads) const {
   LogMap result = map_of(GlobalValues(heat, s), Strategy::global, {}, source, unfolded, map, threads);
   if (options.strategy != Strategy::automatic || result.count(Status::unreached) == 0) return result;
   if (goal_of(map) == MarchGoal::map) {
     if (!heat.has_squares()) heat.solve_squares();
     if (!heat.has_lengths() && !graph.is_delaunay()) heat.solve_lengths();
   }
-  March on = front(time, map, &unfolded, threads);
+  March on = front(map, &unfolded, threads);
   on.run_on(heat, s, source);
   return marched(on, source, unfolded, map, threads);
 }
 
-/// Solves one block of sources at one diffusion time.
-/// @param unfolded  of the sources; made here unless a time before has
-std::vector<LogMap> LogMapSolver::Impl::solve_block(std::size_t time, std::span<const Source> sources,
-                                                    std::vector<Unfolded>& unfolded, const MapSettings& map,
+/// Solves one block of sources.
+std::vector<LogMap> LogMapSolver::Impl::solve_block(std::span<const Source> sources, const MapSettings& map,
                                                     unsigned threads) const {
   std::vector<LogMap> maps;
+  std::vector<Unfolded> unfolded;  // of the sources
   const auto unfold = [&] {
     if (unfolded.empty())
       for (const Source& source : sources)
@@ -254,14 +233,14 @@ std::vector<LogMap> LogMapSolver::Impl::solve_block(std::size_t time, std::span<
     const bool ends = std::isfinite(map.radius);  // where distances say, so that they come first
     if (ends) unfold();
     for (std::size_t s = 0; s < sources.size(); ++s) {
-      March on = front(time, map, ends ? &unfolded[s] : nullptr, threads);
+      March on = front(map, ends ? &unfolded[s] : nullptr, threads);
       detail::run_both(
           threads, [&] { on.run(sources[s]); }, unfold);
       maps.push_back(marched(on, sources[s], unfolded[s], map, threads));
     }
     return maps;
   }
-  AffineHeat heat(graph, operators(time), map.variant, right_hand_side_of(sources, graph, operators(time), map.variant),
+  AffineHeat heat(graph, operators(), map.variant, right_hand_side_of(sources, graph, operators(), map.variant),
                   threads);
   const bool lengths = map.distances && std::ranges::any_of(sources, [&](auto& one) { return !unfolds(graph, one); });
   const bool squares = lengths || map.spread;
@@ -274,7 +253,7 @@ std::vector<LogMap> LogMapSolver::Impl::solve_block(std::size_t time, std::span<
   };
   detail::run_both(threads, solve, unfold);
   for (std::size_t s = 0; s < sources.size(); ++s)
-    maps.push_back(finished(heat, time, s, sources[s], unfolded[s], map, threads));
+    maps.push_back(finished(heat, s, sources[s], unfolded[s], map, threads));
   return maps;
 }
 
@@ -296,38 +275,13 @@ void LogMapSolver::Impl::check_memory_of_maps(std::size_t count, const MapSettin
                "solve for fewer at a time, or for local maps");
 }
 
-/// The same at all times, extrapolated.
-std::vector<LogMap> LogMapSolver::Impl::solve_block(std::span<const Source> sources, const MapSettings& map,
-                                                    unsigned threads) const {
-  MapSettings wider = map;
-  wider.tells_beyond = wider.distances = true;
-  wider.radius = diffusion_times.radius_of_each(map.radius, scales.edge_length, graph.length_unit());
-  std::vector<Unfolded> unfolded;
-  if (times.size() == 1) return solve_block(0, sources, unfolded, map, threads);
-  std::vector<std::vector<LogMap>> at_times;
-  for (std::size_t time = 0; time < times.size(); ++time) {
-    wider.frames = map.frames && time == 0;  // the nearest to those of no time
-    // Those of the first and the last tell where not to extrapolate; of vectors the last does.
-    wider.spread = map.spread || time + 1 == times.size() || (time == 0 && !graph.is_delaunay());
-    at_times.push_back(solve_block(time, sources, unfolded, wider, threads));
-  }
-  std::vector<LogMap> result;
-  for (std::size_t s = 0; s < sources.size(); ++s) {
-    std::vector<const LogMap*> maps;
-    for (const auto& at_time : at_times) maps.push_back(&at_time[s]);
-    result.push_back(
-        extrapolate(graph, scales, options.t_coef, diffusion_times, maps, map.radius, map.distances, map.spread));
-  }
-  return result;
-}
-
 /// One where the address space is limited and has no room for what threads take beside a map.
 unsigned LogMapSolver::Impl::threads_for(unsigned requested) const {
   const unsigned threads = detail::thread_count(requested);
   const double left = address_space_left();
   if (threads == 1 || std::isinf(left)) return threads;
   const GraphSize size{graph.size(), graph.dimension(), graph.transport_kind()};
-  return left < estimate_cost(size, strategy, options.order, threads).bytes + threads * bytes_per_thread ? 1 : threads;
+  return left < estimate_cost(size, strategy, threads).bytes + threads * bytes_per_thread ? 1 : threads;
 }
 
 LogMapSolver::LogMapSolver(const TangentGraph& graph, const HeatOptions& options) {
@@ -341,7 +295,7 @@ LogMapSolver& LogMapSolver::operator=(LogMapSolver&&) noexcept = default;
 const TangentGraph& LogMapSolver::graph() const noexcept { return impl_->graph; }
 const HeatOptions& LogMapSolver::options() const noexcept { return impl_->options; }
 Strategy LogMapSolver::strategy() const noexcept { return impl_->strategy; }
-const HeatOperators& LogMapSolver::operators() const { return impl_->operators(0); }
+const HeatOperators& LogMapSolver::operators() const { return impl_->operators(); }
 
 LogMap LogMapSolver::solve(const Source& source, const MapOptions& options) const {
   return std::move(solve(std::span(&source, 1), options).front());

@@ -38,14 +38,17 @@ class MarchScales {
 /// The same of all vertices of a component.
 class ComponentTimes final : public MarchScales {
  public:
-  /// @param tau  per component; both must outlive this object
-  ComponentTimes(const ComponentScales& scales, std::span<const double> tau) : scales_(scales), tau_(tau) {}
+  /// @param scales  must outlive this object
+  /// @throws as `diffusion_time`
+  ComponentTimes(const ComponentScales& scales, double t_coef) : scales_(scales) {
+    for (const double h : scales.edge_length) tau_.push_back(diffusion_time(t_coef, h));
+  }
   double tau(Index vertex) const override { return tau_[scales_.component(vertex)]; }
   double h(Index vertex) const override { return scales_.h(vertex); }
 
  private:
   const ComponentScales& scales_;
-  std::span<const double> tau_;
+  std::vector<double> tau_;  ///< per component
 };
 
 /// Takes what a march finds of a vertex when it is accepted, each vertex once.

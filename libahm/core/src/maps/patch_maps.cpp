@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 
 #include "ahm/error.hpp"
 #include "ahm/util/text.hpp"
@@ -13,11 +12,9 @@
 namespace ahm {
 
 void check_patches(const TangentGraph& graph, std::span<const Source> sources, const HeatOptions& options,
-                   double margin, const char* what) {
+                   double margin) {
   if (!(margin >= 0) || !std::isfinite(margin))
     throw InvalidArgument("margin is " + detail::number(margin) + "; it must be finite and >= 0");
-  if (options.order != 1)
-    throw InvalidArgument("order is " + std::to_string(options.order) + "; " + what + " have order 1");
   check_heat_options(graph, options);
   for (const Source& source : sources) check_source(source, graph);
 }

@@ -60,10 +60,10 @@ class PatchSolver {
   SparseArray<Index> place_;  ///< 1 + place in the patch at hand, 0: outside
 };
 
-/// The checks of what is solved for on patches. @param what  for messages: "local maps"
+/// The checks of what is solved for on patches.
 /// @throws InvalidGraph, InvalidArgument
 void check_patches(const TangentGraph& graph, std::span<const Source> sources, const HeatOptions& options,
-                   double margin, const char* what);
+                   double margin);
 
 /// Sources whose patches overlap anyway. @param extent  how far along edges (graph units) each map goes
 std::vector<std::vector<Index>> patch_groups(const TangentGraph& graph, const ComponentScales& scales,

@@ -40,7 +40,7 @@ class Rows final : public MarchSink, public KnownDistances {
  public:
   Rows(const TangentGraph& graph, const Source& source, double radius, const TeamMarch& how, const Progress& progress,
        MapSink& sink)
-      : radius_(how.tells_beyond ? std::numeric_limits<double>::infinity() : radius),
+      : radius_(radius),
         sink_(sink),
         phi_(how.goal == MarchGoal::map ? static_cast<std::size_t>(graph.dimension()) : 0),
         distances_(how.distances),
@@ -91,8 +91,6 @@ class Rows final : public MarchSink, public KnownDistances {
 
 void check_streamed_map(const TangentGraph& graph, const Source& source, const HeatOptions& options,
                         const MapOptions& map) {
-  if (options.order != 1)
-    throw InvalidArgument("order is " + std::to_string(options.order) + "; streamed maps have order 1");
   if (map.frames) throw InvalidArgument("streamed maps have no frames");
   if (!(map.radius > 0))
     throw InvalidArgument("radius is " + detail::number(map.radius) + "; it must be > 0 (infinity: the whole graph)");
@@ -128,8 +126,8 @@ MarchStatistics team_log_map(const TangentGraph& graph, const Source& source, co
   Rows rows(graph, source, map.radius, how, progress, sink);
   const Variant variant = how.goal == MarchGoal::map ? map.variant.value_or(options.variant) : Variant::localized;
   const unsigned threads = detail::thread_count(map.threads.value_or(options.threads));
-  March march(graph, options, how.scales ? *how.scales : scales, variant, {map.radius, rows.distances()}, threads,
-              progress, &rows, &team, how.goal);
+  March march(graph, options, scales, variant, {map.radius, rows.distances()}, threads, progress, &rows, &team,
+              how.goal);
   march.run(source, how.keeper);
   return march.statistics();
 }

@@ -14,12 +14,8 @@ struct TeamMarch {
   /// Null: nothing is kept. Else each member has its own, the march goes on from where they say, and sinks are told of what comes
   /// after that.
   MarchKeeper* keeper = nullptr;
-  /// Null: those that the graph tells, and `HeatOptions::t_coef`.
-  const MarchScales* scales = nullptr;
   /// Null: those of heat, or unfolded by each member for itself.
   const KnownDistances* distances = nullptr;
-  /// Whether rows beyond the radius that the march came to are told as well, for those who cut them off later.
-  bool tells_beyond = false;
 };
 
 /// What `team_log_map` asks of its arguments. @throws InvalidArgument

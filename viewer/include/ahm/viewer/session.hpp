@@ -30,7 +30,6 @@ namespace ahm::viewer {
 struct Settings {
   Method method = Method::heat;
   Variant variant = Variant::adaptive;
-  int order = 1;                 ///< 1 or 2
   double t_coef = 1;             ///< > 0
   std::optional<double> radius;  ///< world units, > 0
   std::optional<Vec3> u_axis;    ///< a vector of space
@@ -70,7 +69,7 @@ std::string spec(const Surface& surface, const SurfacePoint& point);
 /// the other, each on all threads.
 ///
 /// Requests are JSON objects. A point is {"row": 42} or {"face": 7, "weights": [0.2, 0.3, 0.5]}. With a map go, each by
-/// choice, "method", "variant", "order", "t_coef", "radius" (null: none), "u_axis". Rows of a cloud that were left out before
+/// choice, "method", "variant", "t_coef", "radius" (null: none), "u_axis". Rows of a cloud that were left out before
 /// its graph was built are not drawn; for such a row the nearest one that was not stands.
 ///
 /// | name     | request, besides "client"                              | answer                                        |

@@ -39,7 +39,7 @@ class MapMaker {
   /// The map from a vertex in the axes of its frame. @throws as `LogMapSolver::solve`, `log_map` of the others
   LogMap map(Vertex source, double radius, bool frames = false) const;
   /// The coordinates of the vertices of regions[s] in the map from sources[s], two numbers each, region by region; NaN where it has
-  /// none. By heat of order 1 as `local_coordinates`, for which the solver need not have factored anything.
+  /// none. By heat as `local_coordinates`, for which the solver need not have factored anything.
   /// @param reach  of every source, no nearer than the farthest of its vertices is; maps by other methods end there. World units
   /// @throws as `map`, `local_coordinates`
   std::vector<double> coordinates(std::span<const Vertex> sources, std::span<const std::span<const Vertex>> regions,

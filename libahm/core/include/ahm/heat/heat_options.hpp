@@ -2,7 +2,7 @@
 /// What every computation by heat shares: one object, honoured by all of them.
 ///
 /// \code
-/// ahm::LogMapSolver solver(graph, {.t_coef = 2, .order = 2, .threads = 4});
+/// ahm::LogMapSolver solver(graph, {.t_coef = 2, .threads = 4});
 /// ahm::LocalMaps maps = ahm::local_maps(graph, {.radius = 0.05, .heat = {.variant = ahm::Variant::localized}});
 /// \endcode
 #pragma once
@@ -31,9 +31,6 @@ enum class Ordering {
 struct HeatOptions {
   double t_coef = 1.0;  ///< tau = t_coef h^2; > 0
   Variant variant = Variant::adaptive;
-  /// 1: the method as published. 2: extrapolates from maps of two or three diffusion times (docs/concepts/accuracy.md), which take
-  /// as many factorizations and solves; several times more accurate on smooth surfaces, with an error estimate per vertex.
-  int order = 1;
 
   Strategy strategy = Strategy::automatic;
   /// For `automatic`: the number of maps to be made; 0: many. A single map of a large graph is faster by march.

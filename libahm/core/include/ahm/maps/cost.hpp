@@ -32,10 +32,9 @@ struct Cost {
 /// From the size alone: of surfaces that are sampled evenly and as wide as long (good to a third, docs/results/estimates.md) and of regular
 /// volumes (to a factor of two). Scans whose density varies may take twice that by march, long tubes half.
 /// @param strategy  global or march
-/// @param order     of the maps, 1 or 2: two times a map's diffusion times of order 1 and more (`HeatOptions::order`)
 /// @param threads   a march on two and more holds two bands; 0: one per core
 /// @throws InvalidArgument (automatic)
-Cost estimate_cost(const GraphSize& size, Strategy strategy, int order = 1, unsigned threads = 0);
+Cost estimate_cost(const GraphSize& size, Strategy strategy, unsigned threads = 0);
 
 /// From the graph: by the symbolic analysis of what is factored, which is the graph or the bands of a march; these are cut where
 /// the ways along edges from the source say. Good to a third on surfaces (docs/results/estimates.md), in a tenth of a map's time.
@@ -43,9 +42,9 @@ Cost estimate_cost(const GraphSize& size, Strategy strategy, int order = 1, unsi
 /// What a march within a radius takes where distances are not unfolded (clouds) cannot be known before: it goes on wherever vectors
 /// of heat are shorter than the radius, and in noise they are too short. This tells what it takes where they are not; it takes at
 /// most what it takes without a radius.
-/// @param options  order, t_coef, accuracy, ordering, kind of factorization
+/// @param options  t_coef, accuracy, ordering, kind of factorization
 /// @param radius   of a march, world units; > 0
-/// @throws InvalidArgument (automatic; d is not 2; a source that does not fit the graph; radius, t_coef, order, accuracy)
+/// @throws InvalidArgument (automatic; d is not 2; a source that does not fit the graph; radius, t_coef, accuracy)
 Cost estimate_cost(const TangentGraph& graph, const Source& source, Strategy strategy, const HeatOptions& options = {},
                    double radius = std::numeric_limits<double>::infinity());
 

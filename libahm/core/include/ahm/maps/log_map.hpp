@@ -24,8 +24,6 @@ struct MarchStatistics {
   Index bands = 0;         ///< factorizations
   Index largest_band = 0;  ///< vertices
   Offset solved = 0;       ///< vertices of all bands
-
-  MarchStatistics& operator+=(const MarchStatistics& other);
 };
 
 /// How a map was made.
@@ -86,9 +84,8 @@ class LogMap {
   /// With MapOptions::frames: the source's axes carried to every vertex (Eq. 11 and 12), n x d x d, row major: column a is
   /// source axis a in the frame of the vertex. Identity where no heat arrived.
   std::span<const double> frames() const noexcept { return extras_.frames; }
-  /// An estimate of |error of phi_i| in world units; NaN where not ok (docs/concepts/accuracy.md). Of polar maps it is the distance
-  /// times the expected error of the direction (`UnfoldingFront::direction_error`). With HeatOptions::order = 2 it is the disagreement of the
-  /// diffusion times, good to a factor of about three inside the cut locus. Empty elsewhere.
+  /// An estimate of |error of phi_i| of a polar map in world units; NaN where not ok (docs/concepts/accuracy.md): the distance
+  /// times the expected error of the direction (`UnfoldingFront::direction_error`). Empty for heat and exact maps.
   std::span<const double> error_estimate() const noexcept { return extras_.error_estimate; }
   /// That was asked for, world units; infinite: none.
   double radius() const noexcept { return extras_.radius; }

@@ -40,7 +40,7 @@ class LogMapSolver {
  public:
   /// Chooses the strategy, and for a global one factors the graph's two operators.
   /// @param graph  must outlive the solver
-  /// @throws as `HeatOperators`; InvalidArgument (order, accuracy, expected_maps)
+  /// @throws as `HeatOperators`; InvalidArgument (accuracy, expected_maps)
   explicit LogMapSolver(const TangentGraph& graph, const HeatOptions& options = {});
   explicit LogMapSolver(TangentGraph&&, const HeatOptions& = {}) = delete;
   ~LogMapSolver();
@@ -63,7 +63,7 @@ class LogMapSolver {
   const HeatOptions& options() const noexcept;
   /// What was chosen: `global` or `march`.
   Strategy strategy() const noexcept;
-  /// The factored operators of the whole graph (at t_coef, whatever the order). Under strategy `march` the first call factors them.
+  /// The factored operators of the whole graph. Under strategy `march` the first call factors them.
   /// @throws as `HeatOperators`; ResourceExhausted where a marching solver's would not fit into memory
   const HeatOperators& operators() const;
 
