@@ -75,8 +75,10 @@ class Results {
   const io::Geometry& input_;
   std::string title_;
   unsigned threads_;
-  std::vector<Vec3> normals_;  ///< empty where nothing shows them
-  std::vector<Vec3> drawn_;    ///< `drawn_points`
+  std::vector<Vec3> normals_;           ///< empty where nothing shows them
+  std::vector<Vec3> drawn_;             ///< `drawn_points`
+  std::vector<Offset> triangle_begin_;  ///< of the triangles between these; empty: discs are drawn
+  std::vector<Index> triangle_rows_;
 };
 
 }  // namespace ahm::app

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 #include <new>
 #include <optional>
 #include <string>
@@ -198,19 +199,27 @@ void number_corners(std::vector<Triangle>& triangles, const std::vector<Index>& 
 
 }  // namespace
 
+/// The triangles of `flat_approximation`, of vertices.
+struct PointCloudSurface::Sheet {
+  std::once_flag once;
+  LocalTriangles candidates;  ///< empty once they were chosen from
+  std::vector<Triangle> triangles;
+};
+
 PointCloudSurface::~PointCloudSurface() = default;
 PointCloudSurface::PointCloudSurface(PointCloudSurface&&) noexcept = default;
 PointCloudSurface& PointCloudSurface::operator=(PointCloudSurface&&) noexcept = default;
 
 PointCloudSurface::PointCloudSurface(CsrGraph graph, CloudDetails details, RowMap rows, std::span<const Vec3> points,
-                                     std::optional<std::vector<Row>> kept,
-                                     std::unique_ptr<const LocalTriangles> triangles)
+                                     std::optional<std::vector<Row>> kept, LocalTriangles triangles)
     : graph_(std::make_unique<const CsrGraph>(std::move(graph))),
       details_(std::move(details)),
       rows_(std::move(rows)),
       positions_(points.begin(), points.end()),
       kept_(std::move(kept)),
-      triangles_(std::move(triangles)) {}
+      sheet_(std::make_unique<Sheet>()) {
+  sheet_->candidates = std::move(triangles);
+}
 
 PointCloudSurface PointCloudSurface::build(std::span<const Vec3> input, std::span<const Vec3> input_normals,
                                            const CloudOptions& options) try {
@@ -243,10 +252,10 @@ PointCloudSurface PointCloudSurface::build(std::span<const Vec3> input, std::spa
   details.seconds_normals = stopwatch.lap();
 
   std::vector<char> inner;
-  auto local = std::make_unique<LocalTriangles>();
-  std::vector<Triangle>& triangles = local->triangles;
+  LocalTriangles local;
+  std::vector<Triangle>& triangles = local.triangles;
   triangles = local_delaunay(cloud, neighborhoods, planes, per_part(*parts, cut), noise, options, details, &inner,
-                             &local->votes);
+                             &local.votes);
   details.lines = points_on_lines(*parts, inner);
   details.seconds_delaunay = stopwatch.lap();
   neighborhoods = {};
@@ -299,7 +308,11 @@ FlatTriangles PointCloudSurface::flat_approximation() const {
     frames.push_back(*graph_->frame(v));
     frames.back().origin = (1 / graph_->length_unit()) * frames.back().origin;
   }
-  return flat_sheet(frames, sheet_triangles(frames, *triangles_), graph_->length_unit());
+  std::call_once(sheet_->once, [&] {
+    sheet_->triangles = sheet_triangles(frames, sheet_->candidates);
+    sheet_->candidates = {};
+  });
+  return flat_sheet(frames, sheet_->triangles, graph_->length_unit());
 }
 
 Surface::Reason PointCloudSurface::why_without_vertex(Row row) const {

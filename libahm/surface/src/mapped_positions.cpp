@@ -2,6 +2,9 @@
 
 #include <limits>
 
+#include "ahm/error.hpp"
+#include "ahm/surface/exact/flat_triangles.hpp"
+
 namespace ahm {
 
 std::vector<Vec3> mapped_positions(const Surface& surface) {
@@ -15,6 +18,27 @@ std::vector<Vec3> mapped_positions(const Surface& surface) {
       result[r] = frame->origin;
   }
   return result;
+}
+
+std::vector<Triangle> mapped_triangles(const Surface& surface) try {
+  if (surface.faces().size() > 0) return {};
+  const FlatTriangles flat = surface.flat_approximation();
+  std::vector<Index> rows;
+  for (Index v = 0; v < flat.surface.vertex_count(); ++v) {
+    const auto row = surface.rows().row(Vertex(v));
+    if (!row || flat.surface.first_corner(v).half < 0) return {};
+    rows.push_back(row->index);
+  }
+  std::vector<Triangle> triangles;
+  for (Index f = 0; f < flat.surface.face_count(); ++f) {
+    const exact::HalfRecord side = flat.surface.record(3 * f);
+    triangles.push_back({rows[side.tail], rows[side.head], rows[side.apex]});
+  }
+  return triangles;
+} catch (const InvalidArgument&) {  // no triangles
+  return {};
+} catch (const InvalidGeometry&) {
+  return {};
 }
 
 }  // namespace ahm

@@ -125,8 +125,8 @@ class PointCloudSurface final : public Surface {
   std::vector<Warning> warnings() const override;
   const CloudDetails& details() const& noexcept { return details_; }
   void details() && = delete;
-  /// A manifold chosen from the local triangulations, made anew by each call: time O(n log n). Vertices that it does not use have no
-  /// exact map. @throws InvalidGeometry (no triangle is left)
+  /// A manifold chosen from the local triangulations, by the first call: time O(n log n). It need not use all vertices.
+  /// @throws InvalidGeometry (no triangle is left)
   FlatTriangles flat_approximation() const override;
 
   /// Polar, but heat where the noise is more than half of the mean edge length, which smoothing leaves too much of, and where the cloud
@@ -143,14 +143,15 @@ class PointCloudSurface final : public Surface {
 
  private:
   PointCloudSurface(CsrGraph graph, CloudDetails details, RowMap rows, std::span<const Vec3> points,
-                    std::optional<std::vector<Row>> kept, std::unique_ptr<const LocalTriangles> triangles);
+                    std::optional<std::vector<Row>> kept, LocalTriangles triangles);
 
   std::unique_ptr<const CsrGraph> graph_;
   CloudDetails details_;
   RowMap rows_;
   std::vector<Vec3> positions_;
   std::optional<std::vector<Row>> kept_;
-  std::unique_ptr<const LocalTriangles> triangles_;  ///< what `flat_approximation` chooses from
+  struct Sheet;
+  std::unique_ptr<Sheet> sheet_;  ///< chosen by the first `flat_approximation`
 };
 
 }  // namespace ahm::pointcloud

@@ -1,5 +1,5 @@
 /// \file
-/// The points of a surface that its graph has: what a picture of a cloud shows.
+/// The points of a surface that its graph has, and triangles between them: what a picture of a cloud shows.
 ///
 /// \code
 /// scene.points = mapped = ahm::mapped_positions(surface);   // points that are not finite are left out
@@ -16,5 +16,9 @@ namespace ahm {
 /// thinned, all but the points that stand for the others. Drawn beside these, the others would hide them.
 /// @return  rows x 3, world units; empty for a surface given by lengths alone
 std::vector<Vec3> mapped_positions(const Surface& surface);
+
+/// The triangles of `Surface::flat_approximation` by their rows, where they use all vertices of the graph; else none: points that are
+/// in no triangle would not be seen. None for a surface with faces.
+std::vector<Triangle> mapped_triangles(const Surface& surface);
 
 }  // namespace ahm
