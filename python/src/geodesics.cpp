@@ -43,7 +43,8 @@ struct Distances {
 /// Of targets, or of all rows: an exact map knows lengths in units of the triangles.
 Distances exact_distances(const Body& body, const Places& from, const std::optional<Places>& to, double radius,
                           double tolerance, const Progress& progress) {
-  const auto& [flat, positions, unit] = body.geodesics().triangles();
+  const exact::PolyhedralSurface& flat = body.geodesics().triangles().surface;
+  const double unit = body.geodesics().triangles().length_unit;
   exact::ExactOptions options{.radius = radius / unit,
                               .tolerance = tolerance,
                               .targets = {},
@@ -232,7 +233,8 @@ py::list paths(const BodyPtr& body, const py::tuple& sources, const py::tuple& t
   if (has_planes_alone(*body))
     throw InvalidArgument("pairwise: over a cloud every path has a source of its own; give pairwise=True");
   return listed(*body, compute(report, py::none(), [=](const Progress& progress) {
-    const auto& [flat, positions, unit] = body->geodesics().triangles();
+    const exact::PolyhedralSurface& flat = body->geodesics().triangles().surface;
+    const double unit = body->geodesics().triangles().length_unit;
     const exact::ExactMap map =
         exact::exact_map(flat, mesh_points(*body, from),
                          {.targets = mesh_points(*body, to), .only_targets = true, .progress = progress});
