@@ -19,7 +19,7 @@ namespace ahm {
 /// The coordinates of the vertices of regions[s] in the map of sources[s]. Every map is solved for on what lies no farther from its
 /// source along edges than the farthest of its vertices, and a margin; sources near each other share one factorization. Work
 /// and memory depend on these patches, however large the graph is.
-/// @param heat    t_coef, variant, check_graph, threads, progress (stage "solve"); order 1
+/// @param heat    t_coef, variant, check_graph, threads, progress (stage "solve")
 /// @param margin  in units of sqrt(tau), as `LocalMapOptions::margin`: at 16 the difference to the map of the whole graph is 1e-11 of
 ///                the distance at most, on flat pieces none
 /// @return d numbers per vertex, region by region, world units; NaN where no heat arrives, as in other components

@@ -38,7 +38,7 @@ class MapSink {
 /// are unfolded first, by a front that keeps 30 bytes per vertex of the graph.
 /// @param graph    tells `component_edge_length` of every vertex. It is not validated
 /// @param source   points, not a curve
-/// @param options  order 1; strategy and `check_graph` mean nothing here
+/// @param options  strategy and `check_graph` mean nothing here
 /// @param map      without frames
 /// @throws InvalidArgument (source, options, a graph of another kind), InvalidGraph (an edge that only one end knows),
 /// NotPositiveDefinite (of a band), Cancelled, and what graph and sink throw
