@@ -78,6 +78,10 @@ constexpr Sentence sentences[] = {
      "noise of {1:.4g} across the surface: {0:.0f} [point was|points were] smoothed for the map (--smooth off: as "
      "given)"},
     {"near_duplicates", "{0:.0f} [point was|points were] merged with one much nearer than the spacing"},
+    {"coarse_coordinates",
+     "the coordinates have single precision, whose steps are {0:.3g} this far from the origin, where the mean edge "
+     "length "
+     "is {1:.3g}: export them in double precision, or shift the origin before"},
     {"layers",
      "the points lie in layers {0:.3g} apart, nearer than neighbours, and are mapped as one surface: right for scans "
      "of the "

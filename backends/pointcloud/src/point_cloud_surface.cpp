@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <mutex>
 #include <new>
 #include <optional>
@@ -33,6 +34,8 @@ constexpr double thick_share = 0.15;
 /// Beyond this share of the mean edge length the noise of offsets, that of points times the root of 2, makes vectors of polar maps
 /// worse than those of heat in the median (docs/concepts/accuracy.md).
 constexpr double noise_for_heat = 0.5;
+/// Coordinates in steps of more than this share of the mean edge length hide the surface.
+constexpr double coarse_step = 0.1;
 
 void check_arguments(std::span<const Vec3> points, const CloudOptions& options) {
   if (points.size() < 3)
@@ -189,6 +192,19 @@ void fill_vertex_data(CsrGraphData& g, const CleanPoints& cloud, const TangentPl
   });
 }
 
+/// The step of single precision at the largest coordinates, if all are such numbers; else 0.
+double single_precision_step(std::span<const Vec3> points) {
+  float farthest = 0;
+  for (const Vec3& p : points)
+    for (const double x : p) {
+      if (!std::isfinite(x)) continue;
+      const auto single = static_cast<float>(x);
+      if (static_cast<double>(single) != x) return 0;
+      farthest = std::max(farthest, std::abs(single));
+    }
+  return static_cast<double>(std::nextafter(farthest, std::numeric_limits<float>::infinity())) - farthest;
+}
+
 bool is_surface(const CloudDetails& details) { return details.thick <= thick_share * details.vertices; }
 
 /// Numbers the corners of triangles as vertices; all of them have masses.
@@ -244,6 +260,7 @@ PointCloudSurface PointCloudSurface::build(std::span<const Vec3> input, std::spa
   details.smoothed = static_cast<Index>(std::count(cloud.smoothed.begin(), cloud.smoothed.end(), 1));
   details.noise = typical_noise.deviation * cloud.unit;
   details.layer_gap = typical_noise.layer_gap * cloud.unit;
+  details.coordinate_step = single_precision_step(input);
   if (!normals.empty()) details.estimated = planes.estimated;
   details.contradicted = planes.contradicted;
   details.thick = planes.thick;
@@ -380,6 +397,9 @@ std::vector<Warning> PointCloudSurface::warnings() const {
   warn("non_finite", d.non_finite);
   warn("duplicates", d.duplicates);
   warn("near_duplicates", d.near_duplicates);
+  const double mean_edge = graph_->mean_edge_length() * graph_->length_unit();
+  if (d.coordinate_step > coarse_step * mean_edge)
+    result.push_back({"coarse_coordinates", {d.coordinate_step, mean_edge}, {}});
   warn("thin_walls", d.rejected_normals);
   warn("reflections", d.reflections);
   if (d.components > 1) warn("cloud_components", d.components);

@@ -6,6 +6,12 @@
 #include "ahm/surface/exact/flat_triangles.hpp"
 
 namespace ahm {
+namespace {
+
+/// Fewer vertices for each that is in no triangle, and the triangles are no picture of the cloud.
+constexpr Index least_per_unused = 50;
+
+}  // namespace
 
 std::vector<Vec3> mapped_positions(const Surface& surface) {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -23,12 +29,16 @@ std::vector<Vec3> mapped_positions(const Surface& surface) {
 std::vector<Triangle> mapped_triangles(const Surface& surface) try {
   if (surface.faces().size() > 0) return {};
   const FlatTriangles flat = surface.flat_approximation();
+  const Index vertices = flat.surface.vertex_count();
+  Index unused = 0;
   std::vector<Index> rows;
-  for (Index v = 0; v < flat.surface.vertex_count(); ++v) {
+  for (Index v = 0; v < vertices; ++v) {
+    unused += flat.surface.first_corner(v).half < 0;
     const auto row = surface.rows().row(Vertex(v));
-    if (!row || flat.surface.first_corner(v).half < 0) return {};
+    if (!row) return {};
     rows.push_back(row->index);
   }
+  if (least_per_unused * unused > vertices) return {};
   std::vector<Triangle> triangles;
   for (Index f = 0; f < flat.surface.face_count(); ++f) {
     const exact::HalfRecord side = flat.surface.record(3 * f);

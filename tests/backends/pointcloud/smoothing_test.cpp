@@ -130,5 +130,20 @@ TEST(NearDuplicates, ByChanceStayApart) {
   EXPECT_EQ(cloud.details().near_duplicates, 0);
 }
 
+TEST(CloudWarnings, TellOfSinglePrecisionFarFromTheOrigin) {
+  Cloud cloud = flat_cloud(1000);
+  const auto moved = [&](double by, bool single) {
+    std::vector<Vec3> points = cloud.points;
+    for (Vec3& p : points)
+      for (double& x : p) x = single ? static_cast<double>(static_cast<float>(x + by)) : x + by;
+    return PointCloudSurface::build(points);
+  };
+  EXPECT_FALSE(has_warning(moved(0, true), "coarse_coordinates"));
+  EXPECT_FALSE(has_warning(moved(4e5, false), "coarse_coordinates"));
+  const auto coarse = moved(4e5, true);  // steps of 1/32 at edges of about 0.04
+  EXPECT_TRUE(has_warning(coarse, "coarse_coordinates"));
+  EXPECT_EQ(coarse.details().coordinate_step, 1.0 / 32);
+}
+
 }  // namespace
 }  // namespace ahm::test

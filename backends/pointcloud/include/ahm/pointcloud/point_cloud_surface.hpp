@@ -59,10 +59,12 @@ inline constexpr BuildCost build_cost{.bytes = 500, .seconds = 10e-6};
 
 /// What was found and done on the way. Counts are of points, edges or triangles as named.
 struct CloudDetails {
-  Index points = 0;                   ///< rows of the input
-  Index vertices = 0;                 ///< vertices of the graph
-  Index non_finite = 0;               ///< points dropped because a coordinate is NaN or infinite
-  Index duplicates = 0;               ///< points merged into an equal one
+  Index points = 0;      ///< rows of the input
+  Index vertices = 0;    ///< vertices of the graph
+  Index non_finite = 0;  ///< points dropped because a coordinate is NaN or infinite
+  Index duplicates = 0;  ///< points merged into an equal one
+  /// Largest step between coordinates that are all single precision numbers, far from the origin; world units. 0: others are not.
+  double coordinate_step = 0;
   Index near_duplicates = 0;          ///< points merged into one much nearer than the spacing
   Index smoothed = 0;                 ///< points moved because of noise
   Index degenerate = 0;               ///< points without a tangent plane or without a triangle, removed
@@ -103,7 +105,7 @@ struct CloudDetails {
 /// rejected_normals, rejected_steep, reflections, normals_given, contradicted, thick, lines, oriented, noise, layer_gap, mollification, seconds.normals, seconds.delaunay,
 /// seconds.laplacian, seconds.graph.
 /// Its warnings, each with a count unless said otherwise: normals_estimated; normals_contradicted; cover_not_delaunay (no number);
-/// degenerate (with rows); normals_turned; k_reduced (asked for, used, distinct points); smoothed (points, noise); near_duplicates; layers (gap); no_surface (points as
+/// degenerate (with rows); normals_turned; k_reduced (asked for, used, distinct points); smoothed (points, noise); near_duplicates; coarse_coordinates (step, mean edge length); layers (gap); no_surface (points as
 /// thick as wide, vertices); lines (points); non_finite; duplicates; thin_walls (pairs of
 /// neighbours not joined); reflections (edges); cloud_components (of more than one).
 /// Faults of a row: row_left_out (by `CloudOptions::rows`), row_removed (not finite, no tangent plane, no triangle).

@@ -17,8 +17,8 @@ namespace ahm {
 /// @return  rows x 3, world units; empty for a surface given by lengths alone
 std::vector<Vec3> mapped_positions(const Surface& surface);
 
-/// The triangles of `Surface::flat_approximation` by their rows, where they use all vertices of the graph; else none: points that are
-/// in no triangle would not be seen. None for a surface with faces.
+/// The triangles of `Surface::flat_approximation` by their rows, where at most one vertex in fifty is in none of them; else none: these
+/// points would not be seen. None for a surface with faces.
 std::vector<Triangle> mapped_triangles(const Surface& surface);
 
 }  // namespace ahm
