@@ -153,7 +153,7 @@ TEST(PolarMethod, IsTheDefaultWhereTrianglesAgree) {
   EXPECT_EQ(heat.at("method"), "heat");
   EXPECT_FALSE(heat.contains("median_error_estimate"));
   EXPECT_EQ(map({"--t-coef", "2"}).at("method"), "heat");
-  EXPECT_EQ(map({"--backend", "pointcloud"}).at("method"), "heat");
+  EXPECT_EQ(map({"--backend", "pointcloud"}).at("method"), "polar");
   EXPECT_EQ(map({"--backend", "pointcloud", "--method", "polar"}).at("method"), "polar");
   const Outcome outcome = run(with(words, {"--method", "polar", "--t-coef", "2"}));
   EXPECT_NE(outcome.status, 0);

@@ -51,7 +51,7 @@ Index expect_rows_of_whole_maps(const Surface& surface, double margin) {
     for (double d : whole.distance) inside += d < radius * (1 - margin);
     EXPECT_LE(inside, maps.indptr[s + 1] - maps.indptr[s]);
     for (Offset e = maps.indptr[s]; e < maps.indptr[s + 1]; ++e) {
-      const Vec3 there = surface.positions()[maps.neighbors[e].index];
+      const Vec3 there = surface.graph().frame(surface.vertex(maps.neighbors[e]).index)->origin;
       const double line = std::hypot(there[0] - start[0], there[1] - start[1], there[2] - start[2]);
       EXPECT_GE(maps.distances[e], line * (1 - 1e-9));
       at_line += maps.distances[e] < line * (1 + 1e-9);

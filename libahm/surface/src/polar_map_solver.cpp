@@ -73,7 +73,8 @@ LogMap PolarMapSolver::seeded_map(const Source& source, const PolarMapOptions& o
     try {
       exact = seeds(ExactMapOptions{
           .radius = options.radius, .most_windows = windows_, .frames = options.frames, .progress = options.progress});
-    } catch (const InvalidGeometry&) {  // windows got lost in needles: from the source, then
+    } catch (
+        const InvalidGeometry&) {  // windows lost in needles, a source outside of the triangles: from the source, then
     }
     const auto run_from = [&](UnfoldingFront& over) {
       if (!exact.empty()) {

@@ -51,7 +51,8 @@ RowLogMap Surface::on_rows(const LogMap& map, unsigned threads) const {
     const Vertex v = *best.vertex;
     // A row that was joined with the source is there, too.
     const bool is_away = source && map.distance(v) > 0;
-    const double away = no_shorter_than(is_away ? distance(positions()[r], *source) : 0, map.distance(v));
+    const double line = is_away ? distance(graph().frame(v.index)->origin, *source) : 0;
+    const double away = no_shorter_than(line, map.distance(v));
     if (away > map.radius()) {
       result.status[r] = Status::beyond_radius;
       return;

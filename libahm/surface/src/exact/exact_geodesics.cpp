@@ -137,12 +137,15 @@ Axes ExactGeodesics::vertex_axes(const PlacedSource& placed) const {
 }
 
 /// The straight line from the row of a source in a tangent plane to that source.
-exact::TracedPath ExactGeodesics::trace_to(const PlacedSource& placed) const {
+/// @throws InvalidGeometry (fault "beyond_boundary")
+exact::TracedPath ExactGeodesics::trace_to(const PlacedSource& placed) const try {
   const Axes a = vertex_axes(placed);
   const std::span<const double> back = placed.source.offsets();
   const Vec2 out{-(a[0] * back[0] + a[1] * back[1]), -(a[2] * back[0] + a[3] * back[1])};
   return exact::trace(flat_.surface, flat_.surface.vertex_point(placed.source.vertices()[0]),
                       std::atan2(out[1], out[0]), length(out) / flat_.length_unit);
+} catch (const InvalidArgument& e) {  // the line leaves the triangles at once
+  throw InvalidGeometry("beyond_boundary", e.what(), "choose a source inside the surface");
 }
 
 /// The angle of the u axis of a source in a tangent plane, in the frame of side 0 of the face where that source lies.
