@@ -34,8 +34,11 @@ constexpr double thick_share = 0.15;
 /// Beyond this share of the mean edge length the noise of offsets, that of points times the root of 2, makes vectors of polar maps
 /// worse than those of heat in the median (docs/concepts/accuracy.md).
 constexpr double noise_for_heat = 0.5;
+/// Local triangulations of surfaces agree in 0.87 of their triangles and more; those of foliage, scanned buildings and sheets one spacing
+/// apart in 0.48 to 0.77.
+constexpr double least_agreement = 0.8;
 /// Coordinates in steps of more than this share of the mean edge length hide the surface.
-constexpr double coarse_step = 0.1;
+constexpr double coarse_step = 0.1, grid_step = 0.4;
 
 void check_arguments(std::span<const Vec3> points, const CloudOptions& options) {
   if (points.size() < 3)
@@ -192,7 +195,8 @@ void fill_vertex_data(CsrGraphData& g, const CleanPoints& cloud, const TangentPl
   });
 }
 
-/// The step of single precision at the largest coordinates, if all are such numbers; else 0.
+/// The step of single precision at the largest coordinates, if all are such numbers and some of the largest are odd multiples of it;
+/// else 0.
 double single_precision_step(std::span<const Vec3> points) {
   float farthest = 0;
   for (const Vec3& p : points)
@@ -202,10 +206,18 @@ double single_precision_step(std::span<const Vec3> points) {
       if (static_cast<double>(single) != x) return 0;
       farthest = std::max(farthest, std::abs(single));
     }
-  return static_cast<double>(std::nextafter(farthest, std::numeric_limits<float>::infinity())) - farthest;
+  const double step = static_cast<double>(std::nextafter(farthest, std::numeric_limits<float>::infinity())) - farthest;
+  const auto is_rounded = [&](double x) { return std::abs(x) > farthest / 2 && std::fmod(std::abs(x) / step, 2) == 1; };
+  return std::ranges::any_of(points, [&](const Vec3& p) { return std::ranges::any_of(p, is_rounded); }) ? step : 0;
 }
 
 bool is_surface(const CloudDetails& details) { return details.thick <= thick_share * details.vertices; }
+
+/// The share of the triangles that are in the local triangulations of all three corners; 1 where there are none.
+double agreement(const LocalTriangles& local) {
+  const auto shared = std::ranges::count(local.votes, 3);
+  return local.votes.empty() ? 1 : static_cast<double>(shared) / static_cast<double>(local.votes.size());
+}
 
 /// Numbers the corners of triangles as vertices; all of them have masses.
 void number_corners(std::vector<Triangle>& triangles, const std::vector<Index>& vertex_of_clean) {
@@ -289,6 +301,7 @@ PointCloudSurface PointCloudSurface::build(std::span<const Vec3> input, std::spa
   CsrGraphData data = tangent_edges(cloud, planes, edges, vertex_of_clean, details.vertices, per_part(*parts, trusted),
                                     noise, options.threads, details);
   fill_vertex_data(data, cloud, planes, edges, vertex_of_clean, details.vertices, options.threads);
+  details.agreement = agreement(local);
   number_corners(triangles, vertex_of_clean);
   std::optional<CsrGraph> graph;
   std::optional<RowMap> rows;
@@ -315,7 +328,7 @@ PointCloudSurface PointCloudSurface::build(std::span<const Vec3> input, std::spa
 
 Method PointCloudSurface::suggested_method() const {
   const bool is_noisy = details_.noise > noise_for_heat * graph_->mean_edge_length() * graph_->length_unit();
-  return is_noisy || !is_surface(details_) ? Method::heat : Method::polar;
+  return is_noisy || details_.agreement < least_agreement ? Method::heat : Method::polar;
 }
 
 FlatTriangles PointCloudSurface::flat_approximation() const {
@@ -398,7 +411,8 @@ std::vector<Warning> PointCloudSurface::warnings() const {
   warn("duplicates", d.duplicates);
   warn("near_duplicates", d.near_duplicates);
   const double mean_edge = graph_->mean_edge_length() * graph_->length_unit();
-  if (d.coordinate_step > coarse_step * mean_edge)
+  // Grids may have such steps, too, but no duplicates.
+  if (d.coordinate_step > coarse_step * mean_edge && (d.coordinate_step < grid_step * mean_edge || d.duplicates > 0))
     result.push_back({"coarse_coordinates", {d.coordinate_step, mean_edge}, {}});
   warn("thin_walls", d.rejected_normals);
   warn("reflections", d.reflections);

@@ -140,9 +140,25 @@ TEST(CloudWarnings, TellOfSinglePrecisionFarFromTheOrigin) {
   };
   EXPECT_FALSE(has_warning(moved(0, true), "coarse_coordinates"));
   EXPECT_FALSE(has_warning(moved(4e5, false), "coarse_coordinates"));
+  for (const double spacing : {1.0, 0.5}) {
+    std::vector<Vec3> grid;
+    for (int i = 0; i < 900; ++i) grid.push_back({5e5 + spacing * (i % 30), 5.4e6 + spacing * (i / 30), 0});
+    EXPECT_FALSE(has_warning(PointCloudSurface::build(grid), "coarse_coordinates")) << spacing;
+  }
   const auto coarse = moved(4e5, true);  // steps of 1/32 at edges of about 0.04
   EXPECT_TRUE(has_warning(coarse, "coarse_coordinates"));
   EXPECT_EQ(coarse.details().coordinate_step, 1.0 / 32);
+}
+
+TEST(CloudMethod, IsHeatWhereTheCloudIsNoSurfaceOrNoisy) {
+  EXPECT_EQ(PointCloudSurface::build(random_sphere(n).points).suggested_method(), Method::polar);
+  EXPECT_EQ(PointCloudSurface::build(with_noise(random_sphere(n), 0.2 * sphere_spacing()).points).suggested_method(),
+            Method::polar);
+  EXPECT_EQ(PointCloudSurface::build(with_noise(random_sphere(n), 0.8 * sphere_spacing()).points).suggested_method(),
+            Method::heat);
+  std::vector<Vec3> sheets = flat_cloud(3000).points;  // one spacing apart
+  for (std::size_t i = 0; i < 3000; ++i) sheets.push_back(sheets[(i + 1) % 3000] + Vec3{-0.007, 0.014, 0.014});
+  EXPECT_EQ(PointCloudSurface::build(sheets).suggested_method(), Method::heat);
 }
 
 }  // namespace

@@ -86,6 +86,7 @@ struct CloudDetails {
   Index lines = 0;             ///< points in parts without a point that others surround: lines, and no surface
   Index turned = 0;            ///< given normals that pointed to the other side than the majority around them
   bool oriented = false;       ///< given normals fix which side is up, everywhere
+  double agreement = 1;  ///< share of the local triangles that all three corners have in their local triangulations
   double noise = 0;  ///< standard deviation of neighbours' offsets across the surface before smoothing, world units;
                      ///< of several parts that of the largest
   double layer_gap = 0;  ///< of layers nearer than neighbours that nearly all points there lie in, world units; 0: none
@@ -131,8 +132,8 @@ class PointCloudSurface final : public Surface {
   /// @throws InvalidGeometry (no triangle is left)
   FlatTriangles flat_approximation() const override;
 
-  /// Polar, but heat where the noise is more than half of the mean edge length, which smoothing leaves too much of, and where the cloud
-  /// is no surface.
+  /// Polar, but heat where the noise is more than half of the mean edge length, which smoothing leaves too much of, and where the local
+  /// triangulations agree in less than 0.8 of their triangles: the cloud is no surface there.
   Method suggested_method() const override;
 
   ~PointCloudSurface() override;
