@@ -101,7 +101,8 @@ class Applications {
       covered.push_back(static_cast<double>(std::ranges::count(path.points, false, &CoveragePoint::between)) /
                         static_cast<double>(path.planned));
       const Center center = mean(maps, sources_[s]), &exact = exact_means_[s];
-      offsets.push_back(distance(place(center), place(exact)) / radius_[s]);
+      offsets.push_back(distance(center_position(surface_.mesh(), center), center_position(surface_.mesh(), exact)) /
+                        radius_[s]);
     }
     const Atlas atlas =
         make_atlas(maps, farthest_points(surface_.graph(), sources_[0], chart_count), {begin_, corners_});
@@ -110,11 +111,6 @@ class Applications {
                 quantile(flipped, 0.5), charts.median, charts.percentile_95, charts.flipped_area,
                 spacings.empty() ? Cell() : Cell(quantile(spacings, 0.95)), quantile(covered, 0.5),
                 quantile(offsets, 0.5), quantile(times, 0.5)});
-  }
-
-  Vec3 place(const Center& center) const {
-    const Frame frame = surface_.graph().frame(center.vertex.index).value();
-    return frame.origin + center.offset[0] * frame.x + center.offset[1] * frame.y;
   }
 
   const Surface& surface_;

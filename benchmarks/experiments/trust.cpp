@@ -139,18 +139,23 @@ void measure(const Ground& ground, const View& view, Table& table) {
   const PolarMapSolver polar(view.surface);
   const LogMapSolver heat(view.surface.graph());
   const Index size = view.size();
+  std::vector<Index> sources;
+  std::vector<exact::ExactMap> truths;
+  for (int s = 0; s < source_count; ++s) {
+    sources.push_back(size / 11 + s * (size / source_count));
+    truths.push_back(exact::exact_map(ground.polyhedral, view.points[sources.back()], {.targets = view.points}));
+  }
   for (const Method method : {Method::polar, Method::heat}) {
     Found all;
     double worst = 1, time = 0;
     for (int s = 0; s < source_count; ++s) {
-      const Index source = size / 11 + s * (size / source_count);
-      const exact::ExactMap truth = exact::exact_map(ground.polyhedral, view.points[source], {.targets = view.points});
+      const Index source = sources[s];
       std::optional<LogMap> map;
       time += seconds([&] {
         map = method == Method::polar ? polar.log_map(view.row(source))
                                       : heat.solve(view.surface.source(view.row(source)).source, {.threads = 1});
       });
-      const Found found = compare(ground, truth, view, *map);
+      const Found found = compare(ground, truths[s], view, *map);
       if (found.quality.empty()) continue;
       worst = std::min(worst, shares_of(found).right_among_trusted);
       append(all, found);

@@ -1,11 +1,9 @@
 #include "flat_sheet.hpp"
 
-#include <algorithm>
 #include <cmath>
-#include <utility>
 #include <vector>
 
-#include "ahm/surface/gluing.hpp"
+#include "ahm/surface/glued_mesh.hpp"
 #include "ahm/util/small_math.hpp"
 #include "ahm/util/vec.hpp"
 
@@ -15,57 +13,37 @@ namespace {
 using exact::Corner;
 using exact::Half;
 
-/// Triangles glued along their edges, most of them counter-clockwise about their normals.
-struct GluedTriangles {
-  std::vector<Index> tail;
-  std::vector<Half> twin;
-  std::vector<std::uint8_t> mirrored;  ///< empty: orientable
-
-  exact::HalfEdges edges() const { return {tail, twin, mirrored}; }
-};
-
-GluedTriangles glue_triangles(std::span<const Frame> frames, std::span<const Triangle> triangles) {
-  GluedTriangles result;
+/// Glued along their edges, as given counter-clockwise about the normals of their first corners.
+detail::GluedMesh glued(std::span<const Frame> frames, std::span<const Triangle> triangles) {
   std::vector<Offset> begin{0};
+  std::vector<Index> corners;
   for (const Triangle& t : triangles) {
     const Vec3 a = frames[t[1]].origin - frames[t[0]].origin, b = frames[t[2]].origin - frames[t[0]].origin;
     const bool up = dot(cross(a, b), frames[t[0]].normal) > 0;
-    result.tail.insert(result.tail.end(), {t[0], up ? t[1] : t[2], up ? t[2] : t[1]});
-    begin.push_back(static_cast<Offset>(result.tail.size()));
+    corners.insert(corners.end(), {t[0], up ? t[1] : t[2], up ? t[2] : t[1]});
+    begin.push_back(static_cast<Offset>(corners.size()));
   }
-  const detail::Gluing gluing =
-      detail::glue(static_cast<Index>(frames.size()), {begin, result.tail}, NonManifold::error);
-  // Turning a face over swaps its sides 0 and 2.
-  const auto placed = [&](Half h) { return gluing.reversed[h / 3] ? h - h % 3 + 2 - h % 3 : h; };
-  std::vector<Index> tail(result.tail.size());
-  result.twin.assign(tail.size(), -1);
-  Half boundary = 0;
-  for (Half h = 0; h < static_cast<Half>(tail.size()); ++h) {
-    const Half at = placed(h);
-    tail[at] = gluing.reversed[h / 3] ? result.tail[detail::next(h)] : result.tail[h];
-    result.twin[at] = gluing.partner[h] >= 0 ? placed(gluing.partner[h]) : -1 - boundary++;
-  }
-  result.tail = std::move(tail);
-  if (gluing.orientable) return result;
-  result.mirrored.assign(result.tail.size(), 0);
-  for (Half h = 0; h < static_cast<Half>(result.tail.size()); ++h)
-    if (result.twin[h] >= 0) result.mirrored[h] = result.tail[h] == result.tail[result.twin[h]];
-  return result;
+  return {static_cast<Index>(frames.size()), {begin, corners}, NonManifold::error};
 }
 
 /// A triangle in its own plane.
-exact::FaceSides lay_out(const GluedTriangles& glued, std::span<const Frame> frames, Index face) {
-  const auto corner = [&](int s) { return frames[glued.tail[3 * face + s]].origin; };
+exact::FaceSides lay_out(std::span<const Index> tails, std::span<const Frame> frames, Index face) {
+  const auto corner = [&](int s) { return frames[tails[3 * face + s]].origin; };
   const Vec3 a = corner(1) - corner(0), b = corner(2) - corner(0);
   const double base = norm(a), along = dot(a, b) / base, height = norm(cross(a, b)) / base;
   return {Vec2{base, 0}, Vec2{along - base, height}, Vec2{-along, -height}};
 }
 
-/// One half-edge that starts at each vertex; -1: none.
-std::vector<Half> corners_of(const GluedTriangles& glued, std::size_t vertices) {
-  std::vector<Half> corners(vertices, -1);
-  for (Half h = static_cast<Half>(glued.tail.size()); h-- > 0;) corners[glued.tail[h]] = h;
-  return corners;
+/// With the vertices of the graph, of which a mesh has those alone that it uses.
+exact::PolyhedralSurface surface_of(const detail::GluedMesh& mesh, std::span<const Frame> frames) {
+  exact::HalfEdges edges = mesh.half_edges();
+  const auto vertices = mesh.input_of_vertex();
+  std::vector<Index> tails(edges.tail.begin(), edges.tail.end());
+  for (Index& tail : tails) tail = vertices[tail];
+  edges.tail = tails;
+  std::vector<Half> corners(frames.size(), -1);
+  for (Index v = 0; v < mesh.vertex_count(); ++v) corners[vertices[v]] = mesh.corners()[v];
+  return {edges, [&](Index f) { return lay_out(tails, frames, f); }, corners};
 }
 
 /// Finds the angle of direction 0 in the frame of a vertex: the mean, over its edges, of what their angles differ by.
@@ -99,12 +77,7 @@ void fit_direction(FlatTriangles& flat, std::span<const Frame> frames, Index v) 
 }  // namespace
 
 FlatTriangles flat_sheet(std::span<const Frame> frames, std::span<const Triangle> triangles, double length_unit) {
-  const GluedTriangles glued = glue_triangles(frames, triangles);
-  FlatTriangles flat{
-      {glued.edges(), [&](Index f) { return lay_out(glued, frames, f); }, corners_of(glued, frames.size())},
-      {},
-      length_unit,
-      true};
+  FlatTriangles flat{surface_of(glued(frames, triangles), frames), {}, length_unit, true};
   flat.positions.reserve(frames.size());
   for (const Frame& frame : frames) flat.positions.push_back(length_unit * frame.origin);
   flat.angles.assign(frames.size(), 0);

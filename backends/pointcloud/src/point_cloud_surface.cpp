@@ -211,8 +211,6 @@ double single_precision_step(std::span<const Vec3> points) {
   return std::ranges::any_of(points, [&](const Vec3& p) { return std::ranges::any_of(p, is_rounded); }) ? step : 0;
 }
 
-bool is_surface(const CloudDetails& details) { return details.thick <= thick_share * details.vertices; }
-
 /// The share of the triangles that are in the local triangulations of all three corners; 1 where there are none.
 double agreement(const LocalTriangles& local) {
   const auto shared = std::ranges::count(local.votes, 3);
@@ -397,7 +395,7 @@ std::vector<Warning> PointCloudSurface::warnings() const {
   warn("normals_estimated", d.estimated);
   if (d.flips_stopped) result.push_back({"cover_not_delaunay", {}, {}});
   warn("normals_contradicted", d.contradicted);
-  if (!is_surface(d))
+  if (d.thick > thick_share * d.vertices)
     result.push_back({"no_surface", {static_cast<double>(d.thick), static_cast<double>(d.vertices)}, {}});
   warn("lines", d.lines);
   warn("degenerate", d.degenerate, d.first_degenerate);

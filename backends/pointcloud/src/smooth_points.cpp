@@ -17,7 +17,7 @@ namespace ahm::pointcloud {
 namespace {
 
 /// Parts are noisy where the deviation of neighbors' offsets is more than this share of the spacing: that of two noisy ends, so that
-/// each is off by 0.085 spacings. Detail of clean shapes has 0.1 at most.
+/// each is off by 0.085 spacings. The vertices of clean meshes of real shapes have 0.02 to 0.09, of a finely carved one 0.13.
 constexpr double noisy_share = 0.12;
 /// In noisy parts, neighborhoods are quiet below this share: points at rest beside moved ones make a step.
 constexpr double quiet_share = 0.06;

@@ -133,7 +133,7 @@ class PointCloudSurface final : public Surface {
   FlatTriangles flat_approximation() const override;
 
   /// Polar, but heat where the noise is more than half of the mean edge length, which smoothing leaves too much of, and where the local
-  /// triangulations agree in less than 0.8 of their triangles: the cloud is no surface there.
+  /// triangulations agree in less than 0.8 of their triangles: the points do not form a surface.
   Method suggested_method() const override;
 
   ~PointCloudSurface() override;

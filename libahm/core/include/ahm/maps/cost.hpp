@@ -36,8 +36,8 @@ struct Cost {
 /// @throws InvalidArgument (automatic)
 Cost estimate_cost(const GraphSize& size, Strategy strategy, unsigned threads = 0);
 
-/// From the graph: by the symbolic analysis of what is factored, which is the graph or the bands of a march; these are cut where
-/// the ways along edges from the source say. Good to a third on surfaces (docs/results/estimates.md), in a tenth of a map's time.
+/// From the graph: by the symbolic analysis of what is factored, which is the graph or the bands of a march; these are cut by
+/// the lengths of the shortest edge paths from the source. Good to a third on surfaces (docs/results/estimates.md), in a tenth of a map's time.
 ///
 /// What a march within a radius takes where distances are not unfolded (clouds) cannot be known before: it goes on wherever vectors
 /// of heat are shorter than the radius, and in noise they are too short. This tells what it takes where they are not; it takes at

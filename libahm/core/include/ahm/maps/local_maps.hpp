@@ -28,7 +28,7 @@ struct LocalMapOptions {
   Index nearest = 0;
   /// How far beyond the radius each patch reaches, in units of sqrt(tau). Flat pieces are exact at any margin; elsewhere
   /// this is what the difference to the map of the whole graph depends on: about 1e-5 of the radius at 2, and ten times
-  /// less for each further 1 (docs/results/local_maps.md).
+  /// less at 3, and so on (docs/results/local_maps.md).
   double margin = 2;
   /// Distances no shorter than the straight line in space, as those by row are, where the graph has frames; which vertices are the nearest,
   /// and which lie within the radius, goes by them.
