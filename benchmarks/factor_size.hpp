@@ -2,7 +2,7 @@
 /// How large the Cholesky factor of a pattern is, and what it takes to compute.
 #pragma once
 
-#include "heat/cholesky.hpp"
+#include "ahm/cholesky/cholesky.hpp"
 
 namespace ahm::bench {
 

@@ -1,12 +1,12 @@
 /// \file
-/// The generated shapes of ahm::testing that the benchmarks run on.
+/// The generated shapes of ahm::conformance that the benchmarks run on.
 #pragma once
 
 #include <vector>
 
-#include "ahm/testing/clouds.hpp"
-#include "ahm/testing/triangle_meshes.hpp"
-#include "ahm/testing/vectors.hpp"
+#include "ahm/conformance/clouds.hpp"
+#include "ahm/conformance/triangle_meshes.hpp"
+#include "ahm/conformance/vectors.hpp"
 
 namespace ahm::bench {
 

@@ -2,7 +2,7 @@
 
 #include <time.h>
 
-#include "heat/blas_control.hpp"
+#include "cholesky/blas.hpp"
 
 namespace ahm::bench {
 

@@ -67,12 +67,11 @@ function(ahm_library component)
     $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_include_directories(${target} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}/src)
   target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:ahm_util>)
-  target_precompile_headers(${target} REUSE_FROM ahm_base)
-  ahm_compile_together(${target} ALONE ${ARG_ALONE})
+  target_precompile_headers(${target} REUSE_FROM ahm_precompiled)
   # Until 1.0 the interface may change with every minor version. DEFINE_SYMBOL: compiled alike, static or shared.
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${component} POSITION_INDEPENDENT_CODE ON DEFINE_SYMBOL ""
     VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
-  if(BUILD_SHARED_LIBS AND AHM_LINKER_KNOWS_VERSION_SCRIPTS AND NOT component STREQUAL "testing")  # that is GoogleTest's, too
+  if(BUILD_SHARED_LIBS AND AHM_LINKER_KNOWS_VERSION_SCRIPTS AND NOT component STREQUAL "conformance")  # that is GoogleTest's, too
     target_link_options(${target} PRIVATE "LINKER:--version-script=${AHM_EXPORTED_SYMBOLS}")
     set_property(TARGET ${target} APPEND PROPERTY LINK_DEPENDS ${AHM_EXPORTED_SYMBOLS})
   endif()
@@ -84,6 +83,16 @@ function(ahm_library component)
     install(TARGETS ${target} EXPORT ahm-${component}-targets
       ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT dev
       LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT ${package} NAMELINK_COMPONENT dev)
+    install(DIRECTORY include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT dev)
+    set_property(GLOBAL APPEND PROPERTY AHM_COMPONENTS ${component})
+  endif()
+endfunction()
+
+# ahm_install_headers(<component>): installs the interface library ahm_<component> and its include/ as ahm::<component>.
+function(ahm_install_headers component)
+  set_target_properties(ahm_${component} PROPERTIES EXPORT_NAME ${component})
+  if(AHM_INSTALL)
+    install(TARGETS ahm_${component} EXPORT ahm-${component}-targets)
     install(DIRECTORY include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT dev)
     set_property(GLOBAL APPEND PROPERTY AHM_COMPONENTS ${component})
   endif()

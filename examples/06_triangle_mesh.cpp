@@ -1,6 +1,5 @@
 // A source inside a face, sampled at another point of the surface: both given on the input mesh.
-#include <ahm/maps/log_map_solver.hpp>
-#include <ahm/trimesh/triangle_mesh_surface.hpp>
+#include <ahm/ahm.hpp>
 #include <cmath>
 #include <cstdio>
 
@@ -18,10 +17,10 @@ int main() {
   }
 
   const auto mesh = ahm::trimesh::TriangleMeshSurface::build(positions, faces);
-  const ahm::LogMapSolver solver(mesh.graph());
+  const ahm::SurfaceSolver solver(mesh);
   const ahm::FacePoint source{0, {0.5, 0.25, 0.25}}, target{2 * n - 1, {0.25, 0.25, 0.5}};
-  const ahm::LogMap map = solver.solve(mesh.source(source, ahm::Vec3{1, 0, 0}).source);  // u along the x axis of space
-  const ahm::Sample sample = mesh.at(map, target);
+  const ahm::SurfaceLogMap map = solver.log_map(source, {.u_axis = ahm::Vec3{1, 0, 0}});  // u along the x axis of space
+  const ahm::Sample sample = solver.at(map, target);
   std::printf("%ld flips; the target lies at u = %.6f, v = %.6f\n", static_cast<long>(mesh.details().flips), sample.u,
               sample.v);
   // Unfolded, source and target are (2.5, 0.025) and (1.25, 3.975).

@@ -1,6 +1,5 @@
 // A floor of hexagonal tiles, and the map seen from the middle of one of them.
-#include <ahm/maps/log_map_solver.hpp>
-#include <ahm/polymesh/polygon_mesh_surface.hpp>
+#include <ahm/ahm.hpp>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -27,10 +26,10 @@ int main() {
 
   const auto floor = ahm::polymesh::PolygonMeshSurface::build(
       positions, begin, corners, {.discretization = ahm::polymesh::Discretization::polygons});
-  const ahm::LogMapSolver solver(floor.graph());
+  const ahm::SurfaceSolver solver(floor, ahm::HeatOptions{});
   const ahm::Index tile = 4 * columns + 4;
   const std::vector<double> middle(6, 1.0 / 6);
-  const auto map = floor.on_rows(solver.solve(floor.source(ahm::FacePoint{tile, middle}, ahm::Vec3{1, 0, 0}).source));
+  const ahm::SurfaceLogMap map = solver.log_map(ahm::FacePoint{tile, middle}, {.u_axis = ahm::Vec3{1, 0, 0}});
 
   double error = 0;  // on the plane the map is exact
   const ahm::Vec3 origin = floor.position(ahm::FacePoint{tile, middle});

@@ -18,7 +18,7 @@ words() {
 }
 
 sources() {
-  git ls-files "$@" ':!benchmarks' ':!examples' ':!python' ':!testing' ':!tests' ':!backends/pointcloud/pcl' ':!*/pcl_*' \
+  git ls-files "$@" ':!benchmarks' ':!examples' ':!python' ':!libahm/conformance' ':!tests' ':!backends/pointcloud/pcl' ':!*/pcl_*' \
     ':!*/no_*.cpp' ':!*/stb.cpp' ':!*/pack.cpp'
 }
 
@@ -53,7 +53,7 @@ tidy-all() {
   echo "clang-tidy ..."
   configure_tidy tidy-all
   sed -n 's/^ *"file": "\(.*\)".*/\1/p' build/tidy-all/compile_commands.json | sort -u |
-    grep -Ev '/(testing|cmake_pch|resources|stb|no_[a-z]*|pack)[./]' |
+    grep -Ev '/(conformance|cmake_pch|resources|stb|no_[a-z]*|pack)[./]' |
     run_tidy tidy-all --checks=-performance-unnecessary-value-param,-bugprone-suspicious-include
 }
 

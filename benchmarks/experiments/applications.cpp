@@ -62,13 +62,13 @@ class Applications {
     return result;
   }
 
-  LogMap map_of(const MapMaker& maps, Vertex source) const {
+  LogMap map_of(const AnySolver& maps, Vertex source) const {
     if (maps.method() == Method::heat) return heat_.solve(Source::at_vertex(source), {.threads = 1, .frames = true});
     return maps.map(source, std::numeric_limits<double>::infinity(), true);
   }
 
   /// Of five points around the source.
-  Center mean(const MapMaker& maps, Vertex source) const {
+  Center mean(const AnySolver& maps, Vertex source) const {
     const std::size_t s = std::ranges::find(sources_, source) - sources_.begin();
     std::vector<Vertex> points;
     for (std::size_t k = 0; k < 5; ++k) points.push_back(near_[s][(2 * k + 1) * near_[s].size() / 10]);
@@ -85,7 +85,7 @@ class Applications {
     return summary(inside);
   }
 
-  void measure(const MapMaker& maps) {
+  void measure(const AnySolver& maps) {
     std::vector<double> decals, flipped, spacings, covered, offsets, times;
     for (std::size_t s = 0; s < sources_.size(); ++s) {
       std::optional<LogMap> map;

@@ -7,12 +7,12 @@
 #include <optional>
 #include <random>
 
+#include "ahm/conformance/closed_forms.hpp"
+#include "ahm/conformance/polygon_meshes.hpp"
 #include "ahm/error.hpp"
 #include "ahm/maps/log_map_solver.hpp"
 #include "ahm/pointcloud/point_cloud_surface.hpp"
 #include "ahm/polymesh/polygon_mesh_surface.hpp"
-#include "ahm/testing/closed_forms.hpp"
-#include "ahm/testing/polygon_meshes.hpp"
 #include "experiments/comparison.hpp"
 #include "kernels/quads.hpp"
 #include "timing.hpp"
@@ -92,7 +92,7 @@ struct Triangles {
   Triangles(const Shape& shape, const Setup& setup)
       : surface(trimesh::TriangleMeshSurface::build(shape.quads.points, shape.triangles, {.threads = setup.threads})) {}
   Source source(Index point) const { return surface.source(Row(point), u_direction).source; }
-  auto on_points(const LogMap& map) const { return surface.on_rows(map); }
+  auto on_points(const LogMap& map) const { return surface.to_rows(map); }
 };
 
 struct Quadrilaterals {
@@ -103,7 +103,7 @@ struct Quadrilaterals {
             shape.quads.points, shape.quads.begin, shape.quads.corners,
             {.discretization = polymesh::Discretization::polygons, .threads = setup.threads})) {}
   Source source(Index point) const { return surface.source(Row(point), u_direction).source; }
-  auto on_points(const LogMap& map) const { return surface.on_rows(map); }
+  auto on_points(const LogMap& map) const { return surface.to_rows(map); }
 };
 
 struct Points {
@@ -113,7 +113,7 @@ struct Points {
       : surface(pointcloud::PointCloudSurface::build(shape.quads.points, {},
                                                      {.search = setup.search, .threads = setup.threads})) {}
   Source source(Index point) const { return surface.source(Row(point), u_direction).source; }
-  auto on_points(const LogMap& map) const { return surface.on_rows(map); }
+  auto on_points(const LogMap& map) const { return surface.to_rows(map); }
 };
 
 // Errors.

@@ -8,12 +8,12 @@
 #include <numeric>
 #include <random>
 
+#include "ahm/conformance/triangle_meshes.hpp"
 #include "ahm/maps/log_map_solver.hpp"
 #include "ahm/maps/quality.hpp"
-#include "ahm/maps/unfolding_front.hpp"
+#include "ahm/maps/wavefront.hpp"
 #include "ahm/pointcloud/point_cloud_surface.hpp"
 #include "ahm/surface/exact/exact_map.hpp"
-#include "ahm/testing/triangle_meshes.hpp"
 #include "ahm/util/vec.hpp"
 #include "experiments/comparison.hpp"
 
@@ -82,7 +82,7 @@ void measure(const Surface& surface, double noise, Table& table) {
   for (int s = 0; s < source_count; ++s) {
     const Index source = sources.emplace_back(surface.size() / 11 + s * (surface.size() / source_count));
     truth.push_back(distances(exact::exact_map(polyhedral, polyhedral.vertex_point(Vertex(source))), surface));
-    UnfoldingFront front(cloud.graph());
+    Wavefront front(cloud.graph());
     front.add(cloud.source(Row(source)).source);
     front.run();
     std::vector<double> found(truth.back().size(), std::numeric_limits<double>::infinity());
@@ -96,8 +96,8 @@ void measure(const Surface& surface, double noise, Table& table) {
     Found found;
     for (int s = 0; s < source_count; ++s) {
       const LogMap map = solver.solve(cloud.source(Row(sources[s])).source);
-      const RowLogMap rows = cloud.on_rows(map);
-      compare(cloud, rows.distance, on_rows(rows, map_quality(cloud.graph(), map)), truth[s], sources[s], near, found);
+      const RowLogMap rows = cloud.to_rows(map);
+      compare(cloud, rows.distance, to_rows(rows, map_quality(cloud.graph(), map)), truth[s], sources[s], near, found);
     }
     add_row(surface, noise, to_string(variant), found, table);
   }

@@ -7,8 +7,8 @@
 #include <limits>
 #include <numeric>
 
+#include "ahm/conformance/closed_forms.hpp"
 #include "ahm/error.hpp"
-#include "ahm/testing/closed_forms.hpp"
 #include "ahm/util/quantile.hpp"
 #include "ahm/util/shortest_paths.hpp"
 

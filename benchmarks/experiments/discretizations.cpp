@@ -4,12 +4,12 @@
 #include <cmath>
 #include <functional>
 
+#include "ahm/conformance/closed_forms.hpp"
+#include "ahm/conformance/polygon_meshes.hpp"
 #include "ahm/error.hpp"
 #include "ahm/maps/log_map_solver.hpp"
 #include "ahm/pointcloud/point_cloud_surface.hpp"
 #include "ahm/polymesh/polygon_mesh_surface.hpp"
-#include "ahm/testing/closed_forms.hpp"
-#include "ahm/testing/polygon_meshes.hpp"
 #include "experiments/comparison.hpp"
 
 namespace ahm::bench {
@@ -54,7 +54,7 @@ void measure_mesh(const char* name, std::span<const Vec3> points, const Surface&
   measure(name, points,
           {surface.graph(), [&](Index p) { return surface.source(Row(p)).source; },
            [&](const LogMap& map) {
-             auto on = surface.on_rows(map);
+             auto on = surface.to_rows(map);
              return std::array{std::move(on.u), std::move(on.v)};
            },
            [&](Index p) { return surface.vertex(Row(p)).index; }},
@@ -66,7 +66,7 @@ void measure_cloud(const char* name, const std::vector<Vec3>& points, Table& tab
   measure(name, points,
           {cloud.graph(), [&](Index p) { return cloud.source(Row(p)).source; },
            [&](const LogMap& map) {
-             auto on = cloud.on_rows(map);
+             auto on = cloud.to_rows(map);
              return std::array{std::move(on.u), std::move(on.v)};
            },
            [&](Index p) { return cloud.vertex(Row(p)).index; }},

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "ahm/testing/triangle_meshes.hpp"
+#include "ahm/conformance/triangle_meshes.hpp"
 #include "experiments/comparison.hpp"
 
 namespace ahm::bench {

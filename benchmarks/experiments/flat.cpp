@@ -5,7 +5,7 @@
 #include <map>
 
 #include "ahm/applications/distortion.hpp"
-#include "ahm/testing/triangle_meshes.hpp"
+#include "ahm/conformance/triangle_meshes.hpp"
 #include "experiments/comparison.hpp"
 
 namespace ahm::bench {

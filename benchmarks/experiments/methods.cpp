@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "ahm/conformance/closed_forms.hpp"
 #include "ahm/pointcloud/point_cloud_surface.hpp"
-#include "ahm/testing/closed_forms.hpp"
 #include "experiments/comparison.hpp"
 #include "methods/signed_heat.hpp"
 #include "timing.hpp"

@@ -6,11 +6,11 @@
 #include <map>
 #include <numbers>
 
+#include "ahm/conformance/closed_forms.hpp"
+#include "ahm/conformance/polygon_meshes.hpp"
+#include "ahm/conformance/vectors.hpp"
 #include "ahm/maps/log_map_solver.hpp"
 #include "ahm/polymesh/polygon_mesh_surface.hpp"
-#include "ahm/testing/closed_forms.hpp"
-#include "ahm/testing/polygon_meshes.hpp"
-#include "ahm/testing/vectors.hpp"
 #include "experiments/experiment.hpp"
 
 namespace ahm::bench {
@@ -83,7 +83,7 @@ Errors errors(const Polygons& mesh, const Surface& surface, const LogMapSolver& 
   Errors mean;
   for (Index s = 0; s < source_count; ++s) {
     const Index p = 7 + s * (mesh.vertices() / source_count);
-    const RowLogMap map = surface.on_rows(solver.solve(surface.source(Row(p)).source, {.variant = variant}));
+    const RowLogMap map = surface.to_rows(solver.solve(surface.source(Row(p)).source, {.variant = variant}));
     const Frame frame = *surface.graph().frame(surface.vertex(Row(p)).index);
     const test::SphereError e = test::sphere_error(mesh.positions, map.u, map.v, p, frame.x, frame.y);
     mean.vectors.rms += e.rms / source_count;

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <optional>
 
+#include "ahm/conformance/closed_forms.hpp"
+#include "ahm/conformance/triangle_meshes.hpp"
 #include "ahm/fields/vector_heat.hpp"
-#include "ahm/testing/closed_forms.hpp"
-#include "ahm/testing/triangle_meshes.hpp"
 #include "experiments/comparison.hpp"
 #include "methods/heat_fields.hpp"
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "ahm/testing/polygon_meshes.hpp"
+#include "ahm/conformance/polygon_meshes.hpp"
 #include "experiments/experiment.hpp"
 #include "shapes.hpp"
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ahm/testing/triangle_meshes.hpp"
+#include "ahm/conformance/triangle_meshes.hpp"
 #include "experiments/comparison.hpp"
 
 namespace ahm::bench {

@@ -11,6 +11,7 @@
 #include <optional>
 #include <random>
 
+#include "ahm/conformance/triangle_meshes.hpp"
 #include "ahm/error.hpp"
 #include "ahm/maps/log_map_solver.hpp"
 #include "ahm/maps/quality.hpp"
@@ -20,7 +21,6 @@
 #include "ahm/surface/exact/exact_map.hpp"
 #include "ahm/surface/exact/flat_triangles.hpp"
 #include "ahm/surface/polar_map_solver.hpp"
-#include "ahm/testing/triangle_meshes.hpp"
 #include "experiments/comparison.hpp"
 #include "measure.hpp"
 

@@ -3,7 +3,7 @@
 #include <benchmark/benchmark.h>
 
 #include "ahm/heat/heat_operators.hpp"
-#include "heat/blas_control.hpp"
+#include "cholesky/blas.hpp"
 
 namespace ahm::bench {
 

@@ -1,6 +1,6 @@
 #include "machine.hpp"
 
-#include "heat/blas_control.hpp"
+#include "cholesky/blas.hpp"
 
 namespace ahm::bench {
 namespace {

@@ -1,10 +1,10 @@
 // From graph to factors: assembly, symbolic analysis, factorization.
 #include <benchmark/benchmark.h>
 
+#include "ahm/cholesky/cholesky.hpp"
 #include "factor_size.hpp"
 #include "graphs.hpp"
-#include "heat/assemble.hpp"
-#include "heat/cholesky.hpp"
+#include "heat/heat_system.hpp"
 #include "machine.hpp"
 
 namespace {

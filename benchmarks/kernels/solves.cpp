@@ -3,9 +3,9 @@
 
 #include <algorithm>
 
+#include "ahm/cholesky/cholesky.hpp"
 #include "graphs.hpp"
-#include "heat/assemble.hpp"
-#include "heat/cholesky.hpp"
+#include "heat/heat_system.hpp"
 #include "machine.hpp"
 
 namespace {

@@ -47,7 +47,7 @@ using Method = std::unique_ptr<const Baseline>;
 /// @throws as `LogMapSolver`
 Method affine_heat(const TangentGraph& graph, Variant variant, double t_coef = 1.0);
 
-/// The front that unfolds distances across triangles (`UnfoldingFront`): `LogMap::distance` of meshes. Distances alone.
+/// The front that unfolds distances across triangles (`Wavefront`): `LogMap::distance` of meshes. Distances alone.
 Method unfolded_distance(const TangentGraph& graph);
 
 /// The affine heat method as written: its (d + 1) n x (d + 1) n operator assembled and factored by LU for every source

@@ -1,5 +1,5 @@
 // The paper's operator as the tests assemble it, testing/src/reference_operator.cpp.
-#include "ahm/testing/reference_operator.hpp"
+#include "ahm/conformance/reference_operator.hpp"
 
 #include <Eigen/Core>
 

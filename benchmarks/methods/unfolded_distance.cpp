@@ -1,5 +1,5 @@
 // Distances unfolded across triangles: `LogMap::distance` of this library on meshes.
-#include "ahm/maps/unfolding_front.hpp"
+#include "ahm/maps/wavefront.hpp"
 #include "methods/heat_fields.hpp"
 #include "methods/method.hpp"
 
@@ -8,13 +8,13 @@ namespace {
 
 class UnfoldedDistance final : public Baseline {
  public:
-  explicit UnfoldedDistance(const TangentGraph& graph) : graph_(graph), stars_(UnfoldingFront::stars(graph)) {}
+  explicit UnfoldedDistance(const TangentGraph& graph) : graph_(graph), stars_(Wavefront::one_rings(graph)) {}
 
   std::string_view name() const noexcept override { return "unfolded"; }
 
   Result solve(Index source) const override {
     check_source(source, graph_.size());
-    UnfoldingFront front(graph_, stars_);
+    Wavefront front(graph_, stars_);
     front.add(Source::at_vertex(Vertex(source)));
     front.run();
     Result result;
@@ -24,7 +24,7 @@ class UnfoldedDistance final : public Baseline {
 
  private:
   const TangentGraph& graph_;
-  std::shared_ptr<const UnfoldingFront::Stars> stars_;
+  std::shared_ptr<const Wavefront::OneRings> stars_;
 };
 
 }  // namespace

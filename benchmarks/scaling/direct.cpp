@@ -12,7 +12,7 @@
 
 #include "ahm/maps/log_map_solver.hpp"
 #include "ahm/trimesh/triangle_mesh_surface.hpp"
-#include "heat/blas_control.hpp"
+#include "cholesky/blas.hpp"
 #include "scaling/sizes.hpp"
 #include "shapes.hpp"
 #include "speed.hpp"

@@ -7,10 +7,10 @@
 #include <optional>
 #include <string_view>
 
+#include "ahm/conformance/flat_graphs.hpp"
 #include "ahm/graph/csr_graph.hpp"
 #include "ahm/grid/grid_graph.hpp"
 #include "ahm/maps/log_map_solver.hpp"
-#include "ahm/testing/flat_graphs.hpp"
 #include "ahm/util/small_math.hpp"
 #include "scaling/sizes.hpp"
 

@@ -3,7 +3,7 @@
 >>> import ahm
 >>> mesh = ahm.TriangleMesh(*ahm.shapes.sphere(3))     # or ahm.read("scan.ply"), ahm.PointCloud(points), ...
 >>> m = ahm.log_map(mesh, 0)                           # m.uv, m.distance, m.angle, m.status: one entry per row
->>> solver = ahm.LogMapSolver(mesh)                    # factors once, then serves any number of sources
+>>> solver = ahm.SurfaceSolver(mesh)                   # prepares the method once, for any number of sources
 >>> maps = solver.log_maps([0, 7, 12])
 
 Arrays go in and out by row of the input; positions in world units; floats are float64. Wrong arguments raise ValueError
@@ -28,6 +28,7 @@ from ._local_maps import LocalMaps, LocalStroke, PaddedMaps, local_maps, local_s
 from ._maps import InverseMap, InversePoints, LogMap, MapSource, Status
 from ._meshes import PolygonMesh, TriangleMesh
 from ._solvers import ExactGeodesics, LogMapSolver, PolarMapSolver, log_map
+from ._surface_solver import SurfaceSolver
 from ._surfaces import ClosestPoints, Surface, TangentGraph
 from ._textures import Atlas, Coverage, Decal, atlas, coverage, decal, decal_coordinates
 
@@ -41,7 +42,7 @@ __all__ = [
     "InversePoints", "IoError", "LocalMaps", "LocalStroke", "LogMap", "LogMapSolver", "MapSource",
     "NotPositiveDefinite", "Operators", "PaddedMaps", "Path", "PointCloud", "PolarMapSolver", "PolygonMesh",
     "ResourceExhausted",
-    "Status", "Stroke", "Surface", "TangentGraph", "TriangleMesh", "atlas", "cells", "coverage", "curvature", "decal",
+    "Status", "Stroke", "Surface", "SurfaceSolver", "TangentGraph", "TriangleMesh", "atlas", "cells", "coverage", "curvature", "decal",
     "decal_coordinates", "distance", "distance_and_gradient", "distance_and_nearest", "extend", "farthest_points",
     "geodesic_loop", "geodesic_path", "geodesic_paths", "geometric_median", "karcher_mean", "local_maps",
     "local_stroke", "log_map", "operators", "read", "shapes", "stroke", "surface", "trace", "transport",

@@ -108,9 +108,9 @@ def cells(surface: Any, sources: Any, *, method: Optional[str] = None, tolerance
     on = as_body(surface)
     method = _unfold_or_exact(surface, method)
     _, _, kinds, rows, _, _ = places.points(sources, "sources", on)
-    on_rows = np.flatnonzero(kinds == places.ROW)
-    _, first = np.unique(rows[on_rows], return_index=True)
-    for again in np.setdiff1d(on_rows, on_rows[first]):
+    to_rows = np.flatnonzero(kinds == places.ROW)
+    _, first = np.unique(rows[to_rows], return_index=True)
+    for again in np.setdiff1d(to_rows, to_rows[first]):
         raise ValueError(f"sources[{again}]: row {rows[again]} is given twice")
     distance, labels = distance_and_nearest(surface, sources, method=method, tolerance=tolerance, progress=progress)
     return Cells(labels, distance)

@@ -21,6 +21,7 @@ class _Maker:
     """What solvers and exact geodesics share: maps from packed sources, which pickles make again."""
 
     surface: Surface
+    method: str
 
     def _found(self, at: tuple, axis: Any, options: Dict[str, Any], report: Any) -> list:
         raise NotImplementedError
@@ -93,6 +94,8 @@ class LogMapSolver(_Maker):
     <ahm.LogMapSolver: global, on <ahm.TriangleMesh: 162 vertices, 320 faces>>
     >>> maps = solver.log_maps([0, 7, 12])
     """
+
+    method = "heat"
 
     def __init__(self, surface: Any, *, t_coef: float = 1.0, variant: str = "adaptive",
                  strategy: str = "automatic", expected_maps: int = 0, memory: int = 0, accuracy: float = 1e-9,
@@ -188,6 +191,8 @@ class PolarMapSolver(_Maker):
     [True, True, True]
     """
 
+    method = "polar"
+
     def __init__(self, surface: Any, *, windows: Optional[int] = None, threads: int = 0, progress: Progress = None) -> None:
         self.surface = as_surface(surface)
         self.options = checked(windows=windows, threads=threads)
@@ -255,6 +260,8 @@ class ExactGeodesics(_Maker):
     >>> [bool(abs(m.distance.max() - 3.1416) < 0.02) for m in geodesics.log_maps([0, 7, 12])]
     [True, True, True]
     """
+
+    method = "exact"
 
     def __init__(self, surface: Any, *, tolerance: float = 0.0, progress: Progress = None) -> None:
         self.surface = as_body(surface)
@@ -340,6 +347,7 @@ def log_map(surface: Any, source: Any, *, method: str = "auto", u_axis: Any = No
 def chosen_maker(thing: Any, method: str, options: Optional[Dict[str, Any]] = None, tolerance: Optional[float] = None) -> Maker:
     """As `as_maker`, with "auto" for the method that suits the surface; for heat where it is given what only heat has."""
     arguments.choice(method, "method", ("auto", "polar", "heat", "exact"))
+    thing = getattr(thing, "_solver", thing)
     if method != "auto":
         return as_maker(thing, method, options, tolerance)
     if isinstance(thing, (LogMapSolver, PolarMapSolver, ExactGeodesics)):
@@ -355,6 +363,7 @@ def as_maker(thing: Any, method: Optional[str] = None, options: Optional[Dict[st
     With a tolerance of its own, where one is given."""
     if method is not None:
         arguments.choice(method, "method", ("polar", "heat", "exact"))
+    thing = getattr(thing, "_solver", thing)
     given = options or {}
     made = {LogMapSolver: "heat", PolarMapSolver: "polar", ExactGeodesics: "exact"}.get(type(thing))
     ready = made is not None and method in (None, made)
@@ -374,6 +383,7 @@ def as_maker(thing: Any, method: Optional[str] = None, options: Optional[Dict[st
 
 def tolerance_of(thing: Any, method: str, tolerance: Optional[float]) -> float:
     """Of exact maps of a surface, or of what makes them; other methods have none."""
+    thing = getattr(thing, "_solver", thing)
     if tolerance is None:
         return thing.tolerance if isinstance(thing, ExactGeodesics) else 0.0
     if method != "exact":
@@ -383,8 +393,10 @@ def tolerance_of(thing: Any, method: str, tolerance: Optional[float]) -> float:
 
 def as_solver(thing: Any) -> LogMapSolver:
     """The solver itself, or one on this surface."""
+    thing = getattr(thing, "_solver", thing)
     return thing if isinstance(thing, LogMapSolver) else LogMapSolver(as_body(thing))
 
 
 def as_body(thing: Any) -> Surface:
+    thing = getattr(thing, "_solver", thing)
     return thing.surface if isinstance(thing, (LogMapSolver, PolarMapSolver, ExactGeodesics)) else as_surface(thing)

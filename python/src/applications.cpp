@@ -3,7 +3,7 @@
 
 #include "ahm/applications/cells.hpp"
 #include "ahm/applications/mean.hpp"
-#include "ahm/applications/surface_curve.hpp"
+#include "ahm/applications/stroke.hpp"
 #include "ahm/error.hpp"
 #include "ahm/util/vec.hpp"
 #include "compute.hpp"
@@ -50,8 +50,8 @@ py::tuple stroke(const py::object& maker, const py::tuple& points, const Doubles
   auto [map, curve] = compute(report, positions, [=](const Progress& progress) mutable {
     o.progress = progress;
     SurfaceCurve drawn = draw_stroke(*by.body(), at, uv, shape);
-    PlacedSource source{drawn.source, drawn.points.front(), drawn.first, std::nullopt};
-    const double radius = std::exchange(o.radius, reach_from_curve(drawn, o.radius));
+    SurfaceSource source{drawn.source, drawn.points.front(), drawn.first, std::nullopt};
+    const double radius = std::exchange(o.radius, map_radius_of_curve(drawn, o.radius));
     LogMap solved = solve(by, drawn, o);
     RowLogMap rows = rows_from_curve(by.body()->surface_for("a stroke"), solved, drawn, radius);
     const unsigned threads = by.solver() != nullptr ? by.solver()->solver.options().threads : 0;

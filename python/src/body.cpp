@@ -29,7 +29,7 @@ SurfacePoint Body::point(const Place& place) const {
   return surface_for("a position").closest_point(std::get<Vec3>(place)).point;
 }
 
-PlacedSource Body::source(const Place& place, const std::optional<Vec3>& u_axis) const {
+SurfaceSource Body::source(const Place& place, const std::optional<Vec3>& u_axis) const {
   if (surface_) return surface_->source(point(place), u_axis);
   if (u_axis) throw InvalidArgument("a u axis needs a mesh or a cloud; grids and graphs keep the axes they have");
   if (const auto* position = std::get_if<Vec3>(&place)) {
@@ -39,14 +39,14 @@ PlacedSource Body::source(const Place& place, const std::optional<Vec3>& u_axis)
   }
   const auto* row = std::get_if<Row>(&std::get<SurfacePoint>(place));
   if (row == nullptr) throw InvalidArgument("grids and graphs have no faces and edges to stand on; name a row");
-  PlacedSource result{Source::at_vertex(vertex(*row)), {}, graph_->frame(row->index), *row};
+  SurfaceSource result{Source::at_vertex(vertex(*row)), {}, graph_->frame(row->index), *row};
   if (grid_ != nullptr) result.position = grid_->position(Vertex(row->index));
   if (grid_ == nullptr && result.frame) result.position = result.frame->origin;
   return result;
 }
 
-std::vector<PlacedSource> Body::sources(const Places& places, const std::optional<Vec3>& u_axis) const {
-  std::vector<PlacedSource> result;
+std::vector<SurfaceSource> Body::sources(const Places& places, const std::optional<Vec3>& u_axis) const {
+  std::vector<SurfaceSource> result;
   for (std::size_t k = 0; k < places.size(); ++k)
     result.push_back(naming(places.where(k), [&] { return source(places.places[k], u_axis); }));
   return result;
@@ -54,7 +54,7 @@ std::vector<PlacedSource> Body::sources(const Places& places, const std::optiona
 
 std::vector<Source> Body::plain_sources(const Places& places, const std::optional<Vec3>& u_axis) const {
   std::vector<Source> result;
-  for (PlacedSource& placed : sources(places, u_axis)) result.push_back(std::move(placed.source));
+  for (SurfaceSource& placed : sources(places, u_axis)) result.push_back(std::move(placed.source));
   return result;
 }
 

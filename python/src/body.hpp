@@ -58,8 +58,8 @@ class Body {
   std::optional<Row> row(Vertex vertex) const;
 
   /// A source at a point, its u axis along a vector of space.
-  PlacedSource source(const Place& place, const std::optional<Vec3>& u_axis = {}) const;
-  std::vector<PlacedSource> sources(const Places& places, const std::optional<Vec3>& u_axis = {}) const;
+  SurfaceSource source(const Place& place, const std::optional<Vec3>& u_axis = {}) const;
+  std::vector<SurfaceSource> sources(const Places& places, const std::optional<Vec3>& u_axis = {}) const;
   /// The same without where they lie.
   std::vector<Source> plain_sources(const Places& places, const std::optional<Vec3>& u_axis = {}) const;
   /// The point of the input, and that one only where a position was named. @throws InvalidArgument (no surface)

@@ -4,7 +4,7 @@
 #include "ahm/error.hpp"
 #include "ahm/fields/distance.hpp"
 #include "ahm/fields/vector_heat.hpp"
-#include "ahm/maps/unfolding_front.hpp"
+#include "ahm/maps/wavefront.hpp"
 #include "ahm/surface/directions.hpp"
 #include "compute.hpp"
 #include "heat/component_scales.hpp"
@@ -87,9 +87,9 @@ VertexField carried(const Solver& by, const Places& at, std::span<const double> 
     const auto frame = [&](std::size_t k) { return body.graph().frame(vertices[k].index); };
     return transport_vectors(by.solver, vertices, in_frames(given, frame));
   }
-  const std::vector<PlacedSource> placed = body.sources(at);
+  const std::vector<SurfaceSource> placed = body.sources(at);
   std::vector<Source> sources;
-  for (const PlacedSource& one : placed) sources.push_back(one.source);
+  for (const SurfaceSource& one : placed) sources.push_back(one.source);
   if (!space) return transport_vectors(by.solver, sources, given);
   return transport_vectors(by.solver, sources, in_frames(given, [&](std::size_t k) { return placed[k].frame; }));
 }
@@ -131,8 +131,8 @@ py::tuple front_distance(const BodyPtr& body, const py::tuple& sources, double r
   const Places at = places(sources);
   auto found = compute(report, py::none(), [=](const Progress& progress) {
     progress.step("front", 0);
-    UnfoldingFront front(body->graph());
-    for (const PlacedSource& source : body->sources(at)) front.add(source.source);
+    Wavefront front(body->graph());
+    for (const SurfaceSource& source : body->sources(at)) front.add(source.source);
     front.run(radius);
     progress.step("front", 1);
     const auto n = static_cast<std::size_t>(body->rows());

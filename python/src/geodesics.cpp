@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "ahm/error.hpp"
-#include "ahm/surface/surface_lines.hpp"
+#include "ahm/surface/surface_paths.hpp"
 #include "body.hpp"
 #include "compute.hpp"
 #include "errors.hpp"
@@ -134,7 +134,7 @@ py::object arrays(const Body& body, Curve&& curve) {
 /// Of a surface without faces.
 bool has_planes_alone(const Body& body) { return body.surface() != nullptr && body.surface()->faces().size() == 0; }
 
-py::object arrays(SurfaceLine&& line) {
+py::object arrays(SurfacePath&& line) {
   if (line.status != Status::ok) return py::none();
   return py::make_tuple(owned(std::move(line.points)), py::none(), py::none(), line.length, line.complete);
 }
@@ -157,10 +157,10 @@ py::object plane_path(const BodyPtr& body, const Places& at, bool closed, const 
     if (stops.size() < 2)
       throw InvalidArgument(at.name + ": " + std::to_string(stops.size()) + " point; a path needs at least 2");
     if (closed) stops.push_back(stops.front());
-    SurfaceLine whole;
+    SurfacePath whole;
     for (std::size_t k = 1; k < stops.size(); ++k) {
       progress.step("paths", static_cast<double>(k - 1) / static_cast<double>(stops.size() - 1));
-      SurfaceLine leg = shortest_line(*body->surface(), stops[k - 1], stops[k]);
+      SurfacePath leg = shortest_line(*body->surface(), stops[k - 1], stops[k]);
       if (leg.status != Status::ok) return leg;
       whole.points.insert(whole.points.end(), leg.points.begin() + (k > 1 ? 1 : 0), leg.points.end());
       whole.length += leg.length;
@@ -171,9 +171,9 @@ py::object plane_path(const BodyPtr& body, const Places& at, bool closed, const 
 
 /// From each source to the target beside it, over tangent planes.
 py::list plane_paths(const BodyPtr& body, const Places& from, const Places& to, const py::object& report) {
-  std::vector<SurfaceLine> found = compute(report, py::none(), [=](const Progress& progress) {
+  std::vector<SurfacePath> found = compute(report, py::none(), [=](const Progress& progress) {
     const std::vector<SurfacePoint> starts = plane_points(*body, from), ends = plane_points(*body, to);
-    std::vector<SurfaceLine> all;
+    std::vector<SurfacePath> all;
     for (std::size_t k = 0; k < starts.size(); ++k) {
       progress.step("paths", static_cast<double>(k) / static_cast<double>(starts.size()));
       all.push_back(shortest_line(*body->surface(), starts[k], ends[k]));
@@ -181,7 +181,7 @@ py::list plane_paths(const BodyPtr& body, const Places& from, const Places& to, 
     return all;
   });
   py::list result;
-  for (SurfaceLine& line : found) result.append(arrays(std::move(line)));
+  for (SurfacePath& line : found) result.append(arrays(std::move(line)));
   return result;
 }
 

@@ -15,8 +15,8 @@ namespace {
 
 /// By rows; those of graphs and grids are their vertices.
 template <class From>
-RowLocalMaps on_rows(const Body& body, std::span<const From> sources, const LocalMapOptions& options) {
-  if (body.surface()) return local_maps_on_rows(*body.surface(), sources, options);
+RowLocalMaps to_rows(const Body& body, std::span<const From> sources, const LocalMapOptions& options) {
+  if (body.surface()) return row_local_maps(*body.surface(), sources, options);
   LocalMaps maps = local_maps(body.graph(), sources, options);
   std::vector<Row> rows;
   rows.reserve(maps.neighbors.size());
@@ -24,23 +24,11 @@ RowLocalMaps on_rows(const Body& body, std::span<const From> sources, const Loca
   return std::move(maps).renamed(std::move(rows));
 }
 
-/// Of all rows; those without a vertex have no neighbours.
 RowLocalMaps of_all_rows(const Body& body, const LocalMapOptions& options) {
+  if (body.surface() != nullptr) return row_local_maps(*body.surface(), options);
   std::vector<Vertex> vertices;
-  std::vector<std::size_t> place;
-  const auto rows = static_cast<std::size_t>(body.rows());
-  for (std::size_t r = 0; r < rows; ++r) {
-    const Row row(static_cast<Index>(r));
-    if (body.surface() != nullptr && !body.surface()->rows().vertex(row)) continue;
-    vertices.push_back(body.vertex(row));
-    place.push_back(r);
-  }
-  RowLocalMaps maps = on_rows<Vertex>(body, vertices, options);
-  std::vector<Offset> indptr(rows + 1, 0);
-  for (std::size_t k = 0; k < place.size(); ++k) indptr[place[k] + 1] = maps.indptr[k + 1] - maps.indptr[k];
-  std::partial_sum(indptr.begin(), indptr.end(), indptr.begin());
-  maps.indptr = std::move(indptr);
-  return maps;
+  for (Index v = 0; v < body.graph().size(); ++v) vertices.emplace_back(v);
+  return to_rows<Vertex>(body, vertices, options);
 }
 
 LocalMapOptions local_options(const py::dict& options) {
@@ -48,7 +36,7 @@ LocalMapOptions local_options(const py::dict& options) {
   read(options, "radius", o.radius);
   read(options, "k", o.nearest);
   read(options, "margin", o.margin);
-  o.heat = heat_options(options);
+  o.heat = heat_options(options).diffusion();
   return o;
 }
 
@@ -74,7 +62,7 @@ py::dict local_maps_of(const BodyPtr& body, const py::object& sources, const py:
   return arrays(compute(report, py::none(), [=](const Progress& progress) mutable {
     o.heat.progress = progress;
     if (!at) return of_all_rows(*body, o);
-    return on_rows<Source>(*body, body->plain_sources(*at, axis), o);
+    return to_rows<Source>(*body, body->plain_sources(*at, axis), o);
   }));
 }
 
@@ -87,7 +75,7 @@ py::tuple local_stroke(const BodyPtr& body, const py::tuple& points, bool closed
   auto [maps, curve] = compute(report, py::none(), [=](const Progress& progress) mutable {
     o.heat.progress = progress;
     SurfaceCurve drawn = draw_stroke(*body, at, {}, shape);
-    RowLocalMaps found = on_rows<Source>(*body, {&drawn.source, 1}, o);
+    RowLocalMaps found = to_rows<Source>(*body, {&drawn.source, 1}, o);
     return std::pair(std::move(found), std::move(drawn));
   });
   return py::make_tuple(arrays(std::move(maps)), owned(std::move(curve.points)), curve.length);

@@ -7,8 +7,8 @@
 #include <optional>
 #include <vector>
 
-#include "ahm/applications/map_maker.hpp"
-#include "ahm/applications/surface_curve.hpp"
+#include "ahm/applications/any_solver.hpp"
+#include "ahm/applications/stroke.hpp"
 #include "ahm/maps/log_map_solver.hpp"
 #include "ahm/surface/polar_map_solver.hpp"
 #include "ahm/surface/row_log_map.hpp"
@@ -41,7 +41,7 @@ class Maker {
   /// Null where maps are by heat or exact.
   const PolarSolver* polar() const { return polar_.get(); }
   /// @throws as `Body::geodesics`
-  MapMaker maps() const {
+  AnySolver maps() const {
     if (solver_) return {solver_->solver};
     if (polar_) return {polar_->solver, polar_->threads};
     return {body_->geodesics(), exact()};
@@ -59,10 +59,10 @@ class Maker {
 /// A map, and what it is on the rows.
 struct Map {
   /// @param given  the map by rows; none: as the surface has it
-  Map(BodyPtr on, PlacedSource from, LogMap made, unsigned threads, std::optional<RowLogMap> given = {});
+  Map(BodyPtr on, SurfaceSource from, LogMap made, unsigned threads, std::optional<RowLogMap> given = {});
 
   BodyPtr body;
-  PlacedSource source;
+  SurfaceSource source;
   LogMap map;
   unsigned threads;        ///< of whatever is computed from it; 0: one per core
   RowLogMap rows;          ///< empty of grids and graphs, whose rows are their vertices

@@ -19,10 +19,10 @@
 
 namespace ahm::python {
 
-Map::Map(BodyPtr on, PlacedSource from, LogMap made, unsigned threads, std::optional<RowLogMap> given)
+Map::Map(BodyPtr on, SurfaceSource from, LogMap made, unsigned threads, std::optional<RowLogMap> given)
     : body(std::move(on)), source(std::move(from)), map(std::move(made)), threads(threads) {
   if (body->surface() == nullptr) return;
-  rows = given ? *std::move(given) : body->surface()->on_rows(map);
+  rows = given ? *std::move(given) : body->surface()->to_rows(map);
   uv.resize(2 * rows.u.size());
   for (std::size_t r = 0; r < rows.u.size(); ++r) uv[2 * r] = rows.u[r], uv[2 * r + 1] = rows.v[r];
   if (rows.angle.empty())  // of strokes
@@ -92,9 +92,9 @@ py::list heat_maps(const SolverPtr& solver, const py::tuple& sources, const py::
   const auto axis = optional_vector(u_axis);
   return listed(compute(report, py::none(), [=](const Progress& progress) mutable {
     o.progress = progress;
-    std::vector<PlacedSource> placed = solver->body->sources(from, axis);
+    std::vector<SurfaceSource> placed = solver->body->sources(from, axis);
     std::vector<Source> plain;
-    for (const PlacedSource& p : placed) plain.push_back(p.source);
+    for (const SurfaceSource& p : placed) plain.push_back(p.source);
     std::vector<LogMap> maps = solver->solver.solve(plain, o);
     std::vector<MapPtr> result;
     for (std::size_t k = 0; k < maps.size(); ++k)
@@ -145,7 +145,7 @@ py::list polar_maps(const PolarSolverPtr& solver, const py::tuple& sources, cons
     o.progress = progress;
     const BodyPtr& body = solver->body;
     return make_each(from, o, threads, "polar maps", [&](const Place& place, const PolarMapOptions& options) {
-      PlacedSource placed = body->source(place, axis);
+      SurfaceSource placed = body->source(place, axis);
       LogMap map = body->surface() != nullptr ? solver->solver.log_map(body->point(place), axis, options)
                                               : solver->solver.log_map(placed.source, options);
       return std::make_shared<Map>(body, std::move(placed), std::move(map), threads);
@@ -263,7 +263,7 @@ py::array gradient(const MapPtr& m) {
 }
 
 py::array corners(const MapPtr& m) {
-  std::vector<Vec2> result = compute([m] { return m->surface().on_corners(m->map); });
+  std::vector<Vec2> result = compute([m] { return m->surface().to_corners(m->map); });
   const auto n = static_cast<py::ssize_t>(result.size());
   return owned<Vec2, double>(std::move(result), {n, 2});
 }
@@ -288,7 +288,7 @@ py::tuple sample(const MapPtr& m, const py::tuple& points) {
 
 /// Where the source lies and its axes: position, (u, v, normal) or None, row or None.
 py::tuple source(const MapPtr& m) {
-  const PlacedSource& s = m->source;
+  const SurfaceSource& s = m->source;
   py::object frame = py::none(), row = py::none();
   if (s.frame) frame = owned(std::vector<Vec3>{s.frame->x, s.frame->y, s.frame->normal});
   if (s.row) row = py::int_(s.row->index);

@@ -2,12 +2,12 @@
 #include <unordered_set>
 #include <utility>
 
-#include "ahm/applications/atlas/texture_atlas.hpp"
+#include "ahm/applications/atlas.hpp"
 #include "ahm/applications/cells.hpp"
 #include "ahm/applications/coverage.hpp"
 #include "ahm/applications/decal.hpp"
 #include "ahm/error.hpp"
-#include "ahm/surface/surface_faces.hpp"
+#include "ahm/surface/surface_triangles.hpp"
 #include "compute.hpp"
 #include "map.hpp"
 #include "options.hpp"
@@ -130,7 +130,7 @@ AtlasAndFaces make(const Maker& by, const std::vector<Vertex>& sources, const Re
                    const PackOptions& pack_options) {
   const Body& body = *by.body();
   const Surface& surface = body.surface_for("an atlas");
-  const MapMaker maps = by.maps();
+  const AnySolver maps = by.maps();
   AtlasAndFaces result;
   result.faces = by.solver() != nullptr  ? surface_faces(surface, by.solver()->solver, sources)
                  : by.polar() != nullptr ? surface_faces(surface, by.polar()->solver, sources)

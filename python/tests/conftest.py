@@ -39,7 +39,7 @@ def flat_surfaces(plane):
 WORDS_OF_CPP = re.compile(
     r"::|std\b|bad_alloc|nullptr|\bspan\b|\w+Options\b|\boptions\.|operator ?\(|\{(true|false)\}|incompatible function|_core\b"
     r"|\b(Source|CsrGraph|Discretization|NonManifold|Vertex|Row|at_vertex|at_vertices|map_quality|row_begin|face_begin|of_points"
-    r"|curvature_directions|direction_in_frame|distance_gradient|exact_map|geodesic_path|on_rows|solve_scalar|solve_vector)\b")
+    r"|curvature_directions|direction_in_frame|distance_gradient|exact_map|geodesic_path|to_rows|solve_scalar|solve_vector)\b")
 
 
 def words_of_cpp(error):

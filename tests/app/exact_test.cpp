@@ -7,7 +7,7 @@
 #include <numbers>
 #include <sstream>
 
-#include "ahm/testing/triangle_meshes.hpp"
+#include "ahm/conformance/triangle_meshes.hpp"
 #include "program.hpp"
 
 namespace ahm::test {

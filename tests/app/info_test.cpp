@@ -4,8 +4,8 @@
 #include <limits>
 #include <sstream>
 
-#include "ahm/testing/polygon_meshes.hpp"
-#include "ahm/testing/triangle_meshes.hpp"
+#include "ahm/conformance/polygon_meshes.hpp"
+#include "ahm/conformance/triangle_meshes.hpp"
 #include "program.hpp"
 
 namespace ahm::test {

@@ -21,7 +21,7 @@
 #include <stdexcept>
 #include <thread>
 
-#include "ahm/testing/clouds.hpp"
+#include "ahm/conformance/clouds.hpp"
 
 extern char** environ;
 

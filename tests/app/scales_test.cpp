@@ -8,7 +8,7 @@
 #include <sstream>
 #include <utility>
 
-#include "ahm/testing/triangle_meshes.hpp"
+#include "ahm/conformance/triangle_meshes.hpp"
 #include "program.hpp"
 
 namespace ahm::test {

@@ -1,8 +1,8 @@
 // What the program says of maps that are not to be trusted.
 #include <gtest/gtest.h>
 
+#include "ahm/conformance/triangle_meshes.hpp"
 #include "ahm/io/image.hpp"
-#include "ahm/testing/triangle_meshes.hpp"
 #include "program.hpp"
 
 namespace ahm::test {

@@ -10,9 +10,9 @@
 
 #include "ahm/applications/cells.hpp"
 #include "ahm/applications/inverse_map.hpp"
+#include "ahm/conformance/flat_graphs.hpp"
 #include "ahm/error.hpp"
 #include "ahm/polymesh/polygon_mesh_surface.hpp"
-#include "ahm/testing/flat_graphs.hpp"
 #include "ahm/util/small_math.hpp"
 #include "support/solved_mesh.hpp"
 

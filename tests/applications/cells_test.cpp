@@ -10,18 +10,18 @@
 #include <string>
 #include <vector>
 
+#include "ahm/conformance/clouds.hpp"
+#include "ahm/conformance/flat_graphs.hpp"
+#include "ahm/conformance/graph_changes.hpp"
+#include "ahm/conformance/polygon_meshes.hpp"
+#include "ahm/conformance/triangle_meshes.hpp"
 #include "ahm/error.hpp"
 #include "ahm/graph/csr_graph.hpp"
-#include "ahm/maps/unfolding_front.hpp"
+#include "ahm/maps/wavefront.hpp"
 #include "ahm/pointcloud/point_cloud_surface.hpp"
 #include "ahm/polymesh/polygon_mesh_surface.hpp"
-#include "ahm/testing/clouds.hpp"
-#include "ahm/testing/flat_graphs.hpp"
-#include "ahm/testing/graph_changes.hpp"
-#include "ahm/testing/polygon_meshes.hpp"
-#include "ahm/testing/triangle_meshes.hpp"
 #include "ahm/trimesh/triangle_mesh_surface.hpp"
-#include "farthest.hpp"
+#include "cells.hpp"
 #include "support/expect_error.hpp"
 
 namespace ahm::test {
@@ -95,7 +95,7 @@ TEST(Cells, AreNoNearerThanTheStraightLine) {
   const auto place = [&](Vertex v) { return cloud.graph().frame(v.index)->origin; };
   const auto sources = farthest_points(cloud.graph(), Vertex(0), 10);
   const VoronoiCells cells = voronoi_cells(cloud.graph(), sources);
-  UnfoldingFront front(cloud.graph());
+  Wavefront front(cloud.graph());
   for (Vertex source : sources) front.add(Source::at_vertex(source));
   front.run();
   Index raised = 0;
@@ -130,7 +130,7 @@ TEST(Cells, ContainTheirSourcesAndAreConnected) {
 }
 
 /// By a front that goes on as by a new one.
-void expect_fresh_cells(UnfoldingFront& front, std::span<const Vertex> sources) {
+void expect_fresh_cells(Wavefront& front, std::span<const Vertex> sources) {
   const VoronoiCells fresh = voronoi_cells(front.graph(), sources), cells = voronoi_cells(front, sources);
   EXPECT_EQ(cells.labels, fresh.labels) << sources.size();
   for (std::size_t i = 0; i < fresh.distances.size(); ++i)
@@ -140,7 +140,7 @@ void expect_fresh_cells(UnfoldingFront& front, std::span<const Vertex> sources) 
 TEST(Cells, AreTheSameByAFrontThatGoesOn) {
   const CsrGraph graph(planar_triangulation(30).data);
   const std::vector<Vertex> sources = farthest_points(graph, Vertex{17}, 24);
-  UnfoldingFront front(graph);
+  Wavefront front(graph);
   for (std::size_t count : {1, 2, 7, 24}) {
     expect_fresh_cells(front, std::span(sources).first(count));
   }
@@ -203,7 +203,7 @@ TEST(FarthestPoints, AreSpreadAsAGreedyCoverOfThePlane) {
 TEST(FarthestPoints, AreTheFirstOfThoseFarthestFromAllBefore) {
   const CsrGraph graph(doubled(planar_triangulation(16).data));
   std::vector<Vertex> expected{Vertex{3}};
-  UnfoldingFront front(graph, UnfoldingFront::stars(graph));
+  Wavefront front(graph, Wavefront::one_rings(graph));
   while (expected.size() < 200) {
     front.add(Source::at_vertex(expected.back()));
     front.run();
@@ -218,7 +218,7 @@ TEST(FarthestPoints, AreTheFirstOfThoseFarthestFromAllBefore) {
 TEST(FarthestPoints, LeaveAFrontFromWhichCellsGoOn) {
   const CsrGraph graph(planar_triangulation(30).data);
   for (Index count : {1, 2, 25}) {
-    UnfoldingFront front(graph);
+    Wavefront front(graph);
     const std::vector<Vertex> points = farthest_points(front, Vertex{17}, count);
     EXPECT_EQ(points, farthest_points(graph, Vertex{17}, count));
     EXPECT_EQ(front.points(), count - 1);

@@ -7,12 +7,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "ahm/conformance/clouds.hpp"
+#include "ahm/conformance/flat_graphs.hpp"
 #include "ahm/error.hpp"
 #include "ahm/grid/grid_graph.hpp"
 #include "ahm/maps/log_map_solver.hpp"
 #include "ahm/pointcloud/point_cloud_surface.hpp"
-#include "ahm/testing/clouds.hpp"
-#include "ahm/testing/flat_graphs.hpp"
 #include "ahm/trimesh/triangle_mesh_surface.hpp"
 #include "mapped_surfaces.hpp"
 

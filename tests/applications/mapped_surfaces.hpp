@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "ahm/applications/inverse_map.hpp"
-#include "ahm/testing/vectors.hpp"
+#include "ahm/conformance/vectors.hpp"
 
 namespace ahm::test {
 

@@ -8,14 +8,14 @@
 #include <numeric>
 #include <random>
 
+#include "ahm/conformance/curved_graphs.hpp"
+#include "ahm/conformance/flat_graphs.hpp"
+#include "ahm/conformance/graph_changes.hpp"
+#include "ahm/conformance/vectors.hpp"
 #include "ahm/error.hpp"
 #include "ahm/grid/grid_graph.hpp"
 #include "ahm/pointcloud/point_cloud_surface.hpp"
 #include "ahm/polymesh/polygon_mesh_surface.hpp"
-#include "ahm/testing/curved_graphs.hpp"
-#include "ahm/testing/flat_graphs.hpp"
-#include "ahm/testing/graph_changes.hpp"
-#include "ahm/testing/vectors.hpp"
 #include "ahm/util/vec.hpp"
 #include "support/solved_mesh.hpp"
 

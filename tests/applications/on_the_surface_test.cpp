@@ -8,14 +8,14 @@
 
 #include "ahm/applications/coverage.hpp"
 #include "ahm/applications/mean.hpp"
-#include "ahm/applications/surface_curve.hpp"
+#include "ahm/applications/stroke.hpp"
+#include "ahm/conformance/polygon_meshes.hpp"
+#include "ahm/conformance/triangle_meshes.hpp"
+#include "ahm/conformance/vectors.hpp"
 #include "ahm/error.hpp"
 #include "ahm/maps/log_map_solver.hpp"
 #include "ahm/polymesh/polygon_mesh_surface.hpp"
 #include "ahm/surface/exact/flat_triangles.hpp"
-#include "ahm/testing/polygon_meshes.hpp"
-#include "ahm/testing/triangle_meshes.hpp"
-#include "ahm/testing/vectors.hpp"
 #include "ahm/trimesh/triangle_mesh_surface.hpp"
 #include "ahm/util/vec.hpp"
 

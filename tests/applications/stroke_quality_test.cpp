@@ -4,12 +4,12 @@
 #include <cmath>
 #include <numbers>
 
-#include "ahm/applications/surface_curve.hpp"
+#include "ahm/applications/stroke.hpp"
+#include "ahm/conformance/triangle_meshes.hpp"
 #include "ahm/maps/log_map_solver.hpp"
 #include "ahm/maps/quality.hpp"
 #include "ahm/pointcloud/point_cloud_surface.hpp"
 #include "ahm/surface/exact/exact_geodesics.hpp"
-#include "ahm/testing/triangle_meshes.hpp"
 #include "ahm/trimesh/triangle_mesh_surface.hpp"
 #include "ahm/util/vec.hpp"
 
@@ -58,7 +58,7 @@ TEST(StrokeQuality, IsThatOfThePlaneAlongAStraightLine) {
     const SurfaceCurve curve = draw_curve(surface, given);
     const LogMap map = LogMapSolver(surface.graph()).solve(curve.source);
     const RowLogMap rows = rows_from_curve(surface, map, curve);
-    const std::vector<double> quality = on_rows(rows, map_quality(surface.graph(), map));
+    const std::vector<double> quality = to_rows(rows, map_quality(surface.graph(), map));
     for (std::size_t r = 0; r < quality.size(); ++r) {
       EXPECT_LT(rows.spread[r], 1e-6);
       EXPECT_GT(quality[r], 0.9);
@@ -88,7 +88,7 @@ TEST(StrokeQuality, IsLowWhereTheMapTears) {
     const SurfaceCurve curve = draw_curve(surface, ring(0.3), {.closed = true});
     const LogMap map = LogMapSolver(surface.graph()).solve(curve.source);
     const RowLogMap rows = rows_from_curve(surface, map, curve);
-    expect_doubt_where_it_tears(surface, rows, on_rows(rows, map_quality(surface.graph(), map)));
+    expect_doubt_where_it_tears(surface, rows, to_rows(rows, map_quality(surface.graph(), map)));
   });
 }
 
@@ -98,7 +98,7 @@ TEST(StrokeQuality, OfExactMapsIsLowThereToo) {
   const SurfaceCurve curve = draw_curve(surface, ring(0.3), {.closed = true});
   const LogMap map = ExactGeodesics(surface).log_map(curve.samples).map;
   const RowLogMap rows = rows_from_curve(surface, map, curve);
-  expect_doubt_where_it_tears(surface, rows, on_rows(rows, map_quality(surface.graph(), map)));
+  expect_doubt_where_it_tears(surface, rows, to_rows(rows, map_quality(surface.graph(), map)));
 }
 
 // Right: off by less than a tenth of the distance, or an edge.
@@ -107,12 +107,12 @@ TEST(StrokeQuality, TellsRightRowsFromWrongOnes) {
   const auto exact_surface = trimesh::TriangleMeshSurface::build(mesh.positions, mesh.faces);
   const CurvePoint given[] = {Row(0), Row(mesh.vertices() / 7)};
   const SurfaceCurve drawn = draw_curve(exact_surface, given);
-  const RowLogMap exact = exact_surface.on_rows(ExactGeodesics(exact_surface).log_map(drawn.samples).map);
+  const RowLogMap exact = exact_surface.to_rows(ExactGeodesics(exact_surface).log_map(drawn.samples).map);
   for_mesh_and_cloud(mesh, [&](const Surface& surface) {
     const SurfaceCurve curve = draw_curve(surface, std::vector<CurvePoint>(drawn.points.begin(), drawn.points.end()));
     const LogMap map = LogMapSolver(surface.graph()).solve(curve.source);
     const RowLogMap rows = rows_from_curve(surface, map, curve);
-    const std::vector<double> quality = on_rows(rows, map_quality(surface.graph(), map));
+    const std::vector<double> quality = to_rows(rows, map_quality(surface.graph(), map));
     const double side = dot(curve.first->normal, drawn.first->normal) > 0 ? 1 : -1, edge = edge_of(surface);
     int trusted = 0, right = 0, right_and_trusted = 0;
     for (std::size_t r = 0; r < quality.size(); ++r) {

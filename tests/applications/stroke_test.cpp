@@ -7,9 +7,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "ahm/conformance/flat_graphs.hpp"
 #include "ahm/error.hpp"
 #include "ahm/maps/log_map_solver.hpp"
-#include "ahm/testing/flat_graphs.hpp"
 
 namespace ahm::test {
 namespace {

@@ -1,6 +1,4 @@
 // Curves drawn on surfaces: on flat ones, arclength and signed distance exactly.
-#include "ahm/applications/surface_curve.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,14 +6,15 @@
 #include <numbers>
 #include <string>
 
+#include "ahm/applications/stroke.hpp"
+#include "ahm/conformance/clouds.hpp"
+#include "ahm/conformance/triangle_meshes.hpp"
+#include "ahm/conformance/vectors.hpp"
 #include "ahm/error.hpp"
 #include "ahm/maps/log_map_solver.hpp"
 #include "ahm/pointcloud/point_cloud_surface.hpp"
 #include "ahm/polymesh/polygon_mesh_surface.hpp"
 #include "ahm/surface/exact/exact_geodesics.hpp"
-#include "ahm/testing/clouds.hpp"
-#include "ahm/testing/triangle_meshes.hpp"
-#include "ahm/testing/vectors.hpp"
 #include "ahm/trimesh/triangle_mesh_surface.hpp"
 
 namespace ahm::test {
@@ -68,7 +67,7 @@ TEST(SurfaceCurve, AStraightLineInSpaceGivesArclengthAndSignedDistanceBelow) {
     ASSERT_TRUE(curve.first);
     EXPECT_NEAR(curve.first->x[0], c, 1e-12);
     const double left = curve.first->normal[2];  // 1 or -1
-    const RowLogMap map = surface.on_rows(LogMapSolver(graph).solve(curve.source));
+    const RowLogMap map = surface.to_rows(LogMapSolver(graph).solve(curve.source));
     for (std::size_t r = 0; r < map.u.size(); ++r) {
       const double x = surface.positions()[r][0] - from[0], y = surface.positions()[r][1] - from[1];
       ASSERT_NEAR(map.u[r], c * x + s * y, 1e-9);
@@ -145,7 +144,7 @@ TEST(SurfaceCurve, HasTheSameMapBesideAnotherPart) {
   const auto solved = [&](const Mesh& mesh) {
     const auto surface = trimesh::TriangleMeshSurface::build(mesh.positions, mesh.faces);
     const SurfaceCurve curve = draw_curve(surface, given);
-    const double radius = 0.7, reach = reach_from_curve(curve, radius);
+    const double radius = 0.7, reach = map_radius_of_curve(curve, radius);
     const LogMap map = LogMapSolver(surface.graph()).solve(curve.source, {.radius = reach});
     return rows_from_curve(surface, map, curve, radius);
   };
@@ -174,8 +173,8 @@ TEST(SurfaceCurve, OfManyPointsIsCutNoFiner) {
   const SurfaceCurve by_few = draw_curve(surface, few), by_many = draw_curve(surface, many);
   EXPECT_NEAR(by_many.length, by_few.length, 1e-9);
   EXPECT_LT(static_cast<double>(by_many.samples.size()), 1.5 * static_cast<double>(by_few.samples.size()));
-  const RowLogMap rows = surface.on_rows(LogMapSolver(surface.graph()).solve(by_many.source)),
-                  expected = surface.on_rows(LogMapSolver(surface.graph()).solve(by_few.source));
+  const RowLogMap rows = surface.to_rows(LogMapSolver(surface.graph()).solve(by_many.source)),
+                  expected = surface.to_rows(LogMapSolver(surface.graph()).solve(by_few.source));
   for (std::size_t r = 0; r < rows.u.size(); ++r) {
     ASSERT_NEAR(rows.u[r], expected.u[r], 1e-9);
     ASSERT_NEAR(rows.v[r], expected.v[r], 1e-9);

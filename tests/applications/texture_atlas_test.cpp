@@ -1,11 +1,10 @@
-#include "ahm/applications/atlas/texture_atlas.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 #include <random>
 
+#include "ahm/applications/atlas.hpp"
 #include "ahm/error.hpp"
 
 namespace ahm::test {

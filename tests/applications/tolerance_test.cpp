@@ -9,9 +9,9 @@
 #include "ahm/applications/atlas.hpp"
 #include "ahm/applications/cells.hpp"
 #include "ahm/applications/mean.hpp"
-#include "ahm/applications/surface_curve.hpp"
+#include "ahm/applications/stroke.hpp"
+#include "ahm/conformance/triangle_meshes.hpp"
 #include "ahm/error.hpp"
-#include "ahm/testing/triangle_meshes.hpp"
 #include "ahm/trimesh/triangle_mesh_surface.hpp"
 #include "support/expect_error.hpp"
 
@@ -66,7 +66,7 @@ TEST_F(WithinATolerance, FarthestPointsAreNearlyTheFarthest) {
 }
 
 TEST_F(WithinATolerance, MapsOfAtlasesAndCentersAre) {
-  const MapMaker maps(geodesics, within), exact(geodesics);
+  const AnySolver maps(geodesics, within), exact(geodesics);
   constexpr double everywhere = std::numeric_limits<double>::infinity();
   expect_near(maps.map(Vertex(5), everywhere).distances(), exact.map(Vertex(5), everywhere).distances());
   expect_near(maps.cells(sources).distances, exact.cells(sources).distances);
@@ -93,7 +93,7 @@ TEST_F(WithinATolerance, IsRefusedOutsideOfItsRange) {
   const SurfaceCurve curve = draw_curve(surface, given);
   for (double bad : {-1e-3, 0.11, std::numeric_limits<double>::quiet_NaN()}) {
     const ExactMapOptions options{.tolerance = bad, .progress = {}};
-    const MapMaker maps(geodesics, options);
+    const AnySolver maps(geodesics, options);
     expect_error<InvalidArgument>([&] { voronoi_cells(geodesics, sources, options); }, "'tolerance'");
     expect_error<InvalidArgument>([&] { farthest_points(geodesics, Vertex(0), 3, options); }, "'tolerance'");
     expect_error<InvalidArgument>([&] { geodesics.log_map(curve.samples, options); }, "'tolerance'");

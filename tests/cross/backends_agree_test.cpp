@@ -60,13 +60,13 @@ Map on_triangles(const WavySquare& s, const MapOptions& options) {
     }
   const auto mesh = trimesh::TriangleMeshSurface::build(s.points, faces);
   const LogMapSolver solver(mesh.graph());
-  return pack(mesh.on_rows(solver.solve(mesh.source(Row(s.source()), Vec3{1, 0, 0}).source, options)));
+  return pack(mesh.to_rows(solver.solve(mesh.source(Row(s.source()), Vec3{1, 0, 0}).source, options)));
 }
 
 Map on_points(const WavySquare& s, const MapOptions& options) {
   const auto cloud = pointcloud::PointCloudSurface::build(s.points, s.normals);
   const LogMapSolver solver(cloud.graph());
-  return pack(cloud.on_rows(solver.solve(cloud.source(Row(s.source()), Vec3{1, 0, 0}).source, options)));
+  return pack(cloud.to_rows(solver.solve(cloud.source(Row(s.source()), Vec3{1, 0, 0}).source, options)));
 }
 
 /// The same grid as quads, some of them joined to hexagons.
@@ -85,7 +85,7 @@ Map on_polygons(const WavySquare& s, const MapOptions& options) {
   const auto mesh = polymesh::PolygonMeshSurface::build(s.points, begin, corners,
                                                         {.discretization = polymesh::Discretization::polygons});
   const LogMapSolver solver(mesh.graph());
-  return pack(mesh.on_rows(solver.solve(mesh.source(Row(s.source()), Vec3{1, 0, 0}).source, options)));
+  return pack(mesh.to_rows(solver.solve(mesh.source(Row(s.source()), Vec3{1, 0, 0}).source, options)));
 }
 
 /// Every way to discretize the surface; a backend joins by one line.

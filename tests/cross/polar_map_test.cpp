@@ -7,17 +7,17 @@
 #include <numeric>
 #include <random>
 
+#include "ahm/conformance/closed_forms.hpp"
+#include "ahm/conformance/clouds.hpp"
+#include "ahm/conformance/flat_graphs.hpp"
+#include "ahm/conformance/polygon_meshes.hpp"
+#include "ahm/conformance/triangle_meshes.hpp"
 #include "ahm/grid/grid_graph.hpp"
 #include "ahm/maps/log_map_solver.hpp"
 #include "ahm/pointcloud/point_cloud_surface.hpp"
 #include "ahm/polymesh/polygon_mesh_surface.hpp"
 #include "ahm/surface/exact/exact_geodesics.hpp"
 #include "ahm/surface/polar_map_solver.hpp"
-#include "ahm/testing/closed_forms.hpp"
-#include "ahm/testing/clouds.hpp"
-#include "ahm/testing/flat_graphs.hpp"
-#include "ahm/testing/polygon_meshes.hpp"
-#include "ahm/testing/triangle_meshes.hpp"
 #include "ahm/trimesh/triangle_mesh_surface.hpp"
 #include "ahm/util/vec.hpp"
 
@@ -50,8 +50,8 @@ double difference(const LogMap& a, const LogMap& b) {
 /// The map in the axes of the source's frame in space, against positions in space.
 double plane_error(const Surface& surface, const SurfacePoint& source) {
   const Vec3 axis{0.3, 0.8, 0.1};
-  const PlacedSource placed = surface.source(source, axis);
-  const RowLogMap rows = surface.on_rows(PolarMapSolver(surface).log_map(source, axis));
+  const SurfaceSource placed = surface.source(source, axis);
+  const RowLogMap rows = surface.to_rows(PolarMapSolver(surface).log_map(source, axis));
   double error = 0, diameter = 0;
   for (std::size_t r = 0; r < rows.u.size(); ++r) {
     if (rows.status[r] == Status::removed) continue;
@@ -122,8 +122,8 @@ TEST(PolarMap, DoesNotDependOnTheOrderOfRows) {
   std::shuffle(other.faces.begin(), other.faces.end(), std::mt19937(6));
   const Vec3 axis{0, 0, 1};
   const auto one = built(mesh), two = built(other);
-  const RowLogMap a = one.on_rows(PolarMapSolver(one, {.windows = 3000}).log_map(Row(4), axis)),
-                  b = two.on_rows(PolarMapSolver(two, {.windows = 3000}).log_map(Row(order[4]), axis));
+  const RowLogMap a = one.to_rows(PolarMapSolver(one, {.windows = 3000}).log_map(Row(4), axis)),
+                  b = two.to_rows(PolarMapSolver(two, {.windows = 3000}).log_map(Row(order[4]), axis));
   // Of equally long paths another one may count, and what follows from it.
   double off = 0, turned = 0;
   for (std::size_t i = 0; i < order.size(); ++i) {
@@ -142,8 +142,8 @@ TEST(PolarMap, MirrorsWithTheSurface) {
   for (Triangle& t : other.faces) std::swap(t[1], t[2]);
   const Vec3 axis{0, 0, 1};
   const auto one = built(mesh), two = built(other);
-  const RowLogMap a = one.on_rows(PolarMapSolver(one, {.windows = 0}).log_map(Row(4), axis)),
-                  b = two.on_rows(PolarMapSolver(two, {.windows = 0}).log_map(Row(4), axis));
+  const RowLogMap a = one.to_rows(PolarMapSolver(one, {.windows = 0}).log_map(Row(4), axis)),
+                  b = two.to_rows(PolarMapSolver(two, {.windows = 0}).log_map(Row(4), axis));
   for (std::size_t i = 0; i < a.u.size(); ++i) {
     EXPECT_NEAR(a.u[i], b.u[i], 0.01);
     EXPECT_NEAR(a.v[i], -b.v[i], 0.01);
@@ -175,7 +175,7 @@ TEST(PolarMap, IsTheExactMapWhereWindowsReach) {
     // And as far as some of them reach.
     constexpr Offset some = 4000;
     const LogMap polar = PolarMapSolver(surface, {.windows = some}).log_map(Row(10)),
-                 exact = geodesics.log_map(Row(10), {}, {.most_windows = some}), whole = geodesics.log_map(Row(10));
+                 exact = geodesics.log_map(Row(10), {}, {.max_windows = some}), whole = geodesics.log_map(Row(10));
     for (Index i = 0; i < exact.size(); ++i)
       if (exact.status(Vertex(i)) == Status::ok) {
         EXPECT_NEAR(polar.coordinates(Vertex(i))[0], whole.coordinates(Vertex(i))[0], 1e-12);
@@ -212,7 +212,7 @@ double error_on_sphere(Index parts, Offset windows) {
   const Row source(17);
   const Vec3 axis{0.3, 0.4, 0.5};
   const Vec3 p = mesh.positions[17], x = normalized(axis - dot(axis, p) * p), y = cross(p, x);
-  const RowLogMap rows = surface.on_rows(PolarMapSolver(surface, {.windows = windows}).log_map(source, axis));
+  const RowLogMap rows = surface.to_rows(PolarMapSolver(surface, {.windows = windows}).log_map(source, axis));
   return sphere_error(mesh.positions, rows.u, rows.v, 17, x, y, 0.8 * std::numbers::pi).rms;
 }
 
@@ -233,7 +233,7 @@ TEST(PolarMap, CarriesDirectionsToTheGradientOfTheDistance) {
   for (const ahm::Surface* on : {static_cast<const ahm::Surface*>(&surface), static_cast<const ahm::Surface*>(&cloud)})
     for (const Offset windows : {Offset{0}, Offset{3000}}) {
       const LogMap map = PolarMapSolver(*on, {.windows = windows}).log_map(Row(17), {}, {.frames = true});
-      const RowLogMap rows = on->on_rows(map);
+      const RowLogMap rows = on->to_rows(map);
       const std::vector<Vec3> away = distance_gradients(*on, map, rows);
       const Vec3& p = mesh.positions[17];
       for (std::size_t r = 0; r < away.size(); ++r) {

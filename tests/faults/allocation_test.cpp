@@ -8,6 +8,9 @@
 #include <functional>
 #include <iterator>
 
+#include "ahm/conformance/clouds.hpp"
+#include "ahm/conformance/polygon_meshes.hpp"
+#include "ahm/conformance/triangle_meshes.hpp"
 #include "ahm/error.hpp"
 #include "ahm/io/npz.hpp"
 #include "ahm/io/read.hpp"
@@ -17,9 +20,6 @@
 #include "ahm/pointcloud/point_cloud_surface.hpp"
 #include "ahm/polymesh/polygon_mesh_surface.hpp"
 #include "ahm/surface/exact/exact_geodesics.hpp"
-#include "ahm/testing/clouds.hpp"
-#include "ahm/testing/polygon_meshes.hpp"
-#include "ahm/testing/triangle_meshes.hpp"
 #include "ahm/trimesh/triangle_mesh_surface.hpp"
 #include "failing_allocations.hpp"
 #include "folder.hpp"
@@ -81,7 +81,7 @@ TEST(AllocationsFail, WhileAMeshIsBuiltFactoredSolvedAndWritten) {
   const Work work = [&] {
     const auto surface = trimesh::TriangleMeshSurface::build(mesh.positions, mesh.faces, {.threads = 1});
     const LogMapSolver solver(surface.graph(), {.threads = 1});
-    const RowLogMap map = surface.on_rows(solver.solve(surface.source(Row(12)).source));
+    const RowLogMap map = surface.to_rows(solver.solve(surface.source(Row(12)).source));
     io::Table table{"map"};
     table.add({"x", "y", "z"}, mesh.positions);
     table.add("distance", map.distance);

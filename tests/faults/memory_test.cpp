@@ -1,9 +1,9 @@
 // What maps allocate: bytes at most, and how often.
 #include <gtest/gtest.h>
 
+#include "ahm/conformance/triangle_meshes.hpp"
 #include "ahm/maps/log_map_solver.hpp"
 #include "ahm/surface/exact/exact_geodesics.hpp"
-#include "ahm/testing/triangle_meshes.hpp"
 #include "ahm/trimesh/triangle_mesh_surface.hpp"
 #include "failing_allocations.hpp"
 

@@ -6,18 +6,17 @@
 #include <cstring>
 #include <thread>
 
+#include "ahm/conformance/clouds.hpp"
+#include "ahm/conformance/polygon_meshes.hpp"
+#include "ahm/conformance/triangle_meshes.hpp"
 #include "ahm/fields/distance.hpp"
 #include "ahm/graph/validate.hpp"
-#include "ahm/maps/local_coordinates.hpp"
 #include "ahm/maps/local_maps.hpp"
 #include "ahm/maps/log_map_solver.hpp"
 #include "ahm/maps/quality.hpp"
 #include "ahm/pointcloud/point_cloud_surface.hpp"
 #include "ahm/polymesh/polygon_mesh_surface.hpp"
 #include "ahm/surface/exact/exact_geodesics.hpp"
-#include "ahm/testing/clouds.hpp"
-#include "ahm/testing/polygon_meshes.hpp"
-#include "ahm/testing/triangle_meshes.hpp"
 #include "ahm/trimesh/triangle_mesh_surface.hpp"
 
 namespace ahm::test {

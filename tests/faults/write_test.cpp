@@ -9,10 +9,10 @@
 
 #include <functional>
 
+#include "ahm/conformance/triangle_meshes.hpp"
 #include "ahm/error.hpp"
 #include "ahm/io/npz.hpp"
 #include "ahm/io/textured_mesh.hpp"
-#include "ahm/testing/triangle_meshes.hpp"
 #include "folder.hpp"
 
 namespace ahm::test {

@@ -19,6 +19,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     fuzz::check_surface(surface, bytes);
     const LogMapSolver solver(surface.graph(), {.threads = 1});
     const Row row(bytes.number(static_cast<Index>(points.size()) - 1));
-    (void)surface.on_rows(solver.solve(surface.source(row).source));
+    (void)surface.to_rows(solver.solve(surface.source(row).source));
   });
 }

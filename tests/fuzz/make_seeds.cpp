@@ -8,12 +8,12 @@
 #include <iterator>
 #include <string>
 
+#include "ahm/conformance/clouds.hpp"
+#include "ahm/conformance/polygon_meshes.hpp"
+#include "ahm/conformance/triangle_meshes.hpp"
 #include "ahm/io/formats.hpp"
 #include "ahm/io/textured_mesh.hpp"
 #include "ahm/io/write.hpp"
-#include "ahm/testing/clouds.hpp"
-#include "ahm/testing/polygon_meshes.hpp"
-#include "ahm/testing/triangle_meshes.hpp"
 
 namespace {
 

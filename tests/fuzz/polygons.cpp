@@ -28,7 +28,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const Row row(bytes.number(static_cast<Index>(positions.size()) - 1));
     const LogMap map = solver.solve(surface.source(row).source);
     fuzz::check_map(map);
-    (void)surface.on_rows(map);
-    (void)surface.on_corners(map);
+    (void)surface.to_rows(map);
+    (void)surface.to_corners(map);
   });
 }

@@ -22,8 +22,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const FacePoint point{bytes.number(static_cast<Index>(faces.size()) - 1), {0.25, 0.25, 0.5}};
     const LogMap map = solver.solve(surface.source(point).source);
     fuzz::check_map(map);
-    (void)surface.on_rows(map);
-    (void)surface.on_corners(map);
+    (void)surface.to_rows(map);
+    (void)surface.to_corners(map);
     (void)surface.at(map, FacePoint{bytes.number(static_cast<Index>(faces.size()) - 1), {0.5, 0, 0.5}});
   });
 }

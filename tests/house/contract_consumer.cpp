@@ -1,8 +1,8 @@
 // A user's own graph under the published contract.
+#include <ahm/conformance/curved_graphs.hpp>
+#include <ahm/conformance/flat_graphs.hpp>
+#include <ahm/conformance/graph_contract.hpp>
 #include <ahm/graph/csr_graph.hpp>
-#include <ahm/testing/curved_graphs.hpp>
-#include <ahm/testing/flat_graphs.hpp>
-#include <ahm/testing/graph_contract.hpp>
 
 namespace ahm::test {
 

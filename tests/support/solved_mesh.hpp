@@ -2,8 +2,8 @@
 /// A triangle mesh taken all the way to maps, and its maps beside the plane it was made from.
 #pragma once
 
+#include "ahm/conformance/triangle_meshes.hpp"
 #include "ahm/maps/log_map_solver.hpp"
-#include "ahm/testing/triangle_meshes.hpp"
 #include "ahm/trimesh/triangle_mesh_surface.hpp"
 
 namespace ahm::test {
@@ -14,7 +14,7 @@ struct SolvedMesh {
       : surface(trimesh::TriangleMeshSurface::build(mesh.positions, mesh.faces, options)), solver(surface.graph()) {}
 
   RowLogMap map(const Source& source, Variant variant = Variant::adaptive) const {
-    return surface.on_rows(solver.solve(source, {.variant = variant}));
+    return surface.to_rows(solver.solve(source, {.variant = variant}));
   }
 
   trimesh::TriangleMeshSurface surface;

@@ -5,11 +5,11 @@
 #include <functional>
 #include <numbers>
 
+#include "ahm/conformance/polygon_meshes.hpp"
+#include "ahm/conformance/triangle_meshes.hpp"
 #include "ahm/maps/log_map_solver.hpp"
 #include "ahm/polymesh/polygon_mesh_surface.hpp"
 #include "ahm/surface/exact/exact_geodesics.hpp"
-#include "ahm/testing/polygon_meshes.hpp"
-#include "ahm/testing/triangle_meshes.hpp"
 #include "ahm/trimesh/triangle_mesh_surface.hpp"
 
 namespace ahm::test {
@@ -70,8 +70,8 @@ struct Corners {
   double stretch = 1;  ///< of the sides of the faces, or its inverse
 
   Corners(const Surface& surface, const LogMap& map) {
-    const RowLogMap rows = surface.on_rows(map);
-    const std::vector<Vec2> corners = surface.on_corners(map);
+    const RowLogMap rows = surface.to_rows(map);
+    const std::vector<Vec2> corners = surface.to_corners(map);
     const FaceList faces = surface.faces();
     for (std::size_t f = 0; f < faces.size(); ++f)
       for (std::size_t c = 0; c < faces[f].size(); ++c) {
@@ -95,12 +95,12 @@ TEST(Corners, PolygonsAreCutOpenBetweenThem) {
     EXPECT_LT(corners.stretch, 1.6);
     EXPECT_GT(corners.cracked, 0);
     // Within four faces of that line, on the one side or the other.
-    const RowLogMap on_rows = surface.on_rows(map);
-    const std::vector<Vec2> phi = surface.on_corners(map);
+    const RowLogMap to_rows = surface.to_rows(map);
+    const std::vector<Vec2> phi = surface.to_corners(map);
     for (std::size_t k = 0; k < phi.size(); ++k)
       if (const Index row = surface.faces().vertices[k]; std::abs(row % around - around / 2) > 4) {
-        EXPECT_EQ(phi[k][0], on_rows.u[row]) << row;
-        EXPECT_EQ(phi[k][1], on_rows.v[row]) << row;
+        EXPECT_EQ(phi[k][0], to_rows.u[row]) << row;
+        EXPECT_EQ(phi[k][1], to_rows.v[row]) << row;
       }
   });
 }
@@ -109,7 +109,7 @@ TEST(Corners, FacesLongerThanWideAreCutAtTheSamePlaces) {
   const Index rows = 11, around = 60;
   for_each_surface(cylinder(rows, around, 8), [&](const Surface& surface) {
     const LogMap map = LogMapSolver(surface.graph()).solve(surface.source(Row((rows / 2) * around)).source);
-    const std::vector<Vec2> phi = surface.on_corners(map);
+    const std::vector<Vec2> phi = surface.to_corners(map);
     Index wrong = 0;
     for (std::size_t f = 0; f < surface.faces().size(); ++f) {
       // On one sheet all corners of a face lie at once on one side of the line opposite to the source.

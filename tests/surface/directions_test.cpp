@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ahm/conformance/flat_graphs.hpp"
+#include "ahm/conformance/vectors.hpp"
 #include "ahm/error.hpp"
 #include "ahm/grid/grid_graph.hpp"
 #include "ahm/pointcloud/point_cloud_surface.hpp"
-#include "ahm/testing/flat_graphs.hpp"
-#include "ahm/testing/vectors.hpp"
 #include "support/solved_mesh.hpp"
 
 namespace ahm::test {

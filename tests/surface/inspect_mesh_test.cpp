@@ -1,9 +1,9 @@
 // What is told about any mesh, also about one that cannot be built.
 #include <gtest/gtest.h>
 
+#include "ahm/conformance/triangle_meshes.hpp"
 #include "ahm/error.hpp"
 #include "ahm/surface/mesh_topology.hpp"
-#include "ahm/testing/triangle_meshes.hpp"
 
 namespace ahm::test {
 namespace {

@@ -8,12 +8,11 @@
 #include <numeric>
 #include <random>
 
+#include "ahm/conformance/triangle_meshes.hpp"
 #include "ahm/error.hpp"
 #include "ahm/maps/log_map_solver.hpp"
 #include "ahm/polymesh/polygon_mesh_surface.hpp"
 #include "ahm/surface/exact/exact_geodesics.hpp"
-#include "ahm/surface/repaired_surface.hpp"
-#include "ahm/testing/triangle_meshes.hpp"
 #include "ahm/trimesh/triangle_mesh_surface.hpp"
 #include "ahm/util/vec.hpp"
 
@@ -90,8 +89,8 @@ TEST(MeshRepair, SewsATornMeshTogetherAndMapsEveryRowAsBefore) {
   const auto before = trimesh::TriangleMeshSurface::build(whole.positions, whole.faces);
   const Vec3 axis{0.3, 0.2, 0.9};
   const LogMapSolver solver(surface.graph()), solver_before(before.graph());
-  const RowLogMap map = surface.on_rows(solver.solve(surface.source(Row(0), axis).source));
-  const RowLogMap map_before = before.on_rows(solver_before.solve(before.source(Row(whole.faces[0][0]), axis).source));
+  const RowLogMap map = surface.to_rows(solver.solve(surface.source(Row(0), axis).source));
+  const RowLogMap map_before = before.to_rows(solver_before.solve(before.source(Row(whole.faces[0][0]), axis).source));
   std::size_t row = 0;
   for (const Triangle& t : whole.faces)
     for (Index v : t) {
@@ -117,8 +116,8 @@ TEST(MeshRepair, ExactMapsAndEdgesOfRepairedSurfacesAreThoseOfTheWholeMesh) {
   const Soup soup = torn(whole);
   const RepairedSurface surface = surface_of(soup, repair_mesh(soup.points, soup.faces(), RepairOptions::all()));
   const auto before = trimesh::TriangleMeshSurface::build(whole.positions, whole.faces);
-  const RowLogMap map = surface.on_rows(ExactGeodesics(surface).log_map(FacePoint{7, {0.2, 0.3, 0.5}}));
-  const RowLogMap map_before = before.on_rows(ExactGeodesics(before).log_map(FacePoint{7, {0.2, 0.3, 0.5}}));
+  const RowLogMap map = surface.to_rows(ExactGeodesics(surface).log_map(FacePoint{7, {0.2, 0.3, 0.5}}));
+  const RowLogMap map_before = before.to_rows(ExactGeodesics(before).log_map(FacePoint{7, {0.2, 0.3, 0.5}}));
   std::size_t row = 0;
   for (const Triangle& t : whole.faces)
     for (Index v : t) EXPECT_NEAR(map.distance[row++], map_before.distance[v], 1e-12);

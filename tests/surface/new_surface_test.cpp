@@ -73,7 +73,7 @@ TEST(NewSurface, HasWhatTheBaseGivesToAll) {
   EXPECT_NO_THROW(validate(lattice.graph()));
   const LogMap map =
       LogMapSolver(lattice.graph()).solve(lattice.source(Row(14), Vec3{0, 1, 0}).source, {.frames = true});
-  const RowLogMap rows = lattice.on_rows(map);
+  const RowLogMap rows = lattice.to_rows(map);
   for (Index r = 0; r < 144; ++r) {
     EXPECT_NEAR(rows.u[r], lattice.positions()[r][1] - 1, 1e-10);
     EXPECT_NEAR(rows.v[r], 2 - lattice.positions()[r][0], 1e-10);
@@ -88,10 +88,10 @@ TEST(NewSurface, HasWhatTheBaseGivesToAll) {
   EXPECT_NEAR(sample.v, 2 - 3.25, 1e-10);
   const Sample on_edge = lattice.at(map, EdgePoint{Row(14), Row(26), 0.5});
   EXPECT_NEAR(on_edge.u, 0.5, 1e-10);
-  const std::vector<Vec2> corners = lattice.on_corners(map);
+  const std::vector<Vec2> corners = lattice.to_corners(map);
   EXPECT_EQ(corners[2][0], rows.u[13]);
 
-  const PlacedSource between = lattice.source(TangentPoint{Row(14), {2.25, 1.5, 0}}, Vec3{1, 0, 0});
+  const SurfaceSource between = lattice.source(TangentPoint{Row(14), {2.25, 1.5, 0}}, Vec3{1, 0, 0});
   const Sample origin = lattice.at(LogMapSolver(lattice.graph()).solve(between.source), Row(14));
   EXPECT_NEAR(origin.u, -0.25, 1e-10);
   EXPECT_NEAR(origin.v, -0.5, 1e-10);

@@ -7,10 +7,10 @@
 #include <cmath>
 #include <random>
 
+#include "ahm/conformance/clouds.hpp"
+#include "ahm/conformance/triangle_meshes.hpp"
 #include "ahm/maps/log_map_solver.hpp"
 #include "ahm/pointcloud/point_cloud_surface.hpp"
-#include "ahm/testing/clouds.hpp"
-#include "ahm/testing/triangle_meshes.hpp"
 #include "ahm/trimesh/triangle_mesh_surface.hpp"
 
 namespace ahm::test {
@@ -40,12 +40,12 @@ std::vector<Vertex> sources_on(const Surface& surface) {
 /// @return how many are those of the straight line
 Index expect_rows_of_whole_maps(const Surface& surface, double margin) {
   const std::vector<Vertex> sources = sources_on(surface);
-  const RowLocalMaps maps = local_maps_on_rows(surface, sources, {.radius = radius});
+  const RowLocalMaps maps = row_local_maps(surface, sources, {.radius = radius});
   const LogMapSolver solver(surface.graph());
   Index at_line = 0;
   for (std::size_t s = 0; s < sources.size(); ++s) {
     const Vec3 start = surface.graph().frame(sources[s].index)->origin;
-    const RowLogMap whole = surface.on_rows(solver.solve(Source::at_vertex(sources[s]), {.radius = radius}));
+    const RowLogMap whole = surface.to_rows(solver.solve(Source::at_vertex(sources[s]), {.radius = radius}));
     EXPECT_TRUE(std::is_sorted(maps.distances.begin() + maps.indptr[s], maps.distances.begin() + maps.indptr[s + 1]));
     Offset inside = 0;
     for (double d : whole.distance) inside += d < radius * (1 - margin);
@@ -75,8 +75,8 @@ TEST(RowLocalMaps, AreTheRowsOfWholeMaps) {
 TEST(RowLocalMaps, HoldTheNearestByTheSameDistances) {
   const auto cloud = noisy_sphere();
   const std::vector<Vertex> sources = sources_on(cloud);
-  const RowLocalMaps all = local_maps_on_rows(cloud, sources, {.radius = 2 * radius}),
-                     nearest = local_maps_on_rows(cloud, sources, {.nearest = 40});
+  const RowLocalMaps all = row_local_maps(cloud, sources, {.radius = 2 * radius}),
+                     nearest = row_local_maps(cloud, sources, {.nearest = 40});
   for (std::size_t s = 0; s < sources.size(); ++s) {
     ASSERT_EQ(nearest.indptr[s + 1] - nearest.indptr[s], 40);
     for (Offset k = 0; k < 40; ++k)

@@ -1,13 +1,12 @@
 // Triangles read off the stars of a graph, and normals on the side of the source.
-#include "ahm/surface/star_triangles.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
+#include "ahm/conformance/curved_graphs.hpp"
+#include "ahm/conformance/vectors.hpp"
 #include "ahm/error.hpp"
-#include "ahm/testing/curved_graphs.hpp"
-#include "ahm/testing/vectors.hpp"
+#include "ahm/surface/surface_triangles.hpp"
 #include "support/solved_mesh.hpp"
 
 namespace ahm::test {

@@ -8,13 +8,13 @@
 #include <numbers>
 #include <random>
 
+#include "ahm/conformance/clouds.hpp"
+#include "ahm/conformance/triangle_meshes.hpp"
 #include "ahm/error.hpp"
 #include "ahm/maps/log_map_solver.hpp"
 #include "ahm/pointcloud/point_cloud_surface.hpp"
 #include "ahm/polymesh/polygon_mesh_surface.hpp"
-#include "ahm/surface/mapped_positions.hpp"
-#include "ahm/testing/clouds.hpp"
-#include "ahm/testing/triangle_meshes.hpp"
+#include "ahm/surface/surface_triangles.hpp"
 #include "ahm/trimesh/triangle_mesh_surface.hpp"
 
 namespace ahm::test {
@@ -60,13 +60,13 @@ TEST(Surface, ASourceAtARowIsThatAtACornerOfAFlatFace) {
       const Row row(mesh.faces[50][corner]);
       FacePoint point{50, {0, 0, 0}};
       point.barycentric[corner] = 1;
-      const PlacedSource at_row = surface.source(row, along), in_face = surface.source(point, along);
+      const SurfaceSource at_row = surface.source(row, along), in_face = surface.source(point, along);
       EXPECT_EQ(at_row.row, row);
       EXPECT_FALSE(in_face.row);
       EXPECT_LT(distance(at_row.position, in_face.position), 1e-14);
       EXPECT_LT(distance(at_row.frame->x, in_face.frame->x), 1e-12);
-      EXPECT_LT(largest_difference(surface.on_rows(solver.solve(at_row.source)),
-                                   surface.on_rows(solver.solve(in_face.source))),
+      EXPECT_LT(largest_difference(surface.to_rows(solver.solve(at_row.source)),
+                                   surface.to_rows(solver.solve(in_face.source))),
                 1e-10);
     }
   });
@@ -77,7 +77,7 @@ TEST(Surface, AnEdgePointLiesOnTheEdgeAndLooksAlongIt) {
   for_each_mesh_surface(mesh, [&](const Surface& surface) {
     const auto [a, b, c] = mesh.faces[40];
     const EdgePoint point{Row(c), Row(a), 0.25};
-    const PlacedSource source = surface.source(point);
+    const SurfaceSource source = surface.source(point);
     Vec3 wanted, along;
     for (int k = 0; k < 3; ++k) {
       wanted[k] = 0.75 * mesh.positions[c][k] + 0.25 * mesh.positions[a][k];
@@ -101,8 +101,8 @@ TEST(Surface, CornersHaveTheValuesOfTheirRowsOnAFlatMesh) {
   for (std::size_t f = 0; f < mesh.faces.size(); f += 3) std::swap(mesh.faces[f][1], mesh.faces[f][2]);
   for_each_mesh_surface(mesh, [&](const Surface& surface) {
     const LogMap map = LogMapSolver(surface.graph()).solve(surface.source(Row(5)).source);
-    const RowLogMap rows = surface.on_rows(map);
-    const std::vector<Vec2> corners = surface.on_corners(map);
+    const RowLogMap rows = surface.to_rows(map);
+    const std::vector<Vec2> corners = surface.to_corners(map);
     for (std::size_t f = 0; f < mesh.faces.size(); ++f)
       for (std::size_t c = 0; c < 3; ++c) {
         ASSERT_NEAR(corners[3 * f + c][0], rows.u[mesh.faces[f][c]], 1e-9);
@@ -129,7 +129,7 @@ TEST(Surface, OfTheCopiesOfACutRowTheOneNearestToTheSourceCounts) {
   const LogMapSolver solver(surface.graph());
   for (Index page : {2, 4, 6}) {
     const LogMap map = solver.solve(surface.source(Row(page)).source);
-    const RowLogMap rows = surface.on_rows(map);
+    const RowLogMap rows = surface.to_rows(map);
     for (Index r : {0, 1}) {
       ASSERT_EQ(rows.status[r], Status::ok);
       ASSERT_TRUE(rows.vertex[r]);
@@ -146,10 +146,10 @@ TEST(Surface, NumbersOfVerticesFollowTheCoordinatesToTheRows) {
   const Mesh mesh = three_pages();
   const auto surface = TriangleMeshSurface::build(mesh.positions, mesh.faces, {.non_manifold = NonManifold::split});
   const LogMap map = LogMapSolver(surface.graph()).solve(surface.source(Row(2)).source);
-  const RowLogMap rows = surface.on_rows(map);
+  const RowLogMap rows = surface.to_rows(map);
   std::vector<double> distances;
   for (Vertex v(0); v.index < map.size(); ++v.index) distances.push_back(map.distance(v));
-  const std::vector<double> by_row = on_rows(rows, distances);
+  const std::vector<double> by_row = to_rows(rows, distances);
   ASSERT_EQ(by_row.size(), mesh.positions.size());
   Index mapped = 0;
   for (std::size_t r = 0; r < by_row.size(); ++r) {
@@ -160,7 +160,7 @@ TEST(Surface, NumbersOfVerticesFollowTheCoordinatesToTheRows) {
   }
   EXPECT_GT(mapped, 2);
   EXPECT_LT(mapped, static_cast<Index>(by_row.size()));  // the other pages are apart
-  EXPECT_THROW(on_rows(rows, std::span(distances).first(1)), InvalidArgument);
+  EXPECT_THROW(to_rows(rows, std::span(distances).first(1)), InvalidArgument);
 }
 
 TEST(Surface, TheClosestPointIsTheNearestOfManyInAllFaces) {
@@ -237,11 +237,11 @@ TEST(Surface, ATangentPointOfACloudCarriesItsOffset) {
   const auto cloud = PointCloudSurface::build(points);
   const ClosestPoint found = cloud.closest_point({0.93, 1.02, 2.3});
   EXPECT_NEAR(found.distance, 0.3, 1e-12);
-  const PlacedSource source = cloud.source(found.point, Vec3{1, 0, 0});
+  const SurfaceSource source = cloud.source(found.point, Vec3{1, 0, 0});
   EXPECT_LT(distance(source.position, {0.93, 1.02, 2}), 1e-12);
   const double left = source.frame->normal[2] > 0 ? 1 : -1;
   const LogMap map = LogMapSolver(cloud.graph()).solve(source.source, {.frames = true});
-  const RowLogMap rows = cloud.on_rows(map);
+  const RowLogMap rows = cloud.to_rows(map);
   for (std::size_t i = 0; i < points.size(); ++i) {
     ASSERT_NEAR(rows.u[i], points[i][0] - 0.93, 1e-9);
     ASSERT_NEAR(rows.v[i], left * (points[i][1] - 1.02), 1e-9);
@@ -288,8 +288,8 @@ TEST(Surface, RowsThatACallerDidNotKeepAreRemovedAndSaidSo) {
   std::vector<Vec3> remaining;
   for (const Row row : kept) remaining.push_back(points[row.index]);
   const auto alone = PointCloudSurface::build(remaining);
-  const RowLogMap a = cloud.on_rows(LogMapSolver(cloud.graph()).solve(cloud.source(kept[9]).source));
-  const RowLogMap b = alone.on_rows(LogMapSolver(alone.graph()).solve(alone.source(Row(9)).source));
+  const RowLogMap a = cloud.to_rows(LogMapSolver(cloud.graph()).solve(cloud.source(kept[9]).source));
+  const RowLogMap b = alone.to_rows(LogMapSolver(alone.graph()).solve(alone.source(Row(9)).source));
   ASSERT_EQ(a.u.size(), points.size());
   for (std::size_t k = 0; k < kept.size(); ++k) {
     EXPECT_EQ(a.u[kept[k].index], b.u[k]);
@@ -316,7 +316,7 @@ TEST(Surface, StaysValidWhenItIsMoved) {
   const LogMapSolver solver(first.graph());
   const TriangleMeshSurface second = std::move(first);
   EXPECT_EQ(second.closest_point({0, 0.3, 2}).position, before.position);
-  EXPECT_EQ(second.on_rows(solver.solve(second.source(Row(4)).source)).status[0], Status::ok);
+  EXPECT_EQ(second.to_rows(solver.solve(second.source(Row(4)).source)).status[0], Status::ok);
 }
 
 TEST(Surface, NamesWhatIsWrongWithAPoint) {

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <random>
 
+#include "ahm/conformance/clouds.hpp"
 #include "ahm/pointcloud/point_cloud_surface.hpp"
-#include "ahm/surface/surface_lines.hpp"
-#include "ahm/testing/clouds.hpp"
+#include "ahm/surface/surface_paths.hpp"
 #include "ahm/util/vec.hpp"
 
 namespace ahm::test {
@@ -34,7 +34,7 @@ TEST(Surface, PathsOfACloudBeginAndEndAtItsPoints) {
   const Cloud sphere = random_sphere(3000);
   const auto cloud = pointcloud::PointCloudSurface::build(sphere.points);
   for (const Index end : {700, 1500, 2900}) {
-    const SurfaceLine line = shortest_line(cloud, Row(5), Row(end));
+    const SurfacePath line = shortest_line(cloud, Row(5), Row(end));
     EXPECT_EQ(line.points.front(), sphere.points[5]);
     EXPECT_EQ(line.points.back(), sphere.points[end]);
   }

@@ -8,12 +8,12 @@
 #include <thread>
 
 #include "ahm/applications/coverage.hpp"
-#include "ahm/applications/surface_curve.hpp"
+#include "ahm/applications/stroke.hpp"
 #include "ahm/io/image.hpp"
 #include "ahm/maps/log_map_solver.hpp"
 #include "ahm/pointcloud/point_cloud_surface.hpp"
 #include "ahm/surface/exact/exact_geodesics.hpp"
-#include "ahm/surface/repaired_surface.hpp"
+#include "ahm/surface/mesh_repair.hpp"
 #include "ahm/trimesh/triangle_mesh_surface.hpp"
 #include "ahm/util/shell.hpp"
 #include "sphere.hpp"
@@ -57,7 +57,7 @@ double scale_of(const Session& session) {
 
 TEST_F(ViewerSession, GivesTheMapTheLibraryGives) {
   const LogMapSolver solver(sphere.surface.graph());
-  const auto expected = sphere.surface.on_rows(solver.solve(sphere.surface.source(Row{7}).source));
+  const auto expected = sphere.surface.to_rows(solver.solve(sphere.surface.source(Row{7}).source));
   const Answer answer = session.answer("map", request({{"source", {{"row", 7}}}}));
   ASSERT_EQ(answer.status, 200) << answer.body;
   expect_same(expected, Unpacked(answer.body), scale_of(session));
@@ -67,7 +67,7 @@ TEST_F(ViewerSession, GivesExactSourcesInFaces) {
   const FacePoint point{11, {0.2, 0.3, 0.5}};
   const ExactGeodesics geodesics(sphere.surface);
   const auto u = sphere.surface.source(point).frame->x;
-  const auto expected = sphere.surface.on_rows(geodesics.log_map(point, u, {.frames = true}));
+  const auto expected = sphere.surface.to_rows(geodesics.log_map(point, u, {.frames = true}));
   const Answer answer =
       session.answer("map", request({{"source", {{"face", 11}, {"weights", {0.2, 0.3, 0.5}}}}, {"method", "exact"}}));
   ASSERT_EQ(answer.status, 200) << answer.body;
@@ -85,7 +85,7 @@ TEST_F(ViewerSession, HonoursEverySetting) {
   options.variant = Variant::localized;
   options.radius = 1;
   const Vec3 axis{0, 0.3, 1};
-  const auto expected = sphere.surface.on_rows(solver.solve(sphere.surface.source(Row{7}, axis).source, options));
+  const auto expected = sphere.surface.to_rows(solver.solve(sphere.surface.source(Row{7}, axis).source, options));
   const Answer answer = session.answer(
       "map",
       request(
@@ -131,7 +131,7 @@ class LargeViewerSession : public testing::Test {
 
 TEST_F(LargeViewerSession, MarchesMaps) {
   ASSERT_GT(large.surface.graph().size(), 200'000);
-  const auto expected = large.surface.on_rows(march->solve(large.surface.source(Row{7}).source, {.radius = 0.05}));
+  const auto expected = large.surface.to_rows(march->solve(large.surface.source(Row{7}).source, {.radius = 0.05}));
   const Answer answer = session->answer("map", request({{"source", {{"row", 7}}}}));
   ASSERT_EQ(answer.status, 200) << answer.body;
   expect_same(expected, Unpacked(answer.body), scale_of(*session));
@@ -151,7 +151,7 @@ TEST_F(LargeViewerSession, MarchesStrokes) {
 }
 
 TEST_F(LargeViewerSession, MarchesToolPathsToTheirOwnRadius) {
-  const PlacedSource source = large.surface.source(Row{7});
+  const SurfaceSource source = large.surface.source(Row{7});
   const LogMap map = march->solve(source.source, {.frames = true});
   const CoveragePath expected =
       coverage_path(large.surface, inverse_map(large.surface, map), {.radius = 0.1, .spacing = 0.02});

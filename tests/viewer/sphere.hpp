@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "ahm/testing/triangle_meshes.hpp"
+#include "ahm/conformance/triangle_meshes.hpp"
 #include "ahm/trimesh/triangle_mesh_surface.hpp"
 #include "ahm/viewer/session.hpp"
 

@@ -11,7 +11,6 @@
 #include <string_view>
 #include <vector>
 
-#include "cli/completion.hpp"
 #include "cli/console.hpp"
 #include "cli/manual.hpp"
 #include "cli/system_info.hpp"

@@ -1,15 +1,42 @@
 #include "cli/console.hpp"
 
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <spawn.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstdio>
-#include <string>
+#include <cstdlib>
 #include <system_error>
 
 #include "ahm/error.hpp"
 
 namespace ahm::app {
+namespace {
+
+bool is_set(const char* variable) {
+  const char* value = std::getenv(variable);
+  return value != nullptr && std::string_view(value) != "";
+}
+
+}  // namespace
+
+bool open_browser(const std::string& address) {
+  if (!is_set("DISPLAY") && !is_set("WAYLAND_DISPLAY")) return false;
+  std::string program = "xdg-open", argument = address;
+  char* arguments[] = {program.data(), argument.data(), nullptr};
+  posix_spawn_file_actions_t quiet;
+  posix_spawn_file_actions_init(&quiet);
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    posix_spawn_file_actions_addopen(&quiet, stream, "/dev/null", O_RDWR, 0);
+  pid_t process = 0;
+  const int failure = posix_spawnp(&process, program.c_str(), &quiet, nullptr, arguments, environ);
+  posix_spawn_file_actions_destroy(&quiet);
+  return failure == 0;
+}
 
 void say(std::string_view text) {
   std::fwrite(text.data(), 1, text.size(), stderr);
@@ -27,5 +54,70 @@ void print(std::string_view text) {
 }
 
 bool is_terminal() { return isatty(STDERR_FILENO) == 1; }
+
+namespace {
+
+constexpr std::string_view clear_line = "\r\x1b[K";
+
+/// The part that is done; for a stage that tells nothing, a block that runs to and fro.
+std::string bar(double fraction, double seconds) {
+  constexpr int width = 30, block = 4;
+  if (fraction > 0) {
+    const int filled = static_cast<int>(std::lround(fraction * width));
+    return fmt::format("{:#<{}}{:.<{}}", "", filled, "", width - filled);
+  }
+  constexpr int way = width - block;
+  const int step = static_cast<int>(seconds * 10) % (2 * way);
+  const int left = step < way ? step : 2 * way - step;
+  return fmt::format("{:.<{}}{:#<{}}{:.<{}}", "", left, "", block, "", way - left);
+}
+
+}  // namespace
+
+ProgressDisplay::ProgressDisplay(bool shown) {
+  if (shown && is_terminal()) painter_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
+}
+
+ProgressDisplay::~ProgressDisplay() {
+  painter_.request_stop();
+  if (painter_.joinable()) painter_.join();
+  clear();
+}
+
+void ProgressDisplay::update(std::string_view stage, double fraction) {
+  const std::scoped_lock lock(mutex_);
+  stage_ = stage;
+  fraction_ = std::clamp(std::isfinite(fraction) ? fraction : 0.0, 0.0, 1.0);
+}
+
+Progress ProgressDisplay::progress() {
+  if (!painter_.joinable()) return {};
+  return {[this](std::string_view stage, double fraction) { update(stage, fraction); }, {}};
+}
+
+void ProgressDisplay::clear() {
+  const std::scoped_lock lock(mutex_);
+  if (drawn_) say(clear_line);
+  drawn_ = false;
+  stage_.clear();
+}
+
+// A painter of its own, because the longest stage, the factorization, reports nothing while it runs: the clock shows
+// life.
+void ProgressDisplay::run(const std::stop_token& stop) {
+  std::unique_lock lock(mutex_);
+  while (!stop.stop_requested()) {
+    wake_.wait_for(lock, stop, std::chrono::milliseconds(200), [] { return false; });
+    if (!stop.stop_requested() && !stage_.empty()) draw();
+  }
+}
+
+void ProgressDisplay::draw() {
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+  if (seconds < 1.0) return;
+  say(fmt::format("{}[{}] {:.0f} s  {}", clear_line, bar(fraction_, seconds), std::floor(seconds),
+                  stage_.substr(0, 32)));
+  drawn_ = true;
+}
 
 }  // namespace ahm::app

@@ -6,10 +6,9 @@
 #include <algorithm>
 
 #include "ahm/io/formats.hpp"
-#include "cli/numbers.hpp"
 #include "cli/source_list.hpp"
 #include "input/backend.hpp"
-#include "output/output_names.hpp"
+#include "output/output_paths.hpp"
 #include "output/picture_options.hpp"
 
 namespace ahm::app {

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "cli/option_tables.hpp"
+#include "cli/manual.hpp"
 #include "cli/options.hpp"
 
 namespace ahm::app {

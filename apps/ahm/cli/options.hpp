@@ -10,7 +10,7 @@
 #include "ahm/heat/heat_operators.hpp"
 #include "ahm/maps/log_map_solver.hpp"
 #include "ahm/surface/mesh_repair.hpp"
-#include "cli/source_spec.hpp"
+#include "cli/source_list.hpp"
 #include "output/picture_options.hpp"
 
 namespace ahm::app {

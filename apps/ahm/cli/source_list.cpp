@@ -4,16 +4,127 @@
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <numbers>
+#include <numeric>
 #include <sstream>
 #include <stdexcept>
 
 #include "ahm/error.hpp"
-#include "cli/numbers.hpp"
 
 namespace ahm::app {
+namespace {
+
+[[noreturn]] void refuse(std::string_view text, std::string_view expected) {
+  throw std::invalid_argument(fmt::format("'{}' is not {}", text, expected));
+}
+
+std::string_view without_plus(std::string_view text) {
+  return text.size() > 1 && text[0] == '+' && text[1] != '-' ? text.substr(1) : text;
+}
+
+}  // namespace
+
+double parse_number(std::string_view text) {
+  const std::string_view digits = without_plus(text);
+  double value = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  if (error == std::errc::result_out_of_range) refuse(text, "a number that fits double precision");
+  if (error != std::errc{} || end != digits.data() + digits.size()) refuse(text, "a number");
+  if (!std::isfinite(value)) refuse(text, "a finite number");
+  return value;
+}
+
+double parse_positive(std::string_view text) {
+  const double value = parse_number(text);
+  if (!(value > 0)) refuse(text, "a number > 0");
+  return value;
+}
+
+double parse_degrees(std::string_view text) { return parse_number(text) * std::numbers::pi / 180; }
+
+std::int64_t parse_integer(std::string_view text, std::int64_t low, std::int64_t high) {
+  const std::string_view digits = without_plus(text);
+  std::int64_t value = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  const bool whole = end == digits.data() + digits.size();
+  if (error == std::errc::invalid_argument || !whole) refuse(text, "a whole number");
+  if (error != std::errc{} || value < low || value > high)
+    refuse(text, high == std::numeric_limits<Index>::max() ? fmt::format("a whole number >= {}", low)
+                                                           : fmt::format("a whole number from {} to {}", low, high));
+  return value;
+}
+
+std::vector<double> parse_numbers(std::string_view text) {
+  std::vector<double> result;
+  for (std::string_view rest = text;;) {
+    const std::size_t comma = std::min(rest.find(','), rest.size());
+    result.push_back(parse_number(rest.substr(0, comma)));
+    if (comma == rest.size()) return result;
+    rest.remove_prefix(comma + 1);
+  }
+}
+
+Vec3 parse_triple(std::string_view text) {
+  if (std::count(text.begin(), text.end(), ',') != 2) refuse(text, "three numbers separated by commas");
+  const std::vector<double> numbers = parse_numbers(text);
+  return {numbers[0], numbers[1], numbers[2]};
+}
+
+Vec3 parse_direction(std::string_view text) {
+  const Vec3 v = parse_triple(text);
+  if (v == Vec3{0, 0, 0}) refuse(text, "a direction: it is zero");
+  return v;
+}
+
+namespace {
+
+SourceFace parse_face(std::string_view text) {
+  const std::string_view rest = text.substr(5);
+  const std::size_t colon = rest.find(':');
+  if (colon == std::string_view::npos)
+    throw std::invalid_argument(fmt::format("'{}' lacks barycentric coordinates: write face:F:b0,b1,b2", text));
+  SourceFace result{static_cast<Index>(parse_integer(rest.substr(0, colon), 0)), parse_numbers(rest.substr(colon + 1))};
+  const auto& weights = result.weights;
+  const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
+  if (weights.size() < 3)
+    throw std::invalid_argument(
+        fmt::format("'{}' has {} barycentric coordinates; write one per corner of the face", text, weights.size()));
+  if (*std::min_element(weights.begin(), weights.end()) < 0 || std::abs(sum - 1) > 1e-6)
+    throw std::invalid_argument(fmt::format(
+        "'{}' has barycentric coordinates that are negative or do not add up to 1 (they add up to {})", text, sum));
+  return result;
+}
+
+}  // namespace
+
+SourceSpec parse_source(std::string_view text) {
+  if (text.starts_with("face:")) return parse_face(text);
+  if (text.find(',') != std::string_view::npos) return SourcePosition{parse_triple(text)};
+  try {
+    return SourceVertex{static_cast<Index>(parse_integer(text, 0))};
+  } catch (const std::invalid_argument&) {
+    throw std::invalid_argument(
+        fmt::format("'{}' is no source: write a 0-based vertex index, x,y,z or face:F:b0,b1,b2", text));
+  }
+}
+
+std::string to_string(const SourceSpec& spec) {
+  struct Visitor {
+    std::string operator()(const SourceVertex& s) const { return fmt::format("{}", s.index); }
+    std::string operator()(const SourcePosition& s) const {
+      return fmt::format("{},{},{}", s.position[0], s.position[1], s.position[2]);
+    }
+    std::string operator()(const SourceFace& s) const {
+      return fmt::format("face:{}:{}", s.face, fmt::join(s.weights, ","));
+    }
+  };
+  return std::visit(Visitor{}, spec);
+}
+
 namespace {
 
 constexpr const char* blanks = " \t\r";

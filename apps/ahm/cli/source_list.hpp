@@ -1,16 +1,74 @@
 /// \file
-/// Lists of sources and of numbers, written after an option or in a file.
+/// Numbers as people type them, with a point whatever the locale, parsed strictly: the whole text, finite, in range.
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <functional>
+#include <limits>
 #include <string>
+#include <string_view>
+#include <variant>
 #include <vector>
 
 #include "ahm/io/geometry.hpp"
-#include "cli/source_spec.hpp"
+#include "ahm/types.hpp"
 
 namespace ahm::app {
+
+/// A finite number.
+/// @throws std::invalid_argument saying what is wrong with the text
+double parse_number(std::string_view text);
+
+/// A finite number > 0.
+/// @throws std::invalid_argument
+double parse_positive(std::string_view text);
+
+/// A finite number of degrees, as radians.
+/// @throws std::invalid_argument
+double parse_degrees(std::string_view text);
+
+/// A whole number in [low, high].
+/// @throws std::invalid_argument
+std::int64_t parse_integer(std::string_view text, std::int64_t low,
+                           std::int64_t high = std::numeric_limits<Index>::max());
+
+/// Finite numbers separated by commas, one at the least.
+/// @throws std::invalid_argument
+std::vector<double> parse_numbers(std::string_view text);
+
+/// Three finite numbers separated by commas.
+/// @throws std::invalid_argument
+Vec3 parse_triple(std::string_view text);
+
+/// Three finite numbers separated by commas, not all zero.
+/// @throws std::invalid_argument
+Vec3 parse_direction(std::string_view text);
+
+/// `123`: an input vertex.
+struct SourceVertex {
+  Index index;
+};
+
+/// `x,y,z`: the vertex nearest to a position.
+struct SourcePosition {
+  Vec3 position;
+};
+
+/// `face:F:b0,b1,b2...`: a point inside a face.
+struct SourceFace {
+  Index face;
+  std::vector<double> weights;  ///< one per corner, >= 0, with sum 1
+};
+
+using SourceSpec = std::variant<SourceVertex, SourcePosition, SourceFace>;
+
+/// Reads one of the three forms.
+/// @throws std::invalid_argument saying what is wrong with the text
+SourceSpec parse_source(std::string_view text);
+
+/// The spec as text again.
+std::string to_string(const SourceSpec& spec);
 
 /// For options that take a file alone.
 /// @param what  stands in it

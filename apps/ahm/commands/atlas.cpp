@@ -1,3 +1,5 @@
+#include "ahm/applications/atlas.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -5,11 +7,9 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "ahm/applications/atlas/texture_atlas.hpp"
 #include "ahm/applications/cells.hpp"
 #include "ahm/graph/components.hpp"
-#include "ahm/view/textured_picture.hpp"
-#include "cli/numbers.hpp"
+#include "ahm/render/textured_picture.hpp"
 #include "cli/option_adders.hpp"
 #include "cli/source_list.hpp"
 #include "commands/solve.hpp"
@@ -121,10 +121,11 @@ void write_files(const AtlasCommandOptions& options, const SurfaceFaces& faces, 
   if (!rest.empty()) parts.push_back(rest.view("rest"));
   io::write_textured(options.output.output, parts);
   if (options.output.view.empty()) return;
-  view::TexturedScene scene;
+  render::TexturedScene scene;
   scene.parts = parts;
   scene.towards = made.sources.front();
-  view::write_textured_png(options.output.view, scene, picture_options(options.output.picture, options.input.threads));
+  render::write_textured_png(options.output.view, scene,
+                             picture_options(options.output.picture, options.input.threads));
 }
 
 nlohmann::ordered_json as_json(const DistortionSummary& s) {

@@ -9,7 +9,6 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "cli/numbers.hpp"
 #include "cli/option_adders.hpp"
 #include "cli/source_list.hpp"
 #include "commands/solve.hpp"
@@ -61,7 +60,7 @@ std::vector<Vertex> vertices_of(const Input& input, const std::vector<SourceSpec
 
 /// @param geodesics  none: by the front
 std::vector<Vertex> spread(const CellsOptions& options, const Input& input,
-                           const std::optional<ExactGeodesics>& geodesics, std::optional<UnfoldingFront>& front,
+                           const std::optional<ExactGeodesics>& geodesics, std::optional<Wavefront>& front,
                            Journal& journal) {
   journal.start("spread");
   const std::vector<Vertex> among = vertices_with_rows(input.surface().rows());
@@ -121,13 +120,13 @@ void write_results(const CellRows& rows, const std::vector<Vec3>& sources, Resul
   table.add("distance", rows.distance);
   table.add("status", rows.status);
   table.add("label", rows.label);
-  view::Scene scene = results.scene();
+  render::Scene scene = results.scene();
   scene.labels = rows.labels;
   scene.distance = rows.distance;
   scene.source = sources.front();
   scene.dots = sources;
-  view::PictureOptions picture;
-  picture.pattern = view::Pattern::cells;
+  render::PictureOptions picture;
+  picture.pattern = render::Pattern::cells;
   results.write(table, scene, journal, picture);
 }
 
@@ -166,11 +165,11 @@ void run(const CellsOptions& options) {
   std::vector<Vertex> sources = vertices_of(input, options.sources);
   comment_on_positions(input, options.sources, "--sources", journal);
   std::optional<ExactGeodesics> geodesics;
-  std::optional<UnfoldingFront> front;
+  std::optional<Wavefront> front;
   if (options.solve.method == Method::exact)
     geodesics.emplace(input.surface());
   else
-    front.emplace(graph, options.count > 0 ? UnfoldingFront::stars(graph, options.input.threads) : nullptr);
+    front.emplace(graph, options.count > 0 ? Wavefront::one_rings(graph, options.input.threads) : nullptr);
   if (options.count > 0) sources = spread(options, input, geodesics, front, journal);
 
   journal.start("cells");

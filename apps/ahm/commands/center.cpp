@@ -5,7 +5,6 @@
 
 #include "ahm/applications/mean.hpp"
 #include "cli/console.hpp"
-#include "cli/numbers.hpp"
 #include "cli/option_adders.hpp"
 #include "cli/source_list.hpp"
 #include "commands/solve.hpp"

@@ -1,15 +1,16 @@
-#include "ahm/applications/coverage.hpp"
+#include "commands/coverage.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <vector>
 
+#include "ahm/io/write.hpp"
 #include "ahm/maps/quality.hpp"
-#include "cli/numbers.hpp"
 #include "cli/option_adders.hpp"
-#include "commands/coverage_table.hpp"
+#include "cli/source_list.hpp"
 #include "commands/solve.hpp"
 #include "commands/subcommand.hpp"
 #include "output/output_paths.hpp"
@@ -18,6 +19,30 @@
 #include "output/wording.hpp"
 
 namespace ahm::app {
+
+void write_coverage(const std::string& file, const std::string& format, const CoveragePath& path) {
+  std::vector<Index> piece, line, between;
+  std::vector<Vec3> position, normal, heading;
+  std::vector<double> u, v, arclength, spacing;
+  io::Table table{.title = "coverage path by libahm", .text = true};
+  for (const CoveragePoint& p : path.points) {
+    const auto row = static_cast<Index>(piece.size());
+    if (row > 0 && p.piece == piece.back()) table.edges.push_back({row - 1, row});
+    piece.push_back(p.piece), line.push_back(p.line), between.push_back(p.between);
+    position.push_back(p.position), normal.push_back(p.normal), heading.push_back(p.heading);
+    u.push_back(p.coordinates[0]), v.push_back(p.coordinates[1]);
+    arclength.push_back(p.arclength), spacing.push_back(p.spacing);
+  }
+  table.add("piece", piece), table.add("line", line);
+  table.add({"x", "y", "z"}, position);
+  table.add({"nx", "ny", "nz"}, normal);
+  table.add({"hx", "hy", "hz"}, heading);
+  table.add("u", u), table.add("v", v);
+  table.add("arclength", arclength), table.add("spacing", spacing);
+  table.add("between", between);
+  io::write(file, table, format);
+}
+
 namespace {
 
 constexpr const char* coverage_footer =
@@ -45,7 +70,7 @@ struct CoverageCommandOptions {
 };
 
 /// The path on the map, as a picture.
-void write_view(view::Scene scene, const CoveragePath& path, Results& results, Journal& journal) {
+void write_view(render::Scene scene, const CoveragePath& path, Results& results, Journal& journal) {
   std::vector<Vec3> curve;
   std::vector<Index> pieces;
   for (const CoveragePoint& point : path.points) {
@@ -119,7 +144,7 @@ struct Summary {
   }
 };
 
-void report(const CoverageCommandOptions& options, const Input& input, const PlacedSource& source,
+void report(const CoverageCommandOptions& options, const Input& input, const SurfaceSource& source,
             const CoveragePath& path, double trusted, const Summary& amount, Journal& journal) {
   const std::string pattern = options.path.pattern == CoveragePattern::raster ? "raster" : "spiral";
   nlohmann::ordered_json j = summary("ahm coverage", options.input.path, options.output, input);
@@ -145,7 +170,7 @@ void run(const CoverageCommandOptions& options) {
   check_results(options.input.path, options.output, {".csv", ".jsonl", ".ply", ".vtp"});
   Journal journal(options.output.verbosity);
   const Input input = open_around(options.input, options.path.radius, journal, options.source.spec);
-  const PlacedSource source = resolve(options.source, input, options.input.threads);
+  const SurfaceSource source = resolve(options.source, input, options.input.threads);
   comment_on_positions(input, std::span(&options.source.spec, 1), "--source", journal);
   const LogMap map = solve(options.solve, input, options.source.spec, source, journal);
 
@@ -173,8 +198,8 @@ void run(const CoverageCommandOptions& options) {
         "--radius {}: is less than an edge ({:.4g} in the mean); the path is laid between the neighbours of the source",
         options.path.radius, input.mean_edge_length()));
 
-  const RowLogMap rows = input.surface().on_rows(map);
-  const std::vector<double> row_quality = on_rows(rows, quality);
+  const RowLogMap rows = input.surface().to_rows(map);
+  const std::vector<double> row_quality = to_rows(rows, quality);
   comment_on_quality(quality_within(options.path.radius, rows, row_quality), "lower --radius, or start elsewhere",
                      journal);
 

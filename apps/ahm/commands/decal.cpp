@@ -11,12 +11,11 @@
 #include "ahm/io/formats.hpp"
 #include "ahm/io/write.hpp"
 #include "ahm/maps/quality.hpp"
-#include "ahm/view/textured_picture.hpp"
-#include "cli/numbers.hpp"
+#include "ahm/render/textured_picture.hpp"
 #include "cli/option_adders.hpp"
+#include "cli/source_list.hpp"
 #include "commands/solve.hpp"
 #include "commands/subcommand.hpp"
-#include "output/decal_output.hpp"
 #include "output/output_paths.hpp"
 #include "output/results.hpp"
 #include "output/summary.hpp"
@@ -76,17 +75,18 @@ struct Amount {
   }
 };
 
-void write_view(const DecalCommandOptions& options, view::TexturedScene scene, const Vec3& source) {
+void write_view(const DecalCommandOptions& options, render::TexturedScene scene, const Vec3& source) {
   if (options.output.view.empty()) return;
   scene.towards = source;
-  view::write_textured_png(options.output.view, scene, picture_options(options.output.picture, options.input.threads));
+  render::write_textured_png(options.output.view, scene,
+                             picture_options(options.output.picture, options.input.threads));
 }
 
 void write_mesh(const DecalCommandOptions& options, const Input& input, const Decal& decal, const Image& image,
                 const Vec3& source) {
   const DecalMesh mesh(options.alone ? SurfaceFaces() : all_faces(input), decal, image);
   io::write_textured(options.output.output, mesh.parts());
-  view::TexturedScene scene;
+  render::TexturedScene scene;
   scene.parts = mesh.parts();
   write_view(options, scene, source);
 }
@@ -96,7 +96,7 @@ void write_points(const DecalCommandOptions& options, const Input& input, const 
   const auto colors = painted(input, image_coordinates_of_vertices(inverse, options.decal), image);
   io::write(options.output.output, painted_table(input, colors));
   const std::vector<Vec3> normals = input.normals(), drawn = drawn_points(input, options.input);
-  view::TexturedScene scene;
+  render::TexturedScene scene;
   scene.points = drawn.empty() ? input.geometry.points : drawn;
   scene.colors = colors, scene.normals = normals;
   write_view(options, scene, source);
@@ -137,14 +137,14 @@ void run(const DecalCommandOptions& given) {
 
   Journal journal(options.output.verbosity);
   const Input input = open_around(options.input, reach(options.decal), journal, options.source.spec);
-  const PlacedSource source = resolve(options.source, input, options.input.threads);
+  const SurfaceSource source = resolve(options.source, input, options.input.threads);
   comment_on_positions(input, std::span(&options.source.spec, 1), "--source", journal);
   SolveOptions near = options.solve;
   near.radius = map_radius(options.decal, input.graph());
   const LogMap map = solve(near, input, options.source.spec, source, journal);
 
   const std::vector<double> quality = map_quality(input.graph(), map, options.solve.threads);
-  comment_on_quality(on_rows(input.surface().on_rows(map), quality), "lower --size, or choose another source", journal);
+  comment_on_quality(to_rows(input.surface().to_rows(map), quality), "lower --size, or choose another source", journal);
 
   journal.start("decal");
   const InverseMap inverse =

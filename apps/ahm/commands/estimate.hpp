@@ -2,7 +2,7 @@
 /// `ahm logmap --estimate`
 #pragma once
 
-#include "commands/logmap_options.hpp"
+#include "commands/logmap.hpp"
 
 namespace ahm::app {
 

@@ -2,7 +2,6 @@
 
 #include "cli/console.hpp"
 #include "cli/option_adders.hpp"
-#include "cli/progress_display.hpp"
 #include "commands/subcommand.hpp"
 #include "input/open.hpp"
 #include "output/output_paths.hpp"

@@ -6,7 +6,6 @@
 #include "ahm/applications/inverse_map.hpp"
 #include "ahm/io/write.hpp"
 #include "ahm/maps/quality.hpp"
-#include "cli/numbers.hpp"
 #include "cli/option_adders.hpp"
 #include "cli/source_list.hpp"
 #include "commands/solve.hpp"
@@ -73,12 +72,12 @@ void run(const InverseCommandOptions& options) {
   check_results(options.input.path, options.output, {".csv", ".jsonl", ".ply", ".vtp"});
   Journal journal(options.output.verbosity);
   const Input input = open_around(options.input, reach(options.points), journal, options.source.spec);
-  const PlacedSource source = resolve(options.source, input, options.input.threads);
+  const SurfaceSource source = resolve(options.source, input, options.input.threads);
   comment_on_positions(input, std::span(&options.source.spec, 1), "--source", journal);
   const LogMap map = solve(options.solve, input, options.source.spec, source, journal);
 
   const std::vector<double> quality = map_quality(input.graph(), map, options.solve.threads);
-  comment_on_quality(on_rows(input.surface().on_rows(map), quality), "start nearer to the points that are looked up",
+  comment_on_quality(to_rows(input.surface().to_rows(map), quality), "start nearer to the points that are looked up",
                      journal);
 
   journal.start("write");

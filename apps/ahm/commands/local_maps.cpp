@@ -7,7 +7,6 @@
 
 #include "ahm/io/npz.hpp"
 #include "ahm/surface/row_local_maps.hpp"
-#include "cli/numbers.hpp"
 #include "cli/option_adders.hpp"
 #include "cli/source_list.hpp"
 #include "commands/solve.hpp"
@@ -173,9 +172,10 @@ void run(const LocalMapsOptions& options) {
   LocalMapOptions map_options;
   map_options.radius = options.radius;
   map_options.nearest = options.nearest;
-  map_options.heat = options.solve;
+  map_options.heat = options.solve.diffusion();
+  map_options.memory = options.solve.memory;
   map_options.heat.progress = journal.progress();
-  const RowLocalMaps maps = local_maps_on_rows(input.surface(), vertices, map_options);
+  const RowLocalMaps maps = row_local_maps(input.surface(), vertices, map_options);
 
   if (std::any_of(maps.weights.begin(), maps.weights.end(), [](double w) { return std::isnan(w); }))
     journal.add_warning("weight: no double holds squares of such lengths; they are given as nan");

@@ -1,17 +1,321 @@
+#include "commands/logmap.hpp"
+
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <functional>
 #include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <utility>
+#include <vector>
 
 #include "ahm/error.hpp"
-#include "cli/numbers.hpp"
+#include "ahm/io/atomic_file.hpp"
+#include "ahm/io/formats.hpp"
+#include "ahm/maps/log_map_solver.hpp"
+#include "ahm/maps/quality.hpp"
+#include "ahm/util/parallel.hpp"
+#include "ahm/util/quantile.hpp"
+#include "ahm/util/vec.hpp"
+#include "cli/console.hpp"
 #include "cli/option_adders.hpp"
 #include "cli/source_list.hpp"
+#include "cli/system_info.hpp"
 #include "commands/estimate.hpp"
-#include "commands/logmap_run.hpp"
+#include "commands/solve.hpp"
 #include "commands/subcommand.hpp"
-#include "output/output_names.hpp"
+#include "input/left_out.hpp"
+#include "input/open.hpp"
+#include "input/surroundings.hpp"
+#include "output/output_paths.hpp"
+#include "output/results.hpp"
+#include "output/summary.hpp"
+#include "output/texture_output.hpp"
+#include "output/wording.hpp"
 
 namespace ahm::app {
+
+/// The parts of a finished run. References live as long as the call that is given them.
+struct LogmapRun {
+  const std::string& path;
+  const SourceSpec& spec;
+  const SolveOptions& options;
+  const Input& input;
+  const std::optional<LogMapSolver>& solver;  ///< of heat
+  const SurfaceSource& source;
+  const LogMap& map;
+  const RowLogMap& rows;
+  const std::vector<double>& quality;  ///< by row
+  bool is_named = false;               ///< whether the text begins with the input and the source
+};
+
+/// Delivers the summaries, for programs and for people.
+void report(const LogmapRun& run, const OutputOptions& output, Journal& journal);
+
+/// Before the work: whether the files of a map can be written, and are none of the inputs.
+/// @throws IoError, InvalidArgument
+void check_log_map(const LogmapOptions& options, const std::vector<std::string>& inputs);
+
+/// Does a part of the work, and tells where it fails. @param what  for the message
+/// @param alone  whether it is all there is to do: then what it throws is thrown
+/// @param tells  else in silence
+/// @return whether it was done
+bool attempt(const std::string& what, bool alone, const std::function<void()>& work, bool tells = true);
+
+/// Reads one file and makes its maps; the graph is built and factored once for all of them, unless the options make it
+/// from the source. With several maps a failure, or the first ten of many, is told and the next one is made.
+/// @param maps  of one file, alike but for their sources and outputs
+/// @param alone  as for `attempt`
+/// @return how many failed
+/// @throws Cancelled; what reading and opening throw; where it is alone, what solving and writing throw
+std::size_t run_log_maps(const std::vector<LogmapOptions>& maps, bool alone);
+
+namespace {
+
+constexpr std::array all_statuses = {Status::ok, Status::disconnected, Status::beyond_radius, Status::unreached,
+                                     Status::removed};
+
+std::size_t count(const RowLogMap& rows, Status status) {
+  return static_cast<std::size_t>(std::count(rows.status.begin(), rows.status.end(), status));
+}
+
+double largest_distance(const RowLogMap& rows) {
+  double largest = 0;
+  for (double d : rows.distance)
+    if (d > largest) largest = d;  // false for NaN
+  return largest;
+}
+
+/// Of the numbers that are not NaN.
+double median(std::vector<double> values) {
+  std::erase_if(values, [](double v) { return std::isnan(v); });
+  return values.empty() ? NAN : detail::median(values);
+}
+
+nlohmann::ordered_json source_as_json(const LogmapRun& run) {
+  nlohmann::ordered_json j;
+  j["spec"] = to_string(run.spec);
+  j["index"] = run.source.row ? nlohmann::ordered_json(run.source.row->index) : nlohmann::ordered_json(nullptr);
+  j["position"] = run.source.position;
+  if (run.source.frame)
+    j["frame"] = {{"u", run.source.frame->x}, {"v", run.source.frame->y}, {"normal", run.source.frame->normal}};
+  return j;
+}
+
+nlohmann::ordered_json factor_as_json(const FactorStatistics& s) {
+  return {{"assemble_seconds", s.assemble_seconds},
+          {"analyze_seconds", s.analyze_seconds},
+          {"factor_seconds", s.factor_seconds},
+          {"nonzeros_A", s.nonzeros_A},
+          {"nonzeros_B", s.nonzeros_B},
+          {"bytes", s.bytes}};
+}
+
+nlohmann::ordered_json as_json(const LogmapRun& run, const OutputOptions& output) {
+  nlohmann::ordered_json j = summary("ahm logmap", run.path, output, run.input);
+  j["input"]["normals"] = !run.input.geometry.normals.empty();
+  j["n"] = run.rows.status.size();
+  j["method"] = to_string(run.map.method());
+  if (run.options.tolerance > 0) j["tolerance"] = run.options.tolerance;
+  if (run.map.method() == Method::heat) {
+    j["variant"] = to_string(run.map.variant());
+    j["strategy"] = to_string(run.map.strategy());
+    j["t_coef"] = run.options.t_coef;
+  }
+  j["mean_edge_length"] = run.input.mean_edge_length();
+  j["largest_distance"] = largest_distance(run.rows);
+  for (Status s : all_statuses) j["status"][std::string(to_string(s))] = count(run.rows, s);
+  j["untrusted"] = untrusted(run.quality);
+  if (!run.rows.bounded.empty()) j["bounded"] = std::ranges::count(run.rows.bounded, 1);
+  if (!run.rows.error_estimate.empty()) j["median_error_estimate"] = median(run.rows.error_estimate);
+  j["source"] = source_as_json(run);
+  j[std::string(run.input.backend->name)] = app::as_json(run.input.built.report);
+  if (run.solver && run.solver->strategy() == Strategy::global)
+    j["factor"] = factor_as_json(run.solver->operators().statistics());
+  if (const MarchStatistics& m = run.map.march(); m.bands > 0)
+    j["march"] = {{"bands", m.bands}, {"largest_band", m.largest_band}, {"solved_vertices", m.solved}};
+  return j;
+}
+
+std::string as_text(const LogmapRun& run) {
+  std::string text = run.is_named ? fmt::format("{}, source {}: ", run.path, to_string(run.spec)) : "";
+  text += fmt::format("{} {}", run.rows.status.size(), run.rows.status.size() == 1 ? "vertex" : "vertices");
+  for (Status s : all_statuses)
+    if (const std::size_t c = count(run.rows, s); c > 0 || s == Status::ok)
+      text += fmt::format(", {} {}", c, to_string(s));
+  const Vec3& p = run.source.position;
+  text += fmt::format("\nsource {} at {:.6g} {:.6g} {:.6g}, largest distance {:.6g}, mean edge length {:.4g}\n",
+                      run.source.row ? fmt::format("{}", run.source.row->index) : to_string(run.spec), p[0], p[1], p[2],
+                      largest_distance(run.rows), run.input.mean_edge_length());
+  text += quality_as_text(run.quality);
+  if (!run.rows.error_estimate.empty())
+    text += fmt::format(", median error of (u, v) about {:.2g}", median(run.rows.error_estimate));
+  if (const auto bounded = std::ranges::count(run.rows.bounded, 1); bounded > 0)
+    text += fmt::format(", {} only a bound (the straight line)",
+                        bounded == 1 ? "1 distance is" : fmt::format("{} distances are", bounded));
+  return text + "\n";
+}
+
+}  // namespace
+
+void report(const LogmapRun& run, const OutputOptions& output, Journal& journal) {
+  deliver(as_json(run, output), as_text(run), output, journal, {{"versions", versions()}});
+}
+
+namespace {
+
+/// Failures of the maps of one file.
+constexpr std::size_t most_told = 10;
+
+void write_results(const LogmapOptions& options, const SurfaceSource& source, const RowLogMap& rows,
+                   const std::vector<double>& quality, const std::vector<Vec3>& away, Results& results,
+                   Journal& journal) {
+  io::Table table = results.table();
+  add_map(table, rows, quality);
+  if (!away.empty()) table.add({"gx", "gy", "gz"}, away);
+  render::Scene scene = results.scene(rows, quality, source);
+  scene.told.source = to_string(options.source.spec);
+  results.write(table, scene, journal);
+}
+
+/// The faces as they were given, with the map at their corners.
+void write_corners(const std::string& path, const Input& input, const LogMap& map) {
+  const Surface& surface = input.surface();
+  if (surface.faces().size() == 0) throw InvalidArgument("--corners " + path + ": the surface has no faces");
+  const SurfaceFaces faces = given_faces(input.geometry);
+  const std::vector<double> coordinates = at_given_corners(input, surface.to_corners(map));
+  const auto is_mapped = [&](std::size_t f) {
+    return std::all_of(coordinates.begin() + 2 * faces.begin[f], coordinates.begin() + 2 * faces.begin[f + 1],
+                       [](double x) { return !std::isnan(x); });
+  };
+  const FacesPart mapped(faces, is_mapped, coordinates);
+  const FacesPart rest(faces, [&](std::size_t f) { return !is_mapped(f); });
+  std::vector<io::MeshPart> parts;
+  if (!mapped.empty()) parts.push_back(mapped.view("map"));
+  if (!rest.empty()) parts.push_back(rest.view("rest"));
+  std::vector<io::Property> properties = input.geometry.properties;
+  for (io::Property& property : properties) property.name = input_column(property.name);
+  for (io::MeshPart& part : parts) part.colors = input.geometry.colors, part.properties = properties;
+  io::write_textured(path, parts);
+}
+
+/// @throws InvalidArgument where OUTPUT is a file for textures
+void check_for_rows(const OutputOptions& output) {
+  const std::string extension = io::lower_extension(output.output);
+  const auto is_in = [&](io::Use use) {
+    const std::vector<std::string> all = io::extensions(use);
+    return std::find(all.begin(), all.end(), extension) != all.end();
+  };
+  if (output.format.empty() && is_in(io::Use::write_textured) && !is_in(io::Use::write))
+    throw InvalidArgument(fmt::format(
+        "--output {0}: {1} files have no rows for numbers; --corners {0} writes the faces with u,v at their corners",
+        output.output, extension));
+}
+
+/// From a source on an input that is open. @param maps  of the input; made where there are none yet
+/// @param count  of maps that `maps` is to make
+/// @param is_named  whether the summary says of which input it is
+void map_from_source(const LogmapOptions& options, const Input& input, std::optional<Maps>& maps, std::size_t count,
+                     bool is_named, Journal& journal) {
+  const SurfaceSource source = resolve(options.source, input, options.input.threads);
+  comment_on_positions(input, std::span(&options.source.spec, 1), "--source", journal);
+  if (!maps) maps.emplace(options.solve, input, journal, static_cast<int>(count));
+  std::optional<LogMap> solved;
+  std::optional<ReferenceFront> front;
+  const auto solve = [&] { solved = maps->map(options.solve, input, options.source.spec, source, journal); };
+  const std::stop_token stop = journal.progress().stop;
+  const auto unfold = [&] {
+    if (maps->solver) front.emplace(input.graph(), source.source, map_options(options.solve).radius, stop);
+  };
+  detail::run_both(options.solve.threads, solve, unfold);
+  const LogMap& map = *solved;
+  RowLogMap rows = input.surface().to_rows(map, options.solve.threads);
+  const std::vector<double> quality =
+      to_rows(rows, front ? map_quality(input.graph(), map, *front, options.solve.threads)
+                          : map_quality(input.graph(), map, options.solve.threads));
+  front.reset();
+  if (options.input.around_source) settle_left_out(input, source, *options.solve.radius, rows);
+  comment_on_statuses(rows.status, options.input.path, journal);
+  comment_on_quality(quality, "keep to what is near with --radius, or start elsewhere", journal);
+
+  Results results(options.output, input, options.input);
+  const std::vector<Vec3> away =
+      options.gradient ? distance_gradients(input.surface(), map, rows) : std::vector<Vec3>();
+  write_results(options, source, rows, quality, away, results, journal);
+  if (!options.corners.empty()) write_corners(options.corners, input, map);
+  report({options.input.path, options.source.spec, options.solve, input, maps->solver, source, map, rows, quality,
+          is_named},
+         options.output, journal);
+}
+
+/// Whether the surface depends on the source.
+bool is_made_for_source(const LogmapOptions& options) {
+  return options.input.around_source || options.input.voxel || options.input.outliers;
+}
+
+}  // namespace
+
+void check_log_map(const LogmapOptions& options, const std::vector<std::string>& inputs) {
+  check_for_rows(options.output);
+  check_results(options.input.path, options.output);
+  around_source(options.input, options.solve.radius);  // checks
+  const OutputOptions& output = options.output;
+  std::vector<OutputPath> files{{"--output", output.output}, {"--json", output.json}, {"--view", output.view}};
+  if (!options.corners.empty()) {
+    files.push_back({"--corners", options.corners});
+    check_ending(files.back(), io::extensions(io::Use::write_textured));
+    if (io::lower_extension(options.corners) == ".obj")
+      files.push_back({"--corners", std::filesystem::path(options.corners).replace_extension(".mtl").string()});
+  }
+  check_outputs(inputs, files, output.keep_existing);
+}
+
+bool attempt(const std::string& what, bool alone, const std::function<void()>& work, bool tells) {
+  if (alone) return work(), true;
+  try {
+    io::FileSet files;
+    work();
+    return true;
+  } catch (const Cancelled&) {
+    throw;
+  } catch (const Error& e) {
+    if (tells) say(fmt::format("ahm: error: {}: {}\n", what, worded(e)));
+    return false;
+  }
+}
+
+std::size_t run_log_maps(const std::vector<LogmapOptions>& maps, bool alone) {
+  const LogmapOptions& first = maps.front();
+  std::optional<Journal> journal(std::in_place, first.output.verbosity);
+  io::Geometry geometry = read_input(first.input, *journal);
+  std::optional<Input> input;
+  std::optional<Maps> solvers;
+  const bool for_source = is_made_for_source(first), one = maps.size() == 1;
+  if (!for_source)
+    input.emplace(open_input(std::exchange(geometry, {}), first.input, *journal,
+                             one ? std::optional(first.source.spec) : std::nullopt));
+  std::size_t failed = 0;
+  for (const LogmapOptions& map : maps) {
+    if (!journal) journal.emplace(map.output.verbosity);
+    const auto work = [&] {
+      if (for_source) {
+        solvers.reset();
+        input.emplace(open_input(geometry, around_source(map.input, map.solve.radius), *journal, map.source.spec));
+      }
+      map_from_source(map, *input, solvers, for_source ? 1 : maps.size(), !alone, *journal);
+    };
+    failed += !attempt(map.input.path, alone, work, failed < most_told);
+    journal.reset();
+  }
+  if (failed > most_told)
+    say(fmt::format("ahm: error: {}: {} more of its maps failed\n", first.input.path, failed - most_told));
+  return failed;
+}
+
 namespace {
 
 constexpr const char* logmap_footer =

@@ -7,7 +7,7 @@
 #include "ahm/error.hpp"
 #include "cli/option_adders.hpp"
 #include "cli/source_list.hpp"
-#include "commands/polyline.hpp"
+#include "commands/line_finder.hpp"
 #include "commands/subcommand.hpp"
 #include "output/wording.hpp"
 

@@ -7,10 +7,37 @@
 #include "ahm/error.hpp"
 #include "ahm/maps/cost.hpp"
 #include "cli/system_info.hpp"
-#include "input/memory_check.hpp"
+#include "input/open.hpp"
 #include "output/wording.hpp"
 
 namespace ahm::app {
+
+std::vector<std::string> words(const InputOptions& o) {
+  const InputOptions usual;
+  std::vector<std::string> out;
+  const auto add = [&](const char* name, const auto& value) {
+    out.insert(out.end(), {name, fmt::format("{}", value)});
+  };
+  if (!o.format.empty()) add("--input-format", o.format.substr(1));
+  if (o.backend != usual.backend) add("--backend", o.backend);
+  if (o.threads != usual.threads) add("--threads", o.threads);
+  if (o.voxel) add("--voxel", *o.voxel);
+  if (o.outliers) out.emplace_back("--outliers");
+  if (o.drop_nan) out.emplace_back("--drop-nan");
+  if (o.k) add("--k", *o.k);
+  if (o.knn != usual.knn) add("--knn", o.knn);
+  if (o.normals != usual.normals) add("--normals", o.normals);
+  if (o.smooth) add("--smooth", *o.smooth > 0 ? fmt::format("{}", *o.smooth) : "off");
+  if (!o.flips) out.emplace_back("--no-flips");
+  if (o.non_manifold != usual.non_manifold) add("--non-manifold", o.non_manifold);
+  if (o.discretization != usual.discretization) add("--discretization", o.discretization);
+  if (o.repair.weld) add("--weld", *o.repair.weld);
+  if (o.repair.drop_degenerate) out.emplace_back("--drop-degenerate");
+  if (o.repair.drop_duplicates) out.emplace_back("--drop-duplicates");
+  if (o.repair.orient) out.emplace_back("--orient");
+  return out;
+}
+
 namespace {
 
 /// Better refused than swapped for.
@@ -98,7 +125,7 @@ Maps::Maps(const SolveOptions& options, const Input& input, Journal& journal, in
   }
 }
 
-LogMap Maps::map(const SolveOptions& options, const Input& input, const SourceSpec& spec, const PlacedSource& source,
+LogMap Maps::map(const SolveOptions& options, const Input& input, const SourceSpec& spec, const SurfaceSource& source,
                  Journal& journal) const {
   if (solver) return solve(options, *solver, source.source, journal);
   journal.start("solve");
@@ -110,7 +137,7 @@ LogMap Maps::map(const SolveOptions& options, const Input& input, const SourceSp
                         {.radius = map.radius, .frames = map.frames, .progress = journal.progress()});
 }
 
-LogMap solve(const SolveOptions& options, const Input& input, const SourceSpec& spec, const PlacedSource& source,
+LogMap solve(const SolveOptions& options, const Input& input, const SourceSpec& spec, const SurfaceSource& source,
              Journal& journal) {
   return Maps(options, input, journal, 1).map(options, input, spec, source, journal);
 }

@@ -1,15 +1,20 @@
 /// \file
-/// The second step of every subcommand that maps: factor and solve.
+/// The options that an input was opened with, as they stand in a command line.
 #pragma once
 
 #include <optional>
+#include <string>
+#include <vector>
 
-#include "ahm/applications/map_maker.hpp"
+#include "ahm/applications/any_solver.hpp"
 #include "cli/journal.hpp"
 #include "cli/options.hpp"
 #include "input/open.hpp"
 
 namespace ahm::app {
+
+/// Without the path; those that are not as usual.
+std::vector<std::string> words(const InputOptions& options);
 
 /// The solver of the options, which also sets variant and threads of all maps.
 /// @param maps  how many are expected; 0: many
@@ -30,10 +35,10 @@ struct Maps {
   /// @param count  maps that are expected; 0: many. @throws as `make_solver`, `ExactGeodesics`
   Maps(const SolveOptions& options, const Input& input, Journal& journal, int count);
   /// One of them. @param source  of `spec`. @throws as `solve`
-  LogMap map(const SolveOptions& options, const Input& input, const SourceSpec& spec, const PlacedSource& source,
+  LogMap map(const SolveOptions& options, const Input& input, const SourceSpec& spec, const SurfaceSource& source,
              Journal& journal) const;
-  MapMaker maker() const {
-    return solver ? MapMaker(*solver) : polar ? MapMaker(*polar, exact.threads) : MapMaker(*geodesics, exact);
+  AnySolver maker() const {
+    return solver ? AnySolver(*solver) : polar ? AnySolver(*polar, exact.threads) : AnySolver(*geodesics, exact);
   }
 
   std::optional<LogMapSolver> solver;
@@ -45,7 +50,7 @@ struct Maps {
 /// The one map of a subcommand, by the method of the options.
 /// @param source  of `spec`
 /// @throws InvalidArgument where the method needs faces that the input does not have, and as `make_solver`
-LogMap solve(const SolveOptions& options, const Input& input, const SourceSpec& spec, const PlacedSource& source,
+LogMap solve(const SolveOptions& options, const Input& input, const SourceSpec& spec, const SurfaceSource& source,
              Journal& journal);
 
 }  // namespace ahm::app

@@ -1,3 +1,5 @@
+#include "ahm/applications/stroke.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -5,10 +7,8 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "ahm/applications/surface_curve.hpp"
 #include "ahm/error.hpp"
 #include "ahm/maps/quality.hpp"
-#include "cli/numbers.hpp"
 #include "cli/option_adders.hpp"
 #include "cli/source_list.hpp"
 #include "commands/solve.hpp"
@@ -106,7 +106,7 @@ void write_results(const SurfaceCurve& curve, const StrokeOptions& shape, const 
   add_map(table, rows, quality);
   std::vector<Vec3> line = curve.points;
   if (shape.closed) line.push_back(line.front());
-  view::Scene scene = results.scene();
+  render::Scene scene = results.scene();
   scene.u = rows.u;
   scene.v = rows.v;
   scene.distance = rows.distance;
@@ -115,8 +115,8 @@ void write_results(const SurfaceCurve& curve, const StrokeOptions& shape, const 
   scene.curve = line;
   scene.source = line.front();
   if (curve.first) scene.source_axes = {curve.first->x, curve.first->y, curve.first->normal};
-  view::PictureOptions picture;
-  if (shape.shape == StrokeShape::line) picture.pattern = view::Pattern::grid;
+  render::PictureOptions picture;
+  if (shape.shape == StrokeShape::line) picture.pattern = render::Pattern::grid;
   results.write(table, scene, journal, picture);
 }
 
@@ -158,11 +158,11 @@ void run(const StrokeCommandOptions& options) {
 
   const double radius = options.solve.radius.value_or(std::numeric_limits<double>::infinity());
   SolveOptions reaching = options.solve;
-  if (reaching.radius) reaching.radius = reach_from_curve(curve, radius);
+  if (reaching.radius) reaching.radius = map_radius_of_curve(curve, radius);
   const LogMap map = solve(reaching, input, curve, journal);
   const RowLogMap rows = rows_from_curve(input.surface(), map, curve, radius);
   comment_on_statuses(rows.status, options.input.path, journal);
-  const std::vector<double> quality = on_rows(rows, map_quality(input.graph(), map, options.solve.threads));
+  const std::vector<double> quality = to_rows(rows, map_quality(input.graph(), map, options.solve.threads));
   comment_on_quality(quality, "keep to what is near with --radius", journal);
   Results results(options.output, input, options.input);
   write_results(curve, options.shape, rows, quality, results, journal);

@@ -7,16 +7,15 @@
 #include "ahm/io/image.hpp"
 #include "ahm/util/shell.hpp"
 #include "ahm/viewer/server.hpp"
-#include "cli/browser.hpp"
-#include "cli/numbers.hpp"
+#include "cli/console.hpp"
 #include "cli/option_adders.hpp"
-#include "commands/coverage_table.hpp"
-#include "commands/input_words.hpp"
-#include "commands/polyline.hpp"
+#include "cli/source_list.hpp"
+#include "commands/coverage.hpp"
+#include "commands/line_finder.hpp"
 #include "commands/solve.hpp"
 #include "commands/subcommand.hpp"
-#include "output/decal_output.hpp"
 #include "output/results.hpp"
+#include "output/texture_output.hpp"
 
 namespace ahm::app {
 namespace {

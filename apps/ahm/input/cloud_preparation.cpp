@@ -6,7 +6,7 @@
 #include <chrono>
 
 #include "ahm/error.hpp"
-#include "ahm/pointcloud/radius_search.hpp"
+#include "ahm/pointcloud/neighbor_search.hpp"
 #include "ahm/util/vec.hpp"
 #include "cli/source_list.hpp"
 #ifdef AHM_WITH_PCL

@@ -10,7 +10,7 @@ namespace ahm::app {
 namespace {
 
 /// The part of the whole mesh that the source lies in: of the faces left, that with the most of the source's vertices.
-Index part_of(const Input& input, const PlacedSource& source) {
+Index part_of(const Input& input, const SurfaceSource& source) {
   std::vector<Index> rows;
   for (const Vertex v : source.source.vertices())
     if (const auto row = input.surface().rows().row(v)) rows.push_back(row->index);
@@ -47,7 +47,7 @@ std::vector<Vec3> Input::normals(unsigned threads) const {
   return result;
 }
 
-void settle_left_out(const Input& input, const PlacedSource& source, double radius, RowLogMap& rows) {
+void settle_left_out(const Input& input, const SurfaceSource& source, double radius, RowLogMap& rows) {
   const std::vector<Vec3>& points = input.geometry.points;
   if (!input.near || input.near->whole.part.empty()) {
     for (std::size_t r = 0; r < points.size(); ++r)

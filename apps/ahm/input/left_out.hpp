@@ -9,6 +9,6 @@ namespace ahm::app {
 
 /// Statuses of rows that the surface lacks, or that hang together with the source by what it lacks alone: of meshes as without
 /// --local, of clouds `beyond_radius` where they are farther than that in a straight line.
-void settle_left_out(const Input& input, const PlacedSource& source, double radius, RowLogMap& rows);
+void settle_left_out(const Input& input, const SurfaceSource& source, double radius, RowLogMap& rows);
 
 }  // namespace ahm::app

@@ -8,14 +8,71 @@
 #include "ahm/error.hpp"
 #include "ahm/heat/heat_operators.hpp"
 #include "ahm/io/read.hpp"
+#include "ahm/maps/cost.hpp"
 #include "ahm/surface/directions.hpp"
 #include "ahm/util/vec.hpp"
 #include "cli/source_list.hpp"
-#include "input/memory_check.hpp"
+#include "cli/system_info.hpp"
 #include "input/repair.hpp"
 #include "output/wording.hpp"
 
 namespace ahm::app {
+
+void check_mesh_input(const std::string& backend, const io::Geometry& input, const InputOptions& options,
+                      const std::optional<SourceSpec>& source) {
+  if (input.face_count() == 0)
+    throw InvalidArgument(
+        fmt::format("--backend {}: the input has no faces; --backend pointcloud maps its points", backend));
+  const InputOptions defaults;
+  if (options.voxel || options.outliers || options.drop_nan || options.k || options.knn != defaults.knn ||
+      options.normals != defaults.normals || options.smooth)
+    throw InvalidArgument(
+        "--voxel, --outliers, --drop-nan, --k, --knn, --normals and --smooth are for point clouds; add --backend "
+        "pointcloud to map the vertices as one");
+  if (source) position_in(input, *source, "--source");
+}
+
+void check_cloud_input(const io::Geometry& input, const InputOptions& options,
+                       const std::optional<SourceSpec>& source) {
+  if (options.repair.any())
+    throw InvalidArgument(
+        "--repair, --weld, --drop-degenerate, --drop-duplicates and --orient are for meshes; a cloud joins equal "
+        "points by itself");
+  const InputOptions defaults;
+  if (options.flips != defaults.flips || options.non_manifold != defaults.non_manifold ||
+      options.discretization != defaults.discretization)
+    throw InvalidArgument("--no-flips, --non-manifold and --discretization are for meshes; the input is " +
+                          std::string(input.face_count() == 0 ? "a point cloud" : "mapped as a point cloud"));
+  if (!source) return;
+  if (const auto* face = std::get_if<SourceFace>(&*source))
+    throw InvalidArgument(fmt::format(
+        "--source {}: a cloud has no faces (backend pointcloud); write a vertex index or x,y,z", to_string(*face)));
+  position_in(input, *source, "--source");
+}
+
+void check_memory(const std::string& what, double bytes, Journal& journal) {
+  constexpr double at_least = 0.75;
+  const double memory = machine_memory();
+  if (!(memory > 0 && bytes > memory)) return;
+  const std::string told =
+      fmt::format("{} takes about {}, this machine lets it take {}", what,
+                  bytes_as_text(static_cast<std::int64_t>(bytes)), bytes_as_text(static_cast<std::int64_t>(memory)));
+  if (at_least * bytes > memory)
+    throw ResourceExhausted(told + "; thin the input, map what is near (ahm logmap --local), or cut it (ahm-tiles)");
+  journal.add_warning(told + ": the system may end it");
+}
+
+const Backend& choose_backend(const io::Geometry& input, const InputOptions& options) {
+  const bool as_polygons = options.backend == "auto" && options.discretization == "polygons" && input.face_count() > 0;
+  const std::string requested = as_polygons ? "polymesh" : options.backend;
+  const auto all = backends();
+  const auto found = std::find_if(all.begin(), all.end(), [&](const Backend& b) {
+    return requested == "auto" ? b.suits(input) : b.name == requested;
+  });
+  if (found == all.end()) throw InvalidArgument(fmt::format("--backend {}: there is no such backend", requested));
+  return *found;
+}
+
 namespace {
 
 void comment_on_blas(Journal& journal) {
@@ -148,8 +205,8 @@ SurfacePoint point_of(const Input& input, const SourceSpec& given) {
   return Row(std::get<SourceVertex>(spec).index);
 }
 
-PlacedSource place(const Input& input, const SourceSpec& spec, const std::optional<Vec3>& u_axis,
-                   const std::string& option) try {
+SurfaceSource place(const Input& input, const SourceSpec& spec, const std::optional<Vec3>& u_axis,
+                    const std::string& option) try {
   return input.surface().source(point_of(input, spec), u_axis);
 } catch (const InvalidArgument& e) {
   if (u_axis && e.fault() == "axis_along_normal")
@@ -158,9 +215,9 @@ PlacedSource place(const Input& input, const SourceSpec& spec, const std::option
   throw InvalidArgument(fmt::format("{} {}: {}", option, to_string(spec), worded(e)));
 }
 
-PlacedSource resolve(const SourceOptions& options, const Input& input, unsigned threads) {
+SurfaceSource resolve(const SourceOptions& options, const Input& input, unsigned threads) {
   const std::optional<UAxis>& axis = options.u_axis;
-  PlacedSource source =
+  SurfaceSource source =
       place(input, options.spec, axis && !axis->curvature ? std::optional(axis->direction) : std::nullopt);
   if (!axis || !axis->curvature) return source;
   // In a face: at the corner that has most of the source.

@@ -1,5 +1,5 @@
 /// \file
-/// The first step of every subcommand that maps: the input as a surface, and the user's sources on it.
+/// What backends ask of the command line and the input: the cheap checks, before any work.
 #pragma once
 
 #include <memory>
@@ -7,11 +7,28 @@
 #include <span>
 #include <string>
 
+#include "ahm/io/geometry.hpp"
 #include "cli/journal.hpp"
+#include "cli/options.hpp"
 #include "input/backend.hpp"
 #include "input/surroundings.hpp"
 
 namespace ahm::app {
+
+/// There are faces, the source fits them, no option for clouds was given.
+/// @throws InvalidArgument
+void check_mesh_input(const std::string& backend, const io::Geometry& input, const InputOptions& options,
+                      const std::optional<SourceSpec>& source);
+
+/// The source is a point, no option for meshes was given.
+/// @throws InvalidArgument
+void check_cloud_input(const io::Geometry& input, const InputOptions& options, const std::optional<SourceSpec>& source);
+
+/// Control groups end what takes more than they allow without a word.
+/// @param what   takes so much, in the words of the message: "the map"
+/// @param bytes  at the peak, of the whole process; known to a third
+/// @throws ResourceExhausted where that is too much all the same; else, where it may be, a warning goes to the journal
+void check_memory(const std::string& what, double bytes, Journal& journal);
 
 /// The input and what a backend made of it.
 struct Input {
@@ -69,8 +86,8 @@ SurfacePoint point_of(const Input& input, const SourceSpec& spec);
 /// A source where the user wants it: at a row, at the row nearest to a position, in a face.
 /// @param option  that asked for it, for messages
 /// @throws InvalidArgument
-PlacedSource place(const Input& input, const SourceSpec& spec, const std::optional<Vec3>& u_axis = {},
-                   const std::string& option = "--source");
+SurfaceSource place(const Input& input, const SourceSpec& spec, const std::optional<Vec3>& u_axis = {},
+                    const std::string& option = "--source");
 
 /// Checks that the input has such a vertex or face, and the position, as it was written; faces are those of the file.
 /// @throws InvalidArgument
@@ -78,7 +95,7 @@ Vec3 position_of(const Input& input, const SourceSpec& spec, const std::string& 
 
 /// The source of --source and --u-axis.
 /// @throws InvalidArgument, also where the surface bends alike in all directions, or its directions are noise
-PlacedSource resolve(const SourceOptions& options, const Input& input, unsigned threads);
+SurfaceSource resolve(const SourceOptions& options, const Input& input, unsigned threads);
 
 /// The vertex of the graph at a row of the input or nearest to a position.
 /// @throws InvalidArgument, also for a point in a face

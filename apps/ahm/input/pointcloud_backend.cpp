@@ -4,7 +4,7 @@
 #include "ahm/pointcloud/point_cloud_surface.hpp"
 #include "input/backend.hpp"
 #include "input/cloud_preparation.hpp"
-#include "input/input_checks.hpp"
+#include "input/open.hpp"
 #ifdef AHM_WITH_PCL
 #include "input/pcl_module.hpp"
 #endif

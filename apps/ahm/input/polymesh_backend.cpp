@@ -1,7 +1,7 @@
 #include "ahm/error.hpp"
 #include "ahm/polymesh/polygon_mesh_surface.hpp"
 #include "input/backend.hpp"
-#include "input/input_checks.hpp"
+#include "input/open.hpp"
 
 namespace ahm::app {
 namespace {

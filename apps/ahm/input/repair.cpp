@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "ahm/error.hpp"
-#include "ahm/surface/repaired_surface.hpp"
+#include "ahm/surface/mesh_repair.hpp"
 #include "ahm/util/vec.hpp"
 
 namespace ahm::app {

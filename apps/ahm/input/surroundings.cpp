@@ -9,10 +9,12 @@
 #include <utility>
 
 #include "ahm/error.hpp"
+#include "ahm/util/small_math.hpp"
 #include "ahm/util/vec.hpp"
 #include "cli/source_list.hpp"
 
 namespace ahm::app {
+
 namespace {
 
 /// That of a position is the nearest of the faces' vertices.

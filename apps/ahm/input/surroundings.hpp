@@ -1,5 +1,5 @@
 /// \file
-/// --local: what a map of a radius needs of a mesh.
+/// What --local left out, in the results of all of the input.
 #pragma once
 
 #include <vector>
@@ -7,6 +7,7 @@
 #include "ahm/io/geometry.hpp"
 #include "ahm/surface/mesh_repair.hpp"
 #include "ahm/surface/mesh_topology.hpp"
+#include "ahm/surface/row_log_map.hpp"
 #include "cli/options.hpp"
 
 namespace ahm::app {

@@ -5,11 +5,15 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
+#include <span>
 #include <utility>
 
 #include "ahm/error.hpp"
 #include "ahm/graph/components.hpp"
 #include "ahm/pointcloud/neighbor_search.hpp"
+#include "ahm/surface/exact/flat_triangles.hpp"
+#include "ahm/util/quantile.hpp"
 #include "ahm/util/small_math.hpp"
 #include "ahm/util/vec.hpp"
 #include "input/backend.hpp"
@@ -17,6 +21,167 @@
 #include "output/wording.hpp"
 
 namespace ahm::app {
+namespace {
+
+std::vector<double> edge_lengths(const io::Geometry& input) {
+  std::vector<std::pair<Index, Index>> edges;
+  for (std::size_t f = 0; f < input.face_count(); ++f) {
+    const auto face = input.face(f);
+    for (std::size_t c = 0; c < face.size(); ++c) {
+      const auto [low, high] = std::minmax(face[c], face[(c + 1) % face.size()]);
+      if (low != high) edges.emplace_back(low, high);
+    }
+  }
+  std::sort(edges.begin(), edges.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  std::vector<double> lengths;
+  for (const auto& [a, b] : edges)
+    if (const double length = distance(input.points[a], input.points[b]); std::isfinite(length))
+      lengths.push_back(length);
+  return lengths;
+}
+
+/// Perpendicular to a face, on the side from which it runs counter-clockwise, as long as twice its area by `unit`^2.
+Vec3 face_normal(const io::Geometry& input, std::span<const Index> face, double unit) {
+  Vec3 sum{};
+  for (std::size_t c = 2; c < face.size(); ++c) {
+    const Vec3& first = input.points[face[0]];
+    sum = sum + cross(1 / unit * (input.points[face[c - 1]] - first), 1 / unit * (input.points[face[c]] - first));
+  }
+  return sum;
+}
+
+std::size_t normals_against_faces(const io::Geometry& input) {
+  if (input.normals.empty()) return 0;
+  double unit = 0;
+  for (const Vec3& p : input.points)
+    if (is_finite(p)) unit = std::max(unit, largest(p));
+  if (unit == 0) return 0;
+  std::vector<Vec3> around(input.points.size(), Vec3{});
+  for (std::size_t f = 0; f < input.face_count(); ++f) {
+    const Vec3 normal = face_normal(input, input.face(f), unit);
+    if (!is_finite(normal)) continue;
+    for (const Index corner : input.face(f)) around[corner] = around[corner] + normal;
+  }
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < around.size(); ++i) count += dot(around[i], input.normals[i]) < 0 ? 1 : 0;
+  return count;
+}
+
+std::size_t faces_without_area(const io::Geometry& input) {
+  double unit = 0;
+  for (const Vec3& p : input.points)
+    if (is_finite(p)) unit = std::max(unit, largest(p));
+  std::size_t count = 0;
+  for (std::size_t f = 0; unit > 0 && f < input.face_count(); ++f) {
+    const auto face = input.face(f);
+    double area = 0, longest = 0;
+    for (std::size_t c = 1; c < face.size(); ++c) {
+      const Vec3& first = input.points[face[0]];
+      const Vec3 side = 1 / unit * (input.points[face[c]] - first);
+      longest = std::max({longest, norm(side), norm(1 / unit * (input.points[face[c]] - input.points[face[c - 1]]))});
+      if (c > 1) area += norm(cross(1 / unit * (input.points[face[c - 1]] - first), side));
+    }
+    count += area <= std::max(1e-10 * longest, 0x1p-51) * longest ? 1 : 0;
+  }
+  return count;
+}
+
+}  // namespace
+
+std::optional<LengthRange> range_of(std::vector<double> lengths) {
+  if (lengths.empty()) return std::nullopt;
+  std::sort(lengths.begin(), lengths.end());
+  return LengthRange{lengths.front(), lengths[lengths.size() / 2], lengths.back(), lengths.size()};
+}
+
+MeshSurvey survey_mesh(const io::Geometry& input) {
+  MeshSurvey result;
+  for (std::size_t f = 0; f < input.face_count(); ++f) ++result.faces_by_corners[input.face(f).size()];
+  result.normals_against = normals_against_faces(input);
+  result.without_area = faces_without_area(input);
+  result.inspection = inspect_mesh(static_cast<Index>(input.points.size()), input.faces());
+  result.edges = range_of(edge_lengths(input));
+  return result;
+}
+
+UnitGuess guess_unit(std::string_view format, const Vec3& low, const Vec3& high) {
+  const double diagonal = distance(low, high);
+  const double east = low[0] / 2 + high[0] / 2, north = low[1] / 2 + high[1] / 2;
+  if (format.starts_with("glTF")) return {"metres", "glTF counts in metres"};
+  if (std::hypot(east, north) > 1e5 && std::hypot(east, north) > 20 * diagonal && diagonal > 1)
+    return {"metres", "the coordinates look like those of a map projection"};
+  if (format.starts_with("LAS")) return {"metres", "surveys are in metres as a rule"};
+  if (format.starts_with("PCD") && diagonal > 0.02 && diagonal < 1e4) return {"metres", "PCD files are as a rule"};
+  if (format.starts_with("STL") && diagonal > 1 && diagonal < 1e4)
+    return {"millimetres", "STL files of parts are as a rule"};
+  return {};
+}
+
+namespace {
+
+double quantile(std::vector<double>& values, double q) {
+  return detail::value_at(values, static_cast<std::size_t>(q * static_cast<double>(values.size() - 1)));
+}
+
+/// Between the faces of every edge inside.
+std::vector<double> bends(const FlatTriangles& flat) {
+  const auto corner = [&](Index v) { return (1 / flat.length_unit) * flat.positions[v]; };
+  const auto normal = [&](exact::Half h) {
+    const exact::HalfRecord& r = flat.surface.record(h);
+    return cross(corner(r.head) - corner(r.tail), corner(r.apex) - corner(r.tail));
+  };
+  std::vector<double> angles;
+  for (exact::Half h = 0; h < 3 * flat.surface.face_count(); ++h) {
+    const exact::HalfRecord& r = flat.surface.record(h);
+    if (r.beyond_left < h) continue;  // each edge once
+    Vec3 a = normal(h), b = normal(r.beyond_left);
+    if ((r.mirrored & 1) != 0) b = -b;
+    angles.push_back(std::atan2(norm(cross(a, b)), dot(a, b)) * 180 / std::numbers::pi);
+  }
+  return angles;
+}
+
+}  // namespace
+
+MethodAdvice method_advice(const Surface& surface) {
+  MethodAdvice advice;
+  advice.method = surface.suggested_method();
+  if (surface.faces().size() == 0) {
+    advice.problem = "there are no faces";
+    return advice;
+  }
+  try {
+    const FlatTriangles flat = surface.flat_triangles();
+    advice.exact_possible = true;
+    std::vector<double> angles = bends(flat);
+    if (!angles.empty()) {
+      advice.median_bend = quantile(angles, 0.5);
+      advice.sharp_bend = quantile(angles, 0.95);
+    }
+    advice.exact_first = flat.surface.vertex_count() <= exact_vertices && advice.sharp_bend > fine_bend;
+  } catch (const Error& e) {
+    advice.problem = worded(e);
+  }
+  return advice;
+}
+
+std::string as_text(const MethodAdvice& advice) {
+  if (!advice.exact_possible)
+    return fmt::format("{}; exact is not possible: {}", to_string(advice.method), advice.problem);
+  const auto degrees = [](double angle) {
+    const std::string number = angle < 10 ? fmt::format("{:.2g}", angle) : fmt::format("{:.0f}", angle);
+    return number + (number == "1" ? " degree" : " degrees");
+  };
+  const std::string bend = fmt::format("half of the edges bend by at most {}, 5 % by at least {}",
+                                       degrees(advice.median_bend), degrees(advice.sharp_bend));
+  if (advice.exact_first)
+    return fmt::format("--method exact for a few maps, {} for many ({})", to_string(advice.method), bend);
+  return fmt::format(
+      "{}; --method exact, on large meshes with --radius or --tolerance, where it has to follow every face ({})",
+      to_string(advice.method), bend);
+}
+
 namespace {
 
 void add_warnings(const std::vector<Warning>& warnings, Survey& s) {

@@ -3,7 +3,7 @@
 #include "ahm/error.hpp"
 #include "ahm/trimesh/triangle_mesh_surface.hpp"
 #include "input/backend.hpp"
-#include "input/input_checks.hpp"
+#include "input/open.hpp"
 
 namespace ahm::app {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <stdexcept>
 
-#include "cli/numbers.hpp"
 #include "cli/option_adders.hpp"
+#include "cli/source_list.hpp"
 
 namespace ahm::app {
 namespace {
@@ -61,8 +61,8 @@ void add_texture_picture(CLI::App& app, PictureChoice& choice) {
   add_view_from(app, choice);
 }
 
-view::PictureOptions picture_options(const PictureChoice& choice, unsigned threads) {
-  view::PictureOptions options;
+render::PictureOptions picture_options(const PictureChoice& choice, unsigned threads) {
+  render::PictureOptions options;
   options.threads = threads;
   if (choice.size) options.width = (*choice.size)[0], options.height = (*choice.size)[1];
   options.view_direction = choice.from;
@@ -71,15 +71,15 @@ view::PictureOptions picture_options(const PictureChoice& choice, unsigned threa
   return options;
 }
 
-void draw(const std::string& path, const view::Scene& scene, view::Pattern usual, const PictureChoice& choice,
+void draw(const std::string& path, const render::Scene& scene, render::Pattern usual, const PictureChoice& choice,
           unsigned threads) {
-  view::PictureOptions options = picture_options(choice, threads);
-  options.pattern = choice.color == "distance" ? view::Pattern::distance
-                    : choice.color == "none"   ? view::Pattern::none
+  render::PictureOptions options = picture_options(choice, threads);
+  options.pattern = choice.color == "distance" ? render::Pattern::distance
+                    : choice.color == "none"   ? render::Pattern::none
                                                : usual;
-  view::Scene shown = scene;
-  if (options.pattern != view::Pattern::cells) shown.labels = {};
-  view::write_picture(path, shown, options);
+  render::Scene shown = scene;
+  if (options.pattern != render::Pattern::cells) shown.labels = {};
+  render::write_picture(path, shown, options);
 }
 
 }  // namespace ahm::app

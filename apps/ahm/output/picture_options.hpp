@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "ahm/view/picture.hpp"
+#include "ahm/render/picture.hpp"
 
 namespace CLI {
 class App;
@@ -29,10 +29,10 @@ void add_map_picture(CLI::App& app, PictureChoice& choice);
 void add_texture_picture(CLI::App& app, PictureChoice& choice);
 
 /// @param threads  0: one per core
-view::PictureOptions picture_options(const PictureChoice& choice, unsigned threads);
+render::PictureOptions picture_options(const PictureChoice& choice, unsigned threads);
 
 /// Writes the picture of a map. @param usual  the subcommand's own pattern, where the colors are not chosen
-void draw(const std::string& path, const view::Scene& scene, view::Pattern usual, const PictureChoice& choice,
+void draw(const std::string& path, const render::Scene& scene, render::Pattern usual, const PictureChoice& choice,
           unsigned threads);
 
 }  // namespace ahm::app

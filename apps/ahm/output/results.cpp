@@ -9,7 +9,7 @@
 #include "ahm/error.hpp"
 #include "ahm/io/formats.hpp"
 #include "ahm/maps/quality.hpp"
-#include "ahm/surface/mapped_positions.hpp"
+#include "ahm/surface/surface_triangles.hpp"
 #include "output/output_paths.hpp"
 
 namespace ahm::app {
@@ -21,7 +21,7 @@ void check_view(const std::string& path) {
   const bool html = extension == ".html" || extension == ".htm";
   if (!html && extension != ".png")
     throw InvalidArgument(fmt::format("--view {}: the name must end in .png or .html", path));
-  if (html ? !view::can_write_html() : !view::can_write_png())
+  if (html ? !render::can_write_html() : !render::can_write_png())
     throw InvalidArgument(fmt::format("--view {}: this build of ahm cannot write {} files", path, extension));
 }
 
@@ -143,8 +143,8 @@ io::Table Results::table() const {
   return table;
 }
 
-view::Scene Results::scene() const {
-  view::Scene scene;
+render::Scene Results::scene() const {
+  render::Scene scene;
   scene.points = drawn_.empty() ? input_.points : drawn_;
   scene.normals = normals_;
   scene.face_begin = drawn_.empty() ? std::span<const Offset>(input_.face_begin) : triangle_begin_;
@@ -154,9 +154,9 @@ view::Scene Results::scene() const {
   return scene;
 }
 
-view::Scene Results::scene(const RowLogMap& rows, const std::vector<double>& quality,
-                           const PlacedSource& source) const {
-  view::Scene result = scene();
+render::Scene Results::scene(const RowLogMap& rows, const std::vector<double>& quality,
+                             const SurfaceSource& source) const {
+  render::Scene result = scene();
   result.u = rows.u;
   result.v = rows.v;
   result.quality = quality;
@@ -166,14 +166,14 @@ view::Scene Results::scene(const RowLogMap& rows, const std::vector<double>& qua
   return result;
 }
 
-void Results::write_view(const view::Scene& scene, Journal& journal, const view::PictureOptions& picture) {
+void Results::write_view(const render::Scene& scene, Journal& journal, const render::PictureOptions& picture) {
   if (output_.view.empty()) return;
   journal.start("view");
   draw(output_.view, scene, picture.pattern, output_.picture, threads_);
 }
 
-void Results::write(const io::Table& table, const view::Scene& scene, Journal& journal,
-                    const view::PictureOptions& picture) {
+void Results::write(const io::Table& table, const render::Scene& scene, Journal& journal,
+                    const render::PictureOptions& picture) {
   write_view(scene, journal, picture);
   journal.start("write");
   io::write(output_.output, table, output_.format);

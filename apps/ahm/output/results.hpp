@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "ahm/io/write.hpp"
-#include "ahm/view/picture.hpp"
+#include "ahm/render/picture.hpp"
 #include "input/open.hpp"
 
 namespace ahm::app {
@@ -61,14 +61,14 @@ class Results {
   /// With the points, normals and faces of the input, the rest to be filled in.
   io::Table table() const;
   /// Likewise, with a title.
-  view::Scene scene() const;
+  render::Scene scene() const;
   /// A map from a source. What is given must outlive the scene.
-  view::Scene scene(const RowLogMap& rows, const std::vector<double>& quality, const PlacedSource& source) const;
+  render::Scene scene(const RowLogMap& rows, const std::vector<double>& quality, const SurfaceSource& source) const;
   /// Writes --view where it was asked for.
-  void write_view(const view::Scene& scene, Journal& journal, const view::PictureOptions& picture = {});
+  void write_view(const render::Scene& scene, Journal& journal, const render::PictureOptions& picture = {});
   /// Likewise, and --output.
-  void write(const io::Table& table, const view::Scene& scene, Journal& journal,
-             const view::PictureOptions& picture = {});
+  void write(const io::Table& table, const render::Scene& scene, Journal& journal,
+             const render::PictureOptions& picture = {});
 
  private:
   const OutputOptions& output_;

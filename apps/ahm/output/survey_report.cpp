@@ -7,10 +7,10 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "ahm/render/picture.hpp"
 #include "ahm/util/shell.hpp"
-#include "ahm/view/picture.hpp"
-#include "input/unit_guess.hpp"
-#include "output/output_names.hpp"
+#include "input/survey.hpp"
+#include "output/output_paths.hpp"
 #include "output/wording.hpp"
 
 namespace ahm::app {
@@ -164,7 +164,7 @@ std::string suggestion(const Survey& s, const std::string& path) {
   if (stem.starts_with('-')) stem.insert(0, "./");
   std::string command = fmt::format("ahm logmap {} --source {}{} -o {}", detail::shell_word(path),
                                     s.surface->central_row, s.surface->options, detail::shell_word(stem + "_map.csv"));
-  if (view::can_write_png()) command += fmt::format(" --view {}", detail::shell_word(stem + "_map.png"));
+  if (render::can_write_png()) command += fmt::format(" --view {}", detail::shell_word(stem + "_map.png"));
   return command;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <string>
@@ -14,19 +15,20 @@
 #include "ahm/util/vec.hpp"
 
 namespace ahm::pointcloud {
+
 namespace {
 
 Vec3 scaled(const Vec3& p, int exponent) {
   return {std::scalbn(p[0], exponent), std::scalbn(p[1], exponent), std::scalbn(p[2], exponent)};
 }
 
-/// What brings the points to order one. Medians, since a single stray point must not make the others small.
+/// The scale that brings the points to order one. Uses medians, because a single outlier must not make the other points tiny.
 Placement placement_of(const std::vector<Vec3>& points, unsigned threads) {
   Placement result;
   double largest = 0;
   for (const Vec3& p : points)
     for (double x : p) largest = std::max(largest, std::abs(x));
-  const int first = largest > 0 ? std::ilogb(largest) : 0;  // differences of these do not overflow
+  const int first = largest > 0 ? std::ilogb(largest) : 0;  // differences of values scaled by it do not overflow
   Vec3 middle{0, 0, 0};
   std::vector<double> values(points.size());
   for (int axis = 0; axis < 3 && !points.empty(); ++axis) {
@@ -43,7 +45,7 @@ Placement placement_of(const std::vector<Vec3>& points, unsigned threads) {
   return result;
 }
 
-/// The place of the highest binary digit in which two coordinates differ; a sign is above all digits.
+/// Position of the highest binary digit in which two coordinates differ. A different sign ranks above all digits.
 int highest_difference(double a, double b) {
   if (a == b) return std::numeric_limits<int>::min();
   if ((a < 0) != (b < 0)) return std::numeric_limits<int>::max();
@@ -55,13 +57,14 @@ int highest_difference(double a, double b) {
   return std::max(e, 1) - std::countl_zero((x ^ y) << (64 - digits)) - 1;
 }
 
-/// Beginnings of places on the curve, as numbers: of two points that differ in them the lower one is `before_on_curve`.
+/// Leading digits of positions on the Morton curve, as integers. If they differ for two points, the point with the lower integer is
+/// `before_on_curve`.
 class CurvePlaces {
  public:
   explicit CurvePlaces(std::span<const Vec3> points) {
     double most = 0;
     for (const Vec3& p : points) most = std::max(most, largest(p));
-    most = std::min(most, std::numeric_limits<double>::max());  // far outliers may be beyond numbers
+    most = std::min(most, std::numeric_limits<double>::max());  // a far outlier may be infinite
     to_digits_ = most > 0 ? digits - 1 - std::ilogb(most) : 0;
   }
   std::uint64_t operator()(const Vec3& p) const {
@@ -69,16 +72,16 @@ class CurvePlaces {
   }
 
  private:
-  static constexpr int digits = 20;  ///< and a sign, of each axis
+  static constexpr int digits = 20;  ///< per axis, besides the sign
 
-  /// The first digits, ascending.
+  /// Leading digits of a coordinate, ascending with it.
   std::uint64_t of_axis(double x) const {
     constexpr std::uint64_t sign = std::uint64_t{1} << digits;
     const double scaled = std::min(std::scalbn(std::abs(x), to_digits_), static_cast<double>(sign - 1));
     const auto first = static_cast<std::uint64_t>(scaled);
     return x < 0 ? sign - 1 - first : sign + first;
   }
-  /// Two zeros between any two digits.
+  /// Inserts two zeros between consecutive binary digits.
   static std::uint64_t spread(std::uint64_t x) {
     x = (x | x << 32) & 0x1f00000000ffff;
     x = (x | x << 16) & 0x1f0000ff0000ff;
@@ -87,10 +90,10 @@ class CurvePlaces {
     return (x | x << 2) & 0x1249249249249249;
   }
 
-  int to_digits_;  ///< exponent of two, whose power numbers may not hold
+  int to_digits_;  ///< exponent of two that scales coordinates to digits; its power may overflow
 };
 
-/// Copies the finite points; `kept` are their numbers.
+/// Copies the finite points, and stores their indices in `kept`.
 std::vector<Vec3> finite_points(std::span<const Vec3> input, const std::function<Index(std::size_t)>& row,
                                 const CloudOptions& options, std::vector<Index>& kept, CloudDetails& report) {
   std::vector<Vec3> points;
@@ -113,17 +116,17 @@ std::vector<Vec3> finite_points(std::span<const Vec3> input, const std::function
   return points;
 }
 
-/// @param points  placed, in units of half of them
-/// @throws InvalidGeometry where squares of lengths would overflow
+/// @param points  scaled, so that half of them have distances of order one
+/// @throws InvalidGeometry (a point so far away that squares of lengths would overflow)
 void check_reach(const std::vector<Vec3>& points, const std::function<Index(std::size_t)>& row,
                  const std::vector<Index>& kept) {
   constexpr double farthest = 1e150;
   for (std::size_t i = 0; i < points.size(); ++i)
     for (const double x : points[i])
       if (std::abs(x) > farthest)
-        throw InvalidGeometry("point " + std::to_string(row(static_cast<std::size_t>(kept[i]))) + " is " +
+        throw InvalidGeometry("point " + std::to_string(row(static_cast<std::size_t>(kept[i]))) + " has a coordinate " +
                               detail::number(std::abs(x)) +
-                              " times as far off as half of the points; it must be less than 1e150");
+                              " times as large as the median distance of the points; it must be less than 1e150");
 }
 
 }  // namespace

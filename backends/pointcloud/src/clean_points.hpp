@@ -1,9 +1,9 @@
 /// \file
-/// Input points made ready for geometry: finite, distinct, of order one, in an order that keeps neighbours close in
-/// memory.
+/// Removal of invalid and duplicate points.
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -11,30 +11,31 @@
 
 namespace ahm::pointcloud {
 
-/// The power of two that brings input points to lengths of order one. Nothing is subtracted: differences of points are those
-/// of the input, to the last bit, whatever else is in the file.
+/// The power of two that brings input points to lengths of order one. Points are not translated: differences of points remain those of
+/// the input, to the last bit, whatever else the file contains.
 struct Placement {
-  int exponent = 0;  ///< of the median distance from the medians of the coordinates, by the largest difference
+  int exponent = 0;  ///< of the median distance (largest coordinate difference) from the medians of the coordinates
   Vec3 place(const Vec3& point) const;
-  /// Input lengths per length of placed points.
+  /// Length in the input per length of placed points.
   double unit() const;
 };
 
-/// Whether one point lies before another on the Morton curve through all of space: an order of two finite points that
-/// depends on nothing but them, and not on their scale, if that is a power of two.
+/// Whether a point lies before another one on the Morton curve through all of space. The order of two finite points depends only on
+/// these points, and scaling by a power of two does not change it.
 bool before_on_curve(const Vec3& point, const Vec3& other);
 
+/// Distinct points in the order of the Morton curve, and their indices in the input.
 struct CleanPoints {
-  std::vector<Vec3> points;           ///< distinct, along the Morton curve, input / unit
-  std::vector<Index> input;           ///< first input point at each
-  std::vector<Index> clean_of_input;  ///< -1: dropped
-  std::vector<char> smoothed;         ///< whether the point was in noise that was smoothed; empty: none
+  std::vector<Vec3> points;           ///< distinct, in units of `unit`
+  std::vector<Index> input;           ///< index of the first input point at each point
+  std::vector<Index> clean_of_input;  ///< point of each input point; -1: dropped
+  std::vector<char> smoothed;         ///< whether the point lies in noise that was smoothed; empty: no smoothing
   double unit = 1.0;                  ///< power of two
 };
 
-/// Cleans, and counts what it drops and merges in `report`. Scaling by powers of two changes no bit of the result but
+/// Drops points that are not finite and merges equal ones; counts both in `report`. Scaling the input by a power of two changes only
 /// `unit`.
-/// @param row  names a point, for messages
+/// @param row  returns the number of a point in the input, for messages
 /// @throws InvalidGeometry
 CleanPoints clean_points(std::span<const Vec3> points, const std::function<Index(std::size_t)>& row,
                          const CloudOptions& options, CloudDetails& report);

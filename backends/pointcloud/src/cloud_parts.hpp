@@ -1,30 +1,34 @@
 /// \file
-/// The parts of a cloud that share no neighbours. What is measured of one part must not depend on what else is in the file.
+/// Parts of a cloud that share no neighbors.
 #pragma once
 
 #include <span>
 #include <vector>
 
+#include "ahm/types.hpp"
 #include "tangent_planes.hpp"
 
 namespace ahm::pointcloud {
 
-/// Parts that share no neighbours, numbered in the order of their first points.
+/// Number of points that a thread processes at a time.
+inline constexpr Offset points_per_task = 4096;
+
+/// Parts of a cloud that share no neighbors, numbered in the order of their first points.
 struct CloudParts {
-  std::vector<Index> of_point;
+  std::vector<Index> of_point;  ///< part of each point
   Index count = 0;
 
   explicit CloudParts(const Neighborhoods& neighborhoods);
-  /// All as one part.
+  /// All points in one part.
   explicit CloudParts(Index points) : of_point(static_cast<std::size_t>(points), 0), count(1) {}
-  /// The points of each part, ascending.
+  /// Points of each part, ascending.
   std::vector<std::vector<Index>> points() const;
 };
 
-/// A number for each part, or one for all.
+/// One number for each part, or one number for all points.
 class PerPart {
  public:
-  PerPart(double of_all = 0) : values_{of_all} {}  // NOLINT(google-explicit-constructor): tiles measure one for all
+  PerPart(double of_all = 0) : values_{of_all} {}  // NOLINT(google-explicit-constructor): tiles use one number for all points
   /// @param part_of_point  must outlive this object
   PerPart(std::span<const Index> part_of_point, std::vector<double> values)
       : part_(part_of_point), values_(std::move(values)) {}

@@ -2,7 +2,6 @@
 #include <vector>
 
 #include "ahm/error.hpp"
-#include "ahm/pointcloud/nearest_candidates.hpp"
 #include "ahm/pointcloud/neighbor_search.hpp"
 
 #ifdef AHM_WITH_FLANN
@@ -27,7 +26,7 @@ class FlannSearch final : public NeighborSearch {
   Index nearest(const Vec3& query, std::span<Index> indices, std::span<double> squared_distances) const override {
     const std::size_t wanted = std::min(indices.size(), size_);
     if (wanted == 0) return 0;
-    // A few more than asked for: until the last one is farther away, others may be as near as the last that is wanted.
+    // A few more than needed: until the last one is farther away, others may be as near as the last one needed.
     std::vector<Candidate> found;
     for (std::size_t count = std::min(wanted + 4, size_);; count = std::min(2 * count, size_)) {
       find(query, count, found);
@@ -38,7 +37,7 @@ class FlannSearch final : public NeighborSearch {
   }
 
  private:
-  /// The nearest, nearest first.
+  /// The `count` nearest points, nearest first.
   void find(const Vec3& query, std::size_t count, std::vector<Candidate>& found) const {
     std::vector<std::size_t> indices(count);
     std::vector<double> squared(count);

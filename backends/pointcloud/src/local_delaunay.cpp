@@ -10,19 +10,20 @@
 #include "ahm/util/buckets.hpp"
 #include "ahm/util/parallel.hpp"
 #include "ahm/util/unset_vector.hpp"
-#include "edge_unfolding.hpp"
-#include "plane_axes.hpp"
-#include "points_per_task.hpp"
+#include "cloud_parts.hpp"
+#include "tangent_edges.hpp"
+#include "tangent_planes.hpp"
 
 namespace ahm::pointcloud {
 namespace {
 
-/// Oriented normals further apart than 120 degrees belong to different sheets.
+/// Neighbors with oriented normals more than 120 degrees apart belong to different sheets.
 constexpr double sheet_cosine = -0.5;
 
-/// A neighbour almost straight above the point has no direction in its plane.
+/// A neighbor almost straight above the point has no direction in its tangent plane.
 constexpr double least_projection = 1e-6;
 
+/// Image of a neighbor under inversion about a point.
 struct Inverted {
   double x, y;
   Index vertex;  ///< -1: the center of inversion itself
@@ -48,12 +49,12 @@ void convex_hull(std::vector<Inverted>& points, std::vector<Inverted>& hull) {
   hull.pop_back();
 }
 
-/// Leaves out points near the origin that a polygon of some of the first ones goes around. These are no corners of the hull,
-/// and most are of that kind where the first ones are the farthest and lie all around.
-/// @return whether there is such a polygon; the origin is no corner then, either
+/// Removes images near the origin that lie inside a polygon of some of the first images, because they are no corners of the hull. The
+/// nearest neighbors come first and have the farthest images, so most images are removed where neighbors lie on all sides.
+/// @return whether such a polygon exists; the origin is then no corner of the hull, either
 bool drop_inner(std::vector<Inverted>& points) {
   constexpr std::size_t looked_at = 12, directions = 8;
-  // Of each direction, counter-clockwise, the farthest point: corners of a convex polygon, some of them the same.
+  // Farthest image in each direction, counter-clockwise: corners of a convex polygon, some of them equal.
   std::array<double, directions> farthest{};
   std::array<const Inverted*, directions> corners{};
   for (std::size_t k = 0; k < std::min(points.size(), looked_at); ++k) {
@@ -72,16 +73,15 @@ bool drop_inner(std::vector<Inverted>& points) {
     squared_radius = std::min(squared_radius, area * area / (x * x + y * y));
   }
   if (!std::isfinite(squared_radius)) return false;
-  // Where rounding could tell is left to the hull.
+  // Leaves images within rounding of the polygon to the hull.
   squared_radius *= 1 - 1e-6;
   std::erase_if(points, [&](const Inverted& p) { return p.x * p.x + p.y * p.y < squared_radius; });
   return true;
 }
 
-/// The Delaunay triangles at one point. Under inversion about the point, circles through it become lines: a circle
-/// through the point and two neighbours is empty exactly when the line through their images has all other images, and
-/// the origin, on one side. So the triangles are the edges of the convex hull of the images and the origin that do not
-/// touch the origin.
+/// Computes the Delaunay triangles at one point. Inversion about the point maps circles through it to lines. A circle through the point
+/// and two neighbors is empty exactly if all other images, and the origin, lie on one side of the line through their two images. The
+/// triangles are therefore the edges of the convex hull of the images and the origin that do not touch the origin.
 class StarTriangulator {
  public:
   StarTriangulator(const CleanPoints& cloud, const Neighborhoods& neighborhoods, const TangentPlanes& planes,
@@ -95,7 +95,7 @@ class StarTriangulator {
 
   Offset too_long = 0, other_sheet = 0, too_steep = 0;
 
-  /// @return whether the triangles go all around the point
+  /// @return whether the triangles surround the point
   bool triangulate(Index i, std::vector<Triangle>& out) {
     images_.clear();
     const PlaneAxes axes(planes_.normals[i]);
@@ -142,7 +142,7 @@ class StarTriangulator {
   std::vector<Inverted> images_, hull_;
 };
 
-/// Counts in a sorted range how often each value is there, the counts in the order of the values from `first` on.
+/// Counts how often each value occurs in a sorted range. Stores the counts in the order of the values, from `first` on.
 void count_equal(const std::array<Index, 2>* values, Offset first, Offset last, std::vector<std::uint8_t>& times) {
   Offset at = first - 1;
   for (Offset t = first; t < last; ++t) {
@@ -151,8 +151,8 @@ void count_equal(const std::array<Index, 2>* values, Offset first, Offset last, 
   }
 }
 
-/// Sorts and removes repetitions, first by counting the smallest corner.
-/// @param votes  filled, unless it is null: how often each triangle was there
+/// Sorts triangles and removes duplicates. Sorts into buckets by the smallest corner first.
+/// @param votes  output, may be null: how often each triangle occurred
 std::vector<Triangle> unique_triangles(const std::vector<std::vector<Triangle>>& parts, Index n, unsigned threads,
                                        std::vector<std::uint8_t>* votes) {
   std::vector<Offset> begin(static_cast<std::size_t>(n) + 1, 0);

@@ -1,5 +1,5 @@
 /// \file
-/// The union of every point's Delaunay triangles in its own tangent plane.
+/// Union of the Delaunay triangles of all points, each in its own tangent plane.
 #pragma once
 
 #include <array>
@@ -11,13 +11,12 @@
 
 namespace ahm::pointcloud {
 
-/// Triangulates the neighbours of each point, projected to its tangent plane, and keeps the triangles at the point
-/// itself. A triangle found from several of its corners is listed once, corners ascending, triangles in lexicographic
-/// order.
-/// @param oriented  1 where neighbours whose normals point the other way are rejected
-/// @param noise  of offsets across the surface; neighbours far beyond it, steeply above the surface, are rejected
-/// @param inner  filled, unless it is null: of each point, whether its triangles go all around it
-/// @param votes  filled, unless it is null: of each triangle, at how many of its corners it was found
+/// Triangulates the neighbors of each point, projected to its tangent plane, and keeps the triangles at the point itself. Lists a
+/// triangle found at several of its corners once. Corners ascend, and triangles are in lexicographic order.
+/// @param oriented  1 where neighbors with opposed normals are rejected
+/// @param noise     standard deviation of offsets across the surface; neighbors far beyond it, steeply above the surface, are rejected
+/// @param inner     output, may be null: for each point, whether its triangles surround it
+/// @param votes     output, may be null: for each triangle, the number of corners at which it was found
 std::vector<Triangle> local_delaunay(const CleanPoints& cloud, const Neighborhoods& neighborhoods,
                                      const TangentPlanes& planes, const PerPart& oriented, const PerPart& noise,
                                      const CloudOptions& options, CloudDetails& report,

@@ -9,18 +9,18 @@
 namespace ahm::pointcloud {
 namespace {
 
-/// Points nearer than this share of the spacing are one point for the graph wherever they occur.
+/// Points nearer to each other than this fraction of the spacing are always merged.
 constexpr double equal_share = 1e-3;
-/// Points nearer than this share are one only if more than `most_by_chance` of all have such a neighbor: of points sampled at random
-/// 0.4 % have one.
+/// Points nearer than this fraction of the spacing are merged only if more than `most_by_chance` of all points have such a neighbor. Of
+/// randomly sampled points 0.4 % have one.
 constexpr double near_share = 0.05, most_by_chance = 0.01;
 
 struct Representatives {
-  std::vector<Index> of_point;  ///< the point itself, or an earlier one near it
+  std::vector<Index> of_point;  ///< representative of each point: the point itself, or an earlier one near it
   Index merged = 0;
 };
 
-/// @param share  of the spacing
+/// @param share  largest distance of merged points, as a fraction of the spacing
 Representatives find_representatives(const CleanPoints& cloud, const Neighborhoods& neighborhoods, double share) {
   const auto n = static_cast<Index>(cloud.points.size());
   Representatives result{std::vector<Index>(cloud.points.size(), -1)};
@@ -38,8 +38,8 @@ Representatives find_representatives(const CleanPoints& cloud, const Neighborhoo
   return result;
 }
 
-/// Keeps the points that represent themselves.
-/// @return the new number of each point: of its representative
+/// Keeps only the points that represent themselves.
+/// @return for each point, the new number of its representative
 std::vector<Index> keep_representatives(const std::vector<Index>& representatives, CleanPoints& cloud) {
   std::vector<Index> number(representatives.size());
   Index kept = 0;
@@ -59,7 +59,7 @@ std::vector<Index> keep_representatives(const std::vector<Index>& representative
   return number;
 }
 
-/// Closes the gaps that points and neighbors leave which others represent.
+/// Removes merged points from the neighborhoods and closes the gaps.
 /// @return the points that lost a neighbor, ascending
 std::vector<Index> renumber(const std::vector<Index>& representatives, const std::vector<Index>& number,
                             std::size_t kept, Neighborhoods& neighborhoods) {

@@ -3,10 +3,12 @@
 #include <nanoflann.hpp>
 
 #include "ahm/pointcloud/neighbor_search.hpp"
+#include "ahm/util/vec.hpp"
 
 namespace ahm::pointcloud {
 namespace {
 
+/// Adapter of points for nanoflann.
 struct Points {
   std::span<const Vec3> points;
   std::size_t kdtree_get_point_count() const { return points.size(); }
@@ -17,7 +19,7 @@ struct Points {
   }
 };
 
-/// The k nearest, by distance and then by number: points at equal distances do not depend on the tree.
+/// The k nearest points, sorted by distance and then by index, so that the result does not depend on the tree.
 class NearestFew {
  public:
   using DistanceType = double;
@@ -25,7 +27,7 @@ class NearestFew {
   NearestFew(std::span<Index> indices, std::span<double> distances) : indices_(indices), distances_(distances) {}
   std::size_t size() const { return count_; }
   bool full() const { return count_ == indices_.size(); }
-  /// Whatever is nearer than this is asked for: the last one's equals too, up to the rounding of the tree's own bounds.
+  /// Search radius: slightly above the last distance, to find points at equal distances despite rounding of the tree's bounds.
   double worstDist() const {  // NOLINT(readability-identifier-naming): nanoflann's name
     return full() ? distances_[count_ - 1] * (1 + 1e-14) : std::numeric_limits<double>::infinity();
   }
@@ -75,6 +77,15 @@ class NanoflannSearch final : public NeighborSearch {
 
 std::unique_ptr<NeighborSearch> nanoflann_search(std::span<const Vec3> points) {
   return std::make_unique<NanoflannSearch>(points);
+}
+
+std::vector<Row> radius_search(std::span<const Vec3> points, const Vec3& center, double radius) {
+  std::vector<Row> result;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    // Cheap test first; NaN fails it.
+    if (std::abs(points[i][0] - center[0]) <= radius && distance(points[i], center) <= radius)
+      result.emplace_back(static_cast<Index>(i));
+  return result;
 }
 
 }  // namespace ahm::pointcloud

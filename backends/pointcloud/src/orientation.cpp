@@ -14,14 +14,14 @@
 namespace ahm::pointcloud {
 namespace {
 
-/// An edge between two trees, by their roots.
+/// An edge between two trees of the forest, given by their roots.
 struct Bridge {
   Index root, other;
   float bend;
-  signed char sign;  ///< of the one root's normal times that of the other
+  signed char sign;  ///< sign of one root's normal relative to the other's
 };
 
-/// Of a normal relative to another one.
+/// Sign of a normal relative to another one.
 signed char relative_sign(const Vec3& normal, const Vec3& other) {
   return static_cast<signed char>(dot(normal, other) < 0 ? -1 : 1);
 }
@@ -36,8 +36,8 @@ std::vector<Bridge> bridges(const WeightedEdges& edges, const TangentPlanes& pla
   return result;
 }
 
-/// The spanning forest of the flattest edges, of equally flat ones the first, by Boruvka's algorithm: all trees at once take
-/// the flattest edge that leaves them, until none does.
+/// Spanning forest of the flattest edges, by Boruvka's algorithm: each tree takes the flattest edge that leaves it, until no edge leaves
+/// a tree. Of equally flat edges it takes the first.
 SignedForest flattest_forest(Index n, std::vector<Bridge> bridges) {
   SignedForest forest(n);
   constexpr auto none = static_cast<std::size_t>(-1);
@@ -62,13 +62,13 @@ SignedForest flattest_forest(Index n, std::vector<Bridge> bridges) {
   return forest;
 }
 
-/// Any spanning forest, where no loop of edges disagrees with itself: the signs relative to the roots are those of all spanning
-/// forests then. Nothing where one does. Trees of several ranges of points grow at once, and what lies between ranges joins them.
+/// A spanning forest if the signs agree around every loop of edges: the signs relative to the roots are then the same in all spanning
+/// forests. None if a loop disagrees. Grows trees within several ranges of points in parallel, then adds the edges between ranges.
 std::optional<SignedForest> undisputed_forest(Index n, const WeightedEdges& edges, const TangentPlanes& planes,
                                               unsigned threads) {
   SignedForest forest(n);
   std::atomic<bool> disputed{false};
-  std::vector<char> is_between(edges.tails.size(), 0);  // ranges
+  std::vector<char> is_between(edges.tails.size(), 0);  // two ranges
   const auto join = [&](Index a, Index b) {
     const signed char sign = relative_sign(planes.normals[a], planes.normals[b]);
     if (!forest.join(a, b, sign) && forest.find(a).sign * forest.find(b).sign != sign) disputed = true;
@@ -103,7 +103,7 @@ SignedForest::Root SignedForest::find(Index v) {
     root = parent_[root];
   }
   const Root result{root, sign};
-  while (parent_[v] != root && v != root) {  // path compression keeps the signs relative to the root
+  while (parent_[v] != root && v != root) {  // path compression; signs become relative to the root
     const Index up = parent_[v];
     const auto rest = static_cast<signed char>(sign * sign_[v]);
     parent_[v] = root;
@@ -155,7 +155,7 @@ std::vector<char> have_thin_walls(const CleanPoints& cloud, const TangentPlanes&
       if (!(dot(planes.normals[i], planes.normals[j]) < -0.5)) continue;
       Count& count = counts[parts.of_point[i]];
       ++count.opposed;
-      // Twice the mean of how high each lies above the other.
+      // Twice the mean height of each point over the plane of the other.
       const double height = dot(planes.normals[i] - planes.normals[j], cloud.points[j] - cloud.points[i]);
       count.before += height > 0;
       count.behind += height < 0;
@@ -172,10 +172,10 @@ std::vector<Index> orient_normals(const CleanPoints& cloud, const WeightedEdges&
   const auto n = static_cast<Index>(cloud.points.size());
   std::optional<SignedForest> undisputed = undisputed_forest(n, edges, planes, threads);
   SignedForest forest = undisputed ? *std::move(undisputed) : flattest_forest(n, bridges(edges, planes, threads));
-  std::vector<Index> tree(static_cast<std::size_t>(n));  // of each point
+  std::vector<Index> tree(static_cast<std::size_t>(n));  // tree of each point
   std::vector<Evidence> evidence;
   for (Index i = 0; i < n; ++i) {
-    const Index root = forest.find(i).vertex;  // the smallest of its tree
+    const Index root = forest.find(i).vertex;  // the lowest point of the tree
     if (root == i) evidence.emplace_back();
     tree[i] = root == i ? static_cast<Index>(evidence.size()) - 1 : tree[root];
     evidence[tree[i]].count(cloud.points[i]);

@@ -17,13 +17,12 @@
 #include "ahm/util/stopwatch.hpp"
 #include "ahm/util/text.hpp"
 #include "clean_points.hpp"
-#include "flat_sheet.hpp"
 #include "local_delaunay.hpp"
-#include "noisy_planes.hpp"
+#include "noise.hpp"
 #include "orientation.hpp"
-#include "plane_axes.hpp"
 #include "sheet_triangles.hpp"
 #include "tangent_edges.hpp"
+#include "tangent_planes.hpp"
 #include "tufted_cover.hpp"
 
 namespace ahm::pointcloud {
@@ -343,14 +342,14 @@ FlatTriangles PointCloudSurface::flat_approximation() const {
   return flat_sheet(frames, sheet_->triangles, graph_->length_unit());
 }
 
-Surface::Reason PointCloudSurface::why_without_vertex(Row row) const {
+Surface::Reason PointCloudSurface::missing_vertex_reason(Row row) const {
   if (kept_ && !std::binary_search(kept_->begin(), kept_->end(), row))
     return {"row_left_out", "was left out", "it is not among CloudOptions::rows"};
   return {"row_removed", "was removed: it is not finite, or has no tangent plane or no neighbours",
           "choose another one"};
 }
 
-double PointCloudSurface::error_of_normals() const {
+double PointCloudSurface::normal_error_degrees() const {
   const bool as_given = details_.normals_given && details_.estimated == 0 && details_.contradicted == 0;
   return as_given ? normal_error : estimated_normal_error;
 }

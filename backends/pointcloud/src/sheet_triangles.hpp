@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "ahm/graph/tangent_graph.hpp"
+#include "ahm/surface/exact/flat_triangles.hpp"
 
 namespace ahm::pointcloud {
 
@@ -21,5 +22,10 @@ struct LocalTriangles {
 /// fan or none. Time O(n log n).
 /// @param frames  of the points, in any unit of length; neighbors' normals should agree on the side
 std::vector<Triangle> sheet_triangles(std::span<const Frame> frames, const LocalTriangles& candidates);
+
+/// Lengths are distances of the points: unfolded edges of the graph are farther from those of a mesh.
+/// @param frames     of the vertices of the graph, in units of `length_unit`
+/// @param triangles  of a manifold; each vertex has one fan or none
+FlatTriangles flat_sheet(std::span<const Frame> frames, std::span<const Triangle> triangles, double length_unit);
 
 }  // namespace ahm::pointcloud

@@ -1,12 +1,14 @@
 /// \file
-/// Neighbours and tangent planes of the points of a cloud.
+/// Axes of tangent planes.
 #pragma once
 
+#include <cmath>
 #include <span>
 #include <vector>
 
 #include "ahm/pointcloud/point_cloud_surface.hpp"
 #include "ahm/util/unset_vector.hpp"
+#include "ahm/util/vec.hpp"
 #include "clean_points.hpp"
 
 namespace ahm::pointcloud {
@@ -59,5 +61,22 @@ double spacing(const Neighborhoods& neighborhoods, std::span<const Index> points
 /// scanner, get two or four times as many neighbours.
 TangentPlanes find_tangent_planes(const CleanPoints& cloud, std::span<const Vec3> given, const NeighborSearch& search,
                                   Neighborhoods& neighborhoods, const CloudOptions& options);
+
+/// Orthonormal axes of the plane with a unit normal: x is the projected first coordinate axis of space (the second
+/// where the normal is close to the first), y = normal x x.
+struct PlaneAxes {
+  explicit PlaneAxes(const Vec3& normal) {
+    const Vec3 axis = std::abs(normal[0]) < 0.9 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+    x = normalized(axis - dot(axis, normal) * normal);
+    y = cross(normal, x);
+  }
+  Vec3 x, y;
+};
+
+/// Puts the given planes (zero where there are none) in place of the fitted ones of `planes`, except where the points
+/// contradict them: there the fitted plane stays, on the given side. Fills the counts of `planes`.
+/// @return for every point, whether neither plane nor side was given
+std::vector<char> take_given_planes(const CleanPoints& cloud, const Neighborhoods& neighborhoods,
+                                    std::span<const Vec3> given, unsigned threads, TangentPlanes& planes);
 
 }  // namespace ahm::pointcloud

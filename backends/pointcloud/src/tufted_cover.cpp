@@ -10,7 +10,7 @@
 #include "ahm/util/parallel.hpp"
 #include "ahm/util/unset_vector.hpp"
 #include "ahm/util/vec.hpp"
-#include "points_per_task.hpp"
+#include "cloud_parts.hpp"
 
 namespace ahm::pointcloud {
 namespace {

@@ -5,7 +5,14 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
+#include <string>
+
+#include "ahm/error.hpp"
+#include "ahm/maps/cost.hpp"
+#include "ahm/util/component_lengths.hpp"
+#include "ahm/util/parallel.hpp"
 
 namespace ahm::polymesh {
 namespace {
@@ -194,6 +201,350 @@ void Polygon::mass(double* masses) const {
     total += area;
   }
   for (std::size_t c = 0; c < m; ++c) masses[c] = std::max(masses[c] + weight_[c] * total / 3, 0.5 * masses[c]);
+}
+
+namespace {
+
+using Eigen::Vector3d;
+
+Vector3d position(const PolygonMesh& mesh, Index v) { return Vector3d(mesh.position(Vertex(v)).data()); }
+
+/// A unit vector perpendicular to n.
+Vector3d across(const Vector3d& n) { return n.unitOrthogonal(); }
+
+/// The sum of the vector areas around a vertex, or where they cancel, the largest of them, or anything.
+Vector3d vertex_normal(const PolygonMesh& mesh, const std::vector<Vector3d>& area, Index v) {
+  Vector3d sum = Vector3d::Zero(), largest = Vector3d::Zero();
+  for (Offset corner : mesh.corners_at(Vertex(v))) {
+    const Vector3d& of_face = area[mesh.face_of(corner)];
+    const Vector3d oriented = mesh.mirrored(corner) ? Vector3d(-of_face) : of_face;
+    sum += oriented;
+    if (oriented.squaredNorm() > largest.squaredNorm()) largest = oriented;
+  }
+  if (sum.norm() > 1e-9 * largest.norm()) return sum.normalized();
+  return largest.norm() > 0 ? Vector3d(largest.normalized()) : Vector3d(0, 0, 1);
+}
+
+/// The rotation of smallest angle that takes one plane to the other, between their axes: the polar factor of
+/// the projection. Where the normals are opposite, any rotation is as small as another.
+std::complex<double> smallest_turn(const Axes& from, const Axes& to) {
+  const std::complex<double> z{to.x.dot(from.x) + to.y.dot(from.y), to.y.dot(from.x) - to.x.dot(from.y)};
+  const double size = std::abs(z);
+  return size > 1e-12 ? z / size : 1.0;
+}
+
+}  // namespace
+
+Axes axes_along(const Vector3d& normal, const Vector3d& direction) {
+  Vector3d x = direction - normal.dot(direction) * normal;
+  x = x.norm() > 1e-12 * direction.norm() ? Vector3d(x.normalized()) : across(normal);
+  x = (x - normal.dot(x) * normal).normalized();  // twice is enough
+  return {x, normal.cross(x), normal};
+}
+
+Frames find_frames(const PolygonMesh& mesh, unsigned threads) {
+  const auto faces = static_cast<std::size_t>(mesh.face_count()), n = static_cast<std::size_t>(mesh.vertex_count());
+  Frames frames;
+  frames.vertex.resize(n);
+  frames.face.resize(faces);
+  frames.turn.resize(mesh.corners().size());
+  std::vector<Vector3d> area(faces);
+  detail::for_each_index(faces, threads, [&](std::size_t f) {
+    const auto corners = mesh.face(static_cast<Index>(f));
+    const Vector3d origin = position(mesh, corners[0]);
+    area[f].setZero();
+    for (std::size_t c = 1; c + 1 < corners.size(); ++c)
+      area[f] += 0.5 * (position(mesh, corners[c]) - origin).cross(position(mesh, corners[c + 1]) - origin);
+  });
+  detail::for_each_index(n, threads, [&](std::size_t k) {
+    const auto v = static_cast<Index>(k);
+    const Offset corner = mesh.corners_at(Vertex(v)).front();
+    const Index f = mesh.face_of(corner);
+    const Offset next = corner + 1 == mesh.face_begin()[f + 1] ? mesh.face_begin()[f] : corner + 1;
+    frames.vertex[k] =
+        axes_along(vertex_normal(mesh, area, v), position(mesh, mesh.corners()[next]) - position(mesh, v));
+  });
+  detail::for_each_index(faces, threads, [&](std::size_t f) {
+    const auto corners = mesh.face(static_cast<Index>(f));
+    // A face without area lies in the tangent plane of its first corner.
+    const double size = area[f].norm();
+    const Vector3d normal = size > 0 ? Vector3d(area[f] / size) : frames.vertex[corners[0]].normal;
+    frames.face[f] = axes_along(normal, position(mesh, corners[1]) - position(mesh, corners[0]));
+    for (std::size_t c = 0; c < corners.size(); ++c) {
+      const auto corner = static_cast<std::size_t>(mesh.face_begin()[f]) + c;
+      Axes plane = frames.face[f];
+      if (mesh.mirrored(static_cast<Offset>(corner))) plane.y = -plane.y, plane.normal = -plane.normal;
+      frames.turn[corner] = smallest_turn(frames.vertex[corners[c]], plane);
+    }
+  });
+  return frames;
+}
+
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double largest_weight = 1e4;
+
+/// Of a sliver on the boundary, so that vertices in nothing else stay joined.
+constexpr double least_conductance = 1e-3;
+
+/// Stiffness and mass of every face, and what is worth telling about them.
+class FaceMatrices {
+ public:
+  FaceMatrices(const PolygonMesh& mesh, const PolygonOptions& options) : mesh_(mesh), begin_(1, 0) {
+    for (Index f = 0; f < mesh.face_count(); ++f) {
+      const auto m = static_cast<Offset>(mesh.face(f).size());
+      begin_.push_back(begin_.back() + m * m);
+    }
+    check_memory();
+    weights_.resize(begin_.back());
+    masses_.resize(mesh.corners().size());
+    shape_.resize(mesh.face_count());
+    detail::parallel_chunks(mesh.face_count(), 4096, options.threads, [&](Offset first, Offset last) {
+      Polygon polygon;
+      for (Offset f = first; f < last; ++f) fill(polygon, static_cast<Index>(f));
+    });
+  }
+
+  /// -K_cd for the corner number `corner` and place d of its face.
+  double weight(Offset corner, std::size_t d) const {
+    const Index f = mesh_.face_of(corner);
+    const Offset c = corner - mesh_.face_begin()[f], m = mesh_.face_begin()[f + 1] - mesh_.face_begin()[f];
+    return weights_[static_cast<std::size_t>(begin_[f] + c * m) + d];
+  }
+  double mass(Offset corner) const { return masses_[corner]; }
+
+  /// Triangles that are slivers on the boundary conduct along their outer side only, as those of triangle meshes: a side whose
+  /// weight is negative balances the other two.
+  void flatten_slivers() {
+    const detail::HalfEdges edges = mesh_.topology().half_edges();
+    std::vector<std::uint8_t> flat(shape_.size(), 0);
+    std::vector<detail::Half> outer;
+    for (detail::Half h = 0; h < edges.size(); ++h)
+      if (edges.twin[h] < 0) outer.push_back(h);
+    while (!outer.empty()) {
+      const detail::Half base = outer.back(), beyond = edges.twin[base];
+      outer.pop_back();
+      const Index f = mesh_.face_of(base);
+      if (mesh_.face(f).size() != 3 || flat[f]) continue;
+      if (!((beyond >= 0 ? side_weight(beyond) : 0) + side_weight(base) < 0)) continue;
+      flat[f] = 1;
+      const detail::Half a = edges.next(base), b = edges.previous(base);
+      const double weight_a = side_weight(a), weight_b = side_weight(b);
+      set_side_weight(base, 0);
+      set_side_weight(a, std::max(0.25 / weight_b, least_conductance));
+      set_side_weight(b, std::max(0.25 / weight_a, least_conductance));
+      for (const detail::Half side : {a, b})
+        if (edges.twin[side] >= 0) outer.push_back(edges.twin[side]);
+    }
+  }
+
+  /// Takes what a face gives too little along a side from what the face beyond gives: what counts is their sum.
+  void balance_sides() {
+    const detail::HalfEdges edges = mesh_.topology().half_edges();
+    for (detail::Half h = 0; h < edges.size(); ++h) {
+      const detail::Half beyond = edges.twin[h];
+      if (beyond < h) continue;
+      const double here = side_weight(h), there = side_weight(beyond);
+      if ((here < 0) == (there < 0)) continue;
+      set_side_weight(here < 0 ? h : beyond, 0);
+      set_side_weight(here < 0 ? beyond : h, std::max(here + there, 0.0));
+    }
+  }
+
+  void summarize(bool clamp, PolygonDetails& report) const {
+    for (Index f = 0; f < mesh_.face_count(); ++f) {
+      const auto m = static_cast<Index>(mesh_.face(f).size());
+      report.triangles += m == 3;
+      report.nonplanar_faces += shape_[f] == Shape::nonplanar;
+      report.degenerate_faces += shape_[f] == Shape::degenerate;
+      for (Index c = 0; c < m; ++c)
+        for (Index d = c + 1; d < m; ++d) {
+          const double w = weights_[begin_[f] + Offset{c} * m + d];
+          report.negative_weights += w < -1e-12;
+          report.capped_weights += clamp && w > largest_weight;
+        }
+      report.edges += Offset{m} * (m - 1) / 2;
+    }
+  }
+
+ private:
+  /// Place of the weight between the ends of a side, from its tail.
+  std::size_t place(detail::Half h) const {
+    const Index f = mesh_.face_of(h);
+    const auto m = static_cast<Offset>(mesh_.face(f).size()), c = h - mesh_.face_begin()[f];
+    return static_cast<std::size_t>(begin_[f] + c * m + (c + 1) % m);
+  }
+  double side_weight(detail::Half h) const { return weights_[place(h)]; }
+  void set_side_weight(detail::Half h, double w) {
+    const Index f = mesh_.face_of(h);
+    const auto m = static_cast<Offset>(mesh_.face(f).size()), c = h - mesh_.face_begin()[f];
+    weights_[place(h)] = weights_[static_cast<std::size_t>(begin_[f] + (c + 1) % m * m + c)] = w;
+  }
+
+  /// The number of edges grows with the square of a face's corners: better said than swapped for.
+  void check_memory() const {
+    const double bytes = 64.0 * static_cast<double>(begin_.back()), memory = machine_memory();
+    if (memory > 0 && bytes > memory)
+      throw ResourceExhausted("polygons_too_large",
+                              "every pair of corners of a face is an edge, which would take " +
+                                  std::to_string(static_cast<long>(bytes / 1e9)) + " GB for this mesh",
+                              "refine it (PolygonMesh::refined) and map the triangles");
+  }
+
+  enum class Shape : std::uint8_t { plain, nonplanar, degenerate };
+
+  void fill(Polygon& polygon, Index f) {
+    polygon.read(mesh_, f);
+    polygon.stiffness(weights_.data() + begin_[f]);
+    polygon.mass(masses_.data() + mesh_.face_begin()[f]);
+    double area = 0, perimeter = 0;
+    const std::size_t m = polygon.size();
+    for (std::size_t c = 0; c < m; ++c) {
+      area += masses_[static_cast<std::size_t>(mesh_.face_begin()[f]) + c];
+      perimeter += (polygon.corner((c + 1) % m) - polygon.corner(c)).norm();
+    }
+    if (area < 1e-10 * perimeter * perimeter)
+      shape_[f] = Shape::degenerate;
+    else if (polygon.vector_area().norm() < 0.99 * area)
+      shape_[f] = Shape::nonplanar;
+  }
+
+  const PolygonMesh& mesh_;
+  std::vector<Offset> begin_;  ///< of the m x m weights of each face
+  std::vector<double> weights_, masses_;
+  std::vector<Shape> shape_;
+};
+
+/// The mean length of the sides of all faces, of all and of each component, and the extremes.
+void measure_sides(const PolygonMesh& mesh, CsrGraphData& g, PolygonDetails& report) {
+  detail::ComponentLengths lengths(static_cast<std::size_t>(mesh.vertex_count()));
+  double sum = 0, shortest = std::numeric_limits<double>::infinity(), longest = 0;
+  for (Index f = 0; f < mesh.face_count(); ++f) {
+    const auto corners = mesh.face(f);
+    for (std::size_t c = 0; c < corners.size(); ++c) {
+      const Vector3d a(mesh.position(Vertex(corners[c])).data()),
+          b(mesh.position(Vertex(corners[(c + 1) % corners.size()])).data());
+      const double length = (b - a).norm();
+      sum += length;
+      lengths.add(corners[c], corners[(c + 1) % corners.size()], length);
+      shortest = std::min(shortest, length);
+      longest = std::max(longest, length);
+    }
+  }
+  report.shortest_edge = shortest * mesh.length_unit();
+  report.longest_edge = longest * mesh.length_unit();
+  if (!(longest > 0)) throw InvalidGeometry("all vertices of the mesh are at the same place");
+  g.mean_edge_length = sum / static_cast<double>(mesh.corners().size());
+  g.component_edge_lengths = lengths.means();
+}
+
+/// The chord in a tangent plane, at its own length as far as it leans to that plane at all.
+std::complex<double> log_of_chord(const Axes& axes, const Vector3d& chord) {
+  const std::complex<double> projected = axes.components(chord);
+  const double length = chord.norm(), seen = std::abs(projected);
+  return seen > 0.1 * length ? length / seen * projected : 10.0 * projected;
+}
+
+/// R_ji as stored, for corners i and j of one face.
+void write_transport(std::complex<double> turn_i, bool mirrored_i, std::complex<double> turn_j, bool mirrored_j,
+                     TransportKind kind, double* out) {
+  const bool reflects = mirrored_i != mirrored_j;
+  const std::complex<double> R = std::conj(turn_i) * (reflects ? std::conj(turn_j) : turn_j);
+  if (kind == TransportKind::rotation2) {
+    out[0] = R.real();
+    out[1] = R.imag();
+    return;
+  }
+  out[0] = R.real();
+  out[1] = reflects ? R.imag() : -R.imag();
+  out[2] = R.imag();
+  out[3] = reflects ? -R.real() : R.real();
+}
+
+/// Vertices whose faces have no area still need a mass, small against that of others of their component with area.
+void raise_masses(CsrGraphData& g) {
+  for (std::size_t v = 0; v < g.masses.size(); ++v) {
+    const double own = g.component_edge_lengths.empty() ? 0 : g.component_edge_lengths[v];
+    const double edge = own > 0 ? own : *g.mean_edge_length;
+    g.masses[v] = std::max(g.masses[v], 1e-9 * edge * edge);
+  }
+}
+
+}  // namespace
+
+CsrGraphData polygon_edges(const PolygonMesh& mesh, const Frames& frames, const PolygonOptions& options,
+                           PolygonDetails& report) {
+  const auto n = static_cast<std::size_t>(mesh.vertex_count());
+  CsrGraphData g;
+  g.kind = mesh.report().orientable ? TransportKind::rotation2 : TransportKind::block;
+  g.length_unit = mesh.length_unit();
+  measure_sides(mesh, g, report);
+  FaceMatrices matrices(mesh, options);
+  matrices.summarize(options.clamp_weights, report);
+  if (options.clamp_weights) {
+    matrices.flatten_slivers();
+    matrices.balance_sides();
+  }
+
+  g.row_begin.assign(n + 1, 0);
+  for (std::size_t v = 0; v < n; ++v) {
+    g.row_begin[v + 1] = g.row_begin[v];
+    for (Offset corner : mesh.corners_at(Vertex(v)))
+      g.row_begin[v + 1] += static_cast<Offset>(mesh.face(mesh.face_of(corner)).size()) - 1;
+  }
+  const auto edges = static_cast<std::size_t>(g.row_begin.back());
+  const std::size_t width = g.kind == TransportKind::rotation2 ? 2 : 4;
+  g.neighbors.resize(edges);
+  g.weights.resize(edges);
+  g.logs.resize(2 * edges);
+  g.transports.resize(width * edges);
+  g.masses.resize(n);
+  detail::for_each_index(n, options.threads, [&](std::size_t k) {
+    const auto v = static_cast<Index>(k);
+    const Vector3d origin(mesh.position(Vertex(v)).data());
+    auto at = static_cast<std::size_t>(g.row_begin[k]);
+    double mass = 0;
+    for (Offset corner : mesh.corners_at(Vertex(v))) {
+      const Index f = mesh.face_of(corner);
+      const auto vertices = mesh.face(f);
+      mass += matrices.mass(corner);
+      for (std::size_t d = 0; d < vertices.size(); ++d) {
+        const Offset other = mesh.face_begin()[f] + static_cast<Offset>(d);
+        if (other == corner) continue;
+        const double w = matrices.weight(corner, d);
+        g.neighbors[at] = vertices[d];
+        g.weights[at] = options.clamp_weights ? std::clamp(w, 0.0, largest_weight) : w;
+        const auto log = log_of_chord(frames.vertex[k], Vector3d(mesh.position(Vertex(vertices[d])).data()) - origin);
+        g.logs[2 * at] = log.real();
+        g.logs[2 * at + 1] = log.imag();
+        write_transport(frames.turn[corner], mesh.mirrored(corner), frames.turn[other], mesh.mirrored(other), g.kind,
+                        g.transports.data() + width * at);
+        ++at;
+      }
+    }
+    g.masses[k] = mass;
+  });
+  raise_masses(g);
+  return g;
+}
+
+std::vector<Vec2> flat_faces(const PolygonMesh& mesh) {
+  std::vector<Vec2> places;
+  places.reserve(mesh.corners().size());
+  Polygon polygon;
+  for (Index f = 0; f < mesh.face_count(); ++f) {
+    polygon.read_corners(mesh, f);
+    const Eigen::Vector3d area = polygon.vector_area(), first = polygon.corner(0), side = polygon.corner(1) - first;
+    const Eigen::Vector3d normal = area.norm() > 0 ? Eigen::Vector3d(area.normalized()) : side.unitOrthogonal();
+    const Axes plane = axes_along(normal, side);
+    for (std::size_t c = 0; c < polygon.size(); ++c) {
+      const std::complex<double> place = plane.components(polygon.corner(c) - first);
+      places.push_back({place.real(), place.imag()});
+    }
+  }
+  return places;
 }
 
 }  // namespace ahm::polymesh

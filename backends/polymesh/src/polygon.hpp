@@ -4,10 +4,12 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <complex>
 #include <span>
 #include <vector>
 
 #include "ahm/polymesh/polygon_mesh.hpp"
+#include "ahm/polymesh/polygon_mesh_surface.hpp"
 
 namespace ahm::polymesh {
 
@@ -52,5 +54,34 @@ class Polygon {
   Eigen::Vector3d middle_;
   std::vector<double> weight_, spoke_;
 };
+
+/// An orthonormal frame.
+struct Axes {
+  Eigen::Vector3d x, y, normal;
+
+  /// Components of the projection of a vector, as x + i y.
+  std::complex<double> components(const Eigen::Vector3d& v) const { return {x.dot(v), y.dot(v)}; }
+};
+
+/// The axes with this normal whose x axis lies as near as possible to a direction.
+Axes axes_along(const Eigen::Vector3d& normal, const Eigen::Vector3d& direction);
+
+struct Frames {
+  std::vector<Axes> vertex;  ///< perpendicular to the sum of the vector areas around
+  std::vector<Axes> face;    ///< perpendicular to the vector area, x along the first side
+  /// Per corner z: a tangent vector a + i b of the vertex becomes z (a + i b) in the plane of the face, or, where the
+  /// corner is mirrored, the conjugate of that.
+  std::vector<std::complex<double>> turn;
+};
+
+Frames find_frames(const PolygonMesh& mesh, unsigned threads);
+
+/// Weights, logs, transports and masses of all pairs of corners of all faces.
+CsrGraphData polygon_edges(const PolygonMesh& mesh, const Frames& frames, const PolygonOptions& options,
+                           PolygonDetails& report);
+
+/// Per corner as stored: its place in the plane perpendicular to the face's vector area, from the first corner, the first side
+/// along the x axis, counter-clockwise; in units of `length_unit`. A face without area lies along that axis.
+std::vector<Vec2> flat_faces(const PolygonMesh& mesh);
 
 }  // namespace ahm::polymesh

@@ -9,14 +9,13 @@
 #include "ahm/error.hpp"
 #include "ahm/surface/directions.hpp"
 #include "ahm/surface/exact/flat_triangles.hpp"
-#include "ahm/surface/unfolded_corners.hpp"
+#include "ahm/surface/surface_triangles.hpp"
 #include "ahm/trimesh/triangle_mesh_surface.hpp"
 #include "ahm/util/memory.hpp"
 #include "ahm/util/small_math.hpp"
 #include "ahm/util/stopwatch.hpp"
 #include "ahm/util/vec.hpp"
-#include "flat_faces.hpp"
-#include "polygon_edges.hpp"
+#include "polygon.hpp"
 
 namespace ahm::polymesh {
 namespace {
@@ -258,7 +257,7 @@ PolygonMeshSurface PolygonMeshSurface::build(std::span<const Vec3> positions, st
   });
 }
 
-PlacedSource PolygonMeshSurface::source_in_face(const FacePoint& point, const std::optional<Vec3>& u_axis) const {
+SurfaceSource PolygonMeshSurface::source_in_face(const FacePoint& point, const std::optional<Vec3>& u_axis) const {
   if (impl_->refined) {
     const Vec3 place = position(point);
     const auto corners = faces()[point.face];
@@ -279,7 +278,7 @@ Sample PolygonMeshSurface::sample_in_face(const LogMap& map, const FacePoint& po
   return impl_->refined->at(map, locate(impl_->refinement, point.face, position(point)));
 }
 
-std::vector<Vec2> PolygonMeshSurface::on_corners(const LogMap& map) const {
+std::vector<Vec2> PolygonMeshSurface::to_corners(const LogMap& map) const {
   check_map(map);
   const PolygonMesh& mesh = impl_->mesh;
   const std::vector<Vec2> places = flat_faces(mesh);

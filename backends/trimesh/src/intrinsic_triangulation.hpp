@@ -1,15 +1,90 @@
 /// \file
-/// A triangulation of a mesh's own metric, flipped to the intrinsic Delaunay triangulation [BS07, SGC21].
+/// The record of edge flips, and how points and directions of the input mesh are found in the flipped triangulation.
+///
+/// A flip retires two faces and makes two new ones in the same places of the arrays, so the flips form a directed
+/// acyclic graph, as in incremental Delaunay triangulation. A point given by its barycentric coordinates in an input
+/// face descends: at each flip that touches its face one sign decides on which side of the new diagonal it lies, and
+/// its coordinates are rewritten by additions and multiplications of non-negative numbers. Nothing is traced along the
+/// surface and no angle is summed around vertices, so there is nothing to miss and nothing to repair: a point near a
+/// diagonal may land on either side of it, on the diagonal, but at the right place. The error of one step is a rounding
+/// error of the quadrilateral's size, needles and caps included.
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <vector>
 
 #include "ahm/progress.hpp"
-#include "flip_history.hpp"
+#include "ahm/surface/half_edges.hpp"
+#include "ahm/trimesh/triangle_mesh.hpp"
 #include "planar.hpp"
 
 namespace ahm::trimesh {
+
+using detail::Corner;
+using detail::HalfEdges;
+using detail::next;
+using detail::previous;
+
+/// Faces (i, j, k) and (j, i, m) on both sides of edge ij, replaced by (m, k, i) and (k, m, j).
+///
+/// The diagonals cross at alpha i + beta j = gamma k + delta m, alpha + beta = gamma + delta = 1.
+struct Flip {
+  std::array<Index, 2> face;         ///< places of the two faces
+  std::array<std::int32_t, 2> next;  ///< next flip that touches each place, -1: none
+  std::array<std::uint8_t, 2> side;  ///< side ij of the one, ji of the other; km and mk afterwards
+  bool mirrored;                     ///< the second face was turned over first
+  double beta, gamma;
+  Vec2 turn;  ///< rotation: layout of the second face (after turning over) -> layout of the first and of both new ones
+  Vec2 diagonal;  ///< m -> k in the layout of the new faces
+};
+
+/// A map of vectors from one planar layout to another: v -> turn v, or turn conj(v).
+struct LayoutMap {
+  Vec2 turn{1, 0};
+  bool mirrored = false;
+
+  Vec2 operator()(Vec2 v) const { return product(turn, mirrored ? conj(v) : v); }
+  Vec2 inverse(Vec2 v) const {
+    const Vec2 w = product(conj(turn), v);
+    return mirrored ? conj(w) : w;
+  }
+};
+
+class FlipHistory {
+ public:
+  explicit FlipHistory(std::size_t faces) : first_(faces, -1), last_(faces, -1) {}
+
+  /// Appends a flip; `next` is filled in here.
+  void add(Flip flip);
+  /// To be called after the last flip.
+  void finish() { last_ = {}; }
+  std::size_t size() const { return flips_.size(); }
+  std::size_t bytes() const { return flips_.size() * sizeof(Flip) + first_.size() * sizeof(std::int32_t); }
+
+  struct Point {
+    Index face;
+    std::array<double, 3> weight;
+    LayoutMap map;  ///< layout of the input face -> layout of the face
+    Index depth;
+  };
+  /// A point of an input face, found in the flipped triangulation.
+  Point locate(Index face, const std::array<double, 3>& weight) const;
+
+  struct Direction {
+    Half corner;     ///< half-edge at whose start the direction leaves
+    Vec2 direction;  ///< in the layout of its face
+    bool mirrored;
+  };
+  /// A direction that leaves the start of half-edge `corner` of the input mesh into its face, found in the flipped
+  /// triangulation.
+  Direction locate(Half corner, Vec2 direction) const;
+
+ private:
+  std::vector<Flip> flips_;
+  std::vector<std::int32_t> first_;  ///< first flip that touches each input face
+  std::vector<std::int32_t> last_;   ///< 2 f + b: place b of flip f made the present face; -1: input face
+};
 
 /// Half-edge arrays whose faces are laid out in the plane one by one.
 class IntrinsicTriangulation {

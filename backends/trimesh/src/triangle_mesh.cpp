@@ -9,7 +9,7 @@
 #include "ahm/util/disjoint_sets.hpp"
 #include "ahm/util/text.hpp"
 #include "ahm/util/vec.hpp"
-#include "face_layout.hpp"
+#include "triangle_mesh_surface.hpp"
 
 namespace ahm::trimesh {
 

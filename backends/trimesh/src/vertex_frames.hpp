@@ -1,11 +1,15 @@
 /// \file
-/// Tangent spaces of the vertices [KCPS13], with true angles at the boundary.
+/// Vectors of the plane as complex numbers.
 #pragma once
 
+#include <cmath>
 #include <utility>
 #include <vector>
 
+#include "ahm/graph/csr_graph.hpp"
 #include "ahm/graph/tangent_graph.hpp"
+#include "ahm/trimesh/triangle_mesh_surface.hpp"
+#include "ahm/util/vec.hpp"
 #include "intrinsic_triangulation.hpp"
 
 namespace ahm::trimesh {
@@ -38,5 +42,10 @@ VertexFrames find_frames(const TriangleMesh& mesh, const IntrinsicTriangulation&
 /// that the projected edges lie as close as possible to their angles in the tangent space. Empty when the mesh has no
 /// positions. Origins in world units.
 std::vector<Frame> frames_in_space(const TriangleMesh& mesh, unsigned threads);
+
+/// Every cut of a connected mesh is crossed by an edge of positive weight (the energy of its indicator function is
+/// positive), so setting negative weights to 0 disconnects nothing.
+CsrGraphData mesh_edges(const TriangleMesh& mesh, const IntrinsicTriangulation& triangulation,
+                        const VertexFrames& frames, bool clamp, unsigned threads, MeshDetails& report);
 
 }  // namespace ahm::trimesh

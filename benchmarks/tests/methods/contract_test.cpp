@@ -8,10 +8,10 @@
 #include <random>
 #include <string>
 
+#include "ahm/conformance/curved_graphs.hpp"
+#include "ahm/conformance/flat_graphs.hpp"
+#include "ahm/conformance/graph_changes.hpp"
 #include "ahm/error.hpp"
-#include "ahm/testing/curved_graphs.hpp"
-#include "ahm/testing/flat_graphs.hpp"
-#include "ahm/testing/graph_changes.hpp"
 #include "methods/signed_heat.hpp"
 
 namespace ahm::test {

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ahm/testing/triangle_meshes.hpp"
-#include "ahm/testing/vectors.hpp"
+#include "ahm/conformance/triangle_meshes.hpp"
+#include "ahm/conformance/vectors.hpp"
 #include "methods/method.hpp"
 
 namespace ahm::test {

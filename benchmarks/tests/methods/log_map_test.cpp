@@ -7,11 +7,11 @@
 #include <numbers>
 #include <string>
 
+#include "ahm/conformance/closed_forms.hpp"
+#include "ahm/conformance/curved_graphs.hpp"
+#include "ahm/conformance/flat_graphs.hpp"
 #include "ahm/error.hpp"
 #include "ahm/grid/grid_graph.hpp"
-#include "ahm/testing/closed_forms.hpp"
-#include "ahm/testing/curved_graphs.hpp"
-#include "ahm/testing/flat_graphs.hpp"
 #include "ahm/trimesh/triangle_mesh_surface.hpp"
 #include "flat_maps.hpp"
 #include "methods/signed_heat.hpp"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "ahm/testing/flat_graphs.hpp"
+#include "ahm/conformance/flat_graphs.hpp"
 #include "methods/edge_integration.hpp"
 #include "methods/heat_fields.hpp"
 

@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "ahm/applications/stroke.hpp"
+#include "ahm/conformance/curved_graphs.hpp"
 #include "ahm/error.hpp"
-#include "ahm/testing/curved_graphs.hpp"
 #include "ahm/trimesh/triangle_mesh_surface.hpp"
 #include "flat_maps.hpp"
 

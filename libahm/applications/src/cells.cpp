@@ -1,17 +1,15 @@
-#include "ahm/applications/cells.hpp"
+#include "cells.hpp"
 
-#include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
 
+#include "ahm/applications/cells.hpp"
 #include "ahm/error.hpp"
-#include "ahm/maps/place_in_space.hpp"
+#include "ahm/maps/straight_line.hpp"
 #include "ahm/util/memory.hpp"
 #include "ahm/util/vec.hpp"
-#include "farthest.hpp"
 
 namespace ahm {
 namespace {
@@ -48,12 +46,12 @@ std::vector<Vertex> candidates(Index vertices, Vertex first, Index count, std::s
 
 VoronoiCells voronoi_cells(const TangentGraph& graph, std::span<const Vertex> vertices) {
   return detail::with_memory_check("labelling by the nearest source", [&] {
-    UnfoldingFront front(graph);
+    Wavefront front(graph);
     return voronoi_cells(front, vertices);
   });
 }
 
-VoronoiCells voronoi_cells(UnfoldingFront& front, std::span<const Vertex> vertices) {
+VoronoiCells voronoi_cells(Wavefront& front, std::span<const Vertex> vertices) {
   return detail::with_memory_check("labelling by the nearest source", [&] {
     const TangentGraph& graph = front.graph();
     check_vertices(graph, vertices);
@@ -74,7 +72,7 @@ VoronoiCells voronoi_cells(UnfoldingFront& front, std::span<const Vertex> vertic
       }
       const auto start = starts[label], here = start ? graph.frame(i) : std::nullopt;
       const double line = here ? distance(start->origin, here->origin) : 0;
-      cells.distances.push_back(no_shorter_than(line, front.distance(Vertex(i))));
+      cells.distances.push_back(bounded_distance(line, front.distance(Vertex(i))));
     }
     return cells;
   });
@@ -103,12 +101,12 @@ VoronoiCells voronoi_cells(const ExactGeodesics& geodesics, std::span<const Vert
 std::vector<Vertex> farthest_points(const TangentGraph& graph, Vertex first, Index count, const Progress& progress,
                                     std::span<const Vertex> among) {
   return detail::with_memory_check("spreading points", [&] {
-    UnfoldingFront front(graph, UnfoldingFront::stars(graph));
+    Wavefront front(graph, Wavefront::one_rings(graph));
     return farthest_points(front, first, count, progress, among);
   });
 }
 
-std::vector<Vertex> farthest_points(UnfoldingFront& front, Vertex first, Index count, const Progress& progress,
+std::vector<Vertex> farthest_points(Wavefront& front, Vertex first, Index count, const Progress& progress,
                                     std::span<const Vertex> among) {
   return detail::with_memory_check("spreading points", [&] {
     if (front.points() > 0)

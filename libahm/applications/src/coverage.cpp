@@ -1,19 +1,17 @@
-#include "ahm/applications/coverage.hpp"
+#include "coverage.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
-#include <numbers>
 #include <optional>
 #include <string>
 #include <variant>
 
+#include "ahm/applications/coverage.hpp"
 #include "ahm/error.hpp"
 #include "ahm/maps/cost.hpp"
 #include "ahm/util/small_math.hpp"
 #include "ahm/util/text.hpp"
-#include "ahm/util/vec.hpp"
-#include "joined_points.hpp"
+#include "surface_curve.hpp"
 
 namespace ahm {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "ahm/error.hpp"
 #include "ahm/maps/tangent_lines.hpp"
-#include "ahm/surface/surface_faces.hpp"
+#include "ahm/surface/surface_triangles.hpp"
 #include "ahm/util/shortest_paths.hpp"
 #include "ahm/util/small_math.hpp"
 #include "ahm/util/vec.hpp"
@@ -268,8 +268,8 @@ std::optional<InversePoint> origin_of(const TangentGraph& graph, const Source& s
     point.normal = point.normal + point.weights[k] * s.normals[point.vertices[k]];
   }
   point.normal = unit_or_zero(point.normal);
-  const Vec2 u = u_axis_at_place(source);
-  const Frame frame = *graph.frame(tangent_place(source).vertex.index);
+  const Vec2 u = u_axis_at_point(source);
+  const Frame frame = *graph.frame(tangent_plane_point(source).vertex.index);
   const Vec3 axis = u[0] * frame.x + u[1] * frame.y;
   point.du = unit_or_zero(axis - dot(axis, point.normal) * point.normal);
   point.dv = cross(point.normal, point.du);
@@ -301,7 +301,7 @@ InverseMap inverse_map(const TangentGraph& graph, const LogMap& map, const Inver
 InverseMap inverse_map(const Surface& surface, const LogMap& map, const InverseMapOptions& options) {
   const TangentGraph& graph = surface.graph();
   const std::vector<Vec3> graph_normals = source_side_normals(graph, map);
-  const RowLogMap rows = surface.on_rows(map);
+  const RowLogMap rows = surface.to_rows(map);
   const std::size_t n = rows.vertex.size();
   const std::vector<double> quality = quality_asked_for(graph, map, options);
   std::vector<Vec3> normals(n);

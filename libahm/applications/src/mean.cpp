@@ -1,21 +1,189 @@
 #include "ahm/applications/mean.hpp"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
+#include <numeric>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "ahm/error.hpp"
+#include "ahm/maps/tangent_lines.hpp"
 #include "ahm/util/small_math.hpp"
 #include "ahm/util/text.hpp"
-#include "flat_center.hpp"
+#include "ahm/util/vec.hpp"
+#include "surface_curve.hpp"
 
 namespace ahm {
+
+/// Points as K x d numbers with K weights > 0.
+struct FlatPoints {
+  std::size_t dimension = 0;
+  std::vector<double> coordinates;
+  std::vector<double> weights;
+
+  std::size_t size() const { return weights.size(); }
+  std::span<const double> operator[](std::size_t k) const {
+    return std::span(coordinates).subspan(k * dimension, dimension);
+  }
+};
+
+/// sum w z / sum w.
+std::vector<double> flat_mean(const FlatPoints& points);
+
+/// Where sum w |z - x| is least, to rounding; one of these places where there are several.
+std::vector<double> flat_median(const FlatPoints& points);
+
+/// Distances of the points from x, one per point.
+std::vector<double> distances(const FlatPoints& points, std::span<const double> x);
+
+namespace {
+
+using Eigen::MatrixXd, Eigen::VectorXd;
+
+Eigen::Map<const VectorXd> point(const FlatPoints& points, std::size_t k) {
+  return {points[k].data(), static_cast<Eigen::Index>(points.dimension)};
+}
+
+double sum_of_distances(const FlatPoints& points, const VectorXd& x) {
+  double sum = 0;
+  for (std::size_t k = 0; k < points.size(); ++k) sum += points.weights[k] * (point(points, k) - x).norm();
+  return sum;
+}
+
+/// F(x) = sum w |z - x| near x. Points at x itself count by their weight alone.
+struct Slope {
+  VectorXd pull;      ///< sum w u, u the unit vectors towards the points: - grad F
+  MatrixXd hessian;   ///< sum w / |z - x| (id - u u^T)
+  double rate = 0;    ///< sum w / |z - x|, not less than any eigenvalue of the Hessian
+  double weight = 0;  ///< of the points at x
+
+  /// Vardi & Zhang 2000: the points at x hold it where the others do not pull harder.
+  bool is_least() const { return pull.norm() <= weight; }
+};
+
+Slope slope_at(const FlatPoints& points, const VectorXd& x) {
+  const Eigen::Index d = x.size();
+  Slope slope{VectorXd::Zero(d), MatrixXd::Zero(d, d)};
+  VectorXd u(d);
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    u = point(points, k) - x;
+    const double r = u.norm(), w = points.weights[k];
+    if (r == 0) {
+      slope.weight += w;
+      continue;
+    }
+    u /= r;
+    slope.pull += w * u;
+    slope.rate += w / r;
+    slope.hessian.diagonal().array() += w / r;
+    slope.hessian.noalias() -= w / r * u * u.transpose();
+  }
+  return slope;
+}
+
+/// The better of Newton's step and Weiszfeld's, which never fails to go down, at points too [VZ00]. Newton's may be worse by rounding.
+VectorXd step(const FlatPoints& points, const VectorXd& x, const Slope& slope) {
+  VectorXd weiszfeld = (1 - slope.weight / slope.pull.norm()) / slope.rate * slope.pull;
+  if (slope.weight > 0) return weiszfeld;
+  const VectorXd newton = slope.hessian.ldlt().solve(slope.pull);
+  if (!newton.allFinite()) return weiszfeld;
+  const double by_newton = sum_of_distances(points, x + newton), by_weiszfeld = sum_of_distances(points, x + weiszfeld);
+  return by_newton <= by_weiszfeld * (1 + 1e-13) ? newton : weiszfeld;
+}
+
+VectorXd nearest_point(const FlatPoints& points, const VectorXd& x) {
+  const std::vector<double> away = distances(points, {x.data(), static_cast<std::size_t>(x.size())});
+  return point(points, static_cast<std::size_t>(std::min_element(away.begin(), away.end()) - away.begin()));
+}
+
+}  // namespace
+
+std::vector<double> distances(const FlatPoints& points, std::span<const double> x) {
+  const Eigen::Map<const VectorXd> at(x.data(), static_cast<Eigen::Index>(x.size()));
+  std::vector<double> away(points.size());
+  for (std::size_t k = 0; k < away.size(); ++k) away[k] = (point(points, k) - at).norm();
+  return away;
+}
+
+std::vector<double> flat_mean(const FlatPoints& points) {
+  const double total = std::accumulate(points.weights.begin(), points.weights.end(), 0.0);
+  std::vector<double> mean(points.dimension, 0.0);
+  for (std::size_t k = 0; k < points.size(); ++k)
+    for (std::size_t a = 0; a < mean.size(); ++a) mean[a] += points.weights[k] / total * points[k][a];
+  return mean;
+}
+
+std::vector<double> flat_median(const FlatPoints& points) {
+  const std::vector<double> mean = flat_mean(points);
+  VectorXd x = Eigen::Map<const VectorXd>(mean.data(), static_cast<Eigen::Index>(mean.size()));
+  const std::vector<double> away = distances(points, mean);
+  const double size = *std::max_element(away.begin(), away.end());
+  for (int pass = 0; pass < 1000; ++pass) {
+    // A median that is one of the points would be approached ever more slowly.
+    const VectorXd z = nearest_point(points, x);
+    if (slope_at(points, z).is_least()) {
+      x = z;
+      break;
+    }
+    const Slope slope = slope_at(points, x);
+    if (slope.is_least()) break;
+    const VectorXd by = step(points, x, slope);
+    x += by;
+    if (by.norm() <= 2 * std::numeric_limits<double>::epsilon() * size) break;
+  }
+  return {x.data(), x.data() + x.size()};
+}
+
+namespace {
+
+/// From a vertex in the axes of its frame. What leads out of the surface at once goes along the boundary as far as it does.
+Vec3 end_of_trace(const ExactGeodesics& geodesics, const Center& center) {
+  constexpr double pi = std::numbers::pi;
+  const exact::PolyhedralSurface& surface = geodesics.triangles().surface;
+  double direction = std::atan2(center.offset[1], center.offset[0]), far = length(center.offset);
+  if (direction < 0) direction += 2 * pi;
+  if (const double sum = surface.angle_sum(center.vertex.index);
+      surface.on_boundary(center.vertex.index) && direction > sum) {
+    const double left = direction - sum, right = 2 * pi - direction;
+    far *= std::max(0.0, std::cos(std::min(left, right)));
+    direction = left < right ? sum : 0;
+  }
+  const exact::TracedPath way =
+      exact::trace(surface, surface.vertex_point(center.vertex), direction, far / geodesics.triangles().length_unit);
+  return geodesics.position(way.points.back());
+}
+
+Vec3 end_of_line(const TangentGraph& graph, const Center& center) {
+  const Vec2 offset{center.offset[0], center.offset[1]};
+  const TangentLine line = trace_line(graph, {center.vertex}, offset, length(offset));
+  return position(graph, line.places.back()).value();
+}
+
+}  // namespace
+
+Vec3 center_position(const Surface& surface, const Center& center) {
+  const TangentGraph& graph = surface.graph();
+  if (surface.positions().empty()) throw InvalidArgument("the surface has no positions");
+  if (center.vertex.index < 0 || center.vertex.index >= graph.size() || center.offset.size() != 2)
+    throw InvalidArgument("the center, at vertex " + std::to_string(center.vertex.index) +
+                          ", is one of another surface");
+  const Frame frame = graph.frame(center.vertex.index).value();
+  if (length(center.offset) == 0) return frame.origin;
+  if (surface.faces().size() == 0) return end_of_line(graph, center);
+  const FlatFaces faces(surface);
+  if (faces.geodesics) return end_of_trace(*faces.geodesics, center);
+  return surface.closest_point(frame.origin + center.offset[0] * frame.x + center.offset[1] * frame.y).position;
+}
+
 namespace {
 
 /// Weighted points, and what is to be least.
 struct Problem {
-  const MapMaker& maps;
+  const AnySolver& maps;
   const char* name;  ///< of what is sought, for messages
   std::vector<double> (*flat_center)(const FlatPoints&);
   std::vector<Source> points = {};
@@ -190,26 +358,26 @@ std::vector<Source> sources_at(std::span<const Vertex> vertices) {
 
 }  // namespace
 
-Center karcher_mean_of_points(const MapMaker& maps, std::span<const Source> points, std::span<const double> weights,
+Center karcher_mean_of_points(const AnySolver& maps, std::span<const Source> points, std::span<const double> weights,
                               const CenterOptions& options) {
   Problem problem{maps, "mean", flat_mean};
   set_points(problem, points, weights);
   return search(problem, 2, options);
 }
 
-Center geometric_median_of_points(const MapMaker& maps, std::span<const Source> points, std::span<const double> weights,
-                                  const CenterOptions& options) {
+Center geometric_median_of_points(const AnySolver& maps, std::span<const Source> points,
+                                  std::span<const double> weights, const CenterOptions& options) {
   Problem problem{maps, "median", flat_median};
   set_points(problem, points, weights);
   return search(problem, 1, options);
 }
 
-Center karcher_mean(const MapMaker& maps, std::span<const Vertex> vertices, std::span<const double> weights,
+Center karcher_mean(const AnySolver& maps, std::span<const Vertex> vertices, std::span<const double> weights,
                     const CenterOptions& options) {
   return karcher_mean_of_points(maps, sources_at(vertices), weights, options);
 }
 
-Center geometric_median(const MapMaker& maps, std::span<const Vertex> vertices, std::span<const double> weights,
+Center geometric_median(const AnySolver& maps, std::span<const Vertex> vertices, std::span<const double> weights,
                         const CenterOptions& options) {
   return geometric_median_of_points(maps, sources_at(vertices), weights, options);
 }

@@ -7,7 +7,7 @@
 #include "ahm/error.hpp"
 #include "ahm/util/small_math.hpp"
 #include "ahm/util/vec.hpp"
-#include "plane_curve.hpp"
+#include "coverage.hpp"
 
 namespace ahm {
 namespace {

@@ -1,17 +1,368 @@
-#include "ahm/applications/surface_curve.hpp"
+#include "surface_curve.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
-#include <optional>
-#include <vector>
+#include <span>
+#include <utility>
+#include <variant>
 
+#include "ahm/applications/stroke.hpp"
 #include "ahm/error.hpp"
+#include "ahm/graph/components.hpp"
+#include "ahm/surface/surface_paths.hpp"
+#include "ahm/util/small_math.hpp"
+#include "ahm/util/text.hpp"
 #include "ahm/util/vec.hpp"
-#include "curve_pieces.hpp"
-#include "plane_curve.hpp"
+#include "coverage.hpp"
 
 namespace ahm {
+
+/// A piece of the curve, by its middle.
+struct CurvePiece {
+  SurfacePoint point;
+  Vec3 arriving, leaving;  ///< directions of the curve there of the segments that end and begin there
+  std::size_t after;       ///< which of the given points
+  double along;            ///< of the line to the next one, in (0, 1)
+  double length;
+};
+
+/// Joins the given points and cuts the lines (see `draw_curve`).
+/// @param curve  gets points, pieces, length, gap, jump and what lines are straight
+/// @throws InvalidArgument (as `draw_curve`)
+std::vector<CurvePiece> cut_curve(const Surface& surface, std::span<const CurvePoint> given, bool closed,
+                                  SurfaceCurve& curve);
+
+namespace {
+
+/// Points this near to a straight line, relative to its length, lie on it.
+constexpr double straight = 1e-11;
+
+bool lies_between(const Vec3& from, const Vec3& at, const Vec3& to) {
+  const double far = length(to - from);
+  return !(far > 0) || length(cross((1 / far) * (at - from), (1 / far) * (to - from))) <= straight;
+}
+
+}  // namespace
+
+FlatFaces::FlatFaces(const Surface& surface) {
+  if (surface.faces().size() == 0 || surface.positions().empty()) return;
+  try {
+    geodesics.emplace(surface);
+  } catch (const Cancelled&) {
+    throw;
+  } catch (const Error& e) {  // twisted polygons, faces of no area
+    reason = e.what();
+  }
+}
+
+std::vector<Vec3> bends(const ExactGeodesics& geodesics, const exact::GeodesicPath& path) {
+  std::vector<Vec3> kept;
+  for (std::size_t k = 0; k < path.points.size(); ++k) {
+    const Vec3 at = geodesics.position(path.points[k]);
+    if (k > 0 && k + 1 < path.points.size() && lies_between(kept.back(), at, geodesics.position(path.points[k + 1])))
+      continue;
+    kept.push_back(at);
+  }
+  return kept;
+}
+
+namespace {
+
+constexpr double most_points = 1e6;
+
+/// Mean length of the edges about a point, world units.
+double edge_at(const Surface& surface, const SurfacePoint& point) {
+  return mean_edge(surface.graph(), surface.source(point).source.vertices());
+}
+
+/// A place on a line: the directions of the segments that end and begin there; inside of one both are its own.
+struct PlaceOnLine {
+  Vec3 position, arriving, leaving;
+};
+
+/// A line of corners by arclength.
+class Line {
+ public:
+  explicit Line(std::span<const Vec3> corners) {
+    for (const Vec3& corner : corners) {
+      const double along = corners_.empty() ? 0 : distance(corners_.back(), corner);
+      if (!corners_.empty() && !(along > 0)) continue;
+      begins_.push_back(length() + along);
+      corners_.push_back(corner);
+    }
+  }
+  double length() const { return begins_.empty() ? 0 : begins_.back(); }
+  std::span<const Vec3> corners() const { return corners_; }
+  /// @param s  within the length, which is not 0
+  PlaceOnLine at(double s) const {
+    const double near = same_place * length();
+    const auto next = std::ranges::lower_bound(begins_, s - near) - begins_.begin();
+    const auto end = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(next, 1, std::ssize(corners_) - 1));
+    const double share = (s - begins_[end - 1]) / (begins_[end] - begins_[end - 1]);
+    const bool is_corner = std::abs(s - begins_[end]) <= near && end + 1 < corners_.size();
+    return {corners_[end - 1] + share * (corners_[end] - corners_[end - 1]), direction(end),
+            direction(is_corner ? end + 1 : end)};
+  }
+
+ private:
+  /// Share of the length by which a place may miss a corner.
+  static constexpr double same_place = 1e-9;
+
+  Vec3 direction(std::size_t end) const {
+    return 1 / (begins_[end] - begins_[end - 1]) * (corners_[end] - corners_[end - 1]);
+  }
+
+  std::vector<Vec3> corners_;
+  std::vector<double> begins_;  ///< arclengths of the corners
+};
+
+/// Joins points by shortest paths: over flat faces, and without faces over tangent planes.
+class Joiner {
+ public:
+  explicit Joiner(const Surface& surface)
+      : surface_(surface), over_planes_(surface.faces().size() == 0), faces_(surface), reason_(faces_.reason) {}
+
+  /// Corners of the shortest path; none where the surface has no paths, or does not join the points: then `reason` tells why.
+  std::vector<Vec3> path(const SurfacePoint& from, const SurfacePoint& to) {
+    std::vector<Vec3> corners;
+    if (over_planes_) {
+      corners = shortest_line(surface_, from, to).points;
+    } else if (faces_.geodesics) {
+      for (const exact::MeshPoint& point : faces_.geodesics->path(std::array{from, to}).points)
+        corners.push_back(faces_.geodesics->position(point));
+    } else {
+      return corners;
+    }
+    if (corners.empty()) reason_ = "the surface does not connect their ends";
+    return corners;
+  }
+  /// The same of points nearby: where it bends. None where there are no flat faces.
+  std::vector<Vec3> short_path(const SurfacePoint& from, const SurfacePoint& to) const {
+    if (!faces_.geodesics) return {};
+    return bends(*faces_.geodesics, faces_.geodesics->locally_shortest_path(from, to));
+  }
+  const std::string& reason() const { return reason_; }
+
+ private:
+  const Surface& surface_;
+  bool over_planes_;
+  FlatFaces faces_;
+  std::string reason_;
+};
+
+double length_of(const std::vector<Vec3>& corners) {
+  double length = 0;
+  for (std::size_t k = 0; k + 1 < corners.size(); ++k) length += distance(corners[k], corners[k + 1]);
+  return length;
+}
+
+[[noreturn]] void refuse_length(double length, double edge) {
+  throw InvalidArgument("curve_too_long",
+                        "the curve is " + detail::number(length) + " long, more than " + detail::number(most_points) +
+                            " times half an edge length of " + detail::number(edge),
+                        "is it in the units of the surface?");
+}
+
+[[noreturn]] void refuse_turn(const Vec3& p) {
+  throw InvalidArgument(
+      "curve_turns_back",
+      "the curve turns back at " + detail::number(p[0]) + " " + detail::number(p[1]) + " " + detail::number(p[2]),
+      "split it there");
+}
+
+/// One line between given points, or several short ones: together one piece.
+struct Stretch {
+  std::vector<Vec3> corners;
+  std::vector<std::size_t> lines;  ///< the numbers of the given points that its lines begin at
+  std::vector<double> ends;        ///< and the arclengths where they end
+  bool is_path = false;            ///< along the surface, not only near to it
+};
+
+/// Cuts a curve into pieces of about half of the edges there, so that pieces in one face are few, and as many beside other
+/// parts of a surface as without these.
+class CurveCutter {
+ public:
+  CurveCutter(const Surface& surface, std::span<const CurvePoint> given, bool closed, SurfaceCurve& curve)
+      : surface_(surface), closed_(closed), curve_(curve), joiner_(surface) {
+    for (const CurvePoint& point : given) {
+      if (const auto* in_space = std::get_if<Vec3>(&point)) {
+        corners_.push_back(*in_space);
+        ClosestPoint closest = project(*in_space);
+        ends_.push_back(std::move(closest.point));
+        below_.push_back(closest.position);
+      } else {
+        ends_.push_back(std::get<SurfacePoint>(point));
+        below_.push_back(surface.position(ends_.back()));
+        corners_.push_back(below_.back());
+      }
+    }
+    if (!closed || given.empty()) return;
+    corners_.push_back(corners_.front());
+    ends_.push_back(ends_.front());
+    below_.push_back(below_.front());
+  }
+
+  std::vector<CurvePiece> cut() {
+    const double edge = ends_.empty() ? 0 : edge_at(surface_, ends_.front()), length = length_of(corners_);
+    if (!(length <= most_points * edge / 2)) refuse_length(length, edge);
+    least_ = 1e-6 * edge;
+    Stretch open;
+    for (std::size_t k = 0; k + 1 < corners_.size(); ++k) {
+      if (!(distance(corners_[k], corners_[k + 1]) > least_)) continue;
+      const double there = edge_at(surface_, ends_[k]);
+      Stretch line = join(k, there);
+      const double least = 0.75 * (there / 2);
+      if (line.ends.back() < least) {
+        append(line, open);
+        if (open.ends.back() < least) continue;
+        line = std::exchange(open, {});
+      } else {
+        cut(std::exchange(open, {}));
+      }
+      cut(line);
+    }
+    cut(open);
+    if (closed_ && begin_) check_turn(*last_, *begin_, corners_.front());
+    if (closed_ && curve_.points.size() > 1) curve_.points.pop_back();  // the first again
+    const std::size_t needed = closed_ ? 3 : 2;
+    if (const std::size_t points = pieces_.size() + (closed_ || corners_.empty() ? 0 : 1); points < needed)
+      throw InvalidArgument(
+          "curve_too_short",
+          "the curve has " + std::to_string(points) + " different point" + (points == 1 ? "" : "s") + " on the surface",
+          "give at least " + std::to_string(needed) + (closed_ ? " for a closed curve" : ""));
+    return std::move(pieces_);
+  }
+
+ private:
+  ClosestPoint project(const Vec3& p) {
+    ClosestPoint closest = surface_.closest_point(p);
+    curve_.gap = std::max(curve_.gap, distance(closest.position, p));
+    return closest;
+  }
+
+  /// By the shortest path between two given points, locally shortest between near ones, else by the straight line.
+  /// @param edge  there
+  Stretch join(std::size_t k, double edge) {
+    Stretch line{{corners_[k], corners_[k + 1]}, {k}, {}, false};
+    const bool is_far = distance(corners_[k], corners_[k + 1]) > 2 * edge;
+    if (std::vector<Vec3> path =
+            is_far ? joiner_.path(ends_[k], ends_[k + 1]) : joiner_.short_path(ends_[k], ends_[k + 1]);
+        path.size() > 2 || (is_far && !path.empty())) {
+      line.corners = std::move(path);
+      line.is_path = surface_.faces().size() > 0;
+    } else if (is_far && !(curve_.straight_reason = joiner_.reason()).empty()) {
+      ++curve_.straight;
+    }
+    line.ends = {length_of(line.corners)};
+    return line;
+  }
+
+  static void append(const Stretch& line, Stretch& to) {
+    to.lines.push_back(line.lines.front());
+    to.ends.push_back((to.ends.empty() ? 0 : to.ends.back()) + line.ends.back());
+    to.corners.insert(to.corners.end(), line.corners.begin(), line.corners.end());
+  }
+
+  void check_turn(const Vec3& arriving, const Vec3& leaving, const Vec3& at) const {
+    const Vec3 sum = arriving + leaving;
+    if (!(dot(sum, sum) > 1e-6)) refuse_turn(at);
+  }
+
+  void cut(const Stretch& stretch) {
+    const Line line(stretch.corners);
+    if (!(line.length() > least_)) return;
+    if (last_) check_turn(*last_, line.at(0).leaving, corners_[stretch.lines.front()]);
+    if (!begin_) begin_ = line.at(0).leaving;
+    last_ = line.at(line.length()).arriving;
+    if (stretch.lines.size() > 1) return add_short_lines(stretch, line);
+    const auto on_surface = [&](double s) {
+      return stretch.is_path ? line.at(s).position : project(line.at(s).position).position;
+    };
+    const std::vector<double> cuts = cuts_of(line);
+    Vec3 from = on_surface(0);
+    add_point(from);
+    for (std::size_t p = 1; p < cuts.size(); ++p) {
+      const double begin = cuts[p - 1], end = cuts[p], middle = (begin + end) / 2;
+      const Vec3 to = on_surface(end);
+      const double length = stretch.is_path ? end - begin : distance(from, to);
+      if (!(length > least_)) continue;
+      const auto [position, arriving, leaving] = line.at(middle);
+      const double along = middle / line.length();
+      add_piece({project(position).point, arriving, leaving, stretch.lines.front(), along, length});
+      if (!stretch.is_path) add_point(to);
+      from = to;
+    }
+    if (stretch.is_path)
+      for (const Vec3& corner : line.corners()) add_point(corner);
+  }
+
+  /// As one piece, in the direction from their begin to their end.
+  void add_short_lines(const Stretch& stretch, const Line& line) {
+    double length = 0;
+    for (const std::size_t k : stretch.lines) {
+      length += distance(below_[k], below_[k + 1]);
+      add_point(below_[k]);
+    }
+    const Vec3 &from = below_[stretch.lines.front()], &to = below_[stretch.lines.back() + 1];
+    add_point(to);
+    if (!(distance(from, to) > least_)) return;
+    const double middle = line.length() / 2;
+    const auto own = std::ranges::lower_bound(stretch.ends, middle) - stretch.ends.begin();
+    const double begin = own > 0 ? stretch.ends[own - 1] : 0, along = (middle - begin) / (stretch.ends[own] - begin);
+    const Vec3 direction = 1 / distance(from, to) * (to - from);
+    add_piece({project(line.at(middle).position).point, direction, direction, stretch.lines[own], along, length});
+  }
+
+  void add_piece(CurvePiece piece) {
+    curve_.length += piece.length;
+    curve_.jump = std::max(curve_.jump, piece.length);
+    curve_.pieces.push_back(piece.length);
+    pieces_.push_back(std::move(piece));
+  }
+
+  /// Ends of pieces, by arclength.
+  std::vector<double> cuts_of(const Line& line) const {
+    const double length = line.length();
+    std::vector<double> cuts{0};
+    while (cuts.back() < length) {
+      const double edge = edge_at(surface_, surface_.closest_point(line.at(cuts.back()).position).point);
+      if (!(edge > 0) || static_cast<double>(pieces_.size() + cuts.size()) > most_points) refuse_length(length, edge);
+      cuts.push_back(cuts.back() + edge / 2);
+    }
+    // The last one or the one before ends nearer to the line's end.
+    if (cuts.size() > 2 && cuts.back() - length > length - cuts[cuts.size() - 2]) cuts.pop_back();
+    const double share = length / cuts.back();
+    for (double& cut : cuts) cut *= share;
+    cuts.back() = length;
+    return cuts;
+  }
+
+  void add_point(const Vec3& p) {
+    if (curve_.points.empty() || distance(curve_.points.back(), p) > least_) curve_.points.push_back(p);
+  }
+
+  const Surface& surface_;
+  bool closed_;
+  SurfaceCurve& curve_;
+  Joiner joiner_;
+  std::vector<Vec3> corners_;       ///< the given points in space, closed: and the first again
+  std::vector<SurfacePoint> ends_;  ///< the same on the surface
+  std::vector<Vec3> below_;         ///< where these are
+  std::vector<CurvePiece> pieces_;
+  std::optional<Vec3> begin_, last_;  ///< how the curve begins, and how its last line ends
+  double least_ = 0;                  ///< points nearer than this coincide
+};
+
+}  // namespace
+
+std::vector<CurvePiece> cut_curve(const Surface& surface, std::span<const CurvePoint> given, bool closed,
+                                  SurfaceCurve& curve) {
+  return CurveCutter(surface, given, closed, curve).cut();
+}
+
 namespace {
 
 /// Without what is along the normal: a curve may run as steep as noise lets it.
@@ -58,7 +409,7 @@ SurfaceCurve draw(const Surface& surface, std::span<const CurvePoint> given, boo
   };
   for (const CurvePiece& piece : pieces) {
     const Vec3 along = direction_at(piece, surface.source(piece.point).frame);
-    const PlacedSource point = surface.source(piece.point, along);
+    const SurfaceSource point = surface.source(piece.point, along);
     if (stroke.empty()) curve.first = point.frame;
     turn_over(point.frame);
     const auto [position, direction] = place_of(piece, s + piece.length / 2, curve.length);
@@ -118,10 +469,10 @@ SurfaceCurve draw_curve(const Surface& surface, std::span<const CurvePoint> give
   });
 }
 
-double reach_from_curve(const SurfaceCurve& curve, double radius) { return radius + 2 * curve.jump; }
+double map_radius_of_curve(const SurfaceCurve& curve, double radius) { return radius + 2 * curve.jump; }
 
 RowLogMap rows_from_curve(const Surface& surface, const LogMap& map, const SurfaceCurve& curve, double radius) {
-  RowLogMap rows = surface.on_rows(map);
+  RowLogMap rows = surface.to_rows(map);
   rows.angle.clear();
   const bool is_exact = map.method() == Method::exact, is_flat = curve.shape && has_exact_coordinates(curve);
   // By so much of the distance coordinates may be nearer to the truth than a front from samples.

@@ -1,10 +1,14 @@
+// Contracting edges without length: the half-edges of `GluedMesh` afterwards.
 #include "ahm/surface/gluing.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <string>
 
 #include "ahm/error.hpp"
+#include "ahm/util/disjoint_sets.hpp"
 #include "ahm/util/text.hpp"
 #include "ahm/util/vec.hpp"
 
@@ -280,6 +284,320 @@ NormalizedPositions normalize_positions(std::vector<Vec3> points, std::span<cons
   for (std::size_t v = 0; v < points.size(); ++v)
     rounding[v] = std::scalbn(std::numeric_limits<double>::epsilon() * most[part[v]], -exponent_about_middles);
   return {std::move(points), std::move(rounding), std::scalbn(1.0, exponent + exponent_about_middles)};
+}
+
+namespace {
+
+/// Fans of faces about the input vertices.
+struct Fans {
+  std::vector<Index> of_half;  ///< per half-edge, about its start
+  std::vector<Half> corner;    ///< per fan: its lowest half-edge
+  std::vector<Index> first;    ///< per input vertex: its first fan, -1: none
+  std::vector<Index> later;    ///< the others
+  ItemList pinched;            ///< vertices that have others, each once
+};
+
+Fans find_fans(const HalfEdges& edges, Index vertices, std::span<const std::uint8_t> dropped) {
+  Fans fans;
+  fans.of_half.assign(edges.tail.size(), -1);
+  fans.first.assign(vertices, -1);
+  std::vector<bool> listed(vertices);
+  for (Half h = 0; h < edges.size(); ++h) {
+    if (fans.of_half[h] >= 0 || (!dropped.empty() && dropped[h / 3])) continue;
+    const auto number = static_cast<Index>(fans.corner.size());
+    fans.corner.push_back(h);
+    if (Index& first = fans.first[edges.tail[h]]; first < 0) {
+      first = number;
+    } else {
+      if (!listed[edges.tail[h]]) fans.pinched.add(std::to_string(edges.tail[h]));
+      listed[edges.tail[h]] = true;
+      fans.later.push_back(number);
+    }
+    for (Corner c = edges.rightmost({h, true}); c.half >= 0 && fans.of_half[c.half] < 0; c = edges.turn_left(c))
+      fans.of_half[c.half] = number;
+  }
+  return fans;
+}
+
+bool are_triangles(const FaceList& faces) {
+  for (std::size_t f = 0; f < faces.size(); ++f)
+    if (faces[f].size() != 3) return false;
+  return true;
+}
+
+}  // namespace
+
+GluedMesh::GluedMesh(Index vertices, const FaceList& faces, NonManifold non_manifold,
+                     std::span<const std::uint8_t> turned) {
+  report_.vertices = vertices;
+  report_.faces = static_cast<Index>(faces.size());
+  build_half_edges(faces, non_manifold, turned);
+  number_vertices(non_manifold);
+  find_parts();
+}
+
+/// Half-edges of the oriented faces, tails still input vertices. Turning a face of m corners over, its first corner staying
+/// first, takes side s to side m - 1 - s.
+void GluedMesh::build_half_edges(const FaceList& faces, NonManifold non_manifold,
+                                 std::span<const std::uint8_t> turned) {
+  Gluing gluing = glue(report_.vertices, faces, non_manifold, turned);
+  report_.non_manifold_edges = gluing.non_manifold_edges;
+  report_.reoriented = gluing.reoriented;
+  report_.orientable = gluing.orientable;
+  reversed_ = std::move(gluing.reversed);
+  face_begin_.assign(faces.begin.begin(), faces.begin.end());
+  if (!are_triangles(faces)) {
+    face_of_.resize(faces.vertices.size());
+    for (Index f = 0; f < face_count(); ++f)
+      std::fill(face_of_.begin() + face_begin_[f], face_of_.begin() + face_begin_[f + 1], f);
+  }
+  auto stored = [&](Half h) {
+    const Index f = face_of(h);
+    return reversed_[f] ? static_cast<Half>(face_begin_[f] + face_begin_[f + 1] - 1 - h) : h;
+  };
+  const auto halves = static_cast<Half>(faces.vertices.size());
+  tail_.resize(faces.vertices.size());
+  twin_.resize(faces.vertices.size());
+  for (Half h = 0; h < halves; ++h) {
+    const Index f = face_of(h);
+    const auto first = static_cast<Index>(face_begin_[f]);
+    tail_[first + stored_corner(f, h - first)] = faces.vertices[h];
+    const Half t = gluing.partner[h];
+    twin_[stored(h)] = t >= 0 ? stored(t) : -1 - report_.boundary_edges++;
+  }
+  if (report_.orientable) return;
+  mirrored_.resize(faces.vertices.size());
+  for (Half h = 0; h < halves; ++h) mirrored_[h] = twin_[h] >= 0 && tail_[h] == tail_[twin_[h]];
+}
+
+/// Makes every fan of faces about an input vertex a vertex: first fans are numbered in the order of the input, then the
+/// others.
+void GluedMesh::number_vertices(NonManifold non_manifold) {
+  Fans fans = find_fans(half_edges(), report_.vertices, dropped_);
+  report_.non_manifold_vertices = static_cast<Index>(fans.pinched.count());
+  report_.added_vertices = static_cast<Index>(fans.later.size());
+  if (fans.pinched.count() > 0 && non_manifold == NonManifold::error)
+    throw InvalidGeometry("non_manifold_vertices",
+                          std::to_string(fans.pinched.count()) +
+                              " vertices join several fans of faces (bow ties): " + fans.pinched.text(),
+                          "repair them, or split them with NonManifold::split");
+  std::vector<Index> vertex_of_fan(fans.corner.size(), -1);
+  auto number = [&](Index fan, Index input) {
+    vertex_of_fan[fan] = vertex_count();
+    input_of_vertex_.push_back(input);
+    corner_.push_back(fans.corner[fan]);
+  };
+  vertex_of_input_ = std::move(fans.first);
+  for (Index v = 0; v < report_.vertices; ++v) {
+    if (Index& first = vertex_of_input_[v]; first >= 0) {
+      number(first, v);
+      first = vertex_count() - 1;
+    } else {
+      ++report_.unreferenced;
+    }
+  }
+  for (Index fan : fans.later) number(fan, tail_[fans.corner[fan]]);
+  for (std::size_t h = 0; h < tail_.size(); ++h)
+    if (fans.of_half[h] >= 0) tail_[h] = vertex_of_fan[fans.of_half[h]];
+}
+
+void GluedMesh::find_parts() {
+  const HalfEdges edges = half_edges();
+  DisjointSets parts(input_of_vertex_.size()), loops(input_of_vertex_.size());
+  std::vector<std::uint8_t> on_boundary(input_of_vertex_.size(), 0);
+  Index faces = 0;
+  Offset sides = 0;
+  for (Index f = 0; f < face_count(); ++f)
+    if (!is_dropped(f)) ++faces, sides += face_begin_[f + 1] - face_begin_[f];
+  for (Half h = 0; h < edges.size(); ++h) {
+    if (is_dropped(face_of(h))) continue;
+    const Index a = tail_[h], b = edges.head(h);
+    parts.join(a, b);
+    if (twin_[h] >= 0) continue;
+    on_boundary[a] = on_boundary[b] = 1;
+    loops.join(a, b);
+  }
+  part_.resize(input_of_vertex_.size());
+  for (Index v = 0; v < vertex_count(); ++v) {
+    part_[v] = parts.root(v);
+    report_.components += part_[v] == v;
+    report_.boundary_loops += on_boundary[v] && loops.root(v) == v;
+  }
+  report_.edges = (sides + report_.boundary_edges) / 2;
+  report_.euler_characteristic = vertex_count() - report_.edges + faces;
+}
+
+std::vector<Index> GluedMesh::given_corners() const {
+  if (!given_corners_.empty()) return given_corners_;
+  std::vector<Index> result(tail_.size());
+  for (Index f = 0; f < face_count(); ++f)
+    for (Offset begin = face_begin_[f], c = 0; begin + c < face_begin_[f + 1]; ++c)
+      result[begin + c] = input_of_vertex_[tail_[begin + stored_corner(f, static_cast<Index>(c))]];
+  return result;
+}
+
+namespace {
+
+/// Takes faces out of half-edge arrays of triangles.
+class FaceDropper {
+ public:
+  FaceDropper(std::vector<Half>& twin, std::vector<std::uint8_t>& mirrored, std::size_t faces)
+      : twin_(twin), mirrored_(mirrored), dropped(faces, 0), stand_in(faces, {-1, -1, -1}) {}
+
+  /// Drops the face of a side that is a point now: glues what lies beyond its two other sides.
+  void collapse(Half side) {
+    const Half right = next(side), left = previous(side), beyond_right = twin_[right], beyond_left = twin_[left];
+    take_out(side / 3);
+    if (beyond_right == left) return;  // folded onto itself: nothing is beyond
+    const bool mirrored_right = is_mirrored(right), mirrors = mirrored_right != is_mirrored(left);
+    glue(beyond_right, beyond_left, mirrors);
+    glue(beyond_left, beyond_right, mirrors);
+    // Both ends of the side lie at one end of what is beyond, the third corner at the other.
+    std::array<Half, 3>& corners = stand_in[side / 3];
+    if (beyond_right >= 0) {
+      const Half tail = beyond_right, head = next(beyond_right);
+      corners[side % 3] = corners[right % 3] = mirrored_right ? tail : head;
+      corners[left % 3] = mirrored_right ? head : tail;
+    } else if (beyond_left >= 0) {
+      const Half tail = beyond_left, head = next(beyond_left);
+      corners[side % 3] = corners[right % 3] = is_mirrored(left) ? head : tail;
+      corners[left % 3] = is_mirrored(left) ? tail : head;
+    }
+    order_.push_back(side / 3);
+  }
+
+  void take_out(Index face) { dropped[face] = 1; }
+
+  /// Leads corners in faces that were dropped later on to faces that were kept.
+  void resolve() {
+    for (auto face = order_.rbegin(); face != order_.rend(); ++face)
+      for (Half& corner : stand_in[*face])
+        if (corner >= 0 && dropped[corner / 3]) corner = stand_in[corner / 3][corner % 3];
+  }
+
+ private:
+  bool is_mirrored(Half h) const { return !mirrored_.empty() && mirrored_[h]; }
+  void glue(Half side, Half other, bool mirrors) {
+    if (side < 0) return;
+    twin_[side] = std::max(other, -1);
+    if (!mirrored_.empty()) mirrored_[side] = other >= 0 && mirrors;
+  }
+
+  std::vector<Half>& twin_;
+  std::vector<std::uint8_t>& mirrored_;
+  std::vector<Index> order_;
+
+ public:
+  std::vector<std::uint8_t> dropped;
+  std::vector<std::array<Half, 3>> stand_in;
+};
+
+/// A face with two sides that are contracted has a third one.
+void close_faces(std::vector<std::uint8_t>& contracted, std::span<const Half> twin) {
+  std::vector<Index> faces(contracted.size() / 3);
+  std::iota(faces.begin(), faces.end(), 0);
+  while (!faces.empty()) {
+    const Half h = 3 * faces.back();
+    faces.pop_back();
+    if (contracted[h] + contracted[h + 1] + contracted[h + 2] != 2) continue;
+    for (Half side = h; side < h + 3; ++side) {
+      if (contracted[side]) continue;
+      contracted[side] = 1;
+      if (twin[side] < 0) continue;
+      contracted[twin[side]] = 1;
+      faces.push_back(twin[side] / 3);
+    }
+  }
+}
+
+/// Whether a face is without a contracted side.
+bool leaves_a_face(std::span<const std::uint8_t> contracted) {
+  for (std::size_t h = 0; h < contracted.size(); h += 3)
+    if (!contracted[h] && !contracted[h + 1] && !contracted[h + 2]) return true;
+  return false;
+}
+
+}  // namespace
+
+void GluedMesh::contract(std::vector<std::uint8_t> contracted) {
+  close_faces(contracted, twin_);
+  if (std::find(contracted.begin(), contracted.end(), 1) == contracted.end() || !leaves_a_face(contracted)) return;
+  given_corners_ = given_corners();
+
+  DisjointSets places(vertex_of_input_.size());
+  for (Half h = 0; h < static_cast<Half>(tail_.size()); ++h)
+    if (contracted[h]) places.join(input_of_vertex_[tail_[h]], input_of_vertex_[tail_[next(h)]]);
+  for (Index v = 0; v < report_.vertices; ++v)
+    if (places.root(v) != v) merged_.emplace_back(v, places.root(v));
+  for (Index& v : tail_) v = places.root(input_of_vertex_[v]);
+
+  FaceDropper dropper(twin_, mirrored_, reversed_.size());
+  for (Half h = 0; h < static_cast<Half>(tail_.size()); h += 3) {
+    if (contracted[h] && contracted[h + 1] && contracted[h + 2]) {
+      dropper.take_out(h / 3);
+      continue;
+    }
+    for (Half side = h; side < h + 3; ++side)
+      if (contracted[side]) dropper.collapse(side);
+  }
+  dropper.resolve();
+  dropped_ = std::move(dropper.dropped);
+  stand_in_ = std::move(dropper.stand_in);
+  renumber_contracted();
+}
+
+/// Numbers vertices and boundary edges again and counts them.
+void GluedMesh::renumber_contracted() {
+  const TopologyReport before = report_;
+  report_.boundary_edges = report_.components = report_.boundary_loops = 0;
+  for (Half h = 0; h < static_cast<Half>(tail_.size()); ++h) {
+    if (is_dropped(h / 3)) {
+      twin_[h] = -1;
+      if (!mirrored_.empty()) mirrored_[h] = 0;
+    } else if (twin_[h] < 0) {
+      twin_[h] = -1 - report_.boundary_edges++;
+    }
+  }
+  input_of_vertex_.clear();
+  corner_.clear();
+  number_vertices(NonManifold::split);
+  report_.unreferenced = before.unreferenced;
+  for (const auto& [v, onto] : merged_) vertex_of_input_[v] = vertex_of_input_[onto];
+
+  place_dropped_corners();
+  find_parts();
+}
+
+/// Gives the corners of dropped faces vertices, and faces that became points a stand-in.
+void GluedMesh::place_dropped_corners() {
+  std::vector<Index> dropped, vertex(vertex_of_input_);
+  for (Index f = 0; f < face_count(); ++f)
+    if (is_dropped(f)) dropped.push_back(f);
+  // Corners in faces without area alone have no vertex: that of the next corner has to do, or any.
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (Index f : dropped)
+      for (Half h = 3 * f; h < 3 * f + 3; ++h)
+        if (vertex[tail_[h]] < 0 && vertex[tail_[next(h)]] >= 0)
+          vertex[tail_[h]] = vertex[tail_[next(h)]], changed = true;
+  }
+  for (Index f : dropped) {
+    const auto corner = tail_.begin() + 3 * f;
+    const bool is_point = corner[0] == corner[1] && corner[1] == corner[2] && vertex_of_input_[corner[0]] >= 0;
+    for (Half h = 3 * f; h < 3 * f + 3; ++h) tail_[h] = std::max(vertex[tail_[h]], 0);
+    if (is_point) stand_in_[f].fill(corner_[tail_[3 * f]]);
+  }
+}
+
+std::vector<RowVertex> GluedMesh::rows() const {
+  std::vector<RowVertex> pairs;
+  for (Index v = 0; v < vertex_count(); ++v) pairs.push_back({Row(input_of_vertex_[v]), Vertex(v)});
+  if (merged_.empty()) return pairs;
+  std::vector<std::vector<Index>> vertices(vertex_of_input_.size());
+  for (Index v = 0; v < vertex_count(); ++v) vertices[input_of_vertex_[v]].push_back(v);
+  for (const auto& [row, onto] : merged_)
+    for (Index v : vertices[onto]) pairs.push_back({Row(row), Vertex(v)});
+  return pairs;
 }
 
 }  // namespace ahm::detail

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "ahm/surface/glued_mesh.hpp"
 #include "ahm/surface/gluing.hpp"
 #include "ahm/util/disjoint_sets.hpp"
 

@@ -4,11 +4,122 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "ahm/error.hpp"
+#include "ahm/graph/csr_graph.hpp"
+#include "ahm/surface/exact/flat_triangles.hpp"
 #include "ahm/util/memory.hpp"
-#include "flat_graph.hpp"
+
+namespace ahm::detail {
+
+/// Vertices and the axes of their tangent planes are those of the surface's graph. All weights and masses are 1: it is no graph to
+/// solve on. Vertices without triangles have no edges.
+CsrGraph flat_graph(const FlatTriangles& flat);
+
+namespace {
+
+using exact::Half;
+using exact::HalfRecord;
+
+/// Angles of the sides of all triangles in the frames of their ends.
+class SideAngles {
+ public:
+  explicit SideAngles(const FlatTriangles& flat)
+      : flat_(flat),
+        at_tail_(static_cast<std::size_t>(3 * flat.surface.face_count())),
+        at_head_(at_tail_.size()),
+        turns_back_(at_tail_.size()) {
+    for (Index v = 0; v < flat.surface.vertex_count(); ++v)
+      for_each_corner(v, [&](exact::Corner c, double right, double left) {
+        at_tail_[c.half] = c.forward ? right : left;
+        at_head_[exact::previous(c.half)] = c.forward ? left : right;
+        turns_back_[c.half] = c.forward == is_mirrored(v);
+      });
+  }
+
+  /// Calls body(corner, angle of its right side, of its left side) counterclockwise.
+  template <class Body>
+  void for_each_corner(Index vertex, const Body& body) const {
+    const exact::PolyhedralSurface& surface = flat_.surface;
+    const exact::Corner start = surface.first_corner(vertex);
+    if (start.half < 0) return;
+    const double zero = flat_.angles.empty() ? 0 : flat_.angles[vertex];
+    const double scale = (is_mirrored(vertex) ? -1 : 1) * surface.angle_scale(vertex);
+    double turned = 0;
+    for (exact::Corner c = start;;) {
+      const double next = turned + surface.angle(c.half);
+      body(c, zero + scale * turned, zero + scale * next);
+      turned = next;
+      c = surface.turn_left(c);
+      if (c.half < 0 || c == start) return;
+    }
+  }
+
+  double at_tail(Half side) const { return at_tail_[side]; }
+  double at_head(Half side) const { return at_head_[side]; }
+  /// Whether the frames of the ends of a side see its triangle from different sides.
+  bool reflects(Half side) const { return turns_back_[side] != turns_back_[exact::next(side)]; }
+
+ private:
+  bool is_mirrored(Index vertex) const { return !flat_.mirrored.empty() && flat_.mirrored[vertex] != 0; }
+
+  const FlatTriangles& flat_;
+  std::vector<double> at_tail_, at_head_;
+  std::vector<char> turns_back_;  ///< of the corner at the tail: whether its triangle is clockwise in the frame
+};
+
+/// An edge as the vertex sees it where it starts.
+struct Edge {
+  Index to;
+  double length, angle, angle_there;
+  bool reflects;
+};
+
+void append(CsrGraphData& graph, const Edge& edge) {
+  graph.neighbors.push_back(edge.to);
+  graph.weights.push_back(1);
+  graph.logs.insert(graph.logs.end(), {edge.length * std::cos(edge.angle), edge.length * std::sin(edge.angle)});
+  // Takes the direction back along the edge, there, to that along it, here.
+  const double side = edge.reflects ? -1 : 1, turn = edge.angle - side * (edge.angle_there + std::numbers::pi);
+  const double c = std::cos(turn), s = std::sin(turn);
+  if (graph.kind == TransportKind::rotation2)
+    graph.transports.insert(graph.transports.end(), {c, s});
+  else
+    graph.transports.insert(graph.transports.end(), {c, -side * s, s, side * c});
+}
+
+}  // namespace
+
+CsrGraph flat_graph(const FlatTriangles& flat) {
+  const exact::PolyhedralSurface& surface = flat.surface;
+  const SideAngles angles(flat);
+  CsrGraphData graph;
+  graph.length_unit = flat.length_unit;
+  graph.is_delaunay = true;
+  graph.masses.assign(static_cast<std::size_t>(surface.vertex_count()), 1);
+  for (Half side = 0; side < 3 * surface.face_count(); ++side)
+    if (angles.reflects(side)) graph.kind = TransportKind::block;
+  graph.row_begin.push_back(0);
+  for (Index v = 0; v < surface.vertex_count(); ++v) {
+    const auto add_side = [&](exact::Corner c, bool is_right) {
+      const HalfRecord r = surface.record(c.half);
+      const Half before = exact::previous(c.half);
+      if (is_right == c.forward)
+        append(graph, {r.head, r.length, angles.at_tail(c.half), angles.at_head(c.half), angles.reflects(c.half)});
+      else
+        append(graph, {r.apex, r.left, angles.at_head(before), angles.at_tail(before), angles.reflects(before)});
+    };
+    angles.for_each_corner(v, [&](exact::Corner c, double, double) {
+      add_side(c, true);
+      if (surface.turn_left(c).half < 0) add_side(c, false);
+    });
+    graph.row_begin.push_back(static_cast<Offset>(graph.neighbors.size()));
+  }
+  return CsrGraph(std::move(graph));
+}
+}  // namespace ahm::detail
 
 namespace ahm {
 namespace {
@@ -20,8 +131,8 @@ constexpr Offset windows_per_vertex = 8, least_windows = Offset{1} << 17;
 /// What a front over the triangles of a sheet has found, for a front over the graph. The triangles are as noisy as the points, so
 /// that nothing there is exact. Expected errors are those of another front, which started at the source without windows, and the
 /// difference to it over the root of 2, as of two estimates that are equally good.
-std::vector<UnfoldingFront::Seed> found_by(const UnfoldingFront& front, const UnfoldingFront& other, bool frames) {
-  std::vector<UnfoldingFront::Seed> seeds;
+std::vector<Wavefront::Seed> found_by(const Wavefront& front, const Wavefront& other, bool frames) {
+  std::vector<Wavefront::Seed> seeds;
   for (Index i = 0; i < front.graph().size(); ++i) {
     const Vertex v(i);
     const double distance = front.distance(v);
@@ -45,7 +156,7 @@ PolarMapSolver::PolarMapSolver(const TangentGraph& graph, const PolarSolverOptio
         "dimension_not_2",
         "a polar map needs a graph of dimension 2; this one has dimension " + std::to_string(graph.dimension()),
         "map it by heat");
-  stars_ = UnfoldingFront::stars(graph, options.threads, false);
+  stars_ = Wavefront::one_rings(graph, options.threads, false);
 }
 
 PolarMapSolver::PolarMapSolver(const Surface& surface, const PolarSolverOptions& options)
@@ -57,7 +168,7 @@ PolarMapSolver::PolarMapSolver(const Surface& surface, const PolarSolverOptions&
     geodesics_.emplace(surface, surface.flat_approximation());
     if (!geodesics_->triangles().approximate) return;
     sheet_ = std::make_unique<const CsrGraph>(detail::flat_graph(geodesics_->triangles()));
-    sheet_stars_ = UnfoldingFront::stars(*sheet_, options.threads, false);
+    sheet_stars_ = Wavefront::one_rings(*sheet_, options.threads, false);
   } catch (const InvalidArgument&) {  // no flat triangles
   } catch (const InvalidGeometry&) {  // a face without area
   }
@@ -67,19 +178,19 @@ PolarMapSolver::PolarMapSolver(const Surface& surface, const PolarSolverOptions&
 template <class Seeds>
 LogMap PolarMapSolver::seeded_map(const Source& source, const PolarMapOptions& options, const Seeds& seeds) const {
   return detail::with_memory_check("a polar map", [&] {
-    UnfoldingFront front(*graph_, stars_, true);
+    Wavefront front(*graph_, stars_, true);
     front.add(source);
-    std::vector<UnfoldingFront::Seed> exact;
+    std::vector<Wavefront::Seed> exact;
     try {
       exact = seeds(ExactMapOptions{
-          .radius = options.radius, .most_windows = windows_, .frames = options.frames, .progress = options.progress});
+          .radius = options.radius, .max_windows = windows_, .frames = options.frames, .progress = options.progress});
     } catch (
         const InvalidGeometry&) {  // windows lost in needles, a source outside of the triangles: from the source, then
     }
-    const auto run_from = [&](UnfoldingFront& over) {
+    const auto run_from = [&](Wavefront& over) {
       if (!exact.empty()) {
         // Where the front goes on it needs its focusing, and its orientation where that may differ.
-        const double farthest = std::ranges::max_element(exact, {}, &UnfoldingFront::Seed::distance)->distance;
+        const double farthest = std::ranges::max_element(exact, {}, &Wavefront::Seed::distance)->distance;
         const bool goes_on = exact.size() < static_cast<std::size_t>(graph_->size());
         if (goes_on || over.graph().transport_layout().may_reflect()) over.run(farthest, options.progress.stop);
         over.restart(exact);
@@ -88,7 +199,7 @@ LogMap PolarMapSolver::seeded_map(const Source& source, const PolarMapOptions& o
     };
     if (sheet_ && !exact.empty()) {
       front.run(options.radius, options.progress.stop);
-      UnfoldingFront over(*sheet_, sheet_stars_, true);
+      Wavefront over(*sheet_, sheet_stars_, true);
       over.add(source);
       run_from(over);
       exact = found_by(over, front, options.frames);
@@ -102,18 +213,18 @@ LogMap PolarMapSolver::log_map(const SurfacePoint& source, const std::optional<V
                                const PolarMapOptions& options) const {
   if (surface_ == nullptr) throw InvalidArgument("the solver is for a graph; a point of a surface needs its surface");
   return seeded_map(surface_->source(source, u_axis).source, options, [&](const ExactMapOptions& exact) {
-    return geodesics_ ? geodesics_->seeds(source, u_axis, exact) : std::vector<UnfoldingFront::Seed>();
+    return geodesics_ ? geodesics_->seeds(source, u_axis, exact) : std::vector<Wavefront::Seed>();
   });
 }
 
 LogMap PolarMapSolver::log_map(Vertex source, const PolarMapOptions& options) const {
   return seeded_map(Source::at_vertex(source), options, [&](const ExactMapOptions& exact) {
-    return geodesics_ ? geodesics_->seeds(source, exact) : std::vector<UnfoldingFront::Seed>();
+    return geodesics_ ? geodesics_->seeds(source, exact) : std::vector<Wavefront::Seed>();
   });
 }
 
 LogMap PolarMapSolver::log_map(const Source& source, const PolarMapOptions& options) const {
-  return seeded_map(source, options, [](const ExactMapOptions&) { return std::vector<UnfoldingFront::Seed>(); });
+  return seeded_map(source, options, [](const ExactMapOptions&) { return std::vector<Wavefront::Seed>(); });
 }
 
 Method choose_method(const TangentGraph& graph) { return graph.is_delaunay() ? Method::polar : Method::heat; }

@@ -1,6 +1,6 @@
 // The published contract, on grids in the plane and in space.
+#include "ahm/conformance/graph_contract.hpp"
 #include "ahm/grid/grid_graph.hpp"
-#include "ahm/testing/graph_contract.hpp"
 
 namespace ahm::test {
 namespace {

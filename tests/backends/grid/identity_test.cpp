@@ -3,9 +3,9 @@
 
 #include <cmath>
 
+#include "ahm/conformance/graph_changes.hpp"
 #include "ahm/fields/vector_heat.hpp"
 #include "ahm/grid/grid_graph.hpp"
-#include "ahm/testing/graph_changes.hpp"
 
 namespace ahm::test {
 namespace {

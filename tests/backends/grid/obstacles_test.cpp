@@ -8,7 +8,7 @@
 #include "ahm/graph/components.hpp"
 #include "ahm/grid/grid_graph.hpp"
 #include "ahm/maps/quality.hpp"
-#include "ahm/maps/unfolding_front.hpp"
+#include "ahm/maps/wavefront.hpp"
 #include "ahm/util/vec.hpp"
 
 namespace ahm::test {
@@ -154,7 +154,7 @@ TEST(GridObstacles, AreGoneRoundInSpace) {
   for (const Index n : {12, 24, 48}) {
     const Wall wall(n);
     const Vertex source = wall.graph.vertex(std::array<Index, 3>{n / 4, n / 4, n / 4});
-    UnfoldingFront front(wall.graph);
+    Wavefront front(wall.graph);
     front.add(Source::at_vertex(source));
     front.run();
     double most = 0;

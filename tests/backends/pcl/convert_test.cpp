@@ -110,7 +110,7 @@ TEST(ToPcl, ClosesTheWayFromAScanToItsMap) {
   options.search = kdtree_search;
   const auto graph = pointcloud::PointCloudSurface::build(scan.points, scan.normals, options);
   const LogMapSolver solver(graph.graph());
-  const auto map = graph.on_rows(solver.solve(graph.source(Row(0), Vec3{1, 0, 0}).source));
+  const auto map = graph.to_rows(solver.solve(graph.source(Row(0), Vec3{1, 0, 0}).source));
   for (const PointLogMap& p : to_pcl(cloud, map)) {
     EXPECT_EQ(p.status, static_cast<std::uint32_t>(Status::ok));
     EXPECT_NEAR(p.u, p.x - cloud[0].x, 1e-6);

@@ -1,7 +1,7 @@
 // The published contract, on clouds.
+#include "ahm/conformance/clouds.hpp"
+#include "ahm/conformance/graph_contract.hpp"
 #include "ahm/pointcloud/point_cloud_surface.hpp"
-#include "ahm/testing/clouds.hpp"
-#include "ahm/testing/graph_contract.hpp"
 
 namespace ahm::test {
 namespace {

@@ -44,7 +44,7 @@ TEST(CloudFaults, PointsThatAreNotFinite) {
   const auto graph = PointCloudSurface::build(points, {}, drop);
   EXPECT_EQ(graph.details().non_finite, 2);
   const LogMapSolver solver(graph.graph());
-  const RowLogMap map = graph.on_rows(solver.solve(graph.source(Row(0)).source));
+  const RowLogMap map = graph.to_rows(solver.solve(graph.source(Row(0)).source));
   expect_nan_exactly_where_not_ok(map);
   EXPECT_EQ(map.status[42], Status::removed);
   EXPECT_EQ(map.status[77], Status::removed);
@@ -173,7 +173,7 @@ TEST(CloudFaults, APointTooFarAwayForSquaresOfLengthsIsRefused) {
 TEST(CloudFaults, AMapOfAnotherGraphIsRefused) {
   const Solved one(flat_cloud(100)), two(flat_cloud(120));
   const LogMap map = one.solver.solve(one.graph.source(Row(0)).source);
-  EXPECT_THROW(two.graph.on_rows(map), InvalidArgument);
+  EXPECT_THROW(two.graph.to_rows(map), InvalidArgument);
 }
 
 TEST(CloudFaults, ASearchThatDoesNotSearchIsRefused) {
@@ -248,7 +248,7 @@ TEST(CloudFaults, PartsWithoutAreaBesideOthersAreRemoved) {
   std::vector<Vec3> points = flat_cloud(100).points;
   for (std::size_t i = 0; i < 100; ++i) points.push_back(0x1p-700 * points[i]);
   const auto surface = PointCloudSurface::build(points);
-  const RowLogMap map = surface.on_rows(LogMapSolver(surface.graph()).solve(surface.source(Row(7)).source));
+  const RowLogMap map = surface.to_rows(LogMapSolver(surface.graph()).solve(surface.source(Row(7)).source));
   for (std::size_t i = 0; i < 100; ++i) EXPECT_EQ(map.status[i], Status::ok) << i;
   EXPECT_GT(std::count(map.status.begin(), map.status.end(), Status::removed), 90);
 }

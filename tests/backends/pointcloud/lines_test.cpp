@@ -4,11 +4,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "ahm/conformance/clouds.hpp"
+#include "ahm/conformance/vectors.hpp"
 #include "ahm/maps/tangent_lines.hpp"
 #include "ahm/pointcloud/point_cloud_surface.hpp"
-#include "ahm/surface/surface_lines.hpp"
-#include "ahm/testing/clouds.hpp"
-#include "ahm/testing/vectors.hpp"
+#include "ahm/surface/surface_paths.hpp"
 #include "backends/great_circles.hpp"
 
 namespace ahm::test {
@@ -23,7 +23,7 @@ LineErrors sphere_errors(const Cloud& cloud) {
   LineErrors worst;
   const auto n = static_cast<Index>(cloud.points.size());
   for (Index k = 0; k < 12; ++k) {
-    const TangentPlace from{surface.vertex(Row(n / 13 * k + 5))}, to{surface.vertex(Row(n / 17 * (k + 3) + 2))};
+    const TangentPlanePoint from{surface.vertex(Row(n / 13 * k + 5))}, to{surface.vertex(Row(n / 17 * (k + 3) + 2))};
     const Vec3 a = *position(graph, from), b = *position(graph, to);
     const double angle = std::acos(std::clamp(dot(a, b), -1.0, 1.0));
     if (angle > 2.8) continue;
@@ -31,7 +31,7 @@ LineErrors sphere_errors(const Cloud& cloud) {
     EXPECT_EQ(path.status, Status::ok);
     worst.length = std::max(worst.length, std::abs(path.length / angle - 1));
     const Vec3 normal = cross(a, b);
-    for (const TangentPlace& place : path.places)
+    for (const TangentPlanePoint& place : path.places)
       worst.off_circle = std::max(worst.off_circle, std::abs(dot(*position(graph, place), normal)) / norm(normal));
     const Frame frame = *graph.frame(from.vertex.index);
     const TangentLine line = trace_line(graph, from, {0.6, 0.8}, 2);
@@ -80,7 +80,7 @@ TEST(LinesOnClouds, AreTheSameReversed) {
   const CsrGraph& graph = surface.graph();
   const double h = graph.mean_edge_length() * graph.length_unit();
   for (Index k = 0; k < 10; ++k) {
-    const TangentPlace a{surface.vertex(Row(37 * k))}, b{surface.vertex(Row(3999 - 211 * k))};
+    const TangentPlanePoint a{surface.vertex(Row(37 * k))}, b{surface.vertex(Row(3999 - 211 * k))};
     const TangentLine there = shortest_line(graph, a, b), back = shortest_line(graph, b, a);
     EXPECT_EQ(there.length, back.length);
     ASSERT_EQ(there.places.size(), back.places.size());
@@ -104,7 +104,7 @@ std::vector<Vec3> sphere_with_twins(double scale) {
 TEST(LinesOnClouds, AreTheSameBitsAtEveryPowerOfTwo) {
   const auto lines = [](int exponent) {
     const auto surface = PointCloudSurface::build(sphere_with_twins(std::ldexp(1.0, exponent)));
-    std::vector<SurfaceLine> found;
+    std::vector<SurfacePath> found;
     for (Index k = 0; k < 8; ++k) found.push_back(shortest_line(surface, Row(20 * k), Row(889 - 41 * k)));
     return found;
   };

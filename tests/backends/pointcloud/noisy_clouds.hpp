@@ -6,7 +6,7 @@
 #include <numbers>
 #include <random>
 
-#include "ahm/testing/clouds.hpp"
+#include "ahm/conformance/clouds.hpp"
 
 namespace ahm::test {
 

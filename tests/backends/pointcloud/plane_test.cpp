@@ -7,9 +7,9 @@
 #include <numeric>
 #include <random>
 
+#include "ahm/conformance/vectors.hpp"
 #include "ahm/maps/quality.hpp"
-#include "ahm/maps/unfolding_front.hpp"
-#include "ahm/testing/vectors.hpp"
+#include "ahm/maps/wavefront.hpp"
 #include "solved_cloud.hpp"
 
 namespace ahm::test {
@@ -75,7 +75,7 @@ TEST(FlatCloud, IsNotTrustedBehindAWall) {
   };
   const Solved solved(cloud);
   const LogMap map = solved.solver.solve(solved.graph.source(Row(nearest(0.5, 0.3))).source);
-  const auto quality = on_rows(solved.graph.on_rows(map), map_quality(solved.graph.graph(), map));
+  const auto quality = to_rows(solved.graph.to_rows(map), map_quality(solved.graph.graph(), map));
   int behind = 0;
   for (std::size_t i = 0; i < cloud.points.size(); ++i) {
     const Vec3& p = cloud.points[i];
@@ -100,7 +100,7 @@ TEST(RolledCloud, OfSquaresIsCrossedDiagonally) {
         cloud.points.push_back({std::cos(angle) + place[1], std::sin(angle), h * y});
       }
     const auto surface = pointcloud::PointCloudSurface::build(cloud.points);
-    UnfoldingFront front(surface.graph());
+    Wavefront front(surface.graph());
     front.add(surface.source(Row(0)).source);
     front.run();
     for (int y = 0; y < rows; ++y)
@@ -180,7 +180,7 @@ TEST(RolledCloud, ConvergesToThePlaneWithSecondOrder) {
     const Index p = (rows / 2) * rows + rows / 2;
     // u along the axis of the cylinder, which is the plane's u; v is the normal times u.
     const LogMap map = solved.solver.solve(solved.graph.source(Row(p), Vec3{1, 0, 0}).source, {.variant = variant});
-    const auto on_points = solved.graph.on_rows(map);
+    const auto on_points = solved.graph.to_rows(map);
     double worst = 0;
     for (std::size_t i = 0; i < cloud.points.size(); ++i)
       worst = std::max(worst, std::hypot(on_points.u[i] - (cloud.plane[i][0] - cloud.plane[p][0]),
@@ -198,7 +198,7 @@ TEST(Source, PointsItsUAxisWhereAsked) {
   const Solved solved(cloud);
   const Vec3 direction{cloud.points[60][0] - cloud.points[5][0], cloud.points[60][1] - cloud.points[5][1],
                        cloud.points[60][2] - cloud.points[5][2]};
-  const auto map = solved.graph.on_rows(solved.solver.solve(solved.graph.source(Row(5), direction).source));
+  const auto map = solved.graph.to_rows(solved.solver.solve(solved.graph.source(Row(5), direction).source));
   EXPECT_NEAR(map.u[60], std::sqrt(dot(direction, direction)), 1e-11);
   EXPECT_NEAR(map.v[60], 0, 1e-11);
 }

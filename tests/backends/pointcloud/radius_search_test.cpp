@@ -1,10 +1,9 @@
 // The part of a cloud around a point.
-#include "ahm/pointcloud/radius_search.hpp"
-
 #include <gtest/gtest.h>
 
-#include "ahm/testing/clouds.hpp"
-#include "ahm/testing/vectors.hpp"
+#include "ahm/conformance/clouds.hpp"
+#include "ahm/conformance/vectors.hpp"
+#include "ahm/pointcloud/neighbor_search.hpp"
 
 namespace ahm::test {
 namespace {

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <utility>
 
+#include "ahm/conformance/clouds.hpp"
 #include "ahm/pointcloud/neighbor_search.hpp"
 #include "ahm/pointcloud/point_cloud_surface.hpp"
-#include "ahm/testing/clouds.hpp"
 
 namespace ahm::test {
 namespace {

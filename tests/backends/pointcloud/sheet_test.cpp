@@ -5,11 +5,11 @@
 #include <random>
 #include <set>
 
+#include "ahm/conformance/closed_forms.hpp"
+#include "ahm/conformance/clouds.hpp"
 #include "ahm/pointcloud/point_cloud_surface.hpp"
 #include "ahm/surface/exact/exact_geodesics.hpp"
 #include "ahm/surface/polar_map_solver.hpp"
-#include "ahm/testing/closed_forms.hpp"
-#include "ahm/testing/clouds.hpp"
 #include "ahm/util/vec.hpp"
 #include "solved_cloud.hpp"
 
@@ -175,7 +175,7 @@ TEST(Sheet, GivesExactPolarMapsOfAFlatCloud) {
   const auto cloud = PointCloudSurface::build(points);
   const PolarMapSolver solver(cloud);
   for (const Index source : {side * side / 2 + side / 2, 0, 3 * side + 7}) {
-    const RowLogMap map = cloud.on_rows(solver.log_map(Row(source)));
+    const RowLogMap map = cloud.to_rows(solver.log_map(Row(source)));
     const Frame frame = *cloud.graph().frame(cloud.vertex(Row(source)).index);
     for (std::size_t i = 0; i < points.size(); ++i) {
       EXPECT_NEAR(map.u[i], dot(points[i] - points[source], frame.x), 1e-9 * side);
@@ -192,7 +192,7 @@ TEST(Sheet, GivesExactMapsFromPointsBetweenTheRows) {
   const Vec3 at{9.3, 8.2, 0};
   for (const Vec3& axis : {Vec3{1, 0, 0}, Vec3{-0.6, 0.8, 0}}) {
     const auto source = cloud.closest_point(at + Vec3{0, 0, 0.1});
-    const RowLogMap map = cloud.on_rows(geodesics.log_map(source.point, axis));
+    const RowLogMap map = cloud.to_rows(geodesics.log_map(source.point, axis));
     const Vec3 normal = cloud.graph().frame(0)->normal, across = cross(normal, axis);
     for (std::size_t i = 0; i < points.size(); ++i) {
       EXPECT_NEAR(map.u[i], dot(points[i] - at, axis), 1e-8);
@@ -227,7 +227,7 @@ TEST(Sheet, GivesPolarMapsOfASphereThatConverge) {
     const PolarMapSolver solver(cloud);
     double sum = 0;
     for (const Index source : {0, n / 3, n / 2})
-      sum += sphere_error(sphere, cloud, cloud.on_rows(solver.log_map(Row(source))), source).angle / 3;
+      sum += sphere_error(sphere, cloud, cloud.to_rows(solver.log_map(Row(source))), source).angle / 3;
     errors.push_back(sum);
     RecordProperty("angle_rms_" + std::to_string(n), std::to_string(sum));
   }

@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "ahm/error.hpp"
-#include "ahm/surface/mapped_positions.hpp"
+#include "ahm/surface/surface_triangles.hpp"
 #include "ahm/util/vec.hpp"
 #include "noisy_clouds.hpp"
 #include "solved_cloud.hpp"

@@ -4,11 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include "ahm/conformance/closed_forms.hpp"
+#include "ahm/conformance/clouds.hpp"
+#include "ahm/conformance/vectors.hpp"
 #include "ahm/maps/log_map_solver.hpp"
 #include "ahm/pointcloud/point_cloud_surface.hpp"
-#include "ahm/testing/closed_forms.hpp"
-#include "ahm/testing/clouds.hpp"
-#include "ahm/testing/vectors.hpp"
 
 namespace ahm::test {
 
@@ -20,7 +20,7 @@ struct Solved {
         solver(graph.graph()) {}
 
   RowLogMap map(Index point, Variant variant = Variant::adaptive) const {
-    return graph.on_rows(solver.solve(graph.source(Row(point)).source, {.variant = variant}));
+    return graph.to_rows(solver.solve(graph.source(Row(point)).source, {.variant = variant}));
   }
 
   pointcloud::PointCloudSurface graph;

@@ -6,8 +6,8 @@
 #include <numbers>
 #include <vector>
 
+#include "ahm/conformance/vectors.hpp"
 #include "ahm/maps/quality.hpp"
-#include "ahm/testing/vectors.hpp"
 #include "solved_cloud.hpp"
 
 namespace ahm::test {
@@ -120,7 +120,7 @@ TEST(SphereCloud, HasTheSameMapMovedTurnedAndScaled) {
     const auto surface = pointcloud::PointCloudSurface::build(points);
     const LogMapSolver solver(surface.graph());
     const Vec3 axis = minus(points[towards], points[source]);
-    return surface.on_rows(solver.solve(surface.source(Row(source), axis).source));
+    return surface.to_rows(solver.solve(surface.source(Row(source), axis).source));
   };
   const Index last = 2499;
   const RowLogMap expected = map_of(bumpy(1, {0, 0, 0}, 0, false), 7, 90);
@@ -149,10 +149,10 @@ struct SteppedSphere {
     for (std::size_t i = 0; i < cloud.points.size(); ++i)
       if (std::abs(cloud.points[i][2]) < std::abs(cloud.points[source][2])) source = i;
     const Solved solved(cloud);
-    const PlacedSource placed = solved.graph.source(Row(static_cast<Index>(source)));
+    const SurfaceSource placed = solved.graph.source(Row(static_cast<Index>(source)));
     const LogMap map = solved.solver.solve(placed.source);
-    rows = solved.graph.on_rows(map);
-    quality = on_rows(rows, map_quality(solved.graph.graph(), map));
+    rows = solved.graph.to_rows(map);
+    quality = to_rows(rows, map_quality(solved.graph.graph(), map));
     frame = *placed.frame;
   }
   /// Geodesic polar coordinates.

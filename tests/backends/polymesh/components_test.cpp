@@ -32,7 +32,7 @@ TEST(Components, HaveTheSameNumbersAloneAndBesideOthers) {
           const auto surface =
               PolygonMeshSurface::build(mesh.positions, mesh.begin, mesh.corners, {.discretization = how});
           const LogMapSolver solver(surface.graph());
-          return surface.on_rows(solver.solve(surface.source(Row(5)).source));
+          return surface.to_rows(solver.solve(surface.source(Row(5)).source));
         };
         const RowLogMap alone = mapped(a), together = mapped(both);
         for (Index i = 0; i < a.vertices(); ++i) {

@@ -1,5 +1,5 @@
 // The published contract, on polygon meshes.
-#include "ahm/testing/graph_contract.hpp"
+#include "ahm/conformance/graph_contract.hpp"
 #include "polygon_graphs.hpp"
 
 namespace ahm::test {

@@ -76,7 +76,7 @@ TEST(PolygonFaults, EdgesOfThreeFacesAndBowTies) {
   const auto split = build(fin, {.non_manifold = NonManifold::split});
   EXPECT_EQ(split.details().topology.non_manifold_edges, 1);
   EXPECT_NO_THROW(validate(split.graph()));
-  const auto rows = split.on_rows(map_of(split));
+  const auto rows = split.to_rows(map_of(split));
   EXPECT_EQ(rows.status.size(), fin.positions.size());
 
   const Polygons bow{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {-1, 0, 0}, {-1, -1, 0}, {0, -1, 0}},
@@ -96,7 +96,7 @@ TEST(PolygonFaults, UnreferencedVerticesAndOtherComponentsAreMasked) {
   const auto surface = build(mesh);
   EXPECT_EQ(surface.details().topology.components, 2);
   EXPECT_EQ(surface.details().topology.unreferenced, 1);
-  const auto rows = surface.on_rows(map_of(surface));
+  const auto rows = surface.to_rows(map_of(surface));
   EXPECT_EQ(rows.status[n], Status::removed);
   EXPECT_EQ(rows.status[n + 1], Status::disconnected);
   for (Index i = 0; i < n; ++i) ASSERT_EQ(rows.status[i], Status::ok);
@@ -158,7 +158,7 @@ TEST(PolygonFaults, AnyScaleAndAnyPlace) {
     for (auto& p : other.plane)
       for (double& x : p) x *= scale;
     const auto surface = build(other);
-    const auto map = surface.on_rows(map_of(surface, 9));
+    const auto map = surface.to_rows(map_of(surface, 9));
     for (Index i = 0; i < mesh.vertices(); ++i) {
       const double exact = std::hypot(mesh.plane[i][0] - mesh.plane[9][0], mesh.plane[i][1] - mesh.plane[9][1]);
       ASSERT_NEAR(map.distance[i] / scale, exact, 1e-11) << scale;
@@ -167,7 +167,7 @@ TEST(PolygonFaults, AnyScaleAndAnyPlace) {
   Polygons far = mesh;
   for (Vec3& p : far.positions) p[0] += 1e6, p[1] -= 1e6;
   const auto surface = build(far);
-  const auto map = surface.on_rows(map_of(surface, 9));
+  const auto map = surface.to_rows(map_of(surface, 9));
   for (Index i = 0; i < mesh.vertices(); ++i) {
     const double exact = std::hypot(mesh.plane[i][0] - mesh.plane[9][0], mesh.plane[i][1] - mesh.plane[9][1]);
     ASSERT_NEAR(map.distance[i], exact, 1e-8);  // the input has ten digits left

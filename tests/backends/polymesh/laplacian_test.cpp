@@ -5,7 +5,7 @@
 #include <cmath>
 #include <map>
 
-#include "ahm/testing/triangle_meshes.hpp"
+#include "ahm/conformance/triangle_meshes.hpp"
 #include "ahm/trimesh/triangle_mesh_surface.hpp"
 #include "polygon_graphs.hpp"
 

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <random>
 
+#include "ahm/conformance/polygon_meshes.hpp"
+#include "ahm/conformance/vectors.hpp"
 #include "ahm/polymesh/polygon_mesh_surface.hpp"
 #include "ahm/surface/exact/exact_geodesics.hpp"
-#include "ahm/testing/polygon_meshes.hpp"
-#include "ahm/testing/vectors.hpp"
 #include "ahm/util/vec.hpp"
 #include "backends/great_circles.hpp"
 

@@ -37,7 +37,7 @@ TEST(PolygonPlane, IsTheIdentityFromAVertex) {
           if (!clamp && variant == Variant::adaptive && surface.details().negative_weights > 0) continue;
           const Vec3 u{mesh.positions[1][0] - mesh.positions[0][0], mesh.positions[1][1] - mesh.positions[0][1],
                        mesh.positions[1][2] - mesh.positions[0][2]};
-          const auto map = surface.on_rows(solver.solve(surface.source(Row(source), u).source, {.variant = variant}));
+          const auto map = surface.to_rows(solver.solve(surface.source(Row(source), u).source, {.variant = variant}));
           double ux = mesh.plane[1][0] - mesh.plane[0][0], uy = mesh.plane[1][1] - mesh.plane[0][1];
           const double length = std::hypot(ux, uy);
           EXPECT_LT(plane_error(mesh, map, mesh.plane[source], {ux / length, uy / length}, !clamp),
@@ -66,7 +66,7 @@ TEST(PolygonPlane, IsTheIdentityFromInsideAFace) {
       const std::array<double, 2> u{(q[0] - p[0]) / length, (q[1] - p[1]) / length};
       for (Variant variant : all_variants) {
         const auto map =
-            surface.on_rows(solver.solve(surface.source(FacePoint{face, weights}).source, {.variant = variant}));
+            surface.to_rows(solver.solve(surface.source(FacePoint{face, weights}).source, {.variant = variant}));
         EXPECT_LT(plane_error(mesh, map, origin, u), 1e-11 * mesh.diameter()) << name << ", " << to_string(variant);
       }
       const Frame frame = *surface.source(FacePoint{face, weights}).frame;
@@ -91,7 +91,7 @@ TEST(PolygonPlane, DoesNotDependOnTheOrderOfCorners) {
       for (int a = 0; a < 2; ++a) origin[a] += weights[c] * mesh.plane[corners[c]][a];
     const auto &p = mesh.plane[corners[0]], &q = mesh.plane[corners[1]];
     const double length = std::hypot(q[0] - p[0], q[1] - p[1]);
-    const auto map = surface.on_rows(solver.solve(surface.source(FacePoint{face, weights}).source));
+    const auto map = surface.to_rows(solver.solve(surface.source(FacePoint{face, weights}).source));
     EXPECT_LT(plane_error(mesh, map, origin, {(q[0] - p[0]) / length, (q[1] - p[1]) / length}), 1e-11);
   }
 }

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "ahm/testing/closed_forms.hpp"
-#include "ahm/testing/vectors.hpp"
+#include "ahm/conformance/closed_forms.hpp"
+#include "ahm/conformance/vectors.hpp"
 #include "ahm/trimesh/triangle_mesh_surface.hpp"
 #include "polygon_graphs.hpp"
 
@@ -63,7 +63,7 @@ TEST(PolygonSphere, StartsInsideAFaceToo) {
   const auto surface = build(mesh);
   const Index face = 300;
   const std::vector<double> weights(4, 0.25);
-  const PlacedSource middle = surface.source(FacePoint{face, weights});
+  const SurfaceSource middle = surface.source(FacePoint{face, weights});
   const Vec3 p = unit(middle.frame->origin);
   const LogMap map = LogMapSolver(surface.graph()).solve(middle.source);
   const double h = surface.graph().mean_edge_length() * surface.graph().length_unit();

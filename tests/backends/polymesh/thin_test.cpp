@@ -79,7 +79,7 @@ void expect_identity(const Polygons& mesh, const std::string& name) {
     const LogMapSolver solver(surface.graph());
     for (Index source : {Index{0}, mesh.vertices() / 2, mesh.vertices() - 1})
       for (Variant variant : all_variants) {
-        const RowLogMap map = surface.on_rows(solver.solve(surface.source(Row(source)).source, {.variant = variant}));
+        const RowLogMap map = surface.to_rows(solver.solve(surface.source(Row(source)).source, {.variant = variant}));
         for (Index i = 0; i < mesh.vertices(); ++i) {
           const Vec2 &p = mesh.plane[i], &q = mesh.plane[source];
           ASSERT_NEAR(std::hypot(map.u[i], map.v[i]), std::hypot(p[0] - q[0], p[1] - q[1]), 1e-9 * mesh.diameter())
@@ -99,7 +99,7 @@ TEST(CoincidentCorners, LeaveThePlaneExact) {
       const auto refined = surface_of(other, Discretization::refined);
       EXPECT_EQ(refined.details().mollification, 0);
       EXPECT_EQ(refined.rows().row_count(), other.vertices());
-      const RowLogMap map = refined.on_rows(LogMapSolver(refined.graph()).solve(refined.source(Row(a)).source));
+      const RowLogMap map = refined.to_rows(LogMapSolver(refined.graph()).solve(refined.source(Row(a)).source));
       EXPECT_NEAR(map.distance[mesh.vertices()], places[0] * map.distance[b], 1e-9 * mesh.diameter());
     }
   }

@@ -1,6 +1,6 @@
 // The published contract, on triangle meshes.
-#include "ahm/testing/graph_contract.hpp"
-#include "ahm/testing/triangle_meshes.hpp"
+#include "ahm/conformance/graph_contract.hpp"
+#include "ahm/conformance/triangle_meshes.hpp"
 #include "ahm/trimesh/triangle_mesh_surface.hpp"
 
 namespace ahm::test {

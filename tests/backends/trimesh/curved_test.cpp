@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "ahm/testing/closed_forms.hpp"
+#include "ahm/conformance/closed_forms.hpp"
 #include "support/solved_mesh.hpp"
 
 namespace ahm::test {

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <random>
 
-#include "ahm/testing/vectors.hpp"
+#include "ahm/conformance/vectors.hpp"
 #include "support/solved_mesh.hpp"
 
 namespace ahm::test {

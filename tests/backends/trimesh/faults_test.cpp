@@ -4,9 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include "ahm/conformance/paper_band.hpp"
 #include "ahm/error.hpp"
 #include "ahm/graph/validate.hpp"
-#include "ahm/testing/paper_band.hpp"
 #include "support/expect_error.hpp"
 #include "support/solved_mesh.hpp"
 
@@ -140,7 +140,7 @@ TEST(MeshFaults, MoebiusBandsAreSolvedWithReflections) {
     EXPECT_EQ(solved.surface.graph().transport_kind(), TransportKind::block);
     EXPECT_NO_THROW(validate(solved.surface.graph()));
     const LogMap raw = solved.solver.solve(solved.surface.source(FacePoint{200, {0.2, 0.5, 0.3}}).source);
-    const RowLogMap map = solved.surface.on_rows(raw);
+    const RowLogMap map = solved.surface.to_rows(raw);
     expect_nan_exactly_where_not_ok(map);
     for (Index i = 0; i < mesh.vertices(); ++i) {
       ASSERT_EQ(map.status[i], Status::ok);
@@ -151,7 +151,7 @@ TEST(MeshFaults, MoebiusBandsAreSolvedWithReflections) {
       ASSERT_GT(map.distance[i], 0.9 * chord - 0.02);
       ASSERT_LT(map.distance[i], 4);
     }
-    EXPECT_EQ(solved.surface.on_corners(raw).size(), 3 * mesh.faces.size());
+    EXPECT_EQ(solved.surface.to_corners(raw).size(), 3 * mesh.faces.size());
   }
 }
 
@@ -174,12 +174,12 @@ TEST(MeshFaults, AMoebiusBandOfPaperIsAsFlatAsItsStrip) {
         for (int s = 0; s < 3; ++s)
           for (int a = 0; a < 2; ++a) p[a] += point.barycentric[s] * band.corners[3 * f + s][a];
         const LogMap raw = solver.solve(surface.source(point).source, {.variant = variant});
-        const RowLogMap map = surface.on_rows(raw);
+        const RowLogMap map = surface.to_rows(raw);
         for (std::size_t i = 0; i < band.plane.size(); ++i)
           if (const double d = band.distance(p, band.plane[i]); d < 0.3) {
             EXPECT_NEAR(map.distance[i], d, 1e-6) << f << ", " << i;
           }
-        const auto corners = surface.on_corners(raw);
+        const auto corners = surface.to_corners(raw);
         for (std::size_t k = 0; k < corners.size(); ++k)
           if (const double d = band.distance(p, band.corners[k]); d < 0.25) {
             EXPECT_NEAR(std::hypot(corners[k][0], corners[k][1]), d, 1e-6) << f << ", corner " << k;

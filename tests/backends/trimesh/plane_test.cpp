@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "ahm/conformance/vectors.hpp"
 #include "ahm/fields/vector_heat.hpp"
-#include "ahm/testing/vectors.hpp"
 #include "support/solved_mesh.hpp"
 
 namespace ahm::test {
@@ -128,7 +128,7 @@ TEST(MeshPlane, HoldsForEveryDiffusionTime) {
   const auto surface = trimesh::TriangleMeshSurface::build(mesh.positions, mesh.faces);
   for (double t_coef : {0.1, 1.0, 100.0}) {
     const LogMapSolver solver(surface.graph(), {.t_coef = t_coef});
-    EXPECT_LT(vertex_error(mesh, surface.on_rows(solver.solve(surface.source(Row(7)).source)), 7), tolerance) << t_coef;
+    EXPECT_LT(vertex_error(mesh, surface.to_rows(solver.solve(surface.source(Row(7)).source)), 7), tolerance) << t_coef;
   }
 }
 
@@ -146,9 +146,9 @@ TEST(MeshPlane, NeedsNoPositions) {
       trimesh::TriangleMesh::from_edge_lengths(mesh.vertices(), mesh.faces, lengths));
   EXPECT_FALSE(surface.graph().frame(0).has_value());
   const LogMapSolver solver(surface.graph());
-  EXPECT_LT(vertex_error(mesh, surface.on_rows(solver.solve(surface.source(Row(7)).source)), 7), tolerance);
+  EXPECT_LT(vertex_error(mesh, surface.to_rows(solver.solve(surface.source(Row(7)).source)), 7), tolerance);
   const FacePoint point{11, {0.2, 0.3, 0.5}};
-  const auto map = surface.on_rows(solver.solve(surface.source(point).source));
+  const auto map = surface.to_rows(solver.solve(surface.source(point).source));
   EXPECT_LT(plane_error(mesh, map, plane_point(mesh, point),
                         direction(mesh.plane[mesh.faces[11][0]], mesh.plane[mesh.faces[11][1]])),
             tolerance);

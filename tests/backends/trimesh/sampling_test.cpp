@@ -33,7 +33,7 @@ TEST(MeshSampling, IsExactOnThePlane) {
       ASSERT_NEAR(sample.u, wanted[0], 2e-11);
       ASSERT_NEAR(sample.v, wanted[1], 2e-11);
     }
-    const auto corners = solved.surface.on_corners(map);
+    const auto corners = solved.surface.to_corners(map);
     ASSERT_EQ(corners.size(), 3 * mesh.faces.size());
     for (std::size_t k = 0; k < corners.size(); ++k) {
       const auto wanted = exact(mesh.plane[mesh.faces[k / 3][k % 3]]);
@@ -80,7 +80,7 @@ TEST(MeshSampling, CutsTheTextureOpenAlongTheCutLocus) {
   const Index source = (rows / 2) * around;
   const LogMap map = solved.solver.solve(solved.surface.source(Row(source)).source);
   Index torn = 0;
-  const auto corners = solved.surface.on_corners(map);
+  const auto corners = solved.surface.to_corners(map);
   const double stretch = worst_stretch(mesh, corners, torn);
   EXPECT_EQ(torn, 0);
   // Without cutting, faces across it would be stretched tenfold.
@@ -97,8 +97,8 @@ TEST(MeshSampling, KeepsTheStatusOfMaskedVertices) {
   const Mesh mesh = icosphere(12);
   const SolvedMesh solved(mesh);
   const LogMap map = solved.solver.solve(solved.surface.source(Row(0)).source, {.radius = 0.5});
-  const auto result = solved.surface.on_rows(map);
-  const auto corners = solved.surface.on_corners(map);
+  const auto result = solved.surface.to_rows(map);
+  const auto corners = solved.surface.to_corners(map);
   for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
     bool ok = true;
     for (Index v : mesh.faces[f]) ok = ok && result.status[v] == Status::ok;
@@ -112,8 +112,8 @@ TEST(MeshSampling, RefusesMapsOfOtherGraphs) {
   const Mesh mesh = icosphere(4), other = icosphere(5);
   const SolvedMesh solved(mesh), wrong(other);
   const LogMap map = wrong.solver.solve(wrong.surface.source(Row(0)).source);
-  EXPECT_THROW(solved.surface.on_rows(map), InvalidArgument);
-  EXPECT_THROW(solved.surface.on_corners(map), InvalidArgument);
+  EXPECT_THROW(solved.surface.to_rows(map), InvalidArgument);
+  EXPECT_THROW(solved.surface.to_corners(map), InvalidArgument);
   EXPECT_THROW(solved.surface.at(map, FacePoint{0, {1, 0, 0}}), InvalidArgument);
 }
 

@@ -3,10 +3,10 @@
 
 #include <cmath>
 
+#include "ahm/conformance/closed_forms.hpp"
+#include "ahm/conformance/vectors.hpp"
 #include "ahm/error.hpp"
 #include "ahm/surface/directions.hpp"
-#include "ahm/testing/closed_forms.hpp"
-#include "ahm/testing/vectors.hpp"
 #include "support/solved_mesh.hpp"
 
 namespace ahm::test {

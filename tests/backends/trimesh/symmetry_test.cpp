@@ -172,7 +172,7 @@ TEST(MeshSymmetry, AComponentIsTheSameWhereItTouchesAnotherOneAndVerticesCoincid
         trimesh::TriangleMeshSurface::build(both.positions, both.faces, {.non_manifold = NonManifold::split});
     const auto row = [&](Index v) { return Row(shift + v); };
     const auto map_of = [](const trimesh::TriangleMeshSurface& surface, Row source) {
-      return surface.on_rows(LogMapSolver(surface.graph()).solve(surface.source(source).source));
+      return surface.to_rows(LogMapSolver(surface.graph()).solve(surface.source(source).source));
     };
     const RowLogMap expected = map_of(alone, Row(40)), found = map_of(surface, row(40));
     for (Index v = 0; v < part.vertices(); ++v) {

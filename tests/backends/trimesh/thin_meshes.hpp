@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-#include "ahm/testing/triangle_meshes.hpp"
+#include "ahm/conformance/triangle_meshes.hpp"
 
 namespace ahm::test {
 

@@ -74,7 +74,7 @@ void expect_identity(const Mesh& mesh, bool flips, const std::string& name) {
   for (Variant variant : all_variants)
     for (const auto& [where, point, plane] : places(mesh)) {
       const LogMap map = solver.solve(surface.source(point).source, {.variant = variant});
-      const PlaneErrors errors(mesh, surface.on_rows(map), plane);
+      const PlaneErrors errors(mesh, surface.to_rows(map), plane);
       EXPECT_LT(errors.coordinates, 1e-9 * mesh.diameter()) << name << ", " << where;
       EXPECT_LT(errors.distance, 1e-9 * mesh.diameter()) << name << ", " << where;
       // Fronts expect no errors where they cross triangles that flips made; across others they are rougher.
@@ -107,7 +107,7 @@ TEST(ThinFaces, LeaveThePlaneExactFarFromTheOrigin) {
   EXPECT_EQ(surface.details().mollification, 0);
   const LogMapSolver solver(surface.graph());
   for (const auto& [where, point, plane] : places(mesh)) {
-    RowLogMap map = surface.on_rows(solver.solve(surface.source(point).source));
+    RowLogMap map = surface.to_rows(solver.solve(surface.source(point).source));
     for (auto* numbers : {&map.u, &map.v, &map.distance})
       for (double& x : *numbers) x *= 1e3;
     EXPECT_LT(PlaneErrors(mesh, map, plane).coordinates, 1e-6) << where;
@@ -143,7 +143,7 @@ TEST(CoincidentVertices, KeepTexturesAndSamples) {
   const Mesh mesh = thin_square(17, {0.0, 1e-9}, 8, true);
   const SolvedMesh solved(mesh);
   const LogMap map = solved.solver.solve(solved.surface.source(Row(40), Vec3{2, -1, 2}).source);  // u runs along x
-  const std::vector<Vec2> corners = solved.surface.on_corners(map);
+  const std::vector<Vec2> corners = solved.surface.to_corners(map);
   for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
     for (int s = 0; s < 3; ++s) {
       const Vec2 p = mesh.plane[mesh.faces[f][s]], o = mesh.plane[40];
@@ -210,8 +210,8 @@ TEST(CoincidentVertices, OfCurvedMeshesChangeNothing) {
     // In a face that was dropped, the point is one of the edge it became.
     const Index dropped = static_cast<Index>(doubled.faces.size()) - 1;
     const auto [m, d, at] = doubled.faces[dropped];
-    const RowLogMap inside = b.surface.on_rows(exact_log_map(b.surface, FacePoint{dropped, {0.1, 0.6, 0.3}})),
-                    on_edge = b.surface.on_rows(exact_log_map(b.surface, EdgePoint{Row(at), Row(d), 0.6}));
+    const RowLogMap inside = b.surface.to_rows(exact_log_map(b.surface, FacePoint{dropped, {0.1, 0.6, 0.3}})),
+                    on_edge = b.surface.to_rows(exact_log_map(b.surface, EdgePoint{Row(at), Row(d), 0.6}));
     for (Index i = 0; i < clean.vertices(); ++i) ASSERT_NEAR(inside.distance[i], on_edge.distance[i], 1e-12);
   }
 }
@@ -232,8 +232,8 @@ TEST(CoincidentVertices, NeedNoPositions) {
   const auto a = surface_of(clean), b = surface_of(doubled);
   EXPECT_EQ(b.details().merged_vertices, 20);
   const LogMapSolver p(a.graph()), q(b.graph());
-  const RowLogMap map = a.on_rows(p.solve(a.source(Row(9)).source)),
-                  other = b.on_rows(q.solve(b.source(Row(9)).source));
+  const RowLogMap map = a.to_rows(p.solve(a.source(Row(9)).source)),
+                  other = b.to_rows(q.solve(b.source(Row(9)).source));
   for (Index i = 0; i < clean.vertices(); ++i) ASSERT_NEAR(other.distance[i], map.distance[i], 1e-10);
 }
 
@@ -246,7 +246,7 @@ TEST(CoincidentVertices, AreWhereTheSourceIs) {
     const auto surface = TriangleMeshSurface::build(mesh.positions, mesh.faces);
     const LogMapSolver solver(surface.graph());
     for (const Index source : {t[0], t[1]}) {
-      const RowLogMap map = surface.on_rows(solver.solve(surface.source(Row(source)).source));
+      const RowLogMap map = surface.to_rows(solver.solve(surface.source(Row(source)).source));
       EXPECT_EQ(map.distance[source], 0) << apart;
       EXPECT_NEAR(map.distance[t[0] + t[1] - source], apart, 2e-12);
     }
@@ -321,7 +321,7 @@ TEST(CoincidentVertices, DropWhatHangsOnByALine) {
   } catch (const InvalidArgument& e) {
     EXPECT_EQ(e.fault(), "row_without_area");
   }
-  EXPECT_EQ(solved.surface.on_corners(solved.solver.solve(solved.surface.source(Row(20)).source)).size(),
+  EXPECT_EQ(solved.surface.to_corners(solved.solver.solve(solved.surface.source(Row(20)).source)).size(),
             3 * mesh.faces.size());
 }
 

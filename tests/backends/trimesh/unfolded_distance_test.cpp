@@ -5,9 +5,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "ahm/maps/unfolding_front.hpp"
+#include "ahm/conformance/triangle_meshes.hpp"
+#include "ahm/maps/wavefront.hpp"
 #include "ahm/surface/exact/exact_geodesics.hpp"
-#include "ahm/testing/triangle_meshes.hpp"
 #include "support/solved_mesh.hpp"
 
 namespace ahm::test {
@@ -86,7 +86,7 @@ TEST(UnfoldedDistance, OfACoarsePartIsThatOfThePartAlone) {
     const Source source = beside.surface.source(point, axis).source;
     const LogMap expected = alone.solver.solve(alone.surface.source(point, axis).source);
     const LogMap map = beside.solver.solve(source), marched = marching.solve(source);
-    UnfoldingFront front(beside.surface.graph());
+    Wavefront front(beside.surface.graph());
     front.add(source);
     front.run();
     for (Index i = 0; i < part.vertices(); ++i) {

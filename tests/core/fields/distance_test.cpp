@@ -7,11 +7,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "ahm/conformance/flat_graphs.hpp"
+#include "ahm/conformance/graph_changes.hpp"
+#include "ahm/conformance/vectors.hpp"
 #include "ahm/error.hpp"
 #include "ahm/grid/grid_graph.hpp"
-#include "ahm/testing/flat_graphs.hpp"
-#include "ahm/testing/graph_changes.hpp"
-#include "ahm/testing/vectors.hpp"
 #include "support/solved_mesh.hpp"
 
 namespace ahm::test {

@@ -1,8 +1,8 @@
 // The contract suite on graphs that are given by hand, and the paper's operator on every kind of graph the core knows.
-#include "ahm/testing/curved_graphs.hpp"
-#include "ahm/testing/flat_graphs.hpp"
-#include "ahm/testing/graph_changes.hpp"
-#include "ahm/testing/graph_contract.hpp"
+#include "ahm/conformance/curved_graphs.hpp"
+#include "ahm/conformance/flat_graphs.hpp"
+#include "ahm/conformance/graph_changes.hpp"
+#include "ahm/conformance/graph_contract.hpp"
 
 namespace ahm::test {
 namespace {

@@ -5,10 +5,10 @@
 
 #include <cmath>
 
+#include "ahm/conformance/curved_graphs.hpp"
+#include "ahm/conformance/flat_graphs.hpp"
 #include "ahm/error.hpp"
 #include "ahm/graph/csr_graph.hpp"
-#include "ahm/testing/curved_graphs.hpp"
-#include "ahm/testing/flat_graphs.hpp"
 
 namespace ahm::test {
 namespace {

@@ -1,5 +1,5 @@
 // What limits a process's memory: the machine, its control groups, its resource limits.
-#include "heat/memory_limits.hpp"
+#include "cholesky/memory_limits.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -8,9 +8,9 @@
 #include <filesystem>
 #include <fstream>
 
+#include "ahm/conformance/curved_graphs.hpp"
 #include "ahm/maps/cost.hpp"
 #include "ahm/maps/log_map_solver.hpp"
-#include "ahm/testing/curved_graphs.hpp"
 #include "support/expect_error.hpp"
 
 namespace ahm::test {

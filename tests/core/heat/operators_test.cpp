@@ -5,13 +5,13 @@
 #include <numbers>
 #include <string>
 
+#include "ahm/conformance/curved_graphs.hpp"
+#include "ahm/conformance/flat_graphs.hpp"
+#include "ahm/conformance/graph_changes.hpp"
+#include "ahm/conformance/triangle_meshes.hpp"
 #include "ahm/error.hpp"
 #include "ahm/heat/heat_operators.hpp"
 #include "ahm/maps/log_map_solver.hpp"
-#include "ahm/testing/curved_graphs.hpp"
-#include "ahm/testing/flat_graphs.hpp"
-#include "ahm/testing/graph_changes.hpp"
-#include "ahm/testing/triangle_meshes.hpp"
 #include "ahm/trimesh/triangle_mesh_surface.hpp"
 
 namespace ahm::test {

@@ -4,9 +4,9 @@
 #include <atomic>
 #include <thread>
 
+#include "ahm/conformance/curved_graphs.hpp"
 #include "ahm/error.hpp"
 #include "ahm/maps/log_map_solver.hpp"
-#include "ahm/testing/curved_graphs.hpp"
 
 namespace ahm::test {
 namespace {
@@ -83,7 +83,7 @@ TEST_F(Batch, StopsInTheMiddle) {
 
 TEST_F(Batch, ReportsTheStagesOfTheFactorization) {
   std::vector<std::string> stages;
-  HeatOptions options;
+  FactorOptions options;
   options.progress.report = [&](std::string_view stage, double) { stages.emplace_back(stage); };
   const HeatOperators heat(graph, options);
   EXPECT_EQ(stages, (std::vector<std::string>{"check", "assemble", "analyze", "factor", "factor"}));

@@ -2,8 +2,8 @@
 // App. B).
 #include <gtest/gtest.h>
 
+#include "ahm/conformance/flat_graphs.hpp"
 #include "ahm/maps/log_map_solver.hpp"
-#include "ahm/testing/flat_graphs.hpp"
 
 namespace ahm::test {
 namespace {

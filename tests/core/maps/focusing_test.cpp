@@ -1,9 +1,9 @@
 // How fronts bend over curved surfaces, against closed forms.
-#include "maps/focusing.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
+
+#include "maps/front_geometry.hpp"
 
 namespace ahm::test {
 namespace {
@@ -18,7 +18,7 @@ double focusing_at(double distance, double curvature, int steps) {
 
 TEST(Focusing, IsNoneInThePlane) {
   EXPECT_EQ(focusing_at(3, 0, 7), 0);
-  EXPECT_EQ(beyond_circle(bend_along(0.3, 0, 2), 0.3, 0.4, 1), 0);
+  EXPECT_EQ(curvature_correction(bend_along(0.3, 0, 2), 0.3, 0.4, 1), 0);
 }
 
 // A front at distance r from a point of the unit sphere has the curvature cot r, on the hyperbolic plane coth r.
@@ -40,7 +40,8 @@ TEST(Focusing, TellsTheHeightOfASphericalTriangle) {
     for (double s : {0.02, 0.04}) {
       const double height = std::acos(std::cos(r) / std::cos(s / 2)), flat = std::sqrt(r * r - s * s / 4);
       const double focusing = r - r * r / std::tan(r);
-      EXPECT_NEAR(beyond_circle(bend_along(s, focusing, r), s, 0.5, 1), height - flat, 0.01 * std::abs(height - flat))
+      EXPECT_NEAR(curvature_correction(bend_along(s, focusing, r), s, 0.5, 1), height - flat,
+                  0.01 * std::abs(height - flat))
           << r << ", " << s;
     }
 }
@@ -49,15 +50,17 @@ TEST(Focusing, StaysBoundedBehindAFocus) {
   double focusing = 0;
   for (int k = 0; k < 100; ++k) {
     focusing = focusing_after(focusing, 0.1 * k, 0.1 * (k + 1), 1);  // as far as 10: behind three foci
-    ASSERT_LE(std::abs(focusing), most_bent * 0.01 * (k + 1) * (k + 1) / 0.1 * (1 + 1e-12));
-    ASSERT_LE(std::abs(beyond_circle(bend_along(0.1, focusing, 0.1 * (k + 1)), 0.1, 0.5, 1)), most_beyond_circle * 0.1);
+    ASSERT_LE(std::abs(focusing), max_bend * 0.01 * (k + 1) * (k + 1) / 0.1 * (1 + 1e-12));
+    ASSERT_LE(std::abs(curvature_correction(bend_along(0.1, focusing, 0.1 * (k + 1)), 0.1, 0.5, 1)),
+              max_curvature_correction * 0.1);
   }
 }
 
 TEST(Focusing, TakesNoMoreThanAShareOfTheDistance) {
   for (double distance : {0.0, 1e-300, 1e-3, 1.0})
     for (double focusing : {-1e9, 1e9})
-      EXPECT_LE(std::abs(beyond_circle(bend_along(1, focusing, distance), 1, 0.5, 1)), most_beyond_circle * distance);
+      EXPECT_LE(std::abs(curvature_correction(bend_along(1, focusing, distance), 1, 0.5, 1)),
+                max_curvature_correction * distance);
 }
 
 TEST(Focusing, IsFiniteWhereSquaresOfLengthsAreNot) {

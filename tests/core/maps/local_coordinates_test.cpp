@@ -1,16 +1,15 @@
 // Coordinates of chosen vertices against maps of the whole graph.
-#include "ahm/maps/local_coordinates.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "ahm/conformance/curved_graphs.hpp"
+#include "ahm/conformance/flat_graphs.hpp"
+#include "ahm/conformance/graph_changes.hpp"
 #include "ahm/error.hpp"
+#include "ahm/maps/local_maps.hpp"
 #include "ahm/maps/log_map_solver.hpp"
-#include "ahm/testing/curved_graphs.hpp"
-#include "ahm/testing/flat_graphs.hpp"
-#include "ahm/testing/graph_changes.hpp"
 
 namespace ahm::test {
 namespace {

@@ -8,12 +8,12 @@
 #include <cmath>
 #include <set>
 
+#include "ahm/conformance/curved_graphs.hpp"
+#include "ahm/conformance/flat_graphs.hpp"
+#include "ahm/conformance/graph_changes.hpp"
+#include "ahm/conformance/triangle_meshes.hpp"
 #include "ahm/error.hpp"
 #include "ahm/maps/log_map_solver.hpp"
-#include "ahm/testing/curved_graphs.hpp"
-#include "ahm/testing/flat_graphs.hpp"
-#include "ahm/testing/graph_changes.hpp"
-#include "ahm/testing/triangle_meshes.hpp"
 #include "ahm/trimesh/triangle_mesh_surface.hpp"
 
 namespace ahm::test {
@@ -167,7 +167,7 @@ TEST(LocalMaps, FindAllNeighboursWhereEdgesGoRoundCorners) {
 /// Where they alone would fill the memory, before it is taken.
 TEST(LocalMaps, RefuseWhatFillsTheMemory) {
   const CsrGraph graph(sphere_graph(2000));
-  LocalMapOptions options{.radius = 10, .heat = {.memory = 10'000'000}};
+  LocalMapOptions options{.radius = 10, .memory = 10'000'000};
   EXPECT_THROW(local_maps(graph, options), ResourceExhausted);  // 2000 x 2000 entries
   EXPECT_EQ(local_maps(graph, every(100, graph), options).neighbors.size(), 20u * 2000u);
   options.nearest = 9;

@@ -8,13 +8,13 @@
 #include <limits>
 #include <string>
 
+#include "ahm/conformance/curved_graphs.hpp"
+#include "ahm/conformance/flat_graphs.hpp"
+#include "ahm/conformance/graph_changes.hpp"
 #include "ahm/error.hpp"
 #include "ahm/fields/vector_heat.hpp"
 #include "ahm/grid/grid_graph.hpp"
 #include "ahm/maps/log_map_solver.hpp"
-#include "ahm/testing/curved_graphs.hpp"
-#include "ahm/testing/flat_graphs.hpp"
-#include "ahm/testing/graph_changes.hpp"
 
 namespace ahm::test {
 namespace {

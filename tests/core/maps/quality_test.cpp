@@ -9,13 +9,13 @@
 #include <limits>
 #include <numbers>
 
+#include "ahm/conformance/curved_graphs.hpp"
+#include "ahm/conformance/flat_graphs.hpp"
+#include "ahm/conformance/graph_changes.hpp"
+#include "ahm/conformance/triangle_meshes.hpp"
 #include "ahm/error.hpp"
 #include "ahm/fields/vector_heat.hpp"
 #include "ahm/maps/log_map_solver.hpp"
-#include "ahm/testing/curved_graphs.hpp"
-#include "ahm/testing/flat_graphs.hpp"
-#include "ahm/testing/graph_changes.hpp"
-#include "ahm/testing/triangle_meshes.hpp"
 #include "ahm/trimesh/triangle_mesh_surface.hpp"
 
 namespace ahm::test {
@@ -57,7 +57,7 @@ TEST(MapQuality, IsOneOnFlatGeometry) {
     const Source source = Source::at_vertex(Vertex(graph.size() / 2 + 3));
     const LogMap map = LogMapSolver(graph).solve(source, {.frames = true});
     const std::vector<double> quality = map_quality(graph, map);
-    UnfoldingFront front(graph);
+    Wavefront front(graph);
     front.add(source);
     front.run();
     int straight = 0;  // others bend around notches of the boundary
@@ -93,14 +93,14 @@ TEST(MapQuality, IsTheSameBesideAFrontMadeWithoutTheMap) {
   const Source source = Source::at_vertex(Vertex(30 * 60));
   for (const double radius : {std::numeric_limits<double>::infinity(), 10 * graph.mean_edge_length()}) {
     const LogMap map = LogMapSolver(graph).solve(source, {.radius = radius});
-    const QualityFront front(graph, source, radius);
+    const ReferenceFront front(graph, source, radius);
     ASSERT_NE(front.get(), nullptr);
     const std::vector<double> expected = map_quality(graph, map), quality = map_quality(graph, map, front, 2);
     for (Index i = 0; i < graph.size(); ++i)
       ASSERT_TRUE(quality[i] == expected[i] || (std::isnan(quality[i]) && std::isnan(expected[i]))) << "vertex " << i;
   }
   data.is_delaunay = true;
-  EXPECT_EQ(QualityFront(CsrGraph(data), source).get(), nullptr);
+  EXPECT_EQ(ReferenceFront(CsrGraph(data), source).get(), nullptr);
 }
 
 TEST(MapQuality, IsNanWhereTheMapIs) {

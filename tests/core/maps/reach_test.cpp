@@ -7,10 +7,10 @@
 #include <xmmintrin.h>
 #endif
 
+#include "ahm/conformance/flat_graphs.hpp"
 #include "ahm/error.hpp"
 #include "ahm/fields/vector_heat.hpp"
 #include "ahm/maps/log_map_solver.hpp"
-#include "ahm/testing/flat_graphs.hpp"
 
 namespace ahm::test {
 namespace {

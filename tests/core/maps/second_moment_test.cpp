@@ -5,15 +5,15 @@
 #include <array>
 #include <cmath>
 
+#include "ahm/conformance/closed_forms.hpp"
+#include "ahm/conformance/curved_graphs.hpp"
+#include "ahm/conformance/flat_graphs.hpp"
+#include "ahm/conformance/graph_changes.hpp"
+#include "ahm/conformance/triangle_meshes.hpp"
 #include "ahm/error.hpp"
 #include "ahm/maps/local_maps.hpp"
 #include "ahm/maps/log_map_solver.hpp"
 #include "ahm/maps/quality.hpp"
-#include "ahm/testing/closed_forms.hpp"
-#include "ahm/testing/curved_graphs.hpp"
-#include "ahm/testing/flat_graphs.hpp"
-#include "ahm/testing/graph_changes.hpp"
-#include "ahm/testing/triangle_meshes.hpp"
 #include "ahm/trimesh/triangle_mesh_surface.hpp"
 #include "ahm/util/small_math.hpp"
 #include "maps/affine_heat.hpp"

@@ -6,11 +6,11 @@
 #include <array>
 #include <cmath>
 
+#include "ahm/conformance/curved_graphs.hpp"
+#include "ahm/conformance/flat_graphs.hpp"
+#include "ahm/conformance/graph_changes.hpp"
 #include "ahm/error.hpp"
 #include "ahm/maps/log_map_solver.hpp"
-#include "ahm/testing/curved_graphs.hpp"
-#include "ahm/testing/flat_graphs.hpp"
-#include "ahm/testing/graph_changes.hpp"
 #include "support/expect_error.hpp"
 
 namespace ahm::test {

@@ -3,11 +3,10 @@
 
 #include <array>
 
-#include "ahm/maps/local_coordinates.hpp"
+#include "ahm/conformance/curved_graphs.hpp"
 #include "ahm/maps/local_maps.hpp"
 #include "ahm/maps/log_map_solver.hpp"
 #include "ahm/maps/quality.hpp"
-#include "ahm/testing/curved_graphs.hpp"
 
 namespace ahm::test {
 namespace {

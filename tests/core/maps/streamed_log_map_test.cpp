@@ -6,13 +6,13 @@
 #include <cstring>
 #include <vector>
 
+#include "ahm/conformance/curved_graphs.hpp"
+#include "ahm/conformance/flat_graphs.hpp"
+#include "ahm/conformance/graph_changes.hpp"
 #include "ahm/error.hpp"
 #include "ahm/grid/grid_graph.hpp"
-#include "ahm/testing/curved_graphs.hpp"
-#include "ahm/testing/flat_graphs.hpp"
-#include "ahm/testing/graph_changes.hpp"
 #include "maps/march.hpp"
-#include "maps/team_log_map.hpp"
+#include "maps/streamed_log_map.hpp"
 
 namespace ahm::test {
 namespace {
@@ -58,7 +58,7 @@ TEST(StreamedLogMap, HasTheBitsOfAMarchThatKeepsEverything) {
     for (Variant variant : all_variants) {
       const LogMap expected = kept.solve(Source::at_vertex(Vertex{5}), {.variant = variant});
       Rows rows(graph);
-      const MarchStatistics march = stream_log_map(graph, Source::at_vertex(Vertex{5}), {}, {.variant = variant}, rows);
+      const MarchStatistics march = stream_log_map(graph, Source::at_vertex(Vertex{5}), {.variant = variant}, rows);
       EXPECT_EQ(march.bands, expected.march().bands);
       EXPECT_GT(march.bands, 1);
       EXPECT_EQ(rows.told, std::vector<int>(rows.told.size(), 1));
@@ -75,8 +75,8 @@ TEST(StreamedLogMap, DistancesAloneAreThoseOfTheLocalizedMap) {
     const CsrGraph graph = telling(data);
     Rows expected(graph), rows(graph);
     const Source source = Source::at_vertex(Vertex{5});
-    const MarchStatistics march = stream_log_map(graph, source, {}, {.variant = Variant::localized}, expected);
-    const MarchStatistics alone = stream_distances(graph, source, {}, {}, rows);
+    const MarchStatistics march = stream_log_map(graph, source, {.variant = Variant::localized}, expected);
+    const MarchStatistics alone = stream_distances(graph, source, {}, rows);
     EXPECT_EQ(alone.bands, march.bands);
     EXPECT_GT(march.bands, 1);
     EXPECT_EQ(rows.told, expected.told);
@@ -145,7 +145,7 @@ TEST(StreamedLogMap, EndsAtTheRadius) {
   const LogMap expected =
       LogMapSolver(graph, {.strategy = Strategy::march}).solve(Source::at_vertex(Vertex{5}), {.radius = 0.5});
   Rows rows(graph);
-  stream_log_map(graph, Source::at_vertex(Vertex{5}), {}, {.radius = 0.5}, rows);
+  stream_log_map(graph, Source::at_vertex(Vertex{5}), {.radius = 0.5}, rows);
   Index ok = 0;
   for (Index i = 0; i < graph.size(); ++i) {
     EXPECT_EQ(rows.told[i] > 0 && rows.status[i] == Status::ok, expected.status(Vertex(i)) == Status::ok);
@@ -161,16 +161,16 @@ TEST(StreamedLogMap, IsCancelledWhileDistancesAreUnfolded) {
   data.is_delaunay = true;
   const CsrGraph graph = telling(data);
   std::stop_source stop;
-  HeatOptions options;
+  StreamOptions options;
   options.progress.stop = stop.get_token();
   options.progress.report = [&](std::string_view stage, double) {
     EXPECT_EQ(stage, "unfold");
     stop.request_stop();
   };
   Rows rows(graph);
-  EXPECT_THROW(stream_log_map(graph, Source::at_vertex(Vertex{5}), options, {}, rows), Cancelled);
+  EXPECT_THROW(stream_log_map(graph, Source::at_vertex(Vertex{5}), options, rows), Cancelled);
   options.progress = {};
-  stream_log_map(graph, Source::at_vertex(Vertex{5}), options, {}, rows);
+  stream_log_map(graph, Source::at_vertex(Vertex{5}), options, rows);
   EXPECT_EQ(rows.told, std::vector<int>(rows.told.size(), 1));
 }
 
@@ -178,12 +178,11 @@ TEST(StreamedLogMap, RefusesWhatNeedsTheWholeGraph) {
   const CsrGraph silent(sphere_graph(500)), graph = telling(sphere_graph(500));
   Rows rows(graph);
   const Source source = Source::at_vertex(Vertex{5});
-  EXPECT_THROW(stream_log_map(silent, source, {}, {}, rows), InvalidArgument);
-  EXPECT_THROW(stream_log_map(graph, source, {}, {.frames = true}, rows), InvalidArgument);
-  EXPECT_THROW(stream_log_map(graph, source, {}, {.radius = 0}, rows), InvalidArgument);
+  EXPECT_THROW(stream_log_map(silent, source, {}, rows), InvalidArgument);
+  EXPECT_THROW(stream_log_map(graph, source, {.radius = 0}, rows), InvalidArgument);
   Source curve(2);
   curve.add(Vertex{5}, 1, Vec2{0, 0}, {}, {.point = 0, .distance = 0});
-  EXPECT_THROW(stream_log_map(graph, curve, {}, {}, rows), InvalidArgument);
+  EXPECT_THROW(stream_log_map(graph, curve, {}, rows), InvalidArgument);
 }
 
 TEST(StreamedLogMap, ForgetsWhatTheFrontHasPassed) {

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ahm/conformance/curved_graphs.hpp"
+#include "ahm/conformance/graph_changes.hpp"
 #include "ahm/maps/log_map_solver.hpp"
-#include "ahm/testing/curved_graphs.hpp"
-#include "ahm/testing/graph_changes.hpp"
 
 namespace ahm::test {
 namespace {

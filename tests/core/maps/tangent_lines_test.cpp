@@ -7,15 +7,15 @@
 #include <numbers>
 #include <random>
 
+#include "ahm/conformance/flat_graphs.hpp"
+#include "ahm/conformance/graph_changes.hpp"
 #include "ahm/error.hpp"
-#include "ahm/testing/flat_graphs.hpp"
-#include "ahm/testing/graph_changes.hpp"
 
 namespace ahm::test {
 namespace {
 
 /// The plane's coordinates of a place of a flat graph.
-Vec2 flat_position(const FlatGraph& flat, const TangentPlace& place) {
+Vec2 flat_position(const FlatGraph& flat, const TangentPlanePoint& place) {
   const auto i = static_cast<std::size_t>(place.vertex.index);
   const double* F = flat.frames.data() + 4 * i;  // positions -> components
   Vec2 p{flat.positions[2 * i], flat.positions[2 * i + 1]};
@@ -41,7 +41,7 @@ std::vector<FlatGraph> planes() {
 TEST(TangentLines, AreStraightOnPlanes) {
   for (const FlatGraph& flat : planes()) {
     const CsrGraph graph(flat.data);
-    const TangentPlace from{Vertex(5 * 20 + 6), {0.004, -0.003}};
+    const TangentPlanePoint from{Vertex(5 * 20 + 6), {0.004, -0.003}};
     const Vec2 start = flat_position(flat, from);
     for (double angle = 0.05; angle < 1.5; angle += 0.1) {
       const Vec2 direction{std::cos(angle), std::sin(angle)};
@@ -50,7 +50,7 @@ TEST(TangentLines, AreStraightOnPlanes) {
       ASSERT_TRUE(line.complete);
       ASSERT_NEAR(line.length, 0.6, 1e-13);
       double before = 0;
-      for (const TangentPlace& place : line.places) {
+      for (const TangentPlanePoint& place : line.places) {
         const Vec2 p = flat_position(flat, place), off{p[0] - start[0], p[1] - start[1]};
         ASSERT_NEAR(off[0] * direction[1] - off[1] * direction[0], 0, 1e-13);
         const double along = off[0] * direction[0] + off[1] * direction[1];
@@ -68,7 +68,7 @@ TEST(TangentLines, EndAtTheBoundary) {
   const CsrGraph graph(flat.data);
   for (double angle = 0.1; angle < 6.2; angle += 0.3) {
     const Vec2 direction{std::cos(angle), std::sin(angle)};
-    const TangentPlace from{Vertex(10 * 20 + 9)};
+    const TangentPlanePoint from{Vertex(10 * 20 + 9)};
     const TangentLine line = trace_line(graph, from, in_frame(flat, from.vertex, direction), 5);
     EXPECT_FALSE(line.complete);
     const Vec2 end = flat_position(flat, line.places.back()), start = flat_position(flat, from);
@@ -85,7 +85,7 @@ TEST(ShortestLines, AreStraightOnPlanes) {
     std::uniform_int_distribution<Index> any(0, flat.size() - 1);
     std::uniform_real_distribution<double> near(-0.01, 0.01);
     for (int k = 0; k < 60; ++k) {
-      const TangentPlace from{Vertex(any(random)), {near(random), near(random)}},
+      const TangentPlanePoint from{Vertex(any(random)), {near(random), near(random)}},
           to{Vertex(any(random)), {near(random), near(random)}};
       const Vec2 a = flat_position(flat, from), b = flat_position(flat, to);
       const TangentLine path = shortest_line(graph, from, to);
@@ -106,7 +106,7 @@ TEST(ShortestLines, AreStraightOnPlanes) {
 TEST(ShortestLines, EndWhereTheTraceOfTheirDirectionDoes) {
   const FlatGraph flat = planar_triangulation(20);
   const CsrGraph graph(flat.data);
-  const TangentPlace from{Vertex(6 * 20 + 4)}, to{Vertex(13 * 20 + 15), {0.01, 0.005}};
+  const TangentPlanePoint from{Vertex(6 * 20 + 4)}, to{Vertex(13 * 20 + 15), {0.01, 0.005}};
   const TangentLine path = shortest_line(graph, from, to),
                     traced = trace_line(graph, from, path.departure, path.length);
   EXPECT_LT(apart(flat_position(flat, traced.places.back()), flat_position(flat, to)), 1e-12);
@@ -118,7 +118,7 @@ TEST(ShortestLines, EndWhereTheTraceOfTheirDirectionDoes) {
 TEST(ShortestLines, OfAPointToItselfHaveNoLength) {
   const FlatGraph flat = planar_triangulation(8);
   const CsrGraph graph(flat.data);
-  const TangentPlace place{Vertex(20), {0.01, 0.02}};
+  const TangentPlanePoint place{Vertex(20), {0.01, 0.02}};
   const TangentLine path = shortest_line(graph, place, place);
   EXPECT_EQ(path.length, 0);
   EXPECT_EQ(path.departure, Vec2{});

@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <numbers>
 
-#include "ahm/testing/paper_band.hpp"
+#include "ahm/conformance/paper_band.hpp"
 #include "polyhedra.hpp"
 
 namespace ahm::test {

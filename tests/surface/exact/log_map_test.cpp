@@ -7,14 +7,14 @@
 #include <functional>
 #include <random>
 
+#include "ahm/conformance/polygon_meshes.hpp"
+#include "ahm/conformance/triangle_meshes.hpp"
 #include "ahm/error.hpp"
 #include "ahm/maps/log_map_solver.hpp"
 #include "ahm/maps/quality.hpp"
 #include "ahm/pointcloud/point_cloud_surface.hpp"
 #include "ahm/polymesh/polygon_mesh_surface.hpp"
 #include "ahm/surface/exact/exact_geodesics.hpp"
-#include "ahm/testing/polygon_meshes.hpp"
-#include "ahm/testing/triangle_meshes.hpp"
 #include "ahm/trimesh/triangle_mesh_surface.hpp"
 
 namespace ahm::test {
@@ -138,7 +138,7 @@ TEST(ExactLogMap, HasGradientsAlongGreatCircles) {
   const Mesh sphere = icosphere(16);
   const auto surface = TriangleMeshSurface::build(sphere.positions, sphere.faces);
   const LogMap map = exact_log_map(surface, Row(100), std::nullopt, {.frames = true});
-  const RowLogMap rows = surface.on_rows(map);
+  const RowLogMap rows = surface.to_rows(map);
   const std::vector<Vec3> away = distance_gradients(surface, map, rows);
   const Vec3& p = sphere.positions[100];
   for (std::size_t r = 0; r < away.size(); ++r) {
@@ -238,9 +238,9 @@ TEST(ExactLogMap, SaysWhyAVertexHasNoCoordinates) {
   two.positions.push_back({9, 9, 9});  // of no face
   const auto surface = TriangleMeshSurface::build(two.positions, two.faces);
   const ExactGeodesics geodesics(surface);
-  const RowLogMap whole = surface.on_rows(geodesics.log_map(Row(7)));
+  const RowLogMap whole = surface.to_rows(geodesics.log_map(Row(7)));
   const LogMap near = geodesics.log_map(Row(7), std::nullopt, {.radius = 1.0});
-  const RowLogMap part = surface.on_rows(near);
+  const RowLogMap part = surface.to_rows(near);
   EXPECT_EQ(near.method(), Method::exact);
   for (Index r = 0; r < 2 * n; ++r) {
     EXPECT_EQ(whole.status[r], r < n ? Status::ok : Status::disconnected);

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "ahm/error.hpp"
-#include "ahm/surface/exact/shortened_path.hpp"
+#include "ahm/surface/exact/geodesic_path.hpp"
 #include "ahm/util/vec.hpp"
 #include "polyhedra.hpp"
 

@@ -5,9 +5,9 @@
 #include <random>
 #include <vector>
 
+#include "ahm/conformance/triangle_meshes.hpp"
 #include "ahm/surface/exact/flat_triangles.hpp"
 #include "ahm/surface/exact/geodesic_path.hpp"
-#include "ahm/testing/triangle_meshes.hpp"
 #include "ahm/trimesh/triangle_mesh.hpp"
 
 namespace ahm::test {

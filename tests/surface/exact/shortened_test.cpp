@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "ahm/error.hpp"
-#include "ahm/surface/exact/shortened_path.hpp"
+#include "ahm/surface/exact/geodesic_path.hpp"
 #include "polyhedra.hpp"
 
 namespace ahm::test {

@@ -1,5 +1,5 @@
 /// \file
-/// Points as PCL wants them: single precision, around the origin, of order one.
+/// Conversion of points for PCL: single precision, around the origin, of order one.
 #pragma once
 
 #include <pcl/point_cloud.h>
@@ -12,12 +12,12 @@
 
 namespace ahm::pcl_bridge {
 
-/// A cloud in single precision and the map that made it: p -> (p - center) / unit.
+/// A cloud in single precision, transformed by p -> (p - center) / unit.
 struct FloatCloud {
   ::pcl::PointCloud<::pcl::PointXYZ>::Ptr cloud;
   Vec3 center;  ///< middle of the bounding box
-  double unit;  ///< power of two; brings the largest coordinate to (0.5, 1]
-  Vec3 extent;  ///< of the bounding box, in units of `unit`
+  double unit;  ///< power of two that brings the largest coordinate into (0.5, 1]
+  Vec3 extent;  ///< size of the bounding box, in units of `unit`
 
   ::pcl::PointXYZ convert(const Vec3& p) const {
     return {static_cast<float>((p[0] - center[0]) / unit), static_cast<float>((p[1] - center[1]) / unit),
@@ -27,7 +27,7 @@ struct FloatCloud {
 
 /// Converts a cloud.
 /// @param caller  name of the public function, for messages
-/// @throws InvalidGeometry (a coordinate is not finite, with its index)
+/// @throws InvalidGeometry (a coordinate is not finite; the message contains its index)
 FloatCloud to_float_cloud(std::span<const Vec3> points, std::string_view caller);
 
 }  // namespace ahm::pcl_bridge

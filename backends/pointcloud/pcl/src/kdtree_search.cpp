@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "ahm/pcl/search.hpp"
-#include "ahm/pointcloud/nearest_candidates.hpp"
+#include "ahm/pointcloud/neighbor_search.hpp"
 #include "float_cloud.hpp"
 
 namespace ahm::pcl_bridge {
@@ -26,7 +26,7 @@ class KdTreeSearch final : public pointcloud::NeighborSearch {
   Index nearest(const Vec3& query, std::span<Index> indices, std::span<double> squared_distances) const override {
     const std::size_t wanted = std::min(indices.size(), points_.size());
     if (wanted == 0) return 0;
-    // More than asked for, because single precision cannot tell which of the last ones are nearer.
+    // A few more than needed: single precision leaves the order of the last ones uncertain.
     std::vector<pointcloud::Candidate> found;
     for (std::size_t count = wanted + 4;; count *= 2) {
       const double reached = find(query, std::min(count, points_.size()), found);
@@ -40,10 +40,10 @@ class KdTreeSearch final : public pointcloud::NeighborSearch {
 
  private:
   static constexpr std::size_t most_times = 8;
-  static constexpr double rounding = 4e-7;  ///< of distances of points of order one in single precision
+  static constexpr double rounding = 4e-7;  ///< error of distances in single precision, points of order one
 
-  /// The nearest in single precision, with their distances in double precision.
-  /// @return how far the farthest is in single precision
+  /// Finds the nearest points in single precision and stores their distances in double precision.
+  /// @return distance of the farthest one in single precision
   double find(const Vec3& query, std::size_t count, std::vector<pointcloud::Candidate>& found) const {
     ::pcl::Indices indices;
     std::vector<float> squared;

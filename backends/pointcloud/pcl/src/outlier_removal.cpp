@@ -19,10 +19,10 @@ std::vector<Index> outlier_removal(std::span<const Vec3> points, int mean_k, dou
   const FloatCloud input = to_float_cloud(points, "outlier_removal");
   std::vector<Index> kept(points.size());
   std::iota(kept.begin(), kept.end(), Index{0});
-  if (points.size() < 3) return kept;  // no deviation to speak of
+  if (points.size() < 3) return kept;  // too few for a standard deviation
   ::pcl::StatisticalOutlierRemoval<::pcl::PointXYZ> filter;
   filter.setInputCloud(input.cloud);
-  // PCL reads past its arrays when the cloud has fewer neighbours than asked for.
+  // PCL reads past its arrays if the cloud has fewer than `mean_k` neighbors.
   filter.setMeanK(static_cast<int>(std::min<std::size_t>(static_cast<std::size_t>(mean_k), points.size() - 1)));
   filter.setStddevMulThresh(stddev_mul);
   ::pcl::Indices indices;

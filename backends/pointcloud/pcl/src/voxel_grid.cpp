@@ -21,24 +21,24 @@ std::string text(double x) {
   return out.str();
 }
 
-/// PCL numbers voxels by a 32-bit integer and returns the cloud unchanged when that overflows; it also rounds voxel
-/// coordinates to single precision, so a row of more than 2^23 voxels is not to be trusted either. Both are refused
-/// here, beforehand.
+/// Rejects sizes that PCL does not support. PCL numbers voxels with 32-bit integers and returns the cloud unchanged on overflow. It
+/// also rounds voxel coordinates to single precision, which fails for more than 2^23 voxels in a row.
 void require_representable(const FloatCloud& input, double size) {
   double voxels = 1;
   double longest = 0;
   for (double extent : input.extent) {
-    const double along = std::floor(extent * (input.unit / size)) + 2;  // + 2: voxels cut at either end
+    const double along = std::floor(extent * (input.unit / size)) + 2;  // + 2: voxels cut at both ends
     voxels *= along;
     longest = std::max(longest, along);
   }
   const double extent = *std::max_element(input.extent.begin(), input.extent.end()) * input.unit;
   if (!(voxels <= std::numeric_limits<std::int32_t>::max()) || !(longest <= 8388608.0))
     throw InvalidArgument("voxel_grid: size " + text(size) + " is too small for a cloud of extent " + text(extent) +
-                          ": " + text(voxels) + " voxels exceed PCL's 2147483647; choose a larger size");
+                          ": " + text(voxels) +
+                          " voxels; PCL supports 2147483647, and 8388608 in a row; choose a larger size");
 }
 
-/// The number PCL gives to the voxel of each point. Same arithmetic as pcl::VoxelGrid.
+/// PCL's voxel number of each point, with the same arithmetic as pcl::VoxelGrid.
 std::vector<unsigned> voxel_numbers(Grid& grid, const ::pcl::PointCloud<::pcl::PointXYZ>& cloud) {
   const Eigen::Vector3i low = grid.getMinBoxCoordinates();
   const Eigen::Vector3i step = grid.getDivisionMultiplier();
@@ -49,7 +49,7 @@ std::vector<unsigned> voxel_numbers(Grid& grid, const ::pcl::PointCloud<::pcl::P
   return numbers;
 }
 
-/// For each voxel, in PCL's order, the point nearest to PCL's centroid; ties go to the first.
+/// For each voxel, in PCL's order, the point nearest to PCL's centroid; the first of equally near ones.
 std::vector<Index> nearest_to_centroids(const ::pcl::PointCloud<::pcl::PointXYZ>& cloud,
                                         const ::pcl::PointCloud<::pcl::PointXYZ>& centroids,
                                         std::span<const Index> voxel_of_point) {
@@ -66,13 +66,13 @@ std::vector<Index> nearest_to_centroids(const ::pcl::PointCloud<::pcl::PointXYZ>
   return nearest;
 }
 
-/// Rank of each number among the distinct ones: PCL writes its centroids in that order.
+/// Rank of each voxel number among the distinct ones. PCL writes its centroids in this order.
 std::vector<Index> ranks(const std::vector<unsigned>& numbers, std::size_t expected) {
   std::vector<unsigned> distinct = numbers;
   std::sort(distinct.begin(), distinct.end());
   distinct.erase(std::unique(distinct.begin(), distinct.end()), distinct.end());
   if (distinct.size() != expected)
-    throw Error("voxel_grid: PCL returned " + std::to_string(expected) + " voxels where " +
+    throw Error("voxel_grid: PCL returned " + std::to_string(expected) + " voxels, but " +
                 std::to_string(distinct.size()) + " are occupied");
   std::vector<Index> result;
   result.reserve(numbers.size());
@@ -81,7 +81,7 @@ std::vector<Index> ranks(const std::vector<unsigned>& numbers, std::size_t expec
   return result;
 }
 
-/// Orders the rows as in the input.
+/// Collects the representative points in the order of the input.
 ReducedCloud gather(std::span<const Vec3> points, std::span<const Vec3> normals,
                     const std::vector<Index>& voxel_of_point, const std::vector<Index>& point_of_voxel) {
   ReducedCloud result;
@@ -110,8 +110,8 @@ ReducedCloud voxel_grid(std::span<const Vec3> points, std::span<const Vec3> norm
   const FloatCloud input = to_float_cloud(points, "voxel_grid");
   if (points.empty()) return {};
   require_representable(input, size);
-  // Neither a voxel far larger than the cloud nor a cloud of one place may leave the range of single precision: 8 units
-  // hold any cloud, and 1e-7 was refused above unless the extent is zero.
+  // Limits the size to the range of single precision, for voxels much larger than the cloud and for clouds of one point. 8 units hold
+  // any cloud; sizes below 1e-7 were rejected above unless the extent is zero.
   const auto leaf = static_cast<float>(std::clamp(size / input.unit, 1e-7, 8.0));
   Grid grid;
   grid.setInputCloud(input.cloud);

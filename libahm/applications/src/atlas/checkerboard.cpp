@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ahm/applications/atlas/texture_atlas.hpp"
+#include "ahm/applications/atlas.hpp"
 
 namespace ahm {
 

@@ -1,5 +1,5 @@
 // Stands in for pack.cpp in a build without stb.
-#include "ahm/applications/atlas/texture_atlas.hpp"
+#include "ahm/applications/atlas.hpp"
 #include "ahm/error.hpp"
 
 namespace ahm {

@@ -5,7 +5,7 @@
 #include <limits>
 #include <optional>
 
-#include "ahm/applications/atlas/texture_atlas.hpp"
+#include "ahm/applications/atlas.hpp"
 #include "ahm/util/small_math.hpp"
 
 #define STB_RECT_PACK_IMPLEMENTATION

@@ -90,7 +90,7 @@ Blend blend_scalars(const LogMapSolver& solver, const Givers& givers, std::span<
   solver.operators().solve_scalar(columns, 2, solver.options().threads);
   Blend blend;
   blend.heat.assign(columns.begin() + static_cast<std::ptrdiff_t>(n), columns.end());
-  blend.least = least_share * *std::max_element(blend.heat.begin(), blend.heat.end());
+  blend.least = min_heat_share * *std::max_element(blend.heat.begin(), blend.heat.end());
   columns.resize(n);
   for (std::size_t i = 0; i < n; ++i) columns[i] = columns[i] / blend.heat[i] / unit;
   blend.values = std::move(columns);

@@ -6,8 +6,7 @@
 #include "ahm/error.hpp"
 #include "ahm/graph/components.hpp"
 #include "ahm/util/memory.hpp"
-#include "heat/blas_control.hpp"
-#include "heat/check_options.hpp"
+#include "cholesky/blas.hpp"
 #include "heat/component_scales.hpp"
 #include "heat/heat_system.hpp"
 
@@ -21,18 +20,22 @@ struct HeatOperators::Impl {
   std::unique_ptr<const HeatSystem> system;
 };
 
-HeatOperators::HeatOperators(const TangentGraph& graph, const HeatOptions& options) {
+HeatOperators::HeatOperators(const TangentGraph& graph, const FactorOptions& options) {
   detail::with_memory_check("factoring a graph of " + std::to_string(graph.size()) + " vertices", [&] {
-    check_heat_options(graph, options);
+    check_diffusion(graph, options);
     ComponentScales scales(graph);
     auto system = factored_system(graph, diffusion_times(scales, options.t_coef), options);
-    *this = HeatOperators(std::move(system), graph, std::move(scales.components));
+    *this = HeatOperatorsAccess::make(std::move(system), graph, std::move(scales.components));
   });
 }
 
-HeatOperators::HeatOperators(std::unique_ptr<const HeatSystem> system, const TangentGraph& graph, Components components)
-    : impl_(std::make_unique<Impl>(
-          Impl{graph.size(), graph.dimension(), graph.transport_kind(), std::move(components), std::move(system)})) {}
+HeatOperators HeatOperatorsAccess::make(std::unique_ptr<const HeatSystem> system, const TangentGraph& graph,
+                                        Components components) {
+  HeatOperators result;
+  result.impl_ = std::make_unique<HeatOperators::Impl>(HeatOperators::Impl{
+      graph.size(), graph.dimension(), graph.transport_kind(), std::move(components), std::move(system)});
+  return result;
+}
 
 HeatOperators::~HeatOperators() = default;
 HeatOperators::HeatOperators(HeatOperators&&) noexcept = default;

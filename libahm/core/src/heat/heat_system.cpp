@@ -6,22 +6,121 @@
 #include <optional>
 #include <string>
 #include <tuple>
-#include <utility>
-#include <vector>
 
+#include "ahm/cholesky/conjugate_gradient.hpp"
 #include "ahm/error.hpp"
 #include "ahm/graph/validate.hpp"
 #include "ahm/util/parallel.hpp"
 #include "ahm/util/stopwatch.hpp"
 #include "ahm/util/text.hpp"
-#include "heat/assemble.hpp"
-#include "heat/blas_control.hpp"
-#include "heat/check_options.hpp"
-#include "heat/cholesky.hpp"
+#include "cholesky/blas.hpp"
 #include "heat/component_scales.hpp"
-#include "heat/conjugate_gradient.hpp"
 
 namespace ahm {
+namespace {
+
+/// Column i of the upper triangles: the edges of star i that lead to smaller vertices, then the diagonal.
+class ColumnWriter {
+ public:
+  ColumnWriter(const TangentGraph& graph, std::span<const double> tau, double scaling)
+      : d_(graph.dimension()),
+        layout_(graph.transport_layout()),
+        complex_(layout_.kind == TransportKind::rotation2),
+        tau_(tau),
+        scaling_(scaling) {
+    const auto n = static_cast<std::size_t>(graph.size());
+    const auto entries = static_cast<std::size_t>(graph.edge_count()) / 2 + n;
+    const std::size_t blocks = complex_ ? 1 : static_cast<std::size_t>(d_) * d_;
+    B_.is_complex = complex_;
+    A_.column_begin.reserve(n + 1);
+    B_.column_begin.reserve((complex_ ? n : n * d_) + 1);
+    A_.rows.reserve(entries);
+    A_.values.reserve(entries);
+    B_.rows.reserve(entries * blocks);
+    B_.values.reserve(entries * (complex_ ? 2 : blocks));
+    A_.column_begin.push_back(0);
+    B_.column_begin.push_back(0);
+  }
+
+  void add_column(Index i, double mass, const Star& star) {
+    gather(i, star);
+    double diagonal = mass;
+    for (double w : star.weights) diagonal += tau_[i] * w;
+    diagonal *= scaling_;
+    A_.rows.insert(A_.rows.end(), columns_.begin(), columns_.end());
+    A_.values.insert(A_.values.end(), scalar_.begin(), scalar_.end());
+    A_.rows.push_back(i);
+    A_.values.push_back(diagonal);
+    A_.column_begin.push_back(static_cast<Offset>(A_.rows.size()));
+    complex_ ? add_complex_column(i, diagonal) : add_block_columns(i, diagonal);
+  }
+
+  AssembledOperators take() { return {std::move(A_), std::move(B_)}; }
+
+ private:
+  /// Sums parallel edges: columns_ the neighbours j < i ascending, scalar_ the entries A_ji, blocks_ the entries B_ji.
+  void gather(Index i, const Star& star) {
+    order_.clear();
+    for (std::size_t e = 0; e < star.degree(); ++e)
+      if (star.neighbors[e] < i && star.weights[e] != 0) order_.emplace_back(star.neighbors[e], e);
+    std::sort(order_.begin(), order_.end());
+    columns_.clear();
+    scalar_.clear();
+    blocks_.clear();
+    const std::size_t width = layout_.width();
+    for (const auto& [j, e] : order_) {
+      if (columns_.empty() || columns_.back() != j) {
+        columns_.push_back(j);
+        scalar_.push_back(0);
+        blocks_.insert(blocks_.end(), width, 0.0);
+      }
+      const double entry = -scaling_ * tau_[i] * star.weights[e];
+      scalar_.back() += entry;
+      // B_ji gains -tau w R_ij, the inverse of the star's R_ji.
+      star.transport(e).add_inverse(entry, blocks_.data() + blocks_.size() - width);
+    }
+  }
+
+  void add_complex_column(Index i, double diagonal) {
+    B_.rows.insert(B_.rows.end(), columns_.begin(), columns_.end());
+    B_.values.insert(B_.values.end(), blocks_.begin(), blocks_.end());
+    B_.rows.push_back(i);
+    B_.values.insert(B_.values.end(), {diagonal, 0.0});
+    B_.column_begin.push_back(static_cast<Offset>(B_.rows.size()));
+  }
+
+  void add_block_columns(Index i, double diagonal) {
+    for (int b = 0; b < d_; ++b) {
+      for (std::size_t k = 0; k < columns_.size(); ++k)
+        for (int a = 0; a < d_; ++a) {
+          B_.rows.push_back(static_cast<Offset>(columns_[k]) * d_ + a);
+          B_.values.push_back(blocks_[(k * d_ + a) * d_ + b]);
+        }
+      B_.rows.push_back(static_cast<Offset>(i) * d_ + b);
+      B_.values.push_back(diagonal);
+      B_.column_begin.push_back(static_cast<Offset>(B_.rows.size()));
+    }
+  }
+
+  int d_;
+  TransportLayout layout_;
+  bool complex_;  ///< B is n x n complex, not n d x n d real: the matrices differ in kind
+  std::span<const double> tau_;
+  double scaling_;
+  SparseUpper A_, B_;
+  std::vector<std::pair<Index, std::size_t>> order_;  ///< edges, by where they lead
+  std::vector<Offset> columns_;
+  std::vector<double> scalar_, blocks_;
+};
+
+}  // namespace
+
+AssembledOperators assemble(const TangentGraph& graph, std::span<const double> tau, double scaling) {
+  ColumnWriter writer(graph, tau, scaling);
+  for (Index i = 0; i < graph.size(); ++i) writer.add_column(i, graph.mass(i), graph.star(i));
+  return writer.take();
+}
+
 namespace {
 
 constexpr const char *name_A = "A = M + tau L", *name_B = "B = M + tau L^nabla";
@@ -38,7 +137,7 @@ constexpr double most_loss = 1e-6;
 /// A pattern's analysis for A and for B, which have the same one where B is complex.
 class Analysis {
  public:
-  Analysis(const AssembledOperators& matrices, const HeatOptions& options) : scalar_(matrices.A, options.ordering) {}
+  Analysis(const AssembledOperators& matrices, const FactorOptions& options) : scalar_(matrices.A, options.ordering) {}
 
   const SymbolicCholesky& of_A() const { return scalar_; }
   /// @param dimension  of the graph
@@ -67,7 +166,7 @@ double farthest_from_one(std::span<const double> values) {
 
 /// Both checks by one solve. @param masses  scaled
 void check_A(const CholeskyFactor& A, const SparseUpper& matrix, std::vector<double> masses, unsigned threads) {
-  check_lost_heat(farthest_from_one(A.checked_solve(matrix, std::move(masses), name_A, threads)));
+  check_conservation(farthest_from_one(A.checked_solve(matrix, std::move(masses), name_A, threads)));
 }
 
 /// A and B as two objects that solve: CholeskyFactor or ConjugateGradient.
@@ -92,7 +191,7 @@ class SystemOf final : public HeatSystem {
 /// A factored, and what is left to do until it is.
 class HeatFirstSystem final : public HeatSystem {
  public:
-  HeatFirstSystem(const TangentGraph& graph, std::vector<double> tau, const HeatOptions& options)
+  HeatFirstSystem(const TangentGraph& graph, std::vector<double> tau, const FactorOptions& options)
       : HeatSystem(std::move(tau), mass_scaling(mean_mass(graph))),
         dimension_(graph.dimension()),
         masses_(scaled_masses(graph, scaling_)),
@@ -131,7 +230,7 @@ class HeatFirstSystem final : public HeatSystem {
 /// The checks and the assembly that every system begins with.
 template <class System>
 std::pair<std::unique_ptr<System>, AssembledOperators> begin(const TangentGraph& graph, std::vector<double> tau,
-                                                             const HeatOptions& options) {
+                                                             const FactorOptions& options) {
   auto system = std::make_unique<System>(std::move(tau), mass_scaling(mean_mass(graph)));
   options.progress.step("assemble", 0.0);
   detail::Stopwatch stopwatch;
@@ -148,13 +247,13 @@ double mass_scaling(double mean_mass) {
   return std::ldexp(1.0, -std::ilogb(mean_mass));
 }
 
-double lost_heat(const HeatSystem& system, const TangentGraph& graph, Index own) {
+double conservation_residual(const HeatSystem& system, const TangentGraph& graph, Index own) {
   std::vector<double> heat = scaled_masses(graph, system.scaling());
   system.solve_A(heat, 1);
   return farthest_from_one(std::span(heat).first(static_cast<std::size_t>(own)));
 }
 
-void check_lost_heat(double lost) {
+void check_conservation(double lost) {
   if (!(lost <= most_loss))
     throw NotPositiveDefinite("heat_lost",
                               "the diffusion loses heat (" + detail::number(lost) +
@@ -167,6 +266,10 @@ void check_heat_options(const TangentGraph& graph, const HeatOptions& options) {
     throw InvalidArgument("accuracy is " + detail::number(options.accuracy) + "; it must be in [1e-14, 0.1]");
   if (options.expected_maps < 0)
     throw InvalidArgument("expected_maps is " + std::to_string(options.expected_maps) + "; it must be >= 0 (0: many)");
+  check_diffusion(graph, options.factor());
+}
+
+void check_diffusion(const TangentGraph& graph, const FactorOptions& options) {
   if (options.check_graph) {
     options.progress.step("check", 0.0);
     validate(graph, options.threads);
@@ -175,7 +278,7 @@ void check_heat_options(const TangentGraph& graph, const HeatOptions& options) {
 }
 
 std::unique_ptr<const HeatSystem> factored_system(const TangentGraph& graph, std::vector<double> tau,
-                                                  const HeatOptions& options) {
+                                                  const FactorOptions& options) {
   std::unique_ptr<SystemOf<CholeskyFactor>> system;
   AssembledOperators matrices;
   std::tie(system, matrices) = begin<SystemOf<CholeskyFactor>>(graph, std::move(tau), options);
@@ -207,16 +310,16 @@ std::unique_ptr<const HeatSystem> factored_system(const TangentGraph& graph, std
 }
 
 std::unique_ptr<const HeatSystem> heat_first_system(const TangentGraph& graph, std::vector<double> tau,
-                                                    const HeatOptions& options) {
+                                                    const FactorOptions& options) {
   return std::make_unique<HeatFirstSystem>(graph, std::move(tau), options);
 }
 
 std::unique_ptr<const HeatSystem> iterative_system(const TangentGraph& graph, std::vector<double> tau,
-                                                   const HeatOptions& options) {
+                                                   const FactorOptions& options) {
   auto [system, matrices] = begin<SystemOf<ConjugateGradient>>(graph, std::move(tau), options);
   system->A.emplace(matrices.A, name_A);
   system->B.emplace(matrices.B, name_B);
-  check_lost_heat(lost_heat(*system, graph, graph.size()));
+  check_conservation(conservation_residual(*system, graph, graph.size()));
   system->finish();
   return std::move(system);
 }

@@ -41,7 +41,7 @@ class FrameField {
 
 /// A vertex is reached when its heat is at least this share of the source's. The triangular factors hold such quotients
 /// themselves, and what is below 2^-1022 there is lost: beyond this share, solutions may come from detours.
-inline constexpr double least_share = 0x1p-970;
+inline constexpr double min_heat_share = 0x1p-970;
 
 /// Right-hand sides are scaled up by this much, which keeps all heat that counts far from the denormal numbers.
 inline constexpr double heat_scale = 0x1p960;

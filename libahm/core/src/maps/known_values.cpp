@@ -1,6 +1,5 @@
 #include "maps/known_values.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 

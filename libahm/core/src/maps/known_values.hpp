@@ -1,15 +1,118 @@
 /// \file
-/// What a march has found behind its front, and how it enters the next band: as Dirichlet data.
+/// Memory for what is known of some of a graph's vertices: it grows with those, not with the graph.
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
+#include <vector>
 
 #include "ahm/graph/tangent_graph.hpp"
+#include "ahm/types.hpp"
 #include "maps/affine_heat.hpp"
-#include "maps/reached_rows.hpp"
 
 namespace ahm {
+
+/// Numbers vertices in the order in which they are first asked for; numbers of forgotten vertices are given again. Besides
+/// one page of 1 KB for every 256 successive vertices of which one was asked for and one was not forgotten it takes 10
+/// bytes per 256 vertices of the graph.
+class ReachedNumbers {
+ public:
+  static constexpr Index forgotten = -2;
+
+  explicit ReachedNumbers(Index vertices)
+      : vertices_(static_cast<std::size_t>(vertices)), pages_(vertices_ / page_size + 1), gone_(pages_.size()) {}
+
+  /// -1 for a vertex never asked for by `number`, `forgotten` for one that was forgotten.
+  Index find(Index vertex) const {
+    const std::size_t place = static_cast<std::size_t>(vertex) / page_size;
+    const Page* page = pages_[place].get();
+    if (page == nullptr) return gone_[place] > 0 ? forgotten : -1;
+    return (*page)[static_cast<std::size_t>(vertex) % page_size];
+  }
+  /// Of a vertex that was not forgotten.
+  Index number(Index vertex) {
+    std::unique_ptr<Page>& page = pages_[static_cast<std::size_t>(vertex) / page_size];
+    if (!page) {
+      page = std::make_unique<Page>();
+      page->fill(-1);
+    }
+    Index& own = (*page)[static_cast<std::size_t>(vertex) % page_size];
+    if (own >= 0) return own;
+    if (free_.empty()) return own = count_++;
+    own = free_.back();
+    free_.pop_back();
+    return own;
+  }
+  /// Gives up the number of a vertex that has one. A page of which all are forgotten goes too.
+  void forget(Index vertex) {
+    const std::size_t place = static_cast<std::size_t>(vertex) / page_size;
+    Index& own = (*pages_[place])[static_cast<std::size_t>(vertex) % page_size];
+    free_.push_back(own);
+    own = forgotten;
+    if (++gone_[place] == std::min(page_size, vertices_ - place * page_size)) pages_[place].reset();
+  }
+  /// In the order of vertices: calls each(vertex, number) for those that have one, gone(begin, end) for those that were forgotten.
+  template <class Each, class Gone>
+  void visit(const Each& each, const Gone& gone) const {
+    for (std::size_t place = 0; place < pages_.size(); ++place) {
+      const auto begin = static_cast<Index>(place * page_size),
+                 end = static_cast<Index>(std::min(vertices_, (place + 1) * page_size));
+      if (!pages_[place] && gone_[place] > 0) gone(begin, end);
+      for (Index vertex = begin; pages_[place] && vertex < end; ++vertex)
+        if (const Index number = (*pages_[place])[static_cast<std::size_t>(vertex - begin)]; number >= 0)
+          each(vertex, number);
+        else if (number == forgotten)
+          gone(vertex, vertex + 1);
+    }
+  }
+  /// Numbers given so far, at most as many as there were at a time.
+  Index count() const { return count_; }
+  std::size_t bytes() const {
+    std::size_t taken = 0;
+    for (const auto& page : pages_) taken += page ? 1 : 0;
+    return pages_.size() * (sizeof(pages_[0]) + sizeof(gone_[0])) + taken * sizeof(Page) +
+           free_.capacity() * sizeof(free_[0]);
+  }
+
+ private:
+  static constexpr std::size_t page_size = 256;
+  using Page = std::array<Index, page_size>;
+
+  std::size_t vertices_;
+  std::vector<std::unique_ptr<Page>> pages_;
+  std::vector<std::uint16_t> gone_;  ///< forgotten vertices of each page
+  std::vector<Index> free_;          ///< numbers to be given again
+  Index count_ = 0;
+};
+
+/// A table of rows of equal width that grows without moving what it holds. New rows are zero.
+template <class T>
+class GrowingRows {
+ public:
+  explicit GrowingRows(std::size_t width) : width_(width) {}
+
+  T* operator[](Index row) { return place(row); }
+  const T* operator[](Index row) const { return place(row); }
+  void grow_to(Index rows) {
+    while (chunks_.size() * chunk_rows < static_cast<std::size_t>(rows))
+      chunks_.push_back(std::make_unique<T[]>(chunk_rows * width_));
+  }
+  std::size_t bytes() const { return chunks_.size() * (chunk_rows * width_ * sizeof(T) + sizeof(chunks_[0])); }
+
+ private:
+  static constexpr std::size_t chunk_rows = 1024;
+  T* place(Index row) const {
+    const auto r = static_cast<std::size_t>(row);
+    return chunks_[r / chunk_rows].get() + r % chunk_rows * width_;
+  }
+
+  std::size_t width_;
+  std::vector<std::unique_ptr<T[]>> chunks_;
+};
 
 /// Powers of two that a solve's numbers are to be multiplied by.
 struct HeatExponents {

@@ -10,19 +10,94 @@
 #include "ahm/error.hpp"
 #include "ahm/graph/validate.hpp"
 #include "ahm/maps/cost.hpp"
-#include "ahm/maps/place_in_space.hpp"
+#include "ahm/maps/straight_line.hpp"
 #include "ahm/util/memory.hpp"
 #include "ahm/util/parallel.hpp"
 #include "ahm/util/small_math.hpp"
 #include "ahm/util/text.hpp"
 #include "ahm/util/vec.hpp"
-#include "maps/ball.hpp"
-#include "maps/front_stars.hpp"
-#include "maps/heat_distance.hpp"
+#include "maps/affine_heat.hpp"
+#include "maps/one_rings.hpp"
 #include "maps/patch_maps.hpp"
-#include "maps/source_vertices.hpp"
 
 namespace ahm {
+namespace {
+
+using Regions = std::span<const std::span<const Vertex>>;
+
+void check(const TangentGraph& graph, std::span<const Source> sources, Regions regions, const DiffusionOptions& heat,
+           double margin) {
+  if (regions.size() != sources.size())
+    throw InvalidArgument("there are " + std::to_string(regions.size()) + " regions, of " +
+                          std::to_string(sources.size()) + " sources");
+  check_patches(graph, sources, heat, margin);
+  for (const auto region : regions)
+    for (const auto [vertex] : region)
+      if (vertex < 0 || vertex >= graph.size())
+        throw InvalidArgument("vertex " + std::to_string(vertex) + " is outside [0, " + std::to_string(graph.size()) +
+                              ")");
+}
+
+/// How far along edges (graph units) the farthest vertex of its region is from every source.
+std::vector<double> extents(const TangentGraph& graph, const ComponentScales& scales, std::span<const Source> sources,
+                            Regions regions) {
+  std::vector<double> result(sources.size(), 0);
+  Ball ball(graph);
+  std::vector<std::uint8_t> wanted(static_cast<std::size_t>(graph.size()), 0);
+  for (std::size_t s = 0; s < sources.size(); ++s) {
+    const SourceComponents components(sources[s], scales.components.of_vertex);
+    std::size_t left = 0;
+    for (const auto [vertex] : regions[s])
+      if (components.hold(vertex) && wanted[vertex] == 0) wanted[vertex] = 1, ++left;
+    ball.grow(sources[s].vertices(), std::numeric_limits<double>::infinity(), [&](Index vertex, double distance) {
+      if (wanted[vertex] != 0) result[s] = distance, wanted[vertex] = 0, --left;
+      return left > 0;
+    });
+    for (const auto [vertex] : regions[s]) wanted[vertex] = 0;
+  }
+  return result;
+}
+
+}  // namespace
+
+std::vector<double> local_coordinates(const TangentGraph& graph, std::span<const Source> sources, Regions regions,
+                                      const DiffusionOptions& heat, double margin) {
+  return detail::with_memory_check("solving for local coordinates", [&] {
+    check(graph, sources, regions, heat, margin);
+    const ComponentScales scales(graph);
+    const auto d = static_cast<std::size_t>(graph.dimension());
+    std::vector<std::size_t> begin{0};
+    for (const auto region : regions) begin.push_back(begin.back() + region.size());
+    std::vector<double> result(begin.back() * d, std::numeric_limits<double>::quiet_NaN());
+
+    const std::vector<double> extent = extents(graph, scales, sources, regions);
+    const auto groups = patch_groups(graph, scales, sources, extent, heat, margin);
+    const auto solve = [&](PatchSolver& patches, std::span<const Index> members) {
+      std::vector<Source> group;
+      double farthest = 0;
+      for (Index s : members) group.push_back(sources[s]), farthest = std::max(farthest, extent[s]);
+      const auto patch = patches.solve(patches.cut(group, farthest + margin * patches.sqrt_tau(group)));
+      for (std::size_t m = 0; m < members.size(); ++m) {
+        const SourceVertices own(patch->sources[m], graph.dimension());
+        double* phi = result.data() + begin[members[m]] * d;
+        for (const auto [vertex] : regions[members[m]]) {
+          const auto found = std::ranges::lower_bound(patch->vertices, vertex);
+          const auto place = static_cast<Index>(found - patch->vertices.begin());
+          if (found != patch->vertices.end() && *found == vertex && patch->heat->reached(m, place)) {
+            patch->heat->coordinates_at(m, place, phi);
+            if (const auto* known = own.find(place)) std::copy(known->vector.begin(), known->vector.end(), phi);
+            if (!all_finite(std::span(phi, d))) std::fill_n(phi, d, std::numeric_limits<double>::quiet_NaN());
+          }
+          phi += d;
+        }
+      }
+    };
+    share_groups(
+        groups, heat.threads, heat.progress, [&] { return std::make_unique<PatchSolver>(graph, scales, heat); }, solve);
+    return result;
+  });
+}
+
 namespace {
 
 /// Path lengths along edges exceed distances by up to this factor on good graphs; where it is not enough, a patch grows.
@@ -67,7 +142,7 @@ double entry_bytes(const TangentGraph& graph) {
 /// fill the memory. The middle one of some sources, spread over all, tells.
 void check_memory(const TangentGraph& graph, std::span<const Source> sources, std::span<const double> radii,
                   const LocalMapOptions& options) {
-  const double memory = options.heat.memory > 0 ? static_cast<double>(options.heat.memory) : machine_memory();
+  const double memory = options.memory > 0 ? static_cast<double>(options.memory) : machine_memory();
   if (!(memory > 0) || sources.empty()) return;
   const double half = 0.5 * static_cast<double>(sources.size()) * entry_bytes(graph), enough = memory / half;
   if (enough >= graph.size()) return;
@@ -148,9 +223,9 @@ class Worker {
   /// before anything is solved on it.
   Outcome measure(const Patch& patch, std::span<const Index> members, double wanted) {
     const std::size_t n = patch.vertices.size();
-    std::shared_ptr<const UnfoldingFront::Stars> stars;
+    std::shared_ptr<const Wavefront::OneRings> stars;
     if (graph_.is_delaunay()) {
-      stars = std::make_shared<const UnfoldingFront::Stars>(patch.graph, std::vector<std::uint8_t>(), true);
+      stars = std::make_shared<const Wavefront::OneRings>(patch.graph, std::vector<std::uint8_t>(), true);
       find_rim(patch);
     }
     distances_.resize(members.size() * n);
@@ -159,7 +234,7 @@ class Worker {
       const std::size_t m = options_.radius > 0 ? members.size() - 1 - k : k;
       if (!unfolds(graph_, patch.sources[m])) continue;
       const double radius = radii_[members[m]];
-      UnfoldingFront front(patch.graph, stars);
+      Wavefront front(patch.graph, stars);
       front.add(patch.sources[m]);
       front.run(is_within(patch, sources_[members[m]], wanted) ? radius : std::max(wanted, radius));
       const std::span<double> distance = distances(m, n);
@@ -180,7 +255,7 @@ class Worker {
   /// Whether the patch holds all within `wanted` of a source by straight lines already, which no way is shorter than: then
   /// nobody asks for distances beyond the radius.
   bool is_within(const Patch& patch, const Source& source, double wanted) const {
-    const std::optional<Vec3> start = place_in_space(graph_, source);
+    const std::optional<Vec3> start = source_position(graph_, source);
     return start && !rim_.empty() && rim_.size() == patch.edge.size() &&
            std::ranges::all_of(rim_, [&](const Vec3& end) { return distance(end, *start) >= wanted; });
   }
@@ -208,11 +283,11 @@ class Worker {
 
   /// The distances of a patch from one of its sources, to the straight line where they are below it.
   void raise(const PatchMaps& patch, const Source& source, std::span<double> distances) const {
-    const std::optional<Vec3> start = start_of_lines(graph_, source);
+    const std::optional<Vec3> start = straight_line_origin(graph_, source);
     if (!start) return;
     for (std::size_t k = 0; k < distances.size(); ++k)
       if (const auto frame = graph_.frame(patch.vertices[k]))
-        distances[k] = no_shorter_than(distance(frame->origin, *start), distances[k]);
+        distances[k] = bounded_distance(distance(frame->origin, *start), distances[k]);
   }
 
   /// The vertices within the radius, nearest first.
@@ -224,9 +299,9 @@ class Worker {
     const std::span<double> distance = distances(m, n);
     if (!unfolds(graph_, patch.sources[m])) {
       for (std::size_t k = 0; k < n; ++k) distance[k] = heat.distance_at(m, static_cast<Index>(k));
-      place_source(patch.sources[m], distance);
+      set_source_distances(patch.sources[m], distance);
     }
-    if (options_.no_shorter_than_line) raise(patch, sources_[source], distance);
+    if (options_.bound_by_straight_line) raise(patch, sources_[source], distance);
     phi_.resize(n * d_);
     order_.clear();
     // A patch without an edge is all there is.

@@ -9,21 +9,18 @@
 
 #include "ahm/error.hpp"
 #include "ahm/maps/cost.hpp"
-#include "ahm/maps/unfolding_front.hpp"
+#include "ahm/maps/wavefront.hpp"
 #include "ahm/util/memory.hpp"
 #include "ahm/util/parallel.hpp"
 #include "ahm/util/small_math.hpp"
 #include "ahm/util/text.hpp"
-#include "heat/check_options.hpp"
+#include "cholesky/memory_limits.hpp"
 #include "heat/component_scales.hpp"
 #include "heat/heat_system.hpp"
-#include "heat/memory_limits.hpp"
 #include "maps/affine_heat.hpp"
-#include "maps/front_stars.hpp"
-#include "maps/heat_distance.hpp"
 #include "maps/march.hpp"
+#include "maps/one_rings.hpp"
 #include "maps/solved_values.hpp"
-#include "maps/source_vertices.hpp"
 #include "maps/unfolded.hpp"
 #include "maps/vertex_row.hpp"
 
@@ -70,8 +67,8 @@ struct LogMapSolver::Impl {
   ComponentTimes times;
   mutable std::once_flag factored;
   mutable std::optional<HeatOperators> kept_operators;
-  mutable std::once_flag looked_around;
-  mutable std::shared_ptr<const UnfoldingFront::Stars> kept_stars;
+  mutable std::once_flag neighborhood_once;
+  mutable std::shared_ptr<const Wavefront::OneRings> kept_rings;
 
   Impl(const TangentGraph& graph, const HeatOptions& options);
 
@@ -86,14 +83,14 @@ struct LogMapSolver::Impl {
   void check_memory_of_factors() const;
   void check_memory_of_maps(std::size_t count, const MapSettings& map) const;
   /// Kept by solvers that make many maps.
-  std::shared_ptr<const UnfoldingFront::Stars> stars(unsigned threads) const {
+  std::shared_ptr<const Wavefront::OneRings> stars(unsigned threads) const {
     if (!graph.is_delaunay()) return nullptr;
-    std::call_once(looked_around, [&] {
+    std::call_once(neighborhood_once, [&] {
       std::vector<std::uint8_t> halved = halved_vertices(scales.components.of_vertex, scales.sizes);
-      kept_stars = std::make_shared<const UnfoldingFront::Stars>(graph, std::move(halved), strategy == Strategy::global,
-                                                                 threads);
+      kept_rings =
+          std::make_shared<const Wavefront::OneRings>(graph, std::move(halved), strategy == Strategy::global, threads);
     });
-    return kept_stars;
+    return kept_rings;
   }
 
   March front(const MapSettings& map, const Unfolded* unfolded, unsigned threads) const {
@@ -142,8 +139,8 @@ void LogMapSolver::Impl::factor(const Progress& progress) const {
   detail::with_memory_check("factoring a graph of " + std::to_string(graph.size()) + " vertices", [&] {
     HeatOptions quiet = options;
     quiet.progress = progress;
-    kept_operators.emplace(factored_system(graph, diffusion_times(scales, options.t_coef), quiet), graph,
-                           scales.components);
+    kept_operators = HeatOperatorsAccess::make(
+        factored_system(graph, diffusion_times(scales, options.t_coef), quiet.factor()), graph, scales.components);
   });
 }
 
@@ -178,7 +175,7 @@ LogMap LogMapSolver::Impl::map_of(const Values& values, Strategy how, const Marc
     if (!extras.spread.empty()) extras.spread[i] = row.spread;
     if (map.frames) values.axes(vertex, extras.frames.data() + i * d * d);
   });
-  if (map.distances && unfolded.distances.empty()) place_source(source, extras.distances);
+  if (map.distances && unfolded.distances.empty()) set_source_distances(source, extras.distances);
   for (const auto& [vertex, known] : SourceVertices(source, graph.dimension())) {
     if (known.vector.empty()) continue;
     std::copy(known.vector.begin(), known.vector.end(), coordinates.begin() + static_cast<std::ptrdiff_t>(vertex * d));

@@ -1,21 +1,64 @@
 #include "maps/march.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
 #include <string>
-#include <utility>
 
 #include "ahm/error.hpp"
-#include "ahm/maps/place_in_space.hpp"
+#include "ahm/maps/straight_line.hpp"
 #include "ahm/util/parallel.hpp"
+#include "ahm/util/shortest_paths.hpp"
 #include "ahm/util/small_math.hpp"
+#include "cholesky/blas.hpp"
 #include "graph/patch.hpp"
-#include "heat/blas_control.hpp"
-#include "heat/heat_system.hpp"
-#include "maps/march_depth.hpp"
 
 namespace ahm {
+
+MarchState March::state() const {
+  MarchState state;
+  state.statistics = statistics_;
+  state.depth = depth_;
+  state.accepted = accepted_count_;
+  state.front = front_;
+  numbers_.visit(
+      [&](Index vertex, Index number) {
+        if (!ways_[number]->accepted) return;
+        const std::span known = known_.row(number), found(found_[number], d_ + 2);
+        state.vertices.push_back(vertex);
+        state.values.insert(state.values.end(), known.begin(), known.end());
+        state.values.insert(state.values.end(), found.begin(), found.end());
+        state.exponents.push_back(known_.exponents(number));
+      },
+      [&](Index begin, Index end) {
+        if (!state.passed.empty() && state.passed.back() == begin)
+          state.passed.back() = end;
+        else
+          state.passed.insert(state.passed.end(), {begin, end});
+      });
+  return state;
+}
+
+void March::restore(const MarchState& state) {
+  const std::size_t known = known_.row_width(), width = known + d_ + 2;
+  if (state.values.size() != state.vertices.size() * width || state.exponents.size() != state.vertices.size())
+    throw InvalidArgument("the state of a march is that of another one");
+  for (std::size_t run = 0; run + 1 < state.passed.size(); run += 2)
+    for (Index vertex = state.passed[run]; vertex < state.passed[run + 1]; ++vertex) {
+      way(vertex);
+      forget(vertex);
+    }
+  for (std::size_t k = 0; k < state.vertices.size(); ++k) {
+    way(state.vertices[k]).accepted = true;
+    const Index number = numbers_.find(state.vertices[k]);
+    const auto row = std::span(state.values).subspan(k * width, width);
+    known_.put(number, row.first(known), state.exponents[k]);
+    found_.grow_to(number + 1);
+    std::copy_n(row.begin() + static_cast<std::ptrdiff_t>(known), d_ + 2, found_[number]);
+  }
+  front_ = state.front;
+  statistics_ = state.statistics;
+  depth_ = state.depth;
+  accepted_count_ = state.accepted;
+}
+
 March::March(const TangentGraph& graph, const HeatOptions& options, const MarchScales& scales, Variant variant,
              const MarchReach& reach, unsigned threads, Progress progress, MarchSink* sink, MarchTeam* team,
              MarchGoal goal)
@@ -46,14 +89,14 @@ March::March(const TangentGraph& graph, const HeatOptions& options, const MarchS
 
 void March::run(const Source& source, MarchKeeper* keeper) {
   keeper_ = keeper;
-  start_ = place_in_space(graph_, source);
+  start_ = source_position(graph_, source);
   const std::optional<MarchState> begun = keeper ? keeper->begin() : std::nullopt;
   if (begun) restore(*begun);
   march(begun ? nullptr : &source);
 }
 
 void March::run_on(const AffineHeat& heat, std::size_t s, const Source& source) {
-  start_ = place_in_space(graph_, source);
+  start_ = source_position(graph_, source);
   std::vector<Index> reached;
   for (Index i = 0; i < graph_.size(); ++i)
     if (heat.reached(s, i)) reached.push_back(i);
@@ -142,7 +185,7 @@ std::unique_ptr<March::Solve> March::solve_heat(const Source* source) {
       Solve{source != nullptr, std::move(band), size, std::move(links), std::move(patch), {}, {}, {}, {}, {}, {}});
   auto system = team_.system({solve->patch, solve->band.halo, std::move(times)}, options_);
   solve->system = system.get();
-  solve->operators.emplace(std::move(system), solve->patch, Components{});
+  solve->operators = HeatOperatorsAccess::make(std::move(system), solve->patch, Components{});
 
   RightHandSide right_hand_side;
   if (source) {
@@ -349,6 +392,117 @@ bool March::has_neighbors_ahead(Index vertex) const {
   for (std::size_t e = 0; e < star.degree(); ++e)
     if (star.weights[e] != 0 && !accepted(star.neighbors[e])) return true;
   return false;
+}
+
+namespace {
+
+constexpr float far_away = std::numeric_limits<float>::infinity();
+
+/// Heat distances end here: what lies farther ahead has no order among itself, and is still reached.
+constexpr double farthest = 1e30;
+
+}  // namespace
+
+/// The vertices ahead of the front within `depth_` of heat distance, own ones in the order of the graph.
+March::Band March::find_band(const Source* source) {
+  Band band;
+  band.vertices = search(source);
+  // The graph's own order keeps neighbours close in memory; that of the distance scatters them all around the front.
+  std::sort(band.vertices.begin(), band.vertices.end());
+  band.own = band.vertices.size();
+  band.halo = team_.share(band.vertices);
+  for (const HaloVertex& next : band.halo) band.vertices.push_back(next.vertex);
+  for (std::size_t k = 0; k < band.vertices.size(); ++k) {
+    Way& way_to = way(band.vertices[k]);
+    way_to.place = static_cast<Index>(k);
+    way_to.tentative = far_away;
+  }
+  find_edge(band);
+  return band;
+}
+
+/// Dijkstra's algorithm, the levels on the front being those of the heat that was found there: each member among its own
+/// vertices, again as long as something comes from others. What is found does not depend on who owns what.
+std::vector<Index> March::search(const Source* source) {
+  Tentative tentative{*this};
+  ShortestPaths<float, Tentative> paths(tentative, far_away);
+  std::vector<Ahead> ahead;
+  std::vector<Crossing> leaving;
+  auto offer = [&](const Ahead& edge, double distance, double tau, double root_tau) {
+    const double along = edge_heat_distance(edge.length, edge.weight, tau, root_tau,
+                                            [&] { return heat_diagonal(graph_, edge.vertex, tau); });
+    // Negative weights may ask for less than nothing, and for ever.
+    paths.offer(edge.vertex, static_cast<float>(std::min(distance + (along < 0 ? 0 : along), farthest)));
+  };
+  auto spread = [&](Index from, double distance) {
+    const Star star = graph_.star(from);
+    ahead.clear();  // a copy: the star's life may end when another one is asked for
+    for (std::size_t e = 0; e < star.degree(); ++e)
+      if (star.weights[e] != 0 && may_be_nearer(star.neighbors[e], distance))
+        ahead.push_back({star.neighbors[e], star.weights[e], length(star.log(e))});
+    const double tau = this->tau(from), root_tau = std::sqrt(tau);  // as at the edges' other ends
+    for (const Ahead& edge : ahead)
+      if (team_.owns(edge.vertex))
+        offer(edge, distance, tau, root_tau);
+      else
+        leaving.push_back({edge.vertex, distance, edge.length, edge.weight});
+  };
+  auto cross = [&] {
+    if (team_.sum(static_cast<std::int64_t>(leaving.size())) == 0) return false;
+    for (const Crossing& edge : team_.cross(leaving)) {
+      const double tau = this->tau(edge.vertex);
+      offer({edge.vertex, edge.weight, edge.length}, edge.distance, tau, std::sqrt(tau));
+    }
+    leaving.clear();
+    return true;
+  };
+  if (source) {
+    for (std::size_t k = 0; k < source->vertices().size(); ++k)
+      if (const Index vertex = source->vertices()[k].index; source->weights()[k] > 0 && team_.owns(vertex))
+        paths.offer(vertex, 0);
+  } else {
+    double base = std::numeric_limits<double>::infinity();
+    for (Index vertex : front_) base = std::min(base, known_.level(numbers_.find(vertex)));
+    base = team_.least(base);
+    for (Index vertex : front_)
+      if (const double beyond = known_.level(numbers_.find(vertex)) - base; beyond <= depth_) spread(vertex, beyond);
+  }
+  cross();
+
+  std::vector<Index> found, touched;
+  const double limit = team_.least(paths.empty() ? far_away : paths.least()) + depth_;
+  do
+    paths.run([&](Index vertex, float distance) {
+      if (distance > limit) return touched.push_back(vertex);
+      if (Way& own = way(vertex); own.place < 0) {
+        own.place = 0;
+        found.push_back(vertex);
+      }
+      spread(vertex, distance);
+    });
+  while (cross());
+  for (Index vertex : touched) way(vertex).tentative = far_away;
+  return found;
+}
+
+/// Whether a vertex is ahead, unless the search knows a way to it that is no longer than this.
+bool March::may_be_nearer(Index vertex, double distance) const {
+  const Index number = numbers_.find(vertex);
+  if (number < 0) return number != ReachedNumbers::forgotten;
+  return !ways_[number]->accepted && !(ways_[number]->tentative <= distance);
+}
+
+/// The places in the band next to vertices that are neither behind the front nor in the band.
+void March::find_edge(Band& band) {
+  for (std::size_t k = 0; k < band.own; ++k) {
+    const Star star = graph_.star(band.vertices[k]);
+    for (std::size_t e = 0; e < star.degree(); ++e) {
+      const Index j = star.neighbors[e];
+      if (star.weights[e] == 0 || accepted(j) || place(j) >= 0) continue;
+      band.edge.push_back(static_cast<Index>(k));
+      break;
+    }
+  }
 }
 
 }  // namespace ahm

@@ -1,29 +1,147 @@
 /// \file
-/// The march, a banded solve: the affine heat method by thin bands in the order of heat distance, so that time and memory grow
-/// linearly and nothing underflows at any distance (docs/concepts/march.md).
-///
-/// A band is the part of the graph just ahead of the front. It is cut out with its natural boundary and solved by the same
-/// operators and the same elimination as a whole graph; the accepted values behind the front enter as Dirichlet data. What
-/// lies near the band's far end is dropped again, since the graph beyond would have influenced it.
+/// How deep the bands of a march are, in heat distance.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
+#include "ahm/graph/csr_graph.hpp"
+#include "ahm/graph/tangent_graph.hpp"
+#include "ahm/heat/heat_options.hpp"
 #include "ahm/maps/log_map_solver.hpp"
 #include "ahm/util/vec.hpp"
 #include "heat/component_scales.hpp"
+#include "heat/heat_system.hpp"
 #include "maps/affine_heat.hpp"
 #include "maps/known_values.hpp"
-#include "maps/march_state.hpp"
-#include "maps/march_team.hpp"
-#include "maps/reached_rows.hpp"
 #include "maps/vertex_row.hpp"
 
 namespace ahm {
+
+/// Heat distance accepted per band, where the front is as regular as the graph's edges. Measured: deeper bands cost more
+/// fill per vertex, thinner ones solve each vertex more often.
+inline constexpr double march_step = 32;
+
+/// How far a band goes beyond what is accepted: what lies ahead by x influences what lies behind by exp(-2 x).
+inline double march_margin(double accuracy) { return 1.6 - 0.5 * std::log(accuracy); }
+
+/// How much of the decay exp(-x) of heat an edge brings: its length over sqrt(tau), or what the one edge lets through at
+/// the least, where it is far longer than sqrt(tau). An upper bound, for ordering vertices.
+/// @param root_tau  sqrt(tau)
+/// @param diagonal  called for the diagonal entry m + tau sum w of A at the edge's end, if it is needed
+template <class Diagonal>
+double edge_heat_distance(double length, double weight, double tau, double root_tau, const Diagonal& diagonal) {
+  const double by_length = length / root_tau;
+  if (by_length <= 3 || !(weight > 0)) return by_length;
+  return std::min(by_length, std::log(diagonal() / (tau * weight)));
+}
+
+/// m + tau sum w: the diagonal entry of A.
+inline double heat_diagonal(const TangentGraph& graph, Index vertex, double tau) {
+  double sum = graph.mass(vertex);
+  for (const double w : graph.star(vertex).weights) sum += tau * w;
+  return sum;
+}
+
+/// An edge along which the search for a band comes to a vertex of another member.
+struct Crossing {
+  Index vertex;
+  double distance;  ///< heat distance of the near end
+  double length, weight;
+};
+
+/// A vertex of another member next to one's own.
+struct HaloVertex {
+  Index vertex;
+  std::int64_t row;  ///< among the band's vertices, those of the first member first
+};
+
+/// A member's part of a band as a graph: its own vertices with their stars, then the halo's, without edges and of mass 1.
+struct BandPart {
+  const CsrGraph& graph;
+  std::span<const HaloVertex> halo;
+  std::vector<double> tau;  ///< of each vertex, the same at both ends of an edge
+};
+
+/// All but `owns` and `reach` are called by all members at the same time, as often, in the same order.
+class MarchTeam {
+ public:
+  virtual ~MarchTeam() = default;
+
+  virtual bool owns(Index vertex) const = 0;
+
+  /// Of the members' values.
+  virtual double least(double value) = 0;
+  virtual double greatest(double value) = 0;
+  virtual std::int64_t sum(std::int64_t value) = 0;
+
+  /// Hands crossings over to the owners of their vertices. @return those that come to one's own
+  virtual std::vector<Crossing> cross(std::span<const Crossing> leaving) = 0;
+  /// Tells of own vertices to all who own a neighbour of them; row i is that of vertices[i]. @return what others tell
+  virtual std::vector<HaloVertex> share(std::span<const Index> vertices) = 0;
+
+  /// Heat distance from the largest value of a solution to where it is right: shallower bands are accepted where errors are
+  /// relative to the largest value. Infinite where each number is right by itself.
+  virtual double reach() const = 0;
+  /// Solves on own rows; of the halo it fills in what the owners found.
+  /// @throws as `HeatOperators`
+  virtual std::unique_ptr<const HeatSystem> system(BandPart part, const HeatOptions& options) = 0;
+};
+
+/// A team of one, which solves by factors in the plane and by conjugate gradients in volumes, where the factors of a band
+/// would fill the memory.
+class Alone final : public MarchTeam {
+ public:
+  /// @param heat_first  whether B is wanted later than A, while the next band's A is under way
+  explicit Alone(int dimension, bool heat_first = false) : iterative_(dimension > 2), heat_first_(heat_first) {}
+  bool owns(Index) const override { return true; }
+  double least(double value) override { return value; }
+  double greatest(double value) override { return value; }
+  std::int64_t sum(std::int64_t value) override { return value; }
+  std::vector<Crossing> cross(std::span<const Crossing>) override { return {}; }
+  std::vector<HaloVertex> share(std::span<const Index>) override { return {}; }
+  /// Measured: the cost of a vertex does not grow with a band's depth, but what has decayed further loses digits.
+  double reach() const override { return iterative_ ? 8 : std::numeric_limits<double>::infinity(); }
+  std::unique_ptr<const HeatSystem> system(BandPart part, const HeatOptions& options) override {
+    return (iterative_    ? iterative_system
+            : heat_first_ ? heat_first_system
+                          : factored_system)(part.graph, std::move(part.tau), options.factor());
+  }
+
+ private:
+  bool iterative_, heat_first_;
+};
+
+/// Of one member of a team, halo included.
+struct MarchState {
+  MarchStatistics statistics;
+  double depth = 0;                      ///< of bands
+  Offset accepted = 0;                   ///< own vertices
+  std::vector<Index> front;              ///< vertices from which the march goes on, in its order
+  std::vector<Index> vertices;           ///< accepted ones that the front has not passed, ascending
+  std::vector<double> values;            ///< of each of these as many, as `KnownValues` has them, and what was found
+  std::vector<HeatExponents> exponents;  ///< of each of these
+  std::vector<Index> passed;             ///< begin and end of each run of vertices that the front has passed, ascending
+};
+
+class March;
+
+/// Keeps a march's state where it is to survive the process.
+class MarchKeeper {
+ public:
+  virtual ~MarchKeeper() = default;
+  /// Where to go on; none: from the source.
+  virtual std::optional<MarchState> begin() = 0;
+  /// Called after each band, by all members of a team: `march.state()` is what `begin` may return.
+  virtual void end_band(const March& march) = 0;
+};
 
 /// The scales of the component that a vertex is in.
 class MarchScales {

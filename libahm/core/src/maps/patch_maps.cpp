@@ -1,33 +1,66 @@
 #include "maps/patch_maps.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include "ahm/error.hpp"
 #include "ahm/util/text.hpp"
 #include "graph/patch.hpp"
-#include "heat/check_options.hpp"
-#include "maps/source_groups.hpp"
 
 namespace ahm {
+namespace {
 
-void check_patches(const TangentGraph& graph, std::span<const Source> sources, const HeatOptions& options,
+/// Sources that share a patch. Measured: more make the patch larger, fewer factor more often.
+constexpr std::size_t group_size = 48;
+
+}  // namespace
+
+std::vector<std::vector<Index>> groups_of(const TangentGraph& graph, std::span<const Source> sources,
+                                          const std::function<double(Index seed)>& reach) {
+  const auto n = static_cast<std::size_t>(graph.size());
+  SparseArray<Index> first(n);  // 1 + the first source at a vertex that has no group yet
+  std::vector<Index> after(sources.size(), -1);
+  for (auto s = static_cast<Index>(sources.size()); s-- > 0;) {
+    Index& head = first[sources[s].vertices().front().index];
+    after[s] = head - 1;
+    head = s + 1;
+  }
+  std::vector<std::uint8_t> grouped(sources.size(), 0);
+  std::vector<std::vector<Index>> groups;
+  Ball ball(graph);
+  for (std::size_t seed = 0; seed < sources.size(); ++seed) {
+    if (grouped[seed]) continue;
+    std::vector<Index> members;
+    ball.grow(sources[seed].vertices().first(1), reach(static_cast<Index>(seed)), [&](Index vertex, double) {
+      for (Index s = first[vertex] - 1; s >= 0; s = first[vertex] - 1) {
+        if (members.size() == group_size) return false;
+        members.push_back(s);
+        grouped[s] = 1;
+        first[vertex] = after[s] + 1;
+      }
+      return members.size() < group_size;
+    });
+    groups.push_back(std::move(members));
+  }
+  return groups;
+}
+
+void check_patches(const TangentGraph& graph, std::span<const Source> sources, const DiffusionOptions& options,
                    double margin) {
   if (!(margin >= 0) || !std::isfinite(margin))
     throw InvalidArgument("margin is " + detail::number(margin) + "; it must be finite and >= 0");
-  check_heat_options(graph, options);
+  check_diffusion(graph, options.factor());
   for (const Source& source : sources) check_source(source, graph);
 }
 
 std::vector<std::vector<Index>> patch_groups(const TangentGraph& graph, const ComponentScales& scales,
                                              std::span<const Source> sources, std::span<const double> extent,
-                                             const HeatOptions& options, double margin) {
+                                             const DiffusionOptions& options, double margin) {
   return groups_of(graph, sources, [&](Index seed) {
     return extent[seed] + (margin + 4) * std::sqrt(options.t_coef) * scales.h(sources[seed].vertices().front().index);
   });
 }
 
-PatchSolver::PatchSolver(const TangentGraph& graph, const ComponentScales& scales, const HeatOptions& options)
+PatchSolver::PatchSolver(const TangentGraph& graph, const ComponentScales& scales, const DiffusionOptions& options)
     : graph_(graph), scales_(scales), options_(options), ball_(graph), place_(static_cast<std::size_t>(graph.size())) {
   options_.progress = {};
   options_.check_graph = false;

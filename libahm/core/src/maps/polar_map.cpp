@@ -11,7 +11,7 @@
 #include "ahm/util/small_math.hpp"
 #include "ahm/util/text.hpp"
 #include "ahm/util/vec.hpp"
-#include "maps/right_hand_side.hpp"
+#include "maps/affine_heat.hpp"
 
 namespace ahm {
 namespace {
@@ -58,7 +58,7 @@ std::vector<double> source_axes(const Source& source, std::size_t n) {
   return axes;
 }
 
-std::vector<Status> statuses(const UnfoldingFront& front, const Source& source, double radius) {
+std::vector<Status> statuses(const Wavefront& front, const Source& source, double radius) {
   const TangentGraph& graph = front.graph();
   std::vector<Status> status(static_cast<std::size_t>(graph.size()), Status::disconnected);
   for (Index i = 0; i < graph.size(); ++i)
@@ -72,7 +72,7 @@ std::vector<Status> statuses(const UnfoldingFront& front, const Source& source, 
   return status;
 }
 
-void check(const UnfoldingFront& front, const Source& source, const PolarMapOptions& options) {
+void check(const Wavefront& front, const Source& source, const PolarMapOptions& options) {
   if (!(options.radius > 0))
     throw InvalidArgument("radius is " + detail::number(options.radius) +
                           "; it must be > 0 (infinity: the whole graph)");
@@ -84,7 +84,7 @@ void check(const UnfoldingFront& front, const Source& source, const PolarMapOpti
 
 }  // namespace
 
-LogMap polar_map(const UnfoldingFront& front, const Source& source, const PolarMapOptions& options) {
+LogMap polar_map(const Wavefront& front, const Source& source, const PolarMapOptions& options) {
   check(front, source, options);
   const TangentGraph& graph = front.graph();
   const auto n = static_cast<std::size_t>(graph.size());

@@ -7,8 +7,8 @@
 #include <string>
 
 #include "ahm/error.hpp"
-#include "ahm/graph/mean_edge.hpp"
-#include "ahm/maps/place_in_space.hpp"
+#include "ahm/graph/components.hpp"
+#include "ahm/maps/straight_line.hpp"
 #include "ahm/util/parallel.hpp"
 #include "ahm/util/small_math.hpp"
 #include "ahm/util/vec.hpp"
@@ -45,7 +45,7 @@ struct Polar {
   double error;
 };
 
-Polar polar_of(const LogMap& map, const UnfoldingFront* front, Index vertex) {
+Polar polar_of(const LogMap& map, const Wavefront* front, Index vertex) {
   if (!map.directions().empty()) {
     const double d = map.distances()[vertex];
     return {d * Vec2{map.directions()[2 * vertex], map.directions()[2 * vertex + 1]},
@@ -57,8 +57,8 @@ Polar polar_of(const LogMap& map, const UnfoldingFront* front, Index vertex) {
 }
 
 /// Expected error of a vector by heat, world units.
-double error_of_heat(const LogMap& map, const UnfoldingFront* front, Index vertex, std::span<const double> phi,
-                     double d, double h) {
+double error_of_heat(const LogMap& map, const Wavefront* front, Index vertex, std::span<const double> phi, double d,
+                     double h) {
   if (const auto [psi, error] = polar_of(map, front, vertex); !std::isnan(psi[0])) {
     const double apart = std::hypot(phi[0] - psi[0], phi[1] - psi[1]);
     if (!map.source().is_curve()) return std::hypot(apart, error);
@@ -80,7 +80,7 @@ void check_map(const TangentGraph& graph, const LogMap& map) {
     throw InvalidArgument("map_without_spread", "the map has no spread", "solve with MapOptions::spread");
 }
 
-std::vector<double> quality_beside(const TangentGraph& graph, const LogMap& map, const UnfoldingFront* front,
+std::vector<double> quality_beside(const TangentGraph& graph, const LogMap& map, const Wavefront* front,
                                    unsigned threads) {
   std::vector<double> quality(static_cast<std::size_t>(graph.size()), std::numeric_limits<double>::quiet_NaN());
   const ComponentScales scales(graph);
@@ -88,7 +88,7 @@ std::vector<double> quality_beside(const TangentGraph& graph, const LogMap& map,
   const auto dimension = static_cast<std::size_t>(map.dimension());
   // Distances by heat may be below the straight line; unfolded ones hardly are.
   const bool may_be_short = map.method() == Method::heat && !graph.is_delaunay();
-  const std::optional<Vec3> source = may_be_short ? place_in_space(graph, map.source()) : std::nullopt;
+  const std::optional<Vec3> source = may_be_short ? source_position(graph, map.source()) : std::nullopt;
   detail::for_each_index(quality.size(), threads, [&](std::size_t i) {
     if (map.status()[i] != Status::ok) return;
     const Vertex vertex(static_cast<Index>(i));
@@ -110,15 +110,15 @@ std::vector<double> quality_beside(const TangentGraph& graph, const LogMap& map,
 
 }  // namespace
 
-QualityFront::QualityFront(const TangentGraph& graph, const Source& source, double radius,
-                           const std::stop_token& stop) {
+ReferenceFront::ReferenceFront(const TangentGraph& graph, const Source& source, double radius,
+                               const std::stop_token& stop) {
   if (graph.is_delaunay()) return;
   front_.emplace(graph, nullptr, true);
   front_->add(source);
   front_->run(reach * radius, stop);
 }
 
-std::vector<double> map_quality(const TangentGraph& graph, const LogMap& map, const QualityFront& front,
+std::vector<double> map_quality(const TangentGraph& graph, const LogMap& map, const ReferenceFront& front,
                                 unsigned threads) {
   check_map(graph, map);
   return quality_beside(graph, map, front.get(), threads);
@@ -127,7 +127,7 @@ std::vector<double> map_quality(const TangentGraph& graph, const LogMap& map, co
 std::vector<double> map_quality(const TangentGraph& graph, const LogMap& map, unsigned threads) {
   check_map(graph, map);
   if (map.method() != Method::heat) return quality_beside(graph, map, nullptr, threads);
-  return map_quality(graph, map, QualityFront(graph, map.source(), map.radius()), threads);
+  return map_quality(graph, map, ReferenceFront(graph, map.source(), map.radius()), threads);
 }
 
 }  // namespace ahm

@@ -1,4 +1,4 @@
-#include "ahm/maps/streamed_log_map.hpp"
+#include "maps/streamed_log_map.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,16 +8,13 @@
 #include <vector>
 
 #include "ahm/error.hpp"
-#include "ahm/maps/unfolding_front.hpp"
+#include "ahm/maps/wavefront.hpp"
 #include "ahm/util/parallel.hpp"
 #include "ahm/util/text.hpp"
-#include "heat/check_options.hpp"
 #include "heat/component_scales.hpp"
-#include "maps/heat_distance.hpp"
-#include "maps/march.hpp"
-#include "maps/right_hand_side.hpp"
-#include "maps/source_vertices.hpp"
-#include "maps/team_log_map.hpp"
+#include "heat/heat_system.hpp"
+#include "maps/affine_heat.hpp"
+#include "maps/solved_values.hpp"
 #include "maps/vertex_row.hpp"
 
 namespace ahm {
@@ -84,8 +81,16 @@ class Rows final : public MarchSink, public KnownDistances {
   std::vector<double> phi_;  ///< empty for distances alone
   const KnownDistances* distances_;
   SourceVertices own_;
-  std::optional<UnfoldingFront> front_;  ///< that knows the distances; none: heat does
+  std::optional<Wavefront> front_;  ///< that knows the distances; none: heat does
 };
+
+HeatOptions heat_options(const StreamOptions& options) {
+  return {.t_coef = options.t_coef,
+          .variant = options.variant,
+          .accuracy = options.accuracy,
+          .threads = options.threads,
+          .progress = options.progress};
+}
 
 }  // namespace
 
@@ -106,16 +111,17 @@ void check_streamed_map(const TangentGraph& graph, const Source& source, const H
   }
 }
 
-MarchStatistics stream_log_map(const TangentGraph& graph, const Source& source, const HeatOptions& options,
-                               const MapOptions& map, MapSink& sink) {
+MarchStatistics stream_log_map(const TangentGraph& graph, const Source& source, const StreamOptions& options,
+                               MapSink& sink) {
   Alone alone(graph.dimension());
-  return team_log_map(graph, source, options, map, sink, alone);
+  return team_log_map(graph, source, heat_options(options), {.radius = options.radius}, sink, alone);
 }
 
-MarchStatistics stream_distances(const TangentGraph& graph, const Source& source, const HeatOptions& options,
-                                 const MapOptions& map, MapSink& sink) {
+MarchStatistics stream_distances(const TangentGraph& graph, const Source& source, const StreamOptions& options,
+                                 MapSink& sink) {
   Alone alone(graph.dimension());
-  return team_log_map(graph, source, options, map, sink, alone, {.goal = MarchGoal::distances});
+  return team_log_map(graph, source, heat_options(options), {.radius = options.radius}, sink, alone,
+                      {.goal = MarchGoal::distances});
 }
 
 MarchStatistics team_log_map(const TangentGraph& graph, const Source& source, const HeatOptions& options,

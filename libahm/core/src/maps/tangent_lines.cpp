@@ -1,27 +1,154 @@
 #include "ahm/maps/tangent_lines.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <string>
 #include <unordered_set>
 #include <utility>
+#include <vector>
 
 #include "ahm/error.hpp"
-#include "ahm/maps/unfolding_front.hpp"
+#include "ahm/graph/tangent_graph.hpp"
+#include "ahm/maps/wavefront.hpp"
+#include "ahm/types.hpp"
 #include "ahm/util/shortest_paths.hpp"
 #include "ahm/util/small_math.hpp"
 #include "ahm/util/vec.hpp"
-#include "maps/tangent_walk.hpp"
 
 namespace ahm {
+
+/// A point of a plane on its way, and how that plane unfolds into the first one.
+struct Walker {
+  Index vertex = 0;
+  Vec2 at{};
+  Vec2 origin{};                               ///< of this plane in the first
+  std::array<Vec2, 2> axes{{{1, 0}, {0, 1}}};  ///< of this plane in the first
+
+  Vec2 in_first(const Vec2& v) const { return v[0] * axes[0] + v[1] * axes[1]; }
+  Vec2 from_first(const Vec2& v) const { return {dot(v, axes[0]), dot(v, axes[1])}; }
+
+  /// Takes the place, and a direction with it, to the plane of a neighbour.
+  void go_over(const Star& star, std::size_t edge, Vec2& direction);
+};
+
+/// Where a line leaves the cell of its vertex: after which way, and over which edge; none: it does not.
+struct Exit {
+  double way = std::numeric_limits<double>::infinity();
+  std::size_t edge = 0;
+};
+/// @param direction  unit
+/// @param least      of the ways
+Exit exit_of(const Star& star, const Vec2& at, const Vec2& direction, double least = 0);
+
+/// Whether a point lies beyond the boundary: between two neighbours more than 120 degrees apart, farther away than both.
+bool is_beyond(const Star& star, const Vec2& point);
+
+/// What a line has been through.
+struct Track {
+  std::vector<Walker> walkers;  ///< where it left cells
+  double length = 0;
+  bool complete = true;
+  Vec2 arrival{};  ///< direction at the last
+};
+
+/// Straight on, as far as `length` or the boundary. @param direction  unit
+Track follow(const TangentGraph& graph, Walker walker, Vec2 direction, double length);
+
+/// The components of e_ij.
+inline Vec2 log_of(const Star& star, std::size_t edge) { return {star.log(edge)[0], star.log(edge)[1]}; }
+
+namespace {
+
+/// A line that makes no way for so many cells goes round and round a corner where cells meet.
+constexpr int most_idle_cells = 20;
+
+}  // namespace
+
+void Walker::go_over(const Star& star, std::size_t edge, Vec2& direction) {
+  const Transport R = star.transport(edge);
+  const Vec2 log = log_of(star, edge), here = at - log, before = direction;
+  R.apply_inverse(here.data(), at.data());
+  R.apply_inverse(before.data(), direction.data());
+  origin = origin + in_first(log);
+  std::array<Vec2, 2> carried;
+  for (std::size_t a = 0; a < 2; ++a) {
+    const Vec2 axis{a == 0 ? 1.0 : 0.0, a == 1 ? 1.0 : 0.0};
+    Vec2 image{};
+    R.apply(axis.data(), image.data());
+    carried[a] = in_first(image);
+  }
+  axes = carried;
+  vertex = star.neighbors[edge];
+}
+
+Exit exit_of(const Star& star, const Vec2& at, const Vec2& direction, double least) {
+  Exit exit;
+  for (std::size_t e = 0; e < star.degree(); ++e) {
+    const Vec2 log = log_of(star, e);
+    const double towards = dot(direction, log);
+    if (!(towards > 0)) continue;
+    const double way = std::max(0.0, (0.5 * dot(log, log) - dot(at, log)) / towards);
+    if (way >= least && way < exit.way) exit = {way, e};
+  }
+  return exit;
+}
+
+bool is_beyond(const Star& star, const Vec2& point) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  double right = -infinity, left = infinity, right_reach = 0, left_reach = 0;
+  for (std::size_t e = 0; e < star.degree(); ++e) {
+    const Vec2 log = log_of(star, e);
+    const double turn = std::atan2(cross(point, log), dot(point, log)), size = std::hypot(log[0], log[1]);
+    const double behind = turn > 0 ? turn - 2 * std::numbers::pi : turn,
+                 ahead = turn > 0 ? turn : turn + 2 * std::numbers::pi;
+    if (behind > right) right = behind, right_reach = size;
+    if (ahead < left) left = ahead, left_reach = size;
+  }
+  const double reach = std::max(right_reach, left_reach);
+  return left - right > 2 * std::numbers::pi / 3 && std::hypot(point[0], point[1]) > reach;
+}
+
+Track follow(const TangentGraph& graph, Walker walker, Vec2 direction, double length) {
+  Track track;
+  track.walkers.push_back(walker);
+  int idle = 0;
+  const double least_way = 1e-6 * graph.mean_edge_length();
+  while (true) {
+    const Star star = graph.star(walker.vertex);
+    const double rest = length - track.length;
+    const double least = idle > most_idle_cells ? std::ldexp(least_way, idle - most_idle_cells) : 0.0;
+    const Exit exit = exit_of(star, walker.at, direction, least);
+    const double way = std::min(rest, exit.way);
+    const Vec2 there = walker.at + way * direction;
+    if (is_beyond(star, there)) {
+      const double last = std::clamp(-dot(walker.at, direction), 0.0, way);
+      walker.at = walker.at + last * direction;
+      track.length += last;
+      track.complete = last >= rest;
+      break;
+    }
+    walker.at = there;
+    track.length += way;
+    if (way >= rest) break;
+    idle = way > least_way ? 0 : idle + 1;
+    track.walkers.push_back(walker);
+    walker.go_over(star, exit.edge, direction);
+  }
+  track.walkers.push_back(walker);
+  track.arrival = direction;
+  return track;
+}
+
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 /// Shots that straighten a path.
 constexpr int most_shots = 60;
 
-void check(const TangentGraph& graph, const char* what, const TangentPlace& place) {
+void check(const TangentGraph& graph, const char* what, const TangentPlanePoint& place) {
   if (graph.dimension() != 2)
     throw InvalidArgument("lines run over tangent planes, and the graph has dimension " +
                           std::to_string(graph.dimension()));
@@ -46,7 +173,7 @@ TangentLine in_world_units(const Track& track, double length_unit) {
 }
 
 /// Where `to` lies in the plane of a vertex, if it is there or beside a neighbour.
-std::optional<Vec2> seen_from(const TangentGraph& graph, Index vertex, const TangentPlace& to) {
+std::optional<Vec2> seen_from(const TangentGraph& graph, Index vertex, const TangentPlanePoint& to) {
   if (vertex == to.vertex.index) return to.offset;
   const Star star = graph.star(vertex);
   for (std::size_t e = 0; e < star.degree(); ++e)
@@ -61,7 +188,7 @@ std::optional<Vec2> seen_from(const TangentGraph& graph, Index vertex, const Tan
 /// The way back to where a front came from.
 class Descent {
  public:
-  Descent(const TangentGraph& graph, const TangentPlace& to) : graph_(graph), to_(to), front_(graph) {
+  Descent(const TangentGraph& graph, const TangentPlanePoint& to) : graph_(graph), to_(to), front_(graph) {
     Source source(2);
     const double identity[] = {1, 0, 0, 1};
     const Vec2 back = -graph.length_unit() * to.offset;
@@ -173,8 +300,8 @@ class Descent {
   }
 
   const TangentGraph& graph_;
-  TangentPlace to_;  ///< in units of the graph
-  UnfoldingFront front_;
+  TangentPlanePoint to_;  ///< in units of the graph
+  Wavefront front_;
   std::vector<double> over_edges_;  ///< from `to_`, once it is asked for
 };
 
@@ -193,7 +320,7 @@ std::vector<Vec2> unfolded(const Track& track) {
 
 /// The straight line from the same start to `to`: shot where the track, unfolded, has its end, and then where the last shot was
 /// off the mark. What remains is shared out over the line. None where shots do not come near.
-std::optional<Track> straightened(const TangentGraph& graph, const Track& track, const TangentPlace& to) {
+std::optional<Track> straightened(const TangentGraph& graph, const Track& track, const TangentPlanePoint& to) {
   const Walker& start = track.walkers.front();
   Vec2 mark = unfolded(track).back();
   std::optional<Track> best;
@@ -224,9 +351,9 @@ std::optional<Track> straightened(const TangentGraph& graph, const Track& track,
 }
 
 /// As found from the start back along distances from the end.
-TangentLine one_way(const TangentGraph& graph, const TangentPlace& from, const TangentPlace& to) {
+TangentLine one_way(const TangentGraph& graph, const TangentPlanePoint& from, const TangentPlanePoint& to) {
   const double world = graph.length_unit();
-  const TangentPlace end{to.vertex, 1 / world * to.offset};
+  const TangentPlanePoint end{to.vertex, 1 / world * to.offset};
   Descent descent(graph, end);
   if (!descent.reaches(from.vertex)) return {.status = Status::disconnected, .places = {}};
   Track track = descent.track({.vertex = from.vertex.index, .at = 1 / world * from.offset});
@@ -250,7 +377,7 @@ TangentLine one_way(const TangentGraph& graph, const TangentPlace& from, const T
 
 }  // namespace
 
-TangentLine trace_line(const TangentGraph& graph, const TangentPlace& from, const Vec2& direction, double length) {
+TangentLine trace_line(const TangentGraph& graph, const TangentPlanePoint& from, const Vec2& direction, double length) {
   check(graph, "from", from);
   if (!all_finite(direction) || (direction[0] == 0 && direction[1] == 0))
     throw InvalidArgument("direction: give a finite vector that is not zero");
@@ -263,13 +390,13 @@ TangentLine trace_line(const TangentGraph& graph, const TangentPlace& from, cons
   return line;
 }
 
-TangentLine shortest_line(const TangentGraph& graph, const TangentPlace& from, const TangentPlace& to) {
+TangentLine shortest_line(const TangentGraph& graph, const TangentPlanePoint& from, const TangentPlanePoint& to) {
   check(graph, "from", from);
   check(graph, "to", to);
   TangentLine there = one_way(graph, from, to);
   if (there.status != Status::ok) return there;
   TangentLine back = one_way(graph, to, from);
-  const auto preferred = [](const TangentPlace& a, const TangentPlace& b) {
+  const auto preferred = [](const TangentPlanePoint& a, const TangentPlanePoint& b) {
     return std::pair(a.vertex, a.offset) <= std::pair(b.vertex, b.offset);
   };
   if (there.length != back.length ? there.length < back.length : preferred(from, to)) return there;
@@ -292,28 +419,28 @@ std::size_t main_sample(const Source& source) {
 
 }  // namespace
 
-TangentPlace tangent_place(const Source& source) {
+TangentPlanePoint tangent_plane_point(const Source& source) {
   const std::size_t k = main_sample(source);
-  TangentPlace place{source.vertices()[k]};
+  TangentPlanePoint place{source.vertices()[k]};
   if (source.offsets().empty()) return place;
   const std::span<const double> z = source.offsets().subspan(2 * k, 2), U = source.axes().subspan(4 * k, 4);
   for (std::size_t c = 0; c < 2; ++c) place.offset[c] = -(U[2 * c] * z[0] + U[2 * c + 1] * z[1]);
   return place;
 }
 
-Vec2 u_axis_at_place(const Source& source) {
+Vec2 u_axis_at_point(const Source& source) {
   const std::size_t k = main_sample(source);
   if (source.axes().empty()) return {1, 0};
   return {source.axes()[4 * k], source.axes()[4 * k + 2]};
 }
 
-std::optional<Vec3> position(const TangentGraph& graph, const TangentPlace& place) {
+std::optional<Vec3> position(const TangentGraph& graph, const TangentPlanePoint& place) {
   const std::optional<Frame> frame = graph.frame(place.vertex.index);
   if (!frame) return std::nullopt;
   return frame->origin + place.offset[0] * frame->x + place.offset[1] * frame->y;
 }
 
-std::optional<Vec3> smooth_position(const TangentGraph& graph, const TangentPlace& place) {
+std::optional<Vec3> smooth_position(const TangentGraph& graph, const TangentPlanePoint& place) {
   std::optional<Vec3> own = position(graph, place);
   if (!own) return std::nullopt;
   const double world = graph.length_unit();
@@ -324,7 +451,7 @@ std::optional<Vec3> smooth_position(const TangentGraph& graph, const TangentPlac
     return -2 * dot(from_vertex, from_vertex) / (nearest * nearest);
   };
   const Vec2 at = 1 / world * place.offset;
-  std::vector<std::pair<TangentPlace, double>> seen{{place, exponent(at)}};  // a frame may need the star's memory
+  std::vector<std::pair<TangentPlanePoint, double>> seen{{place, exponent(at)}};  // a frame may need the star's memory
   for (std::size_t e = 0; e < star.degree(); ++e) {
     const Vec2 from_vertex = at - log_of(star, e);
     Vec2 offset{};

@@ -2,15 +2,15 @@
 
 #include <algorithm>
 
-#include "maps/heat_distance.hpp"
+#include "maps/affine_heat.hpp"
 
 namespace ahm {
 
 Unfolded unfolded_from(const Source& source, const TangentGraph& graph,
-                       const std::shared_ptr<const UnfoldingFront::Stars>& stars, bool directions, double radius,
+                       const std::shared_ptr<const Wavefront::OneRings>& stars, bool directions, double radius,
                        const std::stop_token& stop) {
   if (!unfolds(graph, source)) return {};
-  UnfoldingFront front(graph, stars, directions && graph.is_delaunay());
+  Wavefront front(graph, stars, directions && graph.is_delaunay());
   front.add(source);
   front.run(radius, stop);
   const auto n = static_cast<std::size_t>(graph.size());

@@ -8,7 +8,7 @@
 
 #include "ahm/graph/tangent_graph.hpp"
 #include "ahm/maps/source.hpp"
-#include "ahm/maps/unfolding_front.hpp"
+#include "ahm/maps/wavefront.hpp"
 #include "maps/march.hpp"
 
 namespace ahm {
@@ -28,7 +28,7 @@ struct Unfolded final : KnownDistances {
 /// @param directions  whether they are wanted, too; only Delaunay triangulations have them
 /// @throws Cancelled
 Unfolded unfolded_from(const Source& source, const TangentGraph& graph,
-                       const std::shared_ptr<const UnfoldingFront::Stars>& stars, bool directions, double radius,
+                       const std::shared_ptr<const Wavefront::OneRings>& stars, bool directions, double radius,
                        const std::stop_token& stop);
 
 }  // namespace ahm

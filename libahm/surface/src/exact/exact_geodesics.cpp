@@ -14,8 +14,8 @@
 #include "ahm/util/small_math.hpp"
 #include "ahm/util/text.hpp"
 #include "ahm/util/vec.hpp"
-#include "check_point.hpp"
-#include "walk.hpp"
+#include "exact/geodesic_path.hpp"
+#include "exact/propagation.hpp"
 
 namespace ahm {
 namespace {
@@ -93,7 +93,7 @@ Vec3 ExactGeodesics::position(const exact::MeshPoint& point) const {
 }
 
 /// The angle of a source's u axis in the frame of side 0 of its face.
-double ExactGeodesics::u_in_face(const SurfacePoint& at, const PlacedSource& placed, Index face) const {
+double ExactGeodesics::u_in_face(const SurfacePoint& at, const SurfaceSource& placed, Index face) const {
   Vec2 u{};
   if (placed.frame && !flat_.positions.empty()) {
     const auto corner = [&](int s) { return flat_.positions[flat_.surface.record(3 * face + s).tail]; };
@@ -130,7 +130,7 @@ Axes ExactGeodesics::at_corner(exact::Half corner, double u) const {
   return axes_at(turned * surface.angle_scale(vertex) + (c.forward ? off : -off), !c.forward);
 }
 
-Axes ExactGeodesics::vertex_axes(const PlacedSource& placed) const {
+Axes ExactGeodesics::vertex_axes(const SurfaceSource& placed) const {
   const auto own = placed.source.axes();
   return from_frame(flat_, placed.source.vertices()[0].index,
                     own.empty() ? Axes{1, 0, 0, 1} : Axes{own[0], own[1], own[2], own[3]});
@@ -138,7 +138,7 @@ Axes ExactGeodesics::vertex_axes(const PlacedSource& placed) const {
 
 /// The straight line from the row of a source in a tangent plane to that source.
 /// @throws InvalidGeometry (fault "beyond_boundary")
-exact::TracedPath ExactGeodesics::trace_to(const PlacedSource& placed) const try {
+exact::TracedPath ExactGeodesics::trace_to(const SurfaceSource& placed) const try {
   const Axes a = vertex_axes(placed);
   const std::span<const double> back = placed.source.offsets();
   const Vec2 out{-(a[0] * back[0] + a[1] * back[1]), -(a[2] * back[0] + a[3] * back[1])};
@@ -149,14 +149,14 @@ exact::TracedPath ExactGeodesics::trace_to(const PlacedSource& placed) const try
 }
 
 /// The angle of the u axis of a source in a tangent plane, in the frame of side 0 of the face where that source lies.
-double ExactGeodesics::u_beyond_row(const PlacedSource& placed) const {
+double ExactGeodesics::u_beyond_row(const SurfaceSource& placed) const {
   const std::span<const double> back = placed.source.offsets();
   const Axes a = vertex_axes(placed);
   const double side = a[0] * a[3] - a[1] * a[2] < 0 ? -1 : 1;
   return trace_to(placed).direction - side * std::atan2(-back[1], -back[0]);
 }
 
-Axes ExactGeodesics::axes(const SurfacePoint& at, const PlacedSource& placed, const exact::MeshPoint& point) const {
+Axes ExactGeodesics::axes(const SurfacePoint& at, const SurfaceSource& placed, const exact::MeshPoint& point) const {
   if (std::holds_alternative<Row>(at)) {
     return vertex_axes(placed);
   }
@@ -170,7 +170,7 @@ Axes ExactGeodesics::axes(const SurfacePoint& at, const PlacedSource& placed, co
 ExactGeodesics::Placed ExactGeodesics::placed(std::span<const ExactSource> sources) const {
   Placed result;
   for (const ExactSource& s : sources) {
-    PlacedSource placed = surface_->source(s.point, s.u_axis);
+    SurfaceSource placed = surface_->source(s.point, s.u_axis);
     result.points.push_back(point(s.point));
     const Axes own = axes(s.point, placed, result.points.back());
     const double side = s.mirrored ? -1 : 1, c = std::cos(s.angle), t = std::sin(s.angle);
@@ -252,19 +252,19 @@ ExactGeodesics::Placed ExactGeodesics::at_vertex(const FlatTriangles& flat, Vert
   return {{flat.surface.vertex_point(source)}, {from_frame(flat, source.index, {1, 0, 0, 1})}, {}, {Vec2{}}};
 }
 
-std::vector<UnfoldingFront::Seed> ExactGeodesics::seeds(const SurfacePoint& source, const std::optional<Vec3>& u_axis,
-                                                        const ExactMapOptions& options) const {
+std::vector<Wavefront::Seed> ExactGeodesics::seeds(const SurfacePoint& source, const std::optional<Vec3>& u_axis,
+                                                   const ExactMapOptions& options) const {
   const ExactSource one{source, u_axis};
   return seeds(placed(std::span(&one, 1)), options);
 }
 
-std::vector<UnfoldingFront::Seed> ExactGeodesics::seeds(Vertex source, const ExactMapOptions& options) const {
+std::vector<Wavefront::Seed> ExactGeodesics::seeds(Vertex source, const ExactMapOptions& options) const {
   return seeds(at_vertex(flat_, source), options);
 }
 
-std::vector<UnfoldingFront::Seed> ExactGeodesics::seeds(const Placed& from, const ExactMapOptions& options) const {
+std::vector<Wavefront::Seed> ExactGeodesics::seeds(const Placed& from, const ExactMapOptions& options) const {
   const exact::ExactMap exact = exact_map(from, options);
-  std::vector<UnfoldingFront::Seed> seeds;
+  std::vector<Wavefront::Seed> seeds;
   for (Index i = 0; i < exact.size(); ++i) {
     const Vertex v(i);
     if (exact.status(v) != Status::ok) continue;
@@ -284,7 +284,7 @@ exact::ExactMap ExactGeodesics::exact_map(const Placed& from, const ExactMapOpti
   exact::ExactOptions exact_options;
   exact_options.radius = options.radius / flat_.length_unit;
   exact_options.tolerance = options.tolerance;
-  exact_options.most_windows = options.most_windows;
+  exact_options.max_windows = options.max_windows;
   exact_options.progress = options.progress;
   return exact::exact_map(flat_.surface, from.points, exact_options);
 }

@@ -11,9 +11,8 @@
 #include "ahm/util/memory.hpp"
 #include "ahm/util/parallel.hpp"
 #include "ahm/util/text.hpp"
-#include "check_point.hpp"
-#include "exact_propagation.hpp"
-#include "merged_propagation.hpp"
+#include "exact/merged_propagation.hpp"
+#include "exact/propagation.hpp"
 
 namespace ahm::exact {
 namespace {

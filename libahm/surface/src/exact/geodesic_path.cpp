@@ -1,18 +1,162 @@
-#include "ahm/surface/exact/geodesic_path.hpp"
+#include "exact/geodesic_path.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
+#include <memory>
+#include <mutex>
 #include <numbers>
+#include <numeric>
 #include <optional>
+#include <queue>
 #include <string>
+#include <tuple>
 
 #include "ahm/error.hpp"
+#include "ahm/surface/exact/geodesic_path.hpp"
+#include "ahm/util/parallel.hpp"
 #include "ahm/util/text.hpp"
-#include "check_point.hpp"
-#include "strip.hpp"
-#include "walk.hpp"
+#include "exact/shortened_path.hpp"
 
 namespace ahm::exact {
+namespace {
+
+/// The line in a frame to which `place` takes points.
+template <class Map>
+Line mapped(const Line& line, Half half, const Map& place) {
+  const Place start = place(line.start), ahead = place({0, 0});
+  const Place tip = place(line.direction) - ahead;
+  return {half, start, tip, line.walked};
+}
+
+/// Where the line crosses the side from a to b, which is `length` long; ends count as part of the side.
+Exit crossing(const Line& line, Half side, const Place& a, const Place& b, double length) {
+  const Place run = b - a;
+  const double across = cross(line.direction, run);
+  const double part = across != 0 ? std::clamp(cross(line.direction, line.start - a) / across, 0.0, 1.0) : 0.0;
+  const Place hit = a + part * run;
+  return {dot(hit - line.start, line.direction), side, part * length};
+}
+
+}  // namespace
+
+Line in_frame_of(const PolyhedralSurface& surface, Line line, Half half) {
+  while (line.half != half) {
+    const HalfRecord& r = surface.record(line.half);
+    line = mapped(line, next(line.half), [&](const Place& p) { return in_next(r, p); });
+  }
+  return line;
+}
+
+Exit leave_through(const PolyhedralSurface& surface, const Line& line, Half side) {
+  const HalfRecord& r = surface.record(line.half);
+  if (side == line.half) return crossing(line, side, {0, 0}, {r.length, 0}, r.length);
+  return side == next(line.half) ? crossing(line, side, {r.length, 0}, apex(r), r.right)
+                                 : crossing(line, side, apex(r), {0, 0}, r.left);
+}
+
+Exit leave_upwards(const PolyhedralSurface& surface, const Line& line) {
+  const bool left = cross(apex(surface.record(line.half)) - line.start, line.direction) > 0;
+  return leave_through(surface, line, left ? previous(line.half) : next(line.half));
+}
+
+Exit leave(const PolyhedralSurface& surface, const Line& line) {
+  const HalfRecord& r = surface.record(line.half);
+  const Place corner[] = {{0, 0}, {r.length, 0}, apex(r)};
+  const Half side[] = {line.half, next(line.half), previous(line.half)};
+  double soonest = std::numeric_limits<double>::infinity();
+  int through = 0;
+  for (int s = 0; s < 3; ++s) {
+    const Place a = corner[s], run = corner[(s + 1) % 3] - a;
+    const double outwards = cross(line.direction, run);
+    if (outwards <= 1e-14 * norm(run)) continue;
+    const double walked = cross(a - line.start, run) / outwards;
+    if (walked >= soonest) continue;
+    soonest = walked;
+    through = s;
+  }
+  return leave_through(surface, line, side[through]);
+}
+
+Line cross_side(const PolyhedralSurface& surface, const Line& line, const Exit& exit) {
+  // In the frame whose left side is the exit.
+  const Line seen = in_frame_of(surface, line, next(exit.side));
+  const HalfRecord& r = surface.record(seen.half);
+  Line beyond = mapped(seen, r.beyond_left, [&](const Place& p) {
+    const Place q = beyond_left(r, p);
+    return r.mirrored & 1 ? Place{r.left - q[0], q[1]} : q;
+  });
+  beyond.walked = exit.walked;
+  return beyond;
+}
+
+/// Beside a needle by rounding, weights may be far from those of any point nearby: then it is the nearest of its sides.
+MeshPoint point_of(const PolyhedralSurface& surface, Half half, const Place& place) {
+  const HalfRecord& r = surface.record(half);
+  const double up = place[1] / r.apex_y, ahead = (place[0] - up * r.apex_x) / r.length;
+  if (up >= 0 && ahead >= 0 && up + ahead <= 1) {
+    MeshPoint point{half / 3, {}};
+    point.barycentric[half % 3] = std::max(0.0, 1 - up - ahead);
+    point.barycentric[next(half) % 3] = ahead;
+    point.barycentric[previous(half) % 3] = up;
+    return point;
+  }
+  const Place corner[] = {{0, 0}, {r.length, 0}, apex(r)};
+  const Half side[] = {half, next(half), previous(half)};
+  const double length[] = {r.length, r.right, r.left};
+  double nearest = std::numeric_limits<double>::infinity(), along = 0;
+  int on = 0;
+  for (int s = 0; s < 3; ++s) {
+    const Place run = (1 / length[s]) * (corner[(s + 1) % 3] - corner[s]);
+    const double t = std::clamp(dot(place - corner[s], run), 0.0, length[s]);
+    const double away = norm(place - (corner[s] + t * run));
+    if (!(away < nearest)) continue;
+    nearest = away;
+    along = t;
+    on = s;
+  }
+  return point_on(surface, side[on], along);
+}
+
+MeshPoint point_on(const PolyhedralSurface& surface, Half side, double along) {
+  const double part = std::clamp(along / surface.record(side).length, 0.0, 1.0);
+  MeshPoint point{side / 3, {0, 0, 0}};
+  point.barycentric[side % 3] = 1 - part;
+  point.barycentric[next(side) % 3] = part;
+  return point;
+}
+
+Line line_from(Half half, const Place& place, double angle) {
+  return {half, place, {std::cos(angle), std::sin(angle)}, 0};
+}
+
+Line line_from_vertex(const PolyhedralSurface& surface, Index vertex, double angle) {
+  Corner c = surface.first_corner(vertex);
+  for (;;) {
+    const double width = surface.angle(c.half);
+    const Corner left = surface.turn_left(c);
+    if (angle <= width || left.half < 0 || left == surface.first_corner(vertex))
+      return line_from(c.half, {0, 0}, std::clamp(c.forward ? angle : width - angle, 0.0, width));
+    angle -= width;
+    c = left;
+  }
+}
+
+double angle_in_face(const PolyhedralSurface& surface, const Line& line) {
+  const Line seen = in_frame_of(surface, line, 3 * (line.half / 3));
+  return std::atan2(seen.direction[1], seen.direction[0]);
+}
+
+double angle_at_vertex(const PolyhedralSurface& surface, Half corner, const Place& towards) {
+  const double width = surface.angle(corner), within = std::clamp(std::atan2(towards[1], towards[0]), 0.0, width);
+  double turned = 0;
+  for (Corner c = surface.first_corner(surface.record(corner).tail);; c = surface.turn_left(c)) {
+    if (c.half == corner) return turned + (c.forward ? within : width - within);
+    turned += surface.angle(c.half);
+  }
+}
+
 namespace {
 
 using std::numbers::pi;
@@ -305,6 +449,185 @@ TracedPath trace(const PolyhedralSurface& surface, const MeshPoint& from, double
                           " of its boundary: as an angle from the first side it is " + detail::number(direction) +
                           ", those of the surface are up to " + detail::number(sum));
   return Tracer(surface, length).from(surface.vertex_point(Vertex{vertex}), line_from_vertex(surface, vertex, angle));
+}
+
+namespace {
+
+auto key(const MeshPoint& point) { return std::tie(point.face, point.barycentric); }
+
+/// Numbers of pairs with the same start.
+std::vector<std::vector<std::size_t>> by_start(std::span<const PointPair> pairs) {
+  std::vector<std::size_t> order(pairs.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return key(pairs[a][0]) < key(pairs[b][0]); });
+  std::vector<std::vector<std::size_t>> groups;
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    if (k == 0 || key(pairs[order[k - 1]][0]) != key(pairs[order[k]][0])) groups.emplace_back();
+    groups.back().push_back(order[k]);
+  }
+  return groups;
+}
+
+}  // namespace
+
+std::vector<GeodesicPath> geodesic_paths(const PolyhedralSurface& surface, std::span<const PointPair> pairs,
+                                         const Progress& progress, unsigned threads) {
+  const std::vector<std::vector<std::size_t>> groups = by_start(pairs);
+  std::vector<GeodesicPath> paths(pairs.size());
+  std::mutex reporting;
+  std::size_t done = 0;
+  detail::parallel_chunks(static_cast<Offset>(groups.size()), 1, threads, [&](Offset g, Offset) {
+    const std::vector<std::size_t>& group = groups[static_cast<std::size_t>(g)];
+    ExactOptions options;
+    options.progress.stop = progress.stop;
+    options.only_targets = true;
+    for (std::size_t k : group) options.targets.push_back(pairs[k][1]);
+    const ExactMap map = exact_map(surface, pairs[group.front()][0], options);
+    for (std::size_t t = 0; t < group.size(); ++t) paths[group[t]] = path_to_target(surface, map, t);
+    const std::scoped_lock lock(reporting);
+    progress.step("paths", static_cast<double>(++done) / static_cast<double>(groups.size()));
+  });
+  return paths;
+}
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// How a way comes to a vertex.
+struct Step {
+  double distance = infinity;  ///< so far
+  Index from = -1;             ///< vertex; -1: where the way starts
+  Half across = -1;            ///< the half-edge that it crosses; -1: none
+  double along = 0;            ///< from its tail
+};
+
+/// One step per vertex, in pages that are made where one is asked for: near points take little of a large surface.
+class Steps {
+ public:
+  explicit Steps(Index size) : pages_(static_cast<std::size_t>(size) / per_page + 1) {}
+  Step& operator[](Index vertex) {
+    std::unique_ptr<Page>& page = pages_[static_cast<std::size_t>(vertex) / per_page];
+    if (!page) page = std::make_unique<Page>();
+    return (*page)[static_cast<std::size_t>(vertex) % per_page];
+  }
+
+ private:
+  static constexpr std::size_t per_page = 128;
+  using Page = std::array<Step, per_page>;
+  std::vector<std::unique_ptr<Page>> pages_;
+};
+
+/// The shortest way along the edges and straight across them to the vertex beyond, by Dijkstra's algorithm or, with a
+/// lower bound, A* [HNR68].
+class EdgeSearch {
+ public:
+  EdgeSearch(const PolyhedralSurface& surface, const std::function<double(Vertex)>& at_least)
+      : surface_(surface), at_least_(at_least), step_(surface.vertex_count()) {}
+
+  /// The vertices of the way, and where it crosses edges between them; none where there is none.
+  std::vector<MeshPoint> run(const MeshPoint& from, const MeshPoint& to) {
+    double after[3];
+    for (int s = 0; s < 3; ++s) after[s] = to_corner(to, s);
+    for (int s = 0; s < 3; ++s)
+      if (const double d = to_corner(from, s); d < infinity) offer(surface_.record(3 * from.face + s).tail, {d});
+    double best = infinity;
+    Index last = -1;
+    while (!queue_.empty() && queue_.top().key < best) {
+      const Entry entry = queue_.top();
+      queue_.pop();
+      if (entry.distance > step_[entry.vertex].distance) continue;
+      for (int s = 0; s < 3; ++s)
+        if (surface_.record(3 * to.face + s).tail == entry.vertex && entry.distance + after[s] < best) {
+          best = entry.distance + after[s];
+          last = entry.vertex;
+        }
+      go_on(entry);
+    }
+    std::vector<MeshPoint> way;
+    for (Index v = last; v >= 0; v = step_[v].from) {
+      way.push_back(surface_.vertex_point(Vertex(v)));
+      if (step_[v].across >= 0) way.push_back(point_on(surface_, step_[v].across, step_[v].along));
+    }
+    std::reverse(way.begin(), way.end());
+    return way;
+  }
+
+ private:
+  struct Entry {
+    double key, distance;
+    Index vertex;
+    bool operator<(const Entry& other) const { return key != other.key ? key > other.key : vertex > other.vertex; }
+  };
+
+  /// From a point of a face; a point at a corner goes there alone.
+  double to_corner(const MeshPoint& point, int s) const {
+    if (vertex_of(surface_, point) >= 0) return point.barycentric[s] > 0 ? 0 : infinity;
+    MeshPoint corner{point.face, {0, 0, 0}};
+    corner.barycentric[s] = 1;
+    return distance(surface_.place(point), surface_.place(corner));
+  }
+
+  void go_on(const Entry& entry) {
+    const Corner first = surface_.first_corner(entry.vertex);
+    Corner c = first;
+    do {
+      const HalfRecord& r = surface_.record(c.half);
+      offer(r.head, {entry.distance + r.length, entry.vertex});
+      offer(r.apex, {entry.distance + r.left, entry.vertex});
+      if (r.beyond_right >= 0) cross_right(entry, r);
+      c = surface_.turn_left(c);
+    } while (c.half >= 0 && c != first);
+  }
+
+  /// To the vertex beyond the side opposite to the tail, where it is seen through that side.
+  void cross_right(const Entry& entry, const HalfRecord& r) {
+    const HalfRecord& there = surface_.record(r.beyond_right);
+    Place from = beyond_right(r, {0, 0});
+    if (r.mirrored & 2) from[0] = there.length - from[0];
+    const Place to = apex(there);
+    const double along = from[0] - (to[0] - from[0]) * from[1] / (to[1] - from[1]);
+    if (along > 0 && along < there.length)
+      offer(there.apex, {entry.distance + exact::distance(from, to), entry.vertex, r.beyond_right, along});
+  }
+
+  void offer(Index vertex, const Step& step) {
+    Step& known = step_[vertex];
+    if (!(step.distance < known.distance)) return;
+    known = step;
+    queue_.push({step.distance + (at_least_ ? at_least_(Vertex(vertex)) : 0.0), step.distance, vertex});
+  }
+
+  const PolyhedralSurface& surface_;
+  const std::function<double(Vertex)>& at_least_;
+  Steps step_;
+  std::priority_queue<Entry> queue_;
+};
+
+}  // namespace
+
+GeodesicPath locally_shortest_path(const PolyhedralSurface& surface, const MeshPoint& from, const MeshPoint& to,
+                                   const std::function<double(Vertex)>& at_least) {
+  const MeshPoint start = checked(surface, from, "from"), end = checked(surface, to, "to");
+  const Index start_vertex = vertex_of(surface, start), end_vertex = vertex_of(surface, end);
+  std::vector<MeshPoint> curve{start};
+  if (start.face == end.face) {
+    curve.push_back(end);
+    return shortened_path(surface, curve);
+  }
+  const auto component = [&](const MeshPoint& p) { return surface.component(surface.record(3 * p.face).tail); };
+  if (component(start) != component(end)) {
+    GeodesicPath none;
+    none.status = Status::disconnected;
+    return none;
+  }
+  for (const MeshPoint& p : EdgeSearch(surface, at_least).run(start, end))
+    if (const Index v = vertex_of(surface, p); v < 0 || (v != start_vertex && v != end_vertex)) curve.push_back(p);
+  curve.push_back(end);
+  Strip strip = strip_along(surface, curve);
+  const TautLine line = pass_other_side(surface, strip, shorten(surface, strip));
+  return path_along(surface, strip, line);
 }
 
 }  // namespace ahm::exact

@@ -1,16 +1,183 @@
 /// \file
-/// What the propagations of windows have in common: sources, targets, and what has been reached.
+/// Points of a surface as the algorithms take them.
 #pragma once
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <limits>
+#include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
+#include "ahm/error.hpp"
 #include "ahm/surface/exact/exact_map.hpp"
-#include "unfold.hpp"
+#include "ahm/surface/exact/polyhedral_surface.hpp"
+#include "ahm/util/text.hpp"
+#include "ahm/util/vec.hpp"
 
 namespace ahm::exact {
+
+/// The point with weights that sum to 1, those below 1e-14 made zero.
+/// @throws InvalidArgument
+inline MeshPoint checked(const PolyhedralSurface& surface, MeshPoint point, const std::string& name) {
+  auto& b = point.barycentric;
+  if (point.face < 0 || point.face >= surface.face_count())
+    throw InvalidArgument(name + ": face " + std::to_string(point.face) + " is outside [0, " +
+                          std::to_string(surface.face_count()) + ")");
+  if (!(std::abs(b[0] + b[1] + b[2] - 1) <= 1e-9) || !(std::min({b[0], b[1], b[2]}) >= -1e-9))
+    throw InvalidArgument(name + ": barycentric coordinates (" + detail::number(b[0]) + ", " + detail::number(b[1]) +
+                          ", " + detail::number(b[2]) + ") in face " + std::to_string(point.face) +
+                          " must be >= 0 and sum to 1");
+  for (double& w : b) w = w < 1e-14 ? 0.0 : w;
+  const double sum = b[0] + b[1] + b[2];
+  for (double& w : b) w /= sum;
+  return point;
+}
+
+/// The vertex of a checked point with two zero weights; else -1.
+inline Index vertex_of(const PolyhedralSurface& surface, const MeshPoint& point) {
+  Index vertex = -1;
+  for (int s = 0; s < 3; ++s) {
+    if (!(point.barycentric[s] > 0)) continue;
+    if (vertex >= 0) return -1;
+    vertex = surface.record(3 * point.face + s).tail;
+    if (point.barycentric[s] < 1) return -1;
+  }
+  return vertex;
+}
+
+/// Items by ascending key, in any order within a bucket [XWLLH15]. Keys more than the ring of buckets ahead wait in its last
+/// bucket: they come too early, which costs the algorithm time and nothing else. Memory grows by chunks and is used again.
+template <class Item>
+class BucketQueue {
+ public:
+  static constexpr std::uint32_t per_chunk = 42, ring = 4096, none = ~0u;
+  struct Chunk {
+    std::uint32_t count = 0, next = none;
+    Item items[per_chunk];
+  };
+
+  explicit BucketQueue(double width) : inverse_width_(1 / width), first_(ring, none) {}
+
+  void push(double key, const Item& item) {
+    std::uint32_t& head = first_[slot(key)];
+    if (head == none || chunks_[head]->count == per_chunk) {
+      const std::uint32_t fresh = take();
+      chunks_[fresh]->next = head;
+      head = fresh;
+    }
+    Chunk& chunk = *chunks_[head];
+    chunk.items[chunk.count++] = item;
+    ++size_;
+  }
+
+  bool empty() const { return size_ == 0; }
+  /// The lower end of the current bucket.
+  double key() const { return static_cast<double>(bucket_) / inverse_width_; }
+  bool bucket_empty() const { return first_[bucket_ % ring] == none; }
+  /// Goes on to the next bucket.
+  void advance() { ++bucket_; }
+
+  /// Takes the chunk on top of the current bucket out and calls visit(item) for its items; pushing meanwhile is fine.
+  template <class Visit>
+  void drain_chunk(const Visit& visit) {
+    std::uint32_t& head = first_[bucket_ % ring];
+    const std::uint32_t taken = head;
+    head = chunks_[taken]->next;
+    size_ -= chunks_[taken]->count;
+    const Chunk& chunk = *chunks_[taken];
+    for (std::uint32_t k = 0; k < chunk.count; ++k) visit(chunk.items[k]);
+    chunks_[taken]->next = free_;
+    free_ = taken;
+  }
+
+  std::size_t bytes() const { return chunks_.size() * sizeof(Chunk) + first_.size() * sizeof(std::uint32_t); }
+
+ private:
+  std::size_t slot(double key) const {
+    const double position = key * inverse_width_;
+    const auto last = bucket_ + ring - 1;
+    const auto bucket = position < static_cast<double>(last) ? static_cast<std::uint64_t>(position) : last;
+    return std::max(bucket, bucket_) % ring;
+  }
+  std::uint32_t take() {
+    if (free_ == none) {
+      chunks_.push_back(std::make_unique_for_overwrite<Chunk>());
+      return static_cast<std::uint32_t>(chunks_.size() - 1);
+    }
+    const std::uint32_t taken = free_;
+    free_ = chunks_[taken]->next;
+    chunks_[taken]->count = 0;
+    return taken;
+  }
+
+  double inverse_width_;
+  std::uint64_t bucket_ = 0;
+  std::vector<std::uint32_t> first_;  ///< per bucket of the ring
+  std::vector<std::unique_ptr<Chunk>> chunks_;
+  std::uint32_t free_ = none;
+  std::uint64_t size_ = 0;
+};
+
+/// A point or source in the frame of a half-edge.
+using Place = Vec2;
+
+inline double distance(const Place& a, const Place& b) { return norm(a - b); }
+/// In [0, pi].
+inline double angle_between(const Vec2& a, const Vec2& b) { return std::abs(std::atan2(cross(a, b), dot(a, b))); }
+inline Place apex(const HalfRecord& r) { return {r.apex_x, r.apex_y}; }
+
+/// In the frame of the half-edge beyond the left side, which runs from the tail to the apex (glued without mirroring).
+inline Place beyond_left(const HalfRecord& r, const Place& p) {
+  const double scale = 1 / r.left;
+  return {(p[0] * r.apex_x + p[1] * r.apex_y) * scale, (p[1] * r.apex_x - p[0] * r.apex_y) * scale};
+}
+
+/// In the frame of the half-edge beyond the right side, which runs from the apex to the head (glued without mirroring).
+inline Place beyond_right(const HalfRecord& r, const Place& p) {
+  const double scale = 1 / r.right, c = r.back_x * scale, s = r.apex_y * scale, x = p[0] - r.length;
+  return {r.right + x * c - p[1] * s, x * s + p[1] * c};
+}
+
+/// In the frame of the next half-edge of the same face.
+inline Place in_next(const HalfRecord& r, const Place& p) {
+  const Place q = beyond_right(r, p);
+  return {r.right - q[0], -q[1]};
+}
+
+/// In the frame of the previous half-edge of the same face.
+inline Place in_previous(const HalfRecord& r, const Place& p) {
+  const Place q = beyond_left(r, p);
+  return {r.left - q[0], -q[1]};
+}
+
+/// Where the ray from an origin below a half-edge to a point above crosses its line.
+inline double crossing_to(const Place& from, const Place& at) {
+  return from[0] - (at[0] - from[0]) * from[1] / (at[1] - from[1]);
+}
+
+/// Where the ray from an origin below a half-edge through t on it hits the line of the left side (from the tail on) or of
+/// the right side (from the apex on).
+inline double hit_left(const HalfRecord& r, const Place& from, double t) {
+  const double down = -from[1];
+  return t * down / (down * r.apex_x + (from[0] - t) * r.apex_y) * r.left;
+}
+inline double hit_right(const HalfRecord& r, const Place& from, double t) {
+  const double down = -from[1], u = r.length - t;
+  return r.right - u * down / (down * r.back_x + (r.length - from[0] - u) * r.apex_y) * r.right;
+}
+
+/// Points of these sides.
+inline Place on_left(const HalfRecord& r, double t) {
+  const double part = t / r.left;
+  return {part * r.apex_x, part * r.apex_y};
+}
+inline Place on_right(const HalfRecord& r, double t) {
+  const double part = (r.right - t) / r.right;
+  return {r.length - part * r.back_x, part * r.apex_y};
+}
 
 /// Straight rays from one origin that enter a face together.
 struct Window {
@@ -200,5 +367,46 @@ void Propagation::see_targets(Half half, const Place& from, double sigma, const 
     nearer(distance_.size() + static_cast<std::size_t>(target), d, error(at));
   }
 }
+
+class ExactPropagation final : public Propagation {
+ public:
+  ExactPropagation(const PolyhedralSurface& surface, const ExactOptions& options, std::span<const MeshPoint> targets);
+
+  void run(const Progress& progress) override;
+
+ private:
+  std::size_t bytes() const override;
+
+  /// A vertex whose shortest path may bend there.
+  struct Bend {
+    Index vertex;
+    double distance;
+  };
+  /// The apex of a half-edge as the best of the windows that cross the half-edge sees it.
+  struct Sighting {
+    double distance;
+    double crossing;
+  };
+
+  void start(const Window& w) override;
+  void nearer(std::size_t row, double distance, double error) override;
+
+  void bend(const Bend& event);
+  void fill(Corner corner, double turned, double high, std::uint32_t origin2);
+
+  inline bool loses(const Window& w, double at_begin, double at_end) const;
+  void cross_face(const Window& w);
+  inline void go_left(const Window& w, const HalfRecord& r, double sigma, double to_apex);
+  inline void go_right(const Window& w, const HalfRecord& r, double sigma, double to_apex);
+  inline void push(const Window& w, double sigma, double at_begin, double at_end);
+  bool hides(const Window& w, bool right) const;
+  void see_targets_of(const Window& w, double sigma);
+  double farthest_target() override;
+
+  std::vector<Sighting> sighting_;    ///< per half-edge
+  std::vector<Place> sighting_from_;  ///< where that window comes from; empty: no matter
+  BucketQueue<Window> windows_;
+  BucketQueue<Bend> bends_;
+};
 
 }  // namespace ahm::exact

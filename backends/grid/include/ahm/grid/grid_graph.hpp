@@ -41,7 +41,7 @@ struct Grid {
 /// that touch in a corner are joined there. Transport along a way round an obstacle is the identity as everywhere on a
 /// flat domain, so the log map stays the identity, `position - source`: where a vertex lies as the crow flies, not the
 /// way to walk there. `LogMap::distance` is the straight distance, also through walls; `map_quality` sees them where the way
-/// around is longer by a tenth and an edge, and `UnfoldingFront` (cells, farthest points) goes around them.
+/// around is longer by a tenth and an edge, and `Wavefront` (cells, farthest points) goes around them.
 class GridGraph final : public TangentGraph {
  public:
   /// @throws InvalidGeometry (not 2 or 3 axes, an axis of fewer than 2 vertices, a length or position not finite or not

@@ -1,8 +1,8 @@
 /// \file
-/// The plane of a point and its neighbours.
+/// The plane through a point and its neighbors.
 ///
 /// \code
-/// ahm::Vec3 normal = ahm::pointcloud::fit_plane(points, 7, neighbors).normal;    // neighbors: rows of points, 7 left out
+// neighbors: rows of points, without 7
 /// \endcode
 #pragma once
 
@@ -12,14 +12,15 @@
 
 namespace ahm::pointcloud {
 
+/// The principal axes of a point and its neighbors.
 struct PlaneFit {
-  Vec3 normal{0, 0, 0};  ///< unit direction of least variance, either sign; zero where the points lie on a line
-  Vec3 along{0, 0, 0};   ///< unit direction of most variance, either sign; zero likewise
+  Vec3 normal{0, 0, 0};  ///< unit direction of least variance, either sign; zero if the points lie on a line
+  Vec3 along{0, 0, 0};   ///< unit direction of most variance, either sign; zero if the points lie on a line
   double ratio = 0;      ///< second principal variance / first
   double thickness = 0;  ///< third principal variance / second
 };
 
-/// By principal component analysis of point i and the neighbours.
+/// Fits a plane to point i and its neighbors by principal component analysis.
 PlaneFit fit_plane(std::span<const Vec3> points, Index i, std::span<const Index> neighbors);
 
 }  // namespace ahm::pointcloud

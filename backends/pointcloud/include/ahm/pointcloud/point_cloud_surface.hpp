@@ -5,7 +5,7 @@
 /// auto cloud = ahm::pointcloud::PointCloudSurface::build(points);                  // std::vector<ahm::Vec3>
 /// ahm::LogMapSolver solver(cloud.graph());
 /// ahm::LogMap map = solver.solve(cloud.source(ahm::Row{0}).source);
-/// ahm::RowLogMap result = cloud.on_rows(map);                                      // one row per input point
+/// ahm::RowLogMap result = cloud.to_rows(map);                                      // one row per input point
 /// \endcode
 #pragma once
 
@@ -23,98 +23,101 @@ namespace ahm::pointcloud {
 
 struct LocalTriangles;
 
-/// What the signs of given normals mean.
+/// Meaning of the signs of the input normals.
 enum class NormalSigns {
-  /// The majority in each component fixes which side is up; others are turned. Neighbours that face away from each other are
-  /// kept apart if they lie consistently behind each other (thin walls).
+  /// The majority in each component decides which side is up; other normals are flipped. Neighbors with opposed normals are not
+  /// joined if they lie consistently behind each other (thin walls).
   automatic,
-  oriented,    ///< trusted one by one; neighbours whose normals are opposed are kept apart
-  unoriented,  ///< only the planes are used
+  oriented,    ///< every sign is correct; neighbors with opposed normals are not joined
+  unoriented,  ///< signs are ignored, only the planes are used
 };
 
 struct CloudOptions {
-  /// Neighbours per point, the point itself not counted; clamped to n - 1 and reported. None: 30.
+  /// Neighbors per point, without the point itself. Values above n - 1 are reduced to n - 1 and reported. Not set: 30.
   std::optional<Index> k;
   NeighborSearchFactory search = nanoflann_search;
   NormalSigns normal_signs = NormalSigns::automatic;
-  /// Two points are joined only if their distance is at most this multiple of the distance to the k-th neighbour of
-  /// either.
+  /// Two points are joined only if their distance is at most this multiple of the distance to the k-th neighbor of each of them.
   double max_edge_ratio = 3.0;
-  /// Smoothing of the points, before the graph is built, by moving least squares. None: where the noise is larger than an eighth of the
-  /// spacing, over the k neighbors. 0: off. Else the radius of the neighborhoods, world units, everywhere.
+  /// Smoothing of the points by moving least squares, before the graph is built. Not set: where the noise exceeds one eighth of the
+  /// spacing, over the k neighbors. 0: off. Otherwise all points are smoothed, with neighborhoods of this radius, world units.
   std::optional<double> smooth;
-  /// Whether noise, and with it smoothing, is measured for each part that shares no neighbours with the rest,
-  /// so that a part does not depend on what else is in the file. Else for all as one, as clouds in tiles are built.
+  /// Measure noise, and decide about smoothing, separately for each part that shares no neighbors with the rest. The result for a
+  /// part then does not depend on the rest of the file. false: one decision for all points, as for tiled clouds.
   bool parts_apart = true;
-  /// The points to build from, ascending, after whatever filters a caller applied; none: all. Other rows are `removed`, and
-  /// may hold anything.
+  /// The rows to build from, ascending, for example those that remain after filters. Not set: all rows. Other rows get the status
+  /// `removed` and may contain any values.
   std::optional<std::vector<Row>> rows;
-  bool drop_non_finite = false;  ///< NaN and infinite points: drop (status `removed`) instead of throwing
-  unsigned threads = 0;          ///< 0: one per core; the result does not depend on it
+  bool drop_non_finite = false;  ///< drop NaN and infinite points (status `removed`) instead of throwing
+  unsigned threads = 0;          ///< 0: one per core. No result depends on it
   Progress progress;
 };
 
 /// Measured on clouds of 10,000 to 5,000,000 points.
 inline constexpr BuildCost build_cost{.bytes = 500, .seconds = 10e-6};
 
-/// What was found and done on the way. Counts are of points, edges or triangles as named.
+/// Statistics of the construction.
 struct CloudDetails {
   Index points = 0;      ///< rows of the input
   Index vertices = 0;    ///< vertices of the graph
   Index non_finite = 0;  ///< points dropped because a coordinate is NaN or infinite
   Index duplicates = 0;  ///< points merged into an equal one
-  /// Largest step between coordinates that are all single precision numbers, far from the origin; world units. 0: others are not.
+  /// Rounding step of the largest coordinates, world units, if all coordinates are single-precision numbers; otherwise 0.
   double coordinate_step = 0;
-  Index near_duplicates = 0;          ///< points merged into one much nearer than the spacing
+  Index near_duplicates = 0;          ///< points merged into another one much nearer than the spacing
   Index smoothed = 0;                 ///< points moved because of noise
   Index degenerate = 0;               ///< points without a tangent plane or without a triangle, removed
-  std::vector<Row> first_degenerate;  ///< the first ten of them
-  Index k_asked = 0;                  ///< neighbours asked for, 30 by default
-  Index k = 0;                        ///< neighbours used
+  std::vector<Row> first_degenerate;  ///< rows of the first ten degenerate points
+  Index k_asked = 0;                  ///< neighbors per point requested, 30 by default
+  Index k = 0;                        ///< neighbors per point used
   Index components = 0;               ///< connected components of the graph
-  Offset triangles = 0;               ///< of the union of the local Delaunay triangulations
+  Offset triangles = 0;               ///< triangles in the union of the local Delaunay triangulations
   Offset flips = 0;                   ///< edge flips to the intrinsic Delaunay triangulation of the tufted cover
-  bool flips_stopped = false;         ///< before all edges were Delaunay
-  Offset rejected_long = 0;           ///< neighbour pairs not joined: too long for the local spacing
-  Offset rejected_normals = 0;        ///< neighbour pairs not joined: oriented normals disagree (thin wall)
-  Offset rejected_steep = 0;   ///< neighbour pairs not joined: steeply above each other, beyond noise (other sheets)
+  bool flips_stopped = false;         ///< flips stopped before all edges were Delaunay
+  Offset rejected_long = 0;           ///< neighbor pairs not joined: too long for the local spacing
+  Offset rejected_normals = 0;        ///< neighbor pairs not joined: oriented normals disagree (thin wall)
+  Offset rejected_steep = 0;   ///< neighbor pairs not joined: steeply above each other, beyond noise (other sheets)
   Offset reflections = 0;      ///< edges between oppositely oriented frames
-  bool normals_given = false;  ///< one per point
-  Index estimated = 0;         ///< given normals that are zero or not finite and were estimated
-  Index contradicted = 0;      ///< given normals whose planes the points contradict: only their sides were taken
-  Index thick = 0;             ///< points whose neighbours are as thick as wide: no surface there
-  Index lines = 0;             ///< points in parts without a point that others surround: lines, and no surface
-  Index turned = 0;            ///< given normals that pointed to the other side than the majority around them
-  bool oriented = false;       ///< given normals fix which side is up, everywhere
-  double agreement = 1;  ///< share of the local triangles that all three corners have in their local triangulations
-  double noise = 0;  ///< standard deviation of neighbours' offsets across the surface before smoothing, world units;
-                     ///< of several parts that of the largest
-  double layer_gap = 0;  ///< of layers nearer than neighbours that nearly all points there lie in, world units; 0: none
+  bool normals_given = false;  ///< the input has normals
+  Index estimated = 0;         ///< input normals that are zero or not finite, and were estimated
+  Index contradicted = 0;      ///< input normals that contradict the points: only their signs are used
+  Index thick = 0;             ///< points with neighborhoods as thick as wide: no surface
+  Index lines = 0;             ///< points in parts without an interior point: lines, not surfaces
+  Index turned = 0;            ///< input normals opposed to the majority in their component, and flipped
+  bool oriented = false;       ///< input normals determine the upper side everywhere
+  double agreement = 1;  ///< fraction of the local triangles found in the local triangulations of all three corners
+  /// Standard deviation of neighbors' offsets across the surface before smoothing, world units; for several parts, that of the largest.
+  double noise = 0;
+  /// Distance between layers that are nearer than neighbors and contain nearly all points, world units; 0: no layers.
+  double layer_gap = 0;
   double mollification = 0;  ///< length added to every edge of the tufted cover, world units; the largest of the parts
-  double seconds_normals = 0;    ///< neighbours and tangent planes
-  double seconds_delaunay = 0;   ///< local triangulations
-  double seconds_laplacian = 0;  ///< tufted cover, flips, weights
-  double seconds_graph = 0;      ///< orientation, logs, transports
+  double seconds_normals = 0;    ///< time for neighbors and tangent planes
+  double seconds_delaunay = 0;   ///< time for local triangulations
+  double seconds_laplacian = 0;  ///< time for the tufted cover, flips and weights
+  double seconds_graph = 0;      ///< time for orientation, logarithms and transports
 };
 
-/// A point cloud as a surface. Rows are the points given; vertices are sorted along a space-filling curve, equal points
-/// and near duplicates share one. `positions()` are the points given, the origins of the frames the smoothed ones. The
-/// closest point to a position lies in the tangent plane of the row nearest to it; at a row without an axis, u is x of
+/// A point cloud as a surface. Rows are the input points. Vertices are sorted along a space-filling curve; equal points and near
+/// duplicates share a vertex. `positions()` returns the input points, and the origins of the frames are the smoothed points.
+/// `closest_point` returns a point in the tangent plane of the nearest row. At a row, u is by default the x axis of
 /// `graph().frame(vertex)`.
 ///
-/// Its report: points, vertices, non_finite, duplicates, near_duplicates, smoothed, degenerate, k, components, triangles, flips, rejected_long,
-/// rejected_normals, rejected_steep, reflections, normals_given, contradicted, thick, lines, oriented, noise, layer_gap, mollification, seconds.normals, seconds.delaunay,
-/// seconds.laplacian, seconds.graph.
-/// Its warnings, each with a count unless said otherwise: normals_estimated; normals_contradicted; cover_not_delaunay (no number);
-/// degenerate (with rows); normals_turned; k_reduced (asked for, used, distinct points); smoothed (points, noise); near_duplicates; coarse_coordinates (step, mean edge length); layers (gap); no_surface (points as
-/// thick as wide, vertices); lines (points); non_finite; duplicates; thin_walls (pairs of
-/// neighbours not joined); reflections (edges); cloud_components (of more than one).
-/// Faults of a row: row_left_out (by `CloudOptions::rows`), row_removed (not finite, no tangent plane, no triangle).
+/// Entries of the report: points, vertices, non_finite, duplicates, near_duplicates, smoothed, degenerate, k, components, triangles,
+/// flips, rejected_long, rejected_normals, rejected_steep, reflections, normals_given, contradicted, thick, lines, oriented, noise,
+/// layer_gap, mollification, seconds.normals, seconds.delaunay, seconds.laplacian, seconds.graph.
+///
+/// Warnings, each with a count unless noted: normals_estimated; normals_contradicted; cover_not_delaunay (no number); degenerate
+/// (with rows); normals_turned; k_reduced (k requested, k used, distinct points); smoothed (points, noise); near_duplicates;
+/// coarse_coordinates (step, mean edge length); layers (gap); no_surface (points as thick as wide, vertices); lines (points);
+/// non_finite; duplicates; thin_walls (pairs of neighbors not joined); reflections (edges); cloud_components (components, if more
+/// than one).
+///
+/// Faults of a row: row_left_out (not in `CloudOptions::rows`), row_removed (not finite, no tangent plane, or no triangle).
 class PointCloudSurface final : public Surface {
  public:
   /// Builds the graph. Time O(n k log k), memory O(n k).
   /// @param points   n >= 3 positions; equal points are merged
-  /// @param normals  empty (estimated by PCA) or one per point, any length > 0
+  /// @param normals  empty (then estimated by PCA) or one per point, of any length > 0
   /// @throws InvalidGeometry (fewer than 3 distinct points, non-finite values, all points collinear), InvalidArgument,
   /// ResourceExhausted, Cancelled
   static PointCloudSurface build(std::span<const Vec3> points, std::span<const Vec3> normals = {},
@@ -128,12 +131,12 @@ class PointCloudSurface final : public Surface {
   std::vector<Warning> warnings() const override;
   const CloudDetails& details() const& noexcept { return details_; }
   void details() && = delete;
-  /// A manifold chosen from the local triangulations, by the first call: time O(n log n). It need not use all vertices.
-  /// @throws InvalidGeometry (no triangle is left)
+  /// A manifold chosen from the local triangulations. The first call computes it in time O(n log n). It may leave out vertices.
+  /// @throws InvalidGeometry (no triangle remains)
   FlatTriangles flat_approximation() const override;
 
-  /// Polar, but heat where the noise is more than half of the mean edge length, which smoothing leaves too much of, and where the local
-  /// triangulations agree in less than 0.8 of their triangles: the points do not form a surface.
+  /// Polar, or heat in two cases. The noise exceeds half of the mean edge length, so that too much of it remains after smoothing. Or
+  /// less than 0.8 of the local triangles agree, so that the points do not form a surface.
   Method suggested_method() const override;
 
   ~PointCloudSurface() override;
@@ -141,8 +144,8 @@ class PointCloudSurface final : public Surface {
   PointCloudSurface& operator=(PointCloudSurface&&) noexcept;
 
  protected:
-  Reason why_without_vertex(Row row) const override;
-  double error_of_normals() const override;
+  Reason missing_vertex_reason(Row row) const override;
+  double normal_error_degrees() const override;
 
  private:
   PointCloudSurface(CsrGraph graph, CloudDetails details, RowMap rows, std::span<const Vec3> points,
@@ -154,7 +157,7 @@ class PointCloudSurface final : public Surface {
   std::vector<Vec3> positions_;
   std::optional<std::vector<Row>> kept_;
   struct Sheet;
-  std::unique_ptr<Sheet> sheet_;  ///< chosen by the first `flat_approximation`
+  std::unique_ptr<Sheet> sheet_;  ///< computed by the first `flat_approximation`
 };
 
 }  // namespace ahm::pointcloud

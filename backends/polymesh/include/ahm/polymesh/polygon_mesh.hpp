@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-#include "ahm/surface/glued_mesh.hpp"
+#include "ahm/surface/gluing.hpp"
 #include "ahm/types.hpp"
 
 namespace ahm::polymesh {

@@ -6,7 +6,7 @@
 /// auto surface = ahm::polymesh::PolygonMeshSurface::build(positions, face_begin, face_vertices);
 /// ahm::LogMapSolver solver(surface.graph());
 /// ahm::LogMap map = solver.solve(surface.source(ahm::FacePoint{7, {0.25, 0.25, 0.25, 0.25}}).source);
-/// ahm::RowLogMap result = surface.on_rows(map);                           // one row per input vertex
+/// ahm::RowLogMap result = surface.to_rows(map);                           // one row per input vertex
 /// \endcode
 #pragma once
 
@@ -116,12 +116,12 @@ class PolygonMeshSurface final : public Surface {
   const PolygonDetails& details() const noexcept;
   const PolygonMesh& mesh() const noexcept;
 
-  /// As of triangles (`trimesh::TriangleMeshSurface::on_corners`): polygons that the map tears are laid out beside others, each
+  /// As of triangles (`trimesh::TriangleMeshSurface::to_corners`): polygons that the map tears are laid out beside others, each
   /// as it lies in the plane perpendicular to its vector area. Cuts run along sides of polygons.
-  std::vector<Vec2> on_corners(const LogMap& map) const override;
+  std::vector<Vec2> to_corners(const LogMap& map) const override;
 
  protected:
-  PlacedSource source_in_face(const FacePoint& point, const std::optional<Vec3>& u_axis) const override;
+  SurfaceSource source_in_face(const FacePoint& point, const std::optional<Vec3>& u_axis) const override;
   Sample sample_in_face(const LogMap& map, const FacePoint& point) const override;
   exact::MeshPoint flat_point_in_face(const FacePoint& point) const override;
 

@@ -5,7 +5,7 @@
 /// auto surface = ahm::trimesh::TriangleMeshSurface::build(positions, faces);
 /// ahm::LogMapSolver solver(surface.graph());
 /// ahm::LogMap map = solver.solve(surface.source(ahm::FacePoint{7, {0.2, 0.3, 0.5}}).source);
-/// ahm::RowLogMap result = surface.on_rows(map);                              // one row per input vertex
+/// ahm::RowLogMap result = surface.to_rows(map);                              // one row per input vertex
 /// \endcode
 #pragma once
 
@@ -108,7 +108,7 @@ class TriangleMeshSurface final : public Surface {
   /// turns it over, or stretches one of its sides more than twice as much as on the way there from the source.
   /// Torn faces are unfolded from the nearest face, counted in faces, that is not: nearly isometric in themselves. So a texture
   /// is cut open in the middle of the band, along the cut locus, and stretched wherever a smooth map is.
-  std::vector<Vec2> on_corners(const LogMap& map) const override;
+  std::vector<Vec2> to_corners(const LogMap& map) const override;
 
   /// Where a point of a face lies in the intrinsic triangulation.
   struct Located {
@@ -120,14 +120,14 @@ class TriangleMeshSurface final : public Surface {
   Located locate(const FacePoint& point) const;
 
  protected:
-  PlacedSource source_in_face(const FacePoint& point, const std::optional<Vec3>& u_axis) const override;
-  PlacedSource source_on_edge(const EdgePoint& point, const std::optional<Vec3>& u_axis) const override;
+  SurfaceSource source_in_face(const FacePoint& point, const std::optional<Vec3>& u_axis) const override;
+  SurfaceSource source_on_edge(const EdgePoint& point, const std::optional<Vec3>& u_axis) const override;
   /// Linear in the face of the intrinsic triangulation that holds the point. Where the map turns that face over, or a side not
   /// within a factor of 1.5, it is laid out along a side that is kept; `Status::unreached` where there is none: at the cut locus
-  /// interpolate `on_corners` instead.
+  /// interpolate `to_corners` instead.
   Sample sample_in_face(const LogMap& map, const FacePoint& point) const override;
   exact::MeshPoint flat_point_in_face(const FacePoint& point) const override;
-  Reason why_without_vertex(Row row) const override;
+  Reason missing_vertex_reason(Row row) const override;
   FacePoint face_point(const EdgePoint& point) const override;
 
  private:

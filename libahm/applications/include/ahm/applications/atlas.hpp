@@ -13,8 +13,9 @@
 #include <span>
 #include <vector>
 
+#include "ahm/applications/any_solver.hpp"
 #include "ahm/applications/distortion.hpp"
-#include "ahm/applications/map_maker.hpp"
+#include "ahm/image.hpp"
 
 namespace ahm {
 
@@ -46,8 +47,8 @@ struct Atlas {
 /// @param maps     a `LogMapSolver`, or `ExactGeodesics`: cells and charts are then exact over the flat faces
 /// @param sources  vertices; their order is that of the charts
 /// @param faces    of the graph's vertices, in any order
-/// @throws InvalidArgument (dimension, sources, faces), as `MapMaker::coordinates`
-Atlas make_atlas(const MapMaker& maps, std::span<const Vertex> sources, const FaceList& faces);
+/// @throws InvalidArgument (dimension, sources, faces), as `AnySolver::coordinates`
+Atlas make_atlas(const AnySolver& maps, std::span<const Vertex> sources, const FaceList& faces);
 
 struct RefineOptions {
   double max_distortion = 2;       ///< of a good triangle, which is not flipped; > 1
@@ -60,8 +61,8 @@ struct RefineOptions {
 /// becomes another source, and the surface is cut anew, until nothing is to be added. Components without a source get
 /// one.
 /// @param positions  n, of the graph's vertices, world units
-/// @throws InvalidArgument (also positions, options), as `MapMaker::coordinates`
-Atlas make_atlas(const MapMaker& maps, std::span<const Vertex> sources, const FaceList& faces,
+/// @throws InvalidArgument (also positions, options), as `AnySolver::coordinates`
+Atlas make_atlas(const AnySolver& maps, std::span<const Vertex> sources, const FaceList& faces,
                  std::span<const Vec3> positions, const RefineOptions& refine);
 
 /// Distortion of an atlas, faces cut into fans of triangles.
@@ -84,5 +85,35 @@ struct ChartBox {
 /// One per chart; the longer side lies along x.
 /// @throws InvalidArgument (faces and atlas do not fit)
 std::vector<ChartBox> chart_boxes(const Atlas& atlas, const FaceList& faces);
+
+struct PackOptions {
+  int size = 2048;  ///< texels of a side of the square; 16 to 32768
+  int margin = 4;   ///< texels kept free around each chart, and at the border of the square; >= 0
+};
+
+/// Where a chart lies, in texels from the lower left corner of the square, its margin not included.
+struct TextureBox {
+  int x, y, width, height;
+};
+
+struct TextureAtlas {
+  int size = 0, margin = 0;
+  double scale = 0;                 ///< texels per world unit, the same for all charts
+  double filled = 0;                ///< share of the square that the boxes of the charts take
+  std::vector<TextureBox> boxes;    ///< one per chart; they do not touch, nor do their margins overlap
+  std::vector<double> coordinates;  ///< corners x 2 in [0, 1], (0, 0) the lower left corner; NaN without a chart
+};
+
+/// Whether this build can pack (needs stb).
+bool can_pack() noexcept;
+
+/// Turns every chart into its rectangle of least area and packs the rectangles as large as they fit (stb_rect_pack),
+/// all lying or all standing, at one scale.
+/// @throws InvalidArgument (options; no room for so many charts), Error (built without stb)
+TextureAtlas pack(const Atlas& atlas, const FaceList& faces, const PackOptions& options = {});
+
+/// Squares of equal size in every chart, along its box, in a hue of its own; margins are painted like their chart.
+/// @param square  side in texels; 0: 64 along the side of the texture
+Image checkerboard(const TextureAtlas& atlas, int square = 0);
 
 }  // namespace ahm

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "ahm/graph/tangent_graph.hpp"
-#include "ahm/maps/unfolding_front.hpp"
+#include "ahm/maps/wavefront.hpp"
 #include "ahm/progress.hpp"
 #include "ahm/surface/exact/exact_geodesics.hpp"
 
@@ -25,14 +25,14 @@ struct VoronoiCells {
   std::vector<double> distances;
 };
 
-/// Cells by geodesic distance (`UnfoldingFront`), all in one pass whatever the number of sources. Exact to ties on flat
+/// Cells by geodesic distance (`Wavefront`), all in one pass whatever the number of sources. Exact to ties on flat
 /// Delaunay triangulations of convex outline: around a corner of the boundary that points inwards ways come out a little too long.
 /// @throws InvalidArgument (empty, index, a vertex given twice), ResourceExhausted
 VoronoiCells voronoi_cells(const TangentGraph& graph, std::span<const Vertex> vertices);
 /// The same by a front that has come from the first of these vertices before, if from any: it goes on from the others, over what is
 /// nearer to them.
 /// @throws as above; InvalidArgument (more points than vertices)
-VoronoiCells voronoi_cells(UnfoldingFront& front, std::span<const Vertex> vertices);
+VoronoiCells voronoi_cells(Wavefront& front, std::span<const Vertex> vertices);
 /// The same by exact distances over the flat faces.
 /// @param options  radius, beyond which there are no cells; tolerance; progress
 /// @throws as above, as `ExactGeodesics::log_map`
@@ -49,7 +49,7 @@ std::vector<Vertex> farthest_points(const TangentGraph& graph, Vertex first, Ind
 /// The same by a front that has not come from anywhere; it has come from all of them but the last then, so that `voronoi_cells` goes on
 /// from there.
 /// @throws as above; InvalidArgument (a front with points)
-std::vector<Vertex> farthest_points(UnfoldingFront& front, Vertex first, Index count, const Progress& progress = {},
+std::vector<Vertex> farthest_points(Wavefront& front, Vertex first, Index count, const Progress& progress = {},
                                     std::span<const Vertex> among = {});
 /// The same by exact distances over the flat faces; of equally far vertices the first.
 /// @param options  tolerance; progress, as above. Points spread over everything, whatever the radius

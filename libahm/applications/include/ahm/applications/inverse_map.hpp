@@ -17,8 +17,8 @@
 #include "ahm/graph/tangent_graph.hpp"
 #include "ahm/maps/log_map.hpp"
 #include "ahm/maps/quality.hpp"
-#include "ahm/surface/star_triangles.hpp"
 #include "ahm/surface/surface.hpp"
+#include "ahm/surface/surface_triangles.hpp"
 
 namespace ahm {
 

@@ -14,7 +14,7 @@
 #include <span>
 #include <vector>
 
-#include "ahm/applications/map_maker.hpp"
+#include "ahm/applications/any_solver.hpp"
 
 namespace ahm {
 
@@ -50,14 +50,14 @@ struct Center {
 /// @param vertices  the points p_k
 /// @param weights   w_k >= 0, not all zero; empty: all equal. Points of weight 0 do not count
 /// @throws InvalidArgument (empty, lengths, index, weight, points of different components or out of the map's reach);
-/// as `MapMaker::map`
-Center karcher_mean(const MapMaker& maps, std::span<const Vertex> vertices, std::span<const double> weights = {},
+/// as `AnySolver::map`
+Center karcher_mean(const AnySolver& maps, std::span<const Vertex> vertices, std::span<const double> weights = {},
                     const CenterOptions& options = {});
 
 /// The same of points anywhere, each given as a source (`Surface::source`); `LogMap::coordinates(point)` says where it is
 /// seen. The search begins at the vertex with the largest share in the point where it would.
 /// @throws InvalidArgument (as above; a curve; a vertex that the graph does not have)
-Center karcher_mean_of_points(const MapMaker& maps, std::span<const Source> points,
+Center karcher_mean_of_points(const AnySolver& maps, std::span<const Source> points,
                               std::span<const double> weights = {}, const CenterOptions& options = {});
 
 /// The geometric median: where sum_k w_k d(x, p_k) is least, near the start [FVJ09].
@@ -65,11 +65,11 @@ Center karcher_mean_of_points(const MapMaker& maps, std::span<const Source> poin
 ///     x <- exp_x(geometric median of log_x(p_k) in the tangent space)
 ///
 /// One map per step: Weiszfeld's and Newton's steps run in the tangent space, to rounding. Otherwise as `karcher_mean`.
-Center geometric_median(const MapMaker& maps, std::span<const Vertex> vertices, std::span<const double> weights = {},
+Center geometric_median(const AnySolver& maps, std::span<const Vertex> vertices, std::span<const double> weights = {},
                         const CenterOptions& options = {});
 
 /// The same of points anywhere. @throws as `karcher_mean_of_points`
-Center geometric_median_of_points(const MapMaker& maps, std::span<const Source> points,
+Center geometric_median_of_points(const AnySolver& maps, std::span<const Source> points,
                                   std::span<const double> weights = {}, const CenterOptions& options = {});
 
 /// Where a center lies in space, world units: straight on from its vertex along the offset, over flat faces (`exact::trace`,

@@ -1,11 +1,12 @@
 /// \file
-/// Connected components of a tangent graph.
+/// Connected components of a tangent graph, and the mean length of edges.
 ///
 /// \code
 /// std::cout << ahm::connected_components(graph).count << " components\n";
 /// \endcode
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "ahm/graph/tangent_graph.hpp"
@@ -20,5 +21,8 @@ struct Components {
 };
 
 Components connected_components(const TangentGraph& graph);
+
+/// Mean length of the edges of vertices, world units; 0 where they have none.
+double mean_edge(const TangentGraph& graph, std::span<const Vertex> vertices);
 
 }  // namespace ahm

@@ -83,7 +83,7 @@ class TangentGraph {
   /// at any scale from 1e-300 to 1e300 are solved alike; results are multiplied by it again.
   virtual double length_unit() const noexcept { return 1.0; }
   /// Whether d = 2 and the edges are the sides of an intrinsic Delaunay triangulation, all of them, so that distances can be
-  /// unfolded across its triangles (`UnfoldingFront`).
+  /// unfolded across its triangles (`Wavefront`).
   virtual bool is_delaunay() const noexcept { return false; }
   /// Tangent axes in ambient space, in world units, where the backend knows them.
   virtual std::optional<Frame> frame(Index) const { return std::nullopt; }

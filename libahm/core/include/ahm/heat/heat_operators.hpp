@@ -32,19 +32,14 @@ struct FactorStatistics {
   std::size_t bytes = 0;  ///< memory of both factors
 };
 
-class HeatSystem;
-
 /// A and B of one graph, factored. Immutable: all member functions may be called from many threads at once.
 class HeatOperators {
  public:
   /// Assembles and factorizes A and B, for one diffusion time.
-  /// @param options  t_coef, ordering, check_graph, threads, progress
   /// @throws InvalidGraph, InvalidArgument (t_coef), NotPositiveDefinite (an operator is not positive definite, or
   /// fails
   ///         its residual check), ResourceExhausted (memory), Cancelled
-  HeatOperators(const TangentGraph& graph, const HeatOptions& options = {});
-  /// The same by what already solves with A and B of this graph; a type of this library alone.
-  HeatOperators(std::unique_ptr<const HeatSystem> system, const TangentGraph& graph, Components components);
+  HeatOperators(const TangentGraph& graph, const FactorOptions& options = {});
   ~HeatOperators();
   HeatOperators(HeatOperators&&) noexcept;
   HeatOperators& operator=(HeatOperators&&) noexcept;
@@ -72,16 +67,11 @@ class HeatOperators {
   Index component_count() const noexcept;
 
  private:
+  friend struct HeatOperatorsAccess;  // in the library only: operators of another system than Cholesky factors
+  HeatOperators() = default;
+
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
-
-/// Which BLAS the process runs on, and which CHOLMOD: for reports.
-struct LinearAlgebraInfo {
-  std::string cholmod;  ///< version
-  std::string blas;     ///< e.g. "OpenBLAS 0.3.21 ..." or the library's file name
-  bool blas_optimized;  ///< false for the reference BLAS, which is several times slower
-};
-LinearAlgebraInfo linear_algebra_info();
 
 }  // namespace ahm

@@ -9,6 +9,7 @@
 
 #include <cstddef>
 
+#include "ahm/cholesky/cholesky.hpp"
 #include "ahm/heat/variant.hpp"
 #include "ahm/progress.hpp"
 #include "ahm/types.hpp"
@@ -22,12 +23,29 @@ enum class Strategy {
   march,      ///< a banded solve, outwards from the source: time and memory linear in n, any distance
 };
 
-/// Fill-reducing ordering of the factorization.
-enum class Ordering {
-  amd,               ///< approximate minimum degree: cheapest ordering, best for a few maps
-  nested_dissection  ///< METIS: slower to compute, smaller factors, best when the factors serve many maps
+/// Options of the factorization (`HeatOperators`).
+struct FactorOptions {
+  double t_coef = 1.0;  ///< tau = t_coef h^2; > 0
+  Ordering ordering = Ordering::amd;
+  bool check_graph = true;  ///< run `validate(graph)` first: O(n)
+  unsigned threads = 0;     ///< 0: one per core. No result depends on it
+  Progress progress = {};
 };
 
+/// Options of the diffusion, for computations on parts of a graph (`local_maps`, `local_coordinates`).
+struct DiffusionOptions {
+  double t_coef = 1.0;  ///< tau = t_coef h^2; > 0
+  Variant variant = Variant::adaptive;
+  bool check_graph = true;  ///< run `validate(graph)` first: O(n)
+  unsigned threads = 0;     ///< 0: one per core. No result depends on it
+  Progress progress = {};
+
+  FactorOptions factor() const {
+    return {.t_coef = t_coef, .check_graph = check_graph, .threads = threads, .progress = progress};
+  }
+};
+
+/// Options of the solver (`LogMapSolver`).
 struct HeatOptions {
   double t_coef = 1.0;  ///< tau = t_coef h^2; > 0
   Variant variant = Variant::adaptive;
@@ -44,9 +62,11 @@ struct HeatOptions {
   Ordering ordering = Ordering::amd;
   bool check_graph = true;  ///< run `validate(graph)` first: O(n)
 
-  /// 0: one per core. No result depends on it.
-  unsigned threads = 0;
+  unsigned threads = 0;  ///< 0: one per core. No result depends on it
   Progress progress = {};
+
+  DiffusionOptions diffusion() const { return {t_coef, variant, check_graph, threads, progress}; }
+  FactorOptions factor() const { return {t_coef, ordering, check_graph, threads, progress}; }
 };
 
 }  // namespace ahm

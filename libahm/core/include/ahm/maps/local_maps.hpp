@@ -1,13 +1,9 @@
 /// \file
-/// Many small log maps: around each source, everything within a radius.
+/// Where chosen vertices lie in the log maps of many sources, each known on its surroundings only.
 ///
 /// \code
-/// // The neighbourhood of every vertex, as learning on surfaces needs it:
-/// ahm::LocalMaps maps = ahm::local_maps(graph, {.radius = 0.05});
-/// for (ahm::Offset e = maps.indptr[i]; e < maps.indptr[i + 1]; ++e)
-///   use(maps.neighbors[e], &maps.logs[2 * e], maps.distances[e]);
-///
-/// ahm::LocalMaps one = ahm::local_maps(graph, std::array{ahm::Source::at_vertex(ahm::Vertex{7})}, {.radius = 0.05});
+/// // The charts of an atlas: of every source the vertices of its own cell.
+/// std::vector<double> phi = ahm::local_coordinates(graph, sources, regions);
 /// \endcode
 #pragma once
 
@@ -16,10 +12,24 @@
 #include <vector>
 
 #include "ahm/graph/tangent_graph.hpp"
+#include "ahm/heat/heat_options.hpp"
 #include "ahm/maps/log_map.hpp"
 #include "ahm/maps/source.hpp"
 
 namespace ahm {
+
+/// The coordinates of the vertices of regions[s] in the map of sources[s]. Every map is solved for on what lies no farther from its
+/// source along edges than the farthest of its vertices, and a margin; sources near each other share one factorization. Work
+/// and memory depend on these patches, however large the graph is.
+/// @param heat    t_coef, variant, check_graph, threads, progress (stage "solve")
+/// @param margin  in units of sqrt(tau), as `LocalMapOptions::margin`: at 16 the difference to the map of the whole graph is 1e-11 of
+///                the distance at most, on flat pieces none
+/// @return d numbers per vertex, region by region, world units; NaN where no heat arrives, as in other components
+/// @throws InvalidArgument (options, sources, vertices, sizes), InvalidGraph, NotPositiveDefinite (of a patch), ResourceExhausted,
+/// Cancelled
+std::vector<double> local_coordinates(const TangentGraph& graph, std::span<const Source> sources,
+                                      std::span<const std::span<const Vertex>> regions,
+                                      const DiffusionOptions& heat = {}, double margin = 16);
 
 struct LocalMapOptions {
   double radius = 0;  ///< world units, finite and > 0; 0 with `nearest`: as far as those are
@@ -32,9 +42,9 @@ struct LocalMapOptions {
   double margin = 2;
   /// Distances no shorter than the straight line in space, as those by row are, where the graph has frames; which vertices are the nearest,
   /// and which lie within the radius, goes by them.
-  bool no_shorter_than_line = false;
-  /// t_coef, variant, check_graph, threads, progress; h is that of the whole graph.
-  HeatOptions heat = {};
+  bool bound_by_straight_line = false;
+  DiffusionOptions heat = {};  ///< h is that of the whole graph
+  std::size_t memory = 0;      ///< bytes that the result may take; 0: the memory of the machine
 };
 
 /// Local maps of many sources in compressed rows: source s has the entries indptr[s] .. indptr[s + 1], nearest first.
@@ -42,7 +52,7 @@ struct LocalMapOptions {
 /// An entry is a vertex j within the radius: its coordinates phi_j in the source's frame, its distance (as `LogMap::distance`), the mass of j as an
 /// integration weight, and the source's axes carried to the frame of j, which turn components in the source's frame into
 /// components in frame j. The vertex a source stands on is its own neighbour, at distance 0.
-/// @tparam Neighbor  Vertex, or Row where the neighbours are rows of the input (`local_maps_on_rows`)
+/// @tparam Neighbor  Vertex, or Row where the neighbours are rows of the input (`row_local_maps`)
 template <class Neighbor>
 struct LocalMapsOf {
   int dimension = 2;

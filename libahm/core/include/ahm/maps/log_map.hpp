@@ -85,7 +85,7 @@ class LogMap {
   /// source axis a in the frame of the vertex. Identity where no heat arrived.
   std::span<const double> frames() const noexcept { return extras_.frames; }
   /// An estimate of |error of phi_i| of a polar map in world units; NaN where not ok (docs/concepts/accuracy.md): the distance
-  /// times the expected error of the direction (`UnfoldingFront::direction_error`). Empty for heat and exact maps.
+  /// times the expected error of the direction (`Wavefront::direction_error`). Empty for heat and exact maps.
   std::span<const double> error_estimate() const noexcept { return extras_.error_estimate; }
   /// That was asked for, world units; infinite: none.
   double radius() const noexcept { return extras_.radius; }
@@ -103,7 +103,7 @@ class LogMap {
   std::span<const Status> status() const noexcept { return status_; }
   Status status(Vertex vertex) const { return status_[vertex.index]; }
   /// The geodesic distance from the source, world units; NaN where not ok. It is not |phi_i|, which is too short wherever
-  /// several paths reach a vertex: on triangulations it is unfolded (`UnfoldingFront`), elsewhere sqrt(q_i / lambda_i), the
+  /// several paths reach a vertex: on triangulations it is unfolded (`Wavefront`), elsewhere sqrt(q_i / lambda_i), the
   /// root mean square of what heat brings (docs/concepts/accuracy.md). Both are |phi_i| on flat graphs. From a curve: to its nearest
   /// sample. Of an exact map it is |phi_i|.
   double distance(Vertex vertex) const { return extras_.distances[vertex.index]; }
@@ -113,11 +113,11 @@ class LogMap {
   /// of the longest jump to a neighbor, beyond the length of the side; empty without MapOptions::spread. From a curve it is over its
   /// points, too: 0 on flat graphs beside a straight one, about the distance where a bent one's normals meet.
   std::span<const double> spread() const noexcept { return extras_.spread; }
-  /// Where distances are unfolded, the unit vectors in which the ways to the vertices leave the source (`UnfoldingFront`), n x 2 in
+  /// Where distances are unfolded, the unit vectors in which the ways to the vertices leave the source (`Wavefront`), n x 2 in
   /// its frame: beside phi, which `map_quality` compares with them; from a curve, of the ways from its nearest sample. NaN at the
   /// source itself. Empty elsewhere and without MapOptions::spread.
   std::span<const double> directions() const noexcept { return extras_.directions; }
-  /// The expected errors of these directions, radians (`UnfoldingFront::direction_error`); empty where there are none.
+  /// The expected errors of these directions, radians (`Wavefront::direction_error`); empty where there are none.
   std::span<const double> direction_errors() const noexcept { return extras_.direction_errors; }
   /// From a curve, the number of the sample nearest to each vertex (`Source::Place::point`), -1 where none is; empty of other
   /// sources.

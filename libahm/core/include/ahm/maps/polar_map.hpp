@@ -2,7 +2,7 @@
 /// A log map in geodesic polar coordinates, from a front on any graph of dimension 2 [MR12].
 ///
 /// \code
-/// ahm::UnfoldingFront front(graph, nullptr, true);               // with directions
+/// ahm::Wavefront front(graph, nullptr, true);               // with directions
 /// front.add(source);
 /// front.run();
 /// ahm::LogMap map = ahm::polar_map(front, source);
@@ -13,7 +13,7 @@
 
 #include "ahm/maps/log_map.hpp"
 #include "ahm/maps/source.hpp"
-#include "ahm/maps/unfolding_front.hpp"
+#include "ahm/maps/wavefront.hpp"
 #include "ahm/progress.hpp"
 
 namespace ahm {
@@ -29,6 +29,6 @@ struct PolarMapOptions {
 /// of what the longest edge of a vertex has too much in the map: large at the cut locus, as of exact maps.
 /// @param source  the only one of the front; no curve. Of several points the nearest counts (`LogMap::nearest`)
 /// @throws InvalidArgument (a front without directions, a curve, radius)
-LogMap polar_map(const UnfoldingFront& front, const Source& source, const PolarMapOptions& options = {});
+LogMap polar_map(const Wavefront& front, const Source& source, const PolarMapOptions& options = {});
 
 }  // namespace ahm

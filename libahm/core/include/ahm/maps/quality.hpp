@@ -15,7 +15,7 @@
 
 #include "ahm/graph/tangent_graph.hpp"
 #include "ahm/maps/log_map.hpp"
-#include "ahm/maps/unfolding_front.hpp"
+#include "ahm/maps/wavefront.hpp"
 
 namespace ahm {
 
@@ -39,21 +39,21 @@ std::vector<double> map_quality(const TangentGraph& graph, const LogMap& map, un
 
 /// The front that `map_quality` compares a map by heat with, where the map has none of its own: most of its work, which does not
 /// need the map and can be done at the same time.
-class QualityFront {
+class ReferenceFront {
  public:
   /// @param radius  of the map
   /// @throws Cancelled
-  QualityFront(const TangentGraph& graph, const Source& source, double radius = std::numeric_limits<double>::infinity(),
-               const std::stop_token& stop = {});
+  ReferenceFront(const TangentGraph& graph, const Source& source,
+                 double radius = std::numeric_limits<double>::infinity(), const std::stop_token& stop = {});
   /// Null on Delaunay triangulations, whose maps have a front of their own.
-  const UnfoldingFront* get() const noexcept { return front_ ? &*front_ : nullptr; }
+  const Wavefront* get() const noexcept { return front_ ? &*front_ : nullptr; }
 
  private:
-  std::optional<UnfoldingFront> front_;
+  std::optional<Wavefront> front_;
 };
 
 /// The same quality. @param front  from the source of the map, with its radius
-std::vector<double> map_quality(const TangentGraph& graph, const LogMap& map, const QualityFront& front,
+std::vector<double> map_quality(const TangentGraph& graph, const LogMap& map, const ReferenceFront& front,
                                 unsigned threads = 0);
 
 }  // namespace ahm

@@ -5,10 +5,11 @@
 /// struct Rows final : ahm::MapSink {
 ///   void put(ahm::Index vertex, const ahm::MapRow& row) override { std::cout << vertex << ' ' << row.distance << '\n'; }
 /// } rows;
-/// ahm::stream_log_map(graph, ahm::Source::at_vertex(ahm::Vertex{0}), {}, {}, rows);
+/// ahm::stream_log_map(graph, ahm::Source::at_vertex(ahm::Vertex{0}), {}, rows);
 /// \endcode
 #pragma once
 
+#include <limits>
 #include <span>
 
 #include "ahm/maps/log_map_solver.hpp"
@@ -21,6 +22,17 @@ struct MapRow {
   std::span<const double> coordinates;  ///< phi, d numbers in the source's frame; none of `stream_distances`
   double distance;                      ///< as `LogMap::distance`
   double spread;                        ///< as `LogMap::spread`
+};
+
+/// Options of streamed maps.
+struct StreamOptions {
+  double t_coef = 1.0;  ///< tau = t_coef h^2; > 0
+  Variant variant = Variant::adaptive;
+  double accuracy = 1e-9;  ///< largest relative difference to a global solve; in [1e-14, 0.1]
+  /// The march ends at this distance. World units; > 0.
+  double radius = std::numeric_limits<double>::infinity();
+  unsigned threads = 0;  ///< 0: one per core. No result depends on it
+  Progress progress = {};
 };
 
 class MapSink {
@@ -38,17 +50,15 @@ class MapSink {
 /// are unfolded first, by a front that keeps 30 bytes per vertex of the graph.
 /// @param graph    tells `component_edge_length` of every vertex. It is not validated
 /// @param source   points, not a curve
-/// @param options  strategy and `check_graph` mean nothing here
-/// @param map      without frames
 /// @throws InvalidArgument (source, options, a graph of another kind), InvalidGraph (an edge that only one end knows),
 /// NotPositiveDefinite (of a band), Cancelled, and what graph and sink throw
-MarchStatistics stream_log_map(const TangentGraph& graph, const Source& source, const HeatOptions& options,
-                               const MapOptions& map, MapSink& sink);
+MarchStatistics stream_log_map(const TangentGraph& graph, const Source& source, const StreamOptions& options,
+                               MapSink& sink);
 
 /// The distances of the localized map alone, to the bit, whatever variant the options name; its spread to rounding. No frames are
 /// solved for, which is one of the two solves with B in every band.
 /// @throws as `stream_log_map`
-MarchStatistics stream_distances(const TangentGraph& graph, const Source& source, const HeatOptions& options,
-                                 const MapOptions& map, MapSink& sink);
+MarchStatistics stream_distances(const TangentGraph& graph, const Source& source, const StreamOptions& options,
+                                 MapSink& sink);
 
 }  // namespace ahm

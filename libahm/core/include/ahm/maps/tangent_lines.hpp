@@ -5,7 +5,7 @@
 /// \code
 /// ahm::TangentLine line = ahm::trace_line(graph, {ahm::Vertex{7}}, {1, 0}, 0.5);
 /// ahm::TangentLine path = ahm::shortest_line(graph, {ahm::Vertex{7}}, {ahm::Vertex{90}});
-/// for (const ahm::TangentPlace& place : path.places) use(*ahm::position(graph, place));
+/// for (const ahm::TangentPlanePoint& place : path.places) use(*ahm::position(graph, place));
 /// \endcode
 #pragma once
 
@@ -19,7 +19,7 @@
 namespace ahm {
 
 /// A point of the tangent plane of a vertex, near it.
-struct TangentPlace {
+struct TangentPlanePoint {
   Vertex vertex;
   Vec2 offset{};  ///< from the vertex, in its frame, world units
 };
@@ -29,7 +29,7 @@ struct TangentPlace {
 struct TangentLine {
   /// ok; `disconnected` where no path joins the ends, and nothing else is given.
   Status status = Status::ok;
-  std::vector<TangentPlace> places;
+  std::vector<TangentPlanePoint> places;
   double length = 0;     ///< world units, as of the pieces in their planes
   bool complete = true;  ///< of a trace: whether it got as far as was asked for; else it ends at the boundary
   Vec2 departure{};      ///< unit direction at the first place, in the frame of its vertex; zero where the length is
@@ -43,23 +43,23 @@ struct TangentLine {
 /// @param direction  in the frame of the vertex, of any length > 0
 /// @param length     >= 0, world units
 /// @throws InvalidArgument (dimension other than 2, vertex, offset, direction, length)
-TangentLine trace_line(const TangentGraph& graph, const TangentPlace& from, const Vec2& direction, double length);
+TangentLine trace_line(const TangentGraph& graph, const TangentPlanePoint& from, const Vec2& direction, double length);
 
-/// The shortest path: back along the distances of an `UnfoldingFront`, then pulled straight by shooting as long as nothing is in
+/// The shortest path: back along the distances of an `Wavefront`, then pulled straight by shooting as long as nothing is in
 /// the way; from either end, and the shorter of the two, so that reversed it is the same curve. Straight on flat graphs, to
 /// rounding; on smooth surfaces of second order in length. Takes as long as the front takes from end to end, twice.
 /// @throws InvalidArgument (dimension other than 2, vertex, offset)
-TangentLine shortest_line(const TangentGraph& graph, const TangentPlace& from, const TangentPlace& to);
+TangentLine shortest_line(const TangentGraph& graph, const TangentPlanePoint& from, const TangentPlanePoint& to);
 
 /// Where a source lies, seen from its vertex of the largest weight, and its u axis there (unit; frame of the vertex).
 /// @throws InvalidArgument (a curve, another dimension than 2)
-TangentPlace tangent_place(const Source& source);
-Vec2 u_axis_at_place(const Source& source);
+TangentPlanePoint tangent_plane_point(const Source& source);
+Vec2 u_axis_at_point(const Source& source);
 
 /// Where a place lies in space, world units; none for graphs without frames.
-std::optional<Vec3> position(const TangentGraph& graph, const TangentPlace& place);
+std::optional<Vec3> position(const TangentGraph& graph, const TangentPlanePoint& place);
 /// The same as the planes around have it too, weighted by how near their vertices are: where planes of neighbours do not meet, as
 /// on noisy clouds, a line does not jump from one to the other.
-std::optional<Vec3> smooth_position(const TangentGraph& graph, const TangentPlace& place);
+std::optional<Vec3> smooth_position(const TangentGraph& graph, const TangentPlanePoint& place);
 
 }  // namespace ahm

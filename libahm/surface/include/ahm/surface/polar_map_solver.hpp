@@ -5,7 +5,7 @@
 /// \code
 /// const ahm::PolarMapSolver solver(surface);                 // a mesh, a cloud, a grid: nothing is factored
 /// ahm::LogMap map = solver.log_map(ahm::Row{42});
-/// ahm::RowLogMap rows = surface.on_rows(map);                // as of a map by heat
+/// ahm::RowLogMap rows = surface.to_rows(map);                // as of a map by heat
 /// \endcode
 #pragma once
 
@@ -30,7 +30,7 @@ struct PolarSolverOptions {
 /// called from many threads at once. Refers to the surface or graph, which has to stay where it is.
 ///
 /// Exact windows around the source (`ExactGeodesics`) compute distances and directions there. A front carries them on
-/// (`UnfoldingFront`). Without flat triangles (grids, faces without area), and where windows get lost in needles, the
+/// (`Wavefront`). Without flat triangles (grids, faces without area), and where windows get lost in needles, the
 /// front starts at the source; `LogMap::error_estimate` is larger then. On clouds windows cross triangles that are chosen from the
 /// local triangulations; the error estimate there is that of the difference to a front from the source.
 class PolarMapSolver {
@@ -62,10 +62,10 @@ class PolarMapSolver {
 
   const TangentGraph* graph_;
   const Surface* surface_ = nullptr;
-  std::shared_ptr<const UnfoldingFront::Stars> stars_;
+  std::shared_ptr<const Wavefront::OneRings> stars_;
   std::unique_ptr<const CsrGraph>
       sheet_;  ///< the edges of triangles that were chosen, as of clouds; null: the graph's own serve
-  std::shared_ptr<const UnfoldingFront::Stars> sheet_stars_;
+  std::shared_ptr<const Wavefront::OneRings> sheet_stars_;
   std::optional<ExactGeodesics> geodesics_;  ///< none: no flat triangles, or no windows wanted
   Offset windows_ = 0;
 };

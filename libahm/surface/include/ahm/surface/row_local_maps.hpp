@@ -3,7 +3,7 @@
 ///
 /// \code
 /// const ahm::Vertex here = surface.vertex(ahm::Row{42});
-/// const ahm::RowLocalMaps maps = ahm::local_maps_on_rows(surface, {&here, 1}, {.radius = 0.02});
+/// const ahm::RowLocalMaps maps = ahm::row_local_maps(surface, {&here, 1}, {.radius = 0.02});
 /// for (ahm::Row row : maps.neighbors) use(row);
 /// \endcode
 #pragma once
@@ -21,10 +21,11 @@ using RowLocalMaps = LocalMapsOf<Row>;
 /// refined polygons, are left out; `LocalMapOptions::nearest` counts those that are left. Distances are no shorter than the
 /// straight line, as in `RowLogMap`.
 /// @throws as `local_maps`
-RowLocalMaps local_maps_on_rows(const Surface& surface, std::span<const Vertex> sources,
-                                const LocalMapOptions& options);
+RowLocalMaps row_local_maps(const Surface& surface, std::span<const Vertex> sources, const LocalMapOptions& options);
 /// Of any sources: points in faces, curves.
-RowLocalMaps local_maps_on_rows(const Surface& surface, std::span<const Source> sources,
-                                const LocalMapOptions& options);
+RowLocalMaps row_local_maps(const Surface& surface, std::span<const Source> sources, const LocalMapOptions& options);
+
+/// Of every row: source s is row s. Rows without a vertex have no entries.
+RowLocalMaps row_local_maps(const Surface& surface, const LocalMapOptions& options);
 
 }  // namespace ahm

@@ -28,7 +28,7 @@ struct RowLogMap {
 /// Numbers of vertices, such as their `map_quality`, on the rows of a map: those of the vertex that the row's coordinates
 /// are from, NaN where there is none.
 /// @param values  one per vertex. @throws InvalidArgument (too few)
-std::vector<double> on_rows(const RowLogMap& rows, std::span<const double> values);
+std::vector<double> to_rows(const RowLogMap& rows, std::span<const double> values);
 
 /// Coordinates at one point of a surface; NaN where the status is not ok.
 struct Sample {

@@ -5,7 +5,7 @@
 /// auto surface = ahm::pointcloud::PointCloudSurface::build(points);       // or a mesh, of triangles or polygons
 /// const ahm::LogMapSolver solver(surface.graph());
 /// ahm::LogMap map = solver.solve(surface.source(ahm::Row{42}).source);     // a row of the input, never a bare number
-/// ahm::RowLogMap result = surface.on_rows(map);                            // result.u[i], ... for every row i
+/// ahm::RowLogMap result = surface.to_rows(map);                            // result.u[i], ... for every row i
 /// \endcode
 #pragma once
 
@@ -30,7 +30,7 @@ struct MeshPoint;
 struct FlatTriangles;
 
 /// A source and where it lies in space.
-struct PlacedSource {
+struct SurfaceSource {
   Source source;
   Vec3 position{};             ///< world units; zero without positions
   std::optional<Frame> frame;  ///< u axis, v axis and normal in space; none without positions or area
@@ -70,7 +70,7 @@ class Surface {
 
   /// The first vertex of a row.
   /// @throws InvalidArgument (row out of range, fault "row_out_of_range"; a row without a vertex, by the fault that
-  /// `why_without_vertex` names)
+  /// `missing_vertex_reason` names)
   Vertex vertex(Row row) const;
   /// The row with a vertex that is nearest to a position in space; of several that of the first vertex. Where it is called
   /// often, a tree over the rows is made. @throws InvalidArgument (no positions; not finite)
@@ -85,7 +85,7 @@ class Surface {
   /// axis of the vertex's frame, on edges from `from` to `to`, in faces along the first side.
   /// @throws InvalidArgument (a point that this surface does not have, faults as `vertex`; an axis that is not finite, zero
   /// or so near to the normal, `normal_error`, that the normal's error decides where it points: fault "axis_along_normal")
-  PlacedSource source(const SurfacePoint& point, const std::optional<Vec3>& u_axis = {}) const;
+  SurfaceSource source(const SurfacePoint& point, const std::optional<Vec3>& u_axis = {}) const;
 
   /// The faces as flat triangles, for exact geodesics (`ExactGeodesics`).
   /// @throws InvalidArgument (fault "no_flat_triangles": a surface without flat faces), InvalidGeometry (a face of no area)
@@ -103,11 +103,11 @@ class Surface {
   /// A map on the rows: of several vertices of a row the one nearest to the source counts.
   /// @param threads  0: one per core
   /// @throws InvalidArgument (another graph's map)
-  RowLogMap on_rows(const LogMap& map, unsigned threads = 0) const;
+  RowLogMap to_rows(const LogMap& map, unsigned threads = 0) const;
   /// (u, v) at every corner of `faces()`, as given; NaN where the map is not ok. Here, of the corner's vertex; meshes cut
   /// the map open along its cut locus. @throws InvalidArgument (another graph's map)
-  virtual std::vector<Vec2> on_corners(const LogMap& map) const;
-  /// The map at a point: at a row as `on_rows`, linear in a face and on an edge; in a tangent plane moved on from the row
+  virtual std::vector<Vec2> to_corners(const LogMap& map) const;
+  /// The map at a point: at a row as `to_rows`, linear in a face and on an edge; in a tangent plane moved on from the row
   /// by the offset, which takes a map with frames. @throws InvalidArgument as `source`; another graph's map
   Sample at(const LogMap& map, const SurfacePoint& point) const;
 
@@ -118,17 +118,17 @@ class Surface {
  protected:
   Surface();
   /// How far normals may be off, degrees.
-  virtual double error_of_normals() const;
+  virtual double normal_error_degrees() const;
   /// Why a row has no vertex: the end of a sentence that begins with "row 7", and what to do.
   struct Reason {
     std::string_view fault, text, remedy;
   };
-  virtual Reason why_without_vertex(Row) const { return {"row_unused", "is used by no face", "choose another one"}; }
+  virtual Reason missing_vertex_reason(Row) const { return {"row_unused", "is used by no face", "choose another one"}; }
   /// @param point  of a face that exists, with as many weights as corners: >= 0 with sum 1 (to 1e-9)
   /// The base has no faces. @throws InvalidArgument as `source`
-  virtual PlacedSource source_in_face(const FacePoint& point, const std::optional<Vec3>& u_axis) const;
+  virtual SurfaceSource source_in_face(const FacePoint& point, const std::optional<Vec3>& u_axis) const;
   /// @param point  with t in [0, 1]. Here, of a point in a face with this edge. @throws InvalidArgument (no such edge), as `source`
-  virtual PlacedSource source_on_edge(const EdgePoint& point, const std::optional<Vec3>& u_axis) const;
+  virtual SurfaceSource source_on_edge(const EdgePoint& point, const std::optional<Vec3>& u_axis) const;
   /// @param point  as for `source_in_face`. Here, linear between the vertices at the corners
   virtual Sample sample_in_face(const LogMap& map, const FacePoint& point) const;
   /// @param point  as for `source_in_face`
@@ -144,9 +144,9 @@ class Surface {
   void check(const FacePoint& point) const;
 
  private:
-  PlacedSource placed(const SurfacePoint& point, const std::optional<Vec3>& u_axis) const;
-  PlacedSource source_at_row(Row row, const std::optional<Vec3>& u_axis) const;
-  PlacedSource source_near_row(const TangentPoint& point, const std::optional<Vec3>& u_axis) const;
+  SurfaceSource placed(const SurfacePoint& point, const std::optional<Vec3>& u_axis) const;
+  SurfaceSource source_at_row(Row row, const std::optional<Vec3>& u_axis) const;
+  SurfaceSource source_near_row(const TangentPoint& point, const std::optional<Vec3>& u_axis) const;
   void check(const EdgePoint& point) const;
 
   struct Lazy;  ///< the trees of `closest_point` and `nearest_row`
@@ -156,7 +156,7 @@ class Surface {
 /// Unit vectors of space that point away from the source along the surface, one per row: the map's own direction, carried
 /// to the vertex by its frame. Zero at the source, NaN where the status is not ok.
 /// @param map   with frames, of the surface's graph
-/// @param rows  `surface.on_rows(map)`
+/// @param rows  `surface.to_rows(map)`
 /// @throws InvalidArgument (another graph's map, no frames)
 std::vector<Vec3> distance_gradients(const Surface& surface, const LogMap& map, const RowLogMap& rows);
 

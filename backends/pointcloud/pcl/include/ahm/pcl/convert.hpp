@@ -1,15 +1,15 @@
 /// \file
-/// From `pcl::PointCloud` to the arrays of the point cloud backend, and a log map back to `pcl::PointCloud`.
+/// Conversion from `pcl::PointCloud` to the arrays of the point cloud backend, and from a log map to `pcl::PointCloud`.
 ///
 /// \code
 /// auto scan = ahm::pcl_bridge::from_pcl(*cloud);                                       // any point type with x, y, z
 /// auto cloud = ahm::pointcloud::PointCloudSurface::build(scan.points, scan.normals);
-/// auto map = cloud.on_rows(ahm::LogMapSolver(cloud.graph()).solve(cloud.source(ahm::Row{0}).source));
+/// auto map = cloud.to_rows(ahm::LogMapSolver(cloud.graph()).solve(cloud.source(ahm::Row{0}).source));
 /// pcl::PointCloud<ahm::pcl_bridge::PointLogMap> result = ahm::pcl_bridge::to_pcl(*cloud, map);
 /// \endcode
 ///
-/// Compile sources that include this header for the processor PCL was compiled for: a distribution's PCL crashes in
-/// code built with -march=native or -mavx, because Eigen then aligns memory differently.
+/// Compile sources that include this header for the same processor as PCL. PCL packages of distributions crash in code built with
+/// -march=native or -mavx, because Eigen then aligns memory differently.
 #pragma once
 
 #include <pcl/point_cloud.h>
@@ -27,13 +27,13 @@
 
 namespace ahm::pcl_bridge {
 
-/// The arrays `PointCloudSurface::build` takes.
+/// The arrays that `PointCloudSurface::build` takes.
 struct CloudArrays {
   std::vector<Vec3> points;
-  std::vector<Vec3> normals;  ///< empty when the point type has none
+  std::vector<Vec3> normals;  ///< empty if the point type has no normals
 };
 
-/// Positions, and normals if the point type has them, in the order of the cloud. Non-finite points are passed on: see
+/// Positions, and normals if the point type has them, in the order of the cloud. Keeps non-finite points; see
 /// `CloudOptions::drop_non_finite`.
 template <typename PointT>
 CloudArrays from_pcl(const ::pcl::PointCloud<PointT>& cloud) {
@@ -77,8 +77,8 @@ inline void require_rows(std::size_t points, const RowLogMap& map) {
 
 }  // namespace detail
 
-/// The log map on the points of the cloud it was made from: same order, same width and height.
-/// @throws InvalidArgument when the map has another number of rows
+/// The log map on the points of its cloud, in the same order, with the same width and height.
+/// @throws InvalidArgument (the map has another number of rows)
 template <typename PointT>
 ::pcl::PointCloud<PointLogMap> to_pcl(const ::pcl::PointCloud<PointT>& cloud, const RowLogMap& map) {
   detail::require_rows(cloud.size(), map);
@@ -95,8 +95,8 @@ template <typename PointT>
   return result;
 }
 
-/// The same for positions held in an array (they are rounded to single precision).
-/// @throws InvalidArgument when the map has another number of rows
+/// The log map on the points of an array. Rounds positions to single precision.
+/// @throws InvalidArgument (the map has another number of rows)
 inline ::pcl::PointCloud<PointLogMap> to_pcl(std::span<const Vec3> points, const RowLogMap& map) {
   detail::require_rows(points.size(), map);
   ::pcl::PointCloud<PointLogMap> result;

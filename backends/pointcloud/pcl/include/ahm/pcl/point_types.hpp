@@ -1,6 +1,5 @@
 /// \file
-/// A PCL point type that carries a log map, registered with PCL: it can be saved, filtered and converted like PCL's
-/// own.
+/// A PCL point type that contains a log map. It is registered with PCL and can be saved, filtered and converted like PCL's own.
 ///
 /// \code
 /// pcl::io::savePCDFileBinary("map.pcd", ahm::pcl_bridge::to_pcl(*cloud, map));  // a pcl::PointCloud<ahm::pcl_bridge::PointLogMap>
@@ -13,10 +12,10 @@
 
 #include <cstdint>
 
-// Outside namespace ahm, because PCL's macros name things in `pcl::`, which inside it would mean ahm::pcl.
+// Outside namespace ahm: PCL's macros use names in `pcl::`, which would mean ahm::pcl inside it.
 namespace ahm_point_types {
 
-/// Position, log map and status of a point. Single precision, as everything in PCL.
+/// Position, log map and status of a point, in single precision like all PCL points.
 struct EIGEN_ALIGN16 PointLogMap {
   PCL_ADD_POINT4D
   float u;  ///< NaN where the status is not 0

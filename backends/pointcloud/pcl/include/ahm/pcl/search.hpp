@@ -1,5 +1,5 @@
 /// \file
-/// PCL's k-d tree as a neighbour search of the point cloud backend.
+/// PCL's k-d tree as a neighbor search of the point cloud backend.
 ///
 /// \code
 /// ahm::pointcloud::CloudOptions options;
@@ -16,16 +16,16 @@
 
 namespace ahm::pcl_bridge {
 
-/// `pcl::KdTreeFLANN` behind the `NeighborSearch` interface.
+/// `pcl::KdTreeFLANN` as a `NeighborSearch`.
 ///
-/// PCL stores points in single precision: they are moved to the middle of their bounding box and divided by a power of
-/// two before the conversion, so that a cloud far from the origin keeps its shape to 2^-24 of its size. Distances are
-/// computed again in double precision and the neighbours sorted by them; which points are found may differ from an
-/// exact search only where distances agree to about 1e-7 of the size of the cloud.
+/// PCL stores points in single precision. Points are therefore translated to the middle of their bounding box and divided by a power
+/// of two before the conversion. A cloud far from the origin then keeps its shape to 2^-24 of its size. Distances are recomputed in
+/// double precision, and neighbors sorted by them. The points found may differ from an exact search only where distances agree to
+/// about 1e-7 of the size of the cloud.
 /// @throws InvalidGeometry (a coordinate is not finite, with its index)
 std::unique_ptr<pointcloud::NeighborSearch> kdtree_search(std::span<const Vec3> points);
 
-/// The version of PCL this library was compiled with, e.g. "1.13.0".
+/// Version of PCL at compile time, e.g. "1.13.0".
 std::string version();
 
 }  // namespace ahm::pcl_bridge

@@ -6,7 +6,7 @@
 /// auto surface = ahm::trimesh::TriangleMeshSurface::build(positions, faces);
 /// const ahm::ExactGeodesics geodesics(surface);
 /// ahm::LogMap map = geodesics.log_map(ahm::Row{42});
-/// ahm::RowLogMap rows = surface.on_rows(map);                     // as from a map by heat
+/// ahm::RowLogMap rows = surface.to_rows(map);                     // as from a map by heat
 /// ahm::exact::GeodesicPath path = geodesics.path(std::array<ahm::SurfacePoint, 2>{ahm::Row{3}, ahm::Row{42}});
 /// for (const auto& point : path.points) use(geodesics.position(point));
 /// \endcode
@@ -19,11 +19,10 @@
 #include <vector>
 
 #include "ahm/maps/log_map.hpp"
-#include "ahm/maps/unfolding_front.hpp"
+#include "ahm/maps/wavefront.hpp"
 #include "ahm/progress.hpp"
 #include "ahm/surface/exact/flat_triangles.hpp"
 #include "ahm/surface/exact/geodesic_path.hpp"
-#include "ahm/surface/exact/shortened_path.hpp"
 #include "ahm/surface/surface.hpp"
 
 namespace ahm {
@@ -36,8 +35,8 @@ struct ExactMapOptions {
   /// of vertices (`exact::ExactOptions`); directions may be off by about sqrt(2 tolerance), as those of paths that much
   /// longer are, and are any of those of two ways that differ by less.
   double tolerance = 0;
-  Offset most_windows = 0;  ///< as of `exact::ExactOptions`
-  bool frames = false;      ///< fill `LogMap::frames`
+  Offset max_windows = 0;  ///< as of `exact::ExactOptions`
+  bool frames = false;     ///< fill `LogMap::frames`
   Progress progress;
   unsigned threads = 0;  ///< of what makes several maps; 0: one per core
 };
@@ -91,9 +90,9 @@ class ExactGeodesics {
   /// The same polar coordinates, of the vertices that the options let the windows reach: where a front can go on from.
   /// @param options  frames: whether the arrivals are wanted, too
   /// @throws as above
-  std::vector<UnfoldingFront::Seed> seeds(const SurfacePoint& source, const std::optional<Vec3>& u_axis = {},
-                                          const ExactMapOptions& options = {}) const;
-  std::vector<UnfoldingFront::Seed> seeds(Vertex source, const ExactMapOptions& options = {}) const;
+  std::vector<Wavefront::Seed> seeds(const SurfacePoint& source, const std::optional<Vec3>& u_axis = {},
+                                     const ExactMapOptions& options = {}) const;
+  std::vector<Wavefront::Seed> seeds(Vertex source, const ExactMapOptions& options = {}) const;
 
   /// The shortest path through points in their order. Its length is in world units; `position` tells where its points lie.
   /// @throws InvalidArgument (fewer than two points; as `Surface::source`)
@@ -134,15 +133,15 @@ class ExactGeodesics {
   static Placed at_vertex(const FlatTriangles& flat, Vertex source);
   exact::ExactMap exact_map(const Placed& from, const ExactMapOptions& options) const;
   LabelledLogMap log_map(const Placed& from, Source source, const ExactMapOptions& options) const;
-  std::vector<UnfoldingFront::Seed> seeds(const Placed& from, const ExactMapOptions& options) const;
+  std::vector<Wavefront::Seed> seeds(const Placed& from, const ExactMapOptions& options) const;
   Placed placed(std::span<const ExactSource> sources) const;
   static Source joined(std::span<const ExactSource> given, const Placed& placed);
   std::vector<double> jumps(std::span<const double> coordinates, std::span<const Index> labels, bool of_curve) const;
-  Axes axes(const SurfacePoint& at, const PlacedSource& placed, const exact::MeshPoint& point) const;
-  Axes vertex_axes(const PlacedSource& placed) const;
-  exact::TracedPath trace_to(const PlacedSource& placed) const;
-  double u_beyond_row(const PlacedSource& placed) const;
-  double u_in_face(const SurfacePoint& at, const PlacedSource& placed, Index face) const;
+  Axes axes(const SurfacePoint& at, const SurfaceSource& placed, const exact::MeshPoint& point) const;
+  Axes vertex_axes(const SurfaceSource& placed) const;
+  exact::TracedPath trace_to(const SurfaceSource& placed) const;
+  double u_beyond_row(const SurfaceSource& placed) const;
+  double u_in_face(const SurfacePoint& at, const SurfaceSource& placed, Index face) const;
   Axes at_corner(exact::Half corner, double u) const;
 
   const Surface* surface_;

@@ -26,7 +26,7 @@ struct ExactOptions {
   double tolerance = 0;
   /// The propagation ends when it has made this many windows, too; 0: no limit. Vertices and targets beyond the distance that it has
   /// completed get `Status::beyond_radius`. The distance does not depend on the machine.
-  Offset most_windows = 0;
+  Offset max_windows = 0;
   /// Points whose distance and direction are asked for besides those of the vertices.
   std::vector<MeshPoint> targets;
   /// End when the distances of all targets are final; vertices beyond the farthest of them get `Status::beyond_radius`.

@@ -1,0 +1,87 @@
+/// \file
+/// Numbers of a tile's vertices as rows of the input.
+#pragma once
+
+#include <charconv>
+#include <cmath>
+#include <cstddef>
+#include <filesystem>
+#include <map>
+#include <span>
+#include <string>
+
+#include "ahm/io/atomic_file.hpp"
+#include "ahm/tiles/tiled_graph.hpp"
+
+namespace ahm::tiles {
+
+/// Shortest text that reads back as the same number; nothing for NaN.
+inline void append_number(std::string& line, double value) {
+  char text[32];
+  if (std::isfinite(value)) line.append(text, std::to_chars(text, text + sizeof(text), value).ptr);
+}
+
+/// What is told of a vertex: of several at one row that of the least rank, the first of equal ones. NaN is none; where all are, the
+/// last is told.
+struct VertexLine {
+  std::string text;
+  double rank = 0;
+};
+
+/// A line for each row of the input, tile after tile: its number, and what follows it.
+class RowLines {
+ public:
+  RowLines(io::AtomicFile& file, const TiledGraph& graph) : file_(file) {
+    for (Index row : graph.shared_rows()) shared_.emplace(row, VertexLine{{}, NAN});
+  }
+
+  /// @param line     of a vertex of the tile, called once for each
+  /// @param removed  of rows without a vertex
+  template <class Line>
+  void add(const TiledGraph::TileRows& rows, const Line& line, const std::string& removed) {
+    for (std::size_t i = 0; i + 1 < rows.begin.size(); ++i) {
+      const VertexLine told = line(i);
+      for (Index r = rows.begin[i]; r < rows.begin[i + 1]; ++r) add(rows.rows[static_cast<std::size_t>(r)], told);
+    }
+    for (Index row : rows.removed) add(row, {removed});
+  }
+  void finish() {
+    for (const auto& [row, line] : shared_) write(row, line);
+    file_.write(text_);
+    text_.clear();
+  }
+
+ private:
+  void add(Index row, const VertexLine& line) {
+    const auto shared = shared_.empty() ? shared_.end() : shared_.find(row);
+    if (shared == shared_.end()) return write(row, line);
+    if (const double best = shared->second.rank; std::isnan(best) || line.rank < best) shared->second = line;
+  }
+  void write(Index row, const VertexLine& line) {
+    text_ += std::to_string(row) + line.text + "\n";
+    if (text_.size() > 1 << 20) file_.write(text_), text_.clear();
+  }
+
+  io::AtomicFile& file_;
+  std::string text_;
+  std::map<Index, VertexLine> shared_;
+};
+
+/// A one-dimensional .npy file of float64, memory-mapped.
+class RowValues {
+ public:
+  /// @throws IoError where it cannot be read, is no such file, or is cut short
+  explicit RowValues(const std::filesystem::path& path);
+  ~RowValues();
+  RowValues(RowValues&& other) noexcept;
+  RowValues& operator=(RowValues&&) = delete;
+
+  std::size_t size() const noexcept { return size_; }
+  double operator[](std::size_t row) const;
+
+ private:
+  void* data_ = nullptr;
+  std::size_t bytes_ = 0, begin_ = 0, size_ = 0;  ///< of the file; where values begin; how many
+};
+
+}  // namespace ahm::tiles

@@ -1,0 +1,112 @@
+/// \file
+/// Sparse Cholesky factorization: a supernodal multifrontal LL^T of real symmetric and complex Hermitian matrices.
+///
+/// \code
+/// ahm::SparseUpper K;                                      // | 2 -1 |, its upper triangle by columns
+/// K.column_begin = {0, 1, 3};                              // | -1 2 |
+/// K.rows = {0, 0, 1};
+/// K.values = {2, -1, 2};
+/// const ahm::SymbolicCholesky symbolic(K, ahm::Ordering::amd);     // depends on the pattern only
+/// const ahm::CholeskyFactor factor(K, symbolic, "K");
+/// std::vector<double> x = {1, 0};
+/// factor.solve(x, 1);                                      // x = {2/3, 1/3}
+/// \endcode
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "ahm/types.hpp"
+
+namespace ahm {
+
+/// The upper triangle of a symmetric (real) or Hermitian (complex) matrix in compressed columns. Rows of a column ascend without
+/// duplicates and include the diagonal. Complex entries are interleaved pairs.
+struct SparseUpper {
+  bool is_complex = false;
+  std::vector<Offset> column_begin;  ///< columns + 1
+  std::vector<Offset> rows;
+  std::vector<double> values;  ///< 1 or 2 per entry
+
+  Offset size() const { return static_cast<Offset>(column_begin.size()) - 1; }
+};
+
+/// Fill-reducing ordering.
+enum class Ordering {
+  amd,               ///< approximate minimum degree [ADD04]: the cheapest ordering, best for a few solves
+  nested_dissection  ///< METIS: slower to compute, smaller factors, best for many solves
+};
+
+struct SupernodalPattern;
+struct SupernodalFactor;
+struct SymbolicAnalysis;
+struct FactorEntry;
+template <class Member>
+struct EntriesBy;
+
+/// The symbolic analysis of a sparsity pattern: ordering, elimination tree, supernodes.
+class SymbolicCholesky {
+ public:
+  /// @throws ResourceExhausted
+  SymbolicCholesky(const SparseUpper& pattern, Ordering ordering);
+  /// The analysis of a pattern in which every entry of `scalar` is a block of `width` x `width`. Uses the ordering of `scalar`.
+  SymbolicCholesky(const SparseUpper& blocks, const SymbolicCholesky& scalar, int width);
+
+  /// Entries of the factor.
+  Offset nonzeros() const noexcept;
+  /// Whether several threads work on one factorization.
+  bool is_shared() const noexcept;
+  /// Floating-point operations of a factorization of real numbers.
+  double operations() const noexcept;
+
+ private:
+  friend class CholeskyFactor;
+  explicit SymbolicCholesky(SymbolicAnalysis analysis);
+
+  std::shared_ptr<const SupernodalPattern> pattern_;  ///< shared with the factors
+  std::shared_ptr<const EntriesBy<FactorEntry>> entries_;
+};
+
+/// A factor K = LL^T. Immutable; `solve` may be called from many threads at once.
+class CholeskyFactor {
+ public:
+  /// Factorizes, and checks that every pivot is finite and positive.
+  /// @param name     of the matrix, for messages
+  /// @param threads  that share the work; the result has the same bits for any number
+  /// @throws NotPositiveDefinite, ResourceExhausted
+  CholeskyFactor(const SparseUpper& matrix, const SymbolicCholesky& symbolic, const char* name, unsigned threads = 1);
+
+  /// X <- K^-1 X, column major; complex vectors as interleaved pairs.
+  /// @param threads  that share a large factor for up to four columns; the result has the same bits for any number
+  void solve(std::span<double> X, Offset columns, unsigned threads = 1) const;
+  /// Solves for one column and checks that the residual is small.
+  /// @param matrix  K
+  /// @throws NotPositiveDefinite
+  std::vector<double> checked_solve(const SparseUpper& matrix, std::vector<double> b, const char* name,
+                                    unsigned threads = 1) const;
+  /// The check of `checked_solve` with pseudorandom numbers in [-1, 1).
+  void check(const SparseUpper& matrix, const char* name, unsigned threads = 1) const;
+
+  Offset nonzeros() const noexcept;
+  std::size_t bytes() const noexcept;
+
+ private:
+  SupernodalFactor factor() const;
+  void check_pivots(Offset good, const char* name) const;
+
+  std::shared_ptr<const SupernodalPattern> pattern_;
+  bool is_complex_;
+  std::unique_ptr<const double[]> values_;
+};
+
+/// The BLAS and CHOLMOD that the process uses: for reports.
+struct LinearAlgebraInfo {
+  std::string cholmod;  ///< version
+  std::string blas;     ///< e.g. "OpenBLAS 0.3.21 ..." or the file name of the library
+  bool blas_optimized;  ///< false for the reference BLAS, which is several times slower
+};
+LinearAlgebraInfo linear_algebra_info();
+
+}  // namespace ahm

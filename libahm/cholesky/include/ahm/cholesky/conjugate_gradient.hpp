@@ -1,0 +1,46 @@
+/// \file
+/// Conjugate gradients, for matrices whose Cholesky factors would fill the memory (volumes). Not Eigen's, which take 1.3 to
+/// 2.3 times as long (docs/results/march.md).
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "ahm/cholesky/cholesky.hpp"
+
+namespace ahm {
+
+/// Solves K x = b for a real symmetric positive definite K, preconditioned by symmetric Gauss-Seidel (SSOR) in the order
+/// of the unknowns, in Eisenstat's form: with K scaled to I + L + L^T, one iteration is one sweep with I + L^T and one
+/// with I + L. Immutable; `solve` may be called from many threads at once.
+///
+/// Errors are relative to the largest value of x: unlike a factorization, it cannot resolve heat that has decayed by more
+/// than the precision of a double. Bands of a march are thin enough.
+class ConjugateGradient {
+ public:
+  /// @param name  of the operator, for messages
+  /// @throws NotPositiveDefinite (a diagonal entry is not positive)
+  ConjugateGradient(const SparseUpper& matrix, const char* name);
+
+  /// X <- K^-1 X, column major, on this thread.
+  /// @throws NotPositiveDefinite (a direction of negative energy, or no convergence)
+  void solve(std::span<double> X, Offset columns, unsigned threads = 1) const;
+
+  /// Entries above the diagonal.
+  Offset nonzeros() const noexcept { return static_cast<Offset>(values_.size()); }
+  std::size_t bytes() const noexcept { return values_.size() * (sizeof(double) + sizeof(Index)); }
+
+ private:
+  void solve(std::span<double> x) const;
+  void forward(std::span<double> x) const;   ///< (I + L)^-1
+  void backward(std::span<double> x) const;  ///< (I + L^T)^-1
+
+  const char* name_;
+  std::vector<double> scale_;         ///< 1 / sqrt of the diagonal
+  std::vector<Offset> column_begin_;  ///< of L^T, which is the rows of L
+  std::vector<Index> rows_;
+  std::vector<double> values_;
+};
+
+}  // namespace ahm

@@ -1,0 +1,410 @@
+#include "cholesky/triangular_solve.hpp"
+
+#include <algorithm>
+#include <memory>
+#include <vector>
+
+#include "ahm/util/parallel.hpp"
+#include "cholesky/blas.hpp"
+#include "cholesky/supernode_kernels.hpp"
+
+namespace ahm {
+
+/// Columns of real (W = 1) or complex (W = 2) numbers, one after the other.
+template <int W>
+class PermutedColumns {
+ public:
+  PermutedColumns(const SupernodalFactor& L, Offset columns)
+      : L_(L), x_(std::make_unique_for_overwrite<double[]>(static_cast<std::size_t>(L.size * columns * W))) {}
+
+  double* at(Offset column, Offset row) const { return x_.get() + (column * L_.size + row) * W; }
+
+  /// Copies columns from X, in the order of the matrix, or to it.
+  template <bool In>
+  void permute(std::span<double> X, Offset columns, unsigned threads = 1) {
+    detail::parallel_chunks(L_.size, 1 << 15, threads, [&](Offset begin, Offset end) {
+      for (Offset c = 0; c < columns; ++c)
+        for (Offset k = begin; k < end; ++k)
+          for (int w = 0; w < W; ++w) {
+            double& outside = X[(c * L_.size + L_.permutation[k]) * W + w];
+            double& inside = at(c, k)[w];
+            In ? inside = outside : outside = inside;
+          }
+    });
+  }
+
+  /// Whether the own rows of a supernode are. A point source is zero almost everywhere, and stays so outside its path to the root
+  /// of the elimination tree.
+  bool is_zero(const Supernode<W>& s, Offset columns) const {
+    for (Offset c = 0; c < columns; ++c)
+      if (!std::all_of(at(c, s.first), at(c, s.first + s.columns), [](double value) { return value == 0; }))
+        return false;
+    return true;
+  }
+
+ private:
+  const SupernodalFactor& L_;
+  std::unique_ptr<double[]> x_;
+};
+
+namespace {
+
+/// For K columns of real (W = 1) or complex (W = 2) numbers.
+template <int W, int K>
+class NarrowSolve {
+ public:
+  NarrowSolve(const SupernodalFactor& L, const SolveGroups* groups, unsigned threads)
+      : L_(L), groups_(groups), threads_(threads), x_(L, K), longest_(L.most_rows()) {}
+
+  void solve(std::span<double> X) {
+    const unsigned threads = groups_ ? threads_ : 1;
+    x_.template permute<true>(X, K, threads);
+    if (groups_)
+      solve_by_groups();
+    else
+      solve_in_order();
+    x_.template permute<false>(X, K, threads);
+  }
+
+ private:
+  using Buffer = std::vector<double>;
+  Buffer rows(Offset count) const { return Buffer(static_cast<std::size_t>(count) * W * K); }
+  double* at(int column, Offset row) const { return x_.at(column, row); }
+
+  void solve_in_order() {
+    Buffer y = rows(longest_);
+    for (Offset s = 0; s < L_.supernodes(); ++s) forward(Supernode<W>(L_, s), y, in_x());
+    for (Offset s = L_.supernodes(); s-- > 0;) backward(Supernode<W>(L_, s), y);
+  }
+
+  void solve_by_groups() {
+    const auto each_group = [&](const auto& body) {
+      detail::parallel_chunks(groups_->count(), 1, threads_, [&](Offset group, Offset) {
+        Buffer y = rows(longest_);
+        body(group,
+             std::span(groups_->subtrees)
+                 .subspan(groups_->begin[group], groups_->begin[group + 1] - groups_->begin[group]),
+             y);
+      });
+    };
+    const auto top_rows = static_cast<Offset>(groups_->top_rows);
+    std::vector<Buffer> to_top(static_cast<std::size_t>(groups_->count()));
+    each_group([&](Offset group, const auto& subtrees, Buffer& y) {
+      Buffer& sums = to_top[group] = rows(top_rows);
+      for (const auto& [first, last, end] : subtrees)
+        for (Offset s = first; s < last; ++s)
+          forward(Supernode<W>(L_, s), y, [&, end = end](int column, Offset row) {
+            return row < end ? at(column, row) : sums.data() + (column * top_rows + groups_->place[row]) * W;
+          });
+    });
+    Buffer y = rows(longest_);
+    for (int column = 0; column < K; ++column) {
+      Offset k = column * top_rows * W;
+      for (const Offset s : groups_->top)
+        for (double* x = at(column, L_.super[s]); x != at(column, L_.super[s + 1]); ++x, ++k)
+          for (const Buffer& sums : to_top) *x += sums[k];
+    }
+    for (const Offset s : groups_->top) forward(Supernode<W>(L_, s), y, in_x());
+    for (auto s = groups_->top.rbegin(); s != groups_->top.rend(); ++s) backward(Supernode<W>(L_, *s), y);
+    each_group([&](Offset, const auto& subtrees, Buffer& own_y) {
+      for (auto tree = subtrees.rbegin(); tree != subtrees.rend(); ++tree)
+        for (Offset s = tree->last; s-- > tree->first;) backward(Supernode<W>(L_, s), own_y);
+    });
+  }
+
+  auto in_x() const {
+    return [this](int column, Offset row) { return at(column, row); };
+  }
+
+  /// L y = x
+  /// @param target  target(column, row): what a row below is taken from
+  template <class Target>
+  void forward(const Supernode<W>& s, Buffer& y, const Target& target) {
+    if (x_.is_zero(s, K)) return;
+    for (int c = 0; c < K; ++c) {
+      double* column = y.data() + c * s.rows * W;
+      std::copy(at(c, s.first), at(c, s.first + s.columns), column);
+      std::fill(column + s.columns * W, column + s.rows * W, 0.0);
+    }
+    kernels_.forward(s, y.data());
+    for (int c = 0; c < K; ++c) {
+      const double* column = y.data() + c * s.rows * W;
+      std::copy(column, column + s.columns * W, at(c, s.first));
+      for (Offset r = s.columns; r < s.rows; ++r)
+        for (int w = 0; w < W; ++w) target(c, s.index[r])[w] += column[r * W + w];
+    }
+  }
+
+  /// L^H x = y
+  void backward(const Supernode<W>& s, Buffer& y) {
+    for (int c = 0; c < K; ++c) {
+      double* column = y.data() + c * s.rows * W;
+      std::copy(at(c, s.first), at(c, s.first + s.columns), column);
+      for (Offset r = s.columns; r < s.rows; ++r)
+        for (int w = 0; w < W; ++w) column[r * W + w] = at(c, s.index[r])[w];
+    }
+    kernels_.backward(s, y.data());
+    for (int c = 0; c < K; ++c) {
+      const double* column = y.data() + c * s.rows * W;
+      std::copy(column, column + s.columns * W, at(c, s.first));
+    }
+  }
+
+  const SupernodalFactor& L_;
+  const SolveGroups* groups_;
+  unsigned threads_;
+  SupernodeKernels<W> kernels_ = supernode_kernels<W, K>();
+  PermutedColumns<W> x_;
+  Offset longest_;
+};
+
+template <int W>
+void dispatch(const SupernodalFactor& L, std::span<double> X, Offset columns, const SolveGroups* groups,
+              unsigned threads) {
+  switch (columns) {
+    case 1:
+      return NarrowSolve<W, 1>(L, groups, threads).solve(X);
+    case 2:
+      return NarrowSolve<W, 2>(L, groups, threads).solve(X);
+    case 3:
+      return NarrowSolve<W, 3>(L, groups, threads).solve(X);
+    case 4:
+      return NarrowSolve<W, 4>(L, groups, threads).solve(X);
+  }
+}
+
+}  // namespace
+
+void narrow_solve(const SupernodalFactor& L, std::span<double> X, Offset columns, const SolveGroups* groups,
+                  unsigned threads) {
+  (L.is_complex ? dispatch<2> : dispatch<1>)(L, X, columns, groups, threads);
+}
+
+namespace {
+
+/// Numbers of a row of X that are at work at once: 16 real columns, or the real and then the imaginary parts of 8 complex ones.
+constexpr int width = 16;
+
+/// Numbers that are at work at once by one instruction.
+template <int N>
+struct Lanes {
+  using Type [[gnu::vector_size(N * sizeof(double)), gnu::aligned(alignof(double)), gnu::may_alias]] = double;
+};
+
+/// A sum of rows, each times a number of the factor, real (W = 1) or complex (W = 2); it stays in registers of N numbers.
+template <int W, int N>
+struct RowSum {
+  using Lane = typename Lanes<N>::Type;
+  static constexpr int lanes = width / N;
+  Lane sum[lanes] = {};
+
+  [[gnu::always_inline]] void add(const double* L, const double* row) { add(L[0], W == 1 ? 0 : L[1], row); }
+  [[gnu::always_inline]] void add_conjugate(const double* L, const double* row) { add(L[0], W == 1 ? 0 : -L[1], row); }
+  [[gnu::always_inline]] void subtract_from(double* row) const {
+    Lane* x = reinterpret_cast<Lane*>(row);
+#pragma GCC unroll 8
+    for (int c = 0; c < lanes; ++c) x[c] -= sum[c];
+  }
+
+ private:
+  [[gnu::always_inline]] void add(double real, [[maybe_unused]] double imaginary, const double* row) {
+    const Lane* x = reinterpret_cast<const Lane*>(row);
+    if constexpr (W == 1) {
+#pragma GCC unroll 8
+      for (int c = 0; c < lanes; ++c) sum[c] += real * x[c];
+    } else {
+      constexpr int half = lanes / 2;
+#pragma GCC unroll 4
+      for (int c = 0; c < half; ++c) {
+        sum[c] += real * x[c] - imaginary * x[half + c];
+        sum[half + c] += real * x[half + c] + imaginary * x[c];
+      }
+    }
+  }
+};
+
+template <int W, int N>
+class BlockSolve {
+ public:
+  static constexpr Offset columns_at_once = width / W;
+
+  explicit BlockSolve(const SupernodalFactor& L) : L_(L), x_(static_cast<std::size_t>(L.size) * width) {}
+
+  /// For up to `columns_at_once` columns.
+  void solve(std::span<double> X, Offset columns) {
+    if (columns < columns_at_once) std::fill(x_.begin(), x_.end(), 0.0);
+    permute<true>(X, columns);
+    const auto supernodes = static_cast<Offset>(L_.super.size()) - 1;
+    for (Offset s = 0; s < supernodes; ++s) forward(Supernode<W>(L_, s));
+    for (Offset s = supernodes; s-- > 0;) backward(Supernode<W>(L_, s));
+    permute<false>(X, columns);
+  }
+
+ private:
+  double* row(Offset k) { return x_.data() + k * width; }
+
+  template <bool In>
+  void permute(std::span<double> X, Offset columns) {
+    for (Offset k = 0; k < L_.size; ++k)
+      for (Offset c = 0; c < columns; ++c)
+        for (int w = 0; w < W; ++w) {
+          double& outside = X[(c * L_.size + L_.permutation[k]) * W + w];
+          double& inside = row(k)[w * columns_at_once + c];
+          In ? inside = outside : outside = inside;
+        }
+  }
+
+  static void divide(double* x, double pivot) {
+#pragma omp simd
+    for (int c = 0; c < width; ++c) x[c] /= pivot;
+  }
+
+  /// L y = x
+  void forward(const Supernode<W>& s) {
+    double* own = row(s.first);
+    // A point source is zero almost everywhere, and stays so outside its path to the root of the elimination tree.
+    if (std::all_of(own, own + s.columns * width, [](double value) { return value == 0; })) return;
+    for (Offset r = 0; r < s.columns; ++r) {
+      RowSum<W, N> sum;
+      for (Offset j = 0; j < r; ++j) sum.add(s.at(r, j), own + j * width);
+      sum.subtract_from(own + r * width);
+      divide(own + r * width, *s.at(r, r));
+    }
+    for (Offset r = s.columns; r < s.rows; ++r) {
+      RowSum<W, N> sum;
+      for (Offset j = 0; j < s.columns; ++j) sum.add(s.at(r, j), own + j * width);
+      sum.subtract_from(row(s.index[r]));
+    }
+  }
+
+  /// L^H x = y
+  void backward(const Supernode<W>& s) {
+    double* own = row(s.first);
+    for (Offset j = s.columns; j-- > 0;) {
+      RowSum<W, N> sum;
+      for (Offset r = s.columns; r < s.rows; ++r) sum.add_conjugate(s.at(r, j), row(s.index[r]));
+      for (Offset r = j + 1; r < s.columns; ++r) sum.add_conjugate(s.at(r, j), own + r * width);
+      sum.subtract_from(own + j * width);
+      divide(own + j * width, *s.at(j, j));
+    }
+  }
+
+  const SupernodalFactor& L_;
+  std::vector<double> x_;
+};
+
+template <int W, int N>
+void solve_by_blocks(const SupernodalFactor& L, std::span<double> X, Offset columns) {
+  BlockSolve<W, N> block(L);
+  const Offset column_size = L.size * W;
+  for (Offset c = 0; c < columns; c += block.columns_at_once) {
+    const Offset count = std::min(block.columns_at_once, columns - c);
+    block.solve(X.subspan(c * column_size, count * column_size), count);
+  }
+}
+
+template <int N>
+void solve_by_lanes(const SupernodalFactor& L, std::span<double> X, Offset columns) {
+  L.is_complex ? solve_by_blocks<2, N>(L, X, columns) : solve_by_blocks<1, N>(L, X, columns);
+}
+
+#ifdef __x86_64__
+/// With four numbers at once, where the processor can: sum by sum the same numbers, bit for bit.
+[[gnu::target("avx2"), gnu::flatten]] void solve_by_fours(const SupernodalFactor& L, std::span<double> X,
+                                                          Offset columns) {
+  solve_by_lanes<4>(L, X, columns);
+}
+#endif
+
+}  // namespace
+
+void block_solve(const SupernodalFactor& L, std::span<double> X, Offset columns) {
+#ifdef __x86_64__
+  if (__builtin_cpu_supports("avx2")) return solve_by_fours(L, X, columns);
+#endif
+  solve_by_lanes<2>(L, X, columns);
+}
+
+namespace {
+
+/// Columns at a time: the BLAS gains nothing by more, and they stay in memory that grows with their number.
+constexpr Offset at_once = 64;
+
+template <int W>
+class BlasSolve {
+ public:
+  BlasSolve(const SupernodalFactor& L, Offset columns)
+      : L_(L),
+        x_(L, columns),
+        below_(static_cast<std::size_t>(L.most_rows() * columns * W)),
+        ld_(static_cast<int>(L.size)) {}
+
+  void solve(std::span<double> X, Offset columns) {
+    columns_ = static_cast<int>(columns);
+    x_.template permute<true>(X, columns);
+    for (Offset s = 0; s < L_.supernodes(); ++s) forward(Supernode<W>(L_, s));
+    for (Offset s = L_.supernodes(); s-- > 0;) backward(Supernode<W>(L_, s));
+    x_.template permute<false>(X, columns);
+  }
+
+ private:
+  /// y_own <- L_own^-1 y_own, or by its adjoint
+  void divide(const Supernode<W>& s, const char* how) {
+    const int own = static_cast<int>(s.columns), rows = static_cast<int>(s.rows);
+    (W == 1 ? dtrsm_ : ztrsm_)("L", "L", how, "N", &own, &columns_, one, s.values, &rows, x_.at(0, s.first), &ld_);
+  }
+
+  /// Calls visit(number of y, number of below) for each row below.
+  template <class Visit>
+  void each_below(const Supernode<W>& s, const Visit& visit) {
+    const Offset below = s.rows - s.columns;
+    for (int c = 0; c < columns_; ++c)
+      for (Offset r = 0; r < below; ++r)
+        for (int w = 0; w < W; ++w) visit(x_.at(c, s.index[s.columns + r])[w], below_[(c * below + r) * W + w]);
+  }
+
+  void forward(const Supernode<W>& s) {
+    if (x_.is_zero(s, columns_)) return;
+    divide(s, "N");
+    const int own = static_cast<int>(s.columns), rows = static_cast<int>(s.rows), below = rows - own;
+    if (below == 0) return;
+    (W == 1 ? dgemm_ : zgemm_)("N", "N", &below, &columns_, &own, one, s.at(s.columns, 0), &rows, x_.at(0, s.first),
+                               &ld_, zero, below_.data(), &below);
+    each_below(s, [](double& y, double product) { y -= product; });
+  }
+
+  void backward(const Supernode<W>& s) {
+    const int own = static_cast<int>(s.columns), rows = static_cast<int>(s.rows), below = rows - own;
+    if (below > 0) {
+      each_below(s, [](double y, double& gathered) { gathered = y; });
+      (W == 1 ? dgemm_ : zgemm_)("C", "N", &own, &columns_, &below, minus, s.at(s.columns, 0), &rows, below_.data(),
+                                 &below, one, x_.at(0, s.first), &ld_);
+    }
+    divide(s, "C");
+  }
+
+  static constexpr double one[2] = {1, 0}, minus[2] = {-1, 0}, zero[2] = {0, 0};
+  const SupernodalFactor& L_;
+  PermutedColumns<W> x_;
+  std::vector<double> below_;
+  int ld_, columns_ = 0;
+};
+
+template <int W>
+void by_width(const SupernodalFactor& L, std::span<double> X, Offset columns) {
+  BlasSolve<W> solver(L, std::min(columns, at_once));
+  const Offset size = L.size * W;
+  const BlasBuffer buffer;
+  for (Offset c = 0; c < columns; c += at_once) {
+    const Offset count = std::min(at_once, columns - c);
+    solver.solve(X.subspan(c * size, count * size), count);
+  }
+}
+
+}  // namespace
+
+void blas_solve(const SupernodalFactor& L, std::span<double> X, Offset columns) {
+  (L.is_complex ? by_width<2> : by_width<1>)(L, X, columns);
+}
+
+}  // namespace ahm

@@ -1,0 +1,363 @@
+#include "maps/one_rings.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+#include "ahm/graph/components.hpp"
+#include "ahm/util/buckets.hpp"
+#include "ahm/util/parallel.hpp"
+#include "ahm/util/small_math.hpp"
+#include "ahm/util/vec.hpp"
+
+namespace ahm {
+namespace {
+
+/// Lengths of an edge seen from both sides differ by no more than this share.
+constexpr double same_length = 1e-9;
+/// Angles around a vertex that miss 2 pi by no more are those of a flat or finely sampled surface.
+constexpr double least_bend = 0.01;
+/// By less than this share of the longest side do the sides of a triangle without area miss the triangle inequality.
+constexpr double degenerate = 1e-9;
+/// Angles around a vertex whose edges are in this proportion to each other, or more, may miss the full turn by it: rounding of
+/// the coordinates turns the short ones.
+constexpr double least_turn = 1e-12;
+
+/// A number that grows with the angle of v, from -2 to 2.
+double turn(const Vec2& v) {
+  const double along = v[0] / (std::abs(v[0]) + std::abs(v[1]));
+  return v[1] >= 0 ? 1 - along : along - 1;
+}
+
+/// A sum of angles from 0 to pi by their cosines and sines.
+class AngleSum {
+ public:
+  void add(double cosine, double sine) {
+    const double x = x_ * cosine - y_ * sine, y = x_ * sine + y_ * cosine;
+    turns_ += y_ < 0 && y >= 0;
+    x_ = x, y_ = y;
+  }
+  double sum() const {
+    const double angle = std::atan2(y_, x_);
+    return 2 * std::numbers::pi * (turns_ + (y_ < 0)) + angle;
+  }
+
+ private:
+  double x_ = 1, y_ = 0;
+  int turns_ = 0;
+};
+
+/// Whether two vertices have a neighbour in common besides the one at hand: as in a square without its diagonal, whose fourth
+/// corner it is, and not across a notch of the boundary.
+bool have_common_neighbor(const TangentGraph& graph, Index a, Index b, Index except) {
+  if (graph.star(a).degree() > graph.star(b).degree()) std::swap(a, b);
+  static thread_local std::vector<Index> beside_a;  // a star lives until the next one
+  const auto of_a = graph.star(a).neighbors;
+  beside_a.assign(of_a.begin(), of_a.end());
+  return std::ranges::any_of(beside_a, [&](Index j) {
+    if (j == except) return false;
+    const auto of_j = graph.star(j).neighbors;
+    return std::ranges::find(of_j, b) != of_j.end();
+  });
+}
+
+/// The third side of the corner between two neighbours of a vertex; NaN where the star is open between them.
+template <class Neighbor>
+double third_side(const TangentGraph& graph, Index vertex, const Neighbor& right, const Neighbor& left) {
+  const double open = std::numeric_limits<double>::quiet_NaN();
+  const Vec2 &u = right.log, &v = left.log;
+  if (right.vertex == left.vertex || cross(u, v) <= 0) return open;
+  const double apart = length(Vec2{u[0] - v[0], u[1] - v[1]});
+  const bool by_right = graph.star(right.vertex).degree() <= graph.star(left.vertex).degree();
+  const Star star = graph.star(by_right ? right.vertex : left.vertex);
+  double third = open;  // of several, that which lies best in the plane
+  for (std::size_t e = 0; e < star.degree(); ++e) {
+    if (star.neighbors[e] != (by_right ? left.vertex : right.vertex)) continue;
+    const double side = length(star.log(e));
+    if (!(std::abs(side - apart) >= std::abs(third - apart))) third = side;
+  }
+  if (!std::isnan(third)) return third;
+  // Not joined: a corner of a grid or a square if it is narrow, else a gap.
+  if (u[0] * v[0] + u[1] * v[1] < -0.5 * right.length * left.length) return open;
+  return graph.is_delaunay() && !have_common_neighbor(graph, right.vertex, left.vertex, vertex) ? open : apart;
+}
+
+/// Cosine and sine of the corner between two sides of a triangle, by its lengths [Kah14]; NaN where there is no corner.
+Vec2 corner(double a, double b, double opposite) {
+  std::array<double, 3> sides{a, b, opposite};
+  std::sort(sides.begin(), sides.end(), std::greater<>());
+  const auto [x, y, z] = sides;
+  const double squared = (x + (y + z)) * (z - (x - y)) * (z + (x - y)) * (x + (y - z));  // 16 area^2
+  if (!(squared > 0)) return {NAN, NAN};
+  return {((a - opposite) * (a + opposite) + b * b) / (2 * a * b), std::sqrt(squared) / (2 * a * b)};
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> halved_vertices(std::span<const Index> component, std::span<const Index> sizes) {
+  std::vector<std::uint8_t> halved;
+  halved.reserve(component.size());
+  for (const Index c : component) halved.push_back(sizes[c] <= most_halved);
+  return halved;
+}
+
+std::vector<std::uint8_t> halved_vertices(const TangentGraph& graph) {
+  if (!graph.is_delaunay()) return {};
+  const Components components = connected_components(graph);
+  std::vector<Index> sizes(static_cast<std::size_t>(components.count), 0);
+  for (const Index c : components.of_vertex) ++sizes[c];
+  return halved_vertices(components.of_vertex, sizes);
+}
+
+void Wavefront::OneRings::find_neighbors(const TangentGraph& graph, Index vertex, std::vector<Neighbor>& neighbors) {
+  neighbors.clear();
+  const Star star = graph.star(vertex);
+  const bool may_reflect = graph.transport_layout().may_reflect();
+  for (std::size_t e = 0; e < star.degree(); ++e) {
+    const Vec2 log{star.logs[2 * e], star.logs[2 * e + 1]};
+    neighbors.push_back({star.neighbors[e], log, std::sqrt(log[0] * log[0] + log[1] * log[1]), turn(log), e,
+                         may_reflect && star.transport(e).reflects()});
+  }
+  std::sort(neighbors.begin(), neighbors.end(),
+            [](const Neighbor& a, const Neighbor& b) { return a.turn != b.turn ? a.turn < b.turn : a.edge < b.edge; });
+  const auto is_same = [](const Neighbor& a, const Neighbor& b) { return a.vertex == b.vertex && a.log == b.log; };
+  neighbors.erase(std::unique(neighbors.begin(), neighbors.end(), is_same), neighbors.end());
+}
+
+void Wavefront::OneRings::append_corners(const TangentGraph& graph, Index vertex, std::vector<Neighbor>& neighbors,
+                                         std::vector<Corner>& corners) {
+  find_neighbors(graph, vertex, neighbors);
+  for (std::size_t k = 0; k < neighbors.size(); ++k) {
+    const Neighbor &right = neighbors[k], &left = neighbors[k + 1 < neighbors.size() ? k + 1 : 0];
+    const Vec2 angle = corner(right.length, left.length, third_side(graph, vertex, right, left));
+    corners.push_back({right.vertex, right.reflects, right.length, angle[0], angle[1]});
+  }
+}
+
+double Wavefront::OneRings::curvature_of(std::span<const Corner> corners) {
+  AngleSum angle;
+  double area = 0, shortest = std::numeric_limits<double>::infinity(), longest = 0;
+  for (std::size_t k = 0; k < corners.size(); ++k) {
+    const Corner &right = corners[k], &left = corners[k + 1 < corners.size() ? k + 1 : 0];
+    if (std::isnan(right.cosine)) return 0;
+    angle.add(right.cosine, right.sine);
+    area += right.length * left.length * right.sine / 6;
+    shortest = std::min(shortest, right.length);
+    longest = std::max(longest, right.length);
+  }
+  const double missing = 2 * std::numbers::pi - angle.sum();
+  const double curvature = std::abs(missing) * shortest > least_turn * longest ? missing / area : 0;
+  return std::isfinite(curvature) ? curvature : 0;
+}
+
+/// Cuts triangles into four. An edge is known by its corner: that of the vertex it starts from, which has the edge to its right.
+class Wavefront::OneRings::Halving {
+ public:
+  /// @param stars  whole ones, which are cut
+  Halving(const OneRings& stars, std::vector<std::uint8_t>& halved)
+      : stars_(stars), halved_(halved), corners_(stars.corners_), twin_(corners_.size(), -1), middle_(corners_.size()) {
+    start_.reserve(corners_.size());
+    for (Index i = 0; i < stars.size_; ++i) start_.insert(start_.end(), stars.of(i).size(), i);
+    leave_flat_ones_whole();
+    for (Offset c = 0; c < static_cast<Offset>(corners_.size()); ++c)
+      if (halved_[start_[c]]) twin_[c] = find_twin(c);
+    for (Offset c = 0; c < static_cast<Offset>(corners_.size()); ++c)
+      if (halved_[start_[c]] && (twin_[c] < 0 || twin_[twin_[c]] != c)) leave_whole(start_[c]);
+    for (Offset c = 0; c < static_cast<Offset>(corners_.size()); ++c)
+      if (halved_[start_[c]] && is_in_doubt(c)) leave_whole(start_[c]);
+  }
+
+  /// The stars of the vertices, then those of the midpoints.
+  void cut(std::vector<Offset>& begin, std::vector<Corner>& corners) {
+    Index size = stars_.size_;
+    for (Offset c = 0; c < static_cast<Offset>(corners_.size()); ++c)
+      if (halved_[start_[c]]) middle_[c] = c < twin_[c] ? size++ : middle_[twin_[c]];
+    begin.assign(1, 0);
+    for (Index i = 0; i < stars_.size_; ++i) {
+      for (Offset c = stars_.begin_[i]; c < stars_.begin_[i + 1]; ++c)
+        corners.push_back(halved_[i] ? half(c) : corners_[c]);
+      begin.push_back(static_cast<Offset>(corners.size()));
+    }
+    for (Offset c = 0; c < static_cast<Offset>(corners_.size()); ++c)
+      if (halved_[start_[c]] && c < twin_[c]) {
+        append_side(c, corners);
+        append_side(twin_[c], corners);
+        begin.push_back(static_cast<Offset>(corners.size()));
+      }
+  }
+
+ private:
+  Offset next(Offset c) const { return c + 1 < stars_.begin_[start_[c] + 1] ? c + 1 : stars_.begin_[start_[c]]; }
+  Offset previous(Offset c) const { return c > stars_.begin_[start_[c]] ? c - 1 : stars_.begin_[start_[c] + 1] - 1; }
+
+  /// The same edge from its other end; -1 where that is not plain.
+  Offset find_twin(Offset c) const {
+    const Corner& edge = corners_[c];
+    Offset found = -1;
+    for (Offset t = stars_.begin_[edge.neighbor]; t < stars_.begin_[edge.neighbor + 1]; ++t) {
+      if (corners_[t].neighbor != start_[c]) continue;
+      if (!(std::abs(corners_[t].length - edge.length) <= same_length * edge.length)) continue;
+      if (found >= 0 || t == c) return -1;
+      found = t;
+    }
+    return found;
+  }
+
+  /// Gives all that is connected with a vertex that mark.
+  void mark(Index vertex, std::uint8_t value, std::vector<std::uint8_t>& marks) const {
+    std::vector<Index> stack{vertex};
+    marks[vertex] = value;
+    while (!stack.empty()) {
+      const Index i = stack.back();
+      stack.pop_back();
+      for (const Corner& c : stars_.of(i))
+        if (marks[c.neighbor] != value) marks[c.neighbor] = value, stack.push_back(c.neighbor);
+    }
+  }
+
+  void leave_whole(Index vertex) { mark(vertex, 0, halved_); }
+
+  /// What is flat is exact as it is.
+  void leave_flat_ones_whole() {
+    std::vector<std::uint8_t> bent(halved_.size(), 0);
+    for (Index i = 0; i < stars_.size_; ++i) {
+      if (!halved_[i] || bent[i]) continue;
+      double missing = 2 * std::numbers::pi;  // NaN on boundaries
+      for (const Corner& c : stars_.of(i)) missing -= std::atan2(c.sine, c.cosine);
+      if (std::abs(missing) > least_bend) mark(i, 1, bent);
+    }
+    for (std::size_t i = 0; i < halved_.size(); ++i) halved_[i] &= bent[i];
+  }
+
+  bool is_open(Offset c) const { return std::isnan(corners_[c].cosine); }
+
+  /// The other two sides of the triangle to the left of an edge, from its start and from its end; none where there is no triangle.
+  /// One of its corners may look open: angles at a vertex are stretched to 2 pi in all.
+  struct Left {
+    Offset start_side, end_side;
+  };
+  std::optional<Left> left_of(Offset c) const {
+    const Left sides{next(c), previous(twin_[c])};
+    const Offset across = twin_[sides.start_side];
+    if (next(across) != twin_[sides.end_side]) return std::nullopt;
+    if (is_open(c) + is_open(sides.end_side) + is_open(across) > 1) return std::nullopt;
+    return sides;
+  }
+
+  /// Whether there may be a triangle that is not seen as one from all of its vertices: too thin, or of a one-sided surface.
+  bool is_in_doubt(Offset c) const {
+    if (left_of(c)) return false;
+    const Index j = corners_[c].neighbor, l = corners_[next(c)].neighbor;
+    const double a = corners_[c].length, b = corners_[next(c)].length;
+    for (Offset t = stars_.begin_[j]; t < stars_.begin_[j + 1]; ++t) {
+      if (corners_[t].neighbor != l) continue;
+      const double across = corners_[t].length, longest = std::max({a, b, across});
+      if (!is_open(c) || a + b + across - 2 * longest <= degenerate * longest) return true;
+    }
+    return false;
+  }
+
+  /// A corner of halves, of a triangle with those sides.
+  static Corner half(Index neighbor, double right, double left, double across) {
+    const Vec2 angle = corner(right, left, across);
+    return {neighbor, false, 0.5 * right, angle[0], angle[1]};
+  }
+  Corner open_half(Index neighbor, Offset c) const { return {neighbor, false, 0.5 * corners_[c].length, NAN, NAN}; }
+
+  /// The corner of a vertex between the first halves of two sides.
+  Corner half(Offset c) const {
+    const auto left = left_of(c);
+    if (!left) return open_half(middle_[c], c);
+    return half(middle_[c], corners_[c].length, corners_[left->start_side].length, corners_[left->end_side].length);
+  }
+
+  /// The corners of an edge's midpoint to the left of the edge, from its end to before its start.
+  void append_side(Offset c, std::vector<Corner>& corners) const {
+    const auto left = left_of(c);
+    if (!left) return corners.push_back(open_half(corners_[c].neighbor, c));
+    const double along = corners_[c].length, start_side = corners_[left->start_side].length,
+                 end_side = corners_[left->end_side].length;
+    corners.push_back(half(corners_[c].neighbor, along, start_side, end_side));
+    corners.push_back(half(middle_[left->end_side], start_side, end_side, along));
+    corners.push_back(half(middle_[left->start_side], end_side, along, start_side));
+  }
+
+  const OneRings& stars_;
+  std::vector<std::uint8_t>& halved_;
+  const std::vector<Corner>& corners_;
+  std::vector<Index> start_;   ///< the vertex of a corner
+  std::vector<Offset> twin_;   ///< the corner that has the same edge to its right
+  std::vector<Index> middle_;  ///< the midpoint of an edge
+};
+
+Wavefront::OneRings::OneRings(const TangentGraph& graph, std::vector<std::uint8_t> halved, bool all, unsigned threads)
+    : vertices_(graph.size()), size_(vertices_) {
+  const bool any = std::find(halved.begin(), halved.end(), 1) != halved.end();
+  if ((!any && !all) || graph.dimension() != 2) return;
+  constexpr Offset chunk = 1 << 12;
+  std::vector<std::vector<Corner>> parts(static_cast<std::size_t>(vertices_ / chunk) + 1);
+  begin_.assign(static_cast<std::size_t>(vertices_) + 1, 0);
+  curvatures_.assign(static_cast<std::size_t>(vertices_), 0.0);
+  detail::parallel_chunks(vertices_, chunk, threads, [&](Offset begin, Offset end) {
+    std::vector<Corner>& corners = parts[begin / chunk];
+    std::vector<Neighbor> neighbors;
+    for (auto i = static_cast<Index>(begin); i < end; ++i) {
+      if (!all && !halved[i]) continue;
+      const std::size_t before = corners.size();
+      append_corners(graph, i, neighbors, corners);
+      const std::span<const Corner> own = std::span(corners).subspan(before);
+      begin_[i + 1] = std::ssize(own);
+      if (!own.empty()) curvatures_[i] = curvature_of(own);
+    }
+  });
+  begin_ = detail::starts_of(std::move(begin_));
+  corners_.reserve(static_cast<std::size_t>(begin_.back()));
+  for (std::vector<Corner>& part : parts) {
+    corners_.insert(corners_.end(), part.begin(), part.end());
+    part = {};
+  }
+  if (!any) return;
+  std::vector<Offset> begin;
+  std::vector<Corner> corners;
+  Halving(*this, halved).cut(begin, corners);
+  begin_ = std::move(begin);
+  corners_ = std::move(corners);
+  size_ = static_cast<Index>(begin_.size()) - 1;
+  for (Index middle = vertices_; middle < size_; ++middle) {
+    double sum = 0;
+    for (const Corner& corner : of(middle))
+      if (corner.neighbor < vertices_) sum += curvatures_[corner.neighbor];
+    curvatures_.push_back(sum / 2);
+  }
+}
+
+void Wavefront::OneRings::find_cut_edges(Index vertex, std::vector<CutEdge>& edges) const {
+  edges.clear();
+  for (const Corner& half : of(vertex)) {
+    if (half.neighbor < vertices_) return;
+    for (const Corner& beside : of(half.neighbor))
+      if (beside.neighbor < vertices_ && beside.neighbor != vertex)
+        edges.push_back({beside.neighbor, half.neighbor, half.length});
+  }
+  std::sort(edges.begin(), edges.end(), [](const CutEdge& a, const CutEdge& b) { return a.end < b.end; });
+  auto kept = edges.begin();
+  for (auto first = edges.begin(); first != edges.end();) {
+    const auto next = std::find_if(first, edges.end(), [&](const CutEdge& e) { return e.end != first->end; });
+    if (next - first == 1) *kept++ = *first;
+    first = next;
+  }
+  edges.erase(kept, edges.end());
+}
+
+std::shared_ptr<const Wavefront::OneRings> Wavefront::one_rings(const TangentGraph& graph, unsigned threads,
+                                                                bool midpoints) {
+  if (graph.dimension() != 2) return nullptr;
+  std::vector<std::uint8_t> halved = midpoints ? halved_vertices(graph) : std::vector<std::uint8_t>();
+  return std::make_shared<const OneRings>(graph, std::move(halved), true, threads);
+}
+
+}  // namespace ahm

@@ -1,0 +1,503 @@
+// What a front knows of each vertex.
+#include "ahm/maps/wavefront.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <tuple>
+#include <utility>
+
+#include "ahm/error.hpp"
+#include "ahm/util/scratch.hpp"
+#include "ahm/util/small_math.hpp"
+#include "ahm/util/vec.hpp"
+#include "maps/affine_heat.hpp"
+#include "maps/front_geometry.hpp"
+#include "maps/one_rings.hpp"
+
+namespace ahm {
+namespace {
+
+constexpr Index none = -1;
+/// Less than this is rounding.
+constexpr double least_gain = 1e-12;
+/// Ways whose lengths differ by less than this share are equally long, and the one along which the front is less bent counts, so that
+/// rounding does not choose between ways through the same flat faces.
+constexpr double same_length = 1e-10, same_focusing = 1e-6;
+/// An entry is bettered no more often: where triangles contradict each other they could go on for ever.
+constexpr std::uint8_t most_gains = 40;
+/// Points whose distances a vertex knows, and how many of these are the nearest ones: the samples of a curve are many, and all but
+/// equally near.
+constexpr std::size_t most_points = 8, most_of_curve = 12, nearest_of_curve = 4;
+/// A line may miss the side by this share of it, and is taken to pass its end. Where edges are no triangulation, as between points that lie
+/// in squares, it may pass between two triangles that bend away from it, and seen from neither leave only edges.
+constexpr double missed = 1e-9, missed_between = 1e-3;
+/// Stars that are kept until others take their place: those ahead of the front are asked for several times.
+constexpr std::size_t most_seen = 2048;
+
+/// Whether a front at this distance, so focused, comes before another one.
+bool comes_before(double distance, double focusing, double other, double other_focusing) {
+  if (!(std::abs(distance - other) <= same_length * other)) return distance < other;
+  const double gain = std::abs(other_focusing) - std::abs(focusing);
+  return std::abs(gain) > same_focusing * std::abs(other_focusing) ? gain > 0 : distance < other * (1 - least_gain);
+}
+
+Vec2 unit_vector(const Vec2& v) {
+  const double size = length(v);
+  return {v[0] / size, v[1] / size};  // NaN of nothing
+}
+
+}  // namespace
+
+Wavefront::Wavefront(const TangentGraph& graph, std::shared_ptr<const OneRings> stars, bool directions)
+    : graph_(graph),
+      d_(static_cast<std::size_t>(graph.dimension())),
+      missed_(graph.is_delaunay() ? missed : missed_between),
+      is_curved_(graph.is_delaunay() && d_ == 2),
+      directions_(directions && d_ == 2),
+      stars_(stars || !graph.is_delaunay() ? std::move(stars)
+                                           : std::make_shared<const OneRings>(graph, halved_vertices(graph), false)) {
+  first_.assign(static_cast<std::size_t>(stars_ ? stars_->size() : graph.size()), none);
+  entries_.reserve(first_.size());
+}
+
+Index Wavefront::add(const Source& source) {
+  check_source(source, graph_);
+  const double unit = graph_.length_unit();
+  const Index first = points_;
+  of_curve_ = of_curve_ || source.is_curve();
+  const bool may_reflect = graph_.transport_layout().may_reflect();
+  std::vector<Given> given;
+  Scratch offset(d_), back(d_);
+  for (std::size_t k = 0; k < source.vertices().size(); ++k) {
+    if (!(source.weights()[k] > 0)) continue;
+    const auto [point, away, position] = source.place(k);
+    points_ = std::max(points_, first + point + 1);
+    const std::span<const double> axes =
+        source.axes().empty() ? source.axes() : source.axes().subspan(k * d_ * d_, d_ * d_);
+    for (std::size_t c = 0; c < d_; ++c) {
+      const double start = d_ == 2 ? position[c] : 0;
+      offset.data()[c] = source.offsets().empty() ? 0 : (source.offsets()[k * d_ + c] - start) / unit;
+      back.data()[c] = 0;
+    }
+    for (std::size_t c = 0; c < d_; ++c)
+      for (std::size_t a = 0; a < d_ && !source.offsets().empty(); ++a)
+        back.data()[c] -= axes[c * d_ + a] * offset.data()[a];
+    const Index vertex = source.vertices()[k].index;
+    if (d_ != 2) {
+      offer(vertex, first + point, away / unit, 0, back.span(), {});
+      continue;
+    }
+    const bool mirrored = !axes.empty() && axes[0] * axes[3] < axes[1] * axes[2];
+    given.push_back({vertex,
+                     first + point,
+                     away / unit,
+                     {offset.data()[0], offset.data()[1]},
+                     unit_vector({-back.data()[0], -back.data()[1]}),
+                     mirrored});
+    const auto is_of_point = [&, point = point](std::size_t other) {
+      return other < source.vertices().size() && source.place(other).point == point;
+    };
+    const bool beside = away != 0 && !is_of_point(k - 1) && !is_of_point(k + 1);
+    const Star star = graph_.star(vertex);
+    for (std::size_t e = 0; e < star.degree(); ++e) {
+      const double side = length(star.log(e));
+      longest_ = std::max(longest_, side);
+      // The neighbours lie in the tangent plane of the point's only vertex, too, and of one that all but is the point.
+      if (!(beside || away / unit <= least_ray * side)) continue;
+      const Vec2 from{star.log(e)[0] - back.data()[0], star.log(e)[1] - back.data()[1]};
+      const Vec2 there =
+          axes.empty() ? from : Vec2{axes[0] * from[0] + axes[2] * from[1], axes[1] * from[0] + axes[3] * from[1]};
+      Vec2 arrival{};
+      star.transport(e).apply_inverse(from.data(), arrival.data());
+      given.push_back({star.neighbors[e], first + point, std::hypot(from[0], from[1]), there, unit_vector(arrival),
+                       mirrored != (may_reflect && star.transport(e).reflects())});
+    }
+  }
+  // Also where another point is nearer by less: what lies on this one's side of the border between them comes from there.
+  for (const Given& one : given)
+    offer(one.vertex, one.point, one.distance, 4 * longest_, {},
+          {.direction = unit_vector(one.offset), .arrival = one.arrival, .mirrored = one.mirrored});
+  if (stars_) offer_midpoints(given);
+  return first;
+}
+
+/// A point of a triangle is at the distance of its median from the midpoint of a side whose ends' distances are given.
+void Wavefront::offer_midpoints(std::vector<Given>& given) {
+  const auto comes_before = [](const Given& a, const Given& b) {
+    return std::tie(a.point, a.vertex) < std::tie(b.point, b.vertex);
+  };
+  std::sort(given.begin(), given.end(), comes_before);
+  std::vector<OneRings::CutEdge> edges;
+  for (const Given& one : given) {
+    stars_->find_cut_edges(one.vertex, edges);
+    for (const auto& edge : edges) {
+      if (edge.end <= one.vertex) continue;
+      Given end = one;
+      end.vertex = edge.end;
+      const auto [first, last] = std::equal_range(given.begin(), given.end(), end, comes_before);
+      for (auto other = first; other != last; ++other) {
+        const double a = one.distance, b = other->distance;
+        const double squared = 0.5 * (a * a + b * b) - edge.half * edge.half;
+        const Vec2 between{one.offset[0] + other->offset[0], one.offset[1] + other->offset[1]};
+        offer(edge.midpoint, one.point, std::sqrt(std::max(0.0, squared)), 4 * longest_, {},
+              {.direction = unit_vector(between), .mirrored = one.mirrored});
+      }
+    }
+  }
+}
+
+void Wavefront::restart(std::span<const Seed> seeds) {
+  struct Start {
+    double focusing = 0;
+    bool mirrored = false;
+  };
+  std::vector<Start> starts;
+  starts.reserve(seeds.size());
+  for (const Seed& seed : seeds) {
+    const Entry* const found = find(seed.vertex.index, seed.point);
+    starts.push_back(found ? Start{found->focusing, ways_[number(*found)].mirrored} : Start{});
+  }
+  std::ranges::fill(first_, none);
+  entries_.clear();
+  ways_.clear();
+  for (std::vector<Index>& rows : free_) rows.clear();
+  for (std::size_t k = 0; k < seeds.size(); ++k) {
+    const Index vertex = seeds[k].vertex.index;
+    offer(vertex, seeds[k].point, seeds[k].distance / graph_.length_unit(), 0, {},
+          {.direction = seeds[k].direction,
+           .arrival = seeds[k].arrival,
+           .variance = static_cast<float>(4 * seeds[k].error * seeds[k].error),
+           .mirrored = starts[k].mirrored},
+          starts[k].focusing);
+    entries_[first_[vertex]].gains = most_gains;  // nothing replaces it
+  }
+  // Those inside have no one to spread to.
+  queue_ = {};
+  for (const Seed& seed : seeds) {
+    const Index vertex = seed.vertex.index;
+    const auto is_free = [&](const Corner& corner) { return first_[corner.neighbor] == none; };
+    if (std::ranges::any_of(around(vertex), is_free))
+      queue_.push({entries_[first_[vertex]].distance, vertex, seed.point});
+  }
+}
+
+void Wavefront::run(double radius, const std::stop_token& stop) {
+  constexpr std::uint32_t between_looks = 4096;
+  for (std::uint32_t taken = 0; !queue_.empty() && next() <= radius; ++taken) {
+    if (taken % between_looks == 0 && stop.stop_requested()) throw Cancelled("cancelled during unfold");
+    const auto [distance, vertex, point] = queue_.top();
+    queue_.pop();
+    if (stars_ && !queue_.empty())  // most likely the next one: of many corners few are in the cache
+      for (const Corner& corner : stars_->of(queue_.top().vertex)) __builtin_prefetch(&corner);
+    if (const Entry* entry = find(vertex, point); entry && entry->distance == distance) spread(vertex, point, distance);
+  }
+}
+
+/// The entry of a vertex that a further point takes; none where all count for more than it. The nearest count, and of the others,
+/// samples of a curve, those whose numbers are multiples of larger powers of two: neighbours keep the same ones then, some near and
+/// some far apart, whether samples are closer together than vertices or not.
+Index Wavefront::entry_to_take(Index vertex, Index point, double distance) {
+  struct Kept {
+    double distance;
+    Index entry, point;
+  };
+  // Of equally far ones that with the largest number goes.
+  const auto comes_before = [](const Kept& a, const Kept& b) {
+    return a.distance != b.distance ? a.distance < b.distance : a.point < b.point;
+  };
+  const auto counts_less = [&](const Kept& a, const Kept& b) {
+    const int level_a = std::countr_zero(static_cast<unsigned>(a.point)),
+              level_b = std::countr_zero(static_cast<unsigned>(b.point));
+    return of_curve_ && level_a != level_b ? level_a < level_b : comes_before(b, a);
+  };
+  std::array<Kept, most_of_curve + 1> all{{{distance, none, point}}};
+  std::size_t count = 1;
+  for (const Entry& entry : entries_of(vertex)) all[count++] = {entry.distance, number(entry), entry.point};
+  const auto end = all.begin() + static_cast<std::ptrdiff_t>(count),
+             others = all.begin() + (of_curve_ ? nearest_of_curve : 0);
+  if (of_curve_) std::nth_element(all.begin(), others, end, comes_before);
+  return std::min_element(others, end, counts_less)->entry;
+}
+
+/// Keeps a distance if it is the least from its point, and that point the nearest or nearly so.
+void Wavefront::offer(Index vertex, Index point, double distance, double slack, std::span<const double> displacement,
+                      const Way& way, double focusing) {
+  const std::span<const Entry> entries = entries_of(vertex);
+  const double nearest = entries.empty() ? std::numeric_limits<double>::infinity() : entries.front().distance;
+  if (!(distance <= nearest + slack)) return;
+  Index own;
+  bool is_added = false;
+  if (const Entry* known = find(vertex, point)) {
+    if (!comes_before(distance, focusing, known->distance, known->focusing) || known->gains == most_gains) return;
+    distance = std::min(distance, known->distance);
+    own = number(*known);
+  } else {
+    is_added = entries.size() < (of_curve_ ? most_of_curve : most_points);
+    own = is_added ? append(vertex) : entry_to_take(vertex, point, distance);
+    if (own == none) return;
+    entries_[own].point = point;
+    entries_[own].gains = 0;
+  }
+  ++entries_[own].gains;
+  entries_[own].distance = distance;
+  entries_[own].focusing = focusing;
+  if (directions_) ways_[own] = way;
+  if (d_ != 2)
+    std::copy(displacement.begin(), displacement.end(), displacements_.begin() + static_cast<std::ptrdiff_t>(own * d_));
+  // The nearest comes first, of equally near ones one that was added.
+  const Index first = first_[vertex];
+  Index least = first;
+  if (own == first)
+    least = number(*std::ranges::min_element(entries_of(vertex), {}, &Entry::distance));
+  else if (distance < nearest || (is_added && distance == nearest))
+    least = own;
+  if (least != first) swap_entries(first, least);
+  queue_.push({distance, vertex, point});
+}
+
+/// Valid until the corners of another vertex are asked for.
+std::span<const Wavefront::Corner> Wavefront::around(Index vertex) {
+  if (stars_ && stars_->keeps(vertex)) return stars_->of(vertex);
+  if (seen_.empty()) seen_.resize(std::min(most_seen, first_.size()));
+  Seen& seen = seen_[static_cast<std::size_t>(vertex) % seen_.size()];
+  if (seen.vertex != vertex) {
+    seen.vertex = vertex;
+    seen.corners.clear();
+    OneRings::append_corners(graph_, vertex, neighbors_, seen.corners);
+  }
+  return seen.corners;
+}
+
+/// Gaussian curvature; 0 where it does not count.
+double Wavefront::curvature(Index vertex) {
+  if (!is_curved_) return 0;
+  if (stars_->keeps(vertex)) return stars_->curvature(vertex);
+  if (curvatures_.empty()) curvatures_.assign(static_cast<std::size_t>(graph_.size()), NAN);
+  double& known = curvatures_[vertex];
+  if (std::isnan(known)) known = OneRings::curvature_of(around(vertex));
+  return known;
+}
+
+/// Along the edges of a vertex, and across the triangles of its star: from its own distance and that of one neighbour to
+/// the other.
+void Wavefront::spread(Index from, Index point, double distance) {
+  if (d_ != 2) return carry(from, point, distance);
+  std::span<const Corner> corners = around(from);
+  if (is_curved_ && !stars_->keeps(from)) {  // those of its neighbours may take their place
+    around_.assign(corners.begin(), corners.end());
+    corners = around_;
+  }
+  const std::size_t degree = corners.size();
+  known_.resize(degree);
+  double longest = 0;
+  const auto way_of = [&](const Entry* entry) { return ways_[number(*entry)]; };
+  const Entry* const here = find(from, point);
+  const Way own = directions_ ? way_of(here) : Way{};
+  const double focusing = here->focusing, curvature_here = distance > 0 ? curvature(from) : 0;
+  const auto focusing_along = [&](const Corner& edge, double along) {
+    if (!is_curved_) return 0.0;
+    return focusing_after(focusing, distance, along, 0.5 * (curvature_here + curvature(edge.neighbor)));
+  };
+  for (std::size_t k = 0; k < degree; ++k) {
+    const Entry* entry = find(corners[k].neighbor, point);
+    const double before = entry ? entry->distance : std::numeric_limits<double>::infinity();
+    const double along = distance + corners[k].length;
+    Known& known = known_[k];
+    known.is_new = !(before <= along);
+    known.distance = known.is_new ? along : before;
+    known.along = along;
+    known.focusing = known.is_new ? focusing_along(corners[k], along) : entry->focusing;
+    if (directions_) known.way = known.is_new ? Way{own.direction, {}, {from, from}, 0, own.variance} : way_of(entry);
+    longest = std::max(longest, corners[k].length);
+  }
+  for (std::size_t k = 0; k < degree; ++k) {
+    const std::size_t next = k + 1 < degree ? k + 1 : 0;
+    const Corner &right = corners[k], &left = corners[next];
+    if (std::isnan(right.cosine)) continue;
+    const auto unfold = [&](std::size_t base, double base_length, std::size_t target, double target_length,
+                            double side) {
+      const Known& other = known_[base];
+      Known& found = known_[target];
+      if (!(other.distance < other.along)) return;
+      const double most = found.distance + (!is_curved_ ? 0 : max_curvature_correction * base_length);
+      const double limit = most * most;
+      const double cx = target_length * right.cosine, cy = target_length * right.sine;
+      if (found.distance <= distance && is_beyond(distance, other.distance, base_length, cx, cy, limit)) return;
+      const Across across = across_side(distance, other.distance, base_length, cx, cy, limit, missed_);
+      if (!across.found) return;
+      double length = across.length(), bent_by = 0, crossing = across.share;
+      if (is_curved_) {
+        const auto between = [&](double a, double b) { return (1 - across.share) * a + across.share * b; };
+        const double height = cy + across.depth, to_side = across.depth / height * length;
+        const double at_side = between(focusing, other.focusing);
+        const double bend = bend_along(base_length, at_side, to_side), squared_sine = height * height / across.squared;
+        const double bent = length + curvature_correction(bend, base_length, across.share, squared_sine);
+        if (!(bent <= found.distance * (1 + same_length))) return;
+        const double curved = between(curvature_here, curvature(corners[base].neighbor));
+        bent_by = focusing_after(at_side, to_side, length, 0.5 * (curved + curvature(corners[target].neighbor)));
+        crossing = bent_crossing(across.share, bend, base_length, length - to_side);
+        length = bent;
+      }
+      if (!comes_before(length, bent_by, found.distance, found.focusing)) return;
+      found.distance = std::min(length, found.distance);
+      found.focusing = bent_by;
+      found.is_new = true;
+      if (!directions_) return;
+      const Vec2 towards = crossing == across.share ? Vec2{cx, cy} : Vec2{crossing * base_length, 0};
+      const auto [direction, difference] = direction_across(across, crossing, towards, base_length, own.direction,
+                                                            other.way.direction, own.mirrored ? -side : side);
+      found.way.direction = direction;
+      found.way.variance =
+          static_cast<float>((1 - crossing) * own.variance + crossing * other.way.variance + difference * difference);
+      found.way.arrival = {};
+      found.way.last = {from, corners[base].neighbor};
+      found.way.share = static_cast<float>(crossing);
+    };
+    unfold(k, right.length, next, left.length, 1);
+    unfold(next, left.length, k, right.length, -1);
+  }
+  longest_ = std::max(longest_, longest);
+  // What unfolds to a border comes from a few edges beyond.
+  for (std::size_t k = 0; k < degree; ++k) {
+    if (!known_[k].is_new) continue;
+    known_[k].way.mirrored = own.mirrored != corners[k].reflects;
+    offer(corners[k].neighbor, point, known_[k].distance, 4 * longest, {}, known_[k].way, known_[k].focusing);
+  }
+}
+
+namespace {
+
+/// The two estimates of a direction lie on both sides of it, so that it is off by half their difference (docs/concepts/accuracy.md).
+constexpr double share_of_difference = 0.5;
+
+}  // namespace
+
+double Wavefront::distance(Vertex vertex) const {
+  const Index first = first_[vertex.index];
+  return first < 0 ? std::numeric_limits<double>::infinity() : entries_[first].distance * graph_.length_unit();
+}
+
+Vec2 Wavefront::direction(Vertex vertex) const {
+  const Index first = first_[vertex.index];
+  return first < 0 || !directions_ ? Vec2{NAN, NAN} : ways_[first].direction;
+}
+
+double Wavefront::direction_error(Vertex vertex) const {
+  const Index first = first_[vertex.index];
+  return first < 0 || !directions_ ? NAN : share_of_difference * std::sqrt(ways_[first].variance);
+}
+
+Vec2 Wavefront::arrival(Vertex vertex) const {
+  const Index first = first_[vertex.index];
+  if (first < 0 || !directions_) return {NAN, NAN};
+  const Way& way = ways_[first];
+  if (way.arrival != Vec2{}) return way.arrival;  // also where it is NaN
+  const Star star = graph_.star(vertex.index);
+  std::array<Vec2, 2> ends{};
+  for (std::size_t k = 0; k < 2; ++k)
+    if (const auto end = std::ranges::find(star.neighbors, way.last[k]); end != star.neighbors.end()) {
+      const std::span<const double> log = star.log(static_cast<std::size_t>(end - star.neighbors.begin()));
+      ends[k] = {log[0], log[1]};
+    }
+  const Vec2 crossing = (1.0 - way.share) * ends[0] + static_cast<double>(way.share) * ends[1];
+  const double away = length(crossing);
+  return (-1 / away) * crossing;
+}
+
+bool Wavefront::is_mirrored(Vertex vertex) const {
+  const Index first = first_[vertex.index];
+  return first >= 0 && directions_ && ways_[first].mirrored;
+}
+
+Index Wavefront::nearest(Vertex vertex) const {
+  const Index first = first_[vertex.index];
+  return first < 0 ? -1 : entries_[first].point;
+}
+
+/// A place for one more entry of a vertex, the last one. Its others may move.
+Index Wavefront::append(Index vertex) {
+  Index& first = first_[vertex];
+  const std::size_t count = entries_of(vertex).size();
+  if (count == 0) {
+    first = new_row(1);
+  } else if (std::has_single_bit(count)) {
+    const Index row = new_row(2 * count);
+    free_[std::bit_width(count) - 1].push_back(first);
+    for (std::size_t k = 0; k < count; ++k) swap_entries(first + static_cast<Index>(k), row + static_cast<Index>(k));
+    first = row;
+  }
+  entries_[first].count = static_cast<std::uint8_t>(count + 1);
+  return first + static_cast<Index>(count);
+}
+
+/// @return its first entry
+Index Wavefront::new_row(std::size_t size) {
+  const std::size_t kind = std::bit_width(size) - 1;
+  if (kind < free_.size() && !free_[kind].empty()) {
+    const Index row = free_[kind].back();
+    free_[kind].pop_back();
+    return row;
+  }
+  const std::size_t row = entries_.size();
+  if (row + size > static_cast<std::size_t>(std::numeric_limits<Index>::max()))
+    throw ResourceExhausted("front: distances from several points at too many vertices for its numbers");
+  entries_.resize(row + size);
+  if (d_ != 2) displacements_.resize(entries_.size() * d_);
+  if (directions_) ways_.resize(entries_.size());
+  return static_cast<Index>(row);
+}
+
+/// All of them but the number of entries, which is the row's.
+void Wavefront::swap_entries(Index a, Index b) {
+  std::swap(entries_[a], entries_[b]);
+  std::swap(entries_[a].count, entries_[b].count);
+  if (directions_) std::swap(ways_[a], ways_[b]);
+  if (d_ == 2) return;
+  const auto of = [&](Index entry) { return displacements_.begin() + static_cast<std::ptrdiff_t>(entry * d_); };
+  std::swap_ranges(of(a), of(a) + static_cast<std::ptrdiff_t>(d_), of(b));
+}
+
+/// The displacement to the point, from vertex to vertex.
+void Wavefront::carry(Index from, Index point, double distance) {
+  Scratch here(d_), left(d_), there(d_);
+  std::ranges::copy(displacement(*find(from, point)), here.data());
+  const std::size_t degree = graph_.star(from).degree();
+  for (std::size_t e = 0; e < degree; ++e) {
+    const Star star = graph_.star(from);  // again: that of the neighbour took its place
+    const Index to = star.neighbors[e];
+    for (std::size_t a = 0; a < d_; ++a) left.data()[a] = here.data()[a] - star.log(e)[a];
+    star.transport(e).apply_inverse(left.data(), there.data());
+    const double slack = 2 * length(star.log(e)), straight = length(there.span());
+    if (const Entry* known = find(to, point); known && known->distance <= straight) continue;
+    offer(to, point, straight * factor_at(to, point, there.span(), distance), slack, there.span(), {});
+  }
+}
+
+/// By how much the way to a vertex is longer than the straight line: from its neighbours that are no farther than `distance`.
+double Wavefront::factor_at(Index vertex, Index point, std::span<const double> displacement, double distance) {
+  const double straight = length(displacement);
+  const Star star = graph_.star(vertex);
+  if (!(straight > 0) || !find_axes(star, axis_)) return 1;
+  nearest_.assign(star.degree(), nullptr);
+  upwind_.clear();
+  for (std::size_t e = 0; e < star.degree(); ++e) {
+    const Entry* const there = find(star.neighbors[e], point);
+    if (there && there->distance <= distance && (!nearest_[axis_[e]] || there->distance < nearest_[axis_[e]]->distance))
+      nearest_[axis_[e]] = there;
+  }
+  for (std::size_t e = 0; e < star.degree(); ++e) {
+    const Entry* const there = find(star.neighbors[e], point);
+    if (!there || there != nearest_[axis_[e]]) continue;
+    const double edge = length(star.log(e)), line = length(this->displacement(*there));
+    double product = 0;
+    for (std::size_t a = 0; a < d_; ++a) product += star.log(e)[a] * displacement[a];
+    upwind_.push_back({edge, product / (edge * straight), line > 0 ? there->distance / line : 1});
+  }
+  return upwind_.empty() ? 1 : eikonal_factor(straight, std::span(upwind_));
+}
+
+}  // namespace ahm

@@ -1,0 +1,155 @@
+// LAS is read here and not by a library: Debian 12 has neither PDAL nor LASlib nor a liblas. Its points are records of
+// fixed size behind a header of fixed layout (ASPRS LAS specification 1.4 R15), checked against the size of the file.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "formats/format.hpp"
+#include "little_endian.hpp"
+#include "read/columns.hpp"
+#include "read/point_stream.hpp"
+
+namespace ahm::io {
+namespace {
+
+/// A point data record format: its least size, and where things stand in it.
+struct Record {
+  std::size_t size, classification, color;  ///< color 0: none
+};
+
+constexpr std::array<Record, 11> records = {{{20, 15, 0},
+                                             {28, 15, 0},
+                                             {26, 15, 20},
+                                             {34, 15, 28},
+                                             {57, 15, 0},
+                                             {63, 15, 28},
+                                             {30, 16, 0},
+                                             {36, 16, 30},
+                                             {38, 16, 30},
+                                             {59, 16, 0},
+                                             {67, 16, 30}}};
+
+constexpr std::size_t intensity_at = 12;
+constexpr unsigned first_of_whole_classes = 6;  ///< before, three bits of the class are flags
+
+struct LasHeader {
+  unsigned minor = 0, format = 0;
+  std::uint64_t begin = 0, stride = 0, points = 0;
+  Vec3 scale{}, offset{};
+};
+
+LasHeader parse_fields(const Input& in) {
+  constexpr std::array<std::size_t, 5> header_sizes = {227, 227, 227, 235, 375};
+  if (!in.bytes.starts_with("LASF")) fail_at_byte(in, 0, "a LAS file begins with 'LASF'");
+  if (in.bytes.size() < header_sizes[0]) fail_at_byte(in, in.bytes.size(), "the file ends within its header");
+  const auto major = load_at<std::uint8_t>(in.bytes, 24);
+  LasHeader header;
+  header.minor = load_at<std::uint8_t>(in.bytes, 25);
+  if (major != 1 || header.minor > 4)
+    fail_at_byte(in, 24,
+                 "LAS " + std::to_string(major) + "." + std::to_string(header.minor) + " is not known; 1.0 to 1.4 are");
+  const std::size_t size = load_at<std::uint16_t>(in.bytes, 94);
+  if (size < header_sizes[header.minor])
+    fail_at_byte(
+        in, 94,
+        "a header of " + std::to_string(size) + " bytes is too small for LAS 1." + std::to_string(header.minor));
+  header.begin = load_at<std::uint32_t>(in.bytes, 96);
+  if (header.begin < size || header.begin > in.size())
+    fail_at_byte(in, 96,
+                 "the points cannot begin at byte " + std::to_string(header.begin) + " of " +
+                     std::to_string(in.size()) + "; the file is cut short or damaged");
+  header.format = load_at<std::uint8_t>(in.bytes, 104);
+  header.stride = load_at<std::uint16_t>(in.bytes, 105);
+  header.points = load_at<std::uint32_t>(in.bytes, 107);
+  if (header.minor == 4) {
+    const auto all = load_at<std::uint64_t>(in.bytes, 247);
+    if (header.points != 0 && header.points != all)
+      fail_at_byte(
+          in, 107,
+          "the header tells two numbers of points: " + std::to_string(header.points) + " and " + std::to_string(all));
+    header.points = all;
+  }
+  for (std::size_t c = 0; c < 3; ++c) {
+    header.scale[c] = load_at<double>(in.bytes, 131 + 8 * c);
+    header.offset[c] = load_at<double>(in.bytes, 155 + 8 * c);
+    if (!std::isfinite(header.scale[c]) || header.scale[c] == 0 || !std::isfinite(header.offset[c]))
+      fail_at_byte(in, 131 + 8 * c,
+                   "scale and offset of a coordinate are " + std::to_string(header.scale[c]) + " and " +
+                       std::to_string(header.offset[c]));
+  }
+  return header;
+}
+
+LasHeader parse_header(const Input& in) {
+  const LasHeader header = parse_fields(in);
+  constexpr unsigned compressed = 0xC0;  // LASzip marks its files so
+  if ((header.format & compressed) != 0)
+    fail_at_byte(in, 104,
+                 "the points are compressed (LAZ); convert the file to .las with laszip, las2las or pdal translate");
+  if (header.format >= records.size())
+    fail_at_byte(in, 104, "point format " + std::to_string(header.format) + " is not known; 0 to 10 are");
+  if (header.stride < records[header.format].size)
+    fail_at_byte(in, 105,
+                 "records of " + std::to_string(header.stride) + " bytes are too small for point format " +
+                     std::to_string(header.format));
+  check_vertex_count(in, header.points);
+  const std::uint64_t left = in.size() - header.begin;
+  if (header.points > left / header.stride)
+    fail_at_byte(in, header.begin,
+                 std::to_string(header.points) + " points of " + std::to_string(header.stride) +
+                     " bytes do not fit into the " + std::to_string(left) +
+                     " bytes that follow; the file is cut short");
+  return header;
+}
+
+/// What there is of colors; writers that have none leave zeros.
+void read_colors(const Input& in, const LasHeader& header, std::size_t at, Geometry& g) {
+  std::vector<Vec3> values(header.points);
+  bool any = false;
+  for (std::size_t i = 0; i < values.size(); ++i)
+    for (std::size_t c = 0; c < 3; ++c) {
+      values[i][c] = load_at<std::uint16_t>(in.bytes, header.begin + i * header.stride + at + 2 * c);
+      any = any || values[i][c] != 0;
+    }
+  if (auto colors = any ? to_colors(values, true) : std::nullopt) g.colors = std::move(*colors);
+}
+
+Geometry read(const Input& in) {
+  const LasHeader header = parse_header(in);
+  const Record& record = records[header.format];
+  Geometry g;
+  g.format = "LAS 1." + std::to_string(header.minor) + ", point format " + std::to_string(header.format);
+  g.points.resize(header.points);
+  Property intensity{"intensity", std::vector<double>(header.points)};
+  Property classification{"classification", std::vector<double>(header.points)};
+  for (std::size_t i = 0; i < g.points.size(); ++i) {
+    const std::size_t at = header.begin + i * header.stride;
+    for (std::size_t c = 0; c < 3; ++c)
+      g.points[i][c] = load_at<std::int32_t>(in.bytes, at + 4 * c) * header.scale[c] + header.offset[c];
+    intensity.values[i] = load_at<std::uint16_t>(in.bytes, at + intensity_at);
+    const unsigned number = load_at<std::uint8_t>(in.bytes, at + record.classification);
+    classification.values[i] = header.format < first_of_whole_classes ? number & 31u : number;
+  }
+  for (Property* property : {&intensity, &classification}) g.properties.push_back(std::move(*property));
+  if (record.color != 0) read_colors(in, header, record.color, g);
+  return g;
+}
+
+}  // namespace
+
+std::optional<PointRecords> las_records(const Input& in) {
+  const LasHeader header = parse_header(in);
+  PointRecords records{.begin = header.begin, .count = header.points, .stride = header.stride};
+  records.at = {0, 4, 8};
+  records.type.fill(PlyType::int32);
+  records.is_swapped = std::endian::native == std::endian::big;
+  records.is_scaled = true;
+  records.scale = header.scale;
+  records.offset = header.offset;
+  return records;
+}
+
+Format las_format() { return {.extensions = {".las"}, .signatures = {"LASF"}, .read = read, .records = las_records}; }
+
+}  // namespace ahm::io

@@ -1,0 +1,379 @@
+// Plain columns of numbers have no standard and no library; every line must have as many columns as the first one.
+#include "read/columns.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string_view>
+#include <utility>
+
+#include "read/text.hpp"
+
+namespace ahm::io {
+
+enum class ColumnRole { unknown, normals, colors };
+
+struct ColumnNames {
+  std::array<std::size_t, 3> position;  ///< of x, y, z
+  std::vector<std::pair<ColumnRole, std::array<std::size_t, 3>>> triples;
+};
+
+/// Whether one of the words is "x", one "y" and one "z", in any case.
+bool names_position(const std::vector<std::string_view>& words);
+
+/// x y z; nx ny nz; red green blue, r g b, or rf gf bf; in any case and order, among others.
+/// @throws IoError when one of x, y, z is missing, or a name that is read is there twice
+ColumnNames find_columns(const Input& in, std::int64_t line, const std::vector<std::string_view>& words);
+
+std::optional<std::vector<Color>> to_colors(const std::vector<Vec3>& values, bool deep) {
+  double largest = 0;
+  bool positive = true, whole = true;
+  for (const Vec3& color : values)
+    for (const double x : color) {
+      positive = positive && x >= 0;
+      whole = whole && x == std::floor(x);
+      largest = std::max(largest, x);
+    }
+  const bool fractions = largest <= 1;
+  if (!positive || !(fractions || whole) || largest > (deep ? 65535 : 255)) return std::nullopt;
+  const double scale = fractions ? 255 : largest <= 255 ? 1 : 255.0 / 65535;
+  std::vector<Color> colors(values.size());
+  for (std::size_t i = 0; i < values.size(); ++i)
+    for (std::size_t c = 0; c < 3; ++c) colors[i][c] = static_cast<std::uint8_t>(std::lround(scale * values[i][c]));
+  return colors;
+}
+
+namespace {
+
+using Words = std::vector<std::string_view>;
+using Names = std::array<std::string_view, 3>;
+
+constexpr Names position = {"x", "y", "z"};
+constexpr std::pair<ColumnRole, Names> others[] = {
+    {ColumnRole::normals, {"nx", "ny", "nz"}},
+    {ColumnRole::colors, {"red", "green", "blue"}},
+    {ColumnRole::colors, {"r", "g", "b"}},
+    {ColumnRole::colors, {"rf", "gf", "bf"}},
+};
+
+auto has_name(std::string_view name) {
+  return [name](std::string_view word) { return equals_ignoring_case(word, name); };
+}
+
+std::optional<std::array<std::size_t, 3>> find(const Input& in, std::int64_t line, const Words& words,
+                                               const Names& names) {
+  std::array<std::size_t, 3> columns{};
+  bool complete = true;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto at = std::ranges::find_if(words, has_name(names[k]));
+    if (std::ranges::count_if(words, has_name(names[k])) > 1)
+      fail_at_line(in, line, "two columns are named '" + std::string(names[k]) + "'");
+    complete = complete && at != words.end();
+    columns[k] = static_cast<std::size_t>(at - words.begin());
+  }
+  return complete ? std::optional(columns) : std::nullopt;
+}
+
+}  // namespace
+
+bool names_position(const Words& words) {
+  return std::ranges::all_of(position, [&](auto name) { return std::ranges::any_of(words, has_name(name)); });
+}
+
+ColumnNames find_columns(const Input& in, std::int64_t line, const Words& words) {
+  for (const std::string_view name : position)
+    if (std::ranges::none_of(words, has_name(name)))
+      fail_at_line(in, line, "no column is named '" + std::string(name) + "'");
+  ColumnNames result{*find(in, line, words, position), {}};
+  for (const auto& [role, names] : others) {
+    const auto same = [role = role](const auto& triple) { return triple.first == role; };
+    if (std::ranges::any_of(result.triples, same)) continue;
+    if (const auto columns = find(in, line, words, names)) result.triples.emplace_back(role, *columns);
+  }
+  return result;
+}
+
+void add_property(Geometry& g, const std::string& name, std::vector<double> values) {
+  std::string plain;
+  for (const char c : name) {
+    const bool fit = (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+    plain += fit ? c : '_';
+  }
+  if (plain.empty()) plain = "property";
+  const auto taken = [&](const std::string& other) {
+    return std::ranges::find(g.properties, other, &Property::name) != g.properties.end();
+  };
+  std::string own = plain;
+  for (int number = 2; taken(own); ++number) own = plain + '_' + std::to_string(number);
+  g.properties.push_back({std::move(own), std::move(values)});
+}
+
+namespace {
+
+using Words = std::vector<std::string_view>;
+
+std::string_view trimmed(std::string_view text) {
+  const std::size_t begin = text.find_first_not_of(" \t\r\"");
+  if (begin == std::string_view::npos) return {};
+  return text.substr(begin, text.find_last_not_of(" \t\r\"") - begin + 1);
+}
+
+/// Between delimiters; a blank delimiter stands for any run of blanks and tabs.
+void split(std::string_view line, char delimiter, Words& words) {
+  if (delimiter == ' ') return split_words(line, words);
+  words.clear();
+  for (;;) {
+    const std::size_t end = line.find(delimiter);
+    words.push_back(trimmed(line.substr(0, end)));
+    if (end == std::string_view::npos) return;
+    line.remove_prefix(end + 1);
+  }
+}
+
+/// Whether no column holds two numbers, as those of "1,5 2,5 3,5" would.
+bool separates(std::string_view line, char delimiter, Words& words) {
+  if (line.find(delimiter) == std::string_view::npos) return false;
+  split(line, delimiter, words);
+  return std::ranges::none_of(words, [](std::string_view column) {
+    const std::string_view first = next_word(column), second = next_word(column);
+    return to_real(first) && to_real(second);
+  });
+}
+
+/// Semicolon first, because commas may then be (refused) decimals.
+char find_delimiter(std::string_view line, const ColumnDialect& dialect) {
+  Words words;
+  if (line.find(';') != std::string_view::npos) return ';';
+  if (separates(line, ',', words)) return ',';
+  return dialect.tabs_separate && line.find('\t') != std::string_view::npos ? '\t' : ' ';
+}
+
+/// Whole numbers up to 255 cannot all be meant as normals when one exceeds 1.
+class LevelTest {
+ public:
+  void add(const Vec3& value) {
+    all_levels_ = all_levels_ && std::ranges::all_of(value, is_level);
+    too_long_ = too_long_ || *std::ranges::max_element(value) > 1;
+  }
+  bool are_levels() const { return all_levels_ && too_long_; }
+
+ private:
+  static bool is_level(double v) { return v >= 0 && v <= 255 && v == std::floor(v); }
+
+  bool all_levels_ = true, too_long_ = false;
+};
+
+class ColumnReader {
+ public:
+  /// @param take  gets the points, and nothing is kept; null: all is kept
+  ColumnReader(const Input& in, Lines&& lines, const ColumnDialect& dialect, const TakePoint* take = nullptr)
+      : in_(in), dialect_(dialect), take_(take), lines_(std::move(lines)) {}
+
+  Geometry read() {
+    read_rows();
+    keep();
+    return std::move(g_);
+  }
+
+  /// Whether points have normals.
+  bool take() {
+    read_rows();
+    return std::ranges::any_of(triples_, [](const Triple& t) { return t.role == ColumnRole::normals; });
+  }
+
+ private:
+  void read_rows() {
+    g_.format = dialect_.format;
+    while (next_line()) {
+      if (begins_block()) continue;
+      if (columns_ == 0 && named_columns()) continue;
+      read_row();
+    }
+    if (count_ == 0)
+      fail(in_, names_found_ ? "the file holds no point below the column names" : "the file holds no point");
+    if (left_.value_or(0) > 0)
+      fail_at_line(in_, lines_.number(),
+                   "the file ends " + std::to_string(*left_) + " points before the announced number");
+    check_vertex_count(in_, count_);
+    choose_roles();
+  }
+
+  /// Three columns that are one vector.
+  struct Triple {
+    ColumnRole role;
+    std::array<std::size_t, 3> columns;
+    LevelTest levels = {};
+    std::vector<Vec3> values = {};
+  };
+
+  /// A named column that is no part of a vector.
+  struct Other {
+    std::size_t column;
+    std::string name;
+    std::vector<double> values = {};
+    bool is_numbers = true;
+  };
+
+  /// The next line that holds anything; // is a comment unless it names the columns.
+  bool next_line() {
+    while (lines_.next_filled('#')) {
+      line_ = trimmed(lines_.line());
+      if (!line_.starts_with("//")) return true;
+      line_.remove_prefix(2);
+      if (columns_ > 0 || names_found_) continue;
+      split(line_, find_delimiter(line_, dialect_), words_);
+      if (names_position(words_)) return true;
+    }
+    return false;
+  }
+
+  /// A line of one whole number: so many points follow.
+  bool begins_block() {
+    if (line_.find_first_of(" \t,;") != std::string_view::npos || (left_ ? *left_ > 0 : count_ > 0)) return false;
+    const std::optional<std::int64_t> count = to_whole(line_);
+    if (!count || *count < 0) return false;
+    left_ = *count;
+    return true;
+  }
+
+  bool named_columns() {
+    const char delimiter = find_delimiter(line_, dialect_);
+    split(line_, delimiter, words_);
+    if (std::ranges::any_of(words_, is_like_number)) return false;
+    const ColumnNames names = find_columns(in_, lines_.number(), words_);
+    columns_ = words_.size();
+    position_ = names.position;
+    for (const auto& [role, columns] : names.triples) triples_.push_back({role, columns});
+    for (std::size_t column = 0; column < columns_; ++column)
+      if (!is_taken(column)) others_.push_back({column, std::string(words_[column])});
+    if (delimiter != ' ') delimiter_ = delimiter;
+    return names_found_ = true;
+  }
+
+  bool is_taken(std::size_t column) const {
+    const auto holds = [&](const auto& columns) { return std::ranges::find(columns, column) != columns.end(); };
+    return holds(position_) ||
+           std::ranges::any_of(triples_, [&](const Triple& triple) { return holds(triple.columns); });
+  }
+
+  /// Numbers, or nothing where there is none; a column that holds anything else is left out.
+  void read_others() {
+    for (Other& other : others_) {
+      if (!other.is_numbers) continue;
+      const std::string_view word = words_[other.column];
+      const std::optional<double> value = word.empty() ? std::numeric_limits<double>::quiet_NaN() : to_real(word);
+      other.is_numbers = value.has_value();
+      if (value && take_ == nullptr) other.values.push_back(*value);
+    }
+  }
+
+  void read_row() {
+    if (left_ && (*left_)-- == 0) fail_at_line(in_, lines_.number(), "more points than the announced number");
+    if (delimiter_ == '\0') delimiter_ = find_delimiter(line_, dialect_);
+    split(line_, delimiter_, words_);
+    const bool open_end = words_.size() > 3 && words_.back().empty();  // a delimiter at the end of the line
+    if (open_end && (columns_ == 0 || words_.size() == columns_ + 1)) words_.pop_back();
+    if (columns_ == 0) choose_columns();
+    if (words_.size() != columns_)
+      fail_at_line(in_, lines_.number(),
+                   std::to_string(words_.size()) + " columns, but the lines before have " + std::to_string(columns_));
+    ++count_;
+    const Vec3 point = vector(position_);
+    for (Triple& triple : triples_) {
+      const Vec3 value = vector(triple.columns);
+      triple.levels.add(value);
+      if (take_ == nullptr) triple.values.push_back(value);
+    }
+    read_others();
+    const double intensity = intensity_ ? real_or_fail(in_, lines_.number(), words_[3]) : 0;
+    if (take_ != nullptr) return (*take_)(point);
+    g_.points.push_back(point);
+    if (intensity_) intensity_->push_back(intensity);
+  }
+
+  /// By their number, of a file that does not name them.
+  void choose_columns() {
+    columns_ = words_.size();
+    if (columns_ < 3)
+      fail_at_line(in_, lines_.number(), "expected at least three columns, found " + std::to_string(columns_));
+    if (columns_ == 6 || columns_ == 9) triples_.push_back({ColumnRole::unknown, {3, 4, 5}});
+    if (columns_ == 9) triples_.push_back({ColumnRole::unknown, {6, 7, 8}});
+    if (dialect_.fourth_is_intensity && (columns_ == 4 || columns_ == 7)) intensity_.emplace();
+    if (columns_ == 7 && intensity_) triples_.push_back({ColumnRole::colors, {4, 5, 6}});
+    if (columns_ > 3 && triples_.empty() && !intensity_) ignore_columns();
+  }
+
+  void ignore_columns() { g_.warnings.push_back({"columns_ignored", {static_cast<double>(columns_)}, {}}); }
+
+  Vec3 vector(const std::array<std::size_t, 3>& columns) const {
+    Vec3 result;
+    for (std::size_t c = 0; c < 3; ++c) result[c] = real_or_fail(in_, lines_.number(), words_[columns[c]]);
+    return result;
+  }
+
+  /// Unnamed columns are normals unless they can only be colors. Of two, one must be each.
+  void choose_roles() {
+    for (Triple& triple : triples_)
+      if (triple.role == ColumnRole::unknown) tell(triple);
+    if (triples_.size() < 2 || triples_[0].role != triples_[1].role) return;
+    triples_.clear();
+    ignore_columns();
+  }
+
+  void keep() {
+    if (intensity_) g_.properties.push_back({"intensity", std::move(*intensity_)});
+    for (Other& other : others_) {
+      if (other.is_numbers)
+        add_property(g_, other.name, std::move(other.values));
+      else
+        g_.warnings.push_back({"column_ignored", {}, {}, other.name});
+    }
+    for (Triple& triple : triples_) {
+      if (triple.role == ColumnRole::normals) {
+        g_.normals = std::move(triple.values);
+      } else if (auto colors = to_colors(triple.values)) {
+        g_.colors = std::move(*colors);
+      } else {
+        g_.warnings.push_back({"colors_unknown", {}, {}});
+      }
+    }
+  }
+
+  void tell(Triple& triple) {
+    triple.role = triple.levels.are_levels() ? ColumnRole::colors : ColumnRole::normals;
+    if (triple.role == ColumnRole::normals) return;
+    const auto first = static_cast<double>(triple.columns[0] + 1);
+    g_.warnings.push_back({"columns_as_colors", {first, first + 2}, {}});
+  }
+
+  const Input& in_;
+  const ColumnDialect& dialect_;
+  const TakePoint* take_;
+  Lines lines_;
+  Geometry g_;
+  std::uint64_t count_ = 0;  ///< of points
+  std::string_view line_;
+  Words words_;
+  char delimiter_ = '\0';    ///< not known yet
+  std::size_t columns_ = 0;  ///< in every line; 0: not known yet
+  std::array<std::size_t, 3> position_ = {0, 1, 2};
+  std::vector<Triple> triples_;
+  std::optional<std::vector<double>> intensity_;
+  std::vector<Other> others_;
+  bool names_found_ = false;
+  std::optional<std::int64_t> left_;  ///< points of this block to come, where their number is announced
+};
+
+}  // namespace
+
+Geometry read_columns(const Input& in, const ColumnDialect& dialect) {
+  return ColumnReader(in, Lines(without_byte_order_mark(in.bytes)), dialect).read();
+}
+
+bool take_columns(const ByteStream& file, const ColumnDialect& dialect, const TakePoint& take) {
+  const Input& in = file.head();
+  const std::size_t mark = in.bytes.size() - without_byte_order_mark(in.bytes).size();
+  return ColumnReader(in, Lines(file, mark), dialect, &take).take();
+}
+
+}  // namespace ahm::io

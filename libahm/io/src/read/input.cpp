@@ -1,0 +1,122 @@
+#include "read/input.hpp"
+
+#include <fcntl.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdlib>
+#include <fstream>
+#include <limits>
+#include <optional>
+#include <system_error>
+#include <utility>
+
+#include "ahm/error.hpp"
+#include "ahm/types.hpp"
+#include "read/bytes.hpp"
+
+namespace ahm::io {
+
+Input load(const std::filesystem::path& path) {
+  Input in{path, {}};
+  const RegularFile file(path);
+  in.bytes.resize(file.size());
+  if (const std::size_t done = file.read(0, in.bytes); done < in.bytes.size())
+    fail_at_byte(in, done, "the file became shorter while it was read; read it again when it is complete");
+  check_gzip_name(in);
+  if (is_gzip(in)) gunzip(in);
+  return in;
+}
+
+namespace {
+
+/// Of no known size, and perhaps without end.
+/// @param next  next(in, room, size): reads up to so many bytes, and tells how many; 0 at the end
+template <class Next>
+Input load_unnamed(const Next& next) {
+  Input in{"-", {}};
+  constexpr std::size_t block = std::size_t{1} << 20;
+  const std::uint64_t most = room_for_input();
+  for (std::size_t done = 0, got = 1; got > 0; in.bytes.resize(done)) {
+    in.bytes.resize(done + block);
+    got = next(in, in.bytes.data() + done, block);
+    done += got;
+    if (done > most) fail_too_large(in, "the stream", most);
+  }
+  if (in.bytes.empty()) fail(in, "the stream is empty (0 bytes)");
+  if (is_gzip(in)) gunzip(in);
+  return in;
+}
+
+}  // namespace
+
+Input load(std::istream& stream) {
+  return load_unnamed([&](const Input& in, char* room, std::size_t size) {
+    stream.read(room, static_cast<std::streamsize>(size));
+    if (stream.bad()) fail(in, "the stream cannot be read");
+    return static_cast<std::size_t>(stream.gcount());
+  });
+}
+
+Input load_standard_input() {
+  return load_unnamed([](const Input& in, char* room, std::size_t size) {
+    ssize_t got = -1;
+    do got = ::read(STDIN_FILENO, room, size);
+    while (got < 0 && errno == EINTR);
+    if (got < 0) fail(in, std::generic_category().message(errno));
+    return static_cast<std::size_t>(got);
+  });
+}
+
+void check_gzip_name(const Input& in) {
+  if (!is_gzip(in) && lower_extension(in.path) == ".gz")
+    fail(in, "the file is named .gz, but is not compressed with gzip");
+}
+
+void fail(const Input& in, const std::string& what) {
+  throw IoError("cannot read " + quoted_path(in.path) + ": " + what);
+}
+
+void fail_too_large(const Input& in, const std::string& what, std::uint64_t most) {
+  throw ResourceExhausted("cannot read " + quoted_path(in.path) + ": " + what + " is larger than " +
+                          std::to_string(most >> 20) + " MB, a third of the memory that is free");
+}
+
+void fail_at_line(const Input& in, std::int64_t line, const std::string& what) {
+  throw IoError("cannot read " + quoted_path(in.path) + ", line " + std::to_string(line) + ": " + what);
+}
+
+void fail_at_byte(const Input& in, std::size_t byte, const std::string& what) {
+  throw IoError("cannot read " + quoted_path(in.path) + ", byte " + std::to_string(byte) + ": " + what);
+}
+
+void check_vertex_count(const Input& in, std::uint64_t count) {
+  if (count > static_cast<std::uint64_t>(std::numeric_limits<Index>::max())) {
+    fail(in, std::to_string(count) + " vertices are more than 2147483647, the most this library can number");
+  }
+}
+
+std::string in_quotes(std::string_view text) {
+  constexpr std::size_t longest = 48;
+  std::string result = "'";
+  for (char c : text.substr(0, longest)) result += (c >= ' ' && c < 127) ? c : '?';
+  return result + (text.size() > longest ? "...'" : "'");
+}
+
+std::string quoted_path(const std::filesystem::path& path) {
+  std::string result = "'";
+  result += path.string();
+  result += '\'';
+  return result;
+}
+
+std::string lower_extension(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  std::ranges::transform(extension, extension.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? char(c + 32) : c; });
+  return extension;
+}
+
+}  // namespace ahm::io

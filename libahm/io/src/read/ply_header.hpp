@@ -1,0 +1,91 @@
+/// \file
+/// The header of a PLY file: elements with their properties, checked against the size of the file.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <cstring>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "read/input.hpp"
+
+namespace ahm::io {
+
+enum class PlyFormat { ascii, little_endian, big_endian };
+enum class PlyType { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
+
+/// Bytes of one value.
+std::size_t size_of(PlyType type) noexcept;
+bool is_whole(PlyType type) noexcept;
+
+struct PlyProperty {
+  std::string name;
+  PlyType type;                       ///< of the value, or of a list's values
+  std::optional<PlyType> count_type;  ///< set for a list
+};
+
+struct PlyElement {
+  std::string name;
+  std::uint64_t count = 0;
+  std::vector<PlyProperty> properties;
+  std::int64_t line = 0;  ///< where the header declares it
+
+  /// Position of the first property with this name (lower case) in any case of its letters, nullopt when there is none.
+  std::optional<std::size_t> find(std::string_view property) const;
+  bool has_list() const noexcept;
+  /// Bytes of one item when every list is empty.
+  std::size_t fixed_size() const noexcept;
+};
+
+struct PlyHeader {
+  PlyFormat format = PlyFormat::ascii;
+  std::vector<PlyElement> elements;
+  std::size_t ignored_lines = 0;  ///< that have no meaning; text, or before the first element
+  std::size_t body = 0;           ///< position of the first byte behind the header
+  std::int64_t body_line = 0;     ///< number of the first line behind the header
+};
+
+/// @throws IoError naming the line
+PlyHeader parse_ply_header(const Input& in);
+
+/// Whether the bytes of its values stand in the other order than in memory.
+inline bool is_swapped(PlyFormat format) noexcept {
+  return (format == PlyFormat::big_endian) != (std::endian::native == std::endian::big);
+}
+
+template <class T>
+double load_as(const char* bytes, bool swap) noexcept {
+  std::array<char, sizeof(T)> raw;
+  std::memcpy(raw.data(), bytes, sizeof(T));
+  if (swap) std::ranges::reverse(raw);
+  return static_cast<double>(std::bit_cast<T>(raw));
+}
+
+inline double load_value(PlyType type, const char* bytes, bool swap) noexcept {
+  switch (type) {
+    case PlyType::int8:
+      return load_as<std::int8_t>(bytes, swap);
+    case PlyType::uint8:
+      return load_as<std::uint8_t>(bytes, swap);
+    case PlyType::int16:
+      return load_as<std::int16_t>(bytes, swap);
+    case PlyType::uint16:
+      return load_as<std::uint16_t>(bytes, swap);
+    case PlyType::int32:
+      return load_as<std::int32_t>(bytes, swap);
+    case PlyType::uint32:
+      return load_as<std::uint32_t>(bytes, swap);
+    case PlyType::float32:
+      return load_as<float>(bytes, swap);
+    case PlyType::float64:
+      return load_as<double>(bytes, swap);
+  }
+  return 0.0;
+}
+
+}  // namespace ahm::io

@@ -1,0 +1,202 @@
+#include "camera.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+
+#include "ahm/error.hpp"
+#include "ahm/util/quantile.hpp"
+#include "direction.hpp"
+
+namespace ahm::render {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr std::size_t framing_sample = 200'000;
+
+/// At most about `framing_sample` of the points that decide the framing: the mapped ones if there are any.
+/// All vertices of a mesh that is mapped for the most part: its rest belongs into the picture.
+std::vector<Index> framed_points(const Scene& scene, const std::vector<Index>& shown, bool& is_local) {
+  std::vector<Index> mapped;
+  std::copy_if(shown.begin(), shown.end(), std::back_inserter(mapped),
+               [&](Index i) { return has_coordinate(scene, i); });
+  is_local = !mapped.empty() && 2 * mapped.size() < shown.size();
+  const bool all = mapped.empty() || (!is_local && !scene.face_vertices.empty());
+  const std::vector<Index>& from = all ? shown : mapped;
+  const std::size_t stride = from.size() / framing_sample + 1;
+  std::vector<Index> sample;
+  for (std::size_t k = 0; k < from.size(); k += stride) sample.push_back(from[k]);
+  return sample;
+}
+
+struct Range {
+  double low, high;
+};
+
+/// Smallest and largest value; without the outer percent on a side where that percent lies far out (floaters of a
+/// scan).
+Range robust_range(std::vector<double> values) {
+  const auto quantile = [&](double q) {
+    return detail::value_at(values, static_cast<std::size_t>(std::lround(q * static_cast<double>(values.size() - 1))));
+  };
+  const double low = quantile(0), trimmed_low = quantile(0.01), trimmed_high = quantile(0.99), high = quantile(1);
+  const double slack = 0.15 * (trimmed_high - trimmed_low);
+  return {low < trimmed_low - slack ? trimmed_low - slack : low,
+          high > trimmed_high + slack ? trimmed_high + slack : high};
+}
+
+/// Robust box of the points along the three columns of `axes`.
+Eigen::AlignedBox3d robust_box(const Scene& scene, const std::vector<Index>& points, const Eigen::Matrix3d& axes) {
+  Vector3d low, high;
+  std::vector<double> values(points.size());
+  for (int k = 0; k < 3; ++k) {
+    for (std::size_t i = 0; i < points.size(); ++i) values[i] = as_vector(scene.points[points[i]]).dot(axes.col(k));
+    const Range range = robust_range(values);
+    low[k] = range.low;
+    high[k] = range.high;
+  }
+  return {low, high};
+}
+
+/// z for what is flat in z (terrain, rooms) and for scans that stand in it (trees, masts), y else. A figure with spread arms is
+/// flat in z too, hence more care with meshes.
+Vector3d default_up(const Vector3d& extent, bool is_mesh) {
+  const double flat = is_mesh ? 0.3 : 0.6, wide = std::max(extent.x(), extent.y());
+  const bool lies = extent.z() < flat * std::min(extent.x(), extent.y()), stands = !is_mesh && extent.z() > 3 * wide;
+  return lies || stands ? Vector3d(0, 0, 1) : Vector3d(0, 1, 0);
+}
+
+void orient(Camera& camera, const Vector3d& direction, const Vector3d& up) {
+  camera.back = direction.normalized();
+  Vector3d right = up.cross(camera.back);
+  if (right.norm() < 1e-6 * up.norm())  // seen along `up`, a map lies as on paper: x to the right
+    right = Vector3d(std::abs(camera.back.y()) < 0.9 ? Vector3d(0, 1, 0) : Vector3d(0, 0, -1)).cross(camera.back);
+  camera.right = right.normalized();
+  camera.up = camera.back.cross(camera.right);
+}
+
+/// Moves target and distance so that the points inside `box` (in camera axes, scene units) fill the picture.
+void fit(Camera& camera, const std::vector<Vector3d>& points, const Eigen::AlignedBox3d& box, double aspect,
+         double margin) {
+  const double tan_y = std::tan(Camera::field_of_view / 2), tan_x = tan_y * aspect;
+  Vector3d center = box.center();
+  double distance = 0;
+  for (int round = 0; round < 4; ++round) {  // recentring changes the perspective a little, hence the rounds
+    distance = 1e-3;
+    for (const Vector3d& p : points) {
+      const Vector3d q = p - center;
+      distance =
+          std::max({distance, q.z() + std::abs(q.x()) / tan_x * margin, q.z() + std::abs(q.y()) / tan_y * margin});
+    }
+    Eigen::AlignedBox2d seen;
+    for (const Vector3d& p : points) {
+      const Vector3d q = p - center;
+      seen.extend(Eigen::Vector2d(q.head<2>() / (distance - q.z())));
+    }
+    center.head<2>() += distance * seen.center();
+  }
+  camera.distance = distance;
+  camera.target = center.x() * camera.right + center.y() * camera.up + center.z() * camera.back;
+}
+
+}  // namespace
+
+Vector3d Camera::to_view(const Vector3d& x) const {
+  const Vector3d d = x - target;
+  return {d.dot(right), d.dot(up), d.dot(back) - distance};
+}
+
+Vector3d Camera::to_pixels(const Vector3d& x, int width, int height) const {
+  const Vector3d v = to_view(x);
+  const double pixels = 0.5 * height / std::tan(field_of_view / 2) / std::max(-v.z(), near_plane);
+  return {0.5 * width + pixels * v.x(), 0.5 * height - pixels * v.y(), pixels};
+}
+
+bool has_coordinate(const Scene& scene, Index point) {
+  const auto i = static_cast<std::size_t>(point);
+  if (!scene.labels.empty()) return scene.labels[i] >= 0 && std::isfinite(scene.distance[i]);
+  if (!scene.u.empty()) return std::isfinite(scene.u[i]) && std::isfinite(scene.v[i]);
+  return !scene.distance.empty() && std::isfinite(scene.distance[i]);
+}
+
+double distance_at(const Scene& scene, Index point) {
+  const auto i = static_cast<std::size_t>(point);
+  if (!scene.distance.empty() && std::isfinite(scene.distance[i])) return scene.distance[i];
+  return scene.u.empty() ? 0 : std::hypot(scene.u[i], scene.v[i]);
+}
+
+std::vector<Index> shown_points(const Scene& scene) {
+  std::vector<bool> used(scene.points.size(), scene.face_vertices.empty());
+  for (const Index vertex : scene.face_vertices) used[vertex] = true;
+  std::vector<Index> shown;
+  for (std::size_t i = 0; i < scene.points.size(); ++i)
+    if (used[i] && as_vector(scene.points[i]).allFinite()) shown.push_back(static_cast<Index>(i));
+  if (shown.empty())
+    throw InvalidGeometry("scene.points: nothing to show, none of the " + std::to_string(scene.points.size()) +
+                          " points is finite" + (scene.face_vertices.empty() ? "" : " and part of a face"));
+  return shown;
+}
+
+Camera choose_camera(const Scene& scene, const std::vector<Index>& shown, const PictureOptions& options) {
+  bool is_local = false;
+  const std::vector<Index> framed = framed_points(scene, shown, is_local);
+  const Eigen::AlignedBox3d box = robust_box(scene, framed, Eigen::Matrix3d::Identity());
+
+  Camera camera;
+  camera.center = box.center();
+  camera.scale = box.diagonal().stableNorm() / 2;
+  if (!(camera.scale > 0)) camera.scale = std::max(1.0, camera.center.stableNorm() * 1e-3);  // a single point
+
+  const Vector3d up =
+      options.up ? Vector3d(as_vector(*options.up)) : default_up(box.sizes(), !scene.face_vertices.empty());
+  const Vector3d direction = options.view_direction ? Vector3d(as_vector(*options.view_direction))
+                                                    : choose_direction(scene, shown, camera, up, box.sizes());
+  orient(camera, direction, up);
+
+  Eigen::Matrix3d axes;
+  axes << camera.right, camera.up, camera.back;
+  Eigen::AlignedBox3d view_box = robust_box(scene, framed, axes);
+  const Vector3d shift = axes.transpose() * camera.center;
+  view_box = {(view_box.min() - shift) / camera.scale, (view_box.max() - shift) / camera.scale};
+  std::vector<Vector3d> points;
+  for (const Index i : framed) {
+    const Vector3d p = axes.transpose() * camera.to_scene(scene.points[i]);
+    if (view_box.contains(p)) points.push_back(p);
+  }
+  if (points.empty()) points.push_back(view_box.center());
+  fit(camera, points, view_box, static_cast<double>(options.width) / options.height, is_local ? 1.35 : 1.08);
+
+  double deepest = 0;
+  for (const Index i : shown) deepest = std::max(deepest, -camera.to_view(camera.to_scene(scene.points[i])).z());
+  camera.near_plane = 0.02 * camera.distance;
+  camera.far_plane = std::clamp(1.1 * deepest, 2 * camera.distance, 1e4 * camera.distance);
+  return camera;
+}
+
+double choose_ring_width(const Scene& scene, const std::vector<Index>& shown, const PictureOptions& options) {
+  if (options.ring_width) return *options.ring_width;
+  std::vector<double> first, second;
+  for (const Index i : shown) {
+    if (!has_coordinate(scene, i)) continue;
+    const auto k = static_cast<std::size_t>(i);
+    if (options.pattern == Pattern::polar) first.push_back(std::hypot(scene.u[k], scene.v[k]));
+    if (options.pattern == Pattern::grid) first.push_back(scene.u[k]), second.push_back(scene.v[k]);
+    if (options.pattern == Pattern::cells || options.pattern == Pattern::distance)
+      first.push_back(distance_at(scene, i));
+  }
+  if (first.empty()) return 1;
+  const Range range = robust_range(std::move(first));
+  double exact = range.high / (options.pattern == Pattern::cells ? 4 : 12);
+  if (!second.empty()) {
+    const Range other = robust_range(std::move(second));
+    exact = std::max(range.high - range.low, other.high - other.low) / 24;
+  }
+  if (!(exact > 0) || !std::isfinite(exact)) return 1;
+  const double power = std::pow(10.0, std::floor(std::log10(exact)));
+  double best = power;
+  for (const double step : {1.0, 2.0, 2.5, 5.0, 10.0})
+    if (std::abs(std::log(step * power / exact)) < std::abs(std::log(best / exact))) best = step * power;
+  return best;
+}
+
+}  // namespace ahm::render

@@ -1,0 +1,109 @@
+// The colors of every picture, for GLSL ES 1.00 and, with glsl.hpp, for C++ alike.
+const float pi = 3.14159265;
+
+// OKLCh (Ottosson 2020): hues of equal lightness look equally bright, which HSV's do not. Result: linear RGB.
+vec3 oklch(float lightness, float chroma, float hue) {
+  float a = chroma * cos(hue), b = chroma * sin(hue);
+  float l = lightness + 0.3963377774 * a + 0.2158037573 * b;
+  float m = lightness - 0.1055613458 * a - 0.0638541728 * b;
+  float s = lightness - 0.0894841775 * a - 1.2914855480 * b;
+  vec3 lms = vec3(l * l * l, m * m * m, s * s * s);
+  return clamp(vec3(dot(vec3(4.0767416621, -3.3077115913, 0.2309699292), lms),
+                    dot(vec3(-1.2684380046, 2.6097574011, -0.3413193965), lms),
+                    dot(vec3(-0.0041960863, -0.7034186147, 1.7076147010), lms)), 0.0, 1.0);
+}
+
+// Integral of the wave that is +1 on even and -1 on odd unit intervals.
+float triangle_wave(float x) { return 1.0 - abs(2.0 * fract(0.5 * x) - 1.0); }
+
+// That wave averaged over a pixel of this width: sharp near by, plain gray where cells are smaller than pixels.
+float square_wave(float x, float width) {
+  float w = max(width, 0.004);
+  return (triangle_wave(x + 0.5 * w) - triangle_wave(x - 0.5 * w)) / w;
+}
+
+// Below, dx and dy are the changes of uv over one pixel; the result is linear RGB.
+
+// Rings and sectors about the source; uv in ring widths.
+vec3 polar_color(vec2 uv, vec2 dx, vec2 dy, float sectors) {
+  float r = max(length(uv), 1e-6);
+  vec2 radial = uv / r, around = vec2(-radial.y, radial.x);
+  float ring_width = abs(dot(radial, dx)) + abs(dot(radial, dy));
+  float sectors_per_radian = sectors / (2.0 * pi);
+  float sector_width = (abs(dot(around, dx)) + abs(dot(around, dy))) / r * sectors_per_radian;
+  float angle = atan(radial.y, radial.x);
+  float checker = square_wave(r, ring_width) * square_wave(angle * sectors_per_radian, sector_width);
+  float hue = angle + 0.5;
+  return mix(oklch(0.50, 0.125, hue), oklch(0.83, 0.105, hue), 0.5 + 0.5 * checker);
+}
+
+// Squares of u and v: warm to the left of the curve (v > 0), cold to its right, further round the hues with every stripe.
+vec3 grid_color(vec2 uv, vec2 dx, vec2 dy) {
+  vec2 width = abs(dx) + abs(dy);
+  float checker = square_wave(uv.x, width.x) * square_wave(uv.y, width.y);
+  float left = clamp(0.5 + uv.y / max(width.y, 1e-6), 0.0, 1.0);
+  float turn = 1.6 * (1.0 - exp(-abs(uv.y) / 6.0));
+  vec3 dark = mix(oklch(0.47, 0.12, 4.4 + turn), oklch(0.56, 0.125, 0.8 + turn), left);
+  vec3 light = mix(oklch(0.80, 0.09, 4.4 + turn), oklch(0.88, 0.10, 0.8 + turn), left);
+  return mix(dark, light, 0.5 + 0.5 * checker);
+}
+
+// Cells: uv.x is one of twelve colors, uv.y the distance from the cell's source in ring widths. Neighbouring hues
+// differ in lightness, and colors of successive numbers are far apart.
+vec3 cell_color(vec2 uv, vec2 dx, vec2 dy) {
+  float number = floor(uv.x + 0.5);
+  float hue = mod(5.0 * number, 12.0) * pi / 6.0 + 0.5;
+  float ring = square_wave(uv.y, abs(dx.y) + abs(dy.y));
+  float lightness = mod(number, 2.0) < 0.5 ? 0.58 : 0.80;
+  return oklch(lightness + 0.035 * ring, 0.115, hue);
+}
+
+// Distances from 0 to 1 in colors of evenly rising lightness: violet, blue, green, yellow.
+vec3 distance_color(float t) {
+  t = clamp(t, 0.0, 1.0);
+  float lightness = 0.28 + 0.62 * t;
+  float chroma = 0.13 + 0.05 * t * t - 0.12 * t * (1.0 - t);
+  return oklch(lightness, chroma, 5.45 - 3.62 * t - 0.06 * sin(2.0 * pi * t));
+}
+
+// Thin dark lines at the rings, so that equal distances can be followed.
+vec3 distance_with_lines(vec2 uv, vec2 dx, vec2 dy, float rings) {
+  float width = max(abs(dx.x) + abs(dy.x), 1e-6);
+  float from_line = abs(uv.x - floor(uv.x + 0.5)) / width;
+  float line = (1.0 - clamp(from_line - 0.4, 0.0, 1.0)) * clamp(0.25 / width - 0.5, 0.0, 1.0);
+  return distance_color(uv.x / rings) * (1.0 - 0.30 * line);
+}
+
+vec3 plain_color() { return vec3(0.58, 0.56, 0.53); }
+
+// The numbers of ahm::render::Pattern. `sectors` of the polar pattern; `rings` is what the last color stands for.
+vec3 map_color(int pattern, vec2 uv, vec2 dx, vec2 dy, float sectors, float rings) {
+  if (pattern == 1) return grid_color(uv, dx, dy);
+  if (pattern == 2) return cell_color(uv, dx, dy);
+  if (pattern == 3) return distance_with_lines(uv, dx, dy, rings);
+  if (pattern == 4) return plain_color();
+  return polar_color(uv, dx, dy, sectors);
+}
+
+vec3 unknown_color() { return vec3(0.42); }
+
+// Where the map is not to be trusted: pale, under dark stripes across the picture. `pixel` in 1200ths of its height.
+vec3 untrusted_color(vec3 color, vec2 pixel, float pixel_size) {
+  float gray = 0.45 + 0.35 * dot(color, vec3(0.3, 0.5, 0.2));
+  float width = 0.1414 * pixel_size;
+  float stripe = 0.5 + 0.5 * square_wave(0.1414 * (pixel.x + pixel.y), 2.0 * width);
+  return mix(vec3(gray), color, 0.18) * (1.0 - 0.62 * stripe);
+}
+
+// Light from over the viewer's left shoulder, in camera coordinates; the normal looks towards the viewer.
+vec3 matte(vec3 color, vec3 normal) {
+  vec3 key = normalize(vec3(-0.35, 0.55, 0.85));
+  float diffuse = max(0.0, 0.75 * dot(normal, key) + 0.25);
+  float sky = 0.5 + 0.5 * normal.y;
+  return color * (0.20 + 0.12 * sky + 0.86 * diffuse);
+}
+
+vec3 lit(vec3 color, vec3 normal, vec3 to_eye) {
+  vec3 half_way = normalize(normalize(vec3(-0.35, 0.55, 0.85)) + to_eye);
+  return matte(color, normal) + vec3(0.03 * pow(max(0.0, dot(normal, half_way)), 60.0));
+}

@@ -1,0 +1,232 @@
+#include "search_trees.hpp"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <utility>
+
+#include "ahm/error.hpp"
+#include "ahm/surface/face_tree.hpp"
+#include "ahm/util/small_math.hpp"
+#include "ahm/util/vec.hpp"
+
+namespace ahm {
+namespace {
+
+constexpr std::size_t leaf = 8;  ///< rows or triangles
+
+}  // namespace
+
+RowTree::RowTree(const RowMap& rows, std::span<const Vec3> positions, Index vertices) {
+  for (Index v = 0; v < vertices; ++v)
+    if (const auto row = rows.row(Vertex(v)); row && is_finite(positions[row->index]))
+      entries_.push_back({positions[row->index], v, *row});
+  axis_.resize(entries_.size());
+  build(0, entries_.size());
+}
+
+void RowTree::build(std::size_t begin, std::size_t end) {
+  if (end - begin <= leaf) return;
+  Vec3 low = entries_[begin].position, high = low;
+  for (std::size_t k = begin; k < end; ++k)
+    for (std::size_t a = 0; a < 3; ++a) {
+      low[a] = std::min(low[a], entries_[k].position[a]);
+      high[a] = std::max(high[a], entries_[k].position[a]);
+    }
+  const Vec3 sides = high - low;
+  const auto axis = static_cast<std::size_t>(std::max_element(sides.begin(), sides.end()) - sides.begin());
+  const std::size_t half = begin + (end - begin) / 2;
+  const auto at = [&](std::size_t k) { return entries_.begin() + static_cast<std::ptrdiff_t>(k); };
+  std::nth_element(at(begin), at(half), at(end),
+                   [&](const Entry& a, const Entry& b) { return a.position[axis] < b.position[axis]; });
+  axis_[half] = static_cast<std::uint8_t>(axis);
+  build(begin, half);
+  build(half + 1, end);
+}
+
+Row RowTree::nearest(const Vec3& position) const {
+  Best best{std::numeric_limits<double>::infinity(), nullptr};
+  search(0, entries_.size(), position, best);
+  return best.entry != nullptr ? best.entry->row : Row{};
+}
+
+void RowTree::look_at(const Entry& entry, const Vec3& position, Best& best) {
+  const double away = distance(entry.position, position);
+  const bool first = away == best.distance && best.entry != nullptr && entry.vertex < best.entry->vertex;
+  if (away < best.distance || first) best = {away, &entry};
+}
+
+void RowTree::search(std::size_t begin, std::size_t end, const Vec3& position, Best& best) const {
+  if (end - begin <= leaf) {
+    for (std::size_t k = begin; k < end; ++k) look_at(entries_[k], position, best);
+    return;
+  }
+  const std::size_t half = begin + (end - begin) / 2, axis = axis_[half];
+  const double beyond = position[axis] - entries_[half].position[axis];
+  look_at(entries_[half], position, best);
+  beyond < 0 ? search(begin, half, position, best) : search(half + 1, end, position, best);
+  if (std::abs(beyond) > best.distance) return;
+  beyond < 0 ? search(half + 1, end, position, best) : search(begin, half, position, best);
+}
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+/// What is nearer to an edge or a corner than this share of a side lies there, and of faces whose distances differ by less than this
+/// share of their coordinates the first is the nearest: a curve that crosses an edge is the same one however it is scaled and turned.
+constexpr double rounding = 1e-12;
+
+/// Where on the segment from a to b the point nearest to p lies, in [0, 1].
+double along(const Vec3& p, const Vec3& a, const Vec3& b) {
+  const Vec3 d = b - a;
+  const double squared = dot(d, d);
+  const double t = squared > 0 ? dot(p - a, d) / squared : 0.0;
+  return t < rounding ? 0 : t > 1 - rounding ? 1 : t;
+}
+
+Vec3 combined(const std::array<Vec3, 3>& t, const std::array<double, 3>& weights) {
+  Vec3 result{};
+  for (std::size_t k = 0; k < 3; ++k)
+    for (std::size_t a = 0; a < 3; ++a) result[a] += weights[k] * t[k][a];
+  return result;
+}
+
+/// Barycentric coordinates of the point of a triangle nearest to p: its projection, or the nearest on an edge.
+std::array<double, 3> nearest_in(const std::array<Vec3, 3>& t, const Vec3& p) {
+  const Vec3 u = t[1] - t[0], v = t[2] - t[0], w = p - t[0];
+  const double uu = dot(u, u), uv = dot(u, v), vv = dot(v, v), area = uu * vv - uv * uv;
+  const double second = (vv * dot(w, u) - uv * dot(w, v)) / area, third = (uu * dot(w, v) - uv * dot(w, u)) / area;
+  if (second >= rounding && third >= rounding && second + third <= 1 - rounding)
+    return {1 - second - third, second, third};
+  std::array<double, 3> best{};
+  double least = infinity;
+  for (std::size_t k = 0; k < 3; ++k) {
+    std::array<double, 3> weights{};
+    weights[(k + 1) % 3] = along(p, t[k], t[(k + 1) % 3]);
+    weights[k] = 1 - weights[(k + 1) % 3];
+    const Vec3 d = combined(t, weights) - p;
+    if (!(dot(d, d) < least)) continue;
+    least = dot(d, d);
+    best = weights;
+  }
+  return best;
+}
+
+double squared_distance(const Vec3& p, const Vec3& low, const Vec3& high) {
+  double sum = 0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const double d = std::max({low[a] - p[a], 0.0, p[a] - high[a]});
+    sum += d * d;
+  }
+  return sum;
+}
+
+}  // namespace
+
+FaceTree::FaceTree(std::span<const Vec3> positions, const FaceList& faces) : positions_(positions), faces_(faces) {
+  for (std::size_t f = 0; f < faces.size(); ++f)
+    for (std::size_t c = 1; c + 1 < faces[f].size(); ++c) {
+      const Piece piece{static_cast<Index>(f), static_cast<Index>(c)};
+      if (is_finite(corner(piece, 0)) && is_finite(corner(piece, 1)) && is_finite(corner(piece, 2)))
+        pieces_.push_back(piece);
+    }
+  if (pieces_.empty()) throw InvalidGeometry("the mesh has no face with finite corners");
+  build(0, pieces_.size());
+}
+
+const Vec3& FaceTree::corner(const Piece& piece, int k) const {
+  const Index c = k == 0 ? 0 : piece.corner + k - 1;
+  return positions_[faces_[piece.face][c]];
+}
+
+void FaceTree::build(std::size_t begin, std::size_t end) {
+  Box box{{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}, begin, end, 0};
+  for (std::size_t t = begin; t < end; ++t)
+    for (int k = 0; k < 3; ++k) {
+      const Vec3& p = corner(pieces_[t], k);
+      for (std::size_t a = 0; a < 3; ++a)
+        box.low[a] = std::min(box.low[a], p[a]), box.high[a] = std::max(box.high[a], p[a]);
+    }
+  const std::size_t number = boxes_.size();
+  boxes_.push_back(box);
+  if (end - begin <= leaf) return;
+  const Vec3 sides = box.high - box.low;
+  const auto axis = static_cast<std::size_t>(std::max_element(sides.begin(), sides.end()) - sides.begin());
+  const auto middle_of = [&](const Piece& t) {
+    return corner(t, 0)[axis] / 3 + corner(t, 1)[axis] / 3 + corner(t, 2)[axis] / 3;
+  };
+  const std::size_t half = begin + (end - begin) / 2;
+  const auto at = [&](std::size_t t) { return pieces_.begin() + static_cast<std::ptrdiff_t>(t); };
+  std::nth_element(at(begin), at(half), at(end),
+                   [&](const Piece& a, const Piece& b) { return middle_of(a) < middle_of(b); });
+  build(begin, half);
+  boxes_[number].second = boxes_.size();
+  build(half, end);
+}
+
+/// What a search knows; all lengths times `scale`.
+struct FaceTree::Search {
+  double scale;
+  Vec3 from;
+  double size;  ///< of its coordinates
+  double least = infinity;
+
+  double to(const Box& box) const { return std::sqrt(squared_distance(from, scale * box.low, scale * box.high)); }
+  /// Whether what is in a box may be as near as the nearest so far but for the rounding of coordinates.
+  bool may_be_in(const Box& box) const {
+    return to(box) <= least + rounding * std::max({size, scale * largest(box.low), scale * largest(box.high)});
+  }
+};
+
+/// Looks at the triangles in a box that may be the nearest.
+template <class LookAt>
+void FaceTree::visit(std::size_t number, const Search& search, const LookAt& look_at) const {
+  const Box& box = boxes_[number];
+  if (box.second == 0) {
+    for (std::size_t t = box.begin; t < box.end; ++t) look_at(pieces_[t]);
+    return;
+  }
+  std::size_t near = number + 1, far = box.second;
+  if (search.to(boxes_[far]) < search.to(boxes_[near])) std::swap(near, far);
+  for (const std::size_t half : {near, far})
+    if (search.may_be_in(boxes_[half])) visit(half, search, look_at);
+}
+
+FaceTree::Hit FaceTree::nearest(const Vec3& position) const {
+  const double size = std::max({largest(boxes_[0].low), largest(boxes_[0].high), largest(position)});
+  const double unit = power_of_two_below(size), scale = 1 / unit;
+  Search search{scale, scale * position, scale * largest(position)};
+  visit(0, search,
+        [&](const Piece& piece) { search.least = std::min(search.least, look(piece, search.from, scale).distance); });
+  Hit best;
+  bool found = false;
+  visit(0, search, [&](const Piece& piece) {
+    if (found && piece.face > best.point.face) return;
+    const Look here = look(piece, search.from, scale);
+    if (here.distance > search.least + rounding * std::max(search.size, here.size)) return;
+    if (found && piece.face == best.point.face && !(unit * here.distance < best.distance)) return;
+    std::vector<double> of_corners(faces_[piece.face].size(), 0.0);
+    of_corners[0] = here.weights[0];
+    of_corners[piece.corner] = here.weights[1];
+    of_corners[piece.corner + 1] = here.weights[2];
+    best = {{piece.face, std::move(of_corners)}, unit * here.position, unit * here.distance};
+    found = true;
+  });
+  return best;
+}
+
+/// The point of a triangle that is nearest; all lengths times `scale`.
+FaceTree::Look FaceTree::look(const Piece& piece, const Vec3& from, double scale) const {
+  std::array<Vec3, 3> t;
+  Look here{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    t[k] = scale * corner(piece, static_cast<int>(k));
+    here.size = std::max(here.size, largest(t[k]));
+  }
+  here.weights = nearest_in(t, from);
+  here.position = combined(t, here.weights);
+  here.distance = norm(here.position - from);
+  return here;
+}
+
+}  // namespace ahm
